@@ -99,21 +99,30 @@ def test_the_action_takes_every_line_of_its_options(text, tmp_path):
     echo.write_text('#!/bin/sh\nprintf "%s\\n" "$@"\n')
     echo.chmod(0o755)
     done = ended("library", tmp_path, text, echo, "look.mtlx 'my looks'")
-    given = ["check", "--report", str(tmp_path / "report"), "look.mtlx", "my looks", *OPTIONS[text]]
+    given = [
+        "check",
+        "--annotations",
+        "--report",
+        str(tmp_path / "report"),
+        "look.mtlx",
+        "my looks",
+        *OPTIONS[text],
+    ]
     assert done.stdout.splitlines() == [*given, "--library", "library"]
 
 
-@pytest.mark.parametrize(
-    "check, diff, status", [(1, 0, 0), (3, 0, 0), (0, 3, 3), (1, 1, 1), (2, 0, 2)]
-)
-def test_the_action_with_a_baseline_fails_where_something_got_worse(check, diff, status, tmp_path):
+@pytest.mark.parametrize("status", range(4))
+def test_the_action_with_a_baseline_ends_as_the_command_and_leaves_annotations_to_the_log(
+    status, tmp_path
+):
     made = tmp_path / "made"
-    made.write_text(f'#!/bin/sh\n[ "$1" = check ] && exit {check}\necho "$@"\nexit {diff}\n')
+    made.write_text(f'#!/bin/sh\necho "$@"\necho ::error::worse\nexit {status}\n')
     made.chmod(0o755)
-    done = ended("library", tmp_path, command=made, baseline="old")
-    compared = "" if check == 2 else f"report diff old {tmp_path / 'report'}\n"
-    assert (done.returncode, done.stdout) == (status, compared)
-    assert (tmp_path / "summary.md").read_text().strip() == compared.strip()
+    done = ended("library", tmp_path, "", made, baseline="old")
+    command, annotation = done.stdout.splitlines()
+    assert (done.returncode, annotation) == (status, "::error::worse")
+    assert command.endswith("--library library --baseline old")
+    assert (tmp_path / "summary.md").read_text() == f"    {command}\n"
 
 
 @pytest.mark.whole

@@ -4,6 +4,7 @@
 import json
 import math
 import re
+from collections import Counter
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -13,12 +14,13 @@ import numpy as np
 import pytest
 
 from mxeon.cli import main
-from mxeon.conformance.results import Cause, Diagnosis, Kind
+from mxeon.conformance.results import Cause, Diagnosis, Errors, Kind
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.results.records import make_converter
 from mxeon.models import table as reference
 from mxeon.report import to_json, write
 from mxeon.report.diff import BETTER, LOST, OTHER, WORSE, compare, read_results
+from mxeon.shaders.library import examples_folder
 from mxeon.survey.field import read_field
 from tests.support.availability import package
 from tests.support.results import Control, Identity, Picture, Region, Result, Run, caused
@@ -63,27 +65,18 @@ def changes(before, after):
 GONE = replace(made_run(), results=())
 REFUSED = replace(made_run(), refused={"clay.mtlx": ("no such node",)})
 TWO = replace(made_run(), documents=(Path("a.mtlx"), Path("b.mtlx")))
-OUTSIDE = {"verdict": FAILED, "check": "picture", "subject": "d: clay"}
-BRIGHT = made_run(difference=1e-3, **OUTSIDE)
-MOVED = replace(BRIGHT, pictures=(replace(BRIGHT.pictures[0], document="new/d"),))
 CHANGES = [
     (made_run(), made_run(error=1.4e-7)),
     (made_run(FAILED), made_run(FAILED, error=1.4e-7)),
     (REFUSED, REFUSED),
     (made_run(), made_run(FAILED), (WORSE, "value: passed at 1e-07 -> failed at 1e-07")),
     (made_run(), made_run(NOT_RUN, None), (LOST, "value: passed at 1e-07 -> not run")),
-    (made_run(), made_run(error=3e-7), (OTHER, "value: passed at 1e-07 -> passed at 3e-07")),
-    (made_run(), made_run(error=math.nan), (OTHER, "value: passed at 1e-07 -> passed at NaN")),
+    (made_run(), made_run(error=9e-7)),
     (made_run(), made_run(device="GPU"), (OTHER, "host gl: 4.5, llvmpipe -> 4.5, GPU")),
-    (made_run(), made_run(difference=1e-3), (OTHER, "side, largest difference: 1e-07 -> 0.001")),
-    # A picture counts where its material is outside of its tolerance, wherever the document lies.
-    (made_run(**OUTSIDE), BRIGHT, (WORSE, "side, largest difference: 1e-07 -> 0.001")),
-    (made_run(**OUTSIDE), MOVED, (WORSE, "side, largest difference: 1e-07 -> 0.001")),
-    (BRIGHT, made_run(**OUTSIDE), (BETTER, "side, largest difference: 0.001 -> 1e-07")),
-    (made_run(), GONE, (LOST, "value: passed at 1e-07 -> none")),
-    (made_run(FAILED), GONE, (LOST, "value: failed at 1e-07 -> none")),
-    (GONE, made_run(), (OTHER, "value: none -> passed at 1e-07")),
-    (GONE, made_run(FAILED), (WORSE, "value: none -> failed at 1e-07")),
+    (made_run(), GONE, (LOST, "1 check: passed at 1e-07 -> none")),
+    (made_run(FAILED), GONE, (LOST, "1 check: failed at 1e-07 -> none")),
+    (GONE, made_run(), (OTHER, "1 check: none -> passed at 1e-07")),
+    (GONE, made_run(FAILED), (WORSE, "1 check: none -> failed at 1e-07")),
     (made_run(), REFUSED, (WORSE, "clay.mtlx: not refused -> refused")),
     (REFUSED, made_run(), (BETTER, "clay.mtlx: refused -> not refused")),
     # A document that was removed takes its checks with it; one that was moved does not.
@@ -91,12 +84,12 @@ CHANGES = [
         TWO,
         replace(GONE, documents=TWO.documents[:1]),
         (OTHER, "b.mtlx: checked -> removed"),
-        (OTHER, "value: passed at 1e-07 -> none"),
+        (OTHER, "1 check: passed at 1e-07 -> none"),
     ),
     (
         TWO,
         replace(GONE, documents=(Path("new/a.mtlx"), Path("new/b.mtlx"))),
-        (LOST, "value: passed at 1e-07 -> none"),
+        (LOST, "1 check: passed at 1e-07 -> none"),
     ),
 ]
 
@@ -110,50 +103,154 @@ def test_each_kind_of_change_is_told(row):
 QON, FON = (
     caused("model", name, rms=1e-9, distances={name: 1e-9, "EON": 1.0}) for name in ("QON", "FON")
 )
+FAR = caused("unknown", "no_model", distances={"QON": 0.04, "EON": 0.2})
+ALL = Errors(1000, 100, 0, 0.3, 0.05)
 
 
-@pytest.mark.parametrize(
-    "before, after, kind, words",
-    [
-        ({}, {"error": 0.9}, WORSE, "failed at 0.3 -> failed at 0.9; 3 times larger"),
-        ({"error": 0.9}, {}, BETTER, "failed at 0.9 -> failed at 0.3; 3 times smaller"),
-        ({}, {"error": math.inf}, WORSE, "failed at 0.3 -> failed at Infinity"),
-        ({}, {"error": None}, WORSE, "failed at 0.3 -> failed"),  # as one that does not compile
-        ({"verdict": DIFFERS}, {"verdict": DIFFERS, "error": 0.9}, WORSE, "3 times larger"),
-        (
-            {"verdict": DIFFERS},
-            {"error": 0.2},
-            WORSE,
-            "no permitted reading explains it any longer",
-        ),
-        ({"pages": ("a",)}, {"error": 0.31}, WORSE, "a no longer explains it"),
-        ({"error": 0.31}, {"pages": ("a",)}, BETTER, "a explains it"),
-        ({"pages": ("a",)}, {"error": 1e-5}, BETTER, "30,000 times smaller"),
-        (
-            {"diagnosis": QON},
-            {"error": 0.31, "diagnosis": FON},
-            WORSE,
-            "is best match: FON (rms 1e-09)",
-        ),
-        ({"diagnosis": QON}, {"diagnosis": FON}, OTHER, "diagnosis was best match: QON"),
-        ({"pages": ("a",)}, {}, OTHER, "a no longer explains it"),
-        ({}, {"verdict": NOT_RUN, "reason": "timed out"}, LOST, "failed at 0.3 -> not run; timed"),
-        ({"verdict": NOT_RUN, "reason": "timed out"}, {}, WORSE, "not run -> failed at 0.3"),
-        ({"verdict": NOT_RUN, "diagnosis": caused("follows")}, {}, OTHER, "not run -> failed"),
-    ],
-)
-def test_a_failure_that_changes_is_worse_better_or_lost(
-    before, after, kind, words, tmp_path, capsys
-):
+def errors(*regions, samples="a", **changes):
+    """Errors of all samples and in regions, each with what differs from ALL."""
+    whole, *parts = ({**changes}, *regions)
+    found = (replace(ALL, **whole), *(replace(ALL, **{**changes, **each}) for each in parts))
+    return {"errors": found, "samples": samples}
+
+
+ROUGH, SMOOTH = (Region("roughness", "value", **end) for end in ({"low": 0.5}, {"high": 0.5}))
+HALVES = {"region": SMOOTH}, {"region": ROUGH}
+PAGE, TWO_PAGES = {"pages": ("a",)}, {"pages": ("a", "b")}
+PERMITTED = {"verdict": DIFFERS}
+SEED = {"samples": "b", "of": 900}  # other samples, and fewer
+INVALID = {"error": math.inf, "tolerance": 0.0, "quantity": Quantity.VALUES}
+# A result before and after, the kind of the change, and a part of its line.
+GATE = {
+    # Regressions that keep the largest error.
+    "light is lost below half of the layers": (errors(), errors(wrong=200, rms=0.1), WORSE, "10 % -> 20 % of"),
+    "a page explains it no longer": (errors() | PAGE, errors(), WORSE, "a no longer explains it"),
+    "the best match is far, although the page stays": (
+        PAGE | errors() | {"diagnosis": QON}, PAGE | errors(rms=0.0505) | {"diagnosis": FAR}, WORSE, "1e-09 -> 0.04",
+    ),
+    "darker in front light alone": (errors(), errors(wrong=100, rms=0.06), WORSE, "rms error is 0.05 -> 0.06"),
+    "brighter for small weights": (
+        errors() | {"diagnosis": QON}, errors(rms=0.0501) | {"diagnosis": replace(FAR, distances={"QON": 2.2e-3})},
+        WORSE, "best match is 1e-09 -> 0.0022",
+    ),
+    "wrong beside NaN": (
+        {"error": math.inf} | errors(not_finite=9), {"error": math.inf} | errors(not_finite=9, wrong=960, rms=0.4),
+        WORSE, "10 % -> 96 % of the samples are wrong",
+    ),
+    "more NaN": (
+        {"error": math.inf} | errors(not_finite=9), {"error": math.inf} | errors(not_finite=12),
+        WORSE, "0.9 % -> 1.2 % of the samples are not finite",
+    ),
+    "smaller, but unexplained": (errors() | PAGE, errors(rms=0.01, largest=0.1), WORSE, "a no longer explains it"),
+    "worse in a half of the samples, better in the other": (
+        errors(*HALVES), errors({"region": SMOOTH, "rms": 0.01}, {"region": ROUGH, "rms": 0.06}),
+        WORSE, "0.05 -> 0.06 with roughness 0.5 or above",
+    ),
+    "larger": (errors(), errors(largest=0.6), WORSE, "largest error is 0.3 -> 0.6"),
+    "one input more is dead": (
+        {"error": 1.0, "tolerance": 0.0, "quantity": Quantity.INPUTS},
+        {"error": 2.0, "tolerance": 0.0, "quantity": Quantity.INPUTS}, WORSE, "2 times larger",
+    ),
+    "permitted no longer": (PERMITTED | errors(), errors(rms=0.01), WORSE, "no permitted reading explains it any"),
+    "a permitted reading with a larger error": (PERMITTED | errors(), PERMITTED | errors(largest=0.6), WORSE, "largest"),
+    "does not compile": ({}, {"error": None}, WORSE, "failed at 0.3 -> failed"),
+    "no samples, and larger": ({}, {"error": 0.9}, WORSE, "failed at 0.3 -> failed at 0.9; 3 times larger"),
+    # Improvements.
+    "another permitted reading, nearer": (
+        PERMITTED | errors() | {"diagnosis": QON}, PERMITTED | errors(rms=0.06, largest=0.2) | {"diagnosis": FON},
+        "", "",
+    ),
+    "one of two defects is repaired": (errors() | TWO_PAGES, errors(rms=0.02) | PAGE, BETTER, "0.05 -> 0.02"),
+    "fewer NaN": (errors(not_finite=9), errors(not_finite=3), BETTER, "0.9 % -> 0.3 %"),
+    "a defect is repaired, and little is left": (
+        PAGE | errors() | {"diagnosis": QON}, errors(rms=1e-4) | {"diagnosis": replace(QON, distances={"EON": 1e-9})},
+        BETTER, "0.05 -> 0.0001",
+    ),
+    "a page is found": (errors(), errors() | PAGE, BETTER, "a explains it"),
+    "smaller": ({"error": 0.9}, {}, BETTER, "3 times smaller"),
+    # What noise may change.
+    "the same": (errors(*HALVES), errors(*HALVES), "", ""),
+    "another driver": (errors(), errors(rms=0.0505, largest=0.4, wrong=101), "", ""),
+    "another seed": (
+        PAGE | errors({"region": SMOOTH}, largest=1.5),
+        errors({"region": replace(SMOOTH, high=0.51), "wrong": 400}, rms=0.06, largest=1.5, wrong=110, **SEED), "", "",
+    ),
+    "another seed, and a regression": (errors(), errors(wrong=300, rms=0.2, **SEED), WORSE, "10 % -> 33.3 % of the samples"),
+    "a change within the tolerance": (
+        errors(largest=5e-6, rms=1e-6), errors(largest=5.9e-6, rms=9e-6, wrong=300), "", "",
+    ),
+    "another name of the same error": (errors() | {"diagnosis": QON}, errors() | {"diagnosis": FON}, "", ""),
+    "other edges that are not finite": (INVALID | {"error": 376.0}, INVALID | {"error": 380.0}, "", ""),
+    # What does not run.
+    "lost": ({}, {"verdict": NOT_RUN, "reason": "timed out"}, LOST, "failed at 0.3 -> not run; timed"),
+    "found": ({"verdict": NOT_RUN, "reason": "timed out"}, {}, WORSE, "not run -> failed at 0.3"),
+    "implied": ({"verdict": NOT_RUN, "diagnosis": caused("follows")}, {}, OTHER, "not run -> failed"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("row", GATE)
+def test_the_rules_tell_a_regression_from_noise_and_from_a_repair(row, tmp_path, capsys):
+    before, after, kind, text = GATE[row]
     runs = [made_run(**{"verdict": FAILED, "error": 0.3} | each) for each in (before, after)]
     status = {WORSE: 1, LOST: 3}.get(kind, 0)
     assert diff(tmp_path, *runs) == status
+    if not kind:
+        assert capsys.readouterr().out == "no difference\n"
+        return
     heading, subject, line, count = capsys.readouterr().out.splitlines()
     assert (heading, subject, count) == (f"{kind}: gl with eonlib", "  clay", f"1 {kind}")
-    assert words in line and line.startswith("    value: ")
+    assert text in line and line.startswith("    value: ")
     assert diff(tmp_path, *runs, "--json") == status
     [found] = json.loads(capsys.readouterr().out)
     assert (found["kind"], found["place"]) == (kind, PLACE)
+
+
+def test_missing_and_new_checks_are_a_line_for_a_subject_or_a_host():
+    results = tuple(
+        made_run(check=check, subject=subject).results[0]
+        for subject in ("clay", "slate")
+        for check in ("value", "black", "energy", "frame")
+    )
+    vulkan = tuple(replace(each, host="vulkan") for each in results)
+    full, short = (replace(made_run(), results=each) for each in (results + vulkan, results[4:]))
+    assert changes(full, short) == [
+        (LOST, "value, black, energy and 1 more: passed at 1e-07 -> none"),
+        (LOST, "8 checks: passed at 1e-07 -> none"),
+    ]
+    assert changes(short, full) == [
+        (OTHER, "value, black, energy and 1 more: none -> passed at 1e-07"),
+        (OTHER, "8 checks: none -> passed at 1e-07"),
+    ]
+
+
+def test_a_check_with_a_baseline_is_one_command(tmp_path, capsys):
+    document = str(examples_folder() / "clay.mtlx")
+    check = ["check", document, "--host", "msl", "--library", "eonlib", "--workers", "0"]
+    out, old = str(tmp_path / "out"), tmp_path / "old"
+    assert main([*check, "--report", out, "--annotations"]) == 3  # text of msl is not run
+    assert "\n::warning title=mxeon check::not run" in capsys.readouterr().out
+    for name, change, status, text in (
+        ("same", {}, 0, "no difference"),
+        (
+            "passed",
+            {"verdict": PASSED, "error": 0.0, "tolerance": 1.0, "reason": ""},
+            3,
+            "1 not run any longer",
+        ),
+        ("stale", {"format": 3}, 2, ""),
+    ):
+        content = json.loads(Path(out, "results.json").read_text())
+        row = next(each for each in content["results"] if each["verdict"] == NOT_RUN)
+        (content if name == "stale" else row).update(change)
+        counts = Counter(each["verdict"] for each in content["results"])
+        content["counts"] = {each: counts[each] for each in content["counts"]}
+        old.with_suffix(".json").write_text(json.dumps(content))
+        options = ["--baseline", str(old.with_suffix(".json")), "--report", out]
+        assert main([*check, *options, "--annotations"]) == status
+        printed = capsys.readouterr()
+        assert text in printed.out and ("\n::warning title=not run" in printed.out) == (status == 3)
+    assert "format must be 4; got 3" in printed.err
+    assert not Path(out, "junit.xml").exists() and Path(out, "previous_run", "junit.xml").exists()
 
 
 def test_lines_name_host_and_library_once_and_come_largest_first(tmp_path, capsys):
@@ -221,7 +318,13 @@ def test_the_schema_and_the_reader_accept_the_same_reports(tmp_path, capsys, mon
     assert main(["report", "schema"]) == 0
     valid = jsonschema.Draft202012Validator(json.loads(capsys.readouterr().out)).is_valid
     cause = Cause(Kind.REGION, "key", ("a",), (1.0,), "b", Region("a", "b", 0.5, 1.0, ("r",)), 1, 2)
-    fields = {"worst": {"a": [math.nan]}, "measured": ("a",), "pages": ("a",), "seconds": 1.0}
+    fields = {
+        "worst": {"a": [math.nan]},
+        "errors": (replace(ALL, region=ROUGH),),
+        "measured": ("a",),
+        "pages": ("a",),
+        "seconds": 1.0,
+    }
     diagnosis = Diagnosis((replace(cause, rms=math.inf, point={"a": [1.0]}),), {"a": 0.5})
     run = made_run(FAILED, diagnosis=diagnosis, control=Control("a", 1.0, True), **fields)
     run = replace(run, libraries={"a": {"folder": ("b",)}}, seconds=1.0)

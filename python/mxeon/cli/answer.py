@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 import argparse
+import json
 import re
+import sys
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from mxeon.cli.output import fail, show
 from mxeon.conformance import words
@@ -23,6 +26,9 @@ from mxeon.errors import as_output, one_line, printable
 from mxeon.report.formats import link
 from mxeon.shaders.library import eonlib_folder, kind_of
 from mxeon.shaders.library_export import CLIENTS
+
+if TYPE_CHECKING:
+    from mxeon.report.diff import Report
 
 LINES = 10  # maximum lines printed for one document
 MANY = 20  # with more documents, group them by cause
@@ -41,16 +47,31 @@ KEYS = ("picture", "finite", DOCUMENT_KEY)
 INDIRECT = ("environment", "layering", "transmission", "integral")  # checks in a white environment
 
 
-def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) -> int:
+def show_run(
+    run: Run,
+    options: argparse.Namespace,
+    said: Collection[str] = (),
+    baseline: Report | None = None,
+) -> int:
     """Write a run's report and print its summary; return the exit status.
 
-    Document errors in `said` were printed before.
+    Document errors in `said` were printed before. With a baseline, changes decide about the status instead of
+    failures; a refused document is misuse all the same.
     """
     from mxeon import report
+    from mxeon.report import diff
 
     page = report.write(run, options.report) if options.report else None
-    if options.json:
-        print(as_output(report.to_json(run)))
+    status, content = run.exit_status, report.to_json(run) if baseline or options.json else ""
+    changes: tuple[diff.Change, ...] = ()
+    if baseline:
+        changes = diff.compare(baseline, diff.read_report(json.loads(content)))
+        status = status if run.refused else diff.status(changes)
+    if options.json and baseline:
+        both = json.loads(content) | {"changes": diff.to_json(changes)}
+        print(as_output(json.dumps(both, indent=1)))
+    elif options.json:
+        print(as_output(content))
     else:
         files = [
             one_line(f"library {folder}: {origin}: {name}")
@@ -62,7 +83,20 @@ def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) 
         print(printable("\n".join([*checks, *answer(run, options.full)])))
         if page:
             show(f"report: {page}")
-    return fail(run.exit_status, *(each for each in run.errors if each not in said))
+        if baseline:
+            print("\n".join(["compared with the baseline:", *diff.lines(changes)]))
+    if getattr(options, "annotations", False):
+        lines = diff.annotations(changes) if baseline else _annotations(run)
+        print("\n".join(lines), file=sys.stderr if options.json else sys.stdout)
+    return fail(status, *(each for each in run.errors if each not in said))
+
+
+def _annotations(run: Run) -> Iterator[str]:
+    """Failures by their cause, and what did not run, as commands to GitHub's log."""
+    for line in _failures(replace(run, results=run.judged, compared=())):
+        yield words.annotation("error", "mxeon check", one_line(line))
+    for line in _not_run(run, True, []):
+        yield words.annotation("warning", "mxeon check", one_line(line))
 
 
 def _line(result: Result) -> str:

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """`mxeon check`: run the checks on hosts, and compare pictures of documents."""
 
+from __future__ import annotations
+
 import argparse
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from mxeon import survey
 from mxeon.cli import arguments
@@ -14,6 +16,9 @@ from mxeon.errors import MISUSE, InputError
 from mxeon.hosts import host_names, register
 from mxeon.jobs import WAIT
 from mxeon.jobs.signals import SignalExit, block_signals
+
+if TYPE_CHECKING:
+    from mxeon.report.diff import Report
 
 T = TypeVar("T")
 
@@ -29,6 +34,7 @@ def add_parser(commands: arguments.Commands) -> None:
         "check my.mtlx  # your materials, with eonlib beside stock MaterialX",
         "check my.mtlx --library stock --report out  # with MaterialX's own shaders, and a report",
         "check --library ./libraries --node all  # every node of your copy of MaterialX",
+        "check --library ./libraries --baseline accepted  # what got worse since a run",
     )
     command.add_argument(
         "files",
@@ -58,6 +64,17 @@ def add_parser(commands: arguments.Commands) -> None:
         "even if no document uses them; repeatable",
     )
     arguments.add_shared(command, "--report")
+    command.add_argument(
+        "--baseline",
+        metavar="FILE",
+        help="results.json, or the report's folder, of an accepted run: the exit status is 1 only "
+        "if something got worse, 3 if a check no longer runs",
+    )
+    command.add_argument(
+        "--annotations",
+        action="store_true",
+        help="also print failures, or what got worse, as commands to GitHub's log",
+    )
     command.add_argument(
         "--resume", action="store_true", help="continue an interrupted run in the --report folder"
     )
@@ -101,6 +118,7 @@ def run(options: argparse.Namespace) -> int:
             "--materialx does not reach the workers of a --scheduler; start them with that package "
             "on PYTHONPATH"
         )
+    baseline = _baseline(options) if options.baseline else None
     refused: list[str] = []
 
     def refuse(error: str) -> None:
@@ -134,7 +152,21 @@ def run(options: argparse.Namespace) -> int:
             )
             end.args = (f"{end}; {remedy}",)
         raise
-    return show_run(result, options, refused)
+    return show_run(result, options, refused, baseline)
+
+
+def _baseline(options: argparse.Namespace) -> Report:
+    """The accepted run, read before the results of --report move away, which they do too if it is refused."""
+    from mxeon.conformance.run.journal import Journal
+    from mxeon.report.diff import read_results
+
+    try:
+        return read_results(options.baseline)
+    except InputError:
+        if options.report:
+            with Journal(options.report, options.resume):
+                pass
+        raise
 
 
 def _importing(progress: Progress) -> Callable[[Iterable[T], int], Iterator[T]]:

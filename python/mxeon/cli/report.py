@@ -7,7 +7,7 @@ import os
 
 from mxeon.cli import arguments
 from mxeon.cli.output import show
-from mxeon.errors import FAILED, NOT_RUN, PASSED, InputError, as_output
+from mxeon.errors import PASSED, InputError, as_output
 
 
 def add_parser(commands: arguments.Commands) -> None:
@@ -82,16 +82,11 @@ def run_schema(options: argparse.Namespace) -> int:
 
 def run_diff(options: argparse.Namespace) -> int:
     """Print the differences of two reports; return FAILED if something got worse, or NOT_RUN if it is lost."""
-    from mxeon.io.records import spelled
-    from mxeon.report.diff import LOST, WORSE, compare, lines, read_results
+    from mxeon.report.diff import compare, lines, read_results, status, to_json
 
     changes = compare(read_results(options.before), read_results(options.after))
     if options.json:
-        rows = [
-            vars(each) | {"place": each.place, "growth": spelled(each.growth)} for each in changes
-        ]
-        print(as_output(json.dumps(rows, indent=1)))
+        print(as_output(json.dumps(to_json(changes), indent=1)))
     else:
         print("\n".join(lines(changes)))
-    kinds = {each.kind for each in changes}
-    return FAILED if WORSE in kinds else NOT_RUN if LOST in kinds else PASSED
+    return status(changes)

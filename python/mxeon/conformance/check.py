@@ -5,19 +5,24 @@ A check passes at error <= tolerance. Its control is the same case with other in
 engine; the check has to fail on it.
 """
 
+import math
 import warnings
 from collections.abc import Callable, Iterable
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import TypeAlias, TypeVar
+
+import numpy as np
 
 from mxeon.conformance import results
 from mxeon.conformance.backends import Backend
 from mxeon.conformance.case import Case
 from mxeon.conformance.controls import Control
-from mxeon.conformance.diagnosis import UNTOLD, searched
+from mxeon.conformance.diagnosis import UNTOLD, Comparison, searched
+from mxeon.conformance.diagnosis.regions import errors
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Result
-from mxeon.conformance.spec import NO_ABILITY, Ability, Spec
-from mxeon.conformance.tolerance import Compared, Measurement, Metric, Tolerance, worst_of
+from mxeon.conformance.spec import NO_ABILITY, Ability, LobeSpec, Spec, ValueSpec
+from mxeon.conformance.tolerance import Compared, Measurement, Tolerance, worst_of
 from mxeon.errors import Implied, NotRun, OutsideModel, ShaderError
 from mxeon.hosts.base import RendererWarning
 from mxeon.shaders.methods import GENERATED, Methods
@@ -51,6 +56,13 @@ def family(kind: type[S], holds: Callable[[S], bool] = lambda spec: True) -> Spe
     return Specs(lambda spec: isinstance(spec, kind) and holds(spec))
 
 
+def compared_of(found: Compared | Iterable[Compared] | Measurement) -> list[Compared]:
+    """What was compared; none for a number of its own."""
+    if isinstance(found, Measurement):
+        return []
+    return [found] if isinstance(found, Compared) else list(found)
+
+
 def always(diagnosis: Diagnosis) -> Explain:
     """The same explanation of every failure."""
     return lambda case: diagnosis
@@ -76,12 +88,37 @@ class Check:
     hosts: Callable[[Spec, str], bool] = lambda spec, host: True
     methods: Callable[[Spec, Methods], bool] = lambda spec, methods: True
 
-    def measured(self, case: Case, metric: Metric) -> Measurement:
-        """The worst error of a case."""
+    def measured(self, case: Case, tolerance: Tolerance) -> Measurement:
+        """The worst error of a case; all of its errors if that is too large."""
         found = self.measure(case)
         if isinstance(found, Measurement):
             return found
-        return worst_of(metric, [found] if isinstance(found, Compared) else found)
+        compared = compared_of(found)
+        worst = worst_of(tolerance.metric, compared)
+        if case.control or worst.error <= tolerance.value:
+            return worst
+        return Measurement(worst.error, worst.worst, *errors(compared, tolerance))
+
+    def gives(self, case: Case, title: str, tolerance: Tolerance) -> bool:
+        """Whether a permitted function gives the engine's values for the check's own samples.
+
+        Negative values, which the check `dark` judges, count as 0.
+        """
+        model = copy(case.backend)  # with values of that function
+        for name, candidates in (
+            ("direct", case.spec.all_candidates if isinstance(case.spec, ValueSpec) else ()),
+            ("albedo", case.albedo_candidates if isinstance(case.spec, LobeSpec) else ()),
+        ):
+            for each in candidates:
+                if each.title == title:
+                    vars(model)[name] = lambda batch, *_, values=each.values: values(batch)
+        lit = replace(case, outputs=lambda batch, values: np.maximum(values, 0.0))
+        found = [self.measure(each) for each in (lit, replace(lit, backend=model))]
+        return all(
+            not tolerance.wrong(Compared(own.batch, *columns)).any()
+            for own, other in zip(*map(compared_of, found), strict=True)
+            for columns in zip(own[1:], other[1:], strict=True)
+        )
 
     def applies_to(
         self, spec: Spec, backend: type[Backend], host: str, methods: Methods = GENERATED
@@ -107,17 +144,17 @@ class Check:
         def explain() -> Diagnosis:
             diagnosis = self.explain(case)  # a permitted function excuses an open check alone
             causes = diagnosis.causes
-            if diagnosis.first in UNTOLD and not isinstance(
-                found := self.measure(case), Measurement
-            ):
-                compared = [found] if isinstance(found, Compared) else list(found)
+            if diagnosis.first in UNTOLD and (compared := compared_of(self.measure(case))):
                 causes = (searched(diagnosis.first, compared, tolerance),)
-            return replace(diagnosis, causes=causes, permitted=self.open and diagnosis.permitted)
+            permitted = self.open and diagnosis.permitted
+            if permitted and not isinstance(self.measure, Comparison) and diagnosis.distances:
+                permitted = self.gives(case, diagnosis.first.key, tolerance)
+            return replace(diagnosis, causes=causes, permitted=permitted)
 
         return judge(
             place,
             tolerance,
-            lambda wrong: self.measured(self.control.of(case) if wrong else case, tolerance.metric),
+            lambda wrong: self.measured(self.control.of(case) if wrong else case, tolerance),
             self.control.words,
             explain,
         )
@@ -159,13 +196,15 @@ def judge(
         verdict=results.PASSED
         if passed and caught
         else results.DIFFERS
-        if diagnosis.permitted
+        if diagnosis.permitted and math.isfinite(right.error)
         else results.FAILED,
         error=right.error,
         quantity=tolerance.quantity,
         tolerance=tolerance.value,
         derivation=tolerance.derivation,
         worst=right.worst,
+        errors=right.errors,
+        samples=right.samples,
         diagnosis=diagnosis,
         control=results.Control(variant, wrong.error, caught),
     )

@@ -26,6 +26,7 @@ from mxeon.conformance.results import (
     Diagnosis,
     Kind,
     Picture,
+    Region,
     Result,
     quoted,
 )
@@ -46,6 +47,7 @@ from mxeon.conformance.tolerance import (
     Term,
     Tolerance,
     count_of,
+    errors_of,
     given,
     roundings,
     scaled,
@@ -176,7 +178,7 @@ def _stretched(lobes: Iterable[ShownLobe]) -> bool:
 
 Pixels: TypeAlias = NDArray[np.floating]
 Shown: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]  # with the host's picture
-Pixel: TypeAlias = tuple[float, dict[str, list[float]], float]
+Pixel: TypeAlias = tuple[float, dict[str, list[float]], float, Pixels]
 Note: TypeAlias = tuple[str, str]  # a warning, and what it is about
 
 MATCH = "Every pixel matches the reference."
@@ -347,18 +349,23 @@ def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Resul
 def _judge_match(place: Result, cases: Sequence[Shown], tolerance: Tolerance) -> Result:
     """Result for a material that the models cover: its pixels have to be the reference's."""
     pixels = [_worst_pixel(case, tolerance.metric) for case in cases]
-    error, worst, _ = max(pixels, key=lambda entry: entry[0])
+    error, worst, *_ = max(pixels, key=lambda entry: entry[0])
     first, image, expected = cases[0]
 
     def measure(wrong: bool) -> Measurement:
         if not wrong:
-            return Measurement(error, worst)
+            scenes = zip(cases, pixels, strict=True)
+            parts = [errors_of(each[3], tolerance.value, Region(c[0].name)) for c, each in scenes]
+            whole = errors_of(np.concatenate([each[3] for each in pixels]), tolerance.value)
+            return Measurement(
+                error, worst, (whole, *parts) if error > tolerance.value else (), "pixels"
+            )
         brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
         return Measurement(_worst_pixel((first, brighter, expected), tolerance.metric)[0], {})
 
     def appearance() -> Diagnosis:
         """The largest difference of the pictures, and the scene that shows it."""
-        sizes = [abs(each) if np.isfinite(each) else np.inf for _, _, each in pixels]
+        sizes = [abs(each) if np.isfinite(each) else np.inf for _, _, each, _ in pixels]
         worst = int(np.argmax(sizes))
         cause = Cause(Kind.PICTURE, cases[worst][0].name, values=(pixels[worst][2],))
         return Diagnosis((cause,))
@@ -370,7 +377,7 @@ def _judge_match(place: Result, cases: Sequence[Shown], tolerance: Tolerance) ->
 
 
 def _worst_pixel(case: Shown, metric: Metric) -> Pixel:
-    """Largest error times cos(theta_o), its pixel, and the largest difference of all pixels.
+    """Largest error times cos(theta_o), its pixel, the largest difference of all pixels, and all errors.
 
     The difference has a sign, and is relative where the reference exceeds 1.
     """
@@ -387,7 +394,8 @@ def _worst_pixel(case: Shown, metric: Metric) -> Pixel:
         "measured": image[row, column].astype(float).tolist(),
         "expected": reference[row, column].tolist(),
     }
-    return float(error[worst]), point, float(difference.flat[np.abs(difference).argmax()])
+    largest = float(difference.flat[np.abs(difference).argmax()])
+    return float(error[worst]), point, largest, error
 
 
 def _directions(scene: Scene, mask: NDArray[np.bool_]) -> tuple[Pixels, Pixels]:

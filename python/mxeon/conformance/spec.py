@@ -232,6 +232,11 @@ class ValueSpec(Spec):
         """Functions that may explain the values, its own model first."""
         return ()
 
+    @property
+    def all_candidates(self) -> tuple[Candidate, ...]:
+        """The same, and those of samples that `batches` lacks."""
+        return self.value_candidates
+
     @abstractmethod
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """All samples."""

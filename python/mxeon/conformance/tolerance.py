@@ -6,10 +6,12 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from typing import NamedTuple
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.conformance.results import Errors, Region
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Mask, Values
 
@@ -26,7 +28,8 @@ class Compared(NamedTuple):
     expected: Array
 
     def where(self, rows: Mask | NDArray[np.integer]) -> "Compared":
-        return Compared(self.batch.where(rows), self.measured[rows], self.expected[rows])
+        expected = np.broadcast_to(self.expected, self.measured.shape)
+        return Compared(self.batch.where(rows), self.measured[rows], expected[rows])
 
     def over(self, scale: Array) -> "Compared":
         return Compared(self.batch, self.measured / scale, self.expected / scale)
@@ -34,10 +37,12 @@ class Compared(NamedTuple):
 
 @dataclass(frozen=True)
 class Measurement:
-    """The worst error of a check, and its sample."""
+    """The worst error of a check, its sample, and the errors of all samples."""
 
     error: float
     worst: dict[str, list[float]]  # inputs and values of the worst sample, by name
+    errors: tuple[Errors, ...] = ()
+    samples: str = ""  # equal for equal samples
 
 
 def _largest(values: Array) -> Array:
@@ -97,11 +102,32 @@ def worst_of(metric: Metric, compared: Iterable[Compared]) -> Measurement:
     return worst
 
 
+def errors_of(rows: NDArray[np.floating], tolerance: float, region: Region | None = None) -> Errors:
+    """The errors of samples, or of those in a region."""
+    finite = rows[np.isfinite(rows)]
+    rms = float(np.sqrt(np.mean(finite**2))) if len(finite) else 0.0
+    wrong = int(np.count_nonzero(~(rows <= tolerance)))
+    largest = float(finite.max(initial=0.0))
+    return Errors(len(rows), wrong, len(rows) - len(finite), largest, rms, region)
+
+
+def checksum(batches: Iterable[Batch]) -> str:
+    """Equal for equal samples."""
+    found = 0
+    for batch in batches:
+        for column in (batch.wo, batch.wi, *batch.inputs.values()):
+            found = crc32(np.asarray(column, np.float32).tobytes(), found)
+    return f"{found:08x}"
+
+
 def count_not_finite(compared: Compared) -> Measurement:
     """Number of measured rows that are not finite, and the first of them."""
     bad = ~np.isfinite(compared.measured).all(axis=1)
-    first = point_of(compared.batch, int(bad.argmax())) if bad.any() else {}
-    return Measurement(int(bad.sum()), first)
+    if not bad.any():
+        return Measurement(0, {})
+    errors = errors_of(np.where(bad, np.inf, 0.0), 0.0)
+    first = point_of(compared.batch, int(bad.argmax()))
+    return Measurement(errors.wrong, first, (errors,), checksum([compared.batch]))
 
 
 def count_named(names: Sequence[str]) -> Measurement:

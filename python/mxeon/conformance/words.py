@@ -137,6 +137,7 @@ REGIONS = {
     "color_channel_1": "with a color channel at 1",
     "color_channel_above": "with a color channel above {low:g}",
     "normal_away": "where the normal faces away from the viewer",
+    **{scene: f"in {light}" for scene, light in LIGHTS.items()},
 }
 # Of an input, those whose range is a region.
 PARTS = {
@@ -189,6 +190,7 @@ SUMS = "each part is right by itself, but {share} sums are wrong{states}"
 # Other defects, with what `_filled` has in braces.
 DEFECTS = {
     "average_at_half_vector": "the compensation uses F at the half vector instead of its average",
+    "average_by_ends": "the compensation uses the average F0 + (F90 - F0) / 21",
     "average_at_two_thirds": "the compensation uses F at the cosine 2/3 instead of its average",
     "seen": "the mean of 1 - F over the visible normals",
     "seen_over_masking": "the mean of 1 - F over the visible normals, divided by G_1 of the view",
@@ -486,6 +488,52 @@ def explanation(result: Result) -> str:
     """The reason for a failure: the excess, the diagnosis, and where the defect is described."""
     pages = (f"see docs/upstream/{page}.md" for page in result.pages)
     return "; ".join(filter(None, (excess(result), diagnosis(result.diagnosis), *pages)))
+
+
+# --- changes ---------------------------------------------------------------------------------------
+
+# Numbers that differ between two runs of a check: {0} before, {1} after.
+GROWTHS = {
+    "largest": "the largest error is {0} -> {1}",
+    "rms": "the rms error is {0} -> {1}",
+    "best": "the rms distance to the best match is {0} -> {1}",
+    "wrong": "{0} % -> {1} % of the samples are wrong",
+    "not_finite": "{0} % -> {1} % of the samples are not finite",
+}
+UNEXPLAINED = "no permitted reading explains it any longer"
+
+
+def growth(key: str, before: float, after: float, place: Region | None) -> str:
+    """A number that grew or fell, and where.
+
+    >>> growth("wrong", 0.125, 0.25, Region("roughness", "value", low=0.5))
+    '12.5 % -> 25 % of the samples are wrong with roughness 0.5 or above'
+    """
+    if key == "error":
+        factor = max(before, after) / min(before, after) if min(before, after) else math.inf
+        side = "larger" if after > before else "smaller"
+        return f"{in_words(factor)} times {side}" * math.isfinite(factor)
+    percent = 100.0 if key in ("wrong", "not_finite") else 1.0
+    numbers = (_short(percent * each, 3) for each in (before, after))
+    return f"{GROWTHS[key].format(*numbers)} {region(place) if place else ''}".rstrip()
+
+
+def lost_page(pages: Sequence[str]) -> str:
+    return f"{listed(pages)} no longer explains it"
+
+
+def found_page(pages: Sequence[str]) -> str:
+    return f"{listed(pages)} explains it"
+
+
+def annotation(level: str, title: str, message: str) -> str:
+    """A command to GitHub's log, which shows the message.
+
+    >>> annotation("error", "worse: sheen", "50 % darker")
+    '::error title=worse%3A sheen::50 %25 darker'
+    """
+    message, title = (each.replace("%", "%25").replace("\n", "%0A") for each in (message, title))
+    return f"::{level} title={title.replace(':', '%3A').replace(',', '%2C')}::{message}"
 
 
 # --- runs ------------------------------------------------------------------------------------------

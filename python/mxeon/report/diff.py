@@ -9,21 +9,23 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TypeAlias
 
+from mxeon import errors
 from mxeon.conformance import words
+from mxeon.conformance.diagnosis import SAME
 from mxeon.conformance.results import (
     DIFFERS,
     FAILED,
     NOT_RUN,
     PASSED,
-    PORTRAIT,
     VERDICTS,
-    Diagnosis,
+    Region,
     Result,
     Verdict,
 )
 from mxeon.conformance.results.known_issues import SPREAD
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.results.records import make_converter
 from mxeon.errors import InputError, one_line
 from mxeon.hosts.base import Identity
@@ -34,39 +36,61 @@ from mxeon.report import JSON_FORMAT, SCHEMA
 WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "other")
 RANKS = (PASSED, DIFFERS, FAILED)
 PLACE = ("host", "library", "check", "subject")
-SHOWN = ("host", "library", "subject", "scene")
+SAMPLED = (Quantity.VALUES, Quantity.PIXELS)  # counts that depend on the samples
+# Factor by which another engine or driver changes errors of equal samples, and by how much its functions do.
+EQUAL, FUNCTIONS = 1.02, 2e-5
+# By how much other samples change errors: standard deviations, and the factor of the rms distance to the best match.
+CHANCE, DISTANCE = 6.0, 3.0
+
+
+@dataclass(frozen=True)
+class Growth:
+    """A number of a result that is larger than before by more than noise, or smaller.
+
+    - `key`: A row of `mxeon.conformance.words.GROWTHS`.
+    - `region`: The part of the samples; None for all.
+    """
+
+    key: str
+    before: float
+    after: float
+    region: Region | None = None
+
+    @property
+    def factor(self) -> float:
+        return self.after / self.before if self.before else math.inf
 
 
 @dataclass(frozen=True)
 class Change:
-    """One difference between two reports; a missing entry has the value "none".
-
-    - WORSE: a worse verdict; a new check that fails; a newly refused document; a check that failed or differed before,
-      with an error more than SPREAD times larger (engines and drivers may add that much), or with a different error and
-      a different cause.
-    - LOST: a check that no longer runs, unless documents were removed.
-    - OTHER: anything else that is not BETTER, such as an error within its tolerance.
-    """
+    """One difference between two reports; a missing entry has the value "none"."""
 
     kind: str  # one of KINDS
     host: str  # host and library are "" for documents and versions
     library: str
     subject: str
-    item: str  # check, scene of a picture, document or software
+    item: str  # check, document or software
     before: str
     after: str
-    growth: float = 1.0  # new error over old error; infinite for a first or non-finite error
     reason: str = ""
+    growths: tuple[Growth, ...] = ()
 
     @property
     def place(self) -> str:
         return ", ".join(filter(None, (self.host, self.library, self.item, self.subject)))
 
+    @property
+    def size(self) -> float:
+        """Logarithm of the largest factor."""
+        factors = (each.factor for each in self.growths)
+        return max((abs(math.log(each)) if each else math.inf for each in factors), default=0.0)
+
     def __str__(self) -> str:
-        factor = max(self.growth, 1.0 / self.growth if self.growth else math.inf)
-        larger = "larger" if self.growth > 1.0 else "smaller"
-        times = f"{words.in_words(factor)} times {larger}" * (SPREAD < factor < math.inf)
-        after = "; ".join(filter(None, (self.after, times, self.reason)))
+        why = (
+            words.growth(each.key, each.before, each.after, each.region)
+            for each in self.growths[:1]
+        )
+        after = "; ".join(filter(None, (self.after, self.reason, *why)))
         return f"{self.item}: {self.before} -> {after}"
 
 
@@ -89,12 +113,6 @@ class ShownPicture:
             raise InputError(
                 f"largest_difference must be at least 0; got {self.largest_difference}"
             )
-
-    @property
-    def subject(self) -> str:
-        """The subject of the picture's results, without the document's folder."""
-        is_node = self.document == PORTRAIT
-        return self.element if is_node else f"{Path(self.document).name}: {self.element}"
 
 
 @dataclass(frozen=True)
@@ -154,9 +172,7 @@ def read_results(folder: str | PathLike[str]) -> Report:
         if not isinstance(content, dict):
             raise InputError("it must be an object")
         if (written := content["format"]) == JSON_FORMAT:
-            if (named := content.pop("$schema")) != SCHEMA:
-                raise InputError(f"$schema must be {SCHEMA}; got {named!r}")
-            return read_strictly(make_converter(), content, Report)
+            return read_report(content)
     except OSError as error:
         raise InputError(f"{rule}; {error.strerror}") from None
     except ERRORS as error:
@@ -167,6 +183,13 @@ def read_results(folder: str | PathLike[str]) -> Report:
     )
 
 
+def read_report(content: dict[str, object]) -> Report:
+    """The report that `mxeon.report.to_json` wrote."""
+    if (named := content.pop("$schema")) != SCHEMA:
+        raise InputError(f"$schema must be {SCHEMA}; got {named!r}")
+    return read_strictly(make_converter(), content, Report)
+
+
 def compare(before: Report, after: Report) -> tuple[Change, ...]:
     """Changes between two reports by kind, host, library and subject; the largest first."""
     before = _renamed(before, _moved(list(before.libraries), list(after.libraries)))
@@ -174,8 +197,7 @@ def compare(before: Report, after: Report) -> tuple[Change, ...]:
     removed = {each for each in before.documents if Path(each).name not in names}
     changes = [
         *(Change(OTHER, "", "", "", each, "checked", "removed") for each in sorted(removed)),
-        *_results(_by(PLACE, before.results), _by(PLACE, after.results), bool(removed)),
-        *_pictures(before, after),
+        *_results(_by_place(before.results), _by_place(after.results), bool(removed)),
         *(  # nothing else reports a refused document, which was not judged
             Change(WORSE, "", "", "", each, "not refused", "refused")
             if each in after.refused
@@ -184,20 +206,22 @@ def compare(before: Report, after: Report) -> tuple[Change, ...]:
         ),
         *_facts(before, after),
     ]
-
-    def size(change: Change) -> float:
-        return math.inf if change.growth == 0.0 else abs(math.log(change.growth))
-
     largest: dict[tuple[str, ...], float] = {}
     for each in changes:
         group = _group(each)
-        largest[group] = max(size(each), largest.get(group, 0.0))
+        largest[group] = max(each.size, largest.get(group, 0.0))
 
     def order(change: Change) -> tuple[object, ...]:
         kind, *location, subject = group = _group(change)
-        return KINDS.index(kind), *location, -largest[group], subject, -size(change)
+        return KINDS.index(kind), *location, -largest[group], subject, -change.size
 
     return tuple(sorted(changes, key=order))
+
+
+def status(changes: Iterable[Change]) -> int:
+    """Exit status: FAILED if something got worse, NOT_RUN if a check no longer runs."""
+    kinds = {each.kind for each in changes}
+    return errors.FAILED if WORSE in kinds else errors.NOT_RUN if LOST in kinds else errors.PASSED
 
 
 def _group(change: Change) -> tuple[str, str, str, str]:
@@ -216,6 +240,21 @@ def lines(changes: Sequence[Change]) -> Iterator[str]:
         yield from (f"  {'  ' * bool(subject)}{one_line(each)}" for each in rows)
     tally = Counter(each.kind for each in changes)
     yield ", ".join(f"{tally[kind]} {kind}" for kind in KINDS if tally[kind]) or "no difference"
+
+
+def to_json(changes: Iterable[Change]) -> list[dict[str, object]]:
+    """Changes as the types of JSON: the fields of Change, and its place."""
+    convert = make_converter().unstructure
+    return [convert(each) | {"place": each.place} for each in changes]
+
+
+def annotations(changes: Iterable[Change]) -> Iterator[str]:
+    """What got worse or was lost, as commands to GitHub's log: one for each subject, since it shows ten at most."""
+    for (kind, host, library, subject), rows in groupby(changes, key=_group):
+        if level := {WORSE: "error", LOST: "warning"}.get(kind):
+            place = f"{host} with {library}" if host else ""
+            title = ", ".join(filter(None, (kind, place, subject)))
+            yield words.annotation(level, title, "\n".join(map(one_line, rows)))
 
 
 def _moved(before: Sequence[str], after: Sequence[str]) -> dict[str, str]:
@@ -238,105 +277,135 @@ def _renamed(report: Report, libraries: Mapping[str, str]) -> Report:
     def name(library: str) -> str:
         return libraries.get(library, library)
 
-    return replace(
-        report,
-        results=tuple(replace(each, library=name(each.library)) for each in report.results),
-        pictures=tuple(replace(each, library=name(each.library)) for each in report.pictures),
-        compared=tuple(map(name, report.compared)),
-    )
+    results = (replace(each, library=name(each.library)) for each in report.results)
+    return replace(report, results=tuple(results), compared=tuple(map(name, report.compared)))
 
 
-def _by(names: tuple[str, ...], records: Iterable[Any]) -> dict[tuple[str, ...], Any]:
-    """Records by the values of some attributes; duplicates are numbered."""
-    keyed: dict[tuple[str, ...], Any] = {}
+def _by_place(results: Iterable[Result]) -> dict[tuple[str, ...], Result]:
+    """Results by host, library, check and subject; duplicates are numbered."""
+    keyed: dict[tuple[str, ...], Result] = {}
     uses: Counter[tuple[str, ...]] = Counter()
-    for record in records:
-        key = tuple(getattr(record, name) for name in names)
+    for result in results:
+        key = tuple(getattr(result, name) for name in PLACE)
         uses[key] += 1
-        keyed[key if uses[key] == 1 else (*key, f"number {uses[key]}")] = record
+        keyed[key if uses[key] == 1 else (*key, f"number {uses[key]}")] = result
     return keyed
 
 
-def _results(
-    before: Mapping[tuple[str, ...], Result],
-    after: Mapping[tuple[str, ...], Result],
-    fewer: bool,
-) -> Iterator[Change]:
+Results: TypeAlias = Mapping[tuple[str, ...], Result]
+
+
+def _results(before: Results, after: Results, fewer: bool) -> Iterator[Change]:
     """Changes of results; with `fewer` documents, missing checks are not LOST."""
-    for key in dict.fromkeys((*before, *after)):
-        old, new = before.get(key), after.get(key)
-        host, library, check, subject, *number = key
-        growth = 1.0
-        if old and new:
-            kind, reason = _change(old, new)
-            growth = _growth(old.error, new.error)
-        elif old:
-            kind, reason = OTHER if fewer or old.verdict == NOT_RUN else LOST, ""
-        else:
-            kind, reason = WORSE if new and new.verdict == FAILED else OTHER, ""
+    for key in (key for key in before if key in after):
+        old, new = before[key], after[key]
+        kind, reason, growths = _change(old, new)
         if kind:
-            texts = (_with_error(old), _with_error(new))
+            host, library, check, subject, *number = key
+            texts = _with_error(old), _with_error(new)
             item = ", ".join((check, *number))
-            yield Change(kind, host, library, subject, item, *texts, growth, reason)
+            yield Change(kind, host, library, subject, item, *texts, reason, growths)
+    for results, others, is_new in ((before, after, False), (after, before, True)):
+        places = {key[:2] for key in others}
+        groups: dict[tuple[str, str, str, str], list[Result]] = {}
+        for key, result in results.items():
+            if key not in others:
+                worse = WORSE if result.verdict == FAILED else OTHER
+                lost = OTHER if fewer or result.verdict == NOT_RUN else LOST
+                # A host or library that one report lacks is one change.
+                subject = result.subject if key[:2] in places else ""
+                place = (worse if is_new else lost, result.host, result.library, subject)
+                groups.setdefault(place, []).append(result)
+        for (kind, host, library, subject), row in groups.items():
+            checks = [each.check for each in row]
+            item = words.listed(checks) if subject else words.counted(len(row), "check")
+            verdicts = words.listed(list(dict.fromkeys(map(_with_error, row))))
+            was, now = ("none", verdicts) if is_new else (verdicts, "none")
+            yield Change(kind, host, library, subject, item, was, now)
 
 
-def _change(old: Result, new: Result) -> tuple[str, str]:
-    """Kind of a change of a result ("" for none), and the reason if the values do not show it."""
+def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
+    """Kind of a change of a result ("" for none), the reason if the numbers do not show it, and what grew or fell."""
     if NOT_RUN in (old.verdict, new.verdict):
         if old.verdict == new.verdict:
-            return "", ""
+            return "", "", ()
         # The failure that prevents this check is compared on its own.
         if old.follows or new.follows:
-            return OTHER, old.reason or new.reason
+            return OTHER, old.reason or new.reason, ()
         if new.verdict == NOT_RUN:
-            return LOST, new.reason
-        return WORSE if new.verdict == FAILED else BETTER, ""
+            return LOST, new.reason, ()
+        return WORSE if new.verdict == FAILED else BETTER, "", ()
+    grown = _growths(old, new)
+    fallen = tuple(replace(x, before=x.after, after=x.before) for x in _growths(new, old))
     if old.verdict != new.verdict:
-        kind = WORSE if RANKS.index(new.verdict) > RANKS.index(old.verdict) else BETTER
-        explained = old.verdict == DIFFERS and new.verdict == FAILED
-        return kind, "no permitted reading explains it any longer" * explained
-    growth = _growth(old.error, new.error)
-    if not 1.0 / SPREAD <= growth <= SPREAD:
-        return OTHER if new.verdict == PASSED else WORSE if growth > 1.0 else BETTER, ""
-    lost, found = sorted({*old.pages} - {*new.pages}), sorted({*new.pages} - {*old.pages})
-    kind, reason = "", ""
-    if lost:
-        kind, reason = WORSE, f"{words.listed(lost)} no longer explains it"
-    elif (
-        new.diagnosis.names_a_cause and old.diagnosis.first.identity != new.diagnosis.first.identity
-    ):
-        was, now = (
-            words.diagnosis(Diagnosis((each.diagnosis.first,))) or "none" for each in (old, new)
-        )
-        kind, reason = WORSE, f"diagnosis was {was}, is {now}"
-    elif found:
-        kind, reason = BETTER, f"{words.listed(found)} explains it"
-    # The same error with a new explanation is neither better nor worse.
-    return OTHER if kind and _number(old.error) == _number(new.error) else kind, reason
+        worse = RANKS.index(new.verdict) > RANKS.index(old.verdict)
+        explained = old.verdict == DIFFERS and worse
+        return WORSE if worse else BETTER, words.UNEXPLAINED * explained, grown if worse else fallen
+    if new.verdict == PASSED:
+        return (OTHER, "", grown or fallen) if grown or fallen else ("", "", ())
+    if old.pages and not new.pages and new.verdict == FAILED and not _is_mended(old, new):
+        return WORSE, words.lost_page(old.pages), grown
+    if grown:
+        return WORSE, "", grown
+    found = sorted({*new.pages} - {*old.pages})
+    if found and old.samples == new.samples:
+        return BETTER, words.found_page(found), fallen
+    return (BETTER, "", fallen) if fallen else ("", "", ())
 
 
-def _pictures(before: Report, after: Report) -> Iterator[Change]:
-    """Changes of pictures; within the tolerance they are OTHER."""
-    shown = [_by(SHOWN, each.pictures) for each in (before, after)]
-    failed = [
-        {
-            (each.host, each.library, each.subject)
-            for each in report.results
-            if each.verdict == FAILED
-        }
-        for report in (before, after)
-    ]
-    for key in (key for key in shown[0] if key in shown[1]):
-        old, new = (each[key].largest_difference for each in shown)
-        growth = _growth(old, new)
-        if 1.0 / SPREAD <= growth <= SPREAD:
+def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
+    """Numbers that are larger than noise explains, of all samples first; the largest error where there are no samples.
+
+    Changes up to the tolerance, which pass where the rest is right, count nowhere.
+    """
+    room = (new.tolerance or 0.0) + FUNCTIONS
+    if not (old.errors and new.errors):
+        least, most = (math.inf if each.error is None else each.error for each in (old, new))
+        counted = new.quantity and new.quantity.counted and new.quantity not in SAMPLED
+        factor = 1.0 if counted else SPREAD
+        return (Growth("error", least, most),) if most > factor * least + room else ()
+    same = old.samples == new.samples
+    permitted = old.verdict == new.verdict == DIFFERS
+    regions = {each.region: each for each in old.errors}
+    found = []
+    for now in new.errors[: 1 if permitted else None]:
+        if not (was := regions.get(now.region)):
             continue
-        host, library, subject, scene, *number = key
-        worse = growth > 1.0
-        counts = (host, library, subject) in failed[worse]
-        kind = (WORSE if worse else BETTER) if counts else OTHER
-        item = ", ".join((scene, *number, "largest difference"))
-        yield Change(kind, host, library, subject, item, _number(old), _number(new), growth)
+        # The variance of a mean square is at most that of errors that are all 0 or the largest.
+        noise = CHANCE * math.hypot(*(x.largest * x.rms / math.sqrt(x.of) for x in (was, now)))
+        usual = EQUAL * was.rms if same else math.sqrt(was.rms**2 + noise)
+        keys = ("not_finite", *["wrong"] * (now.rms > was.rms + room and not permitted))
+        for key in keys:
+            least, most = getattr(was, key) * now.of / was.of, getattr(now, key)
+            chance = math.sqrt(least + most) * ((key == "wrong") if same else CHANCE)
+            if most > (EQUAL if same else 1.0) * least + chance:
+                found.append(Growth(key, least / now.of, most / now.of, now.region))
+        if now.rms > usual + room and not permitted:
+            found.append(Growth("rms", was.rms, now.rms, now.region))
+        if same and now.largest > SPREAD * was.largest + room:
+            found.append(Growth("largest", was.largest, now.largest, now.region))
+    least, most = (each.diagnosis.distance for each in (old, new))
+    if new.verdict == FAILED and new.errors[0].rms > old.errors[0].rms and _is_farther(old, new):
+        found.append(Growth("best", least, most))
+    return tuple(found)
+
+
+def _is_farther(old: Result, new: Result) -> bool:
+    """Whether the best match no longer explains the values as it did; it does up to a share of the own model's distance."""
+    was, now = old.diagnosis.distance, new.diagnosis.distance
+    own = next(iter(new.diagnosis.distances.values()), math.inf)
+    factor = SPREAD if old.samples == new.samples else DISTANCE
+    return SAME * own < now < math.inf and now > factor * was + (new.tolerance or 0.0)
+
+
+def _is_mended(old: Result, new: Result) -> bool:
+    """Whether a defect that had a page is gone: the node's own model is nearest, as near as the defect was.
+
+    With other samples, an error beyond the size of the page may be noise.
+    """
+    own = next(iter(new.diagnosis.distances.values()), math.inf)
+    nearest = old.samples != new.samples or own == new.diagnosis.distance < math.inf
+    return nearest and not _is_farther(old, new)
 
 
 def _facts(before: Report, after: Report) -> Iterator[Change]:
@@ -353,19 +422,7 @@ def _facts(before: Report, after: Report) -> Iterator[Change]:
             yield Change(OTHER, "", "", "", name, *values)
 
 
-def _growth(old: float | None, new: float | None) -> float:
-    """New error over old error; missing and non-finite errors count as infinite."""
-    small, large = (
-        math.inf if each is None or not math.isfinite(each) else each for each in (old, new)
-    )
-    if small == large:
-        return 1.0
-    return 0.0 if math.isinf(small) else large / small if small else math.inf
-
-
-def _with_error(result: Result | None) -> str:
-    if result is None:
-        return "none"
+def _with_error(result: Result) -> str:
     ran = result.verdict != NOT_RUN and result.error is not None
     return f"{result.verdict} at {_number(result.error)}" if ran else result.verdict
 

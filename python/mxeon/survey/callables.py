@@ -18,7 +18,7 @@ from mxeon.conformance import samples, words
 from mxeon.conformance.backends import Backend
 from mxeon.conformance.cache import parts
 from mxeon.conformance.case import Case, edge_values
-from mxeon.conformance.check import Check
+from mxeon.conformance.check import Check, compared_of
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis import VALUE
 from mxeon.conformance.diagnosis.regions import EXACT, correct_except, smallest, unbounded
@@ -26,7 +26,7 @@ from mxeon.conformance.results import PASSED, Diagnosis, Kind, Run
 from mxeon.conformance.samples import PAIRS, Array, Batch
 from mxeon.conformance.spec import Ability
 from mxeon.conformance.specs.diffuse import ERRORS, DiffuseModelSpec, inputs_of, model_row
-from mxeon.conformance.tolerance import Compared, absolute, point_of
+from mxeon.conformance.tolerance import Compared, point_of
 from mxeon.errors import InputError, assert_known
 from mxeon.hosts.base import Host, Identity
 from mxeon.models import table as reference
@@ -84,7 +84,7 @@ class Function(Backend):
         noted = Case(self.spec, self, inputs=note, control=True)
         for check in _checks(self.spec.model):
             if check.key != "finite":
-                check.measured(noted, absolute)
+                compared_of(check.measure(noted))
         columns = zip(*map(_arguments, used), strict=True)
         wo, wi, rho, roughness = map(np.concatenate, columns)
         return Batch(wo, wi, {"color": rho, "roughness": roughness})

@@ -373,6 +373,6 @@ def node(
     case.backend._evaluations = Recent(EVALUATIONS)
     for check, tolerance in rows():
         try:
-            yield check.key, not check.measured(case, tolerance.metric).error <= tolerance.value
+            yield check.key, not check.measured(case, tolerance).error <= tolerance.value
         except (NotRun, ShaderError):
             yield check.key, True

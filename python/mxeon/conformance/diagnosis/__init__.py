@@ -32,7 +32,7 @@ from mxeon.conformance.diagnosis.faults import (
     scaled_by,
 )
 from mxeon.conformance.diagnosis.regions import EXACT, correct_except, place_of, smallest, span
-from mxeon.conformance.results import Cause, Diagnosis, Kind
+from mxeon.conformance.results import NO_DIAGNOSIS, Cause, Diagnosis, Kind
 from mxeon.conformance.samples import Array, Batch, Candidate, sky
 from mxeon.conformance.spec import COMPONENTS, Ability
 from mxeon.conformance.specs.diffuse import DIFFUSE
@@ -88,8 +88,14 @@ def explain(
     `candidates` are functions that may give the values, its own model first; a value is right up to the
     tolerance. `measure` compares the values of a case.
     """
-    if infinite := not_finite(cases):  # it has no distance to anything
-        return Diagnosis(infinite)
+    if infinite := not_finite(
+        cases
+    ):  # which has no distance to anything; others are judged by themselves
+        finite = [each.where(np.isfinite(each.measured.sum(axis=1))) for each in cases]
+        rest = NO_DIAGNOSIS
+        if any(tolerance.wrong(each).any() for each in finite):
+            rest = explain(case, finite, candidates, faults, tolerance)
+        return Diagnosis((*infinite, *rest.causes), rest.distances)
     few = case.backend.counts.diagnosed
     short = [Compared(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
     # Many a fault leaves the inputs of the own model alone.

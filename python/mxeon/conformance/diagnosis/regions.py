@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Named sets of pairs and inputs, to say of a shader that is wrong for some of them for which."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.results import Cause, Kind, Region
+from mxeon.conformance.results import Cause, Errors, Kind, Region
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Mask
-from mxeon.conformance.tolerance import Compared, Tolerance, count_of, relative
+from mxeon.conformance.tolerance import Compared, Tolerance, checksum, count_of, errors_of, relative
 
 COLORS = ("color", "tint", "color0")  # inputs of which one is the color of a node
 INDICES = {"index": "ior", "extinction": "extinction"}
@@ -235,6 +235,39 @@ def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     normal = np.broadcast_to(batch.inputs.get("normal", batch.normal), batch.wo.shape)
     away = (normal * batch.normal).sum(axis=1) < 0.0
     yield Region("normal_away"), away
+
+
+HALF = 0.5  # cosine that divides views and lights
+
+
+def errors(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[tuple[Errors, ...], str]:
+    """Errors of all samples, then below and above the median of each input; and a checksum of the samples.
+
+    Of a color and of two alphas, the larger component counts.
+    """
+    batches = [each.batch for each in cases]
+    rows = np.concatenate([tolerance.metric(*each[1:]) for each in cases])
+    found = [errors_of(rows, tolerance.value)]
+
+    def divide(columns: Iterable[Array], middle: float, *ends: Region) -> None:
+        above = np.concatenate(list(columns)) > middle
+        for mask, region in zip((~above, above), ends, strict=True):
+            if above.any() and not above.all():
+                found.append(errors_of(rows[mask], tolerance.value, region))
+
+    for name, field in (("viewer", "wo"), ("light", "wi")):
+        ends = Region(f"{name}_cosine_below", high=HALF), Region(f"{name}_cosine_above", low=HALF)
+        divide((getattr(each, field)[:, 2] for each in batches), HALF, *ends)
+    for name in batches[0].inputs:
+        given = [each.inputs.get(name, USUAL.get(name)) for each in batches]
+        if name in FRAME or any(each is None for each in given):
+            continue
+        columns = [_rows(each, len(batch.wo)) for each, batch in zip(given, batches, strict=True)]
+        part = "larger" if columns[0].shape[1] > 1 else "value"
+        numbers = [each.max(axis=1) for each in columns]
+        middle = float(f"{np.median(np.concatenate(numbers)):.2g}")
+        divide(numbers, middle, Region(name, part, high=middle), Region(name, part, low=middle))
+    return tuple(found), checksum(batches)
 
 
 def _rows(values: ArrayLike, count: int) -> Array:

@@ -168,12 +168,35 @@ class Diagnosis(BriefRepr):
         return self.first.region
 
     @property
+    def distance(self) -> float:
+        """Root-mean-square distance to the best match; infinite without one."""
+        return min(self.distances.values(), default=np.inf)
+
+    @property
     def names_a_cause(self) -> bool:
         """Whether it names a model or a fault, or that no known model is near."""
         return self.kind in (Kind.MODEL, Kind.FAULT) or self.first.key == "no_model"
 
 
 NO_DIAGNOSIS = Diagnosis()
+
+
+@dataclass(frozen=True)
+class Errors:
+    """How wrong the samples of a check are, or those in a region.
+
+    - `of`, `wrong`, `not_finite`: Number of samples, of those beyond the tolerance, and of those
+      without a finite error.
+    - `largest`, `rms`: Largest and root-mean-square finite error.
+    - `region`: None for all samples.
+    """
+
+    of: int
+    wrong: int
+    not_finite: int
+    largest: float
+    rms: float
+    region: Region | None = None
 
 
 def quoted(text: str) -> Diagnosis:
@@ -199,6 +222,8 @@ class Result(BriefRepr):
     - `quantity`: What was measured, with its unit; None where nothing was.
     - `derivation`: That of the tolerance.
     - `worst`: The inputs and values at the worst point, by name.
+    - `errors`: Errors of all samples, then those in each region; () where it passed, or has no samples.
+    - `samples`: Equal for equal samples; "" without `errors`.
     - `diagnosis`: What explains a failure.
     - `control`: None only where the check did not run.
     - `reason`: Why it did not run.
@@ -223,6 +248,8 @@ class Result(BriefRepr):
     tolerance: float | None = None
     derivation: str = field(default="", repr=False)
     worst: dict[str, list[float]] = field(default_factory=dict, repr=False)
+    errors: tuple[Errors, ...] = field(default=(), repr=False)
+    samples: str = field(default="", repr=False)
     diagnosis: Diagnosis = NO_DIAGNOSIS
     control: Control | None = field(default=None, repr=False)
     reason: str = ""

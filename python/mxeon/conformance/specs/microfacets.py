@@ -23,6 +23,7 @@ from mxeon.models.microfacet.fresnel import fresnel_schlick
 from mxeon.models.microfacet.ggx import smith_g1, smith_g2, smith_g2_anisotropic
 from mxeon.models.nodes import microfacets
 from mxeon.models.nodes.microfacets import FILM_NODES, LOBES, MICROFACET_NODES, TRANSMISSION_NODES
+from mxeon.models.nodes.node import Scattering
 from mxeon.models.sampling import ggx_pdf, ggx_sample
 from mxeon.models.transmission import reversed_transmittance
 
@@ -309,7 +310,6 @@ class FacetSpec(PbrSpec):
 
     @property
     def all_candidates(self) -> tuple[samples.Candidate, ...]:
-        """All functions that may explain values of two alphas."""
         return super().value_candidates
 
     def anisotropic(self, counts: Counts) -> Batch:
@@ -677,6 +677,11 @@ class FilmSpec(FacetSpec):
             same = rng.random(count) < 0.25
             inputs["thinfilm_ior"] = np.where(same, inputs["ior"], inputs["thinfilm_ior"])
         return inputs
+
+    def values(self, function: Scattering, batch: Batch) -> Array:
+        """Values of a function of the row; a film of an index below that of vacuum has index 1."""
+        index = np.maximum(batch.inputs["thinfilm_ior"], 1.0)
+        return super().values(function, batch.altered(thinfilm_ior=index))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs and special ones whose facets are not at grazing, and mirrored ones."""

@@ -246,9 +246,11 @@ def _reflectance(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
     return thin_film.film_schlick(mu, thickness, index, *_schlick(inputs), inputs["exponent"], form)
 
 
-def _environment(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
-    """Albedo of MaterialX's environment branch: F of the film at the view in the compensation."""
-    F = _reflectance(category, form, wo, inputs)
+def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: Inputs) -> Array:
+    """Albedo of MaterialX's environment branch: F of the film in the compensation, at the view or averaged by its ends."""
+    normal = np.broadcast_to([0.0, 0.0, 1.0], wo.shape)
+    F = _reflectance(category, form, normal if averaged else wo, inputs)
+    F = defects.schlick_average(F, 1.0) if averaged else F
     single = film_albedo_dir(category, wo, isotropic(inputs), form, compensate=False)
     return np.asarray(single * defects.fitted_compensation(wo, inputs, F))
 
@@ -281,8 +283,10 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
     lobe = {each.category: each for each in (DIELECTRIC, CONDUCTOR, SCHLICK)}[row.category]
     schlick = lobe is SCHLICK
     for title, form, permitted in FORMS[: 2 if schlick else 1]:
-        albedo = partial(_environment, row.category, form)
-        variants.append(Variant(f"{title}, under an environment", None, albedo, permitted))
+        for averaged, words in ((False, ""), (True, ", with F averaged from F0 and F90")):
+            albedo = partial(_environment, row.category, form, averaged)
+            name = f"{title}{words}, under an environment"
+            variants.append(Variant(name, None, albedo, permitted))
         fitted = partial(_fitted, lobe, form)
         words = "the bare lobe's fit, and the film in the compensation"
         variants.append(Variant(f"{title}: {words}", albedo=fitted))
