@@ -160,7 +160,7 @@ WRONG = {
         ("genglsl/lib/ggx_albedo.glsl", "float ggx_missing(float mu, float alpha)\n{",
          "vec2 kept = vec2(-1.0);\nOLD\n    kept = kept.x == alpha ? kept : vec2(alpha, mu);\n    mu = kept.y;", "states",
          ("two lobes that differ in normal",)),
-        (FACETS, "    return vec3(dot(w, lobe.X),", "    if (lobe.N.z < -0.9999) lobe.X = lobe.N.yzx;\nOLD", "states",
+        (FACETS, "    return vec3(dot(w, lobe.X),", "    if (min(min(lobe.N.x, lobe.N.y), lobe.N.z) < -0.9999) lobe.X = lobe.N.yzx;\nOLD", "states",
          ("the normal on an axis",)),
         ("genglsl/conductor_bsdf.glsl", "MicrofacetLobe lobe = microfacet_lobe(",
          "if (closureData.closureType == CLOSURE_TYPE_INDIRECT) X = cross(N, X);\n        OLD", "sky",

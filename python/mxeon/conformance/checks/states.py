@@ -300,6 +300,10 @@ def pixels_of(case: Case) -> list[Pixels]:
     batch = turned.where(np.arange(EACH * len(rows)) % len(turned.wo))
     if case.lobe.curved:  # else no light leaves elsewhere
         batch = batch.altered(**case.lobe.random_inputs(rng, len(batch.wo)))
+    if case.lobe.types.get("roughness") == "vector2":
+        alpha = np.array(batch.inputs["roughness"])
+        alpha[::2, 1] = np.roll(alpha[:, 0], 1)[::2]  # two alphas in every other pixel at least
+        batch = batch.altered(roughness=alpha)
     if "weight" in case.spec.names:
         # The same in a square: where a lobe is left, derivatives have no values.
         batch = batch.altered(weight=np.repeat(rng.choice(WEIGHTS, len(batch.wo) // 4), 4))
