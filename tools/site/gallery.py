@@ -15,14 +15,16 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
-from PIL import Image
+import OpenImageIO as oiio
+from PIL import Image, ImageDraw, ImageFont
 
 from mxeon.conformance.reference import Reference
 from mxeon.errors import DocumentError
 from mxeon.hosts import open_host, path_tracer
 from mxeon.hosts.points import visible
-from mxeon.io.images import write_exr
+from mxeon.hosts.still import still
 from mxeon.io.srgb import srgb_encoded
+from mxeon.io.tone import pbr_neutral
 from mxeon.shaders.scene import FURNACE, SIDE, STUDIO, Paths, Scene
 from tools.site import DOCS
 
@@ -32,12 +34,14 @@ PICTURES = DOCS / "images" / "gallery"
 DIFFERENCES = PICTURES / "differences.json"  # in sRGB codes, by material; null without stock
 SIZE = 512  # pixels
 QUALITY = 85  # WebP quality
-ROWS = 64  # rows of the studio's picture
-BOXES = (  # soft boxes of the studio: towards them, half of their width in radian, radiance
-    ((-1.0, 1.0, 0.6), 0.45, (5.0, 4.8, 4.4)),
-    ((1.2, 0.4, -0.4), 0.35, (4.0, 4.2, 5.0)),
-    ((0.3, 0.2, 1.0), 0.15, (1.0, 1.0, 1.0)),
+ROWS = 96  # rows of the studio's picture
+BOXES = (  # soft boxes of the studio: azimuth from the viewer and elevation, half of both widths, in degrees; radiance
+    ((-48.0, 42.0), (22.0, 15.0), (7.0, 6.8, 6.4)),
+    ((66.0, 22.0), (5.0, 34.0), (8.0, 8.3, 9.0)),
+    ((-118.0, 20.0), (8.0, 36.0), (9.0, 8.6, 8.0)),
+    ((150.0, 30.0), (20.0, 12.0), (5.0, 5.2, 5.6)),
 )
+SOFT = 2.5  # degrees over which the edge of a box falls off
 BACKGROUND = 30  # sRGB code
 SEEN = 3  # sRGB codes: the least difference that an eye may find side by side
 TITANIUM = DOCS / "images" / "titanium.mtlx"  # of the README
@@ -47,7 +51,8 @@ HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
 
 The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX on the left,
 eonlib on the right, the largest difference first. Furnace documents show a sphere in a white environment, where
-it vanishes if no energy is lost or gained. Nothing casts a shadow, except in the [path-traced pictures](#path-traced).
+it vanishes if no energy is lost or gained. The ball shades the floor; it shades itself only in the
+[path-traced pictures](#path-traced).
 The number after a name is the difference that 1 % of the pixels reach, of 255 sRGB codes. To draw one yourself:
 
     mxeon render examples/roughness_wedge.mtlx --element wedge_eon_100 --output wedge_eon_100.png
@@ -78,17 +83,16 @@ def studio():
     """Radiance of a studio, a latitude-longitude picture: a floor, a ceiling and soft boxes."""
     polar = (np.arange(ROWS)[:, None] + 0.5) / ROWS * np.pi
     azimuth = ((np.arange(2 * ROWS) + 0.5) / ROWS - 1.0) * np.pi
-    up = np.broadcast_to(np.cos(polar), (ROWS, 2 * ROWS))
-    ring = np.sin(polar)
-    towards = np.stack([ring * np.sin(azimuth), up, ring * np.cos(azimuth)], axis=-1)
-    ceiling, floor = (
-        0.35 + up[..., None] * [0.2, 0.28, 0.4],
-        0.12 + (1.0 + up[..., None]) * [0.1, 0.08, 0.06],
+    up = np.broadcast_to(np.cos(polar), (ROWS, 2 * ROWS))[..., None]
+    elevation, azimuth = 90.0 - np.degrees(polar), np.degrees(azimuth)
+    wall = 0.06 + 0.16 * np.exp(-np.abs(up) * 4.0)
+    radiance = np.where(
+        up > 0.0, wall * [0.95, 1.0, 1.08], 0.2 * (1.0 + 0.6 * up) * [1.0, 0.98, 0.95]
     )
-    radiance = np.where(up[..., None] > 0.0, ceiling, floor)
-    for direction, width, light in BOXES:
-        inside = towards @ direction / np.linalg.norm(direction) - np.cos(width)
-        radiance += light / (1.0 + np.exp(-40.0 * inside[..., None]))
+    for (across, over), (width, height), light in BOXES:
+        apart = np.abs((azimuth - across + 180.0) % 360.0 - 180.0)
+        inside = np.minimum(width - apart, height - np.abs(elevation - over)) / SOFT
+        radiance += light / (1.0 + np.exp(-4.0 * np.clip(inside, -9.0, 9.0)))[..., None]
     return radiance.astype(np.float32)
 
 
@@ -103,14 +107,29 @@ def pictures(host, document):
     for library in ("stock", "eonlib"):
         with suppress(DocumentError):
             shaders.append(host.compile(document, library=library))
-    mask = visible(SIZE, scene.shape).mask[..., None]
     for pair in zip(*shaders, strict=True):
-        images = [srgb_encoded(host.picture(each, scene)) for each in pair]
-        yield pair[0].element, [np.where(mask, each, np.uint8(BACKGROUND)) for each in images]
+        images = [still(host, each, scene) for each in pair]
+        if scene.name == STUDIO.name:
+            yield pair[0].element, [srgb_encoded(pbr_neutral(each)) for each in images]
+        else:
+            mask = visible(SIZE, scene.shape).mask[..., None]
+            codes = [np.where(mask, srgb_encoded(each), np.uint8(BACKGROUND)) for each in images]
+            yield pair[0].element, codes
 
 
-def save(path, codes):
-    Image.fromarray(np.hstack(codes)).save(path, quality=QUALITY, method=6)
+def save(path, codes, labels=("stock", "eonlib")):
+    """Write pictures side by side, each with its label if there are several."""
+    image = Image.fromarray(np.hstack(codes))
+    for number, label in enumerate(labels if len(codes) == len(labels) else ()):
+        place = codes[0].shape[1] * number + 14, codes[0].shape[0] - 12
+        style = {
+            "font": ImageFont.load_default(22),
+            "anchor": "ls",
+            "stroke_width": 2,
+            "stroke_fill": "black",
+        }
+        ImageDraw.Draw(image).text(place, label, fill="white", **style)
+    image.save(path, quality=QUALITY, method=6)
 
 
 def render():
@@ -119,7 +138,9 @@ def render():
     The difference is that in sRGB codes which one pixel in a hundred exceeds.
     """
     PICTURES.mkdir(parents=True, exist_ok=True)
-    write_exr(STUDIO.environment, studio(), {})
+    painted = oiio.ImageBuf(studio())
+    painted.set_write_format("half")
+    painted.write(str(STUDIO.environment))
     differences = {}
 
     with open_host("gl") as host:
@@ -151,20 +172,14 @@ def trace(folder):
                     ),
                     "paths": tracer.picture(path, replace(even, paths=paths)),
                 }
-                traced = tracer.picture(path, replace(ball, paths=paths))
-            shown = [
-                np.where(
-                    visible(TRACED_SIZE, shape).mask[..., None],
-                    srgb_encoded(each),
-                    np.uint8(BACKGROUND),
-                )
-                for each, shape in (
-                    *((each, "sphere") for each in spheres.values()),
-                    (traced, "ball"),
-                )
-            ]
-            save(PICTURES / f"traced_{document.stem}.webp", shown)
+                traced = still(tracer, path, replace(ball, paths=paths))
             mask = visible(TRACED_SIZE, "sphere").mask
+            shown = [
+                np.where(mask[..., None], srgb_encoded(each), np.uint8(BACKGROUND))
+                for each in spheres.values()
+            ]
+            shown.append(srgb_encoded(pbr_neutral(traced)))
+            save(PICTURES / f"traced_{document.stem}.webp", shown)
             means = ", ".join(f"{name} {each[mask].mean():.4f}" for name, each in spheres.items())
             noises = [str(each.message).partition("noise of ")[2] for each in notes]
             said[document.stem] = (

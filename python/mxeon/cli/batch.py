@@ -118,6 +118,7 @@ def picture(
     from mxeon.conformance import reference
     from mxeon.hosts import open_host, path_tracer
     from mxeon.hosts.base import LobeWarning
+    from mxeon.hosts.still import still
     from mxeon.shaders import scene as scenes
     from mxeon.shaders.document.notes import MissingFileWarning
 
@@ -136,7 +137,7 @@ def picture(
             names = ", ".join(each.element for each in shaders)
             raise InputError(f"--element must name one of {names}; got none")
         [shader] = shaders
-        image = engine.picture(shader, setting)
+        image = still(engine, shader, setting)
         for reason in engine.approximations(shader, setting):
             warnings.warn(LobeWarning(shader.element, reason), stacklevel=2)
         if no_studio:

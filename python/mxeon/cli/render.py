@@ -12,6 +12,8 @@ from mxeon.errors import PASSED, InputError
 from mxeon.hosts import HOSTS
 from mxeon.shaders.scene import Paths
 
+TONED = "studio", "environment"  # scenes whose PNG shows high lights by a tone curve
+
 
 def add_parser(commands: arguments.Commands) -> None:
     rows = (row.name for row in HOSTS if row.scenes and row.name != "gl")
@@ -84,6 +86,7 @@ def run(options: argparse.Namespace) -> int:
     """Write a picture and print its path; return the exit status."""
     from mxeon.io.files import check_output
     from mxeon.io.images import PICTURES, write_picture
+    from mxeon.io.tone import pbr_neutral
     from mxeon.shaders.library import library_name
 
     inputs = arguments.inputs(options, [options.file], options.environment)
@@ -104,6 +107,9 @@ def run(options: argparse.Namespace) -> int:
         warn(warning)
     if result.error:
         raise result.error
-    write_picture(options.output, *result.value)
+    image, metadata = result.value
+    if options.output.lower().endswith(".png") and metadata["scene"] in TONED:
+        image = pbr_neutral(image)
+    write_picture(options.output, image, metadata)
     show(options.output)
     return PASSED

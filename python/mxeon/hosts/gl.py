@@ -17,7 +17,7 @@ from mxeon.hosts import fragment, points, raster
 from mxeon.hosts.base import Array, Identity
 from mxeon.hosts.raster import FragmentHost
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.scene import Scene
+from mxeon.shaders.scene import Scene, VisiblePoints
 
 PROGRAMS = 4  # cached programs, 10 MB each: a document's scenes and a node's checks share them
 ROWS = 256  # rows of a texture to copy at a time
@@ -74,18 +74,20 @@ class GlHost(FragmentHost):
         return Identity(self.name, info["GL_VERSION"], info["GL_RENDERER"])
 
     @_current
-    def picture(self, shader: Shader, scene: Scene) -> Array:
-        self.refuse_paths(scene)
+    def shade(
+        self,
+        shader: Shader,
+        scene: Scene,
+        seen: VisiblePoints,
+        parts: Sequence[raster.Rectangle] = (),
+    ) -> Array:
         program = self._program(fragment.DIALECTS["glsl"].vertex, points.pixel_stage(shader))
         _set(program, raster.inputs(shader) | raster.light(scene))
-        captured, frame = points.outputs(shader), (scene.size, scene.size)
+        captured, frame = points.outputs(shader), points.frame(seen)
         textures = self._textures(program, raster.textures(shader, scene))
         if captured:
-            textures[points.SAMPLER] = self._points(
-                shader.stages["vertex"], captured, scene.size, scene.shape
-            )
-        parts = raster.bands(scene.size, scene.shape)
-        return raster.picture(self._draw(program, textures, frame, parts), scene)
+            textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen)
+        return self._draw(program, textures, frame, parts)[::-1]
 
     @_current
     def accumulate(
@@ -226,17 +228,16 @@ def _points(
     context: moderngl.Context,
     vertex: str,
     captured: tuple[points.Output, ...],
-    size: int,
-    shape: str,
+    seen: VisiblePoints,
 ) -> moderngl.TextureArray:
     program = context.program(vertex_shader=vertex, varyings=tuple(each.name for each in captured))
-    vertices = points.vertices(size, shape)
+    vertices = points.vertices(seen)
     count = len(vertices["i_position"])
     stage = context.vertex_array(program, _buffers(context, program, vertices))
     buffer = context.buffer(reserve=count * points.stride(captured))
     context.simple_framebuffer((1, 1)).use()  # without a frame, OpenGL draws nothing
     stage.transform(buffer, mode=context.POINTS, vertices=count)
-    texels = points.texels(buffer.read(), captured, size)
+    texels = points.texels(buffer.read(), captured, seen)
     layers, height, width, _ = texels.shape
     return context.texture_array((width, height, layers), 4, texels, dtype="f4")
 

@@ -138,7 +138,9 @@ vec3 tracer_lit(Point p, vec3 normal, vec3 wo, vec3 u)
 
 void main()
 {
-    vec2 at = (2.0 * gl_FragCoord.xy - float(tracer_size)) / float(tracer_size);
+    // A picture of the sphere is compared with others at the centers of pixels.
+    vec2 within = tracer_ball ? tracer_random(-1 - tracer_bounces - 1).xy : vec2(0.5);
+    vec2 at = (2.0 * (gl_FragCoord.xy - 0.5 + within) - float(tracer_size)) / float(tracer_size);
     vec3 origin = vec3(at, 2.0);
     vec3 direction = vec3(0.0, 0.0, -1.0);
     vec3 radiance = vec3(0.0);
@@ -149,7 +151,8 @@ void main()
         float t = tracer_hit(origin, direction);
         if (t >= TRACER_FAR)
         {
-            float drawn = pdf > 0.0 ? pdf / (pdf + tracer_sky_pdf(direction)) : 1.0;
+            // Around the object lies what it is composed with.
+            float drawn = bounce == 0 ? 0.0 : pdf > 0.0 ? pdf / (pdf + tracer_sky_pdf(direction)) : 1.0;
             radiance += throughput * tracer_sky(direction) * drawn;
             break;
         }

@@ -61,7 +61,7 @@ class PathTracerHost(gl.GlHost):
         textures |= {"tracer_drawn": drawn, "tracer_chance": chance}
         text, size = HEAD + shader.stages["pixel"] + tracer, (scene.size, scene.size)
         sums = self.accumulate(text, uniforms, size, range(samples), textures)
-        mean = raster.picture(sums / np.float32(samples), scene)
+        mean = sums[::-1] / np.float32(samples)
         gray = mean[..., :3].mean(axis=-1)
         variance = np.maximum(mean[..., 3] - gray**2, 0.0) / max(samples - 1, 1)
         noise = np.sqrt(variance.sum() / max((gray**2).sum(), 1e-30))

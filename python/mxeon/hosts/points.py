@@ -20,9 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.hosts.fragment import renamed
+from mxeon.io.images import Floats
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.scene import VisiblePoints, sphere, tangents
-from mxeon.shaders.shader_ball import shader_ball
+from mxeon.shaders.scene import VisiblePoints, sphere, sphere_at, tangents
+from mxeon.shaders.shader_ball import shader_ball, shader_ball_at
 
 MARGIN = 1  # points beyond each edge, for derivatives at the edges
 SAMPLER = "mxeon_points"
@@ -78,12 +79,13 @@ def visible(size: int, shape: str, margin: int = 0) -> VisiblePoints:
     return shader_ball(size, margin) if shape == "ball" else sphere(size, margin)
 
 
-def vertices(size: int, shape: str) -> dict[str, NDArray[np.float32]]:
-    """Attributes of the points of a picture, with a margin, in the rows of a frame, row 0 at the top.
+def visible_at(x: Floats, y: Floats, shape: str) -> VisiblePoints:
+    """Visible points of a shape at places of the frame."""
+    return shader_ball_at(x, y) if shape == "ball" else sphere_at(x, y)
 
-    Points off the sphere have the normal of the nearest point of the rim.
-    """
-    points = visible(size, shape, MARGIN)
+
+def vertices(points: VisiblePoints) -> dict[str, NDArray[np.float32]]:
+    """Attributes of points in the rows of a frame, row 0 at the top."""
     flat = points.normal.reshape(-1, 3)
     attributes = {
         "i_position": points.position.reshape(-1, 3),
@@ -94,19 +96,25 @@ def vertices(size: int, shape: str) -> dict[str, NDArray[np.float32]]:
     return {name: values.astype("f4") for name, values in attributes.items()}
 
 
+def frame(points: VisiblePoints) -> tuple[int, int]:
+    """Width and height of the frame of points that have a margin."""
+    height, width = points.mask.shape
+    return width - 2 * MARGIN, height - 2 * MARGIN
+
+
 def stride(captured: Iterable[Output]) -> int:
     return _row(captured).itemsize
 
 
-def texels(buffer: bytes, captured: Sequence[Output], size: int) -> NDArray[np.float32]:
+def texels(buffer: bytes, captured: Sequence[Output], points: VisiblePoints) -> NDArray[np.float32]:
     """Texels of the captured outputs, (layers, rows, columns, 4), row 0 at the bottom."""
-    width = size + 2 * MARGIN
+    height, width = points.mask.shape
     rows = np.frombuffer(buffer, _row(captured))
-    layers = np.zeros((len(captured), width * width, 4), dtype=np.float32)
+    layers = np.zeros((len(captured), height * width, 4), dtype=np.float32)
     for layer, each in zip(layers, captured, strict=True):
-        values = rows[each.name].reshape(width * width, -1)
+        values = rows[each.name].reshape(height * width, -1)
         layer[:, : values.shape[1]] = values
-    return np.ascontiguousarray(layers.reshape(-1, width, width, 4)[:, ::-1])
+    return np.ascontiguousarray(layers.reshape(-1, height, width, 4)[:, ::-1])
 
 
 def _row(captured: Iterable[Output]) -> np.dtype[np.void]:

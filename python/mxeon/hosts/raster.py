@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
@@ -13,13 +14,13 @@ from numpy.typing import ArrayLike
 
 from mxeon.hosts import base, fragment, points
 from mxeon.hosts.base import Array, Query
-from mxeon.hosts.points import visible
+from mxeon.hosts.points import MARGIN, visible
 from mxeon.hosts.textures import image_files, irradiance, read_latlong, read_texture
 from mxeon.shaders.document.values import Plain, flat
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
 from mxeon.shaders.methods import GENERATED
-from mxeon.shaders.scene import SIDE, Client, Lamp, Scene
+from mxeon.shaders.scene import SIDE, Client, Lamp, Scene, VisiblePoints
 
 Uniforms: TypeAlias = dict[str, Plain]  # values by name
 
@@ -111,6 +112,8 @@ def light(scene: Scene) -> Uniforms:
         points.ALPHA: client.alpha,
     }
     values |= DARK if scene.environment is None and client.radiance is None else PICTURE
+    if isinstance(scene.environment, Path):  # filtered, so that 256 samples leave no pattern
+        values["u_envRadianceMips"] = int(np.log2(max(read_latlong(scene.environment).shape))) + 1
     lamps = client.lamps
     if scene.light is not None:
         x, y, z = scene.light
@@ -147,11 +150,6 @@ def bands(size: int, shape: str) -> tuple[Rectangle, ...]:
     return tuple(parts)
 
 
-def picture(image: Array, scene: Scene) -> Array:
-    """Picture of a frame whose row 0 is at the bottom: 0 off the shape, row 0 at the top."""
-    return np.where(visible(scene.size, scene.shape).mask[..., None], image[::-1], np.float32(0.0))
-
-
 # An evaluation looks like a frame with two lights in the middle of an animation.
 FRAME_UNIFORMS = (
     light(SIDE) | {"u_numActiveLightSources": 2, "u_frame": 24.0, "u_time": 1.0} | EVALUATION
@@ -163,6 +161,22 @@ class FragmentHost(base.Host):
 
     reads_images = True
     default = GENERATED
+
+    def picture(self, shader: Shader, scene: Scene) -> Array:
+        self.refuse_paths(scene)
+        seen = visible(scene.size, scene.shape, MARGIN)
+        image = self.shade(shader, scene, seen, bands(scene.size, scene.shape))
+        return np.where(visible(scene.size, scene.shape).mask[..., None], image, np.float32(0.0))
+
+    def shade(
+        self,
+        shader: Shader,
+        scene: Scene,
+        seen: VisiblePoints,
+        parts: Sequence[Rectangle] = (),
+    ) -> Array:
+        """Radiance at points with a margin, (height, width, 3), row 0 at the top; only `parts` have to be drawn."""
+        raise self._unsupported("pictures of a sphere", "gl")
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
         return approximations(shader)

@@ -105,17 +105,25 @@ def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
     """
     if radiance.shape[:2] == (1, 1):
         return radiance
-    high, wide = (max(1, size // RADIANCE_SIZE) for size in radiance.shape[:2])
-    rows, columns = radiance.shape[0] // high, radiance.shape[1] // wide
-    blocks = radiance[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)
-    coarse = blocks.mean(axis=(1, 3)).reshape(rows * columns, -1)
-    incoming, solid_angle = latlong_directions(rows, columns)
+    coarse = reduced(radiance)
+    incoming, solid_angle = latlong_directions(*coarse.shape[:2])
     normals, _ = latlong_directions(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE)
     weights = np.maximum(0.0, normals @ incoming.T) * solid_angle
     weights /= weights.sum(axis=1, keepdims=True)
-    pixels = (weights @ coarse).reshape(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE, -1)
+    pixels = (weights @ coarse.reshape(len(incoming), -1)).reshape(
+        IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE, -1
+    )
     irradiance: NDArray[np.float32] = pixels.astype(np.float32)
     return irradiance
+
+
+def reduced(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Means over blocks of a map that has more than RADIANCE_SIZE rows or columns."""
+    high, wide = (max(1, size // RADIANCE_SIZE) for size in radiance.shape[:2])
+    rows, columns = radiance.shape[0] // high, radiance.shape[1] // wide
+    blocks = radiance[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)
+    means: NDArray[np.float32] = blocks.mean(axis=(1, 3))
+    return means
 
 
 def latlong_directions(rows: int, columns: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

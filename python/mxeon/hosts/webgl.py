@@ -12,7 +12,7 @@ import os
 import re
 import shutil
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from functools import lru_cache
@@ -29,7 +29,7 @@ from mxeon.hosts.calls import PLACED
 from mxeon.hosts.raster import FragmentHost
 from mxeon.jobs.signals import Temporary
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.scene import Scene
+from mxeon.shaders.scene import Scene, VisiblePoints
 
 try:
     from playwright import sync_api
@@ -140,9 +140,14 @@ class WebGlHost(Chromium, FragmentHost):
         answer = self._ask("identify")
         return Identity(self.name, f"Chromium {answer['browser']}, WebGL2", answer["device"])
 
-    def picture(self, shader: Shader, scene: Scene) -> Array:
-        self.refuse_paths(scene)
-        captured, frame = points.outputs(shader), (scene.size, scene.size)
+    def shade(
+        self,
+        shader: Shader,
+        scene: Scene,
+        seen: VisiblePoints,
+        parts: Sequence[raster.Rectangle] = (),
+    ) -> Array:
+        captured, frame = points.outputs(shader), points.frame(seen)
         stages = {"vertex": VERTEX, "pixel": points.pixel_stage(shader)}
         pattern = r"^uniform vec2 (\w+(_uv_scale|_uv_offset));"
         images = re.findall(pattern, shader.stages["pixel"], re.MULTILINE)
@@ -150,10 +155,8 @@ class WebGlHost(Chromium, FragmentHost):
         uniforms |= raster.inputs(shader) | raster.light(scene)
         textures = raster.textures(shader, scene)
         if captured:
-            textures[points.SAMPLER] = self._points(
-                shader.stages["vertex"], captured, scene.size, scene.shape
-            )
-        return raster.picture(self._draw(stages, uniforms, textures, frame), scene)
+            textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen)
+        return self._draw(stages, uniforms, textures, frame)[::-1]
 
     def _evaluate(
         self,
@@ -183,10 +186,10 @@ class WebGlHost(Chromium, FragmentHost):
         return pixels.reshape(size[1], size[0], 4)[..., :3]
 
     def _capture(
-        self, vertex: str, captured: tuple[points.Output, ...], size: int, shape: str
+        self, vertex: str, captured: tuple[points.Output, ...], seen: VisiblePoints
     ) -> NDArray[np.float32]:
         """Texels of a vertex stage's outputs at the points of a picture."""
-        attributes = points.vertices(size, shape)
+        attributes = points.vertices(seen)
         job = {
             "vertex": vertex,
             "outputs": [each.name for each in captured],
@@ -194,9 +197,8 @@ class WebGlHost(Chromium, FragmentHost):
             "stride": points.stride(captured),
             "uniforms": UNIFORMS,
         }
-        return points.texels(
-            self._bytes("capture", job, {"attributes": attributes}), captured, size
-        )
+        buffer = self._bytes("capture", job, {"attributes": attributes})
+        return points.texels(buffer, captured, seen)
 
     def _bytes(
         self, function: str, job: Mapping[str, object], arrays: Mapping[str, Mapping[str, Array]]

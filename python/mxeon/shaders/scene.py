@@ -136,27 +136,36 @@ def scene(name: str) -> Scene:
     return scenes[name]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # caches know it by its identity
 class VisiblePoints:
-    """The visible points of a shape, one per pixel center."""
+    """The visible points of a shape, one per place in the frame."""
 
-    mask: NDArray[np.bool_]  # where the pixel center lies on the sphere
-    position: Floats  # under the pixel center; outside the mask in the plane of the rim
-    # outward unit normal, the same as the position; that of the nearest point of the rim outside
-    # the mask
-    normal: Floats
+    mask: NDArray[np.bool_]  # where the shape is
+    position: Floats  # outside the mask in the plane of the sphere's rim
+    normal: Floats  # outward unit vector; outside the mask that of the nearest point of the rim
     # latitude-longitude coordinates in [0, 1], (0.5, 0.5) facing the viewer, v upwards
     texcoord: Floats
+
+    def __post_init__(self) -> None:
+        for array in vars(self).values():
+            array.flags.writeable = False  # shared by all callers
+
+
+def pixel_centers(size: int, margin: int = 0) -> tuple[Floats, Floats]:
+    """x and y of the pixel centers of a picture, and of `margin` more rows and columns around its frame."""
+    axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
+    x, y = np.meshgrid(axis, -axis)
+    return x, y
 
 
 @lru_cache(maxsize=8)
 def sphere(size: int, margin: int = 0) -> VisiblePoints:
-    """Points of the unit sphere under the pixel centers of a `size` x `size` picture.
+    """Points of the unit sphere under the pixel centers of a `size` x `size` picture."""
+    return sphere_at(*pixel_centers(size, margin))
 
-    A `margin` adds as many rows and columns of pixel centers around the frame.
-    """
-    axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
-    x, y = np.meshgrid(axis, -axis)
+
+def sphere_at(x: Floats, y: Floats) -> VisiblePoints:
+    """Points of the unit sphere at places of the frame."""
     radius = np.hypot(x, y)
     mask = radius < 1.0
     scale = 1.0 / np.maximum(radius, 1.0)
@@ -165,10 +174,7 @@ def sphere(size: int, margin: int = 0) -> VisiblePoints:
     normal = np.stack([x * scale, y * scale, z], axis=-1)
     u = 0.5 + np.arctan2(normal[..., 0], normal[..., 2]) / (2.0 * np.pi)
     v = 0.5 + np.arcsin(np.clip(normal[..., 1], -1.0, 1.0)) / np.pi
-    points = VisiblePoints(mask, position, normal, np.stack([u, v], axis=-1))
-    for array in vars(points).values():
-        array.flags.writeable = False  # shared by all callers
-    return points
+    return VisiblePoints(mask, position, normal, np.stack([u, v], axis=-1))
 
 
 def local_directions(

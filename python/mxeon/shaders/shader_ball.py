@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.io.images import Floats
-from mxeon.shaders.scene import VisiblePoints
+from mxeon.shaders.scene import VisiblePoints, pixel_centers
 
 CENTER, RADIUS = np.array([0.0, 0.2, 0.0]), 0.72
 BELT_HEIGHT = 0.13  # half of it
@@ -62,9 +62,12 @@ def distance(points: Floats) -> Floats:
 
 @lru_cache(maxsize=2)
 def shader_ball(size: int, margin: int = 0) -> VisiblePoints:
-    """Visible points of the shader ball, one per pixel center; arguments as those of `sphere`."""
-    axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
-    x, y = np.meshgrid(axis, -axis)
+    """Points of the shader ball under the pixel centers of a `size` x `size` picture."""
+    return shader_ball_at(*pixel_centers(size, margin))
+
+
+def shader_ball_at(x: Floats, y: Floats) -> VisiblePoints:
+    """Points of the shader ball at places of the frame."""
     points = np.stack([x, y, np.full_like(x, NEAR)], axis=-1)
     rays, mask = points.reshape(-1, 3), np.zeros(x.size, dtype=bool)
     running = np.arange(x.size)
@@ -73,15 +76,12 @@ def shader_ball(size: int, margin: int = 0) -> VisiblePoints:
         rays[running, 2] -= step
         mask[running] = step < CLOSE
         running = running[(step >= CLOSE) & (rays[running, 2] > FAR)]
-    mask = mask.reshape(x.shape)
+    found = mask.reshape(x.shape)
     gradient = [distance(points + each) - distance(points - each) for each in STEP * np.eye(3)]
     normal = np.stack(gradient, axis=-1)
     normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), STEP**2)
-    normal[~mask] = 0.0, 0.0, 1.0
+    normal[~found] = 0.0, 0.0, 1.0
     outward = points @ OBJECT.T - CENTER
     u = 0.5 + np.arctan2(outward[..., 0], outward[..., 2]) / (2.0 * np.pi)
     v = 0.5 + np.arctan2(outward[..., 1], np.hypot(outward[..., 0], outward[..., 2])) / np.pi
-    found = VisiblePoints(mask, points, normal, np.stack([u, v], axis=-1))
-    for array in vars(found).values():
-        array.flags.writeable = False  # shared by all callers
-    return found
+    return VisiblePoints(found, points, normal, np.stack([u, v], axis=-1))

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Stills for people: antialiased, on a floor where the shader ball throws a shadow.
+
+The picture of a host has one sample a pixel, at its center. Pixels that differ from a neighbor are drawn again with 16.
+The floor is Lambertian paper that bends up into a wall behind the ball; the ball, without its grooves, and the foot block
+the light of the environment on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.hosts.base import Array, Host
+from mxeon.hosts.path_tracer import PathTracerHost
+from mxeon.hosts.points import MARGIN, visible, visible_at
+from mxeon.hosts.raster import FragmentHost
+from mxeon.hosts.textures import RADIANCE_SIZE, latlong_directions, read_latlong, reduced
+from mxeon.io.images import Floats
+from mxeon.io.tone import pbr_neutral
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.scene import Scene, VisiblePoints, pixel_centers
+from mxeon.shaders.shader_ball import CENTER, FOOT_HEIGHT, FOOT_RADIUS, OBJECT, RADIUS
+
+Mask = NDArray[np.bool_]
+
+SIDE = 4  # rows and columns of samples in a pixel that is drawn again
+BLOCKS = 64, 256  # columns and rows of such pixels in one frame
+SMOOTH = (
+    0.04,
+    0.98,
+)  # least change of a display value, and largest cosine of normals, that call for more samples
+
+GRID = 96  # rows and columns of points of the floor; it is interpolated between them
+DRAWN = 512  # directions of light on the floor
+PAPER = 0.5  # reflectance of the floor
+GROUND = -0.6 - FOOT_HEIGHT  # its height, under the foot
+EDGE = FOOT_RADIUS + 0.01
+BEND = -1.0, -4.5  # where the paper begins to bend up, and where it stands, in the foot's z
+
+
+def still(host: Host, shader: Shader, scene: Scene) -> Array:
+    """Picture of a shader, linear (size, size, 3), antialiased where the host draws single points."""
+    image = host.picture(shader, scene)
+    mask = visible(scene.size, scene.shape).mask
+    covered = mask.astype(np.float32)
+    if isinstance(host, FragmentHost):
+        # A path tracer has antialiased its picture: what it covers of the pixels at its edges is left to find.
+        traced = isinstance(host, PathTracerHost)
+        for rows, columns in rough(0.0 * image if traced else image, mask, scene):
+            draw = None if traced else partial(host.shade, shader, scene)
+            drawn, covered[rows, columns] = samples(draw, scene, rows, columns)
+            if not traced:
+                image[rows, columns] = drawn
+    if scene.shape == "ball" and scene.environment is not None:
+        image += (1.0 - covered[..., None]) * floor(scene)
+    return image
+
+
+def rough(image: Array, mask: Mask, scene: Scene) -> Iterator[tuple[Array, Array]]:
+    """Rows and columns of pixels that differ from a neighbor, in batches."""
+    shown, normal = pbr_neutral(image), visible(scene.size, scene.shape).normal
+    differs = mask.copy()  # at the edge of the frame the shape may end within a pixel
+    differs[1:-1, 1:-1] = False
+    for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):
+        one = slice(0, -down or None), slice(max(-right, 0), -max(right, 0) or None)
+        other = slice(down, None), slice(max(right, 0), min(right, 0) or None)
+        apart: Mask = np.abs(shown[one] - shown[other]).max(axis=-1) > SMOOTH[0]
+        apart |= (normal[one] * normal[other]).sum(axis=-1) < SMOOTH[1]
+        apart &= mask[one] | mask[other]
+        differs[one] |= apart
+        differs[other] |= apart
+    rows, columns = np.nonzero(differs)
+    for start in range(0, len(rows), batch := BLOCKS[0] * BLOCKS[1]):
+        yield rows[start : start + batch], columns[start : start + batch]
+
+
+def samples(
+    draw: Callable[[VisiblePoints], Array] | None, scene: Scene, rows: Array, columns: Array
+) -> tuple[Array, Array]:
+    """Means over the samples of pixels, 0 off the shape, and the shares of them on it."""
+    wide = BLOCKS[0]
+    number = np.minimum(np.arange(-(-len(rows) // wide) * wide), len(rows) - 1).reshape(-1, wide)
+    block = number.repeat(SIDE, axis=0).repeat(SIDE, axis=1)
+    within = (np.indices(block.shape) % SIDE + 0.5) / SIDE
+    y = 1.0 - 2.0 * (rows[block] + within[0]) / scene.size
+    x = 2.0 * (columns[block] + within[1]) / scene.size - 1.0
+    seen = visible_at(np.pad(x, MARGIN, "edge"), np.pad(y, MARGIN, "edge"), scene.shape)
+    mask = seen.mask[MARGIN:-MARGIN, MARGIN:-MARGIN, None]
+    drawn = np.where(mask, draw(seen) if draw else 0.0, np.float32(0.0))
+    means = (
+        each.reshape(-1, SIDE, wide, SIDE, each.shape[-1])
+        .mean(axis=(1, 3))
+        .reshape(-1, each.shape[-1])
+        for each in (drawn, mask.astype(np.float32))
+    )
+    color, share = means
+    return color[: len(rows)], share[: len(rows), 0]
+
+
+def floor(scene: Scene) -> Array:
+    """Radiance of the floor in the pixels of a picture, (size, size, 3)."""
+    x, y = (each.reshape(-1, 1) for each in pixel_centers(GRID))
+    depth = (GROUND - OBJECT[1, 1] * y) / OBJECT[1, 2]
+    points = np.hstack([x, y, depth]) @ OBJECT.T
+    bend = np.clip((points[:, 2] - BEND[0]) / (BEND[1] - BEND[0]), 0.0, 1.0)
+    bend = 0.5 * np.pi * bend**2 * (3.0 - 2.0 * bend)
+    around = np.hypot(points[:, 0], points[:, 2])[
+        :, None
+    ]  # points under the foot stand for those beside it
+    points[:, ::2] *= np.maximum(EDGE / np.maximum(around, 1e-9), 1.0)
+    normal = np.stack([0.0 * bend, np.cos(bend), np.sin(bend)], axis=-1)
+    towards, power = lights(scene)
+    cosine = np.maximum(normal @ towards.T, 0.0)
+    radiance = PAPER / np.pi * (cosine * ~blocked(points, towards)) @ power
+    coarse = radiance.reshape(GRID, GRID, 3)
+    centers, fine = (np.arange(GRID) + 0.5) / GRID, (np.arange(scene.size) + 0.5) / scene.size
+    for axis in (0, 1):
+        coarse = np.apply_along_axis(lambda row: np.interp(fine, centers, row), axis, coarse)
+    return coarse.astype(np.float32)
+
+
+def lights(scene: Scene) -> tuple[Floats, Floats]:
+    """Directions in the foot's frame, and the radiance of each times its solid angle, that stand for an environment."""
+    sky = reduced(read_latlong(scene.environment))
+    if sky.shape[:2] == (1, 1):
+        sky = np.broadcast_to(sky, (RADIANCE_SIZE, 2 * RADIANCE_SIZE, 3))
+    directions, area = latlong_directions(*sky.shape[:2])
+    power = sky.reshape(-1, 3) * (area * 2.0 * np.pi / area.sum() * 2.0)[:, None]
+    share = np.cumsum(power.mean(axis=-1) + 1e-9)
+    drawn = np.searchsorted(share, (np.arange(DRAWN) + 0.5) / DRAWN * share[-1])
+    mean = power[drawn].mean(axis=-1, keepdims=True)
+    return directions[drawn] @ OBJECT.T, power[drawn] / np.maximum(mean, 1e-30) * share[-1] / DRAWN
+
+
+def blocked(points: Floats, towards: Floats) -> Mask:
+    """Whether the ball or its foot is between points of the floor and directions."""
+    out = CENTER - points
+    along = out @ towards.T
+    ball = (along > 0.0) & ((out**2).sum(axis=-1)[:, None] - along**2 < RADIUS**2)
+    # The way to the height of the foot's top, over the floor.
+    reach = (
+        np.stack([towards[:, 0], towards[:, 2]], axis=-1)
+        * 2.0
+        * FOOT_HEIGHT
+        / np.maximum(towards[:, 1:2], 1e-6)
+    )
+    start = np.stack([points[:, 0], points[:, 2]], axis=-1)
+    length = (reach**2).sum(axis=-1)
+    nearest = np.clip(-start @ reach.T / np.maximum(length, 1e-12), 0.0, 1.0)
+    distance = (
+        (start**2).sum(axis=-1)[:, None] + 2.0 * nearest * (start @ reach.T) + nearest**2 * length
+    )
+    blocked: Mask = ball | ((distance < FOOT_RADIUS**2) & (towards[:, 1] > 0.0))
+    return blocked
