@@ -36,7 +36,7 @@ def test_curves_are_those_of_a_finer_quadrature(monkeypatch, alpha, ior):
     coat = constant_coat(alpha, ior)
     missing, reflected = coat.at(COSINES)
     # Integrate anew, with more nodes, that crowd at grazing without end.
-    finer = {"LEAST_SCALE": 0.0, "SLOPE_NODES": 40, "PANELS": 6, "PART": 120}
+    finer = {"LEAST_SCALE": 0.0, "SLOPE_NODES": 40, "PANELS": 6, "QUADRANT": 120}
     for name, value in finer.items():
         monkeypatch.setattr(slopes, name, value)
     views = np.stack([np.sqrt((1.0 - COSINES) * (1.0 + COSINES)), 0.0 * COSINES, COSINES])

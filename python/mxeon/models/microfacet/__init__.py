@@ -442,7 +442,7 @@ def generalized_schlick_albedo_dir(
 def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of anisotropic GGX at unit Fresnel reflectance, by quadrature.
 
-    Accuracy: errors of E and of (1 - E) / E below 5e-6 for mu_o >= 1e-4 and roughness >= 1e-4. Cosines below 1e-12 count as 1e-12.
+    Accuracy: error below 5e-6 for mu_o >= 1e-4 and roughness >= 1e-4. Cosines below 1e-12 count as 1e-12.
     [MaterialX2026], Energy Compensation; Height-Correlated Smith Masking-Shadowing.
 
         >>> ggx_albedo_dir_anisotropic([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]], [0.1, 0.5]).round(6)

@@ -21,12 +21,8 @@ from mxeon.models.core.arrays import Array, array_namespace, at_least_0, at_most
 from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
-# Gauss-Legendre nodes in r per panel, panels, and nodes per part of phi.
-SLOPE_NODES, PANELS, PART = 20, 3, 20
-# Ratio of alphas up to which a part is a quadrant. g varies within a ratio of alphas of the axis of the smaller one, so
-# beyond, parts end there, too: (1 - E) / E is exact to 4e-6; a quadrant's nodes are to 3e-6 up to it, and to 1e-3 at 20.
-MILD_RATIO = 1.7
-LEAST_ASPECT = 1e-4  # least scale at that axis: the smaller alpha over the larger one
+# Gauss-Legendre nodes in r per panel, panels, and nodes per quadrant of phi.
+SLOPE_NODES, PANELS, QUADRANT = 20, 3, 20
 # Those of facets above a critical angle: per panel, and per part of a half plane.
 SPLIT_NODES, SPLIT_PART = 28, 32
 
@@ -76,15 +72,6 @@ class Slopes:
         """Whether both halves of every surface are alike; of another library's arrays it is not known."""
         known = array_namespace(self.roughness) is arrays.NUMPY
         return known and bool(np.all(self.roughness[0] == self.roughness[1]))
-
-    @property
-    def mild(self) -> bool:
-        """Whether no surface has alphas in a ratio above MILD_RATIO; as above, or it is not known."""
-        alpha_x, alpha_y = self.roughness
-        known = array_namespace(self.roughness) is arrays.NUMPY
-        return known and bool(
-            np.all(np.maximum(alpha_x, alpha_y) <= MILD_RATIO * np.minimum(alpha_x, alpha_y))
-        )
 
     def rays(self, omega: Array) -> tuple[Array, Array, tuple[Array, Array]]:
         """Of each azimuth: B, the last r, and the slope (alpha_x cos(phi), alpha_y sin(phi)) at r = 1.
@@ -147,7 +134,7 @@ def slope_nodes(wo: Array, roughness: Array, isotropic: bool = False) -> tuple[A
     """
     slopes = Slopes.seen(wo, roughness)
     scale = array_namespace(slopes.scale).maximum(slopes.scale, LEAST_SCALE)
-    omega, weight_omega = _azimuths(slopes, scale, isotropic or slopes.isotropic)
+    omega, weight_omega = _quadrants(scale, isotropic or slopes.isotropic)
     B, limit, slope = slopes.rays(omega)
     r, weight = _graded(scale, limit)
     cosine, values = slopes.facets(r, B, slope)
@@ -163,7 +150,7 @@ def sum_nodes(wo: Array, roughness: Array) -> tuple[Array, Array]:
     mu_o = slopes.mu_o
     xp = array_namespace(mu_o)
     scale = xp.maximum(slopes.scale, LEAST_SCALE)
-    omega, weight_omega = _azimuths(slopes, scale, slopes.isotropic)
+    omega, weight_omega = _quadrants(scale, slopes.isotropic)
     B, limit, slope = slopes.rays(omega)
     r, weight = _graded(scale, limit)
     lean = at_least_0(B * r + mu_o)
@@ -326,44 +313,22 @@ def _crowded(panels: int, nodes: int, array: Array) -> tuple[Array, Array]:
     return like(both[0], array), like(both[1], array)
 
 
-def _azimuths(slopes: Slopes, scale: Array, isotropic: bool) -> tuple[Array, Array]:
-    """Nodes and weights of omega, shape (1, n, ...), denser towards right angles and the axis of the smaller alpha.
+def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
+    """Nodes and weights of phi from that of wo on, denser towards right angles, shape (1, n, ...).
 
     Halves of an isotropic surface are alike.
     """
-    xp, right = array_namespace(scale), 0.5 * np.pi
-    if isotropic or slopes.mild:
-        omega, weight = _from_end(scale, right + 0.0 * scale)
-        omega = right - omega
-        if isotropic:
-            omega, weight = xp.concat([omega, np.pi - omega]), xp.concat([2.0 * weight] * 2)
-        else:
-            omega = xp.concat([omega, np.pi - omega, -omega, np.pi + omega])
-            weight = xp.concat([weight] * 4)
-        return omega[np.newaxis], weight[np.newaxis]
-    (alpha_x, alpha_y), (cosine, sine) = slopes.roughness, slopes.axis
-    first = alpha_x <= alpha_y
-    # The axis is half a turn long: the one of its ends within a right angle of wo.
-    axis = arrays.angle(xp.where(first, -sine, cosine), xp.where(first, cosine, sine))
-    axis = axis - np.pi * xp.round(axis / np.pi)
-    smaller, larger = xp.minimum(alpha_x, alpha_y), xp.maximum(alpha_x, alpha_y)
-    aspect = xp.maximum(smaller / xp.where(larger > 0.0, larger, 1.0), LEAST_ASPECT)
-    parts = []
-    for sign in (-1.0, 1.0):  # from each right angle and from the axis to the middle between them
-        half = 0.5 * (right - sign * axis)
-        for start, way, size in ((sign * right, -sign, scale), (axis, sign, aspect)):
-            distance, weight = _from_end(size, half)
-            parts.append((start + way * distance, weight))
-    omega, weight = (xp.concat(each) for each in zip(*parts, strict=True))
-    return xp.concat([omega, np.pi + omega])[np.newaxis], xp.concat([weight] * 2)[np.newaxis]
-
-
-def _from_end(scale: Array, length: Array) -> tuple[Array, Array]:
-    """Nodes and weights of [0, length] along a new first axis, denser towards 0 from `scale` on."""
-    xp = array_namespace(scale, length)
-    x, weight = (like(v.reshape(-1, *(1,) * length.ndim), length) for v in unit_rule(PART))
-    extent = xp.asinh(length / scale)
-    return scale * xp.sinh(extent * x), weight * extent * scale * xp.cosh(extent * x)
+    xp = array_namespace(scale)
+    x, weight = (like(v.reshape(-1, *(1,) * scale.ndim), scale) for v in unit_rule(QUADRANT))
+    extent = xp.asinh(0.5 * np.pi / scale)
+    omega = 0.5 * np.pi - scale * xp.sinh(extent * x)
+    weight = weight * extent * scale * xp.cosh(extent * x)
+    if isotropic:
+        omega, weight = xp.concat([omega, np.pi - omega]), xp.concat([2.0 * weight] * 2)
+    else:
+        omega = xp.concat([omega, np.pi - omega, -omega, np.pi + omega])
+        weight = xp.concat([weight] * 4)
+    return omega[np.newaxis], weight[np.newaxis]
 
 
 def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
