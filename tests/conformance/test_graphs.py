@@ -26,7 +26,7 @@ WRONG = {
          'nodename="coat_layer" />\n      <input name="base" type="BSDF" nodename="fuzz_bsdf" />',
          "top of fuzz_layer is coat_layer instead of fuzz_bsdf, base of fuzz_layer is fuzz_bsdf instead of coat_layer"),
         ('name="coat_roughness" type="float" value="0.0"', 'name="coat_roughness" type="float" value="0.1"',
-         "the default of coat_roughness is 0.1 instead of 0"),
+         "default of coat_roughness of open_pbr_surface is 0.1; MaterialX says 0.0"),
         ('nodename="alpha_x" />\n      <input name="in2" type="float" nodename="alpha_y" />',
          'nodename="alpha_y" />\n      <input name="in2" type="float" nodename="alpha_x" />',
          "in1 of result is alpha_y instead of alpha_x"),

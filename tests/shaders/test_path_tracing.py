@@ -130,7 +130,7 @@ def leaves(material, mu, count, nodes=8, **options):
 
 @pytest.mark.parametrize("name", SURFACES)
 def test_draws_at_a_grazing_view_have_their_density(materials, name):
-    assert leaves(materials(name), 0.1, 1 << 16) < DEVIATION
+    assert leaves(materials(name), 0.1, 1 << 16, nodes=16) < DEVIATION
 
 
 @pytest.mark.whole

@@ -80,9 +80,10 @@ class GlHost(FragmentHost):
         scene: Scene,
         seen: VisiblePoints,
         parts: Sequence[raster.Rectangle] = (),
+        directions: int = raster.PICTURE_DIRECTIONS,
     ) -> Array:
         program = self._program(fragment.DIALECTS["glsl"].vertex, points.pixel_stage(shader))
-        _set(program, raster.inputs(shader) | raster.light(scene))
+        _set(program, raster.inputs(shader) | raster.light(scene, directions))
         captured, frame = points.outputs(shader), points.frame(seen)
         textures = self._textures(program, raster.textures(shader, scene))
         if captured:

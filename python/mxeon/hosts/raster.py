@@ -35,7 +35,7 @@ WHITE_TEXELS = np.ones((2, 2, 3), dtype=np.float32)
 # Directions over which microfacets sum their environment: docs/hosts.md has the error and cost of each number. Only the
 # first mipmap of the environment is read.
 EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
-PICTURE = {"u_envRadianceSamples": 256, "u_envRadianceMips": 1}
+PICTURE_DIRECTIONS = 256
 DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # every sum is 0
 TRIANGLE = {  # attributes of its three vertices
     "i_position": np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4"),
@@ -100,7 +100,7 @@ def inputs(shader: Shader) -> Uniforms:
     }
 
 
-def light(scene: Scene) -> Uniforms:
+def light(scene: Scene, directions: int = PICTURE_DIRECTIONS) -> Uniforms:
     """Values of the uniforms of the viewer, of all lights and of what else a client sets."""
     client = scene.client
     values: Uniforms = {
@@ -111,7 +111,9 @@ def light(scene: Scene) -> Uniforms:
         "u_alphaThreshold": ALPHA_THRESHOLD,
         points.ALPHA: client.alpha,
     }
-    values |= DARK if scene.environment is None and client.radiance is None else PICTURE
+    values |= DARK
+    if scene.environment is not None or client.radiance is not None:
+        values["u_envRadianceSamples"] = directions
     if isinstance(scene.environment, Path):  # filtered, so that 256 samples leave no pattern
         values["u_envRadianceMips"] = int(np.log2(max(read_latlong(scene.environment).shape))) + 1
     lamps = client.lamps
@@ -174,6 +176,7 @@ class FragmentHost(base.Host):
         scene: Scene,
         seen: VisiblePoints,
         parts: Sequence[Rectangle] = (),
+        directions: int = PICTURE_DIRECTIONS,
     ) -> Array:
         """Radiance at points with a margin, (height, width, 3), row 0 at the top; only `parts` have to be drawn."""
         raise self._unsupported("pictures of a sphere", "gl")

@@ -29,11 +29,10 @@ Mask = NDArray[np.bool_]
 
 SIDE = 4  # rows and columns of samples in a pixel that is drawn again
 BLOCKS = 64, 256  # columns and rows of such pixels in one frame
-SMOOTH = (
-    0.04,
-    0.98,
-)  # least change of a display value, and largest cosine of normals, that call for more samples
+# Least change of a display value, and largest cosine of normals, that call for more samples.
+SMOOTH = 0.06, 0.98
 
+DIRECTIONS = 64  # to sum an environment over, for each of 16 samples
 GRID = 96  # rows and columns of points of the floor; it is interpolated between them
 DRAWN = 512  # directions of light on the floor
 PAPER = 0.5  # reflectance of the floor
@@ -51,7 +50,7 @@ def still(host: Host, shader: Shader, scene: Scene) -> Array:
         # A path tracer has antialiased its picture: what it covers of the pixels at its edges is left to find.
         traced = isinstance(host, PathTracerHost)
         for rows, columns in rough(0.0 * image if traced else image, mask, scene):
-            draw = None if traced else partial(host.shade, shader, scene)
+            draw = None if traced else partial(host.shade, shader, scene, directions=DIRECTIONS)
             drawn, covered[rows, columns] = samples(draw, scene, rows, columns)
             if not traced:
                 image[rows, columns] = drawn

@@ -146,13 +146,14 @@ class WebGlHost(Chromium, FragmentHost):
         scene: Scene,
         seen: VisiblePoints,
         parts: Sequence[raster.Rectangle] = (),
+        directions: int = raster.PICTURE_DIRECTIONS,
     ) -> Array:
         captured, frame = points.outputs(shader), points.frame(seen)
         stages = {"vertex": VERTEX, "pixel": points.pixel_stage(shader)}
         pattern = r"^uniform vec2 (\w+(_uv_scale|_uv_offset));"
         images = re.findall(pattern, shader.stages["pixel"], re.MULTILINE)
         uniforms = UNIFORMS | {name: PLACED[kind] for name, kind in images}
-        uniforms |= raster.inputs(shader) | raster.light(scene)
+        uniforms |= raster.inputs(shader) | raster.light(scene, directions)
         textures = raster.textures(shader, scene)
         if captured:
             textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen)

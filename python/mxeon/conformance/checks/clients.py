@@ -17,7 +17,6 @@ from mxeon.conformance.check import Check, family
 from mxeon.conformance.checks.states import covering, named, shared
 from mxeon.conformance.controls import scale
 from mxeon.conformance.diagnosis import not_finite
-from mxeon.conformance.reference.clients import alpha_of, light
 from mxeon.conformance.results import Diagnosis
 from mxeon.conformance.samples import RIM, Batch, sky_map
 from mxeon.conformance.specs.clients import BACK, FRONT, INTENSITY, FrameSpec
@@ -25,7 +24,6 @@ from mxeon.conformance.tolerance import Compared
 from mxeon.hosts import host_row
 from mxeon.hosts.base import TURN
 from mxeon.shaders.methods import GENERATED, UNCHOSEN, Methods
-from mxeon.shaders.options import offers
 from mxeon.shaders.scene import VIEW, Client, Lamp, Matrix, Scene, sphere
 
 if TYPE_CHECKING:  # which loads MaterialX
@@ -36,8 +34,6 @@ POLE = 0.999  # height from which an uneven environment has no neighbors to filt
 EVERY = 6  # a control draws one of so many frames
 WHITE = np.ones((1, 1, 3), np.float32)
 NAMES = {"shading/mix": "mix", "front/opacity": "front", "back/opacity": "back"}
-# MaterialX before 1.39.5 folds no mixes.
-FOLDED = Methods("none", "opacity", premultiplied=offers("premultiplied") or None)
 # Depths of the sphere lie within [0.2, 0.7] in this map, and its w is not 1.
 SHADOW: Matrix = (1.2, 0.1, 0.3, 0.0, 0.2, 1.1, 0.2, 0.0, 0.1, 0.3, -0.6, 0.0, 0.0, 0.0, 0.0, 1.5)
 
@@ -55,6 +51,15 @@ Build = Callable[[Frame], Frame]
 
 def same(frame: Frame) -> Frame:
     return frame
+
+
+def folded(frame: Frame) -> Frame:
+    """A frame by premultiplied mixes, which MaterialX before 1.39.5 does not have."""
+    from mxeon.shaders.options import offers
+
+    return frame._replace(
+        methods=Methods("none", "opacity", premultiplied=offers("premultiplied") or None)
+    )
 
 
 def bound(**values: Any) -> Build:
@@ -97,7 +102,7 @@ SPOT = Lamp(
 AXES: dict[str, dict[str, Build]] = {
     "methods": {
         "the default methods": same,
-        "premultiplied mixes without an environment": lambda frame: frame._replace(methods=FOLDED),
+        "premultiplied mixes without an environment": folded,
     },
     "lights": {
         "no light": same,
@@ -147,6 +152,8 @@ def frames() -> tuple[tuple[set[str], Frame], ...]:
 
 def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
     """Colors and alphas of each frame beside those of the equations, with the words of its states."""
+    from mxeon.conformance.reference.clients import alpha_of, light
+
     points = sphere(SIZE)
     normal = points.normal[points.mask]
     view = np.broadcast_to(VIEW, normal.shape)

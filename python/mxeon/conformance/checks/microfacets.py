@@ -4,6 +4,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,10 +38,11 @@ from mxeon.models.microfacet.defects import UNCOMPENSATED, schlick_average
 from mxeon.models.microfacet.ggx import smith_g1, smith_lambda
 from mxeon.models.sampling import ggx_sample
 from mxeon.models.transmission import refraction_direction
-from mxeon.shaders.generation import Shader
-from mxeon.shaders.library import environment_folders
 from mxeon.shaders.methods import GENERATED, Methods
 from mxeon.shaders.scene import Client
+
+if TYPE_CHECKING:  # which loads MaterialX
+    from mxeon.shaders.generation import Shader
 
 PAIRS = 1 << 12  # near the mirror direction
 LEAST_DIVIDED = 1.2  # index of a dielectric whose values are divided
@@ -161,7 +163,7 @@ def anisotropic_albedo(case: Case) -> Iterator[Compared]:
         yield from albedos(case, methods, generated(case, methods))
 
 
-def albedos(case: Case, methods: Methods, shader: Shader | None = None) -> Iterator[Compared]:
+def albedos(case: Case, methods: Methods, shader: "Shader | None" = None) -> Iterator[Compared]:
     """Albedos by a client's methods: the library's own sum also clamps curves below 0.
 
     Its prefiltered lobes have fits of their curves, which are loose for metals; those of mirrors have none.
@@ -182,11 +184,13 @@ def albedos(case: Case, methods: Methods, shader: Shader | None = None) -> Itera
 
 def searching(case: Case, *methods: Methods) -> Iterator[Methods]:
     """Methods with the library's own lookups of an environment, if it has them and none are chosen."""
+    from mxeon.shaders.library import environment_folders
+
     if case.host.active == GENERATED and not case.control and environment_folders(case.library):
         yield from (replace(each, searched=True) for each in methods)
 
 
-def generated(case: Case, methods: Methods) -> Shader:
+def generated(case: Case, methods: Methods) -> "Shader":
     """Shader of the node with a client's methods."""
     [shader] = case.host.compile(case.spec.document(), library=case.library, methods=methods)
     return shader

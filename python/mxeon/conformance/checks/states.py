@@ -291,6 +291,8 @@ def pixels_of(case: Case) -> list[Pixels]:
         plain.add(TURNED_SKY)
     if Ability.MATERIAL in case.spec.requires:  # whose tints are inside
         plain.add(TWO_SIDED)
+    if case.host.active.transmission == "opacity":  # which no environment scales
+        plain.add(TWO_SIDED)
     axes = tuple(
         tuple(state for n, state in enumerate(each) if not n or not {name, state} & plain)
         for name, each in AXES.items()

@@ -22,7 +22,6 @@ from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
 from mxeon.conformance.tolerance import Compared, Measurement, count_named, count_of, scaled, sum_of
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
-from mxeon.shaders.document.graphs import categories, inner_nodes
 
 WORST = 32  # pairs that are looked at
 CHANGED = 8  # pairs that a change of an input has to show in
@@ -59,6 +58,8 @@ def diagnose_lobes(case: Case) -> Diagnosis:
 
 def wrong_layers(case: Case) -> list[str]:
     """Lobes of a material that let through what they should not, or the reverse, each by itself."""
+    from mxeon.shaders.document.graphs import categories, inner_nodes
+
     used, found = categories(inner_nodes(case.evaluating.shader.document)), []
     for spec in filter(LAYERS, PLAIN_LOBES):
         if spec.node in used:
