@@ -34,8 +34,8 @@ SHEEN = "sheen_bsdf, mode conty_kulla"
 
 HALF = ("model", "compensation with F at the half vector and MaterialX's fit of E_ss")
 VIEW = ("model", "compensation with F at the view direction and MaterialX's fit of E_ss")
-OPEN = {"value": HALF, "integral": HALF, "shape": HALF, "environment": VIEW}  # they differ
 MEAN = ("model", "Smith at the geometric mean, and MaterialX's compensation")
+OPEN = {"value": HALF, "integral": HALF, "shape": MEAN, "environment": VIEW}  # they differ
 UNTINTED = ("model", "MaterialX's fit of its albedo without a tint")
 AVERAGED = ("model", "MaterialX's fit of its albedo, averaged over the channels")
 CLAMPED_TITLE = "EON with clamped dot(wo, wi)"
@@ -110,7 +110,6 @@ STOCK = {
         "value": ("region", "viewer_above_1"),
         "transmission": ALL_LIGHT, **dict.fromkeys(("layering", "layer"), UNCOLORED), **SPHERE,
     },
-    **dict.fromkeys(("layer", "mix", "add"), SPHERE),
     "dielectric_bsdf, scatter_mode R": {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "denser"), UNTINTED),
         "finite": NAN, "lossless": HALF, "anisotropic_value": MEAN, "anisotropic_throughput": (),
@@ -124,23 +123,23 @@ STOCK = {
         **dict.fromkeys(("lossless", "energy"), HALF), "finite": OPPOSITE,
         "anisotropic_albedo": (), "anisotropic_value": MEAN, "anisotropic_throughput": (),
     },
-    "multiply, in2 float": {"combined_throughput": UNSCALED, **SPHERE},
-    "multiply, in2 color3": {"combined_throughput": UNSCALED, **SPHERE},
-    "multiply, of a sum": {"combined_throughput": UNSCALED, **SPHERE},
-    "mix, of a sum": {"combined_throughput": ENDED, **SPHERE},
-    "mix, of a layer under a sum": {"combined_throughput": ENDED, **SPHERE},
+    "multiply, in2 float": {"combined_throughput": UNSCALED},
+    "multiply, in2 color3": {"combined_throughput": UNSCALED},
+    "multiply, of a sum": {"combined_throughput": UNSCALED},
+    "mix, of a sum": {"combined_throughput": ENDED},
+    "mix, of a layer under a sum": {"combined_throughput": ENDED},
     "layer, under a mix of a sum": {
-        "combination": ENDED, "combined_throughput": ENDED, "combined_albedo": (), **SPHERE,
+        "combination": ENDED, "combined_throughput": ENDED, "combined_albedo": (),
     },
     "layer, under connected masks": {
         "combination": ("model", "opaque lobes that hide their base at any weight"), "combined_albedo": (),
         "combined_throughput": ("model", "opaque lobes that hide their base at any weight"),
-        "inputs": ("inputs_without_effect", "base/roughness"), **SPHERE,
+        "inputs": ("inputs_without_effect", "base/roughness"),
     },
     # Stock's sheen passes light by its albedo without the color.
     "layer, under a colored sum": dict.fromkeys(
         ("combination", "combined_albedo", "combined_throughput"), ()
-    ) | SPHERE,
+    ),
     "chiang_hair_bsdf": {
         **dict.fromkeys(("value", "black", "finite", "integral", "low_index"), NAN),
         "environment": ("no_model", "a GGX lobe of the mean roughness and tint, without absorption"),
@@ -159,7 +158,7 @@ STOCK = {
     **{
         f"{node}_bsdf, scatter_mode {mode}": PASSED_THROUGH
         | ({"clear": UNSHADOWED} if mode == "RT" else {})
-        | ({"critical": NAN} if node == "generalized_schlick" else {"inside": UNSHADOWED})
+        | ({"critical": NAN, "states": ()} if node == "generalized_schlick" else {"inside": UNSHADOWED})
         for node in ("dielectric", "generalized_schlick") for mode in ("T", "RT")
     },
     "subsurface_bsdf": {
@@ -183,7 +182,7 @@ STOCK = {
 # Where the specification leaves a choice, a permitted function differs.
 FREE = {
     *((title, key) for title in STOCK if "value" in STOCK[title] for key in OPEN if STOCK[title].get(key) == OPEN[key]),
-    *((title, key) for title in ("dielectric_bsdf, thin film", "conductor_bsdf, thin film") for key in film("")),
+    *((title, key) for title in ("dielectric_bsdf, thin film", "conductor_bsdf, thin film") for key in film("") if key != "film_brushed"),
     *(("generalized_schlick_bsdf, thin film", key) for key in ("film_average", "film_smooth")),
     *((title, "combined_throughput") for title in STOCK if title.startswith("multiply, ")),
     *((f"{name}_bsdf{mode}", "anisotropic_value") for name, mode in (

@@ -553,7 +553,8 @@ def film_limit(case: Case) -> list[Compared]:
     one the sensitivities count, of five digits, whose sum is not 1: as much as in the equations is right.
     """
     # Under a film Schlick's curve has no dip: where that is negative, a film's counts as 0.
-    batch = case.backend.mirrored[0].first(case.backend.counts.few)  # where most of a film shows
+    # Where most of a film shows; of one alpha, since the masking of two is another matter.
+    batch = backends.isotropic(case.backend.mirrored[0].first(case.backend.counts.few))
     batch = _clear(batch, microfacets.LEAST_INDEX, 1.0).altered(thinfilm_thickness=300.0)
     without = batch.altered(thinfilm_thickness=0.0)
     bare = case.direct(without)
