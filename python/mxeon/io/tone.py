@@ -22,7 +22,7 @@ def pbr_neutral(image: ArrayLike) -> Floats:
     """Display values in [0, 1] of a linear image (..., 3).
 
     >>> pbr_neutral([0.5, 0.5, 0.5]).round(2).tolist(), pbr_neutral([9.0, 0.0, 0.0]).round(2).tolist()
-    ([0.46, 0.46, 0.46], [0.99, 0.55, 0.55])
+    ([0.46, 0.46, 0.46], [0.99, 0.54, 0.54])
     """
     color = np.maximum(np.asarray(image, np.float64), 0.0)
     least = color.min(axis=-1, keepdims=True)
