@@ -19,9 +19,7 @@ vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, FresnelData f
     vec3 wo = lobe.wo;
     if (n > 4.0 && lobe.alpha <= M_FLOAT_EPS)
     {
-        float mu = min(0.005 + 2e-3 * n, 0.9);
-        vec3 side = normalize(wo - lobe.mu_o * lobe.N);
-        wo = mu > lobe.mu_o ? mu * lobe.N + sqrt(1.0 - mu * mu) * side : wo;
+        wo = normalize(wo + max(0.005 + 2e-3 * n - lobe.mu_o, 0.0) * lobe.N);
     }
     else if (n >= 1.0)
     {
