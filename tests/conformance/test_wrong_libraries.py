@@ -298,7 +298,8 @@ def test_what_is_written_differently_and_has_the_released_values_passes(judged, 
         copy_of_stock(tmp_path, file)
         for old, new in texts.items():
             replace_text(tmp_path, old, new, file)
-    assert judged("release", EVERY_NODE, library=str(tmp_path)).verdict == PASSED
+    result = judged("release", EVERY_NODE, library=str(tmp_path))
+    assert result.verdict == PASSED, said(result)
 
 
 def test_an_older_library_and_text_that_nothing_evaluates_are_said_not_to_be_judged(
@@ -349,7 +350,9 @@ def test_exchanged_arguments_of_a_call_in_mdl_are_named(judged, tmp_path):
 def test_a_run_says_which_texts_and_states_it_does_not_judge(monkeypatch):
     keep(monkeypatch, lambda task: task.check in ("source", "release"))
     run = check(None, ["gl"], "eonlib")
-    assert run.passed and not run.sentence.startswith("All")
+    assert run.passed and not run.sentence.startswith("All"), [
+        said(e) for e in run.results if e.verdict == FAILED
+    ]
     unjudged = dict(run.unjudged)
     assert {"osl", "msl", "mdl"} <= unjudged.keys() and "glsl" not in unjudged
     assert any(each.startswith("not judged here: ") and "Metal" in each for each in answer(run))

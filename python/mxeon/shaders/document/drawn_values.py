@@ -83,11 +83,16 @@ def _copied(document: mx.Document) -> mx.Document:
     copy.setDataLibrary(document.getDataLibrary())
     for each in (*copy.getLooks(), *copy.getLookGroups()):  # which name materials
         copy.removeChild(each.getName())
-    for graph in copy.getNodeGraphs():
+    for graph in _own_graphs(copy):
         for node in graph.getNodes() if graph.hasColorSpace() else ():
             for port in node.getInputs():
                 port.setColorSpace(port.getActiveColorSpace())
     return copy
+
+
+def _own_graphs(document: mx.Document) -> list[mx.NodeGraph]:
+    """Its nodegraphs without the data library's, which getNodeGraphs returns too, and which documents share."""
+    return [each for each in document.getChildren() if each.isA(mx.NodeGraph)]
 
 
 def _is_named(name: str, node: mx.Node) -> bool:
@@ -96,7 +101,7 @@ def _is_named(name: str, node: mx.Node) -> bool:
 
 def _drop_closures(document: mx.Document) -> None:
     """Remove the nodes and outputs that no value depends on, but for those of definitions."""
-    for scope in (document, *document.getNodeGraphs()):
+    for scope in (document, *_own_graphs(document)):
         if scope.isA(mx.NodeGraph) and scope.getNodeDef():
             continue
         for each in (*scope.getNodes(), *scope.getOutputs()):
