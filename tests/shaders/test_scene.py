@@ -5,7 +5,16 @@ import numpy as np
 import pytest
 
 from mxeon.shaders.scene import sphere
-from mxeon.shaders.shader_ball import CENTER, CLOSE, OBJECT, RADIUS, STEP, distance, shader_ball
+from mxeon.shaders.shader_ball import (
+    CENTER,
+    CLOSE,
+    OBJECT,
+    RADIUS,
+    STEP,
+    distance,
+    shader_ball,
+    shader_ball_at,
+)
 
 
 def test_points_of_the_shader_ball_lie_on_it_with_their_normals():
@@ -20,6 +29,11 @@ def test_points_of_the_shader_ball_lie_on_it_with_their_normals():
     # Central differences of a sphere's distance are off by less than their step squared over it.
     away = np.abs(points.normal[points.mask][ball] * RADIUS - outward[ball]).max(axis=-1)
     assert np.percentile(away, 98) <= STEP + 2.0 * CLOSE  # the rest lies at the edge of a groove
+
+
+def test_nothing_shows_between_the_ball_and_the_foot_behind_its_edge():
+    down = np.linspace(-0.52, -0.54, 500)[:, None]
+    assert shader_ball_at(np.zeros_like(down), down).mask.all()
 
 
 @pytest.mark.parametrize("size", [1, 2, 7, 64])

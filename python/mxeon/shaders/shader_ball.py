@@ -20,7 +20,7 @@ FOOT_HEIGHT, FOOT_RADIUS = 0.1, 0.5
 TILT, ROLL = np.radians(20.0), np.radians(-24.0)  # of the view, and of the belt
 
 NEAR, FAR = 2.0, -2.0  # ends of a ray, in z
-STEPS, CLOSE = 96, 1e-5  # of sphere tracing
+STEPS, CLOSE = 2000, 1e-5  # of sphere tracing; along an edge of the ball it takes hundreds
 STEP = 1e-4  # of the central differences of a normal
 
 
@@ -72,6 +72,8 @@ def shader_ball_at(x: Floats, y: Floats) -> VisiblePoints:
     rays, mask = points.reshape(-1, 3), np.zeros(x.size, dtype=bool)
     running = np.arange(x.size)
     for _ in range(STEPS):
+        if not running.size:
+            break
         step = distance(rays[running])
         rays[running, 2] -= step
         mask[running] = step < CLOSE
