@@ -28,6 +28,7 @@ from tools.fits import (
     ggx_anisotropic,
     ggx_cosine,
     ggx_inside,
+    lattices,
     thin_film,
     thin_film_nodes,
 )
@@ -224,3 +225,11 @@ def test_the_nodes_of_a_film_are_what_their_script_finds():
     near = {"rtol": 1e-3, "atol": 1e-3}  # least squares of another library end in other last digits
     np.testing.assert_allclose(thin_film_nodes.hemisphere(), thin_film.NODES, **near)
     np.testing.assert_allclose(thin_film_nodes.facets(), np.ravel(thin_film.FACETS), **near)
+
+
+@pytest.mark.parametrize("name", lattices.LATTICES)
+def test_sums_over_directions_have_the_errors_that_checks_allow(name):
+    count = 1024
+    errors = [lattices.error(lattices.LATTICES[name], count, alpha) for alpha in (0.1, 0.55, 1.0)]
+    allowed = microfacets.sum_over(count).value
+    assert 0.3 * allowed < max(errors) <= allowed

@@ -5,6 +5,7 @@ import pytest
 
 from mxeon import check
 from mxeon.cli.answer import answer
+from mxeon.shaders.methods import Methods
 from mxeon.shaders.nodes import EON, INVERSIONS
 from tests.support.plans import keep, keep_checks
 from tests.support.verdicts import (
@@ -241,7 +242,7 @@ def test_a_definition_that_the_documents_do_not_fit_is_named_before_they_are_ref
 
 # --- MaterialX's libraries against the release ----------------------------------------------------
 
-BXDF, STDLIB = "bxdf", "stdlib/genglsl"
+BXDF, STDLIB, LIB = "bxdf", "stdlib/genglsl", "pbrlib/genglsl/lib/"
 SWITCH = '<input name="{}" type="color3" nodename="artistic_ior" output="ior" />\n      <input name="{}" type="color3" nodename="convert_ior" />'
 COAT = '<input name="in" type="float" interfacename="{}" />\n    </invert>\n    <convert name="coat_roughness_vector"'
 UV = '<output name="r" type="float" nodename="image_bias_separate" output="{}" />\n    <output name="g" type="float" nodename="image_bias_separate" output="{}" />'
@@ -300,6 +301,19 @@ def test_what_is_written_differently_and_has_the_released_values_passes(judged, 
             replace_text(tmp_path, old, new, file)
     result = judged("release", EVERY_NODE, library=str(tmp_path))
     assert result.verdict == PASSED, said(result)
+
+
+@pytest.mark.parametrize("title", ["generalized_schlick_bsdf, scatter_mode R", "conductor_bsdf"])
+def test_directions_of_an_environment_by_other_points_pass(judged, tmp_path, title):
+    """Those of the R2 sequence, which fill the square as evenly as MaterialX's lattice."""
+    file = f"genglsl/environment/libraries/{LIB}mx_environment_fis.glsl"
+    library = copy_of_eonlib(tmp_path)
+    new = "fract(0.5 + float(i + 1) * vec2(0.7548776662466927, 0.5698402909980532))"
+    replace_text(tmp_path, "mx_spherical_fibonacci(i, count)", new, file)
+    found = judged(
+        "environment", title, library=str(library), methods=Methods("fis", searched=True)
+    )
+    assert found.verdict == PASSED and found.control.caught
 
 
 def test_an_older_library_and_text_that_nothing_evaluates_are_said_not_to_be_judged(
@@ -361,7 +375,6 @@ def test_a_run_says_which_texts_and_states_it_does_not_judge(monkeypatch):
 # --- what a client binds --------------------------------------------------------------------------
 
 FRAME, STATES = ("client", "surface, a client's frame"), "states"
-LIB = "pbrlib/genglsl/lib/"
 CLEAR, MIRROR = "dielectric_bsdf, scatter_mode T", "generalized_schlick_bsdf, scatter_mode R"
 
 

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Errors of sums over directions of an even environment, by the points that draw them.
+
+A lobe's albedo is the mean of F G2 / G1 over directions drawn by its visible facets, and the compensation of a white one
+divides it by E_ss. MaterialX draws them by the points of a Fibonacci lattice; a library may take others that fill the
+square as evenly. The error falls with their number n: what is printed is n times the largest one, over views and alphas.
+
+    python -m tools.fits.lattices
+"""
+
+import numpy as np
+
+from mxeon.models.microfacet.ggx import ggx_albedo_dir, smith_g1, smith_lambda
+from mxeon.models.sampling import ggx_sample
+
+COSINES = np.concatenate([[0.01, 0.03], np.linspace(0.05, 1.0, 20)])
+ALPHAS = np.linspace(0.05, 1.0, 20)
+
+
+def fibonacci(count):
+    """MaterialX's points, the multiples of the golden ratio."""
+    i = np.arange(count)
+    return (i + 0.5) / count, (i * (np.sqrt(5.0) - 1.0) / 2.0 + 0.5) % 1.0
+
+
+def r2(count):
+    """Multiples of the inverse powers of the plastic number, the root of x^3 = x + 1."""
+    steps = 1.3247179572447460 ** -np.arange(1.0, 3.0)
+    return tuple((0.5 + np.arange(1, count + 1) * step) % 1.0 for step in steps)
+
+
+def hammersley(count):
+    """Indices over their number, and with their binary digits mirrored."""
+    i, mirrored = np.arange(count), np.zeros(count)
+    for digit in range(count.bit_length()):
+        mirrored += ((i >> digit) & 1) * 0.5 ** (digit + 1)
+    return (i + 0.5) / count, mirrored
+
+
+LATTICES = {"Fibonacci": fibonacci, "R2": r2, "Hammersley": hammersley}
+
+
+def error(lattice, count, alpha):
+    """Largest error of a white lobe's albedo over it, over the cosines of the view, for either use of the two numbers."""
+    numbers, found = lattice(count), 0.0
+    wo = np.stack([np.sqrt(1.0 - COSINES**2), 0.0 * COSINES, COSINES], axis=-1)[:, None]
+    for u in (numbers, numbers[::-1]):
+        wi, _ = ggx_sample(wo, np.stack(u, axis=-1), [alpha, alpha])
+        lit = np.maximum(wi[..., 2], 0.0)
+        both = wo[..., 2] * smith_lambda(lit, alpha) + lit * smith_lambda(wo[..., 2], alpha)
+        passed = 2.0 * wo[..., 2] * lit / both / smith_g1(wo, [alpha, alpha])
+        exact = ggx_albedo_dir(COSINES, alpha)
+        found = max(found, float(np.abs(passed.mean(axis=1) / exact - 1.0).max()))
+    return found
+
+
+def main():
+    """Print n times the largest error, of each lattice and number of directions."""
+    for name, lattice in LATTICES.items():
+        for count in (64, 256, 1024):
+            worst = max((error(lattice, count, alpha), alpha) for alpha in ALPHAS)
+            print(f"{name}, {count}: {count * worst[0]:.2f} at alpha {worst[1]:.2f}")
+
+
+if __name__ == "__main__":
+    main()
