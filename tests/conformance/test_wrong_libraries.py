@@ -265,6 +265,8 @@ CHANGED = {
     "color space": ("cmlib/cmlib_ng.mtlx", "1.705050992658, -0.130256417507", "1.705050992658, 0.130256417507", "acescg_to_lin_rec709", "value of mat"),
     "pattern": (f"{STDLIB}/mx_smoothstep_float.glsl", "smoothstep(low, high, val)", "smoothstep(low, high, val * val)", "smoothstep"),
     "shared text": (f"{STDLIB}/lib/mx_noise.glsl", "6.0 - 15.0) + 10.0", "6.0 - 15.0) + 10.1", "noise2d"),
+    "alpha": (f"{STDLIB}/mx_surface_unlit.glsl", "transmission * transmission_color", "vec3(transmission)", "surface_unlit"),
+    "emission": (f"{STDLIB}/mx_surface_unlit.glsl", "emission_color * opacity", "emission_color", "surface_unlit"),
     "code": (f"{STDLIB}/stdlib_genglsl_impl.mtlx", '"{{outlow}} + ({{in}} - {{inlow}})', '"{{outlow}} + ({{in}} - {{outlow}})', "remap"),
 }  # fmt: skip
 SQUARES = (
@@ -382,6 +384,7 @@ CLEAR, MIRROR = "dielectric_bsdf, scatter_mode T", "generalized_schlick_bsdf, sc
     "part, old, new, check, title, words",
     [
         ("lights/genglsl/mx_point_light.glsl", "pow(distance + 1.0,", "pow(distance,", *FRAME, ("a point light", "three lights")),
+        ("lights/genglsl/mx_spot_light.glsl", "pow(distance + 1.0, light.decay_rate + M_FLOAT_EPS)", "mx_square(distance + 1.0)", *FRAME, ("a spot light", "three lights")),
         ("lights/genglsl/mx_spot_light.glsl", "smoothstep(low, high,", "smoothstep(high, low,", *FRAME, ("a spot light", "three lights")),
         ("lights/genglsl/mx_directional_light.glsl", "-light.direction", "light.direction", *FRAME, ("a directional light", "three lights")),
         (f"{LIB}mx_shadow.glsl", "variance + mx_square(d)", "variance + d", *FRAME, ("a shadow map",)),

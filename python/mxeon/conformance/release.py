@@ -48,7 +48,7 @@ from mxeon.shaders.released_graphs import (
     ports_of,
     said,
 )
-from mxeon.shaders.scene import FURNACE, SIDE
+from mxeon.shaders.scene import FURNACE, SIDE, Client
 
 RELEASE, SUBJECT = "release", "definitions, units, graphs and texts"
 CLAIM = "What has no model is as MaterialX released it, or has the same values."
@@ -64,6 +64,11 @@ JOINED = {
     "vector4": ("ND_combine2_vector4VF", "vector3"),
 }
 SHADED = ("BSDF", "EDF", "surfaceshader")  # types of which there are pictures
+SHADERS = ("surfaceshader", "volumeshader", "displacementshader")  # which nothing feeds
+ALPHA = ("hwTransparency",)  # the option by which a shader has an alpha
+PICTURES = tuple(
+    replace(each, size=SIZE) for each in (SIDE, FURNACE, replace(SIDE, client=Client(alpha=True)))
+)
 LOBES = {"BSDF": "burley_diffuse_bsdf", "EDF": "uniform_edf"}  # that feed the inputs of a type
 ZEROS = {
     "float": "0",
@@ -80,6 +85,9 @@ Place: TypeAlias = tuple[mx.GraphElement, mx.PortElement]  # a port of a graph
 Subject: TypeAlias = (
     "tuple[mx.NodeDef, str, tuple[str, str]] | tuple[mx.NodeDef, str, tuple[str, str], Place]"
 )
+
+# A definition, and the library or a port in its graph that stands for it.
+Side: TypeAlias = "tuple[mx.NodeDef, str] | tuple[mx.NodeDef, str, Place]"
 
 
 def released(library: str) -> mx.Document | None:
@@ -289,7 +297,9 @@ class Comparison:
                 continue
             for one, two in apart(terms, (ours, other), (theirs, output)):
                 if two[1].getType() in CLOSURES:
-                    error = max(error, self._drawn(definition, theirs))
+                    place = theirs, theirs.getOutputs()[0]
+                    sides = (definition, self._library), (definition, self._library, place)
+                    error = max(error, self._drawn(*sides))
                 else:
                     error = max(error, self._apart(definition, one, two))
         if error > self.tolerance.value:
@@ -303,11 +313,16 @@ class Comparison:
         if own.getImplementation(self._target) is None:
             yield Cause(Kind.DEFECT, RELEASE, (own.getNodeString(), rows[0], "missing", rows[2]))
             return
-        if not kinds <= {*COMPONENTS, *JOINED} or self._release is not load_library("stock"):
+        numbers, drawn = (
+            kinds <= {*COMPONENTS, *JOINED},
+            kinds <= {*SHADED}
+            and not any(port.getType() in SHADERS for port in right.getActiveInputs()),
+        )
+        if not (numbers or drawn) or self._release is not load_library("stock"):
             self.unjudged.append((rows[0], "its text is not MaterialX's, and nothing evaluates it"))
             return
-        error = 0.0
-        for output in right.getActiveOutputs():
+        error = self._drawn((own, self._library), (right, "stock")) if drawn else 0.0
+        for output in right.getActiveOutputs() if numbers else ():
             port = (output.getName() if len(right.getActiveOutputs()) > 1 else "", output.getType())
             sides = (own, self._library, port), (right, "stock", port)
             error = max(error, self._distance(*sides))
@@ -368,21 +383,21 @@ class Comparison:
                 found.append(self._host.evaluate(shader, up, up, inputs, GRAPH))
         return np.concatenate(found, axis=1).astype(np.float64)
 
-    def _drawn(self, definition: mx.NodeDef, theirs: mx.NodeGraph) -> float:
-        """The largest difference of pictures of a node and of its released graph; infinity without pictures."""
-        if definition.getType() not in SHADED:
+    def _drawn(self, *sides: Side) -> float:
+        """The largest difference of pictures of a node, their alpha included; infinity without pictures."""
+        kind = sides[0][0].getType()
+        if kind not in SHADED:
             return np.inf
         error = 0.0
         with TemporaryDirectory() as folder, suppress(MxeonError):
             shaders: list[Shader] = []
-            for graph in (None, theirs):
+            for definition, library, *place in sides:
                 document = mx.createDocument()
-                place = (graph, graph.getOutputs()[0]) if graph else None
-                kind = definition.getType()
-                node = instance(document, definition, self._image(folder), kind, place)
-                finish(document, node)
+                finish(document, instance(document, definition, self._image(folder), kind, *place))
                 policy = Policy(outside=True)
-                shaders += self._host.compile(document, library=self._library, policy=policy)
+                shaders += self._host.compile(
+                    document, library=library, policy=policy, client=ALPHA
+                )
             rng = generator()
             for _ in range(MATERIALS):
                 drawn = {
@@ -390,7 +405,7 @@ class Comparison:
                     for port in shaders[0].inputs
                     if port.type in ("float", "color3")
                 }
-                for scene in (SIDE, FURNACE):
+                for scene in PICTURES:
                     pictures = (
                         self._host.picture(
                             replace(
@@ -407,7 +422,7 @@ class Comparison:
                                     for port in shader.inputs
                                 ),
                             ),
-                            replace(scene, size=SIZE),
+                            scene,
                         )
                         for shader in shaders
                     )

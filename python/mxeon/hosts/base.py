@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 
@@ -132,7 +132,7 @@ class Host(Engine):
         library: str = "eonlib",
         methods: Methods = UNCHOSEN,
         policy: Policy = DEFAULT,
-        client: bool = False,
+        client: Collection[str] = (),
     ) -> tuple[Shader, ...]:
         """Shaders of a document for this host; arguments and errors as for `mxeon.generate`.
 

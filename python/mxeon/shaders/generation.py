@@ -4,7 +4,7 @@
 import os
 import re
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, partial
 from types import MappingProxyType
@@ -128,7 +128,7 @@ def generate(
     uniforms: bool = False,
     methods: Methods | None = None,
     policy: Policy | None = None,
-    client: bool = False,
+    client: Collection[str] = (),
 ) -> tuple[Shader, ...]:
     """Shaders of a document, one for each renderable element.
 
@@ -144,8 +144,8 @@ def generate(
     - `uniforms`: Whether inputs stay uniforms with the profile "path", whose text has literals.
     - `methods`: How a shader of a rasterized target finds light; None for MaterialX's defaults.
     - `policy`: Permissions, limits and search path; None for `Policy()`.
-    - `client`: Whether it also gets point and spot lights, as types 2 and 3, a shadow map, ambient
-      occlusion and transparency.
+    - `client`: Options of a client to turn on, of `mxeon.shaders.generators.CLIENT_OPTIONS`: a shadow map, ambient
+      occlusion and transparency. With any of them it also gets point and spot lights, as types 2 and 3.
 
     Raises ValueError if the target, the library, the profile or the element is unknown; DocumentError if
     no shader can be generated from the document; InterfaceError if this MaterialX calls closures in

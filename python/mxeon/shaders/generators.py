@@ -4,7 +4,7 @@
 import os
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext, suppress
 from functools import cache, lru_cache
 from importlib import import_module
@@ -81,13 +81,13 @@ def context_of(
     profile: str | None = None,
     uniforms: bool = False,
     methods: Methods = UNCHOSEN,
-    client: bool = False,
+    client: Collection[str] = (),
 ) -> mx_gen.GenContext:
     """A context for one document only, as it keeps implementations by name.
 
-    With `lights` MaterialX's directional light is bound, as light type 1, if the target has lights. With `client`
-    also all else that a client may bind; see `mxeon.shaders.scene.Client`. `path` has folders of source files,
-    after those of the library.
+    With `lights` MaterialX's directional light is bound, as light type 1, if the target has lights; with any of the
+    options `client`, which it turns on, also the others: see `mxeon.shaders.scene.Client`. `path` has folders of
+    source files, after those of the library.
     """
     context = mx_gen.GenContext(generator)
     for each in environment_folders(library) if methods.searched else ():
@@ -115,7 +115,7 @@ def context_of(
         for number, name in enumerate(LIGHTS if client else LIGHTS[:1], start=1):
             light = document.getNodeDef(f"ND_{name}_light")
             mx_gen.HwShaderGenerator.bindLightShader(light, number, context)
-    for name in CLIENT_OPTIONS if client else ():
+    for name in client:
         setattr(context.getOptions(), name, True)
     return context
 

@@ -96,6 +96,7 @@ SPOT = Lamp(
     intensity=30.0,
     inner_angle=0.95,
     outer_angle=0.8,
+    decay_rate=1.5,
 )
 # The first state of each axis is that of other checks. States whose words are the same up to a colon are diagnosed
 # together, too.
@@ -153,6 +154,7 @@ def frames() -> tuple[tuple[set[str], Frame], ...]:
 def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
     """Colors and alphas of each frame beside those of the equations, with the words of its states."""
     from mxeon.conformance.reference.clients import alpha_of, light
+    from mxeon.shaders.generators import CLIENT_OPTIONS
 
     points = sphere(SIZE)
     normal = points.normal[points.mask]
@@ -163,7 +165,7 @@ def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
         if methods not in shaders:
             text, library = case.spec.document(), case.library
             [shaders[methods]] = case.host.compile(
-                text, library=library, methods=methods, client=True
+                text, library=library, methods=methods, client=CLIENT_OPTIONS
             )
         ports = (
             replace(each, value=inputs.get(NAMES.get(each.path, ""), each.value))
