@@ -76,12 +76,12 @@ export interface ShaderSource {
   readonly document: string; // its MaterialX text, for the copy button
   readonly pages: readonly string[]; // as those of a ModelSource
   readonly reference: ReferenceTable | null; // null where no model covers all of its lobes
-  readonly checked: Checked | null; // of a document that has no table
+  readonly checked: Checked | null; // null where it did not run
 }
 
 /** What `mxeon check` finds of a material: its pictures on gl, against those of the reference. */
 export interface Checked {
-  readonly kind: "correct" | "wrong" | "unknown";
+  readonly kind: "correct" | "wrong" | "differs" | "unknown";
   readonly text: string;
 }
 

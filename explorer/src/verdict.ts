@@ -40,6 +40,7 @@ export interface Evidence {
   readonly failure: string; // what the compiler says of a shader that does not compile
 }
 
+const BADGES = { correct: "correct", wrong: "wrong", differs: "allowed", unknown: "material" };
 const MEASURING = "Its values are being read back.";
 const UNCHECKED = "Not judged by this page: run mxeon check on a document with these inputs.";
 const UNREAD = "Nothing is measured: this browser draws no shader.";
@@ -54,26 +55,38 @@ export function verdict_on(
   const source = source_of(sources, side);
   if (evidence.failure) return { kind: "wrong", badge: "not drawn", text: evidence.failure };
   const [actual, meant] = [actual_model(source, side, state), meant_model(source, side, state)];
+  const checked = source.kind === "shader" ? source.checked : null;
+  const text = checked && source.kind === "shader" ? told(source, state, side, checked.text) : "";
   if (!actual || !meant) {
-    if (source.kind === "shader" && source.checked) {
-      const { kind, text } = source.checked;
-      const drawn = values_of(source, state, side);
-      const changed = source.inputs.some(
-        ({ name, value }) => value !== null && String(drawn.get(name)) !== String(value),
-      );
-      const own = changed ? "With its own inputs: " : "";
-      return { kind, badge: kind === "unknown" ? "material" : kind, text: own + text };
+    const own = has_table(source) ? by_reference(source, evidence) : null;
+    if (checked) {
+      const { kind } = checked;
+      // What this browser reads back may be wrong where `mxeon check` is right.
+      if (own && kind === "correct" && own.kind !== "unknown") {
+        return own.kind === "correct" ? { ...own, text } : own;
+      }
+      return { kind, badge: BADGES[kind], text };
     }
-    if (has_table(source)) return by_reference(source, evidence);
+    if (own) return own;
     return { kind: "unknown", badge: "material", text: UNCHECKED };
   }
   if (actual !== meant) {
-    return { kind: "wrong", badge: `not ${meant.short}`, text: wrong(actual, meant, state) };
+    const of = text ? `${text} It is ${actual.title}.` : wrong(actual, meant, state);
+    return { kind: "wrong", badge: `not ${meant.short}`, text: of };
   }
   if (source.kind === "model") {
     return { kind: "model", badge: actual.short, text: `The model itself: ${actual.title}.` };
   }
   return by_model(actual, evidence);
+}
+
+/** What `mxeon check` says of a document's material, which may have other inputs now. */
+function told(source: ShaderSource, state: State, side: Side, text: string): string {
+  const drawn = values_of(source, state, side);
+  const changed = source.inputs.some(
+    ({ name, value }) => value !== null && String(drawn.get(name)) !== String(value),
+  );
+  return (changed ? "With its own inputs: " : "") + text;
 }
 
 /** The verdict on a shader that is said to be the model that is meant. */
@@ -106,12 +119,12 @@ function by_reference(source: ShaderSource, { able, errors }: Evidence): Verdict
   const named = title ? `: ${title}` : "";
   // Of layers no form is known, but that of each lobe may be left open.
   if (forms.length === 0) {
-    const hint = "Its lobes, one by one, say which of it the specification leaves open.";
+    const hint = "Open each lobe to see which part is allowed.";
     return { kind: "differs", badge: "differs", text: `${off}. ${hint}` };
   }
   if (places.every(({ form }) => form?.permitted)) {
-    const text = `${off}${named}. The specification leaves this open.`;
-    return { kind: "differs", badge: "differs", text };
+    const text = `${off}${named}. The specification allows this.`;
+    return { kind: "differs", badge: BADGES.differs, text };
   }
   return { kind: "wrong", badge: "wrong", text: `${off}${named}.` };
 }

@@ -158,7 +158,7 @@ def test_materials_that_vary_are_judged_and_compared_at_some_of_the_pixels(shown
     assert 700 < furnace.judged.sum() < 900
     # The others are like their neighbors: they have the neighbors' difference, not their own.
     assert np.abs(furnace.image - furnace.reference).max() > 10.0 * result.tolerance
-    assert np.nanmax(furnace.difference()) < 3.0 * result.tolerance
+    assert np.nanmax(furnace.difference_map()) < 3.0 * result.tolerance
 
 
 # --- light that passes a surface: transmission, volumes and lobes below it -----------------------

@@ -97,8 +97,8 @@ STOCK = {
     f"{EON}, mdl": {"closure": ("white_lobe",)},
     "open_pbr_surface": {"lobe": CLAMPED},
     "open_pbr_surface, thin-walled": {"lobe": ("model", "QON tinted twice")},
-    "plaster.mtlx: ochre_plaster": {"picture": ("picture", "back")},
-    "openpbr_rough_base.mtlx: concrete": {"picture": ("picture", "back")},
+    "plaster.mtlx: ochre_plaster": {"picture": ("follows",)},
+    "openpbr_rough_base.mtlx: concrete": {"picture": ("follows",)},
     "burley_diffuse_bsdf": {"environment": FIT, **HIDING},
     "translucent_bsdf": {"frame": AWAY, "surroundings": AWAY, **HIDING},
     SHEEN: {

@@ -4,12 +4,17 @@
 import json
 import re
 
+import MaterialX as mx
 import numpy as np
 import pytest
+from pytest import approx
 
 from mxeon import check
 from mxeon.cli import main
+from mxeon.cli.answer import answer
 from mxeon.cli.explore import MATERIALS
+from mxeon.conformance import words
+from mxeon.conformance.results import VISIBLE
 from mxeon.errors import MISUSE
 from mxeon.errors import PASSED as PASSED_STATUS
 from mxeon.explorer import PARAGRAPH, TEXTS, documents, page, page_data
@@ -17,8 +22,10 @@ from mxeon.explorer.documents import document_sources
 from mxeon.hosts.textures import read_texture
 from mxeon.io.images import write_image
 from mxeon.models.table import diffuse_model
+from mxeon.report import html, to_json, to_junit
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
+from mxeon.shaders.scene import sphere
 from tests.explorer.browser import judged, opened, until
 from tests.support.documents import textured
 from tests.support.results import Diagnosis, Result, kept
@@ -174,16 +181,42 @@ def test_a_document_is_shown_with_its_own_values_and_inputs(browser, tmp_path):
         judged(page, "left", "material")
 
 
-def test_a_textured_document_is_judged_as_check_does(browser, tmp_path):
+def test_one_difference_is_shown_everywhere(browser, tmp_path):
     out, brick = tmp_path / "page.html", str(examples_folder() / "brick.mtlx")
     assert main(["explore", brick, "--workers", "0", "--output", str(out)]) == PASSED_STATUS
-    run = check([brick], ["gl"], ["eonlib", "stock"], workers=0)
-    pictures = [each for each in run.results if each.check == "picture"]
-    errors = {each.library: f"{each.error:.2g}" for each in pictures}
+    run = check([brick], ["gl"], "eonlib", compared="stock", workers=0)
+    stock = next(
+        each for each in run.results if each.check == "picture" and each.library == "stock"
+    )
+    # The worst pixel of the worst picture, by the definition.
+    sizes = {}
+    for each in run.pictures:
+        if each.library == "stock" and each.document == "brick.mtlx":
+            image, reference = np.float64(each.image), np.float64(each.reference)
+            apart = np.abs(image - reference) / np.maximum(1.0, np.abs(reference))
+            seen = np.mean(apart[sphere(len(image)).mask].max(axis=-1) > VISIBLE)
+            sizes[each.scene] = apart.max(), seen
+    worst = max(sizes, key=lambda scene: sizes[scene][0])
+    found = stock.difference
+    assert (found.scene, abs(found.largest), found.visible) == (worst, *map(approx, sizes[worst]))
+    sentence = words.difference(found)
+    assert f"up to {100.0 * sizes[worst][0]:.2g} % of white" in sentence
+    # The terminal, the page, its table, JUnit, JSON and the explorer have it from there.
+    assert f"with stock MaterialX {mx.getVersionString()}, {sentence}." in answer(run)[0]
+    report = "".join(html(run))
+    assert f"<b>Stock MaterialX</b> on gl: {sentence}." in report
+    assert f"<td>{words.size(found)}</td>" in report
+    assert sentence in to_junit(run)
+    [entry] = [
+        each for each in json.loads(to_json(run))["results"]
+        if (each["check"], each["library"]) == ("picture", "stock")
+    ]  # fmt: skip
+    assert entry["difference"] == vars(found)
     own = [each for each in data_of(out.read_text())["sources"] if each["id"][:9] == "document/"]
-    for source, kind in zip(own, ("correct", "wrong"), strict=True):
-        assert source["checked"]["kind"] == kind and source["reference"] is None
-        assert errors[source["library"]] in source["checked"]["text"]
+    looks = ("correct", words.AS_SPECIFIED), ("wrong", sentence)
+    for source, (kind, look) in zip(own, looks, strict=True):
+        assert source["checked"] == {"kind": kind, "text": f"mxeon check: {look}."}
+        assert bool(source["pages"]) == (kind == "wrong")
     with opened(browser, out.as_uri(), drawn=False) as page:
         judged(page, "left", "correct")
         judged(page, "right", "wrong")

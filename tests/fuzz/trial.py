@@ -65,7 +65,7 @@ def _prepared(root, tried):
     shutil.copytree(examples_folder() / "textures", home / "textures")
     (home / "link").symlink_to(root)
     (home / "own.glsl").write_text("void x(out BSDF r) { r = BSDF(vec3(0.0), vec3(1.0)); }\n")
-    (home / "results.json").write_text('{"format": 4, "results": [{"host": "gl"}], "pictures": []}')
+    (home / "results.json").write_text('{"format": 5, "results": [{"host": "gl"}], "pictures": []}')
     for name, text in AROUND:
         (root / name).write_text(text)
     if tried.arguments[:1] == ("render",):  # which makes no folder

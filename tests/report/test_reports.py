@@ -249,7 +249,7 @@ def test_a_check_with_a_baseline_is_one_command(tmp_path, capsys):
         assert main([*check, *options, "--annotations"]) == status
         printed = capsys.readouterr()
         assert text in printed.out and ("\n::warning title=not run" in printed.out) == (status == 3)
-    assert "format must be 4; got 3" in printed.err
+    assert "format must be 5; got 3" in printed.err
     assert not Path(out, "junit.xml").exists() and Path(out, "previous_run", "junit.xml").exists()
 
 
@@ -278,9 +278,9 @@ def test_lines_name_host_and_library_once_and_come_largest_first(tmp_path, capsy
     [
         ("[", "must be the results.json of a report; "),
         ("{}", "must be the results.json of a report; lacks 'format'"),
-        ('{"format": 4}', "must be the results.json of a report; lacks "),
-        ('{"format": 1}', "format must be 4; got 1; run the check again with this mxeon"),
-        ('{"format": 4, "$schema": "x"}', "$schema must be urn:mxeon:results:4; got 'x'"),
+        ('{"format": 5}', "must be the results.json of a report; lacks "),
+        ('{"format": 1}', "format must be 5; got 1; run the check again with this mxeon"),
+        ('{"format": 5, "$schema": "x"}', "$schema must be urn:mxeon:results:5; got 'x'"),
         ("[]", "must be the results.json of a report; it must be an object"),
     ],
 )

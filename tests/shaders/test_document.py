@@ -62,6 +62,10 @@ OUTSIDE = (
     ({"weight": "-1"}, f'input "lobe/weight" must lie in [0, 1], {MODEL} -1'),
     ({"roughness": "1.6"}, f'input "lobe/roughness" must lie in [0, pi/2], {MODEL} 1.6'),
     ({"roughness": "1.2"} | COMPENSATED, f'input "lobe/roughness" must lie in [0, 1], {MODEL} 1.2'),
+    (
+        {"roughness": "1.2"},
+        'input "lobe/roughness" must lie in [0.0, 1.0], the range of its node; got 1.2',
+    ),
 )
 
 # Texts of a float, and what MaterialX reads of them.

@@ -11,6 +11,7 @@ from mxeon.conformance.results import (
     Cause,
     Control,
     Diagnosis,
+    Difference,
     Kind,
     Picture,
     Region,
@@ -24,7 +25,7 @@ from mxeon.conformance.run.plan import Findings, Plan, Task
 from mxeon.hosts.base import Identity
 from tests.support.verdicts import FAILED
 
-__all__ = ["Control", "Identity", "Picture", "Region", "Result", "Run", "quoted"]
+__all__ = ["Control", "Difference", "Identity", "Picture", "Region", "Result", "Run", "quoted"]
 __all__ += ["JOURNAL", "LOCK", "PREVIOUS", "read_journal", "read_run", "to_run"]
 
 TASKS = tuple(Task("value", name, "gl", "eonlib") for name in "abc")

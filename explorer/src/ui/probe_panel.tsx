@@ -57,10 +57,10 @@ export function Probe(props: ProbeProps) {
           {probe
             ? "The point that was clicked."
             : row !== null
-              ? "Where A or B is farthest off, of the pairs in the table."
+              ? "The sampled directions with the largest error."
               : known
                 ? "Where A and B differ most in this light."
-                : "A point that faces the eye and the light alike."}{" "}
+                : "A point whose normal is halfway between eye and light."}{" "}
           {probe ? (
             <button type="button" class="link" onClick={() => change({ probe: null })}>
               Go to the largest difference

@@ -21,7 +21,7 @@ from mxeon.conformance.results.known_issues import issues_of
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.spec import ValueSpec
 from mxeon.conformance.specs import ALL
-from mxeon.conformance.words import counted, listed, of_white
+from mxeon.conformance.words import counted, listed
 from mxeon.errors import as_output, one_line, printable
 from mxeon.report.formats import link
 from mxeon.shaders.library import eonlib_folder, kind_of
@@ -35,8 +35,6 @@ MANY = 20  # with more documents, group them by cause
 LOOKS = 4  # maximum lines on the materials of one document
 FEWEST = 3  # minimum of nodes and causes for several documents; maximum of reasons why checks did not run
 UNBOUNDED = 1e3  # larger errors are described in words
-NOTICED = 0.01  # share of white; a larger difference is reported even within a tolerance
-AS_SPECIFIED = "looks as specified"
 LETTERS = re.compile(r"\(([A-Z]+)\)$")  # abbreviation at the end of a model's title
 REFUSED = "refused"
 NO_REFERENCE = "no reference"
@@ -212,8 +210,8 @@ def _cause(result: Result, measured: bool) -> str:
     if result.verdict == PASSED and result.check == DOCUMENT_KEY:
         return "shaders are generated"
     # Leave out its size, which differs from document to document.
-    if result.diagnosis.kind is Kind.PICTURE:
-        return words.appearance(result.diagnosis.first)
+    if result.difference and result.diagnosis.first.key in ("", "other_node"):
+        return words.appearance(result.difference)
     reason = result.reason or words.diagnosis(result.diagnosis)
     reason = reason.split("; last output:")[0].removeprefix("reference: ")
     return QUOTED.sub("...", reason) or words.excess(result)
@@ -259,40 +257,31 @@ def _look(run: Run, document: str, results: Sequence[Result]) -> str:
         refused = is_refused(run, document, library)
         if library not in drawn and (refused or library in run.compared):
             looks.setdefault(REFUSED if refused else "not judged", []).append(_title(run, library))
-    right = looks.pop(AS_SPECIFIED, [])
-    parts = [f"{AS_SPECIFIED} with {' and '.join(right)}"] * bool(right)
+    right = looks.pop(words.AS_SPECIFIED, [])
+    parts = [f"{words.AS_SPECIFIED} with {' and '.join(right)}"] * bool(right)
     parts += [f"with {' and '.join(names)}, {each}" for each, names in looks.items()]
+    if measured := [name for each in results for name in each.measured]:
+        parts.append(words.unchecked(measured))
     return "; ".join(parts)
 
 
 def _appearance(run: Run, document: str, result: Result) -> str:
-    if result.verdict == NOT_RUN:
-        return f"not judged: {result.reason}"
-    if result.verdict == FAILED:
-        return words.diagnosis(result.diagnosis) or words.explanation(result)
-    if result.check == "finite":
-        return f"there is no reference ({words.diagnosis(result.diagnosis)}); every pixel is finite"
-    if result.check != "picture":
-        return "shaders are generated, not run"
-    if (apart := _difference(run, result)) > NOTICED:
-        return f"differs by {of_white(apart)}, within this check's tolerance"
+    look = words.look(result)
     wrong = [
         run.is_elsewhere(each, document)
         for each in run.results
         if each.verdict == FAILED and (each.host, each.library) == (result.host, result.library)
         if each.subject in run.contents[document]
     ]
-    if wrong:
+    if wrong and look == words.AS_SPECIFIED:
         other = " for inputs that this material does not use" * all(wrong)
         return f"the picture is right; its nodes are wrong{other}"
-    if result.measured:
-        return f"as specified, with {listed(result.measured)} as the host computes it"
-    return AS_SPECIFIED
+    return look
 
 
-def _difference(run: Run, result: Result) -> float:
-    """Largest difference of a material's pictures from the reference; 0 for any other result."""
-    return run.differences.get((result.subject, result.host, result.library), 0.0)
+def _is_seen(result: Result) -> bool:
+    """Whether a material differs visibly from the reference."""
+    return bool(result.difference and result.difference.is_visible)
 
 
 def _title(run: Run, library: str) -> str:
@@ -330,7 +319,7 @@ def _rank(run: Run, result: Result) -> int:
         return ELSEWHERE
     place = result.host, result.library
     right = [
-        each.verdict == PASSED and _difference(run, each) <= NOTICED
+        each.verdict == PASSED and not _is_seen(each)
         for document, titles in run.contents.items()
         if result.subject in titles
         for each in run.results
@@ -419,7 +408,7 @@ def _remedy(run: Run) -> Iterator[str]:
         each.library
         for each in failed
         if each.check in KEYS or (each.library not in judged and not run.is_elsewhere(each))
-    } | {each.library for each in shown if _difference(run, each) > NOTICED}
+    } | {each.library for each in shown if _is_seen(each)}
     libraries = {each.library for each in run.results}
     # Defects with a page are not in eonlib.
     nodes = [issues_of(each) for each in failed if each.check not in KEYS]
@@ -451,8 +440,7 @@ def _failures(run: Run) -> Iterator[str]:
     """
     groups: dict[tuple[str, str], list[Result]] = {}
     failures = [each for each in run.results if each.verdict == FAILED]
-    scenes = (each.diagnosis.first.key for each in failures if each.check == "picture")
-    white = next(scenes, "") == "furnace"
+    white = any(each.difference and each.difference.scene == "furnace" for each in failures)
 
     def order(result: Result) -> tuple[bool, bool, bool, bool, float]:
         lit = result.check in (INDIRECT if white else DIRECT)

@@ -4,6 +4,7 @@
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from itertools import compress
 from pathlib import Path
 from typing import TypeAlias
 
@@ -19,7 +20,6 @@ from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.reference import ExpectedPicture, HostValues, Reference
 from mxeon.conformance.reference.nodes import ShownLobe
 from mxeon.conformance.results import (
-    FAILED,
     NOT_RUN,
     PORTRAIT,
     Cause,
@@ -178,7 +178,7 @@ def _stretched(lobes: Iterable[ShownLobe]) -> bool:
 
 Pixels: TypeAlias = NDArray[np.floating]
 Shown: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]  # with the host's picture
-Pixel: TypeAlias = tuple[float, dict[str, list[float]], float, Pixels]
+Pixel: TypeAlias = tuple[float, dict[str, list[float]], Pixels]
 Note: TypeAlias = tuple[str, str]  # a warning, and what it is about
 
 MATCH = "Every pixel matches the reference."
@@ -257,36 +257,11 @@ def _judge_material(
         images = [host.picture(shader, scene) for scene in scenes]
     except (NotRun, ShaderError) as error:
         return not_measured(place, error), ()
-    # Compare them with the reference's, or ask for numbers where it has no model.
-    references: list[ExpectedPicture | None] = [None] * len(scenes)
-    try:
-        _assert_judged(shader, host)
-        expected = [judge.expected(shader, scene, values) for scene in scenes]
-        if front_lit:
-            expected = list(map(_front_lit, expected, scenes))
-    except OutsideModel as reason:
-        return not_measured(place, reason), ()
-    except NotRun as reason:
-        result = _judge_finite(place, images, str(reason))
-    else:
-        references = [*expected]
-        cases = list(zip(scenes, images, expected, strict=True))
-        lobes = [lobe for each in expected for lobe in each.lobes]
-        if host.active.environment == "prefilter" and _stretched(lobes):  # its maps have one alpha
-            cases = [each for each in cases if each[0].environment is None]
-        result = _judge_match(place, cases, tolerance_of(shader, lobes, host))
-        if result.verdict == FAILED:
-            near = (
-                Cause(Kind.DEFECT, "other_node", names)
-                if (names := judge.other_node(shader, values))
-                else Cause(Kind.FOLLOWS, names=tuple({lobe.category: None for lobe in lobes}))
-            )
-            known = _known(shader) or Diagnosis((*result.diagnosis.causes, near))
-            result = replace(result, diagnosis=known)
     identity = host.identity()
-    names = (file.name, shader.element, host.name, library)
 
-    def picture(scene: Scene, image: Pixels, expected: ExpectedPicture | None) -> Picture:
+    def picture(
+        scene: Scene, image: Pixels, expected: ExpectedPicture | None = None, judged: bool = True
+    ) -> Picture:
         metadata = {
             "version": mxeon.__version__,
             "host": f"{host.name} {identity.version}",
@@ -296,16 +271,47 @@ def _judge_material(
             "element": shader.element,
             "scene": scene.name,
         }
-        if expected is None:
-            return Picture(*names, scene.name, image, None, metadata)
+        names = (file.name, shader.element, host.name, library, scene.name)
+        if expected is None or not judged:
+            return Picture(*names, image, None, metadata)
         if expected.measured:
             metadata["from the host"] = ", ".join(expected.measured)
-        reference, judged = np.asarray(expected.image, np.float32), expected.judged
-        partly = judged.sum() < sphere(scene.size).mask.sum()
-        where = judged[..., None].astype(np.float32) if partly else None
-        return Picture(*names, scene.name, image, reference, metadata, where)
+        reference, mask = np.asarray(expected.image, np.float32), expected.judged
+        partly = mask.sum() < sphere(scene.size).mask.sum()
+        where = mask[..., None].astype(np.float32) if partly else None
+        return Picture(*names, image, reference, metadata, where)
 
-    return result, tuple(map(picture, scenes, images, references))
+    # Compare them with the reference's, or ask for numbers where it has no model.
+    try:
+        _assert_judged(shader, host)
+        expected = [judge.expected(shader, scene, values) for scene in scenes]
+        if front_lit:
+            expected = list(map(_front_lit, expected, scenes))
+    except OutsideModel as reason:
+        return not_measured(place, reason), ()
+    except NotRun as reason:
+        return _judge_finite(place, images, str(reason)), tuple(map(picture, scenes, images))
+    cases = list(zip(scenes, images, expected, strict=True))
+    lobes = [lobe for each in expected for lobe in each.lobes]
+    # A prefiltered environment has one alpha.
+    rough = host.active.environment == "prefilter" and _stretched(lobes)
+    asked = [not rough or scene.environment is None for scene in scenes]
+    pictures = tuple(picture(*case, judged) for case, judged in zip(cases, asked, strict=True))
+
+    def diagnose() -> Diagnosis:
+        if known := _known(shader):
+            return known
+        if names := judge.other_node(shader, values):
+            return Diagnosis((Cause(Kind.DEFECT, "other_node", names),))
+        follows = tuple({lobe.category: None for lobe in lobes})
+        return Diagnosis((Cause(Kind.FOLLOWS, names=follows),))
+
+    tolerance = tolerance_of(shader, lobes, host)
+    result = _judge_match(place, [*compress(cases, asked)], tolerance, diagnose)
+    worst = max(
+        filter(None, (each.difference for each in pictures)), key=lambda each: abs(each.largest)
+    )
+    return replace(result, difference=worst), pictures
 
 
 def _known(shader: Shader) -> Diagnosis | None:
@@ -346,7 +352,9 @@ def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Resul
     return replace(result, diagnosis=quoted(reason))
 
 
-def _judge_match(place: Result, cases: Sequence[Shown], tolerance: Tolerance) -> Result:
+def _judge_match(
+    place: Result, cases: Sequence[Shown], tolerance: Tolerance, diagnose: Callable[[], Diagnosis]
+) -> Result:
     """Result for a material that the models cover: its pixels have to be the reference's."""
     pixels = [_worst_pixel(case, tolerance.metric) for case in cases]
     error, worst, *_ = max(pixels, key=lambda entry: entry[0])
@@ -355,37 +363,26 @@ def _judge_match(place: Result, cases: Sequence[Shown], tolerance: Tolerance) ->
     def measure(wrong: bool) -> Measurement:
         if not wrong:
             scenes = zip(cases, pixels, strict=True)
-            parts = [errors_of(each[3], tolerance.value, Region(c[0].name)) for c, each in scenes]
-            whole = errors_of(np.concatenate([each[3] for each in pixels]), tolerance.value)
+            parts = [errors_of(each[2], tolerance.value, Region(c[0].name)) for c, each in scenes]
+            whole = errors_of(np.concatenate([each[2] for each in pixels]), tolerance.value)
             return Measurement(
                 error, worst, (whole, *parts) if error > tolerance.value else (), "pixels"
             )
         brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
         return Measurement(_worst_pixel((first, brighter, expected), tolerance.metric)[0], {})
 
-    def appearance() -> Diagnosis:
-        """The largest difference of the pictures, and the scene that shows it."""
-        sizes = [abs(each) if np.isfinite(each) else np.inf for _, _, each, _ in pixels]
-        worst = int(np.argmax(sizes))
-        cause = Cause(Kind.PICTURE, cases[worst][0].name, values=(pixels[worst][2],))
-        return Diagnosis((cause,))
-
     words = "the picture is brighter by three tolerances"
-    result = judge(place, tolerance, measure, words, appearance)
+    result = judge(place, tolerance, measure, words, diagnose)
     measured = dict.fromkeys(name for *_, each in cases for name in each.measured)
     return replace(result, measured=tuple(measured))
 
 
 def _worst_pixel(case: Shown, metric: Metric) -> Pixel:
-    """Largest error times cos(theta_o), its pixel, the largest difference of all pixels, and all errors.
-
-    The difference has a sign, and is relative where the reference exceeds 1.
-    """
+    """Largest error times cos(theta_o), its pixel, and all errors."""
     scene, image, (reference, mask) = case[0], case[1], (case[2].image, case[2].judged)
     wo, _ = _directions(scene, mask)
     measured, expected = (each[mask].astype(np.float64) for each in (image, reference))
     error = metric(measured, expected) * wo[:, 2]
-    difference = (measured - expected) / np.maximum(1.0, np.abs(expected))
     worst = int(error.argmax())
     row, column = np.argwhere(mask)[worst]
     point = {
@@ -394,8 +391,7 @@ def _worst_pixel(case: Shown, metric: Metric) -> Pixel:
         "measured": image[row, column].astype(float).tolist(),
         "expected": reference[row, column].tolist(),
     }
-    largest = float(difference.flat[np.abs(difference).argmax()])
-    return float(error[worst]), point, largest, error
+    return float(error[worst]), point, error
 
 
 def _directions(scene: Scene, mask: NDArray[np.bool_]) -> tuple[Pixels, Pixels]:

@@ -3,7 +3,8 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 
 from mxeon.conformance.results import (
     DIFFERS,
@@ -12,6 +13,7 @@ from mxeon.conformance.results import (
     PASSED,
     Cause,
     Diagnosis,
+    Difference,
     Kind,
     Region,
     Result,
@@ -22,6 +24,7 @@ from mxeon.shaders.nodes import FLAG
 
 NAMED = 3  # names in a list, before the number of the others
 PARTS_SHOWN = 3  # of two graphs that differ
+AS_SPECIFIED = "looks as specified"
 
 # --- numbers and lists -----------------------------------------------------------------------------
 
@@ -35,14 +38,17 @@ def in_words(number: float) -> str:
     return f"{float(f'{number:.2g}'):,.10g}"
 
 
-def of_white(radiance: float) -> str:
-    """A difference as a share of the radiance of a white, matte surface that faces the light.
+def of_white(share: float) -> str:
+    """A share of the radiance of a white, matte surface that faces the light.
 
-    >>> of_white(0.2035), of_white(1e-7)
-    ('up to 20 % of white', 'less than 0.1 % of white')
+    >>> of_white(0.2035), of_white(1e-7), of_white(48.2)
+    ('20 % of white', 'less than 0.1 % of white', '48 times white')
     """
-    share = 100.0 * radiance
-    return f"up to {in_words(share)} % of white" if share >= 0.1 else "less than 0.1 % of white"
+    if share < 0.001:
+        return "less than 0.1 % of white"
+    return (
+        f"{in_words(100.0 * share)} % of white" if share < 2.0 else f"{in_words(share)} times white"
+    )
 
 
 def listed(names: Sequence[str]) -> str:
@@ -388,19 +394,6 @@ def _cure(cause: Cause) -> str:
     return f"the worst are right with {' or '.join(pairs)}"
 
 
-def _picture(cause: Cause) -> str:
-    apart = abs(cause.values[0])
-    return f"{of_white(apart)} " * math.isfinite(apart) + appearance(cause)
-
-
-def appearance(cause: Cause) -> str:
-    """How a picture differs from the reference, without the size."""
-    light, [apart] = LIGHTS.get(cause.key, cause.key), cause.values
-    if not math.isfinite(apart):
-        return f"has pixels that are infinite or not a number in {light}"
-    return f"too {'bright' if apart > 0.0 else 'dark'} in {light}"
-
-
 def _filled(text: str, cause: Cause) -> str:
     """A text with the names and numbers of a cause in its braces."""
     factor = cause.values[0] if cause.values else math.nan
@@ -460,7 +453,6 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
         UNKNOWN[cause.key]
         + "".join(f", the closest is {name}{_rms(cause)}" for name in cause.names)
     ),
-    Kind.PICTURE: _picture,
     Kind.TEXT: lambda cause: cause.text,
     Kind.CONTROL: lambda cause: "inconclusive: the values are right, but the control passed too",
     # The reason of a result that was not run says it.
@@ -470,10 +462,48 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
 # --- results ---------------------------------------------------------------------------------------
 
 
+def difference(apart: Difference) -> str:
+    """How a picture differs from the reference.
+
+    >>> difference(Difference("back", 0.2035, False, 0.124))
+    'up to 20 % of white too bright in light from behind, visible on 12 % of its pixels'
+    >>> difference(Difference("side", -0.5, True, 0.01))
+    'highlights up to 50 % too dark in light from the side, visible on 1 % of its pixels'
+    """
+    if not math.isfinite(apart.largest):
+        return appearance(apart)
+    share = f"{100.0 * apart.visible:.2g}"
+    seen = f", visible on {share} % of its pixels" if apart.visible else ""
+    return f"{size(apart)} {appearance(apart)}{seen}"
+
+
+def size(apart: Difference) -> str:
+    """The largest difference of a picture."""
+    largest = abs(apart.largest)
+    if not math.isfinite(largest):
+        return "not finite"
+    highlight = apart.highlight and largest >= 0.001
+    return (
+        f"highlights up to {in_words(100.0 * largest)} %"
+        if highlight
+        else f"up to {of_white(largest)}"
+    )
+
+
+def appearance(apart: Difference) -> str:
+    """How a picture differs from the reference, without the size."""
+    light = LIGHTS.get(apart.scene, apart.scene)
+    if not math.isfinite(apart.largest):
+        return f"has pixels that are infinite or not a number in {light}"
+    return f"too {'bright' if apart.largest > 0.0 else 'dark'} in {light}"
+
+
 def excess(result: Result) -> str:
     """The error that is too large, or the control that passed; "" for neither."""
     control = result.control
     if result.error is not None and not result.within:
+        if result.difference:
+            return difference(result.difference)
         if result.quantity and result.quantity.counted and math.isfinite(result.error):
             return counted(int(result.error), result.unit.removesuffix("s"))
         if result.quantity is Quantity.KIT:
@@ -484,8 +514,34 @@ def excess(result: Result) -> str:
     return ""
 
 
+def look(result: Result) -> str:
+    """How a material looks, by its pictures."""
+    if result.verdict == NOT_RUN:
+        return f"not judged: {result.reason}"
+    if result.verdict != PASSED:
+        return explanation(replace(result, pages=()))
+    if result.check == "finite":
+        return f"no reference ({diagnosis(result.diagnosis)}); every pixel is finite"
+    if result.check == "document":
+        return "shaders are generated, not run"
+    if result.difference and result.difference.is_visible:
+        return f"{difference(result.difference)}, within this check's tolerance"
+    return AS_SPECIFIED
+
+
+def unchecked(names: Iterable[str]) -> str:
+    """Inputs of nodes whose values no model has, but the host.
+
+    >>> unchecked(["SR_tiles.base_color"])
+    'not checked: base_color, which comes from a pattern or texture'
+    """
+    inputs = list(dict.fromkeys(each.rpartition(".")[2] for each in names))
+    verb = "comes" if len(inputs) == 1 else "come"
+    return f"not checked: {listed(inputs)}, which {verb} from a pattern or texture"
+
+
 def explanation(result: Result) -> str:
-    """The reason for a failure: the excess, the diagnosis, and where the defect is described."""
+    """The reason for a failure: its size, the diagnosis, and where the defect is described."""
     pages = (f"see docs/upstream/{page}.md" for page in result.pages)
     return "; ".join(filter(None, (excess(result), diagnosis(result.diagnosis), *pages)))
 

@@ -88,9 +88,9 @@ class ReferenceTable:
 
 @dataclass(frozen=True)
 class Checked:
-    """Verdict of `mxeon check` on gl for a material without a table."""
+    """Verdict of `mxeon check` on gl."""
 
-    kind: str  # "correct", "wrong", or "unknown" without a reference
+    kind: str  # "correct", "wrong", "differs" as permitted, or "unknown" without a reference
     text: str
 
 

@@ -4,7 +4,7 @@
 import math
 import warnings
 from base64 import b64encode
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +17,9 @@ import numpy as np
 from mxeon.conformance import words
 from mxeon.conformance.pictures import judge_document
 from mxeon.conformance.reference import Reference
-from mxeon.conformance.results import PASSED, Result
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
+from mxeon.conformance.results.known_issues import issues
+from mxeon.conformance.run.plan import read_documents
 from mxeon.errors import InterfaceError, MxeonError, printable
 from mxeon.explorer import data
 from mxeon.explorer.references import LOBES, lobes_of, reference_of
@@ -50,6 +52,8 @@ def document_sources(
     """
     name = " ".join(printable(Path(file).name).split())
     sources: list[data.ShaderSource] = []
+    contents = read_documents([file], [LIBRARIES[0]], policy, 0, 0.0).contents
+    titles = contents.get(file, ())
     # By element and by file, the same for both libraries.
     references: dict[str, data.ReferenceTable | None] = {}
     images: dict[str, data.Texels | None] = {}
@@ -68,17 +72,19 @@ def document_sources(
         text = document_text(shaders[0].document) if shaders else ""  # one for all of them
         if half == LIBRARIES[0]:
             references = {one.element: reference_of(one) for one in shaders[:REFERENCES]}
-        open_ones = len(shaders) <= REFERENCES and None in references.values()
-        checked = _checked(file, each, policy) if open_ones else {}
+        checked = checked_materials(file, each, policy) if len(shaders) <= REFERENCES else {}
         paths = path_texts(file, policy) if half == LIBRARIES[0] else {}
         for shader in shaders:
             title = f"{shader.element}, {Path(each).name.replace(',', ' ')}"
             own = f"{shader.name}/{half}"
             source = shader_source(shader, text, own, title, name, each, images)
             reference = references.get(shader.element)
-            found = None if reference else checked.get(shader.element)
+            found = checked.get(shader.element)
+            pages = _pages(titles, each) if found and found.kind in ("wrong", "differs") else ()
             path = paths.get(shader.element, "")
-            sources.append(replace(source, reference=reference, checked=found, paths=path))
+            sources.append(
+                replace(source, reference=reference, checked=found, pages=pages, paths=path)
+            )
     return tuple(sources)
 
 
@@ -91,7 +97,10 @@ def path_texts(document: str, policy: Policy = DEFAULT) -> dict[str, str]:
     return {}
 
 
-def _checked(file: str, library: str, policy: Policy) -> dict[str, data.Checked]:
+KINDS = {PASSED: "correct", DIFFERS: "differs", FAILED: "wrong", NOT_RUN: "unknown"}
+
+
+def checked_materials(file: str, library: str, policy: Policy = DEFAULT) -> dict[str, data.Checked]:
     """Verdicts of `mxeon check` on gl by element."""
     try:
         with open_host("gl") as host, warnings.catch_warnings():
@@ -99,19 +108,25 @@ def _checked(file: str, library: str, policy: Policy) -> dict[str, data.Checked]
             results, _, _ = judge_document(Path(file), host, Reference(), library, policy)
     except MxeonError:  # no gl; errors of the document were reported before
         return {}
-    return {each.subject.removeprefix(f"{Path(file).name}: "): _words(each) for each in results}
+    return {
+        each.subject.removeprefix(f"{Path(file).name}: "): data.Checked(
+            "unknown" if each.check == "finite" else KINDS[each.verdict],
+            f"mxeon check: {words.look(each)}.",
+        )
+        for each in results
+    }
 
 
-def _words(result: Result) -> data.Checked:
-    if result.check != "picture" or result.error is None:
-        reason = (words.diagnosis(result.diagnosis) or result.reason).removeprefix("reference: ")
-        return data.Checked("unknown", f"No reference: {reason}.")
-    error = f"{result.error:.2g}"
-    judge = f"mxeon check, tolerance {result.tolerance:.2g}"
-    if result.verdict == PASSED:
-        return data.Checked("correct", f"Within {error} of the reference ({judge}).")
-    place = "".join(f", {each}" for each in [words.diagnosis(result.diagnosis)] if each)
-    return data.Checked("wrong", f"Off by up to {error}{place} ({judge}).")
+def _pages(titles: Iterable[str], library: str) -> tuple[str, ...]:
+    """Pages on defects that change the picture of nodes, by their titles in checks."""
+    return tuple(
+        issue.page
+        for issue in issues().values()
+        if "webgl" in (issue.host, *issue.also)
+        and issue.library == library
+        and not issue.kind
+        and {subject for _, subject in issue.rows}.intersection(titles)
+    )
 
 
 def document_text(document: mx.Document) -> str:

@@ -21,7 +21,7 @@ from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.conformance.specs.diffuse import VALUE as VALUE_ERROR
 from mxeon.errors import NotRun
 from mxeon.explorer.data import Models, ModelSource, ShaderSource, Still
-from mxeon.explorer.documents import LIBRARIES, path_texts, shader_source
+from mxeon.explorer.documents import LIBRARIES, checked_materials, path_texts, shader_source
 from mxeon.explorer.references import reference_of
 from mxeon.hosts import open_host
 from mxeon.hosts.base import Inputs
@@ -177,6 +177,12 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
     }
     reference = reference_of(shaders["eonlib"])
     [paths] = path_texts(material.text).values()
+    # Of several lobes no permitted form is known; `mxeon check` has a verdict on them.
+    judged = LIBRARIES if reference and not reference.forms else ()
+    with temporary_folder("mxeon-explore-") as folder:
+        file = Path(folder, "material.mtlx")
+        file.write_text(material.text, encoding="utf-8")
+        checked = {name: [*checked_materials(str(file), name).values()] for name in judged}
     return tuple(
         replace(
             shader_source(
@@ -188,6 +194,7 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
                 library,
             ),
             reference=reference,
+            checked=next(iter(checked.get(library, ())), None),
             pages=material.pages if library == "stock" else (),
             paths=paths if library == "eonlib" else "",
         )

@@ -44,16 +44,23 @@ class ImageWarning(UserWarning):
 
 
 def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
-    """Largest absolute difference over the channels of each pixel.
+    """Difference of each pixel, of the channel where it is largest, relative to a reference above 1.
 
-    >>> difference([[1.0, 0.5, 0.0]], [[1.0, 0.25, 0.125]]).tolist()
+    It is infinite where a value is not finite.
+
+    >>> difference([[1.0, 0.5, 9.0]], [[1.0, 0.25, 10.0]]).tolist()
     [0.25]
     """
     with np.errstate(invalid="ignore"):  # inf - inf
         apart: Floats = np.subtract(image, reference, dtype=np.float64)
+        apart /= np.maximum(1.0, np.abs(reference))
+    apart[~np.isfinite(apart)] = np.inf
+
+    def larger(a: Floats, b: Floats) -> Floats:
+        return np.where(np.abs(a) >= np.abs(b), a, b)
+
     # Channel by channel: a maximum over a short axis takes NumPy five times as long.
-    largest: Floats = reduce(np.maximum, np.moveaxis(np.abs(apart, out=apart), -1, 0))
-    return largest
+    return reduce(larger, np.moveaxis(apart, -1, 0))
 
 
 def difference_scale(difference_map: ArrayLike) -> float:

@@ -29,7 +29,7 @@ from mxeon.report.junit import to_junit
 
 PAGES = "upstream"  # folder of the pages on defects, next to the report
 
-JSON_FORMAT = 4
+JSON_FORMAT = 5
 SCHEMA = f"urn:mxeon:results:{JSON_FORMAT}"  # identifies `mxeon.report.schema.schema()`
 
 NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
@@ -62,7 +62,7 @@ def to_json(run: Run) -> str:
       compare kinds, keys and regions, not sentences.
     - elsewhere: objects of document, check, subject, host, library: failures for inputs that the document does not use.
     - pictures: objects of document, element, host, library, scene; exr, png and reference: paths relative to the JSON
-      file; largest_difference from the reference. The last two may be null.
+      file; difference from the reference, an object of scene, largest, highlight, visible. The last two may be null.
     """
     data = {
         "$schema": SCHEMA,
@@ -103,13 +103,9 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
     pictures = _with_references(run.pictures)
     places = [(each.host, *_subject(each)) for each in pictures]
     stems = dict(zip(places, image_names(pictures), strict=True))
-
-    def largest_difference(picture: Picture) -> float | None:
-        return None if picture.reference is None else float(np.nanmax(picture.difference()))
-
-    with in_threads(largest_difference, run.pictures) as each:
+    with in_threads(lambda picture: picture.difference, run.pictures) as each:
         differences = list(each)
-    for picture, stem, largest in zip(
+    for picture, stem, apart in zip(
         run.pictures, image_names(run.pictures), differences, strict=True
     ):
         reference = stems.get((REFERENCE, *_subject(picture)))
@@ -117,7 +113,7 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
             {key: getattr(picture, key) for key in keys}
             | {"exr": f"pictures/{stem}.exr", "png": f"pictures/{stem}.png"}
             | {"reference": f"pictures/{reference}.exr" if reference else None}
-            | {"largest_difference": largest}
+            | {"difference": apart}
         )
     return fields
 

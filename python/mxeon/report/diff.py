@@ -20,6 +20,7 @@ from mxeon.conformance.results import (
     NOT_RUN,
     PASSED,
     VERDICTS,
+    Difference,
     Region,
     Result,
     Verdict,
@@ -105,14 +106,8 @@ class ShownPicture:
     scene: str
     exr: str
     png: str
-    largest_difference: float | None
+    difference: Difference | None
     reference: str | None = None
-
-    def __post_init__(self) -> None:
-        if (self.largest_difference or 0.0) < 0.0:
-            raise InputError(
-                f"largest_difference must be at least 0; got {self.largest_difference}"
-            )
 
 
 @dataclass(frozen=True)

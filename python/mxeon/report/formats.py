@@ -40,13 +40,6 @@ def number(value: float | None, digits: int = 3) -> str:
     return "–" if value is None else re.sub(r"e([+-])0*", r"e\1", f"{value:.{digits}g}")
 
 
-def of_white(value: float) -> str:
-    """Linear radiance as a share of a white, matte surface in full light; at least 0.001 %."""
-    if not math.isfinite(value):
-        return "not finite"
-    return f"{words.in_words(max(100.0 * value, 0.001))}\N{NO-BREAK SPACE}% of white"
-
-
 def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, float, float]]:
     """Title and distance of the nearest models, and the share of the largest distance shown."""
     rows = sorted(distances.items(), key=lambda pair: pair[1])[:count]

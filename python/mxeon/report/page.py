@@ -20,6 +20,7 @@ from mxeon.conformance.results import (
     PORTRAIT,
     SHADER_FUNCTIONS,
     SOURCE,
+    VISIBLE,
     Picture,
     Result,
     Run,
@@ -29,14 +30,13 @@ from mxeon.conformance.results.quantities import Quantity
 from mxeon.io.images import difference_scale
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report import in_threads
-from mxeon.report.formats import linked, nearest, of_white, vector
+from mxeon.report.formats import linked, nearest, vector
 from mxeon.report.pieces import difference_gradient, difference_pixels, generate_page, picture_uri
 
 # Markers of hosts in plots: matplotlib's name, and a character that looks like it.
 # Materials with pictures inside the page, about a megabyte each; further ones are linked.
 SHOWN_MATERIALS = 60
 OPEN_MATERIALS = 8  # further materials open on a click
-VISIBLE = 1e-3  # share of white, about the smallest step of a display
 OPEN_ROWS = 20  # with more failed rows, checks open on a click
 WORST_FIRST = (FAILED, NOT_RUN, DIFFERS, PASSED)
 
@@ -144,37 +144,18 @@ def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
         found[one.host, one.library] = verdicts.get((subject, one.host, one.library))
     tolerances = [each.tolerance or 0.0 for each in found.values() if each]
     rows = [_row(each, max(tolerances, default=0.0)) for each in by_row.values()]
-    rows.sort(key=lambda row: -max(row["largest"].values(), default=0.0))
+    rows.sort(key=lambda row: -max(row["largest"], default=0.0))
     answers = []
     for place, result in found.items():
-        largest = {row["scene"]: row["largest"][place] for row in rows if place in row["largest"]}
-        answers.append((place, result, _sentence(result, largest)))
+        parts = [words.look(result) if result else "no reference"]
+        parts += [words.unchecked(result.measured)] if result and result.measured else []
+        answers.append((place, result, "; ".join(parts)))
     return {
         "document": pictures[0].document,
         "element": pictures[0].element,
         "answers": answers,
         "rows": rows,
     }
-
-
-def _sentence(result: Result | None, largest: Mapping[str, float]) -> str:
-    """Sentence on a material; `largest` has the largest difference from the reference by scene."""
-    if not largest:
-        reason = result and (result.reason or words.diagnosis(result.diagnosis))
-        checked = result and result.check == "finite" and result.verdict == PASSED
-        sentence = "no reference" + (f": {reason}" if reason else "")
-        return sentence + ("; every pixel is finite" if checked else "")
-    scene = max(largest, key=lambda each: largest[each])
-    if result and result.verdict == PASSED:
-        names = ", ".join(result.measured)
-        measured = f", with the host's own values of {names}" if names else ""
-        if largest[scene] < VISIBLE:
-            return f"matches the reference within {of_white(largest[scene])}{measured}"
-        return f"stays within its tolerance, up to {of_white(largest[scene])} from the reference{measured}"
-    if not np.isfinite(largest[scene]):
-        return f"has pixels that are infinite or not a number in {scene}"
-    where = f", most in {scene}" if len(largest) > 1 else ""
-    return f"differs from the reference by up to {of_white(largest[scene])}{where}"
 
 
 def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
@@ -190,17 +171,16 @@ def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
         shown.append(_figure("image", title_of(one.library), "", srgb_encoded(one.image)))
         if one.reference is not None:
             reference = one.reference if reference is None else reference
-            apart.append((one, one.difference()))
+            apart.append((one, one.difference_map()))
     if reference is not None:
         pixels = srgb_encoded(np.asarray(reference))
         partly = ", at the pixels to compare" if any(p.judged is not None for p in pictures) else ""
         shown.append(_figure("reference", "Reference", f"NumPy, float64{partly}", pixels))
-    largest = {(one.host, one.library): float(np.nanmax(values)) for one, values in apart}
+    largest = [abs(one.difference.largest) for one, _ in apart if one.difference]
     scale = max([tolerance, *(difference_scale(values) for _, values in apart)])
-    scale = max([scale, *(top for top in largest.values() if top < 2.0 * scale)])
+    scale = max([scale, *(top for top in largest if top < 2.0 * scale)])
     for one, values in apart:
-        top = largest[one.host, one.library]
-        note = f"up to {of_white(top)}"
+        note = words.size(one.difference) if one.difference else ""
         if one.judged is not None:
             note += f" at the {np.count_nonzero(one.judged):,} pixels that were compared"
         pixels = difference_pixels(values, scale)
@@ -244,7 +224,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
         f"{words.counted(nodes, 'node')} rendered without a document, as pictures only"
     ] * bool(nodes)
     filters: dict[str, Callable[..., Any]] = {"vector": vector, "linked": linked, "tally": tally}
-    filters |= {"nearest": nearest, "of_white": of_white}
+    filters |= {"nearest": nearest}
     filters |= {"title": title_of, "worst": worst}
     with in_threads(partial(material, verdicts), shown) as drawn:
         yield from generate_page(
@@ -276,6 +256,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
             ],
             counted=words.counted,
             sentences=words,
+            VISIBLE=VISIBLE,
             gradient=Markup(difference_gradient()),
             FAILED=FAILED,
             PASSED=PASSED,

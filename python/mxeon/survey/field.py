@@ -167,9 +167,9 @@ def _portraits(report: Report, place: Place, folder: Path) -> Iterator[Portrait]
     for each in report.pictures:
         if (each.document, each.host, each.library, each.element) != (PORTRAIT, *place):
             continue
-        if each.reference and each.largest_difference is not None:
+        if each.reference and each.difference:
             # For security, only use their names: a report may come from anywhere.
             image, model = (
                 folder / "pictures" / Path(file).name for file in (each.exr, each.reference)
             )
-            yield Portrait(each.scene, image, model, each.largest_difference)
+            yield Portrait(each.scene, image, model, abs(each.difference.largest))

@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from markupsafe import Markup
@@ -97,8 +96,7 @@ def frames(
         if portrait is None:
             continue
         image, model = read_image(portrait.image), read_image(portrait.reference)
-        apart: Any = difference(image, model)
-        apart[np.isnan(apart)] = np.inf
+        apart = np.abs(difference(image, model))
         scale = max(difference_scale(apart), entry.cells["direct"].tolerance or 0.0)
         shown, apart = srgb_encoded(image), difference_pixels(apart, scale)
         uris = picture_uri(shown), picture_uri(apart)

@@ -24,6 +24,7 @@ from mxeon.errors import CheckError, InputError
 from mxeon.hosts.base import Identity
 from mxeon.io.files import AnyPath
 from mxeon.io.images import difference
+from mxeon.shaders.scene import sphere
 
 Verdict: TypeAlias = Literal["passed", "differs", "failed", "not run"]
 PASSED: Final = "passed"
@@ -39,6 +40,7 @@ SHADER_FUNCTIONS = "shader twins"  # in the place of a node, for the functions o
 RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
 REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # patterns of the files of a report
 DIRECT = ("value", "lobe")  # the checks of a node in direct light, of which it has one
+VISIBLE = 0.01  # of white, or of a highlight: about the least contrast that an eye notices
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,6 @@ class Kind(Enum):
     CURE = "cure"  # inputs and values with which the worst values are right
     DEFECT = "defect"  # another defect that is known
     UNKNOWN = "unknown"
-    PICTURE = "picture"  # how a picture differs from the reference
     TEXT = "text"  # the words of a compiler, a renderer or a document
     FOLLOWS = "follows"  # from another failure, which has a result of its own
     INPUT = "input"  # a value of the document outside its model
@@ -199,6 +200,26 @@ class Errors:
     region: Region | None = None
 
 
+@dataclass(frozen=True)
+class Difference:
+    """How far a picture is from the reference: a share of white, or of the reference where that is brighter.
+
+    - `scene`: The light.
+    - `largest`: That of the worst pixel, positive where it is too bright; infinite if it is not finite.
+    - `highlight`: Whether the reference is brighter than white there.
+    - `visible`: Share of the object's pixels whose difference exceeds VISIBLE.
+    """
+
+    scene: str
+    largest: float
+    highlight: bool
+    visible: float
+
+    @property
+    def is_visible(self) -> bool:
+        return abs(self.largest) > VISIBLE
+
+
 def quoted(text: str) -> Diagnosis:
     """The diagnosis that quotes another program."""
     return Diagnosis((Cause(Kind.TEXT, text=text),))
@@ -225,6 +246,7 @@ class Result(BriefRepr):
     - `errors`: Errors of all samples, then those in each region; () where it passed, or has no samples.
     - `samples`: Equal for equal samples; "" without `errors`.
     - `diagnosis`: What explains a failure.
+    - `difference`: That of the worst picture of a material, whose error is weighted; None for others.
     - `control`: None only where the check did not run.
     - `reason`: Why it did not run.
     - `claimed`, `model`: Titles of the model that a renderer's own node claims, and of its published
@@ -251,6 +273,7 @@ class Result(BriefRepr):
     errors: tuple[Errors, ...] = field(default=(), repr=False)
     samples: str = field(default="", repr=False)
     diagnosis: Diagnosis = NO_DIAGNOSIS
+    difference: Difference | None = field(default=None, repr=False)
     control: Control | None = field(default=None, repr=False)
     reason: str = ""
     claimed: str = field(default="", repr=False)
@@ -324,16 +347,31 @@ class Picture:
     metadata: dict[str, str] = field(repr=False)
     judged: NDArray[np.floating] | None = field(default=None, repr=False)
 
-    def difference(self) -> NDArray[np.float64]:
-        """Difference from the reference, (size, size): infinite where a value is not finite.
+    @cached_property
+    def difference(self) -> Difference | None:
+        """How far the picture is from the reference; None without one."""
+        if self.reference is None:
+            return None
+        image, reference = np.asarray(self.image), np.asarray(self.reference)
+        mask = sphere(len(image)).mask
+        if self.judged is not None:
+            mask = np.asarray(self.judged)[..., 0] > 0.0
+        image, reference = image[mask], reference[mask]
+        apart = difference(image, reference)
+        worst = int(np.abs(apart).argmax())
+        highlight = bool(np.abs(reference[worst]).max() > 1.0)
+        visible = float(np.mean(np.abs(apart) > VISIBLE))
+        return Difference(self.scene, float(apart[worst]), highlight, visible)
+
+    def difference_map(self) -> NDArray[np.float64]:
+        """Absolute `mxeon.io.images.difference` of each pixel, (size, size).
 
         Pixels between those of a judged lattice take the difference of the nearest one; other
         pixels that were not judged are NaN.
         """
         if self.reference is None:
             raise ValueError(f"{self.element}: a difference needs a reference; there is none")
-        apart = difference(self.image, self.reference)
-        apart = np.where(np.isfinite(apart), apart, np.inf)
+        apart = np.abs(difference(self.image, self.reference))
         if self.judged is None:
             return apart
         judged = np.asarray(self.judged)[..., 0] > 0.0
@@ -451,33 +489,27 @@ class Run(Scope):
         """Results of all libraries that are not judged for comparison."""
         return tuple(each for each in self.results if each.library not in self.compared)
 
-    @cached_property
-    def differences(self) -> dict[tuple[str, str, str], float]:
-        """Largest difference of pictures, relative where the reference exceeds 1, by subject, host and library."""
-        found: dict[tuple[str, str, str], float] = {}
-        for each in self.pictures:
-            if each.reference is not None:
-                scale = np.maximum(1.0, np.abs(each.reference).max(axis=-1))
-                place = f"{each.document}: {each.element}", each.host, each.library
-                largest = float(np.nanmax(each.difference() / scale))
-                found[place] = max(found.get(place, 0.0), largest)
-        return found
-
     @property
     def errors(self) -> tuple[str, ...]:
         """The faults of all documents that were refused."""
         return tuple(line for lines in self.refused.values() for line in lines)
 
     def is_elsewhere(self, result: Result, *documents: str) -> bool:
-        """Whether a check fails for inputs alone that no document has that shows its node."""
-        region = result.diagnosis.region
+        """Whether a check fails for inputs or lobes alone that no document has that shows its node."""
+        from mxeon.conformance.results.known_issues import blamed
+
+        region, groups = result.diagnosis.region, blamed(result)
         shown = [
-            self.unreached.get(each, {}).get(result.subject, ())
-            for each in documents or self.contents
-            if result.subject in self.contents[each]
+            each for each in documents or self.contents if result.subject in self.contents[each]
         ]
         return (
-            result.verdict == FAILED and bool(shown) and all(region in regions for regions in shown)
+            result.verdict == FAILED
+            and bool(shown)
+            and all(
+                region in self.unreached.get(each, {}).get(result.subject, ())
+                or (groups and all(g and g.isdisjoint(self.contents[each]) for g in groups))
+                for each in shown
+            )
         )
 
     @property

@@ -143,6 +143,21 @@ def issues_of(result: Result) -> tuple[Issue, ...]:
     return tuple(issues()[page] for page in result.pages if page in issues())
 
 
+def blamed(result: Result) -> list[set[str]]:
+    """Lobes that fail a combination of lobes, in a set for each page or cause; () for a lobe's own failure."""
+    if _is_lobe(result.subject):
+        return []
+    if pages := issues_of(result):
+        rows = [(*each.rows, *each.implied) for each in pages]
+        return [{subject for _, subject in each if _is_lobe(subject)} for each in rows]
+    causes = (each for each in result.diagnosis.causes if each.key == "throughput_of_lobes")
+    return [set(each.names) for each in causes]
+
+
+def _is_lobe(subject: str) -> bool:
+    return subject.partition(",")[0].endswith("_bsdf")
+
+
 def with_pages(result: Result, materialx: str = "") -> Result:
     """A result with the pages of the issues that explain it, if any do.
 

@@ -26,7 +26,7 @@ class DocumentWarning(UserWarning):
 
 
 class RangeWarning(DocumentWarning):
-    """A value for which the model of its node is not defined."""
+    """A value for which the model of its node is not defined, or beyond the range that the node declares."""
 
 
 class CodeWarning(UserWarning):
@@ -49,7 +49,7 @@ def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> N
     values = [each for each in elements if each.isA(mx.ValueElement) and each.getValueString()]
     for kind, note in (
         (DocumentWarning, _misread),
-        (RangeWarning, out_of_range),
+        (RangeWarning, lambda each: out_of_range(each) or _beyond(each)),
         (DocumentWarning, _unknown_space),
     ):
         _warn(kind, [text for text in map(note, values) if text])
@@ -130,6 +130,29 @@ def out_of_range(element: mx.ValueElement) -> str | None:
     if all(0.0 <= number <= high for number in numbers(element)):
         return None
     rule = f"must lie in [0, {1 if high == 1.0 else 'pi/2'}], where its model is defined"
+    return f"{location(element)} {rule}; got {element.getValueString()}"
+
+
+def _beyond(element: mx.ValueElement) -> str | None:
+    """Warning of a value beyond the uimin or uimax of its node's definition."""
+    node = element.getParent()
+    definition = node.getNodeDef() if element.isA(mx.Input) and node.isA(mx.Node) else None
+    port = definition and definition.getActiveInput(element.getName())
+    if not port or element.getType() not in NUMERIC:
+        return None
+    ends = [port.getAttribute(name) for name in ("uimin", "uimax")]
+    try:
+        low, high = (
+            [float(each) for each in text.split(",")] if text else [end]
+            for text, end in zip(ends, (-math.inf, math.inf), strict=True)
+        )
+    except ValueError:  # of a definition that is no number
+        return None
+    values = numbers(element)
+    rows = ((values[k], low[k % len(low)], high[k % len(high)]) for k in range(len(values)))
+    if all(least <= value <= most for value, least, most in rows):
+        return None
+    rule = f"must lie in [{ends[0] or '-inf'}, {ends[1] or 'inf'}], the range of its node"
     return f"{location(element)} {rule}; got {element.getValueString()}"
 
 
