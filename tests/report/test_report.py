@@ -22,7 +22,16 @@ from mxeon.io.srgb import srgb_encoded
 from mxeon.models import eon_brdf
 from mxeon.report import html, to_json, to_junit, write
 from mxeon.shaders.scene import sphere
-from tests.support.results import Control, Identity, Picture, Result, Run, caused, quoted
+from tests.support.results import (
+    Control,
+    Difference,
+    Identity,
+    Picture,
+    Result,
+    Run,
+    caused,
+    quoted,
+)
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 
 HOSTILE = "<script>alert('\x08')</script>\"><img src=x onerror=y>&{{ 7 * 7 }}$"
@@ -226,6 +235,31 @@ def test_the_worst_light_is_first_and_its_scale_reaches_its_largest_difference(r
     )
     assert first < text.index("≥ 1.3 % of white") < second
     assert text.count("1 passed") == 2  # in the header, and of the check itself
+
+
+def test_documents_open_with_the_worst_in_the_studio_and_libraries_with_causes(run):
+    studio = [
+        made_picture(name, library=library, scene="studio", reference=None)
+        for name in ("good", "bad")
+        for library in ("eonlib", "stock")
+    ]
+    spheres = [made_picture(each.element, library=each.library) for each in studio]
+    results = [
+        made_result(
+            PASSED, check="picture", subject=f"a/clay.mtlx: {each.element}", library=each.library,
+            difference=Difference("side", {"bad": 0.5, "good": 0.0}[each.element], False, 0.5),
+        )
+        for each in spheres
+    ]  # fmt: skip
+    shown = replace(run, results=(FAILURE, *results), pictures=(*spheres, *studio))
+    for contents, sections in (({"a/clay.mtlx": ()}, (1, 0)), ({}, (0, 1))):
+        page = Page(page_of(replace(shown, contents=contents)))
+        order = [each for each in page.values("id") if each in ("failed", "pictures")]
+        assert order == [("failed", "pictures")[each] for each in sections]
+    alts = page.values("alt")
+    assert alts[:3] == [f"{title}: bad, in a studio" for title in (
+        "Stock MaterialX", "With eonlib", "Difference of the two")]  # fmt: skip
+    assert len(alts) == 2 * (3 + 5)
 
 
 def test_the_examples_of_the_page_on_checking_run(tmp_path, monkeypatch):

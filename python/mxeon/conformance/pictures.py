@@ -56,6 +56,7 @@ from mxeon.conformance.tolerance import (
 from mxeon.errors import DocumentError, NotRun, OutsideModel, ShaderError
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
+from mxeon.hosts.still import still
 from mxeon.io.srgb import SLOPE
 from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.nodes import NODES
@@ -72,7 +73,7 @@ from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, CodeWarning, Shader, generate
 from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
 from mxeon.shaders.nodes import BSDF_NODES
-from mxeon.shaders.scene import BACK, SIDE, Scene, sphere
+from mxeon.shaders.scene import BACK, SIDE, STUDIO, Scene, sphere
 
 # Nodes whose shaders take an albedo from a fit.
 FITTED_NODES = {row.category for row in NODES if row.fitted or row.mirror}
@@ -407,6 +408,26 @@ def _front_lit(expected: ExpectedPicture, scene: Scene) -> ExpectedPicture:
     wo, wi = _directions(scene, judged)
     judged[judged] = (wo[:, :2] * wi[:, :2]).sum(axis=1) >= 0.0
     return replace(expected, judged=judged)
+
+
+STUDIO_PICTURE = replace(STUDIO, size=320)
+STUDIED = 4  # materials of a document
+
+
+def studio_pictures(
+    file: Path, host: Host, library: str, policy: Policy = DEFAULT
+) -> tuple[Picture, ...]:
+    """Pictures for people of a document's first materials, on a shader ball in a studio; without references."""
+    shaders, _, _ = _read(file, lambda: host.compile(file, library=library, policy=policy))
+    return tuple(
+        Picture(
+            *(file.name, shader.element, host.name, library, STUDIO.name),
+            still(host, shader, STUDIO_PICTURE),
+            None,
+            {"version": mxeon.__version__, "document": str(file), "scene": STUDIO.name},
+        )
+        for shader in shaders[:STUDIED]
+    )
 
 
 # --- documents on hosts that make no pictures: their shaders are generated, and not run -----------

@@ -27,15 +27,24 @@ from mxeon.conformance.results import (
     Verdict,
 )
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.io.images import difference_scale
+from mxeon.io.images import difference, difference_scale
 from mxeon.io.srgb import srgb_encoded
+from mxeon.io.tone import pbr_neutral
 from mxeon.report import in_threads
 from mxeon.report.formats import linked, nearest, vector
-from mxeon.report.pieces import difference_gradient, difference_pixels, generate_page, picture_uri
+from mxeon.report.pieces import (
+    SHOWN_SIZE,
+    difference_gradient,
+    difference_pixels,
+    generate_page,
+    picture_uri,
+)
+from mxeon.shaders.scene import STUDIO
 
 # Markers of hosts in plots: matplotlib's name, and a character that looks like it.
 # Materials with pictures inside the page, about a megabyte each; further ones are linked.
 SHOWN_MATERIALS = 60
+LARGE = 512  # pixels on a side of a picture in the studio
 OPEN_MATERIALS = 8  # further materials open on a click
 OPEN_ROWS = 20  # with more failed rows, checks open on a click
 WORST_FIRST = (FAILED, NOT_RUN, DIFFERS, PASSED)
@@ -112,7 +121,7 @@ def reasons(results: Iterable[Result]) -> dict[str, list[Result]]:
 
 
 def materials(run: Run) -> tuple[list[list[Picture]], Verdicts]:
-    """Pictures of each material, and their verdicts; documents before portraits, failures first."""
+    """Pictures of each material, and their verdicts; documents before portraits, the worst first."""
     verdicts: dict[tuple[str, str, str], Result] = {}
     for each in run.results:
         if each.check in ("picture", "finite", *DIRECT):
@@ -122,8 +131,13 @@ def materials(run: Run) -> tuple[list[list[Picture]], Verdicts]:
     for picture in run.pictures:
         groups.setdefault(f"{picture.document}: {picture.element}", []).append(picture)
     failed = {subject for (subject, *_), each in verdicts.items() if each.verdict == FAILED}
+    harm = dict.fromkeys(groups, 0.0)
+    for (subject, *_), each in verdicts.items():
+        if subject in harm and each.difference:
+            harm[subject] = max(harm[subject], abs(each.difference.largest))
     order = sorted(
-        groups, key=lambda subject: (is_portrait(groups[subject]), subject not in failed)
+        groups,
+        key=lambda name: (is_portrait(groups[name]), name not in failed, -harm[name]),
     )
     return [groups[subject] for subject in order], verdicts
 
@@ -143,7 +157,12 @@ def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
         by_row.setdefault((one.host, one.scene), []).append(one)
         found[one.host, one.library] = verdicts.get((subject, one.host, one.library))
     tolerances = [each.tolerance or 0.0 for each in found.values() if each]
-    rows = [_row(each, max(tolerances, default=0.0)) for each in by_row.values()]
+    pairs = [_pair(each) for (_, scene), each in by_row.items() if scene == STUDIO.name]
+    rows = [
+        _row(each, max(tolerances, default=0.0))
+        for (_, scene), each in by_row.items()
+        if scene != STUDIO.name
+    ]
     rows.sort(key=lambda row: -max(row["largest"], default=0.0))
     answers = []
     for place, result in found.items():
@@ -154,8 +173,24 @@ def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
         "document": pictures[0].document,
         "element": pictures[0].element,
         "answers": answers,
+        "pair": next(iter(pairs), None),
         "rows": rows,
     }
+
+
+def _pair(pictures: Sequence[Picture]) -> dict[str, Any]:
+    """Large pictures in the studio, and the difference of the first two, relative to the second."""
+    shown = [
+        _figure("image", title_of(one.library), "", srgb_encoded(pbr_neutral(one.image)), LARGE)
+        for one in pictures[:2]
+    ]
+    scale = VISIBLE
+    if len(shown) == 2:
+        apart = np.abs(difference(*(np.asarray(one.image) for one in pictures[:2])))
+        scale = max(scale, difference_scale(apart))
+        pixels = difference_pixels(apart, scale)
+        shown.append(_figure("difference", "Difference of the two", "", pixels, LARGE))
+    return {"figures": shown, "scale": scale}
 
 
 def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
@@ -194,8 +229,10 @@ def title_of(library: str) -> str:
     return "Stock MaterialX" if library == "stock" else f"With {library}"
 
 
-def _figure(kind: str, title: str, note: str, pixels: NDArray[np.uint8]) -> dict[str, Any]:
-    return {"kind": kind, "title": title, "note": note, "image": picture_uri(pixels)}
+def _figure(
+    kind: str, title: str, note: str, pixels: NDArray[np.uint8], size: int = SHOWN_SIZE
+) -> dict[str, Any]:
+    return {"kind": kind, "title": title, "note": note, "image": picture_uri(pixels, size)}
 
 
 def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, None]:

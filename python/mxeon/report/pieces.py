@@ -44,9 +44,9 @@ def generate_page(
     yield from template.generate(script=Markup(script), script_hash=digest, **values)
 
 
-def picture_uri(pixels: NDArray[np.uint8]) -> str:
-    """A picture (size, size, 3) as a data URI of a PNG of at most SHOWN_SIZE pixels on a side."""
-    step = -(-len(pixels) // SHOWN_SIZE)
+def picture_uri(pixels: NDArray[np.uint8], largest: int = SHOWN_SIZE) -> str:
+    """A picture (size, size, 3) as a data URI of a PNG of at most so many pixels on a side."""
+    step = -(-len(pixels) // largest)
     buffer = io.BytesIO()
     shown = np.ascontiguousarray(pixels[::step, ::step])
     Image.fromarray(shown).save(buffer, "png", compress_level=FAST)

@@ -18,6 +18,7 @@ from mxeon.conformance.pictures import (
     comparison_pictures,
     generate_document,
     judge_document,
+    studio_pictures,
 )
 from mxeon.conformance.reference import Reference
 from mxeon.conformance.release import CLAIM, check_release
@@ -42,7 +43,7 @@ from mxeon.conformance.shader_functions import judge_functions
 from mxeon.conformance.specs import ALL
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.text import check_definitions, check_texts, redefined
-from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
+from mxeon.errors import DocumentError, ImageError, InterfaceError, MxeonError, NotRun, ShaderError
 from mxeon.hosts import open_engine
 from mxeon.hosts.base import Engine, Host
 from mxeon.shaders.document.policy import Policy
@@ -137,6 +138,11 @@ class Judge:
         if isinstance(host, Host):
             if task.check == plan.PICTURE:
                 return self._document(task, host)
+            if task.check == plan.STUDIO:
+                with suppress(MxeonError):  # the picture's result says so
+                    path = Path(task.subject)
+                    return Findings((), studio_pictures(path, host, task.library, self._policy))
+                return Findings(())
             if task.check == plan.RELEASE:
                 results, unjudged = check_release(host, task.library)
                 return Findings(results, unjudged=unjudged)

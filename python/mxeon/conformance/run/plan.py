@@ -136,7 +136,8 @@ def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
 # --- the tasks of a run ---------------------------------------------------------------------------
 
 HOST, DEFINITION = "host", "definition"
-PICTURE = "picture"
+PICTURE, STUDIO = "picture", "studio"
+STUDIED = 4  # documents whose materials are drawn in the studio, for a report
 FUNCTIONS, DOCUMENT = "twins", "document"
 RELEASE = "release"
 EVERY_NODE = "every node"
@@ -146,7 +147,7 @@ EVERY_NODE = "every node"
 class Task:
     """One independent piece of a run: a check of one subject on one host with one library."""
 
-    # Key of a row of `mxeon.conformance.checks`, or HOST, DEFINITION, SOURCE, PICTURE,
+    # Key of a row of `mxeon.conformance.checks`, or HOST, DEFINITION, SOURCE, PICTURE, STUDIO,
     # FUNCTIONS, RELEASE or DOCUMENT.
     check: str
     subject: str  # title of a node, path of a document, or SHADER_FUNCTIONS
@@ -186,7 +187,7 @@ class Findings:
         """Whether these are findings of a task: there are some, and all are of its host."""
         records: list[Result | Picture] = [*self.results, *self.pictures]
         location = (task.host, task.library)
-        return bool(records or self.errors or self.unjudged) and all(
+        return bool(records or self.errors or self.unjudged or task.check == STUDIO) and all(
             (record.host, record.library) == location for record in records
         )
 
@@ -298,6 +299,8 @@ def make_plan(
             if not host_row(host).scenes:
                 tasks += [Task(DOCUMENT, file, host, library) for file in readable]
             tasks += _on_host(host, library, paths, everywhere, methods.over(GENERATED))
+            if resumable and host == "gl":  # a report shows it
+                tasks += [Task(STUDIO, file, host, library) for file in readable[:STUDIED]]
     for host in hosts:  # nodes of a renderer's own, which use no library of ours
         for spec in own_nodes(host):
             tasks += _checks_of(spec, host, RENDERER_NODES)
