@@ -4,6 +4,7 @@
 import pytest
 
 from mxeon import check
+from mxeon.conformance.run.plan import ALL, make_plan
 from mxeon.errors import InputError
 from mxeon.hosts import HOSTS
 from mxeon.shaders.methods import Methods
@@ -125,6 +126,13 @@ def test_glass_passes_by_every_method_and_as_stock_has_it_does_not(judged, check
     assert judged(check, glass, methods=methods).verdict == PASSED
     if check == "transmitted":
         assert judged(check, glass, library="stock", methods=methods).verdict == FAILED
+
+
+def test_a_negative_color_is_asked_of_opacity_only_where_glass_has_a_tint():
+    plan = make_plan((), ("gl",), ("eonlib",), nodes=(ALL,), methods=Methods("", "opacity"))
+    asked = {task.subject for task in plan.tasks if task.check == "negative"}
+    assert "dielectric_bsdf, scatter_mode T" in asked
+    assert "generalized_schlick_bsdf, scatter_mode T" not in asked
 
 
 @pytest.mark.parametrize("environment", ["fis", "prefilter"])

@@ -72,6 +72,8 @@ def of_model(*names: str) -> Specs:
 FILMS, TRANSMITTING = family(FilmSpec), family(TransmissionSpec)
 CLEAR = family(TransmissionSpec, lambda spec: spec.reflects)  # which reflect as well
 DARK = TRANSMITTING - CLEAR  # which reflect nothing
+# As opacity, these pass all light.
+UNTINTED = DARK - family(LobeSpec, lambda spec: "tint" in colored(spec))
 COMBINED, SUBSURFACE = family(CombinedSpec), family(SubsurfaceSpec)
 FACETS, BELOW = family(FacetSpec), family(SurfaceLobe)
 PLAIN = family(PbrSpec) - COMBINED - FILMS - TRANSMITTING  # one lobe of pbrlib by itself
@@ -522,7 +524,8 @@ ROWS = (
           applies=(VALUED | COMBINED | TRANSMITTING) & family(LobeSpec, lambda spec: bool(colored(spec))),
           measure=negative, tolerance=sum_of(roundings(64, "of two values")),
           control=controls.with_batch("signs are dropped", unsigned),
-          explain=always(defect("negative_color")), requires=Ability.PAIRS | Ability.LIGHT),
+          explain=always(defect("negative_color")), requires=Ability.PAIRS | Ability.LIGHT,
+          methods=lambda spec, methods: methods.transmission != "opacity" or not UNTINTED(spec)),
     Check(key="finite", claim="Every value at the edges of the domain is finite.",
           applies=LOBES | MODES | FILMS, measure=lambda case: count_not_finite(edge_values(case)),
           tolerance=count_of(Quantity.VALUES),
