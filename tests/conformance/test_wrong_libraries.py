@@ -5,6 +5,7 @@ import pytest
 
 from mxeon import check
 from mxeon.cli.answer import answer
+from mxeon.conformance.run.plan import make_plan
 from mxeon.shaders.methods import Methods
 from mxeon.shaders.nodes import EON, INVERSIONS
 from tests.support.plans import keep, keep_checks
@@ -372,6 +373,8 @@ def test_a_run_says_which_texts_and_states_it_does_not_judge(monkeypatch):
     unjudged = dict(run.unjudged)
     assert {"osl", "msl", "mdl"} <= unjudged.keys() and "glsl" not in unjudged
     assert any(each.startswith("not judged here: ") and "Metal" in each for each in answer(run))
+    planned = dict(make_plan((), ("gl", "webgl"), ("eonlib",)).unjudged)
+    assert "tables of albedos on webgl" in planned and "tables of albedos on gl" not in planned
 
 
 # --- what a client binds --------------------------------------------------------------------------
@@ -401,6 +404,8 @@ CLEAR, MIRROR = "dielectric_bsdf, scatter_mode T", "generalized_schlick_bsdf, sc
         (f"{LIB}mx_environment_fis.glsl", "radiance) * $envLightIntensity", "radiance)", STATES, CLEAR, ("an environment: dim and two-sided",)),
         (f"{LIB}mx_environment_prefilter.glsl", "Li * FG * $envLightIntensity", "Li * FG", "methods", MIRROR, ("environment prefilter",)),
         (f"{LIB}mx_microfacet_specular.glsl", "    // Return the final directional albedo.", "    AB *= 0.5;", "methods", MIRROR, ("albedo montecarlo",)),
+        (f"{LIB}mx_generate_albedo_table.glsl", "mx_ggx_dir_albedo(uv.x, uv.y,", "mx_ggx_dir_albedo(uv.y, uv.x,", "methods", MIRROR, ("albedo table",)),
+        (f"{LIB}mx_microfacet_specular.glsl", "vec2(NdotV, alpha)).rg", "vec2(alpha, NdotV)).rg", "methods", MIRROR, ("albedo table",)),
         (f"{LIB}mx_transmission_refract.glsl", "tint = mx_square(tint);", "", STATES, CLEAR, ("an environment: dim and two-sided",)),
     ],
 )  # fmt: skip

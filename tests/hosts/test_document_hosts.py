@@ -9,6 +9,7 @@ import pytest
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import host_row, materialx, storm
 from mxeon.shaders.library import examples_folder
+from mxeon.shaders.methods import Methods
 from mxeon.shaders.nodes import OREN_NAYAR, document_text, input_text, material_text, node_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, sphere
 from tests.support.documents import lobe, material
@@ -50,6 +51,16 @@ def test_textures_are_those_of_the_reference(host, reference):
     difference = host.picture(shader, scene) - reference.picture(shader, scene)
     facing = sphere(128).normal[..., 2:]
     assert np.abs(difference * facing).max() <= TEXTURED + HALF
+
+
+def test_materialx_binds_the_table_of_albedos_that_it_is_given(hosts, gl):
+    text = material(lobe("conductor_bsdf", roughness=(0.6, 0.6)))
+    pictures = []
+    for each in (gl, hosts("materialx")):
+        [shader] = each.compile(text, library="stock", methods=Methods("prefilter", albedo="table"))
+        pictures.append(each.picture(shader, replace(FURNACE, size=16)))
+    assert np.abs(pictures[0] - pictures[1]).max() <= HALF_SURROUNDINGS - HALF
+    assert pictures[0][sphere(16).mask][:, 0].min() > 0.9  # of gold, in red
 
 
 def test_the_dome_of_storm_is_given_what_its_sum_loses(on_storm):

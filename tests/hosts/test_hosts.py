@@ -9,19 +9,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mxeon.errors import ShaderError
+from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import calls, fragment, open_host
 from mxeon.hosts.base import Query
 from mxeon.jobs import pool
+from mxeon.models import ggx_albedo_dir
 from mxeon.models import table as reference
 from mxeon.shaders.generation import generate
+from mxeon.shaders.methods import UNTABLED, Methods
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
 from tests.support.cases import pairs
+from tests.support.documents import lobe, material
 from tests.support.tolerances import SUMMED_DIRECTIONS, TWIN_ALBEDO, TWIN_VALUE
+from tests.support.wrong_libraries import GLSL, copy_of_stock, replace_text
 
 HOSTS = ("gl", "webgl", "vulkan", "wgsl", "slang")
 COUNT = 20_000
 PAIR = np.array([[0.6, 0.0, 0.8]])
+# The weight of one of the 64 samples of an albedo; and albedos between texels, on slang at the nearest texel.
+SAMPLES_64, BETWEEN_TEXELS = 1.0 / 64.0, (1e-3, 0.01)
 
 
 @pytest.fixture(scope="module", params=HOSTS)
@@ -134,6 +140,51 @@ def test_an_integer_of_the_text_is_the_boolean_that_it_was(hosts):
         for flag in (True, False)
     )
     assert (on > off + 0.01).all()
+
+
+def tabled(host, library):
+    """A metal whose albedo is read from a table, and that table."""
+    text = material(lobe("conductor_bsdf", roughness=(0.6, 0.6)))
+    [shader] = host.compile(
+        text, library=str(library), methods=Methods("prefilter", albedo="table")
+    )
+    [texels] = host.table(shader).values()
+    return shader, texels
+
+
+TABLED = ("gl", "vulkan", "slang", "webgl")
+DRAWS = f"{GLSL}/lib/mx_generate_albedo_table.glsl"
+
+
+@pytest.mark.parametrize("name", TABLED)
+def test_a_table_of_albedos_is_the_model_and_is_read_as_it_was_drawn(hosts, tmp_path, name):
+    """On WebGL2 with the repair of its page."""
+    host, library = hosts(name), copy_of_stock(tmp_path, DRAWS)
+    replace_text(library, "/ $albedoTableSize", "/ float($albedoTableSize)", DRAWS)
+    shader, texels = tabled(host, library)
+    places = (np.arange(64) + 0.5) / 64
+    albedo = ggx_albedo_dir(*np.meshgrid(places, places))
+    assert np.abs(texels[..., :2].sum(axis=-1) - albedo).max() <= SAMPLES_64
+    [sampled] = host.compile(
+        shader.document, library=str(library), methods=Methods("prefilter", albedo="monteCarlo")
+    )
+    mu = np.linspace(0.0, 1.0, 64)
+    wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=1)
+    found, expected = (host.evaluate(e, wo, wo, {}, "environment") for e in (shader, sampled))
+    assert np.abs(found - expected).max() <= BETWEEN_TEXELS[name == "slang"]
+
+
+@pytest.mark.parametrize(
+    "name, words", [("webgl", "wrong operand types"), ("wgsl", "UnknownVariable")]
+)
+def test_a_text_whose_table_does_not_compile_is_not_run(hosts, monkeypatch, name, words):
+    host = hosts(name)
+    with pytest.raises(NotRun, match=f"docs/upstream/gen{host.target}_albedo_table.md"):
+        tabled(host, "stock")
+    monkeypatch.delitem(UNTABLED, host.target)
+    with pytest.raises(ShaderError, match=words):
+        shader, _ = tabled(host, "stock")
+        host.evaluate(shader, PAIR, PAIR, {}, "environment")
 
 
 def kernels(_):

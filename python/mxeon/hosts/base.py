@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 
 import numpy as np
@@ -28,6 +29,8 @@ Array: TypeAlias = NDArray[Any]  # float32 or float64, whichever the caller or e
 Inputs: TypeAlias = Mapping[
     str, ArrayLike
 ]  # a node's inputs by name, constant or one value per pair
+
+TABLE = "u_albedoTable"
 
 # Generated shaders turn a direction by this matrix before they look it up in an environment, so the middle of a
 # latitude-longitude map faces the viewer.
@@ -163,11 +166,19 @@ class Host(Engine):
             if self.fixed and offered.get(name) != value:
                 only = offered.get(name, "MaterialX's default")
                 raise NotRun(f"{self.name}: {name} is always {only}; got {value}")
-        if methods.albedo == "table":
-            raise NotRun(
-                f"{self.name}: albedo table: clients draw the table themselves, mxeon does not"
-            )
         self.methods = UNCHOSEN if self.fixed else methods
+
+    def table(self, shader: Shader) -> dict[str, Array]:
+        """Texels of the table of albedos that a shader reads, by its sampler, which clamps and interpolates."""
+        return {TABLE: self._tables(shader.table)} if shader.table else {}
+
+    @cached_property
+    def _tables(self) -> Callable[[str], Array]:
+        return lru_cache(maxsize=2)(self._drawn_table)
+
+    def _drawn_table(self, text: str) -> Array:
+        """Texels of a table of albedos, row 0 at an alpha of 0."""
+        raise NotRun(f"{self.name}: albedo table: this host binds none")
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the unit sphere with a shader on it: linear, row 0 at the top, 0 off the sphere.

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.hosts.base import Array, Query
 from mxeon.hosts.calls import GIVEN, booleans, bsdf_call
 from mxeon.shaders import functions
+from mxeon.shaders.methods import TABLE_SIZE
 
 TEXEL = "texelFetch(mxeon_{}, mxeon_pixel, 0)"
 FETCH = {
@@ -123,6 +124,12 @@ def _before_main(pixel: str, dialect: Dialect) -> tuple[str, str]:
     return before, re.findall(r"\bout vec4 (\w+);", text)[0]
 
 
+def table_stage(text: str, target: str) -> str:
+    """The pixel stage that draws a table of albedos."""
+    version, rest = text.split("\n", 1)
+    return f"{version}\n{DIALECTS[target].prelude}{rest}"
+
+
 def renamed(text: str) -> str:
     """A generated text whose main is renamed by a macro that follows all of its functions."""
     functions, main = text.rsplit("void main", 1)
@@ -147,6 +154,8 @@ def frame(arguments: Mapping[str, Array]) -> tuple[int, tuple[int, int]]:
 
     Width and height are even: GPU derivatives are computed per 2 x 2 square.
     """
+    if not arguments:  # the text draws the table of albedos
+        return TABLE_SIZE**2, (TABLE_SIZE, TABLE_SIZE)
     count = max(each.shape[-2] for each in arguments.values())
     height = 2 * -(-count // (2 * WIDTH))
     return count, (2 * -(-count // (2 * height)), height)

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from mxeon.errors import NotRun, refused
 from mxeon.hosts import fragment, points, raster
-from mxeon.hosts.base import Array, Identity
+from mxeon.hosts.base import TABLE, Array, Identity
 from mxeon.hosts.raster import FragmentHost
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.scene import Scene, VisiblePoints
+from mxeon.shaders.scene import VisiblePoints
 
 PROGRAMS = 4  # cached programs, 10 MB each: a document's scenes and a node's checks share them
 ROWS = 256  # rows of a texture to copy at a time
@@ -74,21 +74,21 @@ class GlHost(FragmentHost):
         return Identity(self.name, info["GL_VERSION"], info["GL_RENDERER"])
 
     @_current
-    def shade(
+    def _shade(
         self,
         shader: Shader,
-        scene: Scene,
         seen: VisiblePoints,
-        parts: Sequence[raster.Rectangle] = (),
-        directions: int = raster.PICTURE_DIRECTIONS,
+        textures: dict[str, Array],
+        uniforms: raster.Uniforms,
+        parts: Sequence[raster.Rectangle],
     ) -> Array:
         program = self._program(fragment.DIALECTS["glsl"].vertex, points.pixel_stage(shader))
-        _set(program, raster.inputs(shader) | raster.light(scene, directions))
+        _set(program, uniforms)
         captured, frame = points.outputs(shader), points.frame(seen)
-        textures = self._textures(program, raster.textures(shader, scene))
+        bound = self._textures(program, textures)
         if captured:
-            textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen)
-        return self._draw(program, textures, frame, parts)[::-1]
+            bound[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen)
+        return self._draw(program, bound, frame, parts)[::-1]
 
     @_current
     def accumulate(
@@ -192,6 +192,8 @@ class GlHost(FragmentHost):
                 own[name] = made[key] = made.get(key) or self._texture(values, key[1])
         for name in own.keys() & {"u_envRadiance", "u_envIrradiance"}:
             own[name].repeat_y = texels[name].shape[0] <= len(raster.WHITE_TEXELS)
+        if table := own.get(TABLE):
+            table.repeat_x = table.repeat_y = False
         return own
 
     def _argument(self, rows: Array, size: tuple[int, int]) -> moderngl.Texture:

@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.hosts import base, fragment, points
-from mxeon.hosts.base import Array, Query
+from mxeon.hosts.base import TABLE, Array, Query
 from mxeon.hosts.points import MARGIN, visible
 from mxeon.hosts.textures import image_files, irradiance, read_latlong, read_texture
 from mxeon.shaders.document.values import Plain, flat
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
-from mxeon.shaders.methods import GENERATED
+from mxeon.shaders.methods import GENERATED, TABLE_SIZE
 from mxeon.shaders.scene import SIDE, Client, Lamp, Scene, VisiblePoints
 
 Uniforms: TypeAlias = dict[str, Plain]  # values by name
@@ -154,7 +154,9 @@ def bands(size: int, shape: str) -> tuple[Rectangle, ...]:
 
 # An evaluation looks like a frame with two lights in the middle of an animation.
 FRAME_UNIFORMS = (
-    light(SIDE) | {"u_numActiveLightSources": 2, "u_frame": 24.0, "u_time": 1.0} | EVALUATION
+    light(SIDE)
+    | {"u_numActiveLightSources": 2, "u_frame": 24.0, "u_time": 1.0, TABLE + "Size": TABLE_SIZE}
+    | EVALUATION
 )
 
 
@@ -179,6 +181,17 @@ class FragmentHost(base.Host):
         directions: int = PICTURE_DIRECTIONS,
     ) -> Array:
         """Radiance at points with a margin, (height, width, 3), row 0 at the top; only `parts` have to be drawn."""
+        bound = textures(shader, scene) | self.table(shader)
+        return self._shade(shader, seen, bound, inputs(shader) | light(scene, directions), parts)
+
+    def _shade(
+        self,
+        shader: Shader,
+        seen: VisiblePoints,
+        textures: dict[str, Array],
+        uniforms: Uniforms,
+        parts: Sequence[Rectangle],
+    ) -> Array:
         raise self._unsupported("pictures of a sphere", "gl")
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
@@ -186,9 +199,14 @@ class FragmentHost(base.Host):
 
     def _values(self, query: Query) -> Array:
         pixel, arguments = fragment.bsdf_evaluation(query)
-        textures = environment(query.irradiance) | images(query.shader)
+        textures = environment(query.irradiance) | images(query.shader) | self.table(query.shader)
         uniforms = FRAME_UNIFORMS | surroundings(query.client)
         return self._evaluate(query.shader.stages["vertex"], pixel, arguments, textures, uniforms)
+
+    def _drawn_table(self, text: str) -> Array:
+        pixel, dialect = fragment.table_stage(text, self.target), fragment.DIALECTS[self.target]
+        texels = self._evaluate(dialect.vertex, pixel, {}, {}, FRAME_UNIFORMS)
+        return texels.reshape(TABLE_SIZE, TABLE_SIZE, 3)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         pixel, texels = fragment.function_evaluation(source, function, arguments, self.target)

@@ -20,9 +20,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, install, refused
 from mxeon.hosts import base, calls, fragment, raster
-from mxeon.hosts.base import Array, Identity, Query
+from mxeon.hosts.base import TABLE, Array, Identity, Query
 from mxeon.shaders import functions
-from mxeon.shaders.methods import GENERATED
+from mxeon.shaders.methods import GENERATED, TABLE_SIZE
 from mxeon.shaders.scene import Client
 
 Resource: TypeAlias = Any  # an object of slangpy, whose types are unknown if it is not installed
@@ -43,6 +43,7 @@ def _slangpy() -> Resource:
 
 
 slangpy = _slangpy()
+CLAMP = slangpy and slangpy.TextureAddressingMode.clamp_to_edge
 
 ENTRY = "mxeon_main"
 THREADS = 64  # threads in a group
@@ -146,7 +147,21 @@ class SlangHost(base.Host):
         position = calls.GIVEN.format("float3(0.0)")
         body = [position, call.statements, f"float3 mxeon_value = {call.value};"]
         environment = self._environment(query.irradiance, query.client)
+        sampler = self._device.create_sampler(address_u=CLAMP, address_v=CLAMP)
+        for name, texels in self.table(query.shader).items():
+            environment["pixelCB"][name] = {"tex": self._texture(texels), "sampler": sampler}
         return self._evaluate(text, call.arguments, body, environment)
+
+    def _drawn_table(self, text: str) -> Array:
+        rows, columns = np.indices((TABLE_SIZE, TABLE_SIZE)) + 0.5
+        places = np.stack([columns, rows], axis=-1).reshape(-1, 2)
+        body = [
+            "vd.SV_Position = float4(place, 0.0, 1.0);",
+            "float3 mxeon_value = mx_generate_dir_albedo_table();",
+        ]
+        size = {"pixelCB": {TABLE + "Size": TABLE_SIZE}}
+        texels = self._evaluate(text, {"place": ("vector2", places)}, body, size)
+        return texels.reshape(TABLE_SIZE, TABLE_SIZE, 3)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         parameters = functions.parameters(source, function)

@@ -19,7 +19,7 @@ import numpy as np
 
 from mxeon.errors import NotRun, install, refused
 from mxeon.hosts import fragment, raster
-from mxeon.hosts.base import Array, Identity
+from mxeon.hosts.base import TABLE, Array, Identity
 from mxeon.hosts.raster import FragmentHost
 from mxeon.jobs.signals import Temporary
 
@@ -35,6 +35,7 @@ TIMEOUT = 60.0  # seconds for one of them
 # wgpu's kinds of bindings.
 FILTERED = {"texture": {"sample_type": "float"}}
 UNFILTERED = {"texture": {"sample_type": "unfilterable-float"}}
+LINEAR = {"mag_filter": "linear", "min_filter": "linear"}
 SAMPLER = {"sampler": {"type": "filtering"}}
 UNIFORM_BINDING = {"buffer": {"type": "uniform"}}
 
@@ -109,7 +110,7 @@ class VulkanHost(FragmentHost):
         texels = [fragment.texels(rows, size, fragment.ODD) for rows in arguments.values()]
         sets: tuple[Bindings, ...] = (
             self._generated(pixel, textures, uniforms),
-            {0: (SAMPLER, self._device.create_sampler())},
+            {0: (SAMPLER, self._sampler(TABLE in textures))},
             {number: (UNFILTERED, self._texture(rows)) for number, rows in enumerate(texels)},
         )
         layouts, pipeline = self._program(pixel, sets)
@@ -203,11 +204,14 @@ class VulkanHost(FragmentHost):
                 block = self._device.create_buffer_with_data(data=data, usage="UNIFORM")
                 bindings[number] = UNIFORM_BINDING, block
             elif match["kind"] == "sampler":
-                bindings[number] = SAMPLER, self._device.create_sampler()
+                bindings[number] = SAMPLER, self._sampler(match["name"].startswith(TABLE))
             else:  # the name of a separate texture ends in _texture
                 texels = halves.get(match["name"].removesuffix("_texture"), WHITE_TEXEL)
                 bindings[number] = FILTERED, self._texture(texels)
         return bindings
+
+    def _sampler(self, linear: bool) -> Resource:
+        return self._device.create_sampler(**(LINEAR if linear else {}))
 
     def _texture(self, texels: Array) -> Resource:
         """A texture of 8-bit, float16 or float32 texels, of one to four components."""

@@ -149,6 +149,10 @@ function render(program, job, data) {
         gl.activeTexture(gl.TEXTURE0 + unit);
         gl.uniform1i(gl.getUniformLocation(program, name), unit);
         const texture = upload(layout, data);
+        if (name == "u_albedoTable") {
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+        }
         if (["u_envRadiance", "u_envIrradiance"].includes(name) && layout.shape[0] > 2) {
             // A map of the environment ends at its poles; the even one of a check keeps NaN in sight.
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);

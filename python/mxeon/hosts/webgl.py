@@ -29,7 +29,7 @@ from mxeon.hosts.calls import PLACED
 from mxeon.hosts.raster import FragmentHost
 from mxeon.jobs.signals import Temporary
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.scene import Scene, VisiblePoints
+from mxeon.shaders.scene import VisiblePoints
 
 try:
     from playwright import sync_api
@@ -140,24 +140,22 @@ class WebGlHost(Chromium, FragmentHost):
         answer = self._ask("identify")
         return Identity(self.name, f"Chromium {answer['browser']}, WebGL2", answer["device"])
 
-    def shade(
+    def _shade(
         self,
         shader: Shader,
-        scene: Scene,
         seen: VisiblePoints,
-        parts: Sequence[raster.Rectangle] = (),
-        directions: int = raster.PICTURE_DIRECTIONS,
+        textures: dict[str, Array],
+        uniforms: raster.Uniforms,
+        parts: Sequence[raster.Rectangle],
     ) -> Array:
         captured, frame = points.outputs(shader), points.frame(seen)
         stages = {"vertex": VERTEX, "pixel": points.pixel_stage(shader)}
         pattern = r"^uniform vec2 (\w+(_uv_scale|_uv_offset));"
         images = re.findall(pattern, shader.stages["pixel"], re.MULTILINE)
-        uniforms = UNIFORMS | {name: PLACED[kind] for name, kind in images}
-        uniforms |= raster.inputs(shader) | raster.light(scene, directions)
-        textures = raster.textures(shader, scene)
+        placed = {name: PLACED[kind] for name, kind in images}
         if captured:
             textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen)
-        return self._draw(stages, uniforms, textures, frame)[::-1]
+        return self._draw(stages, {**UNIFORMS, **placed, **uniforms}, textures, frame)[::-1]
 
     def _evaluate(
         self,

@@ -5,7 +5,7 @@ import os
 import re
 import warnings
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from types import MappingProxyType
 
@@ -38,7 +38,7 @@ from mxeon.shaders.library import (
     own_folders,
 )
 from mxeon.shaders.library_tree import in_words, root
-from mxeon.shaders.methods import UNCHOSEN, Methods, assert_generated
+from mxeon.shaders.methods import UNCHOSEN, UNTABLED, Methods, assert_generated
 
 __all__ = [
     "GENERATORS",
@@ -104,6 +104,7 @@ class Shader:
     - `folders`: Folders of that library which are loaded before MaterialX's own.
     - `root`: Folder whose `libraries` replace MaterialX's own; "" for the installed ones.
     - `methods`: The generator's methods that were chosen.
+    - `table`: Pixel stage with which a client draws the table of albedos, if the method is "table".
     """
 
     name: str
@@ -115,6 +116,7 @@ class Shader:
     folders: tuple[str, ...] = field(default=(), repr=False)
     root: str = field(default="", repr=False)
     methods: Methods = UNCHOSEN
+    table: str = field(default="", repr=False, compare=False)
 
 
 def generate(
@@ -190,6 +192,9 @@ def generate(
     context = context_of(
         content, target, generator, library, lights, policy.path, profile, uniforms, methods, client
     )
+    table = ""
+    if methods.albedo == "table":
+        table = _table_text(target, generator, library, methods)
     elements: Sequence[mx.TypedElement] = checked.renderables
     if element is not None:
         paths = [each.getNamePath() for each in elements]
@@ -230,8 +235,8 @@ def generate(
                     {"pixel": path_tracing.path_text(stages["pixel"], target, each, library)}
                 )
             copy = root(library)
-            shader = Shader(name, path, target, stages, inputs, content, folders, copy, methods)
-            shaders.append(shader)
+            row = name, path, target, stages, inputs, content, folders, copy, methods, table
+            shaders.append(Shader(*row))
     inputs_of_all = [port for shader in shaders for port in shader.inputs]
     files = [
         (port.path, str(port.value))
@@ -248,6 +253,26 @@ def generate(
                 note = ApproximationWarning(shader.element, CYCLES_APPROXIMATION)
                 warnings.warn(note, stacklevel=2)
     return tuple(shaders)
+
+
+def _table_text(
+    target: str, generator: mx_gen.ShaderGenerator, library: str, methods: Methods
+) -> str:
+    """Pixel stage that draws the library's table of albedos by Monte Carlo."""
+    document = mx.createDocument()
+    output = document.addOutput("table", "color3")
+    output.setConnectedNode(document.addNode("constant", "color", "color3"))
+    document.setDataLibrary(load_library(library))
+    sampled = replace(methods, albedo="monteCarlo")
+    context = context_of(document, target, generator, library, False, (), methods=sampled)
+    context.getOptions().hwWriteAlbedoTable = True
+    text = generated(generator, "table", output, context).getSourceCode("pixel")
+    defect, reason, page = UNTABLED.get(target, (None, "", ""))
+    if defect and defect in text:
+        raise NotRun(
+            f"albedo table: MaterialX's text for {target} {reason}; see docs/upstream/{page}.md"
+        )
+    return str(text)
 
 
 @cache

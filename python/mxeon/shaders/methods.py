@@ -13,6 +13,12 @@ CHOICES = {
     "albedo": ("analytic", "table", "monteCarlo"),
 }
 MOST_ITERATIONS = 64
+TABLE_SIZE = 64  # rows and columns of MaterialX's table of albedos
+# Targets whose text of the table does not compile: its defect, why, and the page in docs/upstream.
+UNTABLED = {
+    "essl": ("xy / u_albedoTableSize", "divides a vec2 by an int", "genessl_albedo_table"),
+    "wgsl": ("texture(u_albedoTable,", "reads an undeclared sampler", "genwgsl_albedo_table"),
+}
 # Options of the command.
 OPTIONS = {
     "environment": "--environment",

@@ -39,7 +39,7 @@ from mxeon.models.microfacet.defects import UNCOMPENSATED, schlick_average
 from mxeon.models.microfacet.ggx import smith_g1, smith_lambda
 from mxeon.models.sampling import ggx_sample
 from mxeon.models.transmission import refraction_direction
-from mxeon.shaders.methods import GENERATED, Methods
+from mxeon.shaders.methods import GENERATED, UNTABLED, Methods
 from mxeon.shaders.scene import Client
 
 if TYPE_CHECKING:  # which loads MaterialX
@@ -294,14 +294,20 @@ def clear(case: Case) -> Iterator[Compared]:
 
 
 # Methods of clients: Storm's, and a prefiltered environment with refraction, as MaterialXView has it; for a mirror with
-# albedos by samples. An environment is dim, turned for what reflects it, and tinted twice for what refracts it.
+# albedos by samples and from a table. An environment is dim, turned for what reflects it, and tinted twice for what
+# refracts it.
 OTHERS = (Methods("prefilter", "opacity"), Methods("prefilter", "refraction"))
-SAMPLED = (Methods("prefilter", "refraction", "monteCarlo"),)
+SAMPLED = Methods("prefilter", "refraction", "monteCarlo")
 BOUND = Client(turn=TURNING, intensity=0.5, two_sided=True)
 MIRROR = family(FacetSpec, lambda spec: spec.model == "schlick")
 
 
 def others(case: Case) -> Iterator[Methods]:
+    if not TRANSMITTING(case.spec):
+        yield SAMPLED
+        if case.host.target not in UNTABLED:
+            yield replace(SAMPLED, albedo="table")
+        return
     yield from OTHERS
     if CLEAR(case.spec):  # whose shaders have the text of mode T as well
         yield from searching(case, Methods("fis"), Methods("prefilter"))
@@ -310,7 +316,7 @@ def others(case: Case) -> Iterator[Methods]:
 def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
     """Light with a client's methods against what a node has by any, with the methods."""
     transmits = TRANSMITTING(case.spec)
-    for methods in others(case) if transmits else SAMPLED:
+    for methods in others(case):
         ask = partial(case.evaluating.evaluate, shader=generated(case, methods))
         found = shares(case, ask, methods) if transmits else mirrored(case, ask)
         yield from ((methods, each) for each in found)

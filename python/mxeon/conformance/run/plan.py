@@ -54,7 +54,7 @@ from mxeon.shaders.library import (
     load_library,
 )
 from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
-from mxeon.shaders.methods import GENERATED, UNCHOSEN, Methods
+from mxeon.shaders.methods import GENERATED, UNCHOSEN, UNTABLED, Methods
 from mxeon.shaders.released_graphs import installed
 
 Source = tuple[str, str]  # a file, and the library that it is read with
@@ -330,7 +330,7 @@ def make_plan(
         libraries={each: origins(each) for each in libraries if each not in LIBRARIES},
         compared=tuple(compared),
         unjudged=(
-            *(UNJUDGED if any(map(audits, tasks)) else ()),
+            *((*UNJUDGED, *_untabled(hosts)) if any(map(audits, tasks)) else ()),
             *(row for each in libraries for row in unjudged(each)),
         ),
         options=policy.options | {"--seed": str(seed)} | methods.options,
@@ -343,15 +343,20 @@ def make_plan(
 # What no check judges in any library, each with the reason.
 UNJUDGED = (
     ("displacement, volume shaders and backsurfaceshader", "no host draws them"),
-    (
-        "tables of albedos, u_envRadianceMips above 1, shadow maps of varying depth",
-        "no host has them",
-    ),
+    ("u_envRadianceMips above 1, shadow maps of varying depth", "no host has them"),
     (
         "patterns and images of stdlib",
         "they are only compared with the MaterialX that is installed",
     ),
 )
+
+
+def _untabled(hosts: Iterable[str]) -> Iterator[tuple[str, str]]:
+    for host in hosts:
+        if host_row(host).target in UNTABLED:
+            _, reason, page = UNTABLED[host_row(host).target]
+            text = f"MaterialX's text {reason}; see docs/upstream/{page}.md"
+            yield f"tables of albedos on {host}", text
 
 
 def audits(task: Task) -> bool:

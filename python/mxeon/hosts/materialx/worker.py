@@ -39,6 +39,7 @@ except ImportError as error:
 Chosen: TypeAlias = tuple[tuple[str, str | int | bool], ...]
 FAR = 1e6  # distance of the camera; the shader computes the view from its position
 DIRECTIONS = 256  # directions over which microfacet shaders sum the environment
+TABLE_SIZE = 64  # as MaterialX's text has it
 PICTURES = 8  # cached renderers, each with the program of a document
 ANISOTROPY = ("GL_ARB_texture_filter_anisotropic", "GL_EXT_texture_filter_anisotropic")
 SCREEN = ("-screen", "0", "64x64x24", "-nolisten", "tcp")
@@ -92,12 +93,12 @@ class ShownElement:
         context.registerSourceCodeSearchPath(SEARCH_PATH)
         context.getOptions().targetDistanceUnit = "meter"
         set_options(context.getOptions(), **dict(methods))
+        if ("albedo", "table") in methods:
+            self._lights.setAlbedoTable(albedo_table(generator, content))
         context.getOptions().fileTextureVerticalFlip = True
         self._lights.registerLights(content, [self._sun], context)
         shader = generator.generate("shader", content.getDescendant(element), context)
         self._renderer, self._mesh = open_renderer(), ""
-        images = mx_render_glsl.GLTextureHandler.create(mx_render.StbImageLoader.create())
-        self._renderer.setImageHandler(images)
         self._renderer.setLightHandler(self._lights)
         self._renderer.setCamera(camera())
         self._renderer.createProgram(shader)
@@ -131,7 +132,24 @@ class ShownElement:
 def open_renderer() -> mx_render_glsl.GlslRenderer:
     renderer = mx_render_glsl.GlslRenderer.create(1, 1, mx_render.FLOAT)
     renderer.initialize()
+    images = mx_render_glsl.GLTextureHandler.create(mx_render.StbImageLoader.create())
+    renderer.setImageHandler(images)
     return renderer
+
+
+def albedo_table(generator: mx_gen.ShaderGenerator, content: mx.Document) -> mx_render.Image:
+    """The table of albedos by Monte Carlo, drawn by the library's own text."""
+    context = mx_gen.GenContext(generator)
+    context.registerSourceCodeSearchPath(SEARCH_PATH)
+    context.getOptions().hwWriteAlbedoTable = True
+    set_options(context.getOptions(), albedo="monteCarlo")
+    output = content.addOutput("mxeon_table", "color3")
+    output.setConnectedNode(content.addNode("constant", "mxeon_black", "color3"))
+    renderer = open_renderer()
+    renderer.setSize(TABLE_SIZE, TABLE_SIZE)
+    renderer.createProgram(generator.generate("table", output, context))
+    renderer.renderTextureSpace(mx.Vector2(0.0, 0.0), mx.Vector2(1.0, 1.0))
+    return renderer.captureImage(None)
 
 
 def viewer_generator(document: mx.Document, library: mx.Document) -> mx_gen.ShaderGenerator:
