@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every model by its name, as one object.
 
-Inputs have MaterialX's names, order, units and defaults, whatever the functions of `mxeon.models` have.
+Inputs have MaterialX's names, order, units and defaults, which may differ from the functions of `mxeon.models`.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ SPHERE = ModelSampler(
     lambda wo, u, i: hg_sample(wo, u, 0.0), lambda wo, wi, i: hg_pdf(wo, wi, 0.0), side=None
 )
 FACETS = ("dielectric", "conductor", "schlick")
-# Others have COSINE.
+# Models that are not listed use COSINE.
 SAMPLERS = {
     "translucent": BACK,
     "hair": SPHERE,
@@ -93,13 +93,13 @@ SAMPLERS = {
 NODES_BY_CATEGORY = {
     "oren_nayar_diffuse_bsdf": "qon",
     "eon_diffuse_bsdf": "eon",
-    "generalized_schlick": "schlick",  # not the EDF, whose name is as near
-    # Modes after the first one do not count.
+    "generalized_schlick": "schlick",  # rather than the EDF, whose name is as similar
+    # Reversed, so that a node's first mode wins.
     **{row.category: row.name for row in reversed((*NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }
 
 
-# Other names of models, which messages about an unknown name suggest.
+# Other names of models, suggested in messages about an unknown name.
 ALSO = {
     **dict.fromkeys(("dielectric", "conductor", "schlick"), "ggx"),
     "burley": "disney",
@@ -123,12 +123,12 @@ def model(name: str) -> ShadingModel: ...
 
 
 def model(name: str) -> NodeModel:
-    """The model with this name: of rough diffuse nodes, a known variant of them, or a node of pbrlib.
+    """The model with this name: a rough diffuse model, a known variant of one, or a node of pbrlib.
 
     - `name`: One of `model_names()`, such as "eon", "dielectric" or "zeltner", or the category of a node, such
-      as "conductor_bsdf" or "uniform_edf", which is the model of its default mode.
+      as "conductor_bsdf" or "uniform_edf", for its default mode.
 
-    Raises `ValueError` if there is none, with the names that may be meant.
+    Raises `ValueError` if there is none, with similar names.
 
         >>> gold = model("conductor")
         >>> gold
@@ -145,7 +145,7 @@ def model(name: str) -> NodeModel:
 
 
 def model_names() -> tuple[str, ...]:
-    """Names that `model` knows.
+    """Names accepted by `model`.
 
     >>> model_names()[:2]
     ('lambert', 'oren_nayar')
@@ -154,7 +154,7 @@ def model_names() -> tuple[str, ...]:
 
 
 def _inputs(category: str, names: Iterable[str] = ()) -> tuple[Parameter, ...]:
-    """Inputs of a node, by these names or all of them."""
+    """Inputs of a node: the named ones, or all."""
     return tuple(parameter(category, name) for name in names or DEFAULTS[category])
 
 
@@ -175,7 +175,7 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
     passing, mode = TRANSMISSIONS[row.category], row.fixed["scatter_mode"]
     reflected = row.integral or row.albedo
 
-    # Reflect light from above, and transmit light from below.
+    # Light from above is reflected, light from below transmitted.
     def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
         if mode == "T":
             return passing.value(wo, wi, inputs)
@@ -240,7 +240,7 @@ def _of_openpbr() -> ShadingModel:
     )
     names = [each.quantity for each in parameters]
 
-    # Pass the inputs by name, since the functions have them in another order.
+    # Pass the inputs by name, since the functions take them in another order.
     def called(function: Callable[..., Array], inputs: Inputs, **vectors: Array) -> Array:
         def own(*values: Array) -> Array:
             return function(**dict(zip((*vectors, *names), values, strict=True)))
@@ -261,11 +261,11 @@ def _of_openpbr() -> ShadingModel:
 def _per_coat(
     function: Callable[..., Array | tuple[Array, Array]], inputs: Inputs, *vectors: Array
 ) -> tuple[Array, Array]:
-    """Results of a function of one coat, for rows with a coat each: one result, or two.
+    """Results (one or two) of a function that takes one coat, for rows that each have their own coat.
 
     The numbers of the coat are the last two inputs.
     """
-    # Call it once where there is one coat, and where it refuses more.
+    # A single call suffices for one coat, or if the function must reject several.
     *others, alpha, ior = (*vectors, *inputs.values())
     numbers = [each[0] if len(each) == 1 else each for each in (alpha, ior)]
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
@@ -284,7 +284,7 @@ def _per_coat(
 
 
 def _pair(result: Array | tuple[Array, Array]) -> tuple[Array, Array]:
-    """Results of a call, as a tuple."""
+    """The one or two results of a call, as a tuple."""
     return result if isinstance(result, tuple) else cast(tuple[Array, Array], (result,))
 
 

@@ -95,8 +95,8 @@ from mxeon.models.sampling import unpack_uniforms
 P = ParamSpec("P")
 R = TypeVar("R")
 
-CURVE_NODES = 40  # of the curves, in the cube root of a logarithmic scale of the cosine
-KEPT = 64  # interfaces that are kept
+CURVE_NODES = 40  # Chebyshev nodes per curve, in `scaled_cosine`
+KEPT = 64  # interfaces in the cache
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ class Coat:
     edge: list[float] | Array
 
     def at(self, mu: Array) -> tuple[Array, Array]:
-        """(1 - E_ss) / E_ss, and E_r, both not below 0."""
+        """(1 - E_ss) / E_ss, and E_r, both at least 0."""
         missing, reflected = self._sums(mu, self.missing, self.reflected)
         return missing, arrays.at_most(reflected, 1.0)
 
@@ -125,7 +125,7 @@ class Coat:
         return edge
 
     def _sums(self, mu: Array, *curves: list[float] | Array) -> list[Array]:
-        """Curves at these cosines, not below 0."""
+        """Curves at these cosines, at least 0."""
         x = scaled_cosine(mu, self.alpha)
         return [arrays.at_least_0(chebyshev_sum(cast(Array, each), x)) for each in curves]
 
@@ -160,7 +160,7 @@ def coat_curves(alpha: Array, ior: Array) -> Array:
 
 @lru_cache(maxsize=KEPT)
 def constant_coat(alpha: float, ior: float) -> Coat:
-    """Curves of a dielectric that does not change."""
+    """Cached curves of a dielectric with constant inputs."""
     index = np.asarray(ior)
     return Coat(
         alpha, float(dielectric_avg(index)), *coat_curves(np.asarray(alpha), index).T.tolist()
@@ -169,7 +169,7 @@ def constant_coat(alpha: float, ior: float) -> Coat:
 
 @any_array
 def coat_of(alpha: float, ior: float) -> Coat:
-    """Curves of a dielectric, checked; for arrays of other libraries with gradients, and anew each time."""
+    """Curves of a dielectric, checked. Arrays of other libraries keep gradients and are not cached."""
     numbers = checked_scalar("alpha", alpha, "coat_alpha"), checked_scalar("ior", ior, "coat_ior")
     if not arrays.library(numbers[0]):
         return constant_coat(*map(float, numbers))
@@ -178,7 +178,7 @@ def coat_of(alpha: float, ior: float) -> Coat:
 
 
 def checked_scalar(name: str, value: ArrayLike, quantity: str = "") -> arrays.Numbers:
-    """Argument that is one number for all pairs, checked."""
+    """Check an argument that must be one number for all pairs."""
     number = arguments.checked(name, value, quantity)
     if number.ndim:
         raise ValueError(
@@ -188,9 +188,9 @@ def checked_scalar(name: str, value: ArrayLike, quantity: str = "") -> arrays.Nu
 
 
 def of_one_coat(function: Callable[P, R]) -> Callable[P, R]:
-    """Function of arrays of any library, which are brought to one.
+    """Decorator: convert arrays of any library to a common one.
 
-    Parameters annotated as `float` are the numbers of the coat, which stay as they are where they are plain.
+    Parameters annotated as `float` are the coat's numbers; plain numbers are passed through.
     """
     parameters = signature(function)
     types = {each.name: each.annotation for each in parameters.parameters.values()}
@@ -223,7 +223,7 @@ def dielectric_over_eon_brdf(
 
         f = f_r + (1 - E_r(mu_o)) f_EON
 
-    Result (..., C): 1/sr; not reciprocal, as neither of both is. Accuracy: E_r and the energy compensation,
+    Result (..., C): 1/sr; not reciprocal, as compensation and layering depend on wo only. Accuracy: E_r and the compensation,
     which the first call for a dielectric tabulates, have an error below 2e-7. [MaterialX2026], sections
     `layer` and Energy Compensation; [Portsmouth2025], Eq. (19).
 
@@ -355,7 +355,7 @@ def _alpha(specular_roughness: ArrayLike, specular_ior: ArrayLike) -> float:
 def _metal_share(
     wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike, metalness: ArrayLike
 ) -> Array:
-    """Share of the metal, (..., 1); raise ValueError unless all arguments broadcast."""
+    """Weight of the metal, (..., 1); raise ValueError unless all arguments broadcast."""
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
     numbers = arguments.checked_all({"roughness": roughness, "metalness": metalness})
     arguments.lead_shape(vectors | {"rho": checked_color("rho", rho)}, numbers)
@@ -366,7 +366,7 @@ def _metal_share(
 def _albedo_inputs(
     mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike, metalness: ArrayLike
 ) -> tuple[Array, Array, Array]:
-    """The viewer's cosine, the color, and the share of the metal, checked, with an axis for channels."""
+    """The viewer's cosine, the color and the metal's weight, checked, with a channel axis."""
     numbers = {"mu": mu, "roughness": roughness, "metalness": metalness}
     (color,), (height, _, share) = checked_colors({"rho": rho}, **numbers)
     return cosine(arrays.at_least_0(height)), color, share
@@ -378,7 +378,7 @@ def mixed_sample(
 ) -> Array:
     """Direction reflected by a facet with probability `share`, or drawn by `base`.
 
-    What is left of u1, which chooses, is stretched over [0, 1).
+    u1 makes the choice and is then rescaled to [0, 1).
     """
     xp = array_namespace(share)
     u1, u2 = unpack_uniforms(u)
@@ -440,7 +440,7 @@ def dielectric_over_eon_sample(
     alpha: float,
     ior: float,
 ) -> tuple[Array, Array]:
-    """Direction reflected by a visible facet or drawn for EON, by their albedos; and its density.
+    """Direction reflected by a visible facet or drawn for EON, chosen by their albedos, and its density.
 
     `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr:
     the density of both lobes together, each times the probability of its choice. The dielectric is
@@ -506,13 +506,13 @@ class Varnish:
     means: Sequence[float | Array]
 
     def at(self, mu: Array) -> list[Array]:
-        """E_single, D, and b mu' / S'; the sums that stand for the first two may fall below 0."""
+        """E_single, D, and b mu' / S'; the polynomials for the first two may fall below 0."""
         x = scaled_cosine(mu, self.alpha)
         return [chebyshev_sum(cast(Array, each), x) for each in self.curves]
 
 
 def nonnegative(curves: Sequence[Array]) -> tuple[Array, Array, Array]:
-    """Curves of `Varnish.at` with E_single and D not below 0."""
+    """Curves of `Varnish.at` with E_single and D clamped to at least 0."""
     single, several, turned = curves
     return arrays.at_least_0(single), arrays.at_least_0(several), turned
 
@@ -600,7 +600,7 @@ def varnish_albedo(
 
 
 def nonzero(x: float | Array) -> Array:
-    """x, or 1 where it is 0 and what it divides is too."""
+    """x, or 1 where it is 0: the dividend is 0 there, too."""
     xp, zero = array_namespace(x), cast(Array, x) == 0.0
     return xp.where(zero, 1.0, x)
 
@@ -615,9 +615,9 @@ def cosine_at(alpha: Array, x: Array) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=1)
 def integral_matrices() -> tuple[Array, Array, Array, Array]:
-    """Places of the nodes of integrals, dx/dy there, and integrals of what has given values there.
+    """Quadrature places, dx/dy there, and matrices that integrate a function from its values there.
 
-    The places are x = 1 - (1 - y)^2, so that sqrt(1 - mu^2) is smooth in y, whose Chebyshev nodes they have.
+    The places are x = 1 - (1 - y)^2 at Chebyshev nodes y, so that sqrt(1 - mu^2) is smooth in y.
     The integrals go from 0 to the nodes of the curves, (CURVE_NODES, FINE), and to these and 1, (FINE + 1, FINE).
     """
     y = chebyshev_nodes(FINE)
@@ -633,14 +633,14 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     places, slope, to_curves, to_nodes = (like(each, alpha) for each in integral_matrices())
     matrix = like(chebyshev_coefficients(np.eye(TERMS)), alpha)
 
-    # The facets: E_single, and D.
+    # Facets: E_single and D.
     mu, _ = cosine_at(alpha, like(chebyshev_nodes(TERMS), alpha))
     missing, reflected = coat.at(mu)
     single = reflected / (1.0 + coat.average * missing)
     several = single * single * missing * (1.0 + missing)
     facets = xp.tensordot(matrix, single, axes=1), xp.tensordot(matrix, several, axes=1)[:SMOOTH]
 
-    # What they return: E_r 2 mu' dmu' at the nodes of integrals, and the part beyond the critical angle.
+    # Returned light: E_r 2 mu' dmu' at the quadrature nodes, and the part beyond the critical angle.
     fine, step = cosine_at(alpha, places)
     single, several = (arrays.at_least_0(chebyshev_sum(each, places)) for each in facets)
     area = 2.0 * fine * step * slope
@@ -678,14 +678,14 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
 
 @lru_cache(maxsize=KEPT)
 def constant_varnish(alpha: float, ior: float) -> Varnish:
-    """An interface that does not change."""
+    """A cached interface with constant inputs."""
     curves, means = varnish_curves(np.asarray(alpha), np.asarray(ior))
     return Varnish(alpha, ior, [each.tolist() for each in curves], means.tolist())
 
 
 @any_array
 def varnish_of(alpha: float, ior: float) -> Varnish:
-    """An interface, checked; for arrays of other libraries with gradients, and anew each time."""
+    """An interface, checked. Arrays of other libraries keep gradients and are not cached."""
     coat_of(alpha, ior)
     if not arrays.library(alpha):
         return constant_varnish(float(alpha), float(ior))
@@ -764,7 +764,7 @@ def varnished_albedo_avg(rho: ArrayLike, roughness: ArrayLike, alpha: float, ior
 def varnished_sample(
     wo: ArrayLike, u: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> tuple[Array, Array]:
-    """Direction reflected by a visible facet, or drawn by the cosine; and its density.
+    """Direction reflected by a visible facet or drawn by the cosine, and its density.
 
     `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
     The facets are chosen with probability E_single / E at the mean of the channels. [Dupuy2023].
@@ -797,7 +797,7 @@ def varnished_pdf(
 
 @any_array
 def _by_cosine(u: ArrayLike, share: Array) -> Array:
-    """Direction drawn by the cosine with what u1 leaves: 1 - u1 over 1 - share has all digits at u1 near 1."""
+    """Direction drawn by the cosine with the rescaled u1: (1 - u1) / (1 - share) keeps all digits near u1 = 1."""
     u1, u2 = unpack_uniforms(u)
     rest = arrays.at_most((1.0 - u1) / nonzero(1.0 - share), 1.0)
     return sampling.around(root(rest), root(1.0 - rest), u2)

@@ -57,7 +57,7 @@ def cosines(wo: Array, wi: Array) -> tuple[Array, Array, Array]:
 
 
 def of_cosines(formula: Callable[..., Array]) -> Callable[..., Array]:
-    """A formula of mu_o, mu_i and s, with directions in front of its other arguments."""
+    """A formula in mu_o, mu_i and s, as a function of directions and its other arguments."""
     return lambda wo, wi, *material: formula(*cosines(wo, wi), *material)
 
 
@@ -74,7 +74,7 @@ def fon_loss_mu(mu: Array) -> Array:
 
 
 def _fon_loss(mu: Array) -> Array:
-    """H(mu), whose steps have no derivative at mu = 1."""
+    """H(mu), not differentiable at mu = 1."""
     xp = array_namespace(mu)
     S = xp.sqrt((1.0 - mu) * (1.0 + mu))
     t = mu / (1.0 + S)
@@ -125,9 +125,9 @@ def eon_multiple_ratio(rho: Array, roughness: Array) -> Array:
 
 
 def oren_nayar_quotient(value: Array, divisor: Array) -> Array:
-    """`value / divisor`, and 0 where a divisor >= 0 vanishes: this family has no limit there.
+    """`value / divisor`, or 0 if the divisor, which is >= 0, vanishes: there is no limit there.
 
-    A divisor below the smallest normal number counts as 0, for the quotient might overflow.
+    Divisors below the smallest normal number count as 0, since the quotient might overflow.
     """
     xp = array_namespace(value, divisor)
     return value / xp.where(divisor < arrays.least_normal(divisor), np.inf, divisor)
@@ -221,7 +221,7 @@ def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
 
 
 def eon_brdf_approx_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
-    """EON with the quartic for H, which is kept from falling below 0 where mu < 0.0014."""
+    """EON with the quartic for H, clamped to 0 where it is negative (mu < 0.0014)."""
     losses = arrays.at_least_0(fon_loss_approx(mu_o)) * arrays.at_least_0(fon_loss_approx(mu_i))
     single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
     multi_scatter = eon_multiple_ratio(rho, roughness) * losses
@@ -524,7 +524,7 @@ def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
 
 
 def eon_albedo(loss: Array | float, rho: Array, r: Array) -> Array:
-    """Albedo of EON where FON loses r A loss."""
+    """Albedo of EON, given that FON loses r A loss."""
     return rho * (1.0 - (1.0 - rho) * r * loss / eon_denominator(rho, r))
 
 
@@ -561,7 +561,7 @@ def qon_albedo_avg(sigma: ArrayLike) -> Array:
 
 
 # [Portsmouth2025], Eqs. (32) and (34); color and roughness in [0, 1]; largest error of rho 4.41e-3,
-# where the paper states less than 0.3 %, and 2.84e-3.
+# (the paper states less than 0.3 %) and 2.84e-3.
 NORMAL = (0.258831, 0.98995)
 AVERAGE = 0.189468
 
@@ -583,7 +583,7 @@ def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
     b, d = 1.0 + (C1 - C2) * r * color, 1.0 + C1 * r
     sqrt = array_namespace(color, r).sqrt
     rho = 2.0 * color * d / (b + sqrt(b * b + 4.0 * C2 * r * d * color))
-    # A color of 1 may be rounded to 1 + 2^-52, which no model takes.
+    # A color of 1 may round to 1 + 2^-52, which models reject.
     return arrays.trimmed(rho, 1.0)
 
 
@@ -635,7 +635,7 @@ def _polynomial(color: ArrayLike, roughness: ArrayLike, slope: float, zero: floa
     return color + slope * (zero - color) * color * r
 
 
-# Wrong variants that renderers implement, to recognize them by.
+# Wrong variants that renderers implement, so that they can be recognized.
 FLOOR = 0.1  # least reflectance that Babylon.js passes to EON
 
 

@@ -28,11 +28,11 @@ from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.microfacet import fresnel as fresnel_formulas
 
 LOBES = ("R", "TT", "TRT", "TRRT+")
-SCALE = np.sqrt(np.pi / 8.0)  # of the logistic distribution: Azimuthal Scattering
-LEAST_DIVISOR = 1e-300  # of numbers that divide, lest a quotient overflow by itself
+SCALE = np.sqrt(np.pi / 8.0)  # scales s of the logistic distribution: Azimuthal Scattering
+LEAST_DIVISOR = 1e-300  # smaller divisors would overflow
 
-# Coefficients of (x / 20)^(2 k) in the power series of I_0, which has positive terms alone, and of (20 / x)^k in
-# the asymptotic one, as exact beyond x = 20, its least term being exp(-2 x). Both end where a term is below 2^-53.
+# Coefficients of (x / 20)^(2 k) in the power series of I_0, whose terms are all positive, and of (20 / x)^k in the
+# asymptotic series, used beyond x = 20, where its least term is exp(-2 x). Both stop at a term below 2^-53.
 BESSEL, ORDERS = 20.0, np.arange(1, 48)
 SERIES = np.cumprod(np.append(1.0, (0.5 * BESSEL / ORDERS) ** 2)).tolist()
 TAIL = np.cumprod(
@@ -41,7 +41,7 @@ TAIL = np.cumprod(
 
 
 def bessel_scaled(x: Array) -> Array:
-    """exp(-x) I_0(x) for x >= 0, of [Olver2010], Eq. 10.25.2 and 10.40.1."""
+    """exp(-x) I_0(x) for x >= 0: [Olver2010], Eq. 10.25.2 and 10.40.1."""
     xp = array_namespace(x)
     small, large = xp.minimum(x, BESSEL), xp.maximum(x, BESSEL)
     series, tail = _polynomial(SERIES, xp.square(small / BESSEL)), _polynomial(TAIL, BESSEL / large)
@@ -74,7 +74,7 @@ def longitudinal(sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Arra
 
 
 def azimuthal(phi: Array, s: Array) -> Array:
-    """N_p of an angle x = phi - Phi_p, which is wrapped into [-pi, pi]: Azimuthal Scattering.
+    """N_p at the angle x = phi - Phi_p, wrapped into [-pi, pi]: Azimuthal Scattering.
 
     Printed: l(x, s) / (L(pi, s) - L(-pi, s)) of the logistic density l and its integral L = 1 / (1 + e^(-x/s)), s
     scaled by sqrt(pi / 8). l is even, so that with f = e^(-|x|/s) it is f / (s (1 + f)^2) and never overflows;
@@ -88,7 +88,7 @@ def azimuthal(phi: Array, s: Array) -> Array:
 
 
 def attenuation(F: Array, T: Array) -> Array:
-    """A_p, (4, ...): Attenuation Factors. Where F = T = 1, that of TRRT+ has the limit 0."""
+    """A_p, (4, ...): Attenuation Factors. For F = T = 1, TRRT+ has the limit 0."""
     xp = array_namespace(F, T)
     pass_through = xp.square(1.0 - F)
     rest = 1.0 - F * T
@@ -98,10 +98,10 @@ def attenuation(F: Array, T: Array) -> Array:
 
 @dataclass(frozen=True)
 class HairForm:
-    """The model in the text's form, or in one that a shader may have in its place.
+    """The model in the text's form, or in another form that shaders use.
 
     - `tilts_light`: Whether the cuticle's tilt turns the light's inclination, and not the viewer's.
-    - `effective`: Whether F has the effective index, and the angle gamma_o of the cross-section.
+    - `effective`: Whether F uses the effective index and the cross-section's angle gamma_o.
     """
 
     longitudinal: Callable[[Array, Array, Array, Array, Array], Array] = longitudinal  # M_p
@@ -148,7 +148,7 @@ def section(wo: Array, ior: Array) -> tuple[Section, Array]:
 def attenuations(
     view: Section, effective: Array, ior: Array, absorption: Array, form: HairForm
 ) -> Array:
-    """A_p of a view, (4, C, ...), of absorptions (C, ...)."""
+    """A_p of a view, (4, C, ...), for absorptions (C, ...)."""
     xp, least = (
         array_namespace(view.sin_o, ior, absorption),
         max(LEAST_DIVISOR, arrays.least_normal(ior)),
@@ -200,7 +200,7 @@ def distribution(
     return M * azimuthal(phi - exit_angle, s)
 
 
-HAIR_BLOCK = 4096  # elements at a time: a lobe keeps many numbers for each
+HAIR_BLOCK = 4096  # elements per block; a lobe needs much memory for each
 TINTS, ROUGHNESSES = (
     tuple(f"{prefix}_{lobe}" for lobe in ("R", "TT", "TRT")) for prefix in ("tint", "roughness")
 )
@@ -234,7 +234,7 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
     numbers = {name: values.pop(name) for name in ("ior", "cuticle_angle")}
     colors = {name: values[name] for name in (*TINTS, "absorption_coefficient")}
 
-    # Sum t_p A_p M_p N_p over the lobes; that of the higher orders has the tint and roughness of TRT.
+    # Sum t_p A_p M_p N_p over the lobes; higher orders use TRT's tint and roughness.
     def formula(wo: Array, wi: Array, **inputs: Array) -> Array:
         ior, alpha = inputs["ior"], np.pi * (inputs["cuticle_angle"] - 0.5)
         view, effective = section(wo, ior)
@@ -330,7 +330,7 @@ DEFAULTS: dict[str, float | tuple[float, ...]] = {
 
 
 def _checked(inputs: dict[str, ArrayLike], wo: arrays.Numbers) -> dict[str, Array]:
-    """Values of all ports of the node, as arrays of wo's library; those of colors (..., C)."""
+    """Values of all ports of the node, as arrays of wo's library; colors are (..., C)."""
     unknown = set(inputs) - set(DEFAULTS)
     if unknown:
         known = ", ".join(DEFAULTS)
@@ -345,7 +345,7 @@ def _checked(inputs: dict[str, ArrayLike], wo: arrays.Numbers) -> dict[str, Arra
     return values
 
 
-# Absorption of the pigments in red, green and blue, per radius of the fiber.
+# Absorption of each pigment in red, green and blue, per radius of the fiber.
 EUMELANIN = (0.419, 0.697, 1.37)
 PHEOMELANIN = (0.187, 0.4, 1.05)
 
@@ -440,5 +440,5 @@ def chiang_hair_absorption_from_color(
 
 
 def _color(name: str, value: ArrayLike) -> arrays.Numbers:
-    """A color of the range that its name has."""
+    """A color, checked against the range for its name."""
     return arguments.checked_triples(name, checked(name, value))

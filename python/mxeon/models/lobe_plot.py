@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 VIEWS = (0.0, 30.0, 60.0)  # polar angles of the viewer, degrees
 VIEW_COLORS = ("#6a4c93", "#c9811b", "#1b8f8f")  # none of them a channel's
 CHANNEL_COLORS = ("#d8505f", "#2f9e63", "#3f7fd1")
-ANGLES = 721  # of a lobe
+ANGLES = 721  # points per lobe
 FIBER = "chiang_hair_bsdf"
 STYLE = {"axes.grid": True, "grid.alpha": 0.3, "font.size": 9, "axes.titlesize": 10}
 
 
 class Drawn(Protocol):
-    """A model that can be drawn, as `mxeon.models.shading_model.ShadingModel`."""
+    """A model that can be plotted, such as `mxeon.models.shading_model.ShadingModel`."""
 
     @property
     def lights(self) -> str: ...
@@ -40,8 +40,8 @@ class Drawn(Protocol):
 
 
 def draw(model: Drawn, inputs: Mapping[str, ArrayLike], path: str | None = None) -> Figure:
-    """The figure of a model with these inputs, one material; written to `path` if there is one."""
-    # Load matplotlib, which the models do without.
+    """The figure of a model with these inputs, one material; written to `path` if given."""
+    # Only plots need matplotlib.
     try:
         from matplotlib import style
         from matplotlib.figure import Figure
@@ -65,7 +65,7 @@ def draw(model: Drawn, inputs: Mapping[str, ArrayLike], path: str | None = None)
 
 
 def _plane(angles: ArrayLike) -> Array:
-    """Directions in the plane of the tangent, by their angles from the normal in radian."""
+    """Directions in the plane of the tangent, from their angles to the normal in radian."""
     angle = np.asarray(angles, np.float64)
     return np.stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)], axis=-1)
 
@@ -73,7 +73,7 @@ def _plane(angles: ArrayLike) -> Array:
 def _lobes(model: Drawn, inputs: Mapping[str, ArrayLike]) -> tuple[Array, list[Array]]:
     """Angles of lights, and for each view the value times |cosine|, averaged over the channels.
 
-    The value of a fiber has no cosine beside it.
+    Values of a fiber are not multiplied by the cosine.
     """
     ends = {"front": (-0.5, 0.5), "back": (0.5, 1.5), "all sides": (-1.0, 1.0)}[model.lights]
     angles = np.linspace(ends[0] * np.pi + 1e-4, ends[1] * np.pi - 1e-4, ANGLES)
@@ -88,7 +88,7 @@ def _lobes(model: Drawn, inputs: Mapping[str, ArrayLike]) -> tuple[Array, list[A
 
 
 def _draw_lobe(axes: PolarAxes, model: Drawn, inputs: Mapping[str, ArrayLike]) -> None:
-    """Value times cosine over the angle of the light, for some views, which are marked."""
+    """Value times cosine over the angle of the light; the views are marked."""
     angles, lobes = _lobes(model, inputs)
     for view, color, lobe in zip(VIEWS, VIEW_COLORS, lobes, strict=True):
         axes.plot(angles, lobe, color=color, linewidth=1.2, label=f"viewer at {view:g}°")
@@ -128,7 +128,7 @@ def _draw_albedo(axes: Axes, model: Drawn, inputs: Mapping[str, ArrayLike]) -> N
 
 
 def _draw_density(axes: Axes, model: Drawn, inputs: Mapping[str, ArrayLike]) -> None:
-    """Density of samples over the angle of the light, and what it would be without any noise."""
+    """Density of samples over the angle of the light, and the density for zero variance."""
     axes.set(title="density of samples, 1/sr", xlabel="light's angle, degrees")
     angles, lobes = _lobes(model, inputs)
     for view, color, lobe in zip(VIEWS, VIEW_COLORS, lobes, strict=True):

@@ -93,7 +93,7 @@ def conical_edf(
 
 
 def conical_falloff(mu: Array, inner: Array, outer: Array) -> Array:
-    """Share of the radiance at cosines `mu`, without checks; 1 in the cone, 0 outside."""
+    """Factor of the radiance at cosines `mu`: 1 in the cone, 0 outside. Arguments are not checked."""
     xp = array_namespace(mu, inner, outer)
     soft = outer > inner
     width = xp.where(soft, cone_width(inner, outer), 1.0)
@@ -188,7 +188,7 @@ def cone_width(inner: Array, outer: Array) -> Array:
 def _checked(
     wo: ArrayLike, colors: Mapping[str, ArrayLike], **numbers: ArrayLike
 ) -> tuple[Array, list[Array], list[Array]]:
-    """Cosines of the view, and what `checked_colors` returns, all of which broadcast."""
+    """Cosines of the view, and the result of `checked_colors`; all broadcast."""
     directions = checked_sphere("wo", wo)
     vectors, values = checked_colors(colors, **numbers)
     parts = dict(zip(colors, vectors, strict=True))
@@ -211,7 +211,7 @@ def extinction(absorption: ArrayLike, scattering: ArrayLike) -> Array:
 
 @any_array
 def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayLike) -> Array:
-    """Share T = exp(-sigma_t t) of the radiance that passes a homogeneous medium, without what is scattered in.
+    """Share T = exp(-sigma_t t) of the radiance that passes a homogeneous medium, without in-scattering.
 
     - `distance`: t in m, in [0, 1e50].
 
@@ -229,7 +229,7 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
 
 @any_array
 def single_scattering_albedo(absorption: ArrayLike, scattering: ArrayLike) -> Array:
-    """Share of the light that leaves a ray by being scattered, sigma_s / sigma_t; 0 where none leaves it.
+    """Share of the extinction due to scattering, sigma_s / sigma_t; 0 without extinction.
 
     [MaterialX2026], section `anisotropic_vdf`, Extinction.
 
@@ -307,12 +307,12 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
     lead_shape({"wo": views, "wi": lights}, {"g": mean})
     xp = array_namespace(views, lights, mean)
     side = xp.where(mean < 0.0, -1.0, 1.0)[..., np.newaxis]
-    difference = 1.0 * views + side * lights  # 0 where the deflection is likeliest
+    difference = 1.0 * views + side * lights  # 0 at the most likely deflection
     return _phase(0.5 * xp.sum(difference**2, axis=-1), mean)[()]
 
 
 def _around(axis: Sequence[Array], local: Sequence[Array]) -> list[Array]:
-    """Components of directions, of a frame with the normal +z, in one with the normal `axis`."""
+    """Components of directions, from a frame with normal +z to one with normal `axis`."""
     where, aside = array_namespace(*axis).where, abs(axis[0]) < 0.5
     tangent = _unit(_cross((where(aside, 1.0, 0.0), where(aside, 0.0, 1.0), 0.0 * axis[2]), axis))
     frame = tangent, _cross(axis, tangent), axis
@@ -326,13 +326,13 @@ def _cross(a: Sequence[Array], b: Sequence[Array]) -> list[Array]:
 
 
 def _unit(w: Sequence[Array]) -> list[Array]:
-    """Components of a vector over its length."""
+    """Components of a vector, normalized."""
     length = arrays.root(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
     return [each / length for each in w]
 
 
 def _phase(less: Array, g: Array) -> Array:
-    """The phase function at 1 - cos for g >= 0, and at 1 + cos for g < 0."""
+    """The phase function in terms of `less`, 1 - cos for g >= 0 and 1 + cos for g < 0."""
     xp = array_namespace(less, g)
     size = xp.abs(g)
     square = (1.0 - size) ** 2 + 2.0 * size * less
@@ -341,7 +341,7 @@ def _phase(less: Array, g: Array) -> Array:
 
 @any_array
 def light_radiance(emission: ArrayLike, intensity: ArrayLike, exposure: ArrayLike) -> Array:
-    """Radiance of a light source: that of its EDF, scaled in linear units and in stops.
+    """Radiance of a light source: the radiance of its EDF, scaled linearly and in stops.
 
         L_e = I 2^E L_edf
 
@@ -360,7 +360,7 @@ def light_radiance(emission: ArrayLike, intensity: ArrayLike, exposure: ArrayLik
 
 @any_array
 def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLike) -> Array:
-    """Radiance O (L_e + L_s) of a surface, without the light from behind, of which 1 - O passes.
+    """Radiance O (L_e + L_s) of a surface. Light from behind, of which 1 - O passes, is not included.
 
     - `emission`, `scattered` (..., C): L_e of its EDF, and L_s, the integral of its BSDF over the
       light, per channel, in [0, 1e50].
@@ -384,7 +384,7 @@ def volume_radiance(
     scattering: ArrayLike,
     distance: ArrayLike,
 ) -> Array:
-    """Radiance of a ray through a homogeneous medium, without the light that is scattered into it.
+    """Radiance of a ray through a homogeneous medium, without in-scattering.
 
         L = L_0 T + L_e t (1 - T) / (sigma_t t)
 
@@ -407,16 +407,16 @@ def volume_radiance(
     return light * xp.exp(-depth) + emitted * t * share
 
 
-# Of the text's inversion, with its digits: the quotients of van de Hulst's fit, rounded.
+# Coefficients of the text's inversion: the quotients of van de Hulst's fit, rounded as printed.
 LINEAR = (4.09712, 4.20863)
 SQUARED = (9.59217, 41.6808, 17.7126)
-BLUR_NODES, PANELS = 50, 40  # of the quadrature of the blur, whose integrand has a kink
-FAR = 3.0  # length of the profile's second exponential over that of the first
+BLUR_NODES, PANELS = 50, 40  # nodes per panel; the blur's integrand has a kink
+FAR = 3.0  # length of the profile's second exponential, relative to the first
 
 
 @any_array
 def subsurface_albedo(rho: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Array:
-    """Single-scattering albedo in (0, 1] of a medium that has a diffuse reflectance.
+    """Single-scattering albedo in (0, 1] of a medium with a given diffuse reflectance.
 
         d = 4.09712 + 4.20863 rho - sqrt(9.59217 + 41.6808 rho + 17.7126 rho^2)
         w0 = 1 - d^2,  w = w0 / (1 - g (1 - w0))
@@ -443,7 +443,7 @@ def _single_scatter(color: Array, g: Array) -> Array:
 def subsurface_coefficients(
     rho: ArrayLike, radius: ArrayLike, scatter_anisotropy: ArrayLike = 0.0
 ) -> tuple[Array, Array]:
-    """Coefficients of scattering and of absorption, each over a length.
+    """Coefficients of scattering and of absorption, per unit of length.
 
         sigma_s = w / l,  sigma_a = (1 - w) / l
 
@@ -461,7 +461,7 @@ def subsurface_coefficients(
 
 @any_array
 def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
-    """Share of the light that leaves at a distance from where it enters, per area.
+    """Share of the light that leaves at a distance from its point of entry, per area.
 
         R(r) = (exp(-r / l) + exp(-r / (3 l))) / (8 pi l r)
 
@@ -497,7 +497,7 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
 
 
 def blur_to(mu: Array, reach: Array, far: float) -> Array:
-    """`diffusion_blur` of valid arrays, whose second exponential is so many times as long as the first."""
+    """`diffusion_blur` on valid arrays; `far` is the length of the second exponential over the first's."""
     reach = reach[..., np.newaxis]
     (near, share), (rest, other) = _exponential(mu, reach), _exponential(mu, far * reach)
     total = 0.25 * share + 0.75 * other
@@ -505,7 +505,7 @@ def blur_to(mu: Array, reach: Array, far: float) -> Array:
 
 
 def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
-    """Mean over the circles of one exponential of the profile, and its share on the sphere."""
+    """Blurred cosine for one exponential of the profile, and the exponential's share on the sphere."""
     xp, rule = array_namespace(mu, reach), unit_rule(BLUR_NODES, PANELS)
     u, weights = (like(each, reach) for each in rule)
     share = -xp.expm1(-2.0 / reach)
@@ -519,7 +519,7 @@ def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
     return xp.sum(weights * circle, axis=-1), share[..., 0]
 
 
-# h c / k_B of the SI of 2019, which is exact, in m K.
+# h c / k_B in m K, exact in the SI of 2019.
 SECOND = 6.62607015e-34 * 299792458.0 / 1.380649e-23
 NANOMETER = 1e-9  # m
 LUMINANCE = np.linalg.inv(XYZ_TO_REC709)[1]  # Y of linear Rec. 709
@@ -551,8 +551,8 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
     kelvin = checked_numbers(temperature=temperature)[0][..., np.newaxis]
     xp = array_namespace(kelvin)
     exponent = SECOND / (like(NANOMETER * WAVELENGTHS, kelvin) * kelvin)
-    least = exponent[..., -1:]  # of the longest wavelength
-    # exp(x) - 1 over exp(least), which never overflows for the terms that count
+    least = exponent[..., -1:]  # smallest exponent, at the longest wavelength
+    # (exp(x) - 1) / exp(least); only terms that do not matter reach the clamp
     growth = xp.exp(xp.minimum(exponent - least, 700.0)) * -xp.expm1(-exponent)
     xyz = xp.tensordot(like(WAVELENGTHS**-5.0, kelvin) / growth, like(CIE_1931, kelvin), axes=1)
     return xyz / xyz[..., 1:2]

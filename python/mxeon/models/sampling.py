@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Importance sampling: a sampler is a pair, x_sample(...) -> wi, pdf and x_pdf(...).
 
-Argument order `wo`, `wi`, `u`, `roughness`, without those that a sampler does not depend on.
+Arguments come in the order `wo`, `wi`, `u`, `roughness`; a sampler omits those it does not depend on.
 
 - `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, normal +z, z >= 0.
-- `wi` (..., 3): Direction to the light, a unit vector; of samples that may lie below the horizon those with z < 0
-  are wasted, their weight is 0.
+- `wi` (..., 3): Direction to the light, a unit vector. If samples may lie below the horizon, those with z < 0
+  are wasted: their weight is 0.
 - `u` (..., 2): Independent uniform random numbers, in [0, 1).
 - `roughness` (...): In [0, 1]; of Zeltner's sheen at least 0.01. For GGX (..., 2) or (): alpha along tangent +x
   and bitangent.
@@ -174,9 +174,9 @@ def _uniform_density(wi: Numbers) -> Array:
     return (0.0 * wi[..., 2] + 0.5 / np.pi)[()]
 
 
-LEAST_COSINE = 2.0**-53  # of a sample
+LEAST_COSINE = 2.0**-53  # smallest cosine that `eon_sample` returns
 
-# Our fits, tools/fits/eon_sampling.py. Random number and fitted root of it in [0, 1]; largest relative
+# Fits made by tools/fits/eon_sampling.py. The random number and its fitted root are in [0, 1]; largest relative
 # error of the density 1.27e-5 and 5.7e-6.
 MULTIPLE = (
     -0.1221923217,
@@ -221,7 +221,7 @@ def eon_sample(
     cosine, sine, S_o = azimuth_frame(wo)
     mu_o, S_o = at_most(wo[..., 2], 1.0), at_most(S_o, 1.0)
     wi = rotate_z(eon_draw(mu_o, S_o, u1, u2, rho, roughness), cosine, sine)
-    # The end of a part may reach the horizon, where the density is 0 and a weight 0/0.
+    # A part may end at the horizon, where the density is 0 and the weight would be 0/0.
     wi = stack_xyz(wi[..., 0], wi[..., 1], array_namespace(wi).maximum(wi[..., 2], LEAST_COSINE))
     return wi, eon_density_mu(*cosines(wo, wi), rho, roughness)
 
@@ -252,7 +252,7 @@ def eon_density_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Ar
 
 def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughness: Array) -> Array:
     """Direction drawn from one of the four parts; `wo` has azimuth 0."""
-    # Choose a part by u1, and stretch what is left of u1 over [0, 1).
+    # Choose a part by u1, then rescale u1 within that part to [0, 1).
     parts = eon_integrals(mu_o, S_o, rho, roughness)
     xp = array_namespace(*parts)
     ends = [parts[0]]
@@ -262,7 +262,7 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     starts = [0.0 * ends[0], *ends[:-1]]
     v = [stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
     rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])  # 1 - v of the flat part
-    # Draw a cosine from each part, and keep the one chosen; the flat part has no cosine first.
+    # Draw a cosine from each part and keep the chosen one. The flat part does not start from a cosine.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
     lower = eon_lower_cosine(x, fractional_power(1.0 - x, 1.0 / 3.0))
     upper = eon_upper_cosine(fractional_power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
@@ -291,15 +291,15 @@ def eon_cube_gap(mu: Array, S: Array) -> Array:
 
 
 def eon_segment(mu: Array, S: Array) -> Array:
-    """K(theta), integral of sin^2 (1 - cos); near the normal its terms cancel, perhaps below 0."""
+    """K(theta), integral of sin^2 (1 - cos). Near the normal the terms cancel and may fall below 0."""
     xp = array_namespace(mu, S)
     return xp.maximum(0.5 * (xp.atan2(S, mu) - S * mu) - S**3 / 3.0, 0.0)
 
 
 def stretched(u: Array, start: Array, end: Array) -> Array:
-    """`u` mapped from [start, end) to [0, 1); what lies outside goes to the nearer end.
+    """`u` mapped from [start, end) to [0, 1), clamped to the nearer end.
 
-    It goes there before the division, which would overflow for the shortest intervals.
+    Clamping before the division avoids an overflow for the shortest intervals.
     """
     xp = array_namespace(u, start, end)
     length = xp.where(end > start, end - start, 1.0)
@@ -351,7 +351,7 @@ def eon_multiple_cosine(t: Array) -> Array:
 
 
 def eon_flat_draw(v: Array, u2: Array, q: Array, rest: Array | None = None) -> Array:
-    """Direction drawn in proportion to (1 + q x) on the disk; `rest` is 1 - v, where it has more digits.
+    """Direction drawn in proportion to (1 + q x) on the disk; `rest` is 1 - v, if known more accurately.
 
     Along each chord of the disk, x is drawn by its inverse distribution from the uniform point
     (x, y). z is the square root of 1 - x^2 - y^2 without a cancellation.
@@ -364,7 +364,7 @@ def eon_flat_draw(v: Array, u2: Array, q: Array, rest: Array | None = None) -> A
 def eon_flat_direction(
     v: Array, x: Array, y: Array, q: Array, rest: Array | None = None
 ) -> tuple[Array, Array, Array]:
-    """Components of the direction that `eon_flat_draw` makes of a point of the disk, v = x^2 + y^2."""
+    """Components of the direction that `eon_flat_draw` derives from a disk point, v = x^2 + y^2."""
     rest = 1.0 - v if rest is None else rest
     ahead = 1.0 + q * x
     length = root(ahead * ahead + q * q * rest)
@@ -401,7 +401,7 @@ def ltc0_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 
 @any_array
 def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled by the transformed cosine, may be below the horizon; and its density.
+    """Direction sampled by the transformed cosine, possibly below the horizon, and its density.
 
     `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
     A sample is wasted with probability (1 - 1/sqrt(1 + d^2))/2: at roughness 1 that is 0.0534 at
@@ -528,7 +528,7 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
     u1, u2 = unpack_uniforms(u)
     P_u = eon_cltc_probability(wo[..., 2], roughness)
     is_uniform = u1 < P_u
-    # Stretch each side of P_u over [0, 1); rounding may reach 1, which is not in there.
+    # Stretch each side of P_u over [0, 1). Rounding may reach 1, which is outside the interval.
     xp = array_namespace(u1, P_u)
     length = xp.where(is_uniform, P_u, 1.0 - P_u)
     v = xp.where(is_uniform, u1, u1 - P_u) / length
@@ -564,22 +564,22 @@ def cltc_kept_fraction(d: Array) -> Array:
 
 
 def _draw(wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array) -> tuple[Array, Array]:
-    """`cltc_sample` of two random numbers; `rest` is 1 - u1, to all of its digits."""
+    """`cltc_sample` for two random numbers; `rest` is 1 - u1 without cancellation."""
     d = ltc_md(wo[..., 2], roughness)
     wi, pdf = ltc_transformed(wo, cltc_clipped(u1, u2, d, rest), roughness, d)
-    # On the edge of the lune d x + z is zero up to rounding, of either sign.
+    # On the edge of the lune, d x + z is zero up to rounding of either sign.
     wi = stack_xyz(wi[..., 0], wi[..., 1], at_least_0(wi[..., 2]))
     return wi, pdf / cltc_kept_fraction(d)
 
 
 def cltc_clipped(u1: Array, u2: Array, d: Array, rest: Array | None = None) -> Array:
-    """Direction under the clamped cosine with d x + z >= 0, `rest` to all digits 1 - u1: [Portsmouth2025], Listing 3.
+    """Direction under the clamped cosine with d x + z >= 0; `rest` is 1 - u1 exactly: [Portsmouth2025], Listing 3.
 
     The chord at y has the half length c, c^2 = 1 - u1 + x^2, and x becomes c (1 - k) + k x. Then
 
         z^2 = 1 - x'^2 - y^2 = k (c - x) (2 c (1 - k) + k (c + x)),
 
-    where of c - x and c + x the smaller one is (1 - u1) over the other: nothing cancels on the rim.
+    where the smaller of c - x and c + x is (1 - u1) over the larger: nothing cancels on the rim.
     """
     rest = 1.0 - u1 if rest is None else rest
     wh = around(root(rest), root(u1), u2)
@@ -601,10 +601,10 @@ UP = 0.0, 0.0, 1.0
 
 @any_array
 def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction reflected by a visible GGX normal, may be below the horizon; and its density.
+    """Direction reflected by a visible GGX normal, possibly below the horizon, and its density.
 
     `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
-    Where an alpha is 0 there is no density, and it counts as 0. Value times cosine over density is
+    If an alpha is 0 there is no density; 0 is returned. Value times cosine over density is
     F G2 / G1(wo). [Dupuy2023], Section 3; [Heitz2014], Eq. (16).
 
         >>> wi, pdf = ggx_sample([0.6, 0.0, 0.8], [0.25, 0.5], [0.5, 0.25])
@@ -662,7 +662,7 @@ def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
     xp = array_namespace(wo, u1, roughness)
     stretched = xp.stack([roughness[0] * wo[0], roughness[1] * wo[1], wo[2]])
     length = root(xp.sum(stretched * stretched, axis=0))
-    # A smooth surface seen at grazing has a length of 0 and one normal, whatever is drawn.
+    # A smooth surface seen at grazing has length 0 and a single normal, whatever the random numbers.
     stretched = stretched / xp.where(length > 0.0, length, 1.0)
     # A point of the cap above -z of the stretched view.
     down = (1.0 + stretched[2]) * u1

@@ -45,14 +45,14 @@ if TYPE_CHECKING:
 
 
 UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)  # MaterialX's defaults on a surface
-PARALLEL = 1e-6  # length that is left of a tangent without the part along the normal
+PARALLEL = 1e-6  # least length of a tangent after its part along the normal is removed
 
 
 @any_array
 def into_frame(w: ArrayLike, normal: ArrayLike, tangent: ArrayLike) -> Array:
     """Components of vectors along the tangent, the bitangent and the normal.
 
-    The tangent is any vector not parallel to the normal; its part along the normal is taken away.
+    The tangent is any vector not parallel to the normal; its part along the normal is removed.
     """
     vectors, axes = _floats(checked_triples("w", w)), _axes(normal, tangent)
     xp = array_namespace(vectors)
@@ -76,7 +76,7 @@ def _axes(normal: ArrayLike, tangent: ArrayLike) -> tuple[Array, Array, Array]:
     shortest = host_values(length) if library(length) else length
     if shortest is not None and not np.all(shortest > PARALLEL):
         raise ValueError("tangent must not be parallel to the normal; name another one")
-    # The bitangent is the cross product, which the array standard has in an extension alone.
+    # The bitangent is the cross product, which only an extension of the array standard has.
     x = x / length
     turned = [(1, 2), (2, 0), (0, 1)]
     y = xp.stack([z[..., i] * x[..., j] - z[..., j] * x[..., i] for i, j in turned], axis=-1)
@@ -87,14 +87,14 @@ def _axes(normal: ArrayLike, tangent: ArrayLike) -> tuple[Array, Array, Array]:
 class Rows:
     """Vectors and inputs of a call in rows.
 
-    - `inputs`: (N,), (N, 2) or (N, C) by parameter; 1 instead of N where all pairs have the same.
+    - `inputs`: (N,), (N, 2) or (N, C) by parameter; 1 instead of N if all pairs share the value.
     """
 
     lead: tuple[int, ...]  # shape of the pairs
     vectors: list[Array]  # directions or random numbers
     inputs: dict[str, Array]
     colored: bool  # whether a color has an axis of channels
-    weight: Array | None = None  # of the lobe, where the call has one
+    weight: Array | None = None  # the lobe's weight, if the call has one
 
     def shaped(self, values: Array, last: tuple[int, ...] = ()) -> Array:
         """Values of the rows, (N, *last) or fewer, in the shape of the pairs."""
@@ -102,7 +102,7 @@ class Rows:
         return xp.reshape(xp.broadcast_to(values, (count, *last)), (*self.lead, *last))[()]
 
     def colors(self, values: Array) -> Array:
-        """Values of the rows, (N, C), times the weight; without channels where no color has any."""
+        """Values of the rows, (N, C), times the weight; without the channel axis if no color has one."""
         if self.weight is not None:
             values = values * self.weight[:, np.newaxis]
         values = self.shaped(values, tuple(values.shape[-1:]))
@@ -112,7 +112,7 @@ class Rows:
 def bound_inputs(
     parameters: Sequence[Parameter], inputs: Sequence[ArrayLike], named: Mapping[str, ArrayLike]
 ) -> dict[str, ArrayLike]:
-    """A value for each parameter, by name: one of the call's, or its default."""
+    """A value for each parameter, by name: from the call, or the default."""
     names = [each.name for each in parameters]
     others = {each.quantity: each.name for each in parameters}
     known = f"inputs are {', '.join(names)}"
@@ -131,9 +131,9 @@ def bound_inputs(
 def rows(
     parameters: Sequence[Parameter], vectors: Collection[str], /, **arguments: ArrayLike
 ) -> Rows:
-    """Vectors (..., K) and a value for each parameter in rows, all by their names."""
+    """Lay out vectors (..., K) and parameter values in rows, all by name."""
     directions = {name: _floats(checked_real(name, arguments[name])) for name in vectors}
-    for name, w in directions.items():  # here, where they have the shape that a caller knows
+    for name, w in directions.items():  # before reshaping: errors name the caller's elements
         count = 2 if name == "u" else 3
         if w.shape[-1:] != (count,):
             raise ValueError(f"{name} must have shape (..., {count}); got shape {tuple(w.shape)}")
@@ -146,7 +146,7 @@ def rows(
             colored = colored or array.ndim > 0
             array = array if array.ndim else array[np.newaxis]
         arrays[each.name] = spread_pair(each.name, array) if each.channels == 2 else array
-    # Lay out all pairs in one row; what is the same for all of them stays one.
+    # Flatten all pairs; a value shared by all pairs keeps length 1.
     wide = {each.name: arrays[each.name] for each in parameters if each.channels}
     narrow = {name: array for name, array in arrays.items() if name not in wide}
     lead = lead_shape(directions | wide, narrow)
@@ -175,12 +175,12 @@ def views(mu: ArrayLike, azimuth: ArrayLike) -> Array:
 
 
 def _floats(value: ArrayLike) -> Array:
-    """Numbers in float64; another library's array as it is."""
+    """Numbers in float64; arrays of other libraries unchanged."""
     return cast(Array, value) if library(value) else np.asarray(value, np.float64)
 
 
 def _laid(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) -> Array:
-    """An array as (N, last) or (N,), or as (1, last) or (1,) where it is one for all pairs."""
+    """An array as (N, last) or (N,), or as (1, last) or (1,) if all pairs share it."""
     xp = array_namespace(array)
     tail = tuple(array.shape[-1:]) if last else ()
     own = array.shape[:-1] if last else array.shape
@@ -189,7 +189,7 @@ def _laid(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) 
     return xp.reshape(xp.broadcast_to(array, (*lead, *tail)), (-1, *tail))
 
 
-# Functions of models, and why a model may lack them.
+# Functions of models, and the reason why a model may lack each of them.
 LACKS = {
     **dict.fromkeys(
         ("bsdf", "albedo_dir", "plot", "edf", "exitance", "transmittance", "phase"), ""
@@ -203,7 +203,7 @@ SIDES = {"front": 1.0, "back": -1.0}
 
 @dataclass(frozen=True)
 class ModelSampler:
-    """Samples (wi, pdf) of a model and their density, and the side on which it draws.
+    """Samples (wi, pdf) of a model, their density, and the side of the samples.
 
     The side is 1 above the horizon, -1 below it, and None for any wi.
     """
@@ -215,24 +215,24 @@ class ModelSampler:
 
 @dataclass(frozen=True, repr=False)
 class NodeModel(ABC):
-    """What the models of all nodes have: a row, inputs, and a list of functions."""
+    """Base of the models of all nodes: a row, inputs, and a list of functions."""
 
     row: Node[Any]
     parameters: tuple[Parameter, ...]  # its inputs: name, default, interval, unit
 
     @property
     def name(self) -> str:
-        """The name by which `mxeon.model` knows it."""
+        """The name for `mxeon.model`."""
         return self.row.name
 
     @property
     def title(self) -> str:
-        """The name in print."""
+        """The printed name."""
         return self.row.title
 
     @property
     def node(self) -> str:
-        """Category of the node whose inputs it has."""
+        """Category of the node that defines its inputs."""
         return self.row.category
 
     @property
@@ -245,13 +245,13 @@ class NodeModel(ABC):
         return f"{self.name}: {self.title}; {', '.join(self.functions)}{inputs}"
 
     def __dir__(self) -> Iterable[str]:
-        """Names of what it has."""
+        """Names of all attributes, without unsupported functions."""
         return [name for name in super().__dir__() if name in self.functions or name not in LACKS]
 
-    if not TYPE_CHECKING:  # where it would make every name an attribute
+    if not TYPE_CHECKING:  # type checkers would accept every name as an attribute
 
         def __getattr__(self, name: str) -> None:
-            """Say what it has instead of a function of other models."""
+            """Raise AttributeError with the supported functions for a function of other models."""
             if name in LACKS:
                 raise AttributeError(
                     f"{self.name}, {self.title}, has no {name}; it has {', '.join(self.functions)}"
@@ -259,7 +259,7 @@ class NodeModel(ABC):
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def _need(self, function: str) -> None:
-        """Raise ValueError unless the model has this function: why not, and which it has."""
+        """Raise ValueError with the reason and the supported functions if the model lacks this one."""
         if function not in self.functions:
             raise ValueError(
                 f"{self.name} has no {function}{LACKS[function]}; it has {', '.join(self.functions)}"
@@ -272,7 +272,7 @@ class NodeModel(ABC):
         named: dict[str, ArrayLike],
         *others: Parameter,
     ) -> Rows:
-        """Vectors and inputs of a call in rows; `others` are parameters that go by name alone."""
+        """Vectors and inputs of a call in rows; `others` are keyword-only parameters."""
         own = {each.name: named.pop(each.name) for each in others}
         values = bound_inputs(self.parameters, inputs, named) | own
         return rows((*self.parameters, *others), tuple(vectors), **vectors, **values)
@@ -280,31 +280,31 @@ class NodeModel(ABC):
 
 @dataclass(frozen=True, repr=False)
 class ShadingModel(NodeModel):
-    """A model by its name: functions of MaterialX's inputs.
+    """A model as functions of MaterialX's inputs.
 
-    Each function takes the inputs after its directions, in the order of `parameters` or by name; one
-    that is left out has MaterialX's default. Shapes broadcast, last axes of directions, colors and pairs
-    apart. A color has its channels on the last axis, or is a number; where all colors are numbers,
-    results have no channels. A pair, such as the `roughness` of microfacets, may be a number, which
-    counts for both directions. Three numbers for a color are red, green and blue.
+    Each function takes the inputs after its directions, in the order of `parameters` or by name; omitted
+    inputs have MaterialX's default. Shapes broadcast, except the last axes of directions, colors and
+    pairs. A color has its channels on the last axis, or is a number; if all colors are numbers,
+    results have no channels. A pair, such as the `roughness` of microfacets, may be a single number
+    for both directions. Three numbers for a color are red, green and blue.
 
-    What is in `by_name` has to be named in a call. `weight` scales values and albedos. With `normal`, and
-    `tangent` or `curve_direction`, directions are those of a frame in which the node's normal is this
-    unit vector, such as that of the scene; a tangent that is left out is +x. `retroreflective` mirrors
+    Inputs in `by_name` are keyword-only. `weight` scales values and albedos. With `normal`, and
+    `tangent` or `curve_direction`, directions are in a frame in which the node's normal is this unit
+    vector, such as the frame of the scene; the tangent defaults to +x. `retroreflective` mirrors
     the viewer.
 
-    wo lies on or above the horizon, and wi anywhere: the value of a wi from which the model scatters no
-    light is 0. `pdf` is the density of `sample` on the whole sphere, over which it integrates to 1. What
-    `sample` draws below the horizon for a model that reflects is wasted: its value is 0, its density
-    counts. Without a sampling of its own a model has that of the cosine, hair that of the sphere.
+    wo lies on or above the horizon, wi anywhere: the value is 0 for a wi from which the model scatters no
+    light. `pdf` is the density of `sample` on the whole sphere, over which it integrates to 1. Samples
+    below the horizon for a model that reflects are wasted: their value is 0, but their density
+    counts. Models without their own sampler sample the cosine; hair samples the sphere.
 
-    Each function raises ValueError if an input leaves its range, a shape fits nothing or two things, or
-    the model does not have the function; TypeError if an input is unknown or is there twice.
+    Each function raises ValueError if an input leaves its range, a shape is invalid or ambiguous, or
+    the model does not have the function; TypeError if an input is unknown or given twice.
     """
 
     row: PbrNode
     sampler: ModelSampler | None = None
-    lights: str = "front"  # from where it scatters light: "front", "back" or "all sides"
+    lights: str = "front"  # side of the light that it scatters: "front", "back" or "all sides"
     by_name: tuple[str, ...] = ("weight", "normal")  # the other inputs of the node
 
     def __repr__(self) -> str:
@@ -320,11 +320,11 @@ class ShadingModel(NodeModel):
         return (*value, "albedo_dir", *average, *samples, "plot")
 
     def brdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Value of a model that reflects, in 1/sr and without the cosine.
+        """Value of a model that reflects, in 1/sr, without the cosine.
 
         - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z,
-          tangent +x. That to the viewer has z >= 0; the value is 0 where that to the light has z < 0.
-        - `*inputs`, `**named`: Those of `parameters`.
+          tangent +x. The viewer's has z >= 0; the value is 0 where the light's has z < 0.
+        - `*inputs`, `**named`: Inputs in `parameters`.
 
         Result (..., C) or (...).
         """
@@ -332,25 +332,25 @@ class ShadingModel(NodeModel):
         return self.bsdf(wo, wi, *inputs, **named)
 
     def bsdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Value of any model, as `brdf`; 0 where wi is not where its light comes from."""
+        """Value of any model, as `brdf`; 0 for a wi from which it scatters no light."""
         call = self._rows({"wo": wo, "wi": wi}, inputs, named)
         return call.colors(_on_side(SIDES.get(self.lights), self.row.value, call))
 
     def albedo_dir(
         self, mu: ArrayLike, *inputs: ArrayLike, azimuth: ArrayLike = 0.0, **named: ArrayLike
     ) -> Array:
-        """Directional albedo: the integral of value times cosine; for hair, of the value alone.
+        """Directional albedo: the integral of value times cosine; for hair, without the cosine.
 
         - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
-        - `azimuth` (...): The viewer's angle from the tangent, in radian; it counts where the model is
-          anisotropic.
+        - `azimuth` (...): The viewer's angle from the tangent, in radian; only anisotropic models
+          depend on it.
         """
         call = self._rows({"view": views(mu, azimuth)}, inputs, named)
         integral = self.row.integral or self.row.albedo
         return call.colors(integral(call.vectors[0], call.inputs))
 
     def albedo_avg(self, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Average albedo, of light from all sides alike, where a closed form is known."""
+        """Average albedo under uniform light, if a closed form is known."""
         self._need("albedo_avg")
         assert self.row.average is not None
         call = self._rows({}, inputs, named)
@@ -363,7 +363,7 @@ class ShadingModel(NodeModel):
 
         `u`, shape (..., 2), are uniform random numbers in [0, 1). EON is sampled exactly for the mean of
         the channels. A mirror, of roughness 0, has no density: it counts as 0, as its value does, and the
-        weight of each sample is the albedo, `albedo_dir(wo[2])`, instead of 0 / 0.
+        weight of each sample is the albedo `albedo_dir(wo[2])` instead of 0 / 0.
         """
         self._need("sample")
         assert self.sampler is not None
@@ -374,16 +374,16 @@ class ShadingModel(NodeModel):
         return out_of_frame(wi, *frame) if frame else wi, call.shaped(pdf)
 
     def pdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Density of `sample` at any wi, in 1/sr, shape (...); inputs as those of `brdf`."""
+        """Density of `sample` at any wi, in 1/sr, shape (...); inputs as for `brdf`."""
         self._need("pdf")
         assert self.sampler is not None
         call = self._rows({"wo": wo, "wi": wi}, inputs, named)
         return call.shaped(_on_side(self.sampler.side, self.sampler.pdf, call))
 
     def plot(self, path: str | None = None, **named: ArrayLike) -> Figure:
-        """Polar lobe, albedo over the viewer's angle, and density of samples, of one material.
+        """Plot one material: polar lobe, albedo over the viewer's angle, and density of samples.
 
-        It is written to `path`, a .png, .svg or .pdf. Raises ImportError if matplotlib is missing.
+        The figure is written to `path`, a .png, .svg or .pdf. Raises ImportError if matplotlib is missing.
         """
         return lobe_plot.draw(self, named, path)
 
@@ -408,7 +408,7 @@ class ShadingModel(NodeModel):
 
 
 def _frame(named: Mapping[str, ArrayLike]) -> tuple[ArrayLike, ArrayLike] | None:
-    """Normal and tangent of a call, of which one was named."""
+    """Normal and tangent of a call, or None if neither was given."""
     if not {"normal", "tangent", "curve_direction"} & set(named):
         return None
     return named.get("normal", UP), named.get("tangent", named.get("curve_direction", ALONG))
@@ -425,7 +425,7 @@ def _on_side(
     other = z < -ROUNDING
     if (
         xp is NUMPY and not other.any()
-    ):  # in a third of the time, where the values take next to none
+    ):  # takes a third of the time if the values are cheap
         return function(wo, wi, call.inputs)
     mirrored = xp.stack([wi[:, 0], wi[:, 1], side * xp.where(other, -z, z)], axis=-1)
     values = function(wo, mirrored, call.inputs)
@@ -455,7 +455,7 @@ class EmissionModel(NodeModel):
         return ("edf", "exitance")
 
     def edf(self, wo: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Radiance towards `wo`, shape (..., C) or (...); below the horizon that of the back."""
+        """Radiance towards `wo`, shape (..., C) or (...); below the horizon, from the back."""
         call = self._bound({"wo": wo}, inputs, named)
         return call.colors(self.row.value(call.vectors[0], call.inputs))
 

@@ -33,10 +33,10 @@ from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespac
 from mxeon.models.core.evaluation import evaluate, evaluate_number
 from mxeon.models.diffuse import cosines
 
-# Roughness that the Zeltner lobe has at least: [MaterialX2026], Zeltner Sheen Model.
+# Smallest roughness of the Zeltner lobe: [MaterialX2026], Zeltner Sheen Model.
 ZELTNER_LEAST_ROUGHNESS = 0.01
 
-# Roughness and sum of cosines that divide are at least this, lest a quotient overflow by itself.
+# Least divisor (roughness or sum of cosines), so that quotients do not overflow.
 LEAST_DIVISOR = 1e-300
 
 
@@ -120,13 +120,13 @@ def _tinted(
 def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
     """Conty and Kulla's lobe, (C, ...), on valid arrays."""
     xp = array_namespace(wo, wi, roughness)
-    least = max(LEAST_DIVISOR, arrays.least_normal(wo))  # that of float32 is larger
+    least = max(LEAST_DIVISOR, arrays.least_normal(wo))  # least_normal is larger in float32
     mu_o, mu_i, _ = cosines(wo, wi)
     flat = xp.square(wo[..., 0] + wi[..., 0]) + xp.square(wo[..., 1] + wi[..., 1])
     upright = xp.square(mu_o + mu_i)
     total = flat + upright
     divisor = mu_o + mu_i - mu_o * mu_i
-    # Leave out the limits that are 0, the last one of which NumPy finds as the exponential of -inf.
+    # Skip limits that are 0; NumPy gets the last of them as the exponential of -inf.
     counted = (roughness > 0.0) & (divisor >= least)
     smooth = counted & (flat > 0.0)
     roughness, flat = guarded(roughness, smooth, 1.0), guarded(flat, smooth, 1.0)
@@ -135,7 +135,7 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
     shape = 0.5 / xp.maximum(roughness, least)
     with np.errstate(divide="ignore", over="ignore"):
         ratio = flat / xp.maximum(total, least)
-        # Each form of log(sin(theta_h)^2) where it does not cancel.
+        # Two forms of log(sin(theta_h)^2), each used where it does not cancel.
         small = ratio < 0.5
         above = guarded(upright / xp.maximum(total, least), ~small, 0.5)
         log_sine = xp.where(small, xp.log(ratio), xp.log1p(-above))
@@ -170,11 +170,11 @@ def _zeltner_albedo(mu: Array, roughness: Array) -> Array:
     return albedo
 
 
-# Above this cosine the closed form of the inner integral cancels, and Gauss-Legendre serves.
+# Above this cosine the closed form of the inner integral cancels; use Gauss-Legendre.
 STEEP = 0.25
 
-SHEEN_BLOCK = 2**8  # elements at once
-ALONG = 1e-8  # distance from 1 of a cosine that counts as the normal's for derivatives
+SHEEN_BLOCK = 2**8  # elements per block
+ALONG = 1e-8  # within this distance of 1, derivatives treat a cosine as 1
 
 
 @any_array
@@ -208,7 +208,7 @@ def _albedo(mu: Array, roughness: Array) -> Array:
         return albedo
     above, rough = mu > STEEP, roughness > 0.0
     r = guarded(roughness, rough, 1.0)
-    # Along the normal by a line through two cosines: their angles have no derivative there.
+    # Along the normal, extrapolate from two cosines: angles have no derivative there.
     step = xp.where(mu > 1.0 - ALONG, ALONG, 0.0)
     near, far = (_integral(guarded(mu - k * step, above, STEEP), r, True) for k in (1.0, 2.0))
     high = 2.0 * near - far
@@ -283,7 +283,7 @@ def _azimuths_closed(
     """
     xp, k = array_namespace(mu, c), 2.0 * c * (1.0 - mu)
     q, r = k * a + xp.square(mu), k * b
-    # Both square roots of z's numerator and denominator, so that t may be infinite.
+    # Square roots of z's numerator and denominator separately: t may be infinite.
     near, far = rise * root(xp.abs(q - r)), fall * root(q + r)
     ends, ahead = far > 0.0, q > r
     ratio = xp.where(ends, near / xp.where(ends, far, 1.0), np.inf)

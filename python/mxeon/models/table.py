@@ -19,12 +19,12 @@ from mxeon.models.nodes.node import parameter as node_parameter
 
 @dataclass(frozen=True, kw_only=True)
 class Model(PbrNode):
-    """The row of a rough diffuse node that scatters by a model, and the model's closed forms.
+    """The row of a rough diffuse node with a given model, and the model's closed forms.
 
     - `brdf`: `brdf(wo, wi, rho, *parameter)` in 1/sr, shape (..., C); Lambert has no parameter.
     - `albedo_dir`: `albedo_dir(mu, rho, *parameter)`, shape (..., C), where a closed form is known.
     - `albedo_avg`: `albedo_avg(rho, *parameter)`, shape (..., C), where a closed form is known.
-    - `brdf_of`: Name of the model whose `brdf` this is; only the albedo differs.
+    - `brdf_of`: Name of the model with the same `brdf`; only the albedo differs.
     """
 
     brdf: Callable[..., Array]
@@ -45,7 +45,7 @@ class Model(PbrNode):
 
     @property
     def closed_albedo_dir(self) -> Callable[..., Array]:
-        """`albedo_dir`, where it must be known."""
+        """`albedo_dir` of a model that must have one."""
         if self.albedo_dir is None:
             raise ValueError(f"model must have a closed form of its albedo; got {self.name!r}")
         return self.albedo_dir
@@ -118,7 +118,7 @@ def _lambert_albedo_avg(rho: ArrayLike) -> Array:
 
 
 def _tinted(white: Callable[..., Array]) -> Callable[..., Array]:
-    """Albedo at unit reflectance, `white(..., parameter)`, as one that takes rho before it."""
+    """Wrap `white(..., parameter)`, an albedo at unit reflectance, to take rho before the parameter."""
 
     @any_array
     def tinted(*arguments: ArrayLike) -> Array:
@@ -167,7 +167,7 @@ KNOWN_DEFECTS = (
     _named("qon_tinted_twice", "QON tinted twice", "sigma"),
 )
 
-# Further models of renderers' own nodes, which generated shaders never have.
+# Additional models in renderers' own nodes; generated shaders never use them.
 OTHERS = (
     row(
         "eon_fitted",
@@ -198,7 +198,7 @@ OTHERS = (
 def _reparametrized(
     name: str, title: str, base: str, parameter: Callable[[Numbers], Numbers]
 ) -> Model:
-    """A model as a function of another roughness, from which its own parameter follows."""
+    """A model as a function of another roughness that determines its own parameter."""
     base_model = next(each for each in DIFFUSE_MODELS if each.name == base)
 
     @any_array
@@ -216,7 +216,7 @@ def _square(roughness: Numbers) -> Numbers:
     return roughness**2
 
 
-# The models with other meanings of a roughness in [0, 1], which renderers have instead of sigma.
+# Models with a roughness in [0, 1] instead of sigma, as renderers define it.
 PARAMETRIZATIONS = (
     *(
         _reparametrized(f"{base}_{word}", f"{short} with {meaning}", base, parameter)

@@ -6,14 +6,14 @@ Sections are those of [MaterialX2026], appendix Thin-Film Iridescence Model, aft
 
 - `mu` (...): Cosine between direction and microfacet normal, in [0, 1].
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
-- `thickness` (...): Of the film, in nm, in [0, 1e9].
+- `thickness` (...): Thickness of the film in nm, in [0, 1e9].
 - `film_ior` (...): Index of the film, in [1, 1e50].
-- `ior`, `extinction` (...): Complex index of the substrate, in [0, 1e50], without channels but where a function
-  says so.
+- `ior`, `extinction` (...): Complex index of the substrate, in [0, 1e50], without channels unless a function
+  says otherwise.
 - `category`, `inputs`: Category of the node, and its inputs by the names of its ports, colors with three channels;
   `thinfilm_thickness` in nm, and `thinfilm_ior`.
-- `form`: What the text leaves open: the matrix to RGB, the number of orders, what becomes of an index for each
-  channel in a sum over CIE XYZ, and of values outside [0, 1], which it clamps at the very end.
+- `form`: What the text leaves open: the matrix to RGB, the number of orders, how an index per channel enters a sum
+  over CIE XYZ, and the treatment of values outside [0, 1], which the text clamps at the very end.
 
 Result (..., 3): linear RGB, in [0, 1].
 
@@ -60,7 +60,7 @@ GAUSSIANS = (
     (2, 5.2481e-13, 2.2084e6, 6.6121e9),
 )
 NORMAL = 1.0685e-7
-METERS = 1e-9  # in a nanometer
+METERS = 1e-9  # 1 nm in m
 # Their centers, standard deviations, and weights in XYZ, (3, 4).
 CENTERS = np.array([mu for _, _, mu, _ in GAUSSIANS])
 SPREADS = np.sqrt([variance for *_, variance in GAUSSIANS])
@@ -72,11 +72,11 @@ WEIGHTS = np.eye(3)[:, [row for row, *_ in GAUSSIANS]] * AREAS
 # trapezoidal rule over 6.5 standard deviations, 2^-48 of a Gaussian's height, in steps of a fifth of one.
 THIN_SPREAD, DAMPED_ORDERS = 0.2, 30
 STEP, STEPS = 0.2, 32
-SAME = 2.0**-20  # relative distance of indices that are roundings of the same number
-# Weights of its nodes from the center on, and of all of them.
+SAME = 2.0**-20  # relative difference of indices that round the same number
+# Weights of the trapezoidal rule's nodes from the center on, and of all nodes.
 HEIGHTS = STEP * np.exp(-0.5 * (STEP * np.arange(STEPS + 1)) ** 2) / np.sqrt(2.0 * np.pi)
 HEIGHT = 2.0 * float(HEIGHTS.sum()) - float(HEIGHTS[0])
-FILM_BLOCK = 2**13  # elements at once
+FILM_BLOCK = 2**13  # elements per block
 
 
 class Interface(NamedTuple):
@@ -91,7 +91,7 @@ def refracted(mu: Array, film_ior: Array) -> Array:
     """cos theta_t: Three-Layer Geometry."""
     xp = array_namespace(mu, film_ior)
     squared = xp.maximum(1.0 - (1.0 - mu) * (1.0 + mu) / film_ior**2, 0.0)
-    # Through a film of index 1 it is mu, which has a derivative at grazing.
+    # For a film of index 1 this is mu, with a derivative at grazing.
     return xp.sqrt(squared) if xp is NUMPY else xp.where(squared > 0.0, root(squared), mu)
 
 
@@ -165,7 +165,7 @@ def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> 
     """
     (first, (real, imaginary), R23), xp = interface, array_namespace(*interface[::2], opd)
     R12 = first * first
-    passed, lost = 1.0 - R12, 1.0 - R12 * R23  # nothing is lost only where nothing passes
+    passed, lost = 1.0 - R12, 1.0 - R12 * R23  # `lost` is 0 only if `passed` is
     dc = R12 + passed**2 * R23 / xp.where(lost > 0.0, lost, 1.0)
     values = first * real, first * imaginary, 2.0 * np.pi * opd
     shape = np.broadcast_shapes(*(tuple(each.shape) for each in values))
@@ -185,7 +185,7 @@ def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> 
 
 
 def _fill(sums: Array, x: Array, y: Array, phi: Array, orders: int | None) -> None:
-    """Fill the sums of a block with those of thick films and of thin ones."""
+    """Fill the sums of a block, for thick films and for thin ones."""
     thick = phi * SPREADS.min() >= THIN_SPREAD if orders is None else np.full(len(phi), True)
     if thick.all():
         sums[:] = _orders(x, y, phi, orders or DAMPED_ORDERS)
@@ -195,7 +195,7 @@ def _fill(sums: Array, x: Array, y: Array, phi: Array, orders: int | None) -> No
 
 
 def _column(values: Array, array: Array) -> Array:
-    """Numbers of the Gaussians along a first axis before those of an array, in its library."""
+    """Numbers of the Gaussians on a first axis before the array's axes, in its library."""
     return like(values.reshape(-1, *(1,) * array.ndim), array)
 
 
@@ -239,7 +239,7 @@ def _integrated(x: Array, y: Array, phi: Array) -> Array:
     kernel = float(HEIGHTS[0]) / _distance(real, imaginary)
     c, s = turn_c, turn_s
     for height in HEIGHTS[1:].tolist():
-        # The nodes on both sides of the center, and the angle of the next ones.
+        # Sum the nodes on both sides of the center, then rotate to the next ones.
         a, b, d, e = real * c, imaginary * s, imaginary * c, real * s
         kernel += height / _distance(a - b, d + e)
         kernel += height / _distance(a + b, d - e)
@@ -248,7 +248,7 @@ def _integrated(x: Array, y: Array, phi: Array) -> Array:
 
 
 def _distance(real: Array, imaginary: Array) -> Array:
-    """|1 - w|^2, 0 only where nothing passes and no order counts: it is 1 there."""
+    """|1 - w|^2, or 1 where it is 0: nothing passes and no order counts there."""
     size = (1.0 - real) ** 2 + imaginary * imaginary
     return array_namespace(size).where(size > 0.0, size, 1.0)
 
@@ -264,7 +264,7 @@ def _squared(a: Complex) -> Array:
 
 
 def _quotient(a: Complex, b: Complex, otherwise: float) -> Complex:
-    """a / b, and a real number where b is 0."""
+    """a / b, or a real number where b is 0."""
     squared = _squared(b)
     xp, valid = array_namespace(squared), squared > 0.0
     size = xp.where(valid, squared, 1.0)
@@ -272,7 +272,7 @@ def _quotient(a: Complex, b: Complex, otherwise: float) -> Complex:
     return xp.where(valid, real, otherwise), imaginary
 
 
-# Gauss-Legendre in the cosine: nodes of the curve, and of the polynomial through it, which is clamped.
+# Gauss-Legendre nodes in the cosine: of the curve, and of the polynomial through it, which is clamped.
 POINTS, FINE = 14, 200
 
 Polarizations: TypeAlias = tuple[Interface, Interface]
@@ -280,14 +280,14 @@ Polarizations: TypeAlias = tuple[Interface, Interface]
 
 @dataclass(frozen=True)
 class Form:
-    """Choices that the specification leaves to implementations, and a defect.
+    """Choices that the specification leaves to implementations, and one defect.
 
     - `matrix`: From CIE XYZ to linear RGB, by rows.
     - `orders`: M; None sums all orders.
     - `mixed`: Whether the index of RGB channel k enters XYZ value k. If not, each RGB channel has
       its index in all of XYZ, so that a film that vanishes leaves the channels alone.
     - `share`: Factor of the Schlick substrate's reflectance in each polarization; by the text 1.
-    - `least`: Reflectance from which on color0 is turned into the index of a Schlick substrate.
+    - `least`: Smallest color0 that is converted to the index of a Schlick substrate.
     - `clamped`: Whether values outside [0, 1] are clamped, as the text does.
     """
 
@@ -299,7 +299,7 @@ class Form:
     clamped: bool = True
 
 
-# XYZ to CIE RGB of white E, of MaterialX 1.39.5.
+# XYZ to CIE RGB with white E, from MaterialX 1.39.5.
 CIE_RGB = (
     (2.3706743, -0.9000405, -0.4706338),
     (-0.5138850, 1.4253036, 0.0885814),
@@ -311,9 +311,9 @@ MATERIALX = Form(CIE_RGB, 2, True, 0.5, 0.01)
 
 
 def film_curve(category: str, form: Form = TEXT) -> Curve:
-    """Curve of a microfacet node that has `thinfilm_thickness` and `thinfilm_ior` beside its inputs.
+    """Curve of a microfacet node with the additional inputs `thinfilm_thickness` and `thinfilm_ior`.
 
-    Where the thickness is 0 it is the node's own.
+    For thickness 0 it is the node's own curve.
     """
     bare = CATEGORIES[category][0]
 
@@ -325,12 +325,12 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
 
         return _where_coated(thinfilm_thickness, coated, bare.at(mu, **material))
 
-    # Average it over the cosine: the clamp has kinks, which a polynomial through the curve has not.
+    # Interpolate the curve by a polynomial before it is clamped, since the clamp has kinks.
     def average(*, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array) -> Array:
         def coated() -> Array:
             film = thinfilm_thickness, thinfilm_ior
             curve = _fine(category, replace(form, clamped=False), film, material)
-            # Clamp it there, and sum.
+            # Clamp at the fine nodes, and sum.
             kept = arrays.within(curve) if form.clamped else curve
             return array_namespace(curve).tensordot(like(_rule()[2], curve), kept, axes=1)
 
@@ -340,7 +340,7 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
 
 
 def _where_coated(thickness: Array, coated: Callable[[], Array], plain: Array) -> Array:
-    """Values of films where there is one, and plain ones; films take long, and are left out if there is none."""
+    """Values with films where the thickness is not 0, else plain ones; without any film the slow part is skipped."""
     xp = array_namespace(thickness, plain)
     if xp is not NUMPY or (thickness > 0.0).any():
         return xp.where(thickness > 0.0, coated(), plain)
@@ -350,7 +350,7 @@ def _where_coated(thickness: Array, coated: Callable[[], Array], plain: Array) -
 def _fine(
     category: str, form: Form, film: tuple[Array, Array], material: dict[str, Array]
 ) -> Array:
-    """The curve at the cosines of a fine rule from those of nodes, shape (FINE, 3, ...), all at once."""
+    """The curve at the cosines of a fine rule, interpolated from the nodes, shape (FINE, 3, ...)."""
     mu, between, _ = (like(each, film[1]) for each in _rule())
     channels = {k for k, v in material.items() if k in CATEGORIES[category][1]}
     axes = max((v.ndim - 1 for k, v in material.items() if k in channels), default=film[0].ndim)
@@ -362,7 +362,7 @@ def _fine(
 
 @cache
 def _rule() -> tuple[Array, Array, Array]:
-    """Cosines of nodes, the matrix from values there to those of a fine rule, and its shares."""
+    """Cosines of the nodes, the matrix from values there to a fine rule, and the fine rule's weights."""
     x, w = legendre.leggauss(POINTS)
     fine, weight = legendre.leggauss(FINE)
     degree = np.arange(POINTS)
@@ -389,7 +389,7 @@ def _airy(
 
 
 def to_rgb(xyz: Array, form: Form) -> Array:
-    """RGB, shape (3, ...), of XYZ of the substrate of each channel, shape (3, channels, ...)."""
+    """RGB, shape (3, ...), from the XYZ of each channel's substrate, shape (3, channels, ...)."""
     xp, matrix = array_namespace(xyz), np.array(form.matrix)
     xyz = xp.broadcast_to(xyz, (3, 3, *xyz.shape[2:]))
     if form.mixed:
@@ -424,7 +424,7 @@ SUBSTRATES: dict[str, Callable[..., Polarizations]] = {
 }
 
 
-PORTS = {"thickness": "thinfilm_thickness", "film_ior": "thinfilm_ior"}  # of the nodes
+PORTS = {"thickness": "thinfilm_thickness", "film_ior": "thinfilm_ior"}  # node inputs
 
 
 @any_array
@@ -507,14 +507,14 @@ def film_schlick(
 def _reflectance(
     category: str, form: Form, colors: dict[str, ArrayLike], numbers: dict[str, ArrayLike]
 ) -> Array:
-    """Curve of a node under a film over arguments that broadcast."""
+    """Curve of a node under a film, evaluated over broadcast arguments."""
     if not isinstance(form, Form):
         raise ValueError(f"form must be a Form; got {form!r}")
     curve = film_curve(category, form)
 
     def at(mu: Array, **material: Array) -> Array:
         if category == "dielectric_bsdf":
-            material["tint"] = like(np.ones(1), mu)  # which the curve leaves alone
+            material["tint"] = like(np.ones(1), mu)  # not used by the curve
         return curve.at(mu, **material)
 
     vectors = {name: arguments.checked_rgb(name, value) for name, value in colors.items()}
@@ -525,7 +525,7 @@ def _reflectance(
 
 
 FILM = ("thinfilm_thickness", "thinfilm_ior")
-DEGREE = 48  # of a film's curve in the cosine where an albedo is integrated
+DEGREE = 48  # degree of the film's curve in the cosine, for albedos
 
 
 @any_array
@@ -537,7 +537,7 @@ def film_brdf(
     form: Form = TEXT,
     lobe: Lobe | None = None,
 ) -> Array:
-    """BRDF of a microfacet node under a thin film, scatter mode R, in 1/sr; `lobe` has other terms than the text's.
+    """BRDF of a microfacet node under a thin film, scatter mode R, in 1/sr; `lobe` may replace the text's terms.
 
     [MaterialX2026], Thin-Film Iridescence; Energy Compensation.
 
@@ -592,9 +592,9 @@ def _material(
 
 
 def _short(values: arrays.Numbers, channels: int, wo: ArrayLike) -> arrays.Numbers:
-    """Values as one row if there is one for each of many `wo`, and all are the same.
+    """Values as one row if they have a row for each `wo` but all rows are equal.
 
-    F_ss of a film is an integral, which would be taken for each point of a picture.
+    Otherwise the integral F_ss of the film would be computed for every point of a picture.
     """
     if array_namespace(values) is not NUMPY:
         return values
@@ -603,7 +603,7 @@ def _short(values: arrays.Numbers, channels: int, wo: ArrayLike) -> arrays.Numbe
 
 
 class PolynomialCurve:
-    """Curve of a film, by a polynomial in the cosine for each material."""
+    """Curve of a film as a polynomial in the cosine for each material."""
 
     def __init__(self, category: str, form: Form) -> None:
         self._bare = CATEGORIES[category][0].at

@@ -57,12 +57,12 @@ from mxeon.models.microfacet import DIELECTRIC, fresnel, ggx
 from mxeon.models.microfacet.slopes import refracting_nodes
 from mxeon.models.sampling import visible_normal
 
-LEAST_IOR = 1e-50  # index below which all light counts as reflected; its square divides
+LEAST_IOR = 1e-50  # below this index all light is reflected; its square is a divisor
 
 
 @any_array
 def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Array:
-    """Direction on the far side into which light along `wo` is refracted, and that refracts into it.
+    """Refracted direction on the far side for light along `wo`, and vice versa.
 
         cos_t = sqrt(1 - (1 - cos_o^2) / ior^2),  wi = -wo / ior + (cos_o / ior - cos_t) normal
 
@@ -85,8 +85,8 @@ def transmission_half_vector(wo: ArrayLike, wi: ArrayLike, ior: ArrayLike) -> Ar
 
         wh = +-(wo + ior wi) / |wo + ior wi|, on the side of wo
 
-    Result (..., 3): (0, 0, 0) where both directions lie on one side of the vector: no facet joins them. The
-    specification's vector points into the side of the smaller index, which no term of its BTDF tells apart.
+    Result (..., 3): (0, 0, 0) if both directions lie on the same side of the vector: no facet joins them. The
+    specification's vector points to the side with the smaller index; no term of its BTDF depends on that.
     [MaterialX2026], Microfacet BTDF; [Walter2007], Eq. (16).
 
         >>> wi = refraction_direction([0.6, 0.0, 0.8], [0.0, 0.6, 0.8], 1.5)
@@ -115,10 +115,10 @@ def refracted(wo: Array, normal: Array, ior: Array) -> Array:
 class Facet:
     """The microfacet between directions on either side of it, on float64 arrays, components first."""
 
-    normal: Array  # unit vector on the side of wo; 0 where there is no such facet
-    cosine_o: Array  # |wo . wh|; 0 where there is none
-    cosine_i: Array  # |wi . wh|; 0 where there is none
-    jacobian: Array  # |d wh / d wi|, the solid angle of normals for that of wi
+    normal: Array  # unit vector on the side of wo; 0 if no facet joins the directions
+    cosine_o: Array  # |wo . wh|; 0 without a facet
+    cosine_i: Array  # |wi . wh|; 0 without a facet
+    jacobian: Array  # |d wh / d wi|, solid angle of normals per solid angle of wi
 
     @classmethod
     def of(cls, wo: Array, wi: Array, ior: Array) -> Facet:
@@ -188,7 +188,7 @@ def evaluate_btdf(
         G2 = ggx.visibility_anisotropic(wo, above, roughness)
         lobe = ggx.ndf(facet.normal, roughness) * G2
         if radiance:
-            bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # nothing passes an index of 0
+            bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # an index of 0 passes nothing
             lobe = (
                 lobe / arrays.guarded(array_namespace(ior).maximum(ior, LEAST_IOR), bends, 1.0) ** 2
             )
@@ -207,7 +207,7 @@ CAP_NODES, CAP_BLOCK = (
     48,
     2**4,
 )  # nodes in height and in azimuth of the cap of normals; views per block
-MOST_SQUARED = 1.0 - 1e-15  # of a sine: below an index of 3e-8 next to nothing passes
+MOST_SQUARED = 1.0 - 1e-15  # largest squared sine; almost nothing passes below an index of 3e-8
 
 # Cosines wo . h and of wi, length of wi stretched by the roughness, and weights.
 Nodes: TypeAlias = tuple[Array, Array, Array, Array]
@@ -248,7 +248,7 @@ def evaluate_transmittance(
     numbers: dict[str, Numbers],
     shadow: bool,
 ) -> Array:
-    """Transmittance, shape (..., C), of checked inputs; `numbers` has the index."""
+    """Transmittance, shape (..., C), for checked inputs; `numbers` includes the index."""
     directions = {"wo": checked_directions("wo", wo)}
     pairs = {"roughness": checked_roughness(roughness)}
     checked_switch("shadow", shadow)
@@ -283,7 +283,7 @@ def evaluate_transmittance(
 
 
 def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
-    """Nodes of visible facets, drawn; those whose light does not reach the far side weigh nothing."""
+    """Quadrature nodes over visible facets; weight 0 if their light does not reach the far side."""
     xp, (height, turn, weight) = (
         array_namespace(wo),
         (arrays.like(each, wo) for each in _nodes(wo.ndim)),
@@ -298,7 +298,7 @@ def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
 
 @lru_cache(maxsize=2)
 def _nodes(axes: int) -> tuple[Array, Array, Array]:
-    """Random numbers of the visible normals, and weights, along an axis before those of the views."""
+    """Random numbers for the visible normals, and weights, on an axis before the view axes."""
     x, w = np.polynomial.legendre.leggauss(CAP_NODES)
     around = (np.arange(CAP_NODES) + 0.5) / CAP_NODES
     height, turn = np.meshgrid(0.5 * (x + 1.0), around, indexing="ij")
@@ -307,13 +307,13 @@ def _nodes(axes: int) -> tuple[Array, Array, Array]:
     return height.reshape(shape), turn.reshape(shape), weight.reshape(shape)
 
 
-PASSED_NODES = 40  # of the share that passes from outside, in the cube root of mu / (mu + alpha)
+PASSED_NODES = 40  # nodes of the share passed from outside, in the cube root of mu / (mu + alpha)
 
 
 def reversed_transmittance(
     mu: Array, alpha: float, ior: float, reflected: Callable[[Array], Array]
 ) -> Array:
-    """Share of the light from the denser side that passes where all paths are those from outside, reversed, (N, C).
+    """Share of the light that passes from the denser side, (N, C), from the paths from outside reversed.
 
         n^2 mu_i T(wi, wo) = P(wo) p(wo, wi) mu_o,  p(wo, wi) = G1(wo) D |wo . wh| / mu_o |d wh / d wi|
 
@@ -337,21 +337,21 @@ def reversed_transmittance(
     return np.stack([np.sum(weight * row, axis=axes) for row in rows], axis=-1)
 
 
-DARKEST, BRIGHTEST = 0.01, 0.99  # reflectances along the normal that MaterialX's inversion takes
+DARKEST, BRIGHTEST = 0.01, 0.99  # range of normal reflectances that MaterialX inverts to an index
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What transmission takes of the node's inputs.
+    """How transmission derives its index and curve from the node's inputs.
 
     - `index`: "average": one index, of the mean of color0 over the channels; "channel": one of
       each.
     """
 
     title: str
-    curve: Callable[..., Array]  # F of transmission, at the angle outside of the solid
+    curve: Callable[..., Array]  # F of transmission, at the angle outside the solid
     index: str = "average"
-    least: float = DARKEST  # least reflectance of which an index is taken
+    least: float = DARKEST  # smallest reflectance that is converted to an index
 
     def at(self, cosine: Array, ior: Array, **inputs: Array) -> Array:
         """F for light at this cosine, from inside if the index is below 1: 1 at total reflection."""
@@ -363,7 +363,7 @@ class Reading:
 
 
 def _whole(cosine: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
-    """F of the node, kept in [0, 1]."""
+    """The node's F, clamped to [0, 1]."""
     return within(fresnel.schlick(cosine, color0, color82, color90, exponent))
 
 
@@ -410,13 +410,13 @@ def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
 
 
 def index_of(reflectance: Array, least: float) -> Array:
-    """Index of a reflectance along the normal, kept in [least, 0.99]."""
+    """Index for a reflectance along the normal, which is clamped to [least, 0.99]."""
     amplitude = arrays.root(within(reflectance, least, BRIGHTEST))
     return (1.0 + amplitude) / (1.0 - amplitude)
 
 
 def _mean(color: Array, axis: int) -> Array:
-    """Mean over the channels, which are one then."""
+    """Mean over the channels, as a single channel."""
     mean: Array = array_namespace(color).mean(color, axis=axis, keepdims=True)
     return mean
 
@@ -499,7 +499,7 @@ def _by_index(
     reading: str,
     inside: bool,
 ) -> Array:
-    """Values of evaluate(F, index, colors, numbers): of all channels, or of one after another by its own index."""
+    """evaluate(F, index, colors, numbers) for all channels at once, or channel by channel with its own index."""
     how = _reading(reading)
     checked_switch("inside", inside)
     colors = {name: checked_color(name, value) for name, value in given.items()}

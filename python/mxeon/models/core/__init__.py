@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all models share: arrays, checks of arguments, threads, quadrature, layers."""
+"""Infrastructure of all models: arrays, checks of arguments, threads, quadrature, layers."""

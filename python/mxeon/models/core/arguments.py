@@ -23,20 +23,20 @@ from mxeon.names import NONE, unknown
 
 _LARGEST = float(np.finfo(np.float64).max)
 
-# Ends of closed ranges, and as they are printed.
+# Ends of closed ranges, with the text that messages print.
 _BELOW_ONE, _ABOVE_ZERO = float(np.nextafter(1.0, 0.0)), float(np.nextafter(0.0, 1.0))
 _SHARE = (0.0, 1.0, "[0, 1]")
-_POSITIVE = (0.0, 1e50, "[0, 1e50]")  # where a fourth power still fits
-_WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # where exponents and squares still fit
-_LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # whose products and quotients fit
+_POSITIVE = (0.0, 1e50, "[0, 1e50]")  # fourth powers fit into float64
+_WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # exponents and squares fit
+_LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # products and quotients fit
 
 
 def _each(names: str, ends: tuple[float, float, str]) -> dict[str, tuple[float, float, str]]:
-    """The range of each of these names."""
+    """Assign one range to each of these names."""
     return dict.fromkeys(names.split(), ends)
 
 
-# Ranges at whose ends rounding may step over them.
+# Ranges that rounding may exceed.
 CLOSED = ("[0, 1]", "[0.01, 1]", "[0.1, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]", "[-pi/2, pi/2]")
 
 
@@ -60,7 +60,7 @@ RANGES = Ranges(
         **_each("radiance base emission scattered behind light intensity distance", _POSITIVE),
         **_each("scale_tt scale_trt", _POSITIVE),
         **_each("coat_alpha", (0.01, 1.0, "[0.01, 1]")),
-        **_each("specular_roughness", (0.1, 1.0, "[0.1, 1]")),  # whose square is that alpha
+        **_each("specular_roughness", (0.1, 1.0, "[0.1, 1]")),  # the square root of alpha's range
         **_each("coat_ior specular_ior", (1.0, 4.0, "[1, 4]")),
         **_each("thinfilm_ior film_ior", (1.0, 1e50, "[1, 1e50]")),
         **_each("thinfilm_thickness thickness", (0.0, 1e9, "[0, 1e9]")),  # nm
@@ -80,7 +80,7 @@ RANGES = Ranges(
 
 
 def spread_pair(name: str, array: Numbers) -> Numbers:
-    """Array of pairs, shape (..., 2), of which a number, or a last axis of 1, counts for both."""
+    """Array of pairs, shape (..., 2); a number, or a last axis of length 1, is used for both."""
     array = with_axis(array)
     if array.shape[-1] == 1:
         return array_namespace(array).broadcast_to(array, (*array.shape[:-1], 2))
@@ -98,7 +98,7 @@ def with_axis(array: Numbers) -> Numbers:
 
 
 def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:
-    """Raise ValueError for a list of N numbers beside N directions, unless it is red, green and blue."""
+    """Raise ValueError for a list of N numbers for N directions, unless it is red, green and blue."""
     if color.shape == lead and color.ndim == 1 and color.shape[0] not in (1, 3):
         count = color.shape[0]
         raise ValueError(
@@ -109,10 +109,10 @@ def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:
 
 
 def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> tuple[int, ...]:
-    """Shape to which arguments broadcast, the last axis of `vectors` apart.
+    """Shape to which arguments broadcast, without the last axis of `vectors`.
 
-    - `vectors`: Directions, random numbers or colors by name: shapes (..., C).
-    - `numbers`: The others: shapes (...).
+    - `vectors`: Directions, random numbers or colors by name, shapes (..., C).
+    - `numbers`: Arguments without components, shapes (...).
     """
     arrays = [*vectors.values(), *numbers.values()]
     leads = [tuple(array.shape[:-1]) for array in vectors.values()]
@@ -143,7 +143,7 @@ def channel_count(colors: Mapping[str, Numbers]) -> int:
     return largest
 
 
-# Pairs per block: an array of them takes 256 KiB and stays in a second-level cache.
+# Pairs per block: an array takes 256 KiB and stays in the L2 cache.
 BLOCK = 2**15
 
 
@@ -153,7 +153,7 @@ def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, .
     - `shape`: Shape of the array.
     - `size`: Elements per block.
     """
-    # Take as many inner axes as fit into a block.
+    # Find the inner axes that fit into a block as a whole.
     axis, inner = len(shape), 1
     while axis > 0 and inner * shape[axis - 1] <= size:
         axis -= 1
@@ -169,9 +169,9 @@ def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, .
 
 
 def tile(array: Numbers, block: tuple[slice, ...]) -> Array:
-    """Part of `array` that a block of its leading axes selects, with the last axis first.
+    """The part of `array` selected by a block of its leading axes, with the last axis first.
 
-    `block` has one slice per axis but the last. An axis of length 1, which broadcasts, stays whole.
+    `block` has one slice per axis except the last. Axes of length 1, which broadcast, stay whole.
     """
     axes = zip(block, array.shape[:-1], strict=True)
     part = array[tuple(index if length > 1 else slice(None) for index, length in axes)]
@@ -186,33 +186,33 @@ def channels_first(array: Numbers) -> Array:
 def with_axes(array: Numbers, ndim: int) -> Numbers:
     """Array with leading axes of length 1, `ndim` axes in all.
 
-    An axis but the last along which it was broadcast has length 1 again.
+    Broadcast axes, except the last, are reduced to length 1.
     """
     *strides, _ = array.strides
     narrow = array[tuple(slice(None if stride else 1) for stride in strides)]
     return narrow.reshape((1,) * (ndim - array.ndim) + narrow.shape)
 
 
-# Largest error of the squared length of a direction: directions rounded to float32 pass.
+# Tolerance of a direction's squared length; directions rounded to float32 pass.
 UNIT_TOLERANCE = 1e-6
 
-# One rounding of float32: an argument that leaves its range by less counts as the end of the range.
+# One rounding of float32: arguments that exceed their range by less are clamped.
 ROUNDING = 2.0**-23
 
 
 def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
-    """Argument as an array of real numbers inside the range that its name has in `RANGES`.
+    """Argument as an array of real numbers inside the range for its name in `RANGES`.
 
-    `quantity` is the key of `RANGES` where it is not the name. A value beyond an end of a range of
-    `CLOSED` by less than `ROUNDING` counts as that end.
+    `quantity` is the key in `RANGES`, if it is not the name. A value beyond an end of a range in
+    `CLOSED` by less than `ROUNDING` is clamped to that end.
     """
 
     def in_range(array: Numbers) -> Numbers:
         low, high, interval = RANGES[quantity or name]
-        # In float64: half floats would round the ends of the range to infinity.
+        # Compare in float64: half floats would round the ends of the range to infinity.
         if not array.size or (float(array.min()) >= low and float(array.max()) <= high):
             return array
-        # Count one rounding beyond an end as the end.
+        # Clamp values that exceed an end by one rounding.
         beyond = ROUNDING if interval in CLOSED else 0.0
         wide = np.asarray(array, np.float64)
         valid = (wide >= low - beyond) & (wide <= high + beyond)
@@ -229,27 +229,27 @@ def checked_real(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_all(values: Mapping[str, ArrayLike]) -> dict[str, Numbers]:
-    """Arguments by name, each inside the range of its name."""
+    """Arguments by name, each inside its range."""
     return {name: checked(name, value) for name, value in values.items()}
 
 
 def checked_vectors(values: Mapping[str, ArrayLike]) -> dict[str, Numbers]:
-    """The same, each with at least one axis."""
+    """Arguments by name, each inside its range and with at least one axis."""
     return {name: with_axis(value) for name, value in checked_all(values).items()}
 
 
 def checked_numbers(**values: ArrayLike) -> list[Array]:
-    """Numbers inside the ranges of their names, in float64, whose shapes broadcast."""
+    """Numbers inside their ranges, in float64, with shapes that broadcast."""
     return broadcastable({}, checked_all(values))
 
 
 def checked_vector(name: str, value: ArrayLike) -> Numbers:
-    """Argument inside the range of its name, with at least one axis."""
+    """Argument inside its range, with at least one axis."""
     return with_axis(checked(name, value))
 
 
 def checked_color(name: str, value: ArrayLike) -> Numbers:
-    """Argument inside the range of its name, with an axis of at least one channel."""
+    """Argument inside its range, with an axis of at least one channel."""
     color = checked_vector(name, value)
     if not color.shape[-1]:
         raise ValueError(f"{name} must have at least one channel; got shape {tuple(color.shape)}")
@@ -257,7 +257,7 @@ def checked_color(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_rgb(name: str, value: ArrayLike) -> Numbers:
-    """Argument inside the range of its name, in red, green and blue; one channel counts for all."""
+    """Argument inside its range, as red, green and blue; a single channel is used for all."""
     color = checked_color(name, value)
     if color.shape[-1] not in (1, 3):
         raise ValueError(f"{name} must have 1 or 3 channels; got shape {tuple(color.shape)}")
@@ -316,7 +316,7 @@ def checked_directions(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_transmitted(name: str, value: ArrayLike) -> Numbers:
-    """Argument of shape (..., 3) of unit vectors, none of which points above the horizon."""
+    """Argument as unit vectors on or below the horizon, (..., 3)."""
 
     def below(array: Numbers) -> Numbers:
         z = array[..., 2]
@@ -328,7 +328,7 @@ def checked_transmitted(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_sphere(name: str, value: ArrayLike) -> Numbers:
-    """Argument of shape (..., 3) of unit vectors, on either side of the surface."""
+    """Argument as unit vectors on either side of the surface, (..., 3)."""
 
     def unit(array: Numbers) -> Numbers:
         checked_directions(name, np.concatenate([array[..., :2], np.abs(array[..., 2:])], axis=-1))
@@ -338,7 +338,7 @@ def checked_sphere(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_triples(name: str, value: ArrayLike) -> Numbers:
-    """Argument as an array of shape (..., 3), whose lengths are not looked at."""
+    """Argument as vectors of any length, (..., 3)."""
     array = checked_real(name, value)
     if array.shape[-1:] != (3,):
         raise ValueError(f"{name} must have shape (..., 3); got shape {tuple(array.shape)}")
@@ -346,7 +346,7 @@ def checked_triples(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_pairs(name: str, value: ArrayLike) -> Numbers:
-    """Argument of shape (..., 2) inside the range that its name has in `RANGES`."""
+    """Argument of shape (..., 2) inside the range for its name in `RANGES`."""
     array = checked(name, value)
     if array.shape[-1:] != (2,):
         raise ValueError(f"{name} must have shape (..., 2); got shape {tuple(array.shape)}")
@@ -354,7 +354,7 @@ def checked_pairs(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_roughness(value: ArrayLike) -> Numbers:
-    """alpha along tangent and bitangent in [0, 1], shape (..., 2); a number counts for both."""
+    """alpha along tangent and bitangent in [0, 1], shape (..., 2); a number is used for both."""
     return spread_pair("roughness", checked("roughness", value))
 
 
@@ -370,7 +370,7 @@ def are_directions(components: Numbers) -> bool:
 
 
 def on_horizon(w: Numbers, axis: int = 0) -> Numbers:
-    """Directions with their components on an axis; those below the horizon by a rounding, on it."""
+    """Directions with their components on an axis; a z that is negative by a rounding becomes 0."""
     z = w.take(2, axis)
     if not z.size or z.min() >= 0.0:
         return w
@@ -380,7 +380,7 @@ def on_horizon(w: Numbers, axis: int = 0) -> Numbers:
 
 
 def refuse_direction(name: str, w: Numbers) -> NoReturn:
-    """Raise for the first direction that is below the horizon or else of the wrong length."""
+    """Raise for the first direction below the horizon, or the first one of the wrong length."""
     z = w[..., 2]
     if (z < -ROUNDING).any():
         _refuse(f"{name} must not point below the horizon (z >= 0)", z, ~(z < -ROUNDING), "z = ")
@@ -391,7 +391,7 @@ def refuse_direction(name: str, w: Numbers) -> NoReturn:
 
 
 def _array(name: str, value: ArrayLike, check: Callable[[Numbers], Numbers]) -> Numbers:
-    """Argument as a float64 array that a check returns; another library's as it came."""
+    """Argument as a checked float64 array; arrays of other libraries stay unchanged."""
     if not library(value):
         return np.asarray(check(_real(name, value)), np.float64)
     if (values := host_values(value)) is not None:

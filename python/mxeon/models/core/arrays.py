@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays of any library that follows the array API standard, and operations whose derivatives are finite at edges.
+"""Arrays of any library that follows the array API standard, and operations with finite derivatives at edges.
 
-A formula takes its functions from its arguments, by the names of the standard. `any_array` marks what users call: with
-arrays of PyTorch or JAX it brings all arguments to that library, its precision and its device. A value that a
-transformation traces has no numbers yet, and is not checked.
+A formula takes the functions of the standard from the library of its arguments. `any_array` decorates public functions:
+with arrays of PyTorch or JAX it converts all arguments to that library, its precision and its device. Traced values
+have no numbers yet and are not checked.
 
-Libraries that differentiate multiply the derivatives of single steps: where a root begins, infinity times 0. Each
-operation from `cosine` on is the plain one of NumPy, to the last bit. For other arrays it takes its value at the edge
-from a branch of its own, and its derivative there is the one of its docstring.
+Automatic differentiation multiplies the derivatives of single steps: infinity times 0 at the start of a root. For NumPy
+each operation from `cosine` on is the plain one, to the last bit. For other arrays a separate branch gives the value at
+the edge, with the derivative that its docstring states.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["Array", "ArrayLike", "Number", "Numbers"]
 
-# Results: float64. A function of numbers alone returns NumPy's scalar, which behaves as one.
+# Results are float64. Given only numbers, a function returns a NumPy scalar, which behaves like an array.
 Array: TypeAlias = NDArray[np.float64]
 
-# An array or a number, and a result of the same kind.
+# An array or a number; the result is of the same kind.
 Number = TypeVar("Number", Array, float)
 
-# Arguments after validation, in the precision in which they came.
+# Validated arguments in their original precision.
 Numbers: TypeAlias = NDArray[Any]
 
 
@@ -44,16 +44,16 @@ class Namespace(Protocol):
     def __getattr__(self, name: str) -> Callable[..., Array]: ...
 
 
-PLAIN = np.ndarray, np.generic, float, int, list, tuple  # what is NumPy's, or becomes it
-# NumPy below 2 has other names for some functions.
+PLAIN = np.ndarray, np.generic, float, int, list, tuple  # types that NumPy handles
+# NumPy 1 has other names for some functions.
 NUMPY = cast(Namespace, np if hasattr(np, "atan") else import_module("array_api_compat.numpy"))
-# Types of numbers that are no arrays of the standard, and functions that were found, by library.
+# Number types that are not arrays of the standard, and the namespaces found so far, by library.
 OTHERS: dict[str, type] = {}
 FUNCTIONS: dict[str, Namespace] = {}
 
 
 def library(value: object) -> str:
-    """Name of the library other than NumPy whose array this is; "" for everything else."""
+    """Name of an array's library; "" for NumPy and everything that is not an array."""
     if isinstance(value, PLAIN):
         return ""
     name = type(value).__module__.partition(".")[0]
@@ -63,13 +63,13 @@ def library(value: object) -> str:
 
 
 def array_namespace(*arrays: object) -> Namespace:
-    """Functions for these arrays: NumPy itself, unless one of them is another library's."""
+    """Functions for these arrays: NumPy itself, unless one of them belongs to another library."""
     others = [each for each in arrays if library(each)]
     return _others_namespace(others) if others else NUMPY
 
 
 def _others_namespace(others: Sequence[object]) -> Namespace:
-    """Functions of the one library whose arrays these are."""
+    """Functions of the single library that these arrays belong to."""
     names = sorted({library(each) for each in others})
     if len(names) > 1:
         raise ValueError(f"arrays must be of one library; got {' and '.join(names)}")
@@ -80,10 +80,10 @@ def _others_namespace(others: Sequence[object]) -> Namespace:
 
 
 def any_array(function: Callable[P, R]) -> Callable[P, R]:
-    """Function that takes arrays of any library, and returns arrays of that library.
+    """Decorator: accept arrays of any library and return arrays of that library.
 
-    Without such arrays it is the function itself, to the last bit. With them numbers, lists and arrays
-    of NumPy are brought to their library, precision and device.
+    With NumPy the function is unchanged, to the last bit. Otherwise numbers, lists and NumPy arrays
+    are converted to the library, precision and device of the other arrays.
     """
     parameters = signature(function).parameters.values()
     names = [each.name for each in parameters]
@@ -107,12 +107,12 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def _converter(others: Sequence[object]) -> Callable[[object], object]:
-    """What brings an argument to the library, the precision and the device of these arrays."""
+    """Function that converts an argument to the library, precision and device of these arrays."""
     xp, arrays = _others_namespace(others), cast("Sequence[Array]", others)
     for each in arrays:
         try:
             real = bool(xp.isdtype(each.dtype, ("bool", "integral", "real floating")))
-        except TypeError:  # of JAX, whose random keys have a type that NumPy does not know
+        except TypeError:  # NumPy does not know the type of JAX's random keys
             real = False
         if not real:
             raise ValueError(f"arrays must be of real numbers; got one of {each.dtype}")
@@ -128,7 +128,7 @@ def _converter(others: Sequence[object]) -> Callable[[object], object]:
             return array if xp.isdtype(array.dtype, "real floating") else xp.astype(array, dtype)
         if isinstance(value, bool) or not isinstance(value, PLAIN):
             return value
-        if isinstance(value, float | int):  # which a compiler need not trace through NumPy
+        if isinstance(value, float | int):  # stays a constant for compilers
             return xp.asarray(value, dtype=dtype, **place)
         found = np.asarray(value)
         return xp.asarray(found, dtype=dtype, **place) if found.dtype.kind in "iuf" else value
@@ -137,12 +137,12 @@ def _converter(others: Sequence[object]) -> Callable[[object], object]:
 
 
 def _place(array: object) -> dict[str, object]:
-    """The device of an array, where a library has arrays on several at once."""
+    """The device of an array, for libraries with arrays on several devices."""
     return {"device": cast(Array, array).device} if library(array) == "torch" else {}
 
 
 def like(values: Numbers, array: Array) -> Array:
-    """Values of NumPy as an array of another's library, precision and device."""
+    """NumPy values converted to the library, precision and device of another array."""
     xp = array_namespace(array)
     if xp is NUMPY:
         return np.asarray(values, np.float64)
@@ -150,7 +150,7 @@ def like(values: Numbers, array: Array) -> Array:
 
 
 def host_values(value: object) -> Numbers | None:
-    """Values of another library's array in NumPy; None where a transformation traces it."""
+    """An array of another library in NumPy; None under tracing."""
     try:
         if library(value) != "torch":
             return np.asarray(value)
@@ -158,67 +158,67 @@ def host_values(value: object) -> Numbers | None:
 
         compiles = torch.compiler.is_compiling()
         return None if compiles else np.asarray(cast(torch.Tensor, value).detach().cpu())
-    except (TypeError, RuntimeError) as error:  # of JAX, of torch
+    except (TypeError, RuntimeError) as error:  # raised by JAX and by torch
         if "deleted" in str(error):
             raise ValueError("arrays must have values; got one that was deleted") from None
         return None
 
 
-INSIDE = 0.5  # an argument at which every formula of a cosine is smooth
+INSIDE = 0.5  # a cosine at which every formula is smooth
 
 
 def cosine(z: Array) -> Array:
-    """Cosine of a direction with this height: 1 where rounding made it larger, 0 where smaller.
+    """Cosine of a direction from its z, clamped to [0, 1] against rounding.
 
-    At 1 and at 0 its derivative is that of the height.
+    At 1 and at 0 its derivative is that of z.
     """
     xp = array_namespace(z)
     if xp is NUMPY:
-        return xp.minimum(z, 1.0)  # what is negative was refused, or counted as 0
+        return xp.minimum(z, 1.0)  # negative values were already rejected or set to 0
     return xp.where(z > 1.0, 1.0, xp.where(z < 0.0, 0.0, z))
 
 
 def least_normal(x: Array) -> float:
-    """Smallest positive number that has all its digits in the precision of x."""
+    """Smallest normal number in the precision of x."""
     return float(_precision(x).tiny)
 
 
 def largest(x: Array) -> float:
-    """Largest number of the precision of x."""
+    """Largest number in the precision of x."""
     return float(_precision(x).max)
 
 
 def _precision(x: Array) -> np.finfo[np.float64]:
-    """Limits of the numbers of an array; those that do not say theirs are of float32."""
+    """Floating-point limits of an array's type; float32 if it does not state its type."""
     return cast("np.finfo[np.float64]", array_namespace(x).finfo(getattr(x, "dtype", np.float32)))
 
 
 def at_most(x: Array, high: float) -> Array:
-    """The smaller of x and a number; where they are equal the derivative is that of x."""
+    """The smaller of x and a number; if they are equal, the derivative is that of x."""
     xp = array_namespace(x)
     return xp.minimum(x, high) if xp is NUMPY else xp.where(x > high, high, x)
 
 
 def trimmed(x: Array, high: float) -> Array:
-    """x, which rounding alone makes larger than a number: cut there, but for the sake of derivatives."""
+    """x clamped to a number that only rounding exceeds; the clamp does not affect derivatives."""
     xp = array_namespace(x)
     return xp.minimum(x, high) if xp is NUMPY else x
 
 
 def at_least_0(x: Array) -> Array:
-    """The larger of x and 0; where they are equal the derivative is that of x."""
+    """The larger of x and 0; if they are equal, the derivative is that of x."""
     xp = array_namespace(x)
     return xp.maximum(x, 0.0) if xp is NUMPY else xp.where(x < 0.0, 0.0, x)
 
 
 def magnitude(x: Array) -> Array:
-    """|x|; where x is 0 the derivative is that of x."""
+    """|x|; at 0 the derivative is that of x."""
     xp = array_namespace(x)
     return xp.abs(x) if xp is NUMPY else xp.where(x < 0.0, -x, x)
 
 
 def within(x: Array, low: float = 0.0, high: float = 1.0) -> Array:
-    """x kept between two numbers; at either the derivative is that of x."""
+    """x clamped to [low, high]; at both ends the derivative is that of x."""
     xp = array_namespace(x)
     return np.clip(x, low, high) if xp is NUMPY else xp.where(x < low, low, at_most(x, high))
 
@@ -226,19 +226,19 @@ def within(x: Array, low: float = 0.0, high: float = 1.0) -> Array:
 def except_where(
     edge: Numbers, value: Array | float, formula: Callable[[Array], Array], x: Array, inside: float
 ) -> Array:
-    """formula(x), and `value` with derivative 0 on the edge, where the formula takes `inside` instead of x."""
+    """formula(x); on the edge, `value` with derivative 0 (there the formula is evaluated at `inside`)."""
     where = array_namespace(x).where
     return where(edge, value, formula(where(edge, inside, x)))
 
 
 def root(x: Array) -> Array:
-    """Square root; where x is 0 its derivative counts as 0."""
+    """Square root; at 0 the derivative counts as 0."""
     xp = array_namespace(x)
     return xp.sqrt(x) if xp is NUMPY else except_where(~(x > 0.0), 0.0, xp.sqrt, x, 1.0)
 
 
 def hypot(x: Array, y: Array) -> Array:
-    """Length of (x, y); where it is 0 its derivative counts as 0."""
+    """Length of (x, y); at the origin the derivative counts as 0."""
     xp = array_namespace(x, y)
     if xp is NUMPY:
         return xp.hypot(x, y)
@@ -246,7 +246,7 @@ def hypot(x: Array, y: Array) -> Array:
 
 
 def arcsine(x: Array) -> Array:
-    """Arc sine of x kept in [-1, 1]; where x is at an end or beyond its derivative counts as 0."""
+    """Arc sine of x clamped to [-1, 1]; at both ends and beyond, the derivative counts as 0."""
     xp = array_namespace(x)
     if xp is NUMPY:
         return xp.asin(xp.minimum(xp.maximum(x, -1.0), 1.0))
@@ -255,7 +255,7 @@ def arcsine(x: Array) -> Array:
 
 
 def arccosine(x: Array) -> Array:
-    """Arc cosine of x kept in [-1, 1]; where x is at an end or beyond its derivative counts as 0."""
+    """Arc cosine of x clamped to [-1, 1]; at both ends and beyond, the derivative counts as 0."""
     xp = array_namespace(x)
     if xp is NUMPY:
         return xp.acos(xp.minimum(xp.maximum(x, -1.0), 1.0))
@@ -272,13 +272,13 @@ def angle(y: Array, x: Array) -> Array:
 
 
 def except_at_1(formula: Callable[[Array], Array], x: Array, value: float) -> Array:
-    """formula(x), and `value` with derivative 0 where x is 1 or a rounding more."""
+    """formula(x); at 1, or a rounding above, `value` with derivative 0."""
     xp = array_namespace(x)
     return formula(x) if xp is NUMPY else except_where(x >= 1.0, value, formula, x, INSIDE)
 
 
 def power(base: Array, exponent: Array) -> Array:
-    """base^exponent; where it has an infinite derivative at base 0, that counts as 0."""
+    """base^exponent; infinite derivatives at base 0 count as 0."""
     xp = array_namespace(base, exponent)
     if xp is NUMPY:
         return base**exponent
@@ -288,7 +288,7 @@ def power(base: Array, exponent: Array) -> Array:
 
 
 def fractional_power(x: Array, exponent: float) -> Array:
-    """x^exponent with an exponent in (0, 1); where x is 0 its derivative counts as 0."""
+    """x^exponent with an exponent in (0, 1); at 0 the derivative counts as 0."""
     xp = array_namespace(x)
     if xp is NUMPY:
         return x**exponent
@@ -301,6 +301,6 @@ def below_1(x: Array) -> float:
 
 
 def guarded(x: Array, valid: Numbers, inside: float) -> Array:
-    """x, and a number where it is not valid and what follows counts for nothing."""
+    """x where it is valid, else `inside`, as a placeholder whose result is discarded."""
     xp = array_namespace(x, valid)
     return x if xp is NUMPY else xp.where(valid, x, inside)

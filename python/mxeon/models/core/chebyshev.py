@@ -14,7 +14,7 @@ def chebyshev_nodes(count: int) -> Array:
 
 
 def chebyshev_coefficients(values: Array) -> Array:
-    """Coefficients of the interpolant of values at the nodes of the first axis, shape as theirs."""
+    """Coefficients of the interpolant, from values at the nodes on the first axis; same shape."""
     count = len(values)
     cosines = np.cos(np.outer(np.arange(count), _angles(count)))
     cosines[0] *= 0.5
@@ -42,12 +42,12 @@ def chebyshev_sum(coefficients: Array, x: Array) -> Array:
 
 
 def cell_cubics(coefficients: Array, cells: int) -> Array:
-    """Coefficients of the cubics through four points of the sum in each cell of [0, 1], shape (4, cells)."""
+    """Coefficients of cubics through four points of the sum in each cell of [0, 1], shape (4, cells)."""
     x = np.sort(chebyshev_nodes(4))
     values = chebyshev_sum(coefficients, (np.arange(cells)[:, np.newaxis] + x) / cells)
     return np.asarray(np.linalg.inv(np.vander(x, increasing=True)) @ values.T)
 
 
 def _angles(count: int) -> Array:
-    """Angles of the nodes, whose cosines they are."""
+    """Angles whose cosines are the nodes."""
     return np.asarray(np.pi * (np.arange(count) + 0.5) / count)

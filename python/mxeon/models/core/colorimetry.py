@@ -106,7 +106,7 @@ CIE_1931 = np.array(
         (1.251141e-06, 4.5181e-07, 0.0),
     ]
 )
-# From CIE XYZ to linear Rec. 709 primaries with white D65, IEC 61966-2-1; the specification's matrix.
+# CIE XYZ to linear Rec. 709 primaries with white D65, IEC 61966-2-1; the specification's matrix.
 XYZ_TO_REC709 = np.array(
     [
         [3.2404542, -1.5371385, -0.4985314],
@@ -114,7 +114,7 @@ XYZ_TO_REC709 = np.array(
         [0.0556434, -0.2040259, 1.0572252],
     ]
 )
-# The same for a white of equal energy, which becomes D65 by a Bradford adaptation: rows sum to 1.
+# XYZ_TO_REC709 for a white of equal energy, adapted to D65 by Bradford: rows sum to 1.
 XYZ_TO_REC709_E = np.array(
     [
         [3.1462511, -1.6661240, -0.4801271],

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Evaluation of reflection formulas over broadcast arguments, in blocks that fit a cache."""
+"""Evaluation of reflection formulas over broadcast arguments, in cache-sized blocks."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _threads: ContextVar[int] = ContextVar("threads", default=1)
 
 @contextmanager
 def threads(count: int) -> Iterator[None]:
-    """Context in which the functions of `mxeon.models` evaluate on `count` threads; outside on the caller's alone.
+    """Context in which the functions of `mxeon.models` use `count` threads; by default, only the caller's.
 
     A thread takes a block of 32768 pairs at a time, so that calls with fewer pairs use one. Values
     do not depend on the number. The setting belongs to the thread or task that enters the context.
@@ -63,8 +63,8 @@ def evaluate(
     - `formula`: `formula(wo, wi, rho, *parameter)` for one block: directions (..., 3) with contiguous
       components, `rho` (C, ...), the parameter (...), all float64; returns (C, ...). Axes of length 1 stay
       so, and with them everything that depends on the material alone stays small.
-    - `rho` (..., C): A list of N numbers beside N directions is refused, unless it is red, green and blue.
-    - `**parameter` (...): At most one, under a name of `RANGES`.
+    - `rho` (..., C): A list of N numbers for N directions is rejected, unless it is red, green and blue.
+    - `**parameter` (...): At most one, named as in `RANGES`.
     """
     pair = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi)}
     color, numbers = checked_vector("rho", rho), checked_all(parameter)
@@ -73,7 +73,7 @@ def evaluate(
     if xp is not NUMPY:
         pair = {name: checked_directions(name, w) for name, w in pair.items()}
 
-    # Directions of NumPy are checked block by block, which are in the cache.
+    # NumPy directions are checked block by block, while they are in the cache.
     def value(rho: Array, wo: Array, wi: Array, **rest: Array) -> Array:
         parts = {"wo": wo, "wi": wi}
         if xp is NUMPY:
@@ -95,19 +95,19 @@ def evaluate_material(
     channels: int,
     size: int = BLOCK,
 ) -> Array:
-    """Values of a formula over broadcast arguments that were checked, block by block.
+    """Values of a formula over checked arguments that broadcast, block by block.
 
     - `formula`: `formula(**arguments)` for one block: of `vectors` each with its last axis first,
       (C, ...), of `numbers` (...), all float64; returns (channels, ...). Axes of length 1 stay so.
     - `vectors`, `numbers`: Directions, colors and pairs, shapes (..., C); the others, shapes (...).
     - `channels`: Channels of the result.
-    - `size`: Elements per block; fewer where the formula keeps many numbers for each.
+    - `size`: Elements per block; smaller for formulas with many temporaries per element.
 
     Result (..., channels).
     """
     shape = lead_shape(vectors, numbers)
     if array_namespace(*vectors.values(), *numbers.values()) is not NUMPY:
-        # Channels first, with all axes behind them, and last again; a constant may be NumPy's.
+        # The formula takes channels first, the result has them last; a constant may be NumPy's.
         axes, parts = len(shape), dict[str, Array]()
         for name, array in vectors.items():
             xp, wide = array_namespace(array), (1,) * (axes + 1 - array.ndim) + tuple(array.shape)
@@ -126,7 +126,7 @@ def evaluate_material(
         values = formula(
             **{name: parts[name][0] if name in numbers else parts[name] for name in parts}
         )
-        # A channel at a time, in a quarter of the time of one copy with the axes exchanged.
+        # Copying channel by channel takes a quarter of the time of one transposed copy.
         for channel, value in enumerate(np.broadcast_to(values, (channels, *values.shape[1:]))):
             out[block][..., channel] = value
 
@@ -135,7 +135,7 @@ def evaluate_material(
         for block in tiling:
             fill(block)
         return out
-    with ThreadPoolExecutor(count) as pool:  # NumPy computes without the interpreter's lock
+    with ThreadPoolExecutor(count) as pool:  # NumPy releases the GIL
         list(pool.map(fill, tiling))
     return out
 

@@ -2,8 +2,8 @@
 """Algebra of `layer`, `mix`, `add` and `multiply` on values and throughputs of lobes.
 
 The throughput of a lobe is 1 - E, with its directional albedo E. It is negative where E exceeds 1, so
-that sums which are scaled or mixed afterwards keep their E. What lies below gets no less than
-nothing: the text is silent on E above 1, and `layer` alone ends there. A value may carry its cosine
+that sums keep their E when they are scaled or mixed afterwards. The text does not cover E above 1; only
+`layer` clamps the throughput to the base, at 0. A value may include its cosine
 or not: all four operations are linear in it. Lobes broadcast against each other.
 """
 
@@ -20,8 +20,8 @@ class Bsdf:
     """A lobe, or a combination of lobes, for one or many pairs of directions.
 
     - `value`: BSDF in 1/sr, with or without the cosine.
-    - `throughput`: 1 - E, per channel, dimensionless: the part of the light that reaches what lies
-      below, none where it is negative. An opaque lobe of weight w has 1 - w, whatever it reflects.
+    - `throughput`: 1 - E, per channel, dimensionless: the part of the light that reaches the layer
+      below, none if negative. An opaque lobe of weight w has 1 - w, whatever it reflects.
     """
 
     value: Array
@@ -30,10 +30,10 @@ class Bsdf:
 
 @any_array
 def throughput(albedo: ArrayLike) -> Array:
-    """Throughput T = 1 - E of a lobe with the directional albedo E (..., C), of its tint and weight too.
+    """Throughput T = 1 - E of a lobe with the directional albedo E (..., C), tint and weight included.
 
     Negative where the albedo exceeds 1, and above 1 where it is negative, as Zeltner's fit is, by 2.2e-5. The
-    text defines E of the whole lobe, color included, so a tinted sheen lets through more than a white one.
+    text defines E for the whole lobe, color included, so a tinted sheen passes more light than a white one.
     Shaders of MaterialX leave the color of `sheen_bsdf` out of E. Raises `ValueError` if an albedo is infinite
     or NaN. [MaterialX2026], section `layer`.
 
@@ -48,7 +48,7 @@ def layer(top: Bsdf, base: Bsdf) -> Bsdf:
 
         f = f_top + max(T_top, 0) f_base,  T = min(T_top, 0) + max(T_top, 0) T_base
 
-    Result: 1 - T is E_top + (1 - E_top) E_base, the albedo of f; and E_top where that exceeds 1.
+    Result: 1 - T is E_top + (1 - E_top) E_base, the albedo of f, or E_top if E_top exceeds 1.
     [MaterialX2026], section `layer`.
 
         >>> import numpy as np
@@ -62,7 +62,7 @@ def layer(top: Bsdf, base: Bsdf) -> Bsdf:
 
 
 def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
-    """Two lobes side by side; `amount` is the share w of `fg`, in [0, 1].
+    """A linear blend of two lobes; `amount` is the weight w of `fg`, in [0, 1].
 
         f = (1 - w) f_bg + w f_fg,  T = (1 - w) T_bg + w T_fg
 
@@ -78,7 +78,7 @@ def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
 
 
 def add(in1: Bsdf, in2: Bsdf) -> Bsdf:
-    """Sum of two lobes, which may reflect more than all light.
+    """Sum of two lobes, whose albedo may exceed 1.
 
         f = f_1 + f_2,  T = 1 - (E_1 + E_2) = T_1 + T_2 - 1
 
@@ -97,8 +97,8 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
 
         f = s f_1,  T = 1 - s E_1 = 1 - s (1 - T_1)
 
-    The shaders of MaterialX keep T_1, so a lobe that is scaled to nothing still darkens what lies
-    below; and they clamp s to [0, 1]. The text has neither. [MaterialX2026], section `multiply`.
+    MaterialX's shaders keep T_1, so a lobe scaled to 0 still darkens the layer below, and they
+    clamp s to [0, 1]. The text does neither. [MaterialX2026], section `multiply`.
 
         >>> import numpy as np
         >>> scaled = multiply(Bsdf(np.array(1.0), np.array(0.5)), 0.5)
@@ -110,5 +110,5 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
 
 
 def _beside(value: Array, number: Array) -> Array:
-    """Number in the library of a lobe's value."""
+    """Number as an array of the same library as a lobe's value."""
     return number if library(number) else like(number, value)

@@ -58,7 +58,7 @@ def albedo_dir_quadrature(
 def _integral(
     brdf: Callable[..., Array], mu: Array, rho: Array, parameters: Iterable[Array], nodes: int
 ) -> Array:
-    """The albedo of arguments that have one shape."""
+    """The albedo for arguments of the same shape."""
     wo, wi, weights = hemisphere_nodes(mu, nodes)
     rows = (value[..., np.newaxis] for value in parameters)
     values = brdf(wo[..., np.newaxis, :], wi, rho[..., np.newaxis, :], *rows)
@@ -83,7 +83,7 @@ def hemisphere_nodes(mu: Array | float, nodes: int) -> tuple[Array, Array, Array
     return wo, xp.reshape(xp.stack(parts, axis=-1), (*flat, 3)), xp.reshape(weights, flat)
 
 
-@lru_cache(maxsize=8)  # the rule takes longer than what it is used for
+@lru_cache(maxsize=8)  # computing the rule takes longer than using it
 def unit_rule(nodes: int, panels: int = 1) -> tuple[Array, Array]:
     """Nodes and weights of Gauss-Legendre on [0, 1], in panels of equal width."""
     x, weight = np.polynomial.legendre.leggauss(nodes)

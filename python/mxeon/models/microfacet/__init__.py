@@ -64,7 +64,7 @@ class Curve:
     critical: Callable[..., Array] = lambda **material: np.zeros(1)
 
 
-# `material` may hold a tint, which F leaves alone.
+# `material` may include a tint, which F ignores.
 DIELECTRIC = Curve(
     lambda c, ior, tint: fresnel.dielectric(c, ior)[np.newaxis],
     lambda ior, tint: fresnel.dielectric_avg(ior)[np.newaxis],
@@ -96,7 +96,7 @@ def compensation(pair: Pair) -> Array:
 
 
 def uncompensated(pair: Pair) -> float:
-    """1, for a value as it is."""
+    """1: no compensation."""
     return 1.0
 
 
@@ -110,15 +110,15 @@ def missing(pair: Pair) -> Array:
     return missing_of(pair.wo, pair.roughness)
 
 
-# Degrees of the polynomial that many views of one roughness share, whose last coefficients have to be below TAIL: it is
-# then as exact as the quadrature. The axes of very anisotropic surfaces need more.
+# Many views of one roughness share a polynomial of these degrees if its last coefficients are below TAIL: it is
+# then as accurate as the quadrature. Very anisotropic surfaces need higher degrees along their axes.
 DEGREES, TAIL = (32, 16), 5e-6
 MANY = (DEGREES[0] + 1) * (DEGREES[1] + 1)
 
 
 @lru_cache(maxsize=8)
 def _anisotropic_missing(rows: bytes) -> Array:
-    """(1 - E_ss) / E_ss of float64 rows x, y, z of views, then both alphas, each of shape (N,)."""
+    """(1 - E_ss) / E_ss for float64 rows of shape (N,): x, y, z of the views, then both alphas."""
     columns = np.frombuffer(rows).reshape(5, -1)
     E = evaluate_number(
         lambda wo, roughness: slope_nodes(wo, roughness)[1].sum(axis=(0, 1)),
@@ -131,7 +131,7 @@ def _anisotropic_missing(rows: bytes) -> Array:
 
 @lru_cache(maxsize=8)
 def _series(roughness: tuple[float, float]) -> Array | None:
-    """Chebyshev coefficients of (1 - E_ss) / E_ss in `_place`, or None where they fall too slowly."""
+    """Chebyshev coefficients of (1 - E_ss) / E_ss in `_place`, or None if they decay too slowly."""
     s, turn = np.meshgrid(*(chebyshev_nodes(degree + 1) for degree in DEGREES), indexing="ij")
     squares = turn / roughness[0], (1.0 - turn) / roughness[1]
     cos_phi, sin_phi = (np.sqrt(each / sum(squares)) for each in squares)
@@ -154,7 +154,7 @@ def _place(wo: Array, roughness: Array) -> tuple[Array, Array]:
 
 
 def _of_unlike(rows: Array) -> Array:
-    """(1 - E_ss) / E_ss of rows as `_anisotropic_missing` takes them; those that are alike count once."""
+    """(1 - E_ss) / E_ss of rows as in `_anisotropic_missing`; equal rows are evaluated once."""
     wo, alphas = rows[:3], rows[3:]
     one = rows.shape[1] >= MANY and not np.ptp(alphas, axis=1).any() and alphas.all()
     if one and (series := _series((float(alphas[0, 0]), float(alphas[1, 0])))) is not None:
@@ -172,15 +172,15 @@ def missing_of(wo: Array, roughness: Array) -> Array:
         unequal = roughness[0] != roughness[1]
         if not np.any(unequal):
             return isotropic
-        # Pairs that share a view and a roughness, as those of one integral, share the quadrature.
+        # Pairs with the same view and roughness, as in an integral, share one quadrature.
         total = np.broadcast_to(isotropic, np.broadcast_shapes(wo.shape[1:], unequal.shape)).copy()
         chosen = np.broadcast_to(unequal, total.shape)
-        # E_ss is the same for mirrored views, and for the lights and curves of one picture.
+        # Mirrored views have the same E_ss, and it does not depend on lights or curves.
         views = (abs(wo[0]), abs(wo[1]), wo[2])
         rows = [np.broadcast_to(each, total.shape)[chosen] for each in (*views, *roughness)]
         total[chosen] = _of_unlike(np.stack(rows))
         return total
-    # Where both alphas are the same, the difference is 0 and its gradient is that by each alpha alone.
+    # If both alphas are equal, the difference is 0 but still has a gradient by each alpha.
     mean = ggx.mean_alpha(roughness)
     xp = array_namespace(wo, roughness)
     unlike, alike = (
@@ -194,7 +194,7 @@ def missing_of(wo: Array, roughness: Array) -> Array:
 class Lobe:
     """Terms of a microfacet BRDF, those of [MaterialX2026] unless replaced.
 
-    - `alpha`: alpha as the lobe takes it, of the input `roughness`.
+    - `alpha`: The lobe's alpha, from the input `roughness`.
     """
 
     factor: Callable[[Pair], Array | float] = compensation  # compensation of a Pair
@@ -242,7 +242,7 @@ def evaluate_lobe(
 Color = tuple[float, float, float]
 ONE: Color = (1.0, 1.0, 1.0)
 GOLD: dict[str, Color] = {"ior": (0.183, 0.421, 1.373), "extinction": (3.424, 2.346, 1.770)}
-# Of each node: its Fresnel curve, its inputs with channels, and those without, with their defaults.
+# Fresnel curve of each node, its inputs with channels, and its inputs without, with defaults.
 CATEGORIES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
     "dielectric_bsdf": (DIELECTRIC, {"tint": ONE}, {"ior": 1.5}),
     "conductor_bsdf": (CONDUCTOR, GOLD, {}),
@@ -257,7 +257,7 @@ CATEGORIES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
 def _material(
     category: str, inputs: Mapping[str, ArrayLike]
 ) -> tuple[Curve, dict[str, Numbers], dict[str, Numbers]]:
-    """Curve of a node, and its checked inputs with channels and without."""
+    """Curve of a node, its checked inputs with channels, and those without."""
     curve, colors, numbers = CATEGORIES[category]
     vectors = checked_vectors({name: inputs[name] for name in colors})
     return curve, vectors, checked_all({name: inputs[name] for name in numbers})
@@ -272,7 +272,7 @@ def node_brdf(
     lobe: Lobe | None = None,
     retroreflective: bool = False,
 ) -> Array:
-    """BRDF of a node, a key of CATEGORIES, by its inputs; others are ignored."""
+    """BRDF of a node, a key of CATEGORIES. Inputs that the node does not have are ignored."""
     material = _material(category, inputs)
     return evaluate_lobe(
         lobe or Lobe(), material[0], wo, wi, inputs["roughness"], *material[1:], retroreflective
@@ -374,7 +374,7 @@ def _lobe(compensate: bool) -> Lobe:
     return Lobe() if checked_switch("compensate", compensate) else Lobe(factor=uncompensated)
 
 
-QUADRATURE_BLOCK = 2**3  # elements at once
+QUADRATURE_BLOCK = 2**3  # elements per block
 
 
 @any_array
@@ -464,7 +464,7 @@ def lobe_albedo(
     compensate: bool,
     summed: bool = False,
 ) -> Array:
-    """Albedo of a lobe with this Fresnel curve, whose checked inputs `vectors` and `numbers` are."""
+    """Albedo of a lobe with this Fresnel curve; `vectors` and `numbers` are the curve's checked inputs."""
     wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
     checked_switch("compensate", compensate)
 
@@ -479,7 +479,7 @@ def lobe_albedo(
         E = xp.sum(curve.at(c, **spread) * weight, axis=(1, 2))
         squared = curve.critical(**material)
         if not summed and (arrays.library(squared) or np.any(squared > 0.0)):
-            # All light, but what passes above the critical angle.
+            # All light minus the part transmitted above the critical angle.
             alpha, isotropic = 0.5 * (roughness[0] + roughness[1]), roughness[0] == roughness[1]
             lossless = xp.where(isotropic, albedo(wo[2], alpha), xp.sum(weight, axis=(0, 1)))
             c, weight = transmitting_nodes(wo, roughness, arrays.at_least_0(squared))
@@ -491,8 +491,8 @@ def lobe_albedo(
         return total
 
     arguments = {"wo": wo, "roughness": roughness, **vectors}
-    lead_shape(arguments, numbers)  # refuses what does not broadcast, by the names of the arguments
-    # Light that is scattered more than once, for all elements before their many slopes.
+    lead_shape(arguments, numbers)  # reports arguments that do not broadcast by name
+    # Compute the multiple scattering per element, before the slope nodes multiply the elements.
     channels = channel_count(vectors)
     unseen, average = np.zeros(()), np.zeros(1)
     if compensate:

@@ -14,7 +14,7 @@ from mxeon.models.microfacet import Lobe, Pair, ggx
 from mxeon.models.microfacet.ggx import missing_light
 
 # MaterialX 1.39.5, rational fit of the GGX albedo A F0 + B F90 in x = mu, y = alpha; up to 0.14 off
-# in [1e-3, 1]^2. Rows: coefficients of 1, x, y, x y, x^2, y^2, x^2 y, x y^2, x^2 y^2; columns:
+# on [1e-3, 1]^2. Rows: coefficients of 1, x, y, x y, x^2, y^2, x^2 y, x y^2, x^2 y^2; columns:
 # numerators of A and B, denominators of A and B.
 ALBEDO_FIT = np.array(
     [
@@ -46,7 +46,7 @@ class MicrofacetDefect:
 
 
 def averaged_channels(albedo: Array) -> Array:
-    """Albedo whose channels all have their mean, as the throughput of a colored node may have."""
+    """Albedo with all channels replaced by their mean, as a colored node's throughput may be."""
     mean = np.mean(albedo, axis=-1, keepdims=True)
     return np.broadcast_to(mean, albedo.shape).copy()
 
@@ -64,9 +64,9 @@ def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float
 
 
 def schlick_average(normal: Array, grazing: Array | float) -> Array:
-    """Average of F over the hemisphere, as Schlick's curve of exponent 5 has it between two ends.
+    """Average of F over the hemisphere, for Schlick's curve of exponent 5 between two end values.
 
-    MaterialX takes it for every curve since its pull request 2958, of June 2026.
+    MaterialX uses it for every curve since pull request 2958 (June 2026).
     """
     average: Array = normal + (grazing - normal) / 21.0
     return average
@@ -83,7 +83,7 @@ def _normal(pair: Pair) -> Array:
 
 
 def _averaged(pair: Pair) -> Array:
-    """Average of F by its ends."""
+    """Average of F from its values along the normal and at grazing."""
     ends = (pair.curve.at(np.full_like(pair.cosine, mu), **pair.material) for mu in (1.0, 0.0))
     return schlick_average(*ends)
 
@@ -98,12 +98,12 @@ def _missing_by_fit(pair: Pair) -> Array:
 def _compensated(
     F: Callable[[Pair], Array], lost: Callable[[Pair], Array] = microfacet.missing
 ) -> Callable[[Pair], Array]:
-    """Compensation with F instead of its average F_ss, and (1 - E_ss) / E_ss."""
+    """Compensation with a given F instead of its average F_ss, and a given (1 - E_ss) / E_ss."""
     return lambda pair: 1.0 + F(pair) * lost(pair)
 
 
-fitted_half = _compensated(_half, _missing_by_fit)  # of MaterialX 1.39.5
-averaged_fitted = _compensated(_averaged, _missing_by_fit)  # of MaterialX after 1.39.5
+fitted_half = _compensated(_half, _missing_by_fit)  # MaterialX 1.39.5
+averaged_fitted = _compensated(_averaged, _missing_by_fit)  # MaterialX after 1.39.5
 
 
 def _separable(pair: Pair) -> Array:
@@ -115,12 +115,12 @@ def _separable(pair: Pair) -> Array:
 
 
 def _at_the_mean(pair: Pair) -> Array:
-    """G2 / (4 mu_o mu_i) at sqrt(alpha_x alpha_y), of the specification of June 2026."""
+    """G2 / (4 mu_o mu_i) at sqrt(alpha_x alpha_y): the specification of June 2026."""
     return ggx.visibility(pair.wo[2], pair.wi[2], ggx.mean_alpha(pair.roughness))
 
 
 def _june(pair: Pair) -> Array:
-    """The compensation of the specification of June 2026, whose E_ss is that of the mean alpha."""
+    """The compensation of the specification of June 2026, with E_ss at the mean alpha."""
     lost = missing_light(pair.wo[2], ggx.mean_alpha(pair.roughness))
     return 1.0 + pair.curve.average(**pair.material) * lost
 
@@ -182,7 +182,7 @@ MICROFACET_DEFECTS = (
 FITTED = Lobe(fitted_half, _at_the_mean)
 AVERAGED = Lobe(averaged_fitted, _at_the_mean)
 MEAN_TITLE = f"{MEAN_ALPHA}, and MaterialX's compensation"
-# MaterialX's lobe, and one slip in a copy of its shaders.
+# MaterialX's lobe with one error each, as a copy of its shaders may have.
 FITTED_DEFECTS = (
     MicrofacetDefect("smith_mean_fitted", MEAN_TITLE, FITTED),
     MicrofacetDefect("smith_mean_average", f"{MEAN_TITLE} by F0 and F90", AVERAGED),
@@ -202,7 +202,7 @@ FITTED_DEFECTS = (
         if each.lobe.factor is microfacet.compensation
     ),
 )
-# Of OSL's own renderer, which its closures are compared with alone: E_ss is at the arithmetic mean of both alphas.
+# OSL's BSDL, compared only with OSL's closures: E_ss at the arithmetic mean of both alphas.
 BSDL = MicrofacetDefect(
     "bsdl",
     "BSDL's lobe: compensation with F at the half vector",
@@ -213,7 +213,7 @@ BSDL = MicrofacetDefect(
         ),
     ),
 )
-# Of Blender's Cycles, whose closures do not compensate.
+# Blender's Cycles: its closures have no compensation.
 SINGLE = MicrofacetDefect(
     "single",
     "single scattering alone",
@@ -245,19 +245,19 @@ def conty_kulla_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
 def layer_albedo(
     wo: Array, inputs: Mapping[str, Array], F0: Array, F90: Array | float, F: Array
 ) -> Array:
-    """Albedo of a microfacet lobe as its throughput takes it, with F in the compensation, (N, 3)."""
+    """Albedo of a microfacet lobe as used for its throughput, with F in the compensation, (N, 3)."""
     mu, alpha = _arguments(wo, inputs)
     A, B = (fitted_albedo(mu, alpha, *ends)[:, np.newaxis] for ends in ((1.0, 0.0), (0.0, 1.0)))
     return np.broadcast_to((F0 * A + F90 * B) * fitted_compensation(wo, inputs, F), wo.shape)
 
 
 def fitted_compensation(wo: Array, inputs: Mapping[str, Array], F: Array) -> Array:
-    """Energy compensation with F, by the fit of E_ss, (N, 1 or 3)."""
+    """Energy compensation with F and the fitted E_ss, (N, 1 or 3)."""
     E_ss = fitted_albedo(*_arguments(wo, inputs), 1.0, 1.0)[:, np.newaxis]
     return 1.0 + F * (1.0 - E_ss) / E_ss
 
 
 def _arguments(wo: Array, inputs: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Cosine and alpha, at least CLAMP."""
+    """Cosine and alpha, both at least CLAMP."""
     alpha = np.sqrt(np.maximum(inputs["roughness"], CLAMP).prod(axis=-1))
     return np.clip(wo[:, 2], CLAMP, 1.0), alpha

@@ -29,16 +29,16 @@ from mxeon.models.core.quadrature import unit_rule
 # Hoffman's correction is largest here: [MaterialX2026], Generalized Schlick Equations.
 COS_THETA_MAX = 1.0 / 7.0
 
-# Indices below count as this one where 1 / n enters: F_ss is 1 to rounding, and n^3 stays finite.
+# Smaller indices are raised to this where 1 / n enters: F_ss is 1 to rounding, and n^3 stays finite.
 LEAST_IOR = 1e-50
 
 # Double-exponential rule: c = X^2 / (X^2 + 1/X^2), X = exp(pi/4 sinh(t)), |t| < 3.2.
 # The weights beyond are below 1e-15.
 STEP, STEPS = 0.0625, 51
-GROUP = 2**12  # values of the integrand at once
+GROUP = 2**12  # integrand values per block
 
-# Gauss-Legendre nodes of curves that have no singularity within the ellipse with foci 0 and 1 and this
-# sum of half axes, in halves: what is left falls as its power -56, 1e-13.
+# Gauss-Legendre nodes for curves without a singularity within the ellipse with foci 0 and 1 and this
+# sum of half axes, in units of 1/2: the error falls as its power -56, 1e-13.
 AVERAGE_NODES, ELLIPSE = 28, 1.7
 
 
@@ -110,7 +110,7 @@ def polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Arr
 
 
 def modulus(real: Array, imaginary: Array) -> Array:
-    """Length of complex numbers: `hypot` where a square overflows, which takes ten times as long."""
+    """Absolute value of complex numbers: `hypot`, ten times slower, only where a square overflows."""
     if array_namespace(real, imaginary) is not arrays.NUMPY:
         return hypot(real, imaginary)
     with np.errstate(over="ignore"):
@@ -139,12 +139,12 @@ def dielectric_avg(ior: Array) -> Array:
 
 
 def conductor_avg(ior: Array, extinction: Array) -> Array:
-    """F_ss of a conductor, by a rule of Gauss where F is smooth in the cosine c, and one that is split.
+    """F_ss of a conductor: Gauss-Legendre where F is smooth in the cosine c, else a split rule.
 
     F has square roots at c^2 = 1 - n^2, next to the real axis for weakly absorbing media, and, for
     strong ones, a pole as near to grazing as 1 / |n|.
     """
-    # Take the split rule for all arrays that cannot be written into.
+    # Arrays that do not support assignment always use the split rule.
     if array_namespace(ior, extinction) is not arrays.NUMPY:
         return _split_avg(ior, extinction)
     ior, extinction = np.broadcast_arrays(ior, extinction)
@@ -190,7 +190,7 @@ def _smooth_avg(ior: Array, extinction: Array) -> Array:
 
 
 def _split_avg(ior: Array, extinction: Array) -> Array:
-    """F_ss by a double-exponential rule on either side of the critical angle, all nodes at once.
+    """F_ss by a double-exponential rule on either side of the critical angle, vectorized over the nodes.
 
     The nodes crowd at the ends of both parts, where the singularities are. The critical angle counts as a constant
     of the integral, which does not depend on where it is split.
@@ -372,7 +372,7 @@ def fresnel_schlick_avg(
 def _colors(
     formula: Callable[..., Array], colors: dict[str, ArrayLike], **numbers: ArrayLike
 ) -> Array:
-    """Formula over arguments that broadcast, colors among them."""
+    """A formula evaluated over broadcast colors and numbers."""
     vectors = checked_vectors(colors)
     return evaluate_material(formula, vectors, checked_all(numbers), channel_count(vectors))
 
@@ -403,6 +403,6 @@ def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array,
 
 
 def normal_reflectance(ior: Array, extinction: Array) -> Array:
-    """Fresnel reflectance at normal incidence, without a check of the arguments."""
+    """Fresnel reflectance at normal incidence; arguments are not checked."""
     square = extinction**2
     return ((ior - 1.0) ** 2 + square) / ((ior + 1.0) ** 2 + square)

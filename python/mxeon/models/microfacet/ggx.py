@@ -29,12 +29,12 @@ from mxeon.models.core.arguments import checked_directions, checked_roughness
 from mxeon.models.core.arrays import NUMPY, Array, ArrayLike, any_array, array_namespace, like, root
 from mxeon.models.core.evaluation import evaluate_number
 
-# Sums of cosines below count as 0: D alone is at most 1e162.
+# Smaller sums of cosines count as 0: D alone reaches 1e162.
 LEAST_DIVISOR = 1e-140
 
 
 def ndf(wh: Array, roughness: Array) -> Array:
-    """D: GGX Normal Distribution Function; no division by alpha; 0 where an alpha is 0.
+    """D: GGX Normal Distribution Function, without a division by alpha; 0 where an alpha is 0.
 
     Printed, with a = alpha_x alpha_y and B = (h_x / alpha_x)^2 + (h_y / alpha_y)^2 + h_z^2: D = 1 / (pi a B^2).
     a^2 B = (alpha_y h_x)^2 + (alpha_x h_y)^2 + (a h_z)^2 has no quotient, and D = a^3 / (pi (a^2 B)^2).
@@ -79,7 +79,7 @@ def visibility_anisotropic(wo: Array, wi: Array, roughness: Array) -> Array:
 
 
 def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
-    """Unit half vector, and its cosine with either direction; (0, 0, 1) of opposite directions."""
+    """Unit half vector, and its cosine with either direction; (0, 0, 1) for opposite directions."""
     xp = array_namespace(wo, wi)
     total = wo + wi
     size = root(xp.sum(total * total, axis=0))
@@ -90,9 +90,9 @@ def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
 
 
 def reciprocal(x: Array) -> Array:
-    """1 / x, and 0 where x is so small that a product with D could overflow."""
+    """1 / x, or 0 if x is so small that a product with D could overflow."""
     xp = array_namespace(x)
-    large = x > max(LEAST_DIVISOR, arrays.least_normal(x))  # that of float32 is larger
+    large = x > max(LEAST_DIVISOR, arrays.least_normal(x))  # least_normal is larger in float32
     return xp.where(large, 1.0 / xp.where(large, x, 1.0), 0.0)
 
 
@@ -242,11 +242,11 @@ RULE = np.polynomial.legendre.leggauss(RULE_NODES)
 
 # Least scale of the nodes and least elevation of wo, in radian: nothing changes by more than 1e-10.
 LEAST_SCALE, LEAST_ELEVATION = 1e-8, 1e-200
-LEAST_SQUARED = 1e-15  # of arrays whose derivatives square it, which float32 holds
+LEAST_SQUARED = 1e-15  # both limits for other libraries: derivatives square them, in float32 too
 
-ALIKE = 2.0**44  # by this part of themselves, cosines that count as one may differ
+ALIKE = 2.0**44  # steps of the mantissa to which cosines are rounded, to merge nearly equal ones
 
-# Cosines nearer to 1 take the line through two others; its error is below the square of this.
+# Closer to 1, extrapolate linearly from two other cosines, with an error below the square of this.
 ALONG = 1e-8
 
 # Below this alpha, E_ss(mu, alpha) counts as E_ss(mu LEAST_ALPHA / alpha, LEAST_ALPHA).
@@ -274,9 +274,9 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
 
 def albedo(mu: Array, alpha: Array) -> Array:
-    """E_ss on valid float64 arrays; cosines that are alike, as those of pictures, count once.
+    """E_ss on valid float64 arrays; nearly equal cosines, as in pictures, are evaluated once.
 
-    Those of a picture's symmetric points differ in their last bits, which E_ss changes by as little.
+    Symmetric points of a picture differ only in the last bits of the cosine, and E_ss is smooth.
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 < mu.size:
         mantissa, exponent = np.frexp(mu)
@@ -294,9 +294,9 @@ def _in_blocks(mu: Array, alpha: Array) -> Array:
 
 
 def _extrapolated(mu: Array, alpha: Array) -> Array:
-    """`quadrature`, along the normal by a line through two cosines, for derivatives.
+    """`quadrature`, extrapolated linearly from two cosines along the normal.
 
-    It is smooth in the cosine, but made of elevations, which have no derivative there.
+    E_ss is smooth in the cosine, but its quadrature uses elevations, which have no derivative there.
     """
     xp = array_namespace(mu, alpha)
     step = xp.where(mu > 1.0 - ALONG, ALONG, 0.0)
@@ -306,7 +306,7 @@ def _extrapolated(mu: Array, alpha: Array) -> Array:
 
 
 def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
-    """E_ss by quadrature, with so many panels for each one."""
+    """E_ss by quadrature, with every panel divided into `refined` ones."""
     xp = array_namespace(mu, alpha)
     rough = xp.maximum(alpha, LEAST_ALPHA)
     least, lowest = (1e-300, LEAST_ELEVATION) if xp is NUMPY else (LEAST_SQUARED, LEAST_SQUARED)
@@ -314,7 +314,7 @@ def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
     elevation = xp.maximum(arrays.arcsine(scaled), lowest)
     graded = 2.0 * xp.minimum(rough, xp.maximum(elevation, LEAST_SCALE))
     total = like(np.zeros(np.broadcast_shapes(tuple(mu.shape), tuple(rough.shape))), rough)
-    # From wo to the normal, from wo to half its elevation, and from there to the horizon.
+    # Three ranges: wo to the normal, wo to half its elevation, and from there to the horizon.
     for d, weight in _graded(graded, 0.5 * np.pi - elevation, refined * PANELS):
         total = total + xp.sum(weight * _density(elevation, elevation + d, -d, rough), axis=0)
     for d, weight in _graded(2.0 * rough, 0.5 * elevation, refined):
@@ -325,7 +325,7 @@ def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
 
 
 def _graded(scale: Array, length: Array, panels: int) -> list[tuple[Array, Array]]:
-    """Nodes and weights on [0, length], denser towards 0 from `scale` on, axis of nodes first."""
+    """Nodes and weights on [0, length], denser towards 0 down to `scale`, axis of nodes first."""
     xp, ratio = array_namespace(scale, length), length / scale
     x, weight = (like(v.reshape(-1, *(1,) * ratio.ndim), ratio) for v in RULE)
     extent = xp.asinh(ratio)
@@ -357,12 +357,12 @@ def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
     return density
 
 
-# Nodes in the cube root of s and in the square root of alpha, panels for one of the quadrature that
-# fills the table, and elements at once.
+# Nodes in the cube root of s and in the square root of alpha, refinement of the quadrature that
+# fills the table, and elements per block.
 NODES_S, NODES_ALPHA, REFINED, TABLE_BLOCK = 80, 28, 2, 2**12
 
-# Cosines of one alpha from which on cubics take the place of the polynomials, the number of their cells,
-# and the alphas that are kept. The cubics are within 3e-14 of the polynomials.
+# From MANY cosines with one alpha on, cubics in CELLS cells replace the polynomials, within 3e-14.
+# KEPT is the number of alphas in the cache.
 MANY, CELLS, KEPT = 2**14, 2**12, 8
 
 
@@ -371,7 +371,7 @@ def missing_light(mu: Array, alpha: Array) -> Array:
 
     Accuracy: absolute error below 1e-10 for every mu and alpha in [0, 1], against the quadrature of
     `mxeon.models.ggx_albedo_dir` with twice its panels. One alpha for all cosines costs the least:
-    many of them share cubics in its place.
+    many cosines then share cubics.
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 and mu.size >= MANY:
         return _of_one_alpha(mu, float(alpha.item()))
@@ -396,13 +396,13 @@ def _interpolated(mu: Array, alpha: Array) -> Array:
 
 
 def _of_one_alpha(mu: Array, alpha: float) -> Array:
-    """`missing_light` of one alpha, by a cubic in each cell of the cube root of s."""
+    """`missing_light` for a single alpha, by a cubic in each cell of the cube root of s."""
     if alpha <= 0.0:
         return np.zeros(mu.shape)  # a mirror misses nothing
     s = np.minimum(mu * (1.0 + alpha) / (mu + alpha), 1.0)
     place = np.cbrt(s)
     place *= CELLS
-    cell = np.fmin(place, CELLS).astype(np.int32)  # any cell for NaN, whose place keeps it
+    cell = np.fmin(place, CELLS).astype(np.int32)  # NaN may use any cell: `place` keeps it
     place -= cell
     *lower, highest = _cubics(alpha)
     value: Array = highest.take(cell, mode="clip")
@@ -418,7 +418,7 @@ def _cubics(alpha: float) -> Array:
     powers = chebyshev.chebyshev_polynomials(np.sqrt(alpha), NODES_ALPHA)
     rows = np.einsum("ij,j->i", _table(), powers)
     cubics = chebyshev.cell_cubics(rows, CELLS)
-    # The end of the last cell is a cell of its own, of which only the beginning counts.
+    # The end of the last cell is stored as an extra cell that is evaluated only at its start.
     end = [chebyshev.chebyshev_sum(rows, np.ones(1))[0], 0.0, 0.0, 0.0]
     return np.concatenate([cubics, np.reshape(end, (4, 1))], axis=1)
 

@@ -23,20 +23,20 @@ from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
 # Gauss-Legendre nodes in r per panel, panels, and nodes per quadrant of phi.
 SLOPE_NODES, PANELS, QUADRANT = 20, 3, 20
-# Those of facets above a critical angle: per panel, and per part of a half plane.
+# Nodes for facets above a critical angle: per panel, and per part of a half plane.
 SPLIT_NODES, SPLIT_PART = 28, 32
 
-# Least cosine of wo, and largest r: beyond, less than 1e-12 of the light is left.
+# Least cosine of wo, and largest r; beyond them lies less than 1e-12 of the light.
 LEAST_MU, LARGEST_R = 1e-12, 1e8
-# Least scale of the nodes of all facets: what is nearer to 0 has less than 1e-7 of the light.
+# Least scale of the nodes of all facets; less than 1e-7 of the light is closer to 0.
 LEAST_SCALE = 3e-4
-# That of facets that refract: where those at the horizon do, 1 / r of the light is left.
+# Largest r of refracting facets: if facets at the horizon refract, 1 / r of the light lies beyond.
 FARTHEST_R = 1e12
 
 
 @dataclass(frozen=True)
 class Slopes:
-    """Slopes that a direction sees, in polar coordinates r and omega, of which 0 is its own azimuth.
+    """Slopes that a direction sees, in polar coordinates r and omega; omega is 0 at its own azimuth.
 
     - `mu_o`: Cosine of the direction.
     - `stretched`: (alpha_x x, alpha_y y) of the direction.
@@ -63,18 +63,18 @@ class Slopes:
 
     @property
     def scale(self) -> Array:
-        """Distance from a right angle, and radius, within which lean and limit change."""
+        """Scale, as distance from a right angle and as radius, on which lean and limit change."""
         maximum = array_namespace(self.mu_o, self.steepness).maximum
         return self.mu_o / maximum(self.steepness, self.mu_o)
 
     @property
     def isotropic(self) -> bool:
-        """Whether both halves of every surface are alike; of another library's arrays it is not known."""
+        """Whether every surface is isotropic; False for arrays of other libraries, where it is unknown."""
         known = array_namespace(self.roughness) is arrays.NUMPY
         return known and bool(np.all(self.roughness[0] == self.roughness[1]))
 
     def rays(self, omega: Array) -> tuple[Array, Array, tuple[Array, Array]]:
-        """Of each azimuth: B, the last r, and the slope (alpha_x cos(phi), alpha_y sin(phi)) at r = 1.
+        """B, the last r, and the slope (alpha_x cos(phi), alpha_y sin(phi)) at r = 1, for each azimuth.
 
         phi = omega + phi_0, tan(phi_0) = alpha_y y / (alpha_x x), joins the azimuths of h and of slopes:
 
@@ -123,14 +123,14 @@ def _squared(slope: tuple[Array, Array]) -> Array:
 
 
 def _density(r: Array) -> Array:
-    """Density of slopes in r and omega."""
+    """Probability density of slopes in r and omega."""
     return r / (np.pi * (1.0 + r * r) ** 2)
 
 
 def slope_nodes(wo: Array, roughness: Array, isotropic: bool = False) -> tuple[Array, Array]:
     """Cosine wo . h and weight of every node, shape (nodes of r, nodes of phi, ...).
 
-    Where surfaces are known to be isotropic, half of the nodes stand for all.
+    For surfaces known to be isotropic, symmetry halves the nodes.
     """
     slopes = Slopes.seen(wo, roughness)
     scale = array_namespace(slopes.scale).maximum(slopes.scale, LEAST_SCALE)
@@ -142,7 +142,7 @@ def slope_nodes(wo: Array, roughness: Array, isotropic: bool = False) -> tuple[A
 
 
 def sum_nodes(wo: Array, roughness: Array) -> tuple[Array, Array]:
-    """As `slope_nodes`, weighted as MaterialX sums an environment over visible normals.
+    """`slope_nodes` with the weights of MaterialX's sum of an environment over visible normals.
 
     The weight of a normal is G_2 / G_1 of the geometric mean of both alphas instead of the lobe's own.
     """
@@ -167,7 +167,7 @@ def sum_nodes(wo: Array, roughness: Array) -> tuple[Array, Array]:
 def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array, Array]:
     """Cosine wo . h and weight of nodes whose cosine is above the critical one.
 
-    There 1 - F begins as a square root: nodes crowd at both ends of r, and where the ends of r end.
+    There 1 - F begins as a square root: nodes crowd at both ends of r, and at the azimuths where r ends.
 
     - `squared` (...): Square of the cosine of the critical angle, at least 0.
     """
@@ -201,7 +201,7 @@ def refracting_nodes(
     omega, weight_omega = _split_azimuths(slopes, wo, squared, _cone_azimuth(mu_o, squared))
     B, _, slope = slopes.rays(omega)
     g = _squared(slope)
-    # Begin where wi leaves the horizon, end where light is reflected totally.
+    # r starts where wi is at the horizon and ends at total reflection.
     low, high = _transmitting(mu_o, B, g, squared)
     xp = array_namespace(mu_o, high)
     high = xp.minimum(high, FARTHEST_R)
@@ -227,14 +227,14 @@ def refracting_nodes(
 
 
 def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Array, Array]:
-    """Ends of r between which (mu_o + B r)^2 > squared (1 + g r^2); none where they are the same."""
+    """Ends of r between which (mu_o + B r)^2 > squared (1 + g r^2); equal if there are none."""
     a, b, d = B * B - squared * g, mu_o * B, mu_o * mu_o - squared
     xp, size = array_namespace(a, b, d), root(at_least_0(b * b - a * d))
     ahead, inside = b > 0.0, d > 0.0
     none = ~inside & (~ahead | (b * b < a * d))
     low = xp.where(inside, 0.0, -d / xp.where(ahead, b + size, 1.0))
     falling = xp.where(a < 0.0, (b + size) / xp.where(a < 0.0, -a, 1.0), np.inf)
-    behind = xp.where(size > b, d / xp.where(size > b, size - b, 1.0), np.inf)  # at alpha 0
+    behind = xp.where(size > b, d / xp.where(size > b, size - b, 1.0), np.inf)  # alpha is 0
     high = xp.where(ahead, falling, behind)
     return xp.where(none, 0.0, low), xp.where(none, 0.0, high)
 
@@ -242,12 +242,12 @@ def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Arra
 def _split_azimuths(
     slopes: Slopes, wo: Array, squared: Array, meeting: Array
 ) -> tuple[Array, Array]:
-    """Nodes and weights of omega, split at an azimuth from that of wo, and where the critical cone ends."""
+    """Nodes and weights of omega, split at an azimuth relative to wo and where the critical cone ends."""
     xp = array_namespace(slopes.mu_o, wo, squared, meeting)
     last = _cone_azimuth(slopes.mu_o, squared - slopes.mu_o**2)
     inside, right = slopes.mu_o * slopes.mu_o >= squared, 0.5 * np.pi
     nodes = []
-    for center in (0.0, np.pi):  # in front of the view, where lean grows with r, and behind
+    for center in (0.0, np.pi):  # half in front of the view, where lean grows with r, and half behind
         low, high = (
             xp.where(
                 inside,
@@ -277,7 +277,7 @@ def _cone_azimuth(mu_o: Array, squared: Array) -> Array:
 
 
 def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:
-    """omega of slopes at an azimuth from that of wo, both in [-pi, pi]."""
+    """omega of slopes at an azimuth relative to wo, both in [-pi, pi]."""
     xp, upright = array_namespace(wo, azimuth), hypot(wo[0], wo[1]) == 0.0
     x, y = xp.where(upright, 1.0, wo[0]), wo[1]
     cosine, sine = xp.cos(azimuth), xp.sin(azimuth)
@@ -307,16 +307,16 @@ def _between(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
 
 
 def _crowded(panels: int, nodes: int, array: Array) -> tuple[Array, Array]:
-    """Nodes and weights of [0, 1] along an axis before those of an array, as dense at its ends as squares."""
+    """Nodes and weights of [0, 1] on an axis before the array's axes, quadratically dense at both ends."""
     (u, weight), shape = unit_rule(nodes, panels), (-1, *(1,) * array.ndim)
     both = (u * u * (3.0 - 2.0 * u)).reshape(shape), (6.0 * u * (1.0 - u) * weight).reshape(shape)
     return like(both[0], array), like(both[1], array)
 
 
 def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
-    """Nodes and weights of phi from that of wo on, denser towards right angles, shape (1, n, ...).
+    """Nodes and weights of phi relative to wo, denser towards right angles, shape (1, n, ...).
 
-    Halves of an isotropic surface are alike.
+    An isotropic surface needs only one half.
     """
     xp = array_namespace(scale)
     x, weight = (like(v.reshape(-1, *(1,) * scale.ndim), scale) for v in unit_rule(QUADRANT))
@@ -339,5 +339,5 @@ def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
     rise = xp.exp(extent * x)
     fall = 1.0 / rise
     half = 0.5 * scale
-    # sinh and cosh of one exponential, which takes a third of the time.
+    # sinh and cosh from one exponential take a third of the time.
     return half * (rise - fall), weight * extent * half * (rise + fall)

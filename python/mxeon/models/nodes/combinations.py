@@ -2,8 +2,8 @@
 """Rows of pbrlib's nodes that combine two lobes: `layer`, `mix`, `add` and `multiply`.
 
 Both lobes are Zeltner sheens, `top` and `base`, whose values and albedos have closed forms; nested
-rows combine their sum, whose albedo may exceed 1. Inputs go by their paths. Colors are 1 where an
-evaluation sets none.
+rows combine their sum, whose albedo may exceed 1. Inputs are named by their paths. Colors default
+to 1.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from mxeon.models.sheen import (
 
 ROUGHNESS = ("top/roughness", "base/roughness")
 COLORS = ("top/color", "base/color")
-AMOUNT = "lobe/mix"  # share of `top`, or of the sum
-AMOUNT_ABOVE = "mixed/mix"  # share of the sum in a mix that is the top of a layer
-FACTOR = "lobe/in2"  # of `top`, or of the sum
+AMOUNT = "lobe/mix"  # weight of `top` or of the sum
+AMOUNT_ABOVE = "mixed/mix"  # weight of the sum in a mix that is the top of a layer
+FACTOR = "lobe/in2"  # factor of `top` or of the sum
 MASKS = (
     "inner/in1",
     "outer/in1",
-)  # shares of a white opaque lobe over `top`, and of both over another
-Sheen = Callable[[Array, Array, Array, Array], Bsdf]  # of wo, wi, roughness and color
+)  # weights of a white opaque lobe over `top`, and of both over another lobe
+Sheen = Callable[[Array, Array, Array, Array], Bsdf]  # (wo, wi, roughness, color)
 Combine = Callable[[Bsdf, Bsdf, Inputs], Bsdf]
 Finish = Callable[[Bsdf], Bsdf]
 
@@ -46,7 +46,7 @@ def _zeltner(wo: Array, wi: Array, roughness: Array, color: Array) -> Bsdf:
 
 
 def _conty_kulla(wo: Array, wi: Array, roughness: Array, color: Array) -> Bsdf:
-    """A Conty-Kulla sheen, whose albedo counts as 1 where it exceeds 1."""
+    """A Conty-Kulla sheen with its albedo clamped to 1."""
     albedo = np.minimum(conty_kulla_albedo_dir(np.minimum(wo[:, 2], 1.0), roughness), 1.0)
     return Bsdf(conty_kulla_brdf(wo, wi, color, roughness), 1.0 - albedo[:, np.newaxis] * color)
 
@@ -121,21 +121,21 @@ def _masked(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe:
 
 
 def _hiding() -> tuple[Variant[Scattering], ...]:
-    """Opaque lobes that hide their base whatever their weight, as MaterialX's do."""
+    """Opaque lobes that hide their base regardless of their weight, as in MaterialX."""
     hidden = partial(_masked, finish=lambda lobe: replace(lobe, throughput=0.0 * lobe.throughput))
     return (Variant("opaque lobes that hide their base at any weight", *_values(hidden)),)
 
 
 def _unscaled(combine: Combine) -> tuple[Variant[Scattering], ...]:
-    """A scaled lobe that passes what it passes before it is scaled: the text is open on it."""
+    """A scaled lobe that keeps its unscaled throughput, which the text leaves open."""
     title = "the throughput of the lobe before it is scaled"
     return (Variant(title, albedo=_values(combine)[1], permitted=True),)
 
 
 def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant[Scattering], ...]:
-    """A combination of a sum that has lost the excess of its albedo over 1, over a base or not.
+    """A combination of a sum whose albedo is clamped to 1, over a base or not.
 
-    MaterialX's `add` leaves a throughput of at least 0.
+    MaterialX's `add` clamps the throughput to at least 0.
     """
     value, albedo = _values(
         partial(
@@ -207,5 +207,5 @@ COMBINATIONS = (
     ),
     _combined("layer_masked", "a layer under masks", "layer", _masked, MASKS, _hiding()),
 )
-# Rows of combinations of a sum.
+# Rows that combine a sum.
 NESTED = ("multiply_sum", "mix_sum", "layer_sum", "mix_layer", "layer_colored", "layer_masked")

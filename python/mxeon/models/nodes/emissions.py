@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of pbrlib's EDF nodes, and of those that combine EDFs.
+"""Rows of pbrlib's EDF nodes and of the nodes that combine EDFs.
 
-Inputs go by the names of the node's ports; those of nodes that combine two emissions, and the color
-that `generalized_schlick_edf` scales, go by their paths. `base` in `inputs` is a radiance, (N, 3), in
-a graph whose emissions are evaluated already.
+Inputs are named by the node's ports; for nodes that combine two emissions, and for the color that
+`generalized_schlick_edf` scales, by their paths. `base` in `inputs` is a radiance, (N, 3), if the
+graph's emissions are already evaluated.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from mxeon.models import media
 from mxeon.models.core.arrays import Array
 from mxeon.models.nodes.node import Inputs, Node, Variant, linear_nodes
 
-BASE = "base/color"  # of the uniform emission below a Schlick curve
-FIRST, SECOND = "first/color", "second/color"  # of two uniform emissions
-AMOUNT, FACTOR = "emission/mix", "emission/in2"  # share of the first, and factor of it
+BASE = "base/color"  # color of the uniform emission that a Schlick curve scales
+FIRST, SECOND = "first/color", "second/color"  # colors of two uniform emissions
+AMOUNT, FACTOR = "emission/mix", "emission/in2"  # weight and factor of the first emission
 Value = Callable[[Array, Inputs], Array]
 
 
@@ -27,19 +27,19 @@ Value = Callable[[Array, Inputs], Array]
 class Emission(Node[Value]):
     """An EDF node, or one that combines EDFs.
 
-    - `value`: Radiance towards `wo`, normal +z; below the horizon that of the back.
+    - `value`: Radiance towards `wo`, normal +z; below the horizon, the radiance of the back.
     """
 
-    exitance: Callable[[Inputs], Array]  # its integral over the hemisphere times the cosine
+    exitance: Callable[[Inputs], Array]  # integral over the hemisphere, times the cosine
 
 
 def front_only(value: Value) -> Value:
-    """The same radiance, with none from the back."""
+    """The same radiance in front, none from the back."""
     return lambda wo, inputs: np.where(wo[:, 2:] < 0.0, 0.0, value(wo, inputs))
 
 
 def _radiance(inputs: Inputs) -> Array:
-    """Radiance that a Schlick curve scales, whichever way it comes."""
+    """Radiance that a Schlick curve scales, from `base` or from a color."""
     return inputs["base"] if "base" in inputs else inputs[BASE]
 
 
@@ -53,7 +53,7 @@ def _uniform(wo: Array, inputs: Inputs) -> Array:
 
 
 def _halves(wo: Array, inputs: Inputs) -> Array:
-    """A cone whose angles count from the axis."""
+    """A cone whose angles are measured from the axis."""
     names = "inner_angle", "outer_angle"
     angles = (np.minimum(2.0 * np.asarray(inputs[name]), 360.0) for name in names)
     return media.conical_edf(wo, inputs["color"], *angles)
@@ -111,7 +111,7 @@ EMISSIONS = (
 def _combined(
     name: str, title: str, category: str, inputs: tuple[str, ...], color: Callable[[Inputs], Array]
 ) -> Emission:
-    """Row of a node that combines uniform emissions, whose result is one of another color."""
+    """Row of a node that combines uniform emissions into one with another color."""
     return Emission(
         name,
         title,

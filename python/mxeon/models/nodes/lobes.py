@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of pbrlib's sheens, of its diffuse nodes but the rough ones, of hair and of subsurface scattering.
+"""Rows of pbrlib's sheens, diffuse nodes (except the rough ones), hair and subsurface scattering.
 
 Inputs of hair have the names of `mxeon.models.hair.chiang_hair_bcsdf`. Subsurface scattering is seen on a plane under a
-distant light: every point has the same light, so that the profile, whose integral is 1, changes nothing, and the node is
-Lambert of its color, whatever its radius and its anisotropy.
+distant light: all points receive the same light, so that the profile, whose integral is 1, has no effect, and the node
+is Lambert with its color, for any radius and anisotropy.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from mxeon.models.microfacet import defects, dielectric_albedo_dir
 from mxeon.models.nodes.node import Inputs, PbrNode, Variant
 from mxeon.models.sheen import conty_kulla_albedo_dir, zeltner_albedo_dir
 
-# The series of I_0 has so many terms, and above the limit a logarithm takes its place.
+# Terms in the series of I_0, and the argument above which an approximate logarithm replaces it.
 TERMS, LIMIT, NARROW = 10, 12.0, 0.1
-LIMITS = (0.001, 1.0)  # of every roughness
+LIMITS = (0.001, 1.0)  # range of every roughness
 
 
 def materialx_longitudinal(
@@ -70,7 +70,7 @@ FORMS: dict[str, HairForm] = {
     ),
 }
 
-# Readings that the text leaves open, or that its later versions have.
+# Readings that the text permits, or that its later versions use.
 READINGS: dict[str, HairForm] = {
     "F of the effective index": replace(TEXT, effective=True),
     "no factor 1/pi, as in later versions of the text": replace(TEXT, factor=1.0),
@@ -78,23 +78,23 @@ READINGS: dict[str, HairForm] = {
 
 
 def _bounded(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
-    """An albedo that counts as 1 where it exceeds 1; the text is silent on it."""
+    """An albedo clamped to 1; the text does not say what happens above 1."""
     return lambda mu, roughness: at_most(albedo(mu, roughness), 1.0)
 
 
 def _tinted(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Inputs], Array]:
-    """Albedo of a lobe of one roughness times its color."""
+    """Albedo of a lobe with one roughness, times its color."""
     return lambda wo, i: albedo(cosine(wo[:, 2]), i["roughness"])[..., np.newaxis] * i["color"]
 
 
 def untinted(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Inputs], Array]:
-    """Albedo of a lobe of one roughness without its color."""
+    """Albedo of a lobe with one roughness, without its color."""
     white = _tinted(albedo)
     return lambda wo, inputs: white(wo, {**inputs, "color": np.ones(3)})
 
 
 def _sheen(brdf: Callable[..., Array]) -> Callable[[Array, Array, Inputs], Array]:
-    """Values of a lobe of a color and a roughness."""
+    """Values of a lobe with a color and a roughness."""
     return lambda wo, wi, inputs: brdf(wo, wi, inputs["color"], inputs["roughness"])
 
 
@@ -178,7 +178,7 @@ LOBE_NODES = (
 
 
 def _value(form: HairForm = TEXT) -> Callable[[Array, Array, Inputs], Array]:
-    """Values in a form of the model."""
+    """Values of the hair model in one form."""
 
     def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
         named = {name: inputs[name] for name in hair.DEFAULTS if name in inputs}
@@ -195,7 +195,7 @@ def _albedo(wo: Array, inputs: Inputs) -> Array:
 
 
 def _ggx(wo: Array, inputs: Inputs) -> Array:
-    """Albedo of a GGX lobe of the mean roughness and tint: the environment of MaterialX's GLSL."""
+    """Albedo of a GGX lobe with the mean roughness and tint: the environment of MaterialX's GLSL."""
     alpha = np.mean([inputs[name] for name in hair.ROUGHNESSES], axis=0)
     alpha = np.sqrt(np.clip(alpha, 1e-6, 1.0).prod(axis=-1, keepdims=True))
     tint = np.mean([inputs[name] for name in TINTS], axis=0)
@@ -224,16 +224,16 @@ HAIR_NODE = PbrNode(
 )
 
 
-STEPS = 32  # of the circle in MaterialX
-FLATTEST = 100.0  # radius of it
-LEAST_RADIUS = 0.1  # of the profile
+STEPS = 32  # steps around the circle in MaterialX
+FLATTEST = 100.0  # MaterialX's largest radius of the circle
+LEAST_RADIUS = 0.1  # smallest radius of the profile
 
 
 def circle_blur(mu: Array, radius: Array, body: float = FLATTEST) -> Array:
-    """Cosine of a light as MaterialX blurs it, along a circle through the light.
+    """Cosine of a light, blurred as in MaterialX along a circle through the light.
 
     `mu` (N,), `radius` (N, 3): mean free path. MaterialX takes `body`, the circle's radius, from the
-    curvature, and at most 100.
+    curvature; it is at most 100.
     """
     theta = np.arccos(np.clip(mu, -1.0, 1.0))[:, np.newaxis]
     shape = 1.0 / np.maximum(radius, LEAST_RADIUS)

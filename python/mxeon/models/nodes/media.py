@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's VDF nodes below a surface, over one meter of the medium.
 
-Inputs go by the names of the node's ports; those of nodes that combine two media go by their paths. The
-text gives no equation for the combination of media: here it is that of their coefficients. A sum of
-transmittances would exceed 1.
+Inputs are named by the node's ports; for nodes that combine two media, by their paths. The text gives no
+equation for combined media: here their coefficients are combined, since a sum of transmittances would
+exceed 1.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from mxeon.models.core.arrays import Array
 from mxeon.models.media import transmittance
 from mxeon.models.nodes.node import Inputs, Node, Variant, column, linear_nodes
 
-FIRST, SECOND = "first/absorption", "second/absorption"  # of two media that absorb
-AMOUNT, FACTOR = "medium/mix", "medium/in2"  # share of the first, and factor of it
-METER = 1.0  # a shader of a surface knows no thickness
+FIRST, SECOND = "first/absorption", "second/absorption"  # the two absorbing media
+AMOUNT, FACTOR = "medium/mix", "medium/in2"  # weight and factor of the first medium
+METER = 1.0  # surface shaders have no thickness
 Value = Callable[[Inputs], Array]
 
 
 @dataclass(frozen=True)
 class Medium(Node[Value]):
-    """A VDF node, by its transmittance.
+    """A VDF node, represented by its transmittance.
 
-    - `inputs`: Names of the inputs that the transmittance depends on. The anisotropy enters the
-      light that is scattered into a ray alone.
+    - `inputs`: Names of the inputs that the transmittance depends on. The anisotropy only affects
+      the light scattered into a ray.
     - `value`: Transmittance of METER.
     """
 
@@ -62,7 +62,7 @@ MEDIA = (
 def _combined(
     name: str, title: str, category: str, inputs: tuple[str, ...], coefficient: Value
 ) -> Medium:
-    """Row of a node that combines media, whose result absorbs with other coefficients."""
+    """Row of a node that combines media by combining their coefficients."""
 
     def first(i: Inputs) -> Array:
         return transmittance(i[FIRST], 0.0, METER)

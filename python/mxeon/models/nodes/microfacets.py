@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's microfacet nodes: reflection, R, also under a thin film, and transmission, T and RT.
 
-A rasterizer has no light behind the surface. It looks up an environment instead, so that what can be promised of a node
-that transmits is the share of the light that passes, and where from.
+A rasterizer has no light behind the surface and looks up an environment instead. For a node that transmits, only the
+transmitted share of the light and its direction can be compared.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectri
 from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant
 from mxeon.models.thin_film import FILM, Form, film_albedo_dir
 
-# Forms of the energy compensation, which the text leaves open, and MaterialX's masking of anisotropic facets, of which
-# an implementation note of the text speaks since July 2026.
+# The text leaves the form of the energy compensation open. MaterialX's masking of anisotropic facets is mentioned in
+# an implementation note of the text since July 2026.
 OPEN = [
     f"compensation_{each}" for each in ["half", "f0", "view", "fitted", "average", "average_fitted"]
 ] + ["smith_mean", "smith_mean_fitted", "smith_mean_average"]
@@ -34,14 +34,14 @@ REFLECTION, NONE = {"scatter_mode": "R"}, dict[str, str]()
 
 @dataclass(frozen=True)
 class MicrofacetLobe:
-    """Functions of a microfacet node by its inputs, under a thin film where they have one."""
+    """Functions of a microfacet node of its inputs, under a thin film if the inputs include one."""
 
     category: str
     fresnel: Callable[[Array, Inputs], Array]  # its curve F
     edge: str = ""  # name of the input that is F at grazing; "" where F is 1 there
 
     def value(self, wo: Array, wi: Array, inputs: Inputs, terms: Lobe | None = None) -> Array:
-        """With other terms than the specification's there is no film."""
+        """BRDF; `terms` replaces the specification's lobe, without a film."""
         if terms is None and _has_film(inputs):
             return thin_film.film_brdf(self.category, wo, wi, inputs)
         return node_brdf(self.category, wo, wi, inputs, terms)
@@ -55,11 +55,11 @@ class MicrofacetLobe:
         return self.fresnel(np.ones(len(wo)), inputs), inputs[self.edge] if self.edge else 1.0
 
     def fitted(self, wo: Array, inputs: Inputs) -> Array:
-        """Albedo as MaterialX's throughput takes it, per channel and without a tint."""
+        """Albedo as in MaterialX's throughput, per channel and without a tint."""
         return layer_albedo(wo, inputs, *self.ends(wo, inputs), self._at_view(wo, inputs))
 
     def prefiltered(self, wo: Array, inputs: Inputs) -> Array:
-        """Albedo by MaterialX's fit, as its prefiltered environment has it, with the exact compensation."""
+        """Albedo by MaterialX's fit, as in its prefiltered environment, with the exact compensation."""
         whole, single = (self.albedo(wo, isotropic(inputs), each) for each in (True, False))
         ratio = np.divide(whole, single, out=np.ones(single.shape), where=single > 0.0)
         fit = layer_albedo(wo, inputs, *self.ends(wo, inputs), np.zeros(3))
@@ -70,7 +70,7 @@ class MicrofacetLobe:
         return self._compensated(wo, inputs, self._at_view(wo, inputs))
 
     def averaged(self, wo: Array, inputs: Inputs) -> Array:
-        """The same with the average of F by its ends, as in MaterialX after 1.39.5."""
+        """`indirect` with F averaged from its two ends, as in MaterialX after 1.39.5."""
         return self._compensated(wo, inputs, defects.schlick_average(*self.ends(wo, inputs)))
 
     def _compensated(self, wo: Array, inputs: Inputs, F: Array) -> Array:
@@ -82,7 +82,7 @@ class MicrofacetLobe:
 
 
 def isotropic(inputs: Inputs) -> dict[str, Array]:
-    """Inputs with the geometric mean of the roughness in both directions."""
+    """Inputs with both roughnesses replaced by their geometric mean."""
     mean = np.sqrt(inputs["roughness"].prod(axis=-1, keepdims=True))
     return {**inputs, "roughness": np.repeat(mean, 2, axis=-1)}
 
@@ -129,7 +129,7 @@ def _row(
     fixed: Mapping[str, str] = NONE,
     mirror: dict[str, ArrayLike],
 ) -> PbrNode:
-    """Row of a node, which lets light through to what lies below if it has scatter modes."""
+    """Row of a node; nodes with scatter modes can be layered over others."""
     _, colors, numbers = CATEGORIES[lobe.category]
     known = (
         Variant(
@@ -209,9 +209,9 @@ MICROFACET_NODES = (
 OWN_MATRIX = Form(tuple(map(tuple, XYZ_TO_REC709.tolist())))
 STOCK = Form(
     thin_film.CIE_RGB, 2, True, 1.0, 0.01
-)  # MaterialX's choices, with all of a Schlick substrate's reflectance
+)  # MaterialX's choices, with the full reflectance of a Schlick substrate
 MIXED = Form(mixed=True)
-# Title, form, and whether the text leaves it open.
+# Title, form, and whether the specification permits it.
 FORMS = (
     ("MaterialX's matrix, orders and mixed channels", STOCK, True),
     ("half of the substrate's reflectance, and MaterialX's choices", thin_film.MATERIALX, False),
@@ -247,7 +247,7 @@ def _reflectance(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
 
 
 def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: Inputs) -> Array:
-    """Albedo of MaterialX's environment branch: F of the film in the compensation, at the view or averaged by its ends."""
+    """Albedo of MaterialX's environment branch: the film's F in the compensation, at the view or averaged by its ends."""
     normal = np.broadcast_to([0.0, 0.0, 1.0], wo.shape)
     F = _reflectance(category, form, normal if averaged else wo, inputs)
     F = defects.schlick_average(F, 1.0) if averaged else F
@@ -256,14 +256,14 @@ def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: I
 
 
 def _fitted(lobe: MicrofacetLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
-    """Albedo of MaterialX's throughput: the bare lobe's fit, with F of the film at the view."""
+    """Albedo of MaterialX's throughput: the bare lobe's fit with the film's F at the view."""
     F = _reflectance(lobe.category, form, wo, inputs)
     albedo = layer_albedo(wo, inputs, *lobe.ends(wo, inputs), F)
     return averaged_channels(albedo) if lobe.edge else albedo
 
 
 def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
-    """Other films that a shader may have, each with either compensation; MaterialX's with its masking, too."""
+    """Other film models that shaders use, each with either compensation; MaterialX's with its masking, too."""
     variants: list[Variant[Scattering]] = [
         Variant("no film", lambda wo, wi, inputs: row.value(wo, wi, _bare(inputs))),
         Variant(
@@ -291,7 +291,7 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         words = "the bare lobe's fit, and the film in the compensation"
         variants.append(Variant(f"{title}: {words}", albedo=fitted))
     for title, form, permitted in FORMS:
-        one = form == MIXED and row.category == "dielectric_bsdf"  # index of all channels
+        one = form == MIXED and row.category == "dielectric_bsdf"  # one index for all channels
         if one or (form.share != 1.0 and not schlick):
             continue
         lobes: list[tuple[str, Lobe | None]] = [(title, None)]
@@ -328,20 +328,20 @@ MODES = ("T", "RT")
 
 @dataclass(frozen=True)
 class Transmission:
-    """Functions of a node that transmits, by its inputs.
+    """Functions of the inputs of a node that transmits.
 
-    - `passed`: Share of the light from wo that the BTDF transmits, with its tint; without `shadow`,
+    - `passed`: Share of the light from wo that the BTDF transmits, tint included; without `shadow`,
       the mean of 1 - F over the facets that wo sees.
     - `reflected`: Directional albedo of the reflection with its energy compensation, without a
       tint.
     """
 
-    value: Callable[[Array, Array, Inputs], Array]  # BTDF of radiance, with its tint
+    value: Callable[[Array, Array, Inputs], Array]  # BTDF of radiance, tint included
     passed: Callable[[Array, Inputs, bool], Array]
     reflected: Callable[[Array, Inputs], Array]
     tint: Callable[[Inputs], Array]
     fresnel: Callable[[Array, Inputs], Array]
-    ior: Callable[[Inputs], Array]  # index of refraction that refracts the view
+    ior: Callable[[Inputs], Array]  # index of refraction for the view direction
 
 
 TRANSMISSIONS = {

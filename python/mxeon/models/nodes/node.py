@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's nodes: their inputs, with defaults, ranges and units, and their functions.
 
-Inputs come as a mapping by the names of the node's ports, in MaterialX's order, each (N,) or (N, components). The
-node's `weight` is left to the caller, since every node has it.
+Inputs are a mapping by port name, in MaterialX's order, each (N,) or (N, components). The caller applies the
+node's `weight`, since every node has one.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ FACETS: dict[str, Value] = {
     "thinfilm_thickness": 0.0,
     "thinfilm_ior": 1.5,
 }
-# Defaults of the inputs of a node, in the order of its definition; those that select a mode and those of
-# BY_NAME are left out. A test compares them with MaterialX's definitions.
+# Defaults of a node's inputs in the order of its definition, without those that select a mode and those
+# in BY_NAME. A test compares them with MaterialX's definitions.
 DEFAULTS: dict[str, dict[str, Value]] = {
     "oren_nayar_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
     "burley_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
@@ -43,12 +43,12 @@ DEFAULTS: dict[str, dict[str, Value]] = {
     "anisotropic_vdf": {"absorption": BLACK, "scattering": BLACK, "anisotropy": 0.0},
 }
 NAMED_INPUTS = ("weight", "normal", "tangent", "retroreflective")
-# Inputs of a lobe's weight, frame and mirror, which a call takes by name alone; others have ("weight", "normal").
+# Keyword-only inputs: a lobe's weight, frame and mirror. Nodes that are not listed have ("weight", "normal").
 BY_NAME = {
     **dict.fromkeys(CATEGORIES, NAMED_INPUTS),
     "chiang_hair_bsdf": ("normal", "curve_direction"),
 }
-# What an input is, where functions of `mxeon.models` have another name for it.
+# Inputs that have another name in the functions of `mxeon.models`.
 QUANTITIES = {
     ("uniform_edf", "color"): "radiance",
     ("conical_edf", "color"): "radiance",
@@ -68,9 +68,9 @@ UNITS = {
 class Parameter:
     """An input of a model.
 
-    - `name`: MaterialX's name of it.
-    - `default`: MaterialX's; a tuple of three for a color, of two for a pair.
-    - `quantity`: What it is: the name that it has in functions of `mxeon.models`, which counts as
+    - `name`: MaterialX's name.
+    - `default`: MaterialX's default; a tuple of three for a color, of two for a pair.
+    - `quantity`: Its name in the functions of `mxeon.models`, which is accepted as
       well.
     """
 
@@ -85,7 +85,7 @@ class Parameter:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Least and largest value, both allowed."""
+        """Least and largest value, both included."""
         low, high, _ = RANGES[self.quantity]
         return low, high
 
@@ -100,7 +100,7 @@ class Parameter:
 
 
 def parameter(category: str, name: str, quantity: str = "") -> Parameter:
-    """Input of a node, by its category and name."""
+    """Input of a node, from its category and name."""
     quantity = quantity or QUANTITIES.get((category, name), name)
     return Parameter(name, DEFAULTS[category][name], quantity)
 
@@ -109,23 +109,23 @@ WEIGHT = Parameter("weight", 1.0, "lobe_weight")
 
 
 Inputs: TypeAlias = Mapping[str, Array]
-Scattering: TypeAlias = Callable[[Array, Array, Inputs], Array]  # of wo, wi and inputs
-Function = TypeVar("Function", covariant=True)  # of a node: what its value is computed from
+Scattering: TypeAlias = Callable[[Array, Array, Inputs], Array]  # (wo, wi, inputs)
+Function = TypeVar("Function", covariant=True)  # type of a node's function
 
 
 @dataclass(frozen=True)
 class Variant(Generic[Function]):
-    """Another function that a shader may have instead of a node's own."""
+    """Another function that a shader may use instead of the node's own."""
 
     title: str
-    value: Function | None = None  # as the node's; None where its values are the node's
+    value: Function | None = None  # None if the values are the node's own
     albedo: Callable[[Array, Inputs], Array] | None = None
-    permitted: bool = False  # whether the specification leaves it open
+    permitted: bool = False  # whether the specification permits it
 
 
 @dataclass(frozen=True)
 class Node(Generic[Function]):
-    """A node, or a mode of one, by [MaterialX2026]."""
+    """A node, or a mode of one, of [MaterialX2026]."""
 
     name: str
     title: str
@@ -140,15 +140,15 @@ class PbrNode(Node[Scattering]):
     """A mode of a BSDF node.
 
     - `value`: BSDF in 1/sr without the cosine, for weight 1.
-    - `albedo`: Directional albedo E for weight 1, with all tints; 1 where its integral exceeds 1.
-    - `integral`: The integral of its values, where that is another number for some inputs.
+    - `albedo`: Directional albedo E for weight 1, tints included; clamped to 1.
+    - `integral`: The integral of its values, if it differs from `albedo` for some inputs.
     - `fixed`: Inputs that select the mode.
-    - `layerable`: Whether it lets 1 - E through to what lies below; an opaque node of weight 1
-      lets nothing through.
+    - `layerable`: Whether it passes 1 - E to the layer below; an opaque node of weight 1
+      passes nothing.
     - `transmits`: Whether it scatters light from below the horizon instead of light from above.
-    - `mirror`: Inputs with which it reflects all light; none if there are none.
-    - `parameters`: Its inputs where they differ from those of the category, or have other quantities.
-    - `average`: Average albedo, where a closed form is known.
+    - `mirror`: Inputs with which it reflects all light; empty if there are none.
+    - `parameters`: Its inputs, if they or their quantities differ from the category's.
+    - `average`: Average albedo, if a closed form is known.
     """
 
     albedo: Callable[[Array, Inputs], Array]
@@ -174,9 +174,9 @@ Combined: TypeAlias = tuple[str, str, str, tuple[str, ...], Callable[[Inputs], A
 def linear_nodes(
     kind: str, one: str, several: str, total: str, paths: tuple[str, str, str, str]
 ) -> tuple[Combined, ...]:
-    """Name, title, category, inputs and combined color of the nodes that mix, add and scale emissions or media.
+    """Name, title, category, inputs and combined color of the nodes that mix, add or scale emissions or media.
 
-    - `paths`: Inputs: the color of the first and of the second, the share of the first, and a factor of it.
+    - `paths`: Inputs: the colors of the first and the second, the weight of the first, and its factor.
     """
     first, second, share, factor = paths
 

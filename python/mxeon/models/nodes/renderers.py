@@ -17,23 +17,23 @@ from mxeon.models.nodes.microfacets import CONDUCTOR, DIELECTRIC, SCHLICK, undip
 from mxeon.models.nodes.node import Inputs, Scattering, Variant
 from mxeon.models.sheen import zeltner_albedo_dir
 
-INDEX = (1.001, 5.0)  # of a dielectric
+INDEX = (1.001, 5.0)  # range to which BSDL clamps the index of a dielectric
 
 
 def _indexed(inputs: Inputs) -> dict[str, Array]:
-    """Inputs with the index that BSDL takes for it."""
+    """Inputs with the index clamped as in BSDL."""
     return {**inputs, "ior": np.clip(inputs["ior"], *INDEX)}
 
 
 def _dielectric_albedo(wo: Array, inputs: Inputs) -> Array:
-    """Albedo of a dielectric without its tint, at the arithmetic mean of both alphas."""
+    """Albedo of a dielectric without tint, at the arithmetic mean of both alphas."""
     mean = inputs["roughness"].mean(axis=-1, keepdims=True)
     alphas = np.repeat(mean, 2, axis=-1)
     return DIELECTRIC.albedo(wo, {**microfacets.white(_indexed(inputs)), "roughness": alphas})
 
 
 def _schlick_albedo(wo: Array, inputs: Inputs) -> Array:
-    """Albedo of a dielectric whose index has the mean of `color0`, in every channel."""
+    """Albedo, in every channel, of a dielectric whose normal reflectance is the mean of `color0`."""
     root = np.sqrt(np.clip(np.mean(inputs["color0"], axis=-1), 0.0, 0.99))
     return _dielectric_albedo(wo, {**inputs, "ior": (1.0 + root) / (1.0 - root)})
 
@@ -105,7 +105,7 @@ def _lossless(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Ar
 
 
 def _lossless_dielectric(wo: Array, inputs: Inputs) -> Array:
-    """Such an albedo; of an index below 1 that of a smooth surface."""
+    """`_lossless` for a dielectric; below index 1, the albedo of a smooth surface."""
     smooth = DIELECTRIC.fresnel(np.minimum(wo[:, 2], 1.0), inputs) * inputs["tint"]
     rough = _lossless(DIELECTRIC, wo, inputs)
     return np.where(np.reshape(inputs["ior"], (-1, 1)) > 1.0, rough, _largest(smooth))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The utility nodes of pbrlib that feed the lobes, as functions of the values of their inputs.
 
-Inputs come as a mapping by the names of the node's ports, each (N,) or (N, components). A value beyond
-the range of a model is taken for the nearest one inside, `LEAST` and `LARGEST`, as implementations do:
-the specification accepts [0, 1] for most inputs and says nothing of what lies beyond.
+Inputs are a mapping by port name, each (N,) or (N, components). A value outside the range of a model
+is clamped to it, by the `LEAST` and `LARGEST` constants, as implementations do: the specification
+accepts [0, 1] for most inputs and does not define values outside.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from mxeon.models.microfacet.fresnel import artistic_ior
 from mxeon.models.microfacet.ggx import glossiness_anisotropy, roughness_anisotropy, roughness_dual
 from mxeon.models.nodes.node import Inputs, Node, Variant
 
-LARGEST_REFLECTIVITY = 0.99  # of artistic_ior; its n is infinite at 1
-LEAST_HAIR = 1e-3  # roughnesses and colors of hair: below, a lobe has no width
-LARGEST_MELANIN = 1.0 - 1e-4  # concentration; at 1 the absorption is infinite
-LEAST_PIGMENT = 1e-30  # color of a pigment, whose logarithm is finite
-TEMPERATURES = (800.0, 25000.0)  # K, from about where a body glows to the end of the fits in use
+LARGEST_REFLECTIVITY = 0.99  # artistic_ior's n is infinite at 1
+LEAST_HAIR = 1e-3  # least roughness and color of hair: below, lobes have no width
+LARGEST_MELANIN = 1.0 - 1e-4  # the absorption is infinite at concentration 1
+LEAST_PIGMENT = 1e-30  # least color of a pigment with a finite logarithm
+TEMPERATURES = (800.0, 25000.0)  # K, from where bodies begin to glow to the end of the common fits
 
 Outputs = Callable[[Inputs], dict[str, Array]]
 
 
 @dataclass(frozen=True)
 class UtilityNode(Node[Outputs]):
-    """A utility node, by [MaterialX2026].
+    """A utility node of [MaterialX2026].
 
     - `inputs`: The default of each input, a number or a tuple, by name.
     - `value`: Every output by name; needs all inputs.
@@ -50,13 +50,13 @@ def utility(
     value: Outputs,
     variants: tuple[Variant[Outputs], ...] = (),
 ) -> UtilityNode:
-    """A utility node, which has one mode."""
+    """A utility node with a single mode."""
     title = f"the equations of {category}"
     return UtilityNode(category, title, category, inputs, value, outputs, variants=variants)
 
 
 def _share(inputs: Inputs, name: str, least: float = 0.0, largest: float = 1.0) -> Array:
-    """An input, brought into a range."""
+    """An input, clamped to a range."""
     return np.clip(np.asarray(inputs[name], np.float64), least, largest)
 
 
@@ -71,7 +71,7 @@ def _glossiness(inputs: Inputs) -> dict[str, Array]:
 
 
 def _without_square(inputs: Inputs) -> dict[str, Array]:
-    """alpha that is not squared."""
+    """alpha without squaring the roughness."""
     names = {"roughness", "glossiness"} & set(inputs)
     roots = {name: np.sqrt(_share(inputs, name)) for name in names}
     if "glossiness" in roots:
@@ -81,14 +81,14 @@ def _without_square(inputs: Inputs) -> dict[str, Array]:
 
 
 def _burley_aspect(inputs: Inputs) -> dict[str, Array]:
-    """alpha of [Burley2012], whose aspect is sqrt(1 - 0.9 anisotropy)."""
+    """alpha of [Burley2012] with the aspect sqrt(1 - 0.9 anisotropy)."""
     alpha = np.square(_roughness(inputs))
     aspect = np.sqrt(1.0 - 0.9 * _share(inputs, "anisotropy"))
     return {"out": np.stack([np.minimum(alpha / aspect, 1.0), alpha * aspect], axis=-1)}
 
 
 def _openpbr_aspect(inputs: Inputs) -> dict[str, Array]:
-    """alpha that keeps the mean of both squares, as OpenPBR has it."""
+    """alpha that preserves the mean of both squares, as in OpenPBR."""
     rest = 1.0 - _share(inputs, "anisotropy")
     along = np.square(_roughness(inputs)) * np.sqrt(2.0 / (1.0 + rest * rest))
     return {"out": np.stack([along, rest * along], axis=-1)}
@@ -101,7 +101,7 @@ def _roughness(inputs: Inputs) -> Array:
 
 
 def _dual(inputs: Inputs) -> dict[str, Array]:
-    """Squares; a negative second roughness stands for the first one, as in implementations."""
+    """Squares; a negative second roughness is replaced by the first, as in implementations."""
     pair = np.asarray(inputs["roughness"], np.float64)
     second = np.where(pair[..., 1] < 0.0, pair[..., 0], pair[..., 1])
     return {"out": roughness_dual(np.clip(np.stack([pair[..., 0], second], axis=-1), 0.0, 1.0))}
@@ -114,12 +114,12 @@ def _artistic(inputs: Inputs) -> dict[str, Array]:
 
 
 def _clipped(inputs: Inputs) -> dict[str, Array]:
-    """The color of luminance 1 whose negative channels are then 0."""
+    """The color scaled to luminance 1, then with negative channels set to 0."""
     return {"out": np.maximum(blackbody(_share(inputs, "temperature", *TEMPERATURES)), 0.0)}
 
 
 def _blackbody(inputs: Inputs) -> dict[str, Array]:
-    """The color inside Rec. 709, whose negative channels are 0, with luminance 1."""
+    """The color with negative channels set to 0, then scaled to luminance 1."""
     color = _clipped(inputs)["out"]
     return {"out": color / (color @ LUMINANCE)[..., np.newaxis]}
 
@@ -132,7 +132,7 @@ def _hair_roughness(inputs: Inputs) -> dict[str, Array]:
 
 
 def _unsquared_variance(inputs: Inputs) -> dict[str, Array]:
-    """Roughnesses with a standard deviation instead of the variance."""
+    """Roughnesses with the standard deviation instead of the variance."""
     pairs = _hair_roughness(inputs)
     return {
         name: np.stack([np.sqrt(pair[..., 0]), pair[..., 1]], -1) for name, pair in pairs.items()
@@ -149,7 +149,7 @@ def _melanin(inputs: Inputs) -> dict[str, Array]:
 
 
 def constant(category: str, value: float) -> Variant[Outputs]:
-    """A variant whose outputs are all one number, whatever the inputs are."""
+    """A variant whose outputs are all the same number, for any inputs."""
 
     def values(inputs: Inputs) -> dict[str, Array]:
         return {
