@@ -423,9 +423,7 @@ def _on_side(
         return function(wo, wi, call.inputs)
     xp, z = array_namespace(wi), side * wi[:, 2]
     other = z < -ROUNDING
-    if (
-        xp is NUMPY and not other.any()
-    ):  # takes a third of the time if the values are cheap
+    if xp is NUMPY and not other.any():  # takes a third of the time if the values are cheap
         return function(wo, wi, call.inputs)
     mirrored = xp.stack([wi[:, 0], wi[:, 1], side * xp.where(other, -z, z)], axis=-1)
     values = function(wo, mirrored, call.inputs)

@@ -247,7 +247,7 @@ def _split_azimuths(
     last = _cone_azimuth(slopes.mu_o, squared - slopes.mu_o**2)
     inside, right = slopes.mu_o * slopes.mu_o >= squared, 0.5 * np.pi
     nodes = []
-    for center in (0.0, np.pi):  # half in front of the view, where lean grows with r, and half behind
+    for center in (0.0, np.pi):  # in front, where lean grows with r, then behind
         low, high = (
             xp.where(
                 inside,
