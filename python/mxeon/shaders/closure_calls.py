@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the generators of this MaterialX call a library's functions as its sources define them.
 
-Versions of MaterialX pass different arguments to closures. To find out, a generator writes a call of each
-function that a shader uses, in mxeon's own document, in which names are unambiguous. The shader's document
+MaterialX versions pass different arguments to closures. To check this, a generator writes a call of each
+function that a shader uses, from mxeon's own document with unambiguous names. The shader's own document
 and text are not searched.
 """
 
@@ -23,10 +23,10 @@ from mxeon.shaders.library import load_library
 from mxeon.shaders.library_tree import root, standard_folders
 
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
-TEXT = re.compile(rf"{COMMENT.pattern}|\"[^\"\n]*\"", re.DOTALL)  # what may hold any characters
+TEXT = re.compile(rf"{COMMENT.pattern}|\"[^\"\n]*\"", re.DOTALL)  # comments and strings
 TOKEN = re.compile(r"\$[A-Za-z]\w*")
 NODE = "asked"  # name of the node in that document
-CLOSURES = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, which calls what it is given
+CLOSURES = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, which makes it call the closure
 
 
 def check_closure_calls(
@@ -36,9 +36,9 @@ def check_closure_calls(
     profile: str | None,
     document: mx.Document,
 ) -> None:
-    """Raise InterfaceError unless a generated stage calls the functions of a library as they are defined.
+    """Raise InterfaceError unless a generated stage calls a library's functions as they are defined.
 
-    Raise ShaderError where the implementation of a node that the document has names the function of another node.
+    Raise ShaderError if the implementation of one of the document's own nodes names another node's function.
     """
     known = _functions(library, profile, target)
     for file in stage.getSourceDependencies():
@@ -64,7 +64,7 @@ def check_closure_calls(
 
 
 def leftover(text: str) -> str:
-    """The first token in a generated text that the generator left as it is; "" for none."""
+    """The first token that the generator did not replace in a generated text, or ""."""
     found = TOKEN.search(TEXT.sub("", text)) if "$" in text else None
     return found[0] if found else ""
 
@@ -78,7 +78,7 @@ def _functions(
     if root(library):
         return functions
     document = load_library(library, profile)
-    targets = {GENERATORS[target].create().getTarget(), "genglsl"}  # from which most inherit
+    targets = {GENERATORS[target].create().getTarget(), "genglsl"}  # most targets inherit from it
     for each in document.getImplementations():
         uri = each.getActiveSourceUri()
         if each.getTarget() not in targets:
@@ -91,13 +91,13 @@ def _functions(
 
 @cache
 def _is_standard(uri: str) -> bool:
-    """Whether a document of definitions is MaterialX's own."""
+    """Whether a document of definitions belongs to MaterialX."""
     return not set(standard_folders()).isdisjoint(Path(uri).parents)
 
 
 @cache
 def _signatures(file: str, function: str) -> list[list[str]]:
-    """Parameters of each function of that name that a source defines: one for each form of the call."""
+    """Parameters of each overload of a function that a source defines."""
     text = COMMENT.sub("", Path(file).read_text(encoding="utf-8"))
     definitions = re.finditer(rf"\bvoid\s+{function}\s*\(", text)
     return [_arguments(text, definition.end()) for definition in definitions]
@@ -105,7 +105,7 @@ def _signatures(file: str, function: str) -> list[list[str]]:
 
 @cache
 def _call(target: str, library: str, profile: str | None, nodedef: str, function: str) -> list[str]:
-    """Arguments with which a generator calls the function of a node; none if it does not call it."""
+    """Arguments of the generator's call to a node's function; empty if there is no call."""
     document = mx.createDocument()
     document.setDataLibrary(load_library(library, profile))
     generator = generator_of(document, target, library, profile)

@@ -24,17 +24,17 @@ class ShownNode:
 
     category: str
     type: str
-    # name and type of each input of its definition; for one that takes a lobe, if it has one,
-    # also the category of the node that combines the lobe of others
+    # name and type of each input of its definition; for a connected lobe, followed by the category
+    # of the node that combines it from other lobes
     inputs: tuple[tuple[str, str], ...] = ()
-    # name and value of the inputs that select a mode, where the value is constant
+    # name and value of the mode-selecting inputs with constant values
     modes: tuple[tuple[str, str], ...] = ()
-    film: bool = False  # whether it may have a thin film
-    # name and numbers of the inputs that are constant
+    film: bool = False  # whether a thin film is possible
+    # name and numbers of the constant inputs
     values: tuple[tuple[str, tuple[float, ...]], ...] = ()
 
     def has(self, other: "ShownNode") -> bool:
-        """Whether it may be in the mode of another node, given by the inputs that are set."""
+        """Whether it may be in the mode that another node's inputs select."""
         return (
             (self.category, self.type) == (other.category, other.type)
             and set(other.inputs) <= set(self.inputs)
@@ -43,13 +43,13 @@ class ShownNode:
 
 
 def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, ...] | MxeonError:
-    """The nodes that the materials of a document use, or the error if it cannot be read.
+    """The nodes used by a document's materials, or the error if it cannot be read.
 
     The source is a file and the name of a library.
     """
     file, library = source
     try:
-        with warnings.catch_warnings(action="ignore"):  # the document's own checks report them
+        with warnings.catch_warnings(action="ignore"):  # reported with the document
             document = read_document(file, library, policy=policy)
     except (MxeonError, OSError) as error:
         return (
@@ -62,7 +62,7 @@ def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, 
 
 
 def node_of(text: str, category: str) -> ShownNode:
-    """The first node of a category in a document, with only the inputs that it sets."""
+    """The first node of a category in a document, with only its explicit inputs."""
     document = mx.createDocument()
     mx.readFromXmlString(document, text)
     node = next(each for each in document.traverseTree() if each.getCategory() == category)
@@ -75,7 +75,7 @@ def node_of(text: str, category: str) -> ShownNode:
 
 
 def _kind(source: mx.InterfaceElement | None) -> str:
-    """Category of a node that combines lobes; "" for others."""
+    """Category of a node if it combines lobes, or ""."""
     return source.getCategory() if source and source.getCategory() in COMBINING else ""
 
 
@@ -84,7 +84,7 @@ def _shown(walk: Walk, path: Path) -> ShownNode:
     node = walk.elements[path]
     inputs = definition.getActiveInputs() if (definition := node.getNodeDef()) else ()
     ports = [(port.getName(), port.getType()) for port in inputs]
-    # Inputs that take a lobe count where there is one.
+    # Lobe inputs only count if they are connected.
     sources = {name: walk.source(path, name) for name, kind in ports if kind in CLOSURES}
     lit = {name: each for name, each in sources.items() if each and walk.emits(each)}
     ports = [port for port in ports if port[0] in lit or port[0] not in sources]

@@ -2,8 +2,8 @@
 """Float64 values of one expression of MDL or MSL.
 
 Nothing is executed. A few substitutions turn the text into Python, `ast` parses it, and a walk over a few kinds
-of nodes evaluates it. There are no statements, loops, attributes or indices: work grows with the length alone. A
-number is a column (N, 1), a color or vector (N, 3); an int stays one.
+of nodes evaluates it. There are no statements, loops, attributes or indices, so work is linear in the length. A
+number is a column (N, 1), a color or vector (N, 3); an int stays an int.
 """
 
 import ast
@@ -19,16 +19,16 @@ from numpy.typing import NDArray
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders.closure_calls import COMMENT
 
-Array = NDArray[Any]  # of float64, int64 or bool
-LONGEST = 10_000  # characters; those of the libraries have 700
-# What only Python would read: its words and operators, `=` for an argument, comments.
+Array = NDArray[Any]  # float64, int64 or bool
+LONGEST = 10_000  # characters; the libraries' expressions have up to 700
+# Matches text that only Python accepts: its keywords and operators, `=` for arguments, comments.
 FOREIGN = re.compile(
     rf"\b(?:{'|'.join(keyword.kwlist)})\b|\*\*|[#@%\\'`\[\]{{}}]|(?<![<>=!])=(?!=)|[^\x20-\x7e]"
 )
 PYTHON = (
     (r"::", "__"),
     (r"(?<=[(,]) *(\w+) *:", r"\1="),  # a named argument
-    (r"\?", " if "),  # `a ? b : c` becomes `a if b else c`, whose parts are taken in that order
+    (r"\?", " if "),  # `a ? b : c` becomes `a if b else c`, and is evaluated in that order
     (r":", " else "),
     (r"!(?!=)", "~"),
     (r"\b((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)f\b", r"\1"),
@@ -41,7 +41,7 @@ def _divided(left: Array, right: Array) -> Array:
 
 
 def _triple(*values: Array) -> Array:
-    """A color or vector of one number or color, or of three numbers."""
+    """A color or vector from one number or color, or from three numbers."""
     if len(values) not in (1, 3):
         raise TypeError(f"a color takes one number or three; got {len(values)}")
     return np.concatenate(np.broadcast_arrays(*values), axis=1) * np.ones((1, 3))
@@ -59,9 +59,9 @@ KNOWN: Mapping[str, Any] = {
 
 
 def evaluate(text: str, names: Mapping[str, Any]) -> Any:
-    """Value of an expression whose variables and functions are `names`, besides KNOWN.
+    """Value of an expression with the variables and functions in `names` and KNOWN.
 
-    Raises ShaderError for what a compiler would refuse, and NotRun for what is not supported.
+    Raises ShaderError for invalid expressions, and NotRun for unsupported ones.
     """
     text = " ".join(COMMENT.sub(" ", text).split())
     if len(text) > LONGEST:

@@ -15,7 +15,7 @@ Parts = dict[str, list[str]]  # tokens of functions and constants by name
 FAMILY = "oren_nayar_family"
 ALL = "eon_sampling"  # includes all the others
 STEMS = ("eon", FAMILY, "ltc_sampling", ALL)
-TWINS = (ALL, "ggx_albedo", "conty_kulla_albedo")  # include all that has one text in two languages
+TWINS = (ALL, "ggx_albedo", "conty_kulla_albedo")  # include all text shared by two languages
 INCLUDE = re.compile(r'^#include "((?:\.\./)?(?:lib/|sampling/)?\w+\.\w+)"$', re.MULTILINE)
 SIGNATURE = re.compile(r"^(?:float|vec3|color|vector)\s+(\w+)\s*\(([^)]*)\)\s*(?={)", re.MULTILINE)
 EACH = "mxeon_each"  # the function that `dispatched` adds
@@ -23,7 +23,7 @@ TYPES = {"glsl": ("float", "vec3"), "osl": ("float", "color", "vector")}
 
 
 def source(language: str, stem: str = ALL, library: str = "eonlib") -> str:
-    """Text of a file of shader functions, its includes expanded; see `has_functions`."""
+    """Text of a file of shader functions with expanded includes; see `has_functions`."""
     return expanded(source_file(language, stem, library))
 
 
@@ -33,7 +33,7 @@ def has_functions(library: str, language: str = "glsl") -> bool:
 
 
 def twins(language: str, library: str) -> str:
-    """Text of the files of a library that are shared by two languages, their includes expanded."""
+    """Text of a library's files that two languages share, with expanded includes."""
     stems = [
         stem
         for stem in TWINS
@@ -56,7 +56,7 @@ def parts(text: str) -> Parts:
 
 
 def expanded(path: Path) -> str:
-    """Text of a file with its includes in their places."""
+    """Text of a file with expanded includes."""
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
@@ -104,10 +104,10 @@ def uses(text: str) -> Mapping[str, frozenset[str]]:
 
 
 def dispatched(text: str, functions: Iterable[str], language: str) -> str:
-    """The text plus a function that calls one of `functions` by its number.
+    """The text plus a function that calls one of `functions` by its index.
 
-    Its parameters are that number as a float, and for each type as many as any function has; the first
-    one is for the first parameter of that type. So a host compiles one program for all functions.
+    Its parameters are the index as a float and, for each type, as many parameters as any function has; a
+    function takes the first ones of each type. A host thus compiles one program for all functions.
     """
     known, types = signatures(text), TYPES[language]
     slots = {kind: 0 for kind in types}
@@ -128,7 +128,7 @@ def dispatched(text: str, functions: Iterable[str], language: str) -> str:
 
 
 def slot_names(kinds: Iterable[str]) -> list[str]:
-    """Names of the parameters of `dispatched` that carry parameters of these types.
+    """Names of the parameters of `dispatched` that pass parameters of these types.
 
     >>> slot_names(["vec3", "float", "vec3"])
     ['vec3_0', 'float_0', 'vec3_1']
@@ -142,6 +142,6 @@ def slot_names(kinds: Iterable[str]) -> list[str]:
 
 
 def source_file(language: str, stem: str, library: str = "eonlib") -> Path:
-    """File of a library with shader functions, in whichever folder it is."""
+    """File of a library with shader functions, from any of its folders."""
     folder, name = source_folder(library) / f"gen{language}", f"{stem}.{language}"
     return next(folder.rglob(name), folder / name)

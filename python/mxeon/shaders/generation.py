@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shader source from a MaterialX document, for every target that MaterialX has."""
+"""Shader source from a MaterialX document, for all MaterialX targets."""
 
 import os
 import re
@@ -57,16 +57,16 @@ CYCLES_APPROXIMATION = (
     "with s < 0 are darker than the model"
 )
 
-# Calls of the Cycles profile's closure, whose last two arguments are the flag and the result.
+# Matches calls of the Cycles profile's closure. The last two arguments are the flag and the result.
 CYCLES_CALL = re.compile(r"\boren_nayar_diffuse_bsdf_cycles\([^;{]*?(\w+), *\w+\);")
 
-# Functions of MaterialX's own in a text.
+# Matches calls of MaterialX's functions.
 CALLED = re.compile(r"\b(mx_\w+)\s*\(")
 DEFINED = re.compile(r"(?:#define|\b(?!return\b|else\b)\w+)\s+(mx_\w+)")
 
 
 class ApproximationWarning(UserWarning):
-    """A shader whose renderer only has an approximation of a model, and where the two differ."""
+    """The renderer only has an approximation of a shader's model; the message says where they differ."""
 
     def __init__(self, element: str, approximation: str) -> None:
         super().__init__(f"{element}: {approximation}")
@@ -79,11 +79,11 @@ class Input:
     """A public input of a generated shader.
 
     - `name`: Name of the variable in the source.
-    - `type`: MaterialX's name of its type.
-    - `value`: The default: a color, a vector or an array is the tuple of its parts; a matrix that
-      of its numbers, row after row, which GLSL takes as its columns; a structure that of its
-      members.
-    - `path`: Name path of the element of the document that it comes from.
+    - `type`: MaterialX's name for its type.
+    - `value`: The default. A color, vector or array is a tuple of its components; a matrix is a
+      tuple of its numbers, row by row, which GLSL interprets as columns; a structure is a tuple of
+      its members.
+    - `path`: Name path of the document's element.
     """
 
     name: str
@@ -100,10 +100,10 @@ class Shader:
     - `element`: Name path of the renderable element.
     - `target`: One of TARGETS.
     - `stages`: Source text under "pixel" and, for targets with rasterization, "vertex".
-    - `document`: The checked document that it was generated from, with its data library.
-    - `folders`: Folders of that library which are loaded before MaterialX's own.
+    - `document`: The checked source document with its data library.
+    - `folders`: Folders of the library that are loaded before MaterialX's own.
     - `root`: Folder whose `libraries` replace MaterialX's own; "" for the installed ones.
-    - `methods`: The generator's methods that were chosen.
+    - `methods`: The chosen methods of the generator.
     - `table`: Pixel stage with which a client draws the table of albedos, if the method is "table".
     """
 
@@ -138,26 +138,26 @@ def generate(
       `mxeon.shaders.document.reading.read_document`.
     - `target`: glsl, essl, vulkan, wgsl, msl, slang, osl or mdl.
     - `element`: Name or name path of one renderable element; None for all.
-    - `library`: "eonlib", "stock" for MaterialX as it comes, or a folder; see `load_library`.
-    - `profile`: "cycles" for osl that Blender's Cycles compiles; "path" for text that a path tracer
-      includes, in glsl, essl, vulkan or slang.
-    - `lights`: Whether a shader of a rasterized target gets MaterialX's directional light, as
+    - `library`: "eonlib", "stock" for unmodified MaterialX, or a folder; see `load_library`.
+    - `profile`: "cycles" for OSL that Blender's Cycles compiles; "path" for text to include in a
+      path tracer, in glsl, essl, vulkan or slang.
+    - `lights`: Whether shaders of rasterized targets include MaterialX's directional light, as
       light type 1.
-    - `uniforms`: Whether inputs stay uniforms with the profile "path", whose text has literals.
-    - `methods`: How a shader of a rasterized target finds light; None for MaterialX's defaults.
+    - `uniforms`: Whether inputs stay uniforms with the profile "path", instead of literals.
+    - `methods`: How shaders of rasterized targets compute lighting; None for MaterialX's defaults.
     - `policy`: Permissions, limits and search path; None for `Policy()`.
-    - `client`: Options of a client to turn on, of `mxeon.shaders.generators.CLIENT_OPTIONS`: a shadow map, ambient
-      occlusion and transparency. With any of them it also gets point and spot lights, as types 2 and 3.
+    - `client`: Client options to turn on, from `mxeon.shaders.generators.CLIENT_OPTIONS`: a shadow map, ambient
+      occlusion and transparency. Any of them also adds point and spot lights, as types 2 and 3.
 
     Raises ValueError if the target, the library, the profile or the element is unknown; DocumentError if
-    no shader can be generated from the document; InterfaceError if this MaterialX calls closures in
-    another way than eonlib's sources define them.
+    no shader can be generated from the document; InterfaceError if this MaterialX calls closures
+    differently than eonlib's sources define them.
 
-    Warns ApproximationWarning if the profile cannot express a model that the document asks for;
-    CodeWarning if the document contains its own shader code, which the policy has to permit;
-    MissingFileWarning if a file that a shader names does not exist, whose name stays as it is;
-    DocumentWarning as `mxeon.shaders.document.reading.read_document` does, and if nodes take the
-    values of another.
+    Warns ApproximationWarning if the profile cannot express one of the document's models;
+    CodeWarning if the document contains its own shader code, which the policy must permit;
+    MissingFileWarning if a shader names a file that does not exist; the name is not changed;
+    DocumentWarning as in `mxeon.shaders.document.reading.read_document`, and if MaterialX gives
+    nodes the values of another.
 
         >>> text = '''<materialx version="1.39">
         ...   <eon_diffuse_bsdf name="clay" type="BSDF"/>
@@ -277,7 +277,7 @@ def _table_text(
 
 @cache
 def check_generator(library: str, target: str) -> None:
-    """Raise InterfaceError unless the generator of a target can use a library in MaterialX's place."""
+    """Raise InterfaceError unless a target's generator can use a library that replaces MaterialX's."""
     document = mx.createDocument()
     document.setDataLibrary(load_library(library))
     surface = document.addNode("surface", "surface", "surfaceshader")
@@ -303,9 +303,9 @@ def check_generator(library: str, target: str) -> None:
 
 
 def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
-    """Inputs of a shader; those of nodes that the generator adds are not in the document, and go by their names."""
+    """Inputs of a shader. Inputs of nodes that the generator adds are not in the document; their path is their name."""
     stage = shader.getStage("pixel")
-    blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL has them as inputs
+    blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL declares them as inputs
     return tuple(
         Input(port.getVariable(), kind.getName(), plain(port.getValue(), document), path)
         for name, block in blocks.items()
@@ -316,7 +316,7 @@ def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
     )
 
 
-# Words that OSL or MDL does not take as the name of a shader.
+# Words that OSL or MDL does not accept as the name of a shader.
 RESERVED = frozenset(
     """
     and auto bool break bsdf bsdf_measurement case cast char class closure color const continue
@@ -331,9 +331,9 @@ RESERVED = frozenset(
 
 
 def shader_names(elements: Iterable[mx.TypedElement]) -> dict[str, str]:
-    """Names of the shaders of renderable elements, by name path; no two are alike."""
+    """Distinct names of the shaders of renderable elements, by name path."""
     names: dict[str, str] = {}
-    last: dict[str, str] = {}  # name by stem, before which all are in use
+    last: dict[str, str] = {}  # last name used for each stem
     used: set[str] = set()
     for element in elements:
         stem = re.sub(r"\W", "_", element.getNamePath(), flags=re.ASCII)

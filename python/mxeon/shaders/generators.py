@@ -30,7 +30,7 @@ HARDWARE = tuple(
 
 LIGHTS = ("directional", "point", "spot")  # light types 1, 2 and 3
 CLIENT_OPTIONS = ("hwShadowMap", "hwAmbientOcclusion", "hwTransparency")
-BOOLEANS = "WGSL does not allow boolean types"  # printed for each, though the text has an integer
+BOOLEANS = "WGSL does not allow boolean types"  # printed for each, although the text has an integer
 
 
 def generator_of(
@@ -40,7 +40,7 @@ def generator_of(
     profile: str | None,
     definitions: tuple[str, ...] = (),
 ) -> mx_gen.ShaderGenerator:
-    """A generator that knows a document's types, shared by all documents without their own."""
+    """A generator with a document's types, shared by all documents without their own types."""
     if not any(each.isA(mx.TypeDef) for each in document.getChildren()):
         return _library_generator(target, library, profile, definitions)
     generator = _new_generator(target, library, profile, definitions)
@@ -51,7 +51,7 @@ def generator_of(
 def _new_generator(
     target: str, library: str, profile: str | None, definitions: tuple[str, ...]
 ) -> mx_gen.ShaderGenerator:
-    """A generator with the types, the color system and the unit system of a data library."""
+    """A generator with the types, color system and unit system of a data library."""
     data, generator = load_library(library, profile, definitions), GENERATORS[target].create()
     generator.registerTypeDefs(data)
     colors = mx_gen.DefaultColorManagementSystem.create(generator.getTarget())
@@ -83,11 +83,11 @@ def context_of(
     methods: Methods = UNCHOSEN,
     client: Collection[str] = (),
 ) -> mx_gen.GenContext:
-    """A context for one document only, as it keeps implementations by name.
+    """A context for a single document, because it caches implementations by name.
 
-    With `lights` MaterialX's directional light is bound, as light type 1, if the target has lights; with any of the
-    options `client`, which it turns on, also the others: see `mxeon.shaders.scene.Client`. `path` has folders of
-    source files, after those of the library.
+    With `lights`, MaterialX's directional light is bound as light type 1 if the target has lights. `client` options are
+    turned on and bind the other lights as well: see `mxeon.shaders.scene.Client`. `path` has folders of source files,
+    searched after the library's.
     """
     context = mx_gen.GenContext(generator)
     for each in environment_folders(library) if methods.searched else ():
@@ -98,7 +98,7 @@ def context_of(
     context.getOptions().targetDistanceUnit = "meter"
     # MaterialX has v = 0 at the bottom of an image, OSL's texture() at the top.
     context.getOptions().fileTextureVerticalFlip = target == "osl"
-    if profile == "path":  # which follows light itself
+    if profile == "path":  # the path tracer does the lighting
         none = mx_gen.HwSpecularEnvironmentMethod.SPECULAR_ENVIRONMENT_NONE
         context.getOptions().hwSpecularEnvironmentMethod = none
         context.getOptions().hwTransparency = True
@@ -123,7 +123,7 @@ def context_of(
 def generated(
     generator: mx_gen.ShaderGenerator, name: str, element: mx.Element, context: mx_gen.GenContext
 ) -> mx_gen.Shader:
-    """Shader of an element, without MaterialX's messages about text that it repairs itself."""
+    """Shader of an element; suppresses MaterialX's messages about text that it repairs itself."""
     wordy = isinstance(generator, GENERATORS.get("wgsl", ()))
     with lines_left_out(BOOLEANS) if wordy else nullcontext():
         return generator.generate(name, element, context)
@@ -131,7 +131,7 @@ def generated(
 
 @cache
 def tokens_of(target: str, library: str, profile: str | None) -> Mapping[str, str]:
-    """Words of includes, and the names that a generator writes for them; known once it has run."""
+    """Include tokens and the generator's replacements, which exist only after it has run."""
     document = mx.createDocument()
     document.setDataLibrary(load_library(library, profile))
     generator = generator_of(document, target, library, profile)
@@ -146,9 +146,9 @@ ERROR = 2  # file descriptor
 
 @contextmanager
 def lines_left_out(words: str) -> Iterator[None]:
-    """Context in which lines with these words are kept off the process's error output.
+    """Context that drops lines with these words from the process's error output.
 
-    The other lines appear when it ends. A process without an error output has none to keep.
+    All other lines appear when it ends. Without an error output it does nothing.
     """
     if sys.stderr is None:
         yield

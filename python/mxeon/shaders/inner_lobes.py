@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lobes of a material that send light below its surface, which a point of the surface cannot show.
+"""Lobes that send light below a material's surface, which a single surface point cannot show.
 
-A document's graph is walked from its material. A side of a mix with the constant weight 0 or 1 that
-has no effect is left out, and so is a lobe of weight 0; a weight that is computed counts as any.
+The document's graph is walked from its material. Lobes of constant weight 0 are skipped, as is the side of a
+mix that a constant weight of 0 or 1 disables; computed weights count as nonzero.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ KINDS = {
     "absorption_vdf": VOLUME,
     "anisotropic_vdf": VOLUME,
 }
-# The arithmetic by which MaterialX's surface shaders make weights of switches.
+# Arithmetic nodes that MaterialX's surface shaders use to compute weights from switches.
 ARITHMETIC: dict[str, tuple[tuple[str, ...], Callable[..., float]]] = {
     "convert": (("in",), lambda value: value),
     "ifgreater": (("value1", "value2", "in1", "in2"), lambda a, b, one, two: one if a > b else two),
     "switch": (("in1", "in2", "which"), lambda one, two, which: two if which >= 1.0 else one),
 }
-# What hands light on from node to node.
+# Types that carry light from node to node.
 CLOSURES = ("BSDF", "VDF", "surfaceshader", "volumeshader", "material")
 
 
@@ -47,7 +47,7 @@ def inner_lobes(shader: Shader) -> tuple[str, ...]:
 
 
 class Nodes:
-    """Elements of a document by their paths.
+    """Elements of a document, by path.
 
     A path names a node within the nodes and nodegraphs around it: a tuple of name paths, the outermost first.
     """
@@ -56,13 +56,13 @@ class Nodes:
         self.elements: dict[Path, mx.InterfaceElement] = {}
 
     def path(self, around: Path, element: mx.Element) -> Path:
-        """Path of an element within another path, under which it is kept."""
+        """Path of an element within another path; also stores the element."""
         path = (*around, element.getNamePath())
         self.elements[path] = element
         return path
 
     def port(self, path: Path, name: str) -> mx.Input | None:
-        """Input of a node, or else of its nodedef, or None."""
+        """Input of a node, otherwise of its nodedef, or None."""
         if not (element := self.elements.get(path)):
             return None
         definition = element.getNodeDef()
@@ -81,9 +81,9 @@ class Nodes:
 
 
 class Walk(Nodes):
-    """The nodes that contribute light to a material, by their paths, and the kinds of lobes among them.
+    """The nodes that contribute light to a material, by path, and the kinds of lobes among them.
 
-    Nodes of constant weight 0 are left out; with `values`, nodes that compute inputs are walked too.
+    Nodes of constant weight 0 are skipped; with `values`, nodes that compute inputs are included.
     """
 
     def __init__(self, elements: Iterable[mx.TypedElement], values: bool = False) -> None:
@@ -96,7 +96,7 @@ class Walk(Nodes):
         self.shown = tuple(path for path in graph if path not in self._dark)
 
     def parts(self, path: Path) -> tuple[Path, ...]:
-        """Paths of the nodes from which a node's light comes."""
+        """Paths of the nodes that a node's light comes from."""
         node = self.elements[path]
         if self._constant(path, "weight") == 0.0 or not self.emits(path):
             self._dark.add(path)
@@ -115,7 +115,7 @@ class Walk(Nodes):
         return tuple(source for source in sources if source)
 
     def emits(self, path: Path) -> bool:
-        """Whether a node emits light, unless it is no EDF; a color that is computed counts as any."""
+        """Whether a node may emit light: False only for EDFs that are black in any case."""
         node = self.elements[path]
         if node.getType() != "EDF":
             return True
@@ -134,7 +134,7 @@ class Walk(Nodes):
         return bool(value) and not any(map(float, str(value).split(",")))
 
     def _effective(self, path: Path, node: mx.InterfaceElement) -> tuple[str, ...]:
-        """Names of the inputs that hand on light."""
+        """Names of the inputs whose light has an effect."""
         category = node.getCategory()
         if category == "mix":
             weight, value = self._constant(path, "mix"), ("mix",) * self._values
@@ -146,7 +146,7 @@ class Walk(Nodes):
         return tuple(p.getName() for p in ports if self._values or p.getType() in CLOSURES)
 
     def _resolved(self, path: Path, name: str) -> tuple[Path, mx.Input | None]:
-        """The input that a node's input stands for, and the path of its node."""
+        """The input that a node's input refers to, and the path of its node."""
         while port := self.port(path, name):
             if not port.hasInterfaceName() or len(path) < 2:
                 break
@@ -159,12 +159,12 @@ class Walk(Nodes):
         return self.upstream(path[:-1], port) if port else None
 
     def value(self, path: Path, name: str) -> str | None:
-        """Text of the value that an input has; None where it is computed or there is no input."""
+        """Text of an input's value; None if it is computed or the input does not exist."""
         _, port = self._resolved(path, name)
         return None if port is None or self.source(path, name) else str(port.getValueString())
 
     def _constant(self, path: Path, name: str) -> float | None:
-        """Number of an input; None if it has none, or if it is not constant."""
+        """Numeric value of an input; None if it is not a constant number."""
         if source := self.source(path, name):
             ports, function = ARITHMETIC.get(self.elements[source].getCategory(), ((), None))
             numbers = [self._constant(source, port) for port in ports]

@@ -26,10 +26,10 @@ from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, check_files, root, tr
 
 SOURCE_FOLDERS = ("genglsl", "genosl")
 
-PROFILES = {"cycles": "genosl", "path": "genglsl"}  # and the folder of their sources
-LOADED = 16  # libraries that a process keeps, of some 10 MB each
+PROFILES = {"cycles": "genosl", "path": "genglsl"}  # profile -> folder of its sources
+LOADED = 16  # cached libraries, about 10 MB each
 
-# Targets of MaterialX 1.39.5; earlier versions have fewer. genoslnetwork takes graphs only.
+# Targets of MaterialX 1.39.5; earlier versions have fewer. genoslnetwork only supports graphs.
 TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl", "genoslnetwork")
 
 
@@ -44,14 +44,14 @@ class Implementation:
 
     @property
     def ours(self) -> bool:
-        """Whether it lies in one of eonlib's folders."""
+        """Whether it belongs to eonlib."""
         folders = {eonlib_folder(), *(source_folder("eonlib") / each for each in SOURCE_FOLDERS)}
         return bool(self.document) and not folders.isdisjoint(Path(self.document).resolve().parents)
 
 
 @cache
 def data_folder() -> Path:
-    """Folder that holds eonlib and its sources: inside an installed package, else the checkout."""
+    """Folder with eonlib and its sources: inside the installed package, otherwise the checkout."""
     installed = Path(__file__).resolve().parents[1] / "data"
     return installed if installed.is_dir() else Path(__file__).resolve().parents[3]
 
@@ -63,7 +63,7 @@ def eonlib_folder() -> Path:
 
 
 def documents_folder(part: str = "eonlib") -> Path:
-    """Folder of eonlib's MaterialX documents, or those of its part "diffuse"."""
+    """Folder of eonlib's MaterialX documents, or of its part "diffuse"."""
     inside = eonlib_folder() / "documents"  # a folder called libraries would hide MaterialX's own
     folder = inside if inside.is_dir() else eonlib_folder()
     return folder / part if part == "diffuse" else folder
@@ -71,9 +71,9 @@ def documents_folder(part: str = "eonlib") -> Path:
 
 @cache
 def kind_of(library: str) -> str:
-    """The one of LIBRARIES that a library is or, by its documents, is a copy of; otherwise OVERLAY.
+    """The entry of LIBRARIES that a library is, or is a copy of by its documents; otherwise OVERLAY.
 
-    A folder that replaces MaterialX's own libraries, or a part of them, is "stock".
+    A folder that replaces MaterialX's libraries, or a part of them, is "stock".
     """
     if library in LIBRARIES:
         return library
@@ -87,7 +87,7 @@ def kind_of(library: str) -> str:
 
 
 def source_folder(library: str) -> Path:
-    """Folder that holds genglsl and genosl of a library: its own, or one or two above its documents."""
+    """Folder with a library's genglsl and genosl: its own, or one or two levels above its documents."""
     folder = eonlib_folder() if library in LIBRARIES else Path(library)
     homes = (folder, *folder.parents[:2])
     return next(
@@ -96,21 +96,21 @@ def source_folder(library: str) -> Path:
 
 
 def environment_folders(library: str) -> list[Path]:
-    """Folder of a library's own lookups of an environment, to be searched before MaterialX's data, if it has one."""
+    """Folder of a library's own environment lookups, if any, to be searched before MaterialX's data."""
     folder = source_folder(library) / "genglsl" / "environment"
     return [folder] if library != "stock" and folder.is_dir() else []
 
 
 def library_folders(library: str) -> list[Path]:
-    """A folder to load as a library, and those from which it may take sources."""
+    """A folder to load as a library, and the folders of its sources."""
     sources = (source_folder(library) / name for name in SOURCE_FOLDERS)
     return [Path(library), *(folder for folder in sources if folder.is_dir())]
 
 
 def profile_documents(library: str, profile: str) -> list[Path]:
-    """MaterialX documents of a profile, to be loaded before a library's.
+    """A profile's MaterialX documents, to be loaded before a library's.
 
-    They end in .xml so that programs that load a whole folder skip them.
+    They end in .xml, so programs that load a whole folder skip them.
     """
     if kind_of(library) == "stock":
         return []
@@ -135,10 +135,10 @@ def own_folders(library: str) -> list[str]:
 
 
 def library_name(library: str | os.PathLike[str]) -> str:
-    """Name of a data library, or absolute path of the folder that is loaded as one.
+    """Name of a data library, or absolute path of its folder.
 
-    InputError for a folder that cannot be combined with MaterialX's files, or contains one that is not
-    UTF-8 text.
+    InputError for a folder that cannot be combined with MaterialX's files, or contains a file that is
+    not UTF-8 text.
     """
     if library in LIBRARIES:
         return str(library)
@@ -169,22 +169,22 @@ def library_name(library: str | os.PathLike[str]) -> str:
 def load_library(
     library: AnyPath = "eonlib", profile: str | None = None, definitions: Names = ()
 ) -> mx.Document:
-    """A MaterialX document holding the standard libraries, with eonlib in front.
+    """A MaterialX document with the standard libraries, preceded by eonlib.
 
-    Loaded once for the same arguments and shared: attach it with `Document.setDataLibrary`.
+    It is cached and shared: attach it with `Document.setDataLibrary`.
 
-    - `library`: "eonlib", "stock" for MaterialX as it comes, or a folder: MaterialX's libraries or
-      a part of them, which it replaces, or others, which are loaded first; see
+    - `library`: "eonlib", "stock" for unmodified MaterialX, or a folder, which either replaces
+      MaterialX's libraries or a part of them, or is loaded before them; see
       `mxeon.shaders.library_tree`.
-    - `profile`: "cycles" for the OSL implementations that eonlib has for Blender's Cycles.
-    - `definitions`: One folder of further definitions, or several, which replace none of the library's.
+    - `profile`: "cycles" for eonlib's OSL implementations for Blender's Cycles.
+    - `definitions`: One or more folders of additional definitions, which replace none of the library's.
 
-    Raises ValueError if the library or the profile is unknown, or a folder holds no definitions or
+    Raises ValueError if the library or the profile is unknown, or a folder has no definitions or
     replaces some of the library's; ImportError if this MaterialX is too
-    old; see `check_version`; LibraryError if MaterialX chooses another implementation than
+    old; see `check_version`; LibraryError if MaterialX chooses an implementation other than
     eonlib's.
 
-    Warns UntestedVersionWarning if this MaterialX is none of TESTED.
+    Warns UntestedVersionWarning if this MaterialX is not in TESTED.
     """
     library = one_name("library", library)
     if library not in LIBRARIES and os.path.isdir(library):
@@ -196,7 +196,7 @@ def load_library(
 
 @lru_cache(maxsize=LOADED)
 def read_library(library: str, profile: str | None, definitions: tuple[str, ...]) -> mx.Document:
-    """As `load_library`: the cache would take an argument that is left out for another."""
+    """`load_library` without defaults: the cache would treat an omitted argument as a different key."""
     check_version()
     if profile is not None:
         assert_known("profile", profile, PROFILES)
@@ -208,9 +208,9 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
         check_files(_documents(folder, f"definitions {folder}: must hold MaterialX documents"))
     path, options = library_tree.search_path(library), library_tree.read_options()
     try:
-        if definitions:  # for none MaterialX loads everything
+        if definitions:  # an empty list makes MaterialX load everything
             mx.loadLibraries(list(definitions), path, document, readOptions=options)
-        for file in _first(library, profile):  # within a folder MaterialX sorts nothing
+        for file in _first(library, profile):  # MaterialX does not sort files within a folder
             mx.loadLibrary(mx.FilePath(str(file)), document, path, options)
         folders = [*own_folders(library), *mx.getDefaultDataLibraryFolders()]
         mx.loadLibraries(folders, path, document, readOptions=options)
@@ -227,7 +227,7 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
 
 
 def _first(library: str, profile: str | None) -> list[Path]:
-    """Documents of a profile, or of a part in the tree that it is loaded from."""
+    """Documents to load first: a profile's, or those of a part in its tree."""
     if profile and has_profile(library, profile):
         return profile_documents(library, profile)
     if library in LIBRARIES or tree(library).kind != library_tree.PART:
@@ -237,7 +237,7 @@ def _first(library: str, profile: str | None) -> list[Path]:
 
 
 def _documents(folder: AnyPath, rule: str) -> list[Path]:
-    """MaterialX documents of a folder; none breaks the rule."""
+    """MaterialX documents of a folder; InputError with `rule` if there are none."""
     documents = sorted(Path(folder).rglob("*.mtlx")) if str(folder) else []
     if not documents:
         empty = not any(names for *_, names in os.walk(folder))
@@ -248,10 +248,10 @@ def _documents(folder: AnyPath, rule: str) -> list[Path]:
 def implementations(
     document: mx.Document, library: str = "eonlib", profile: str | None = None
 ) -> tuple[Implementation, ...]:
-    """Implementations that a document and its data library have of all that eonlib ships.
+    """The implementations in a document and its data library for all nodes that eonlib ships.
 
-    One for each nodedef of the documents of "eonlib" or "diffuse", and of a profile's, on each target that
-    they implement it for.
+    One for each nodedef in the documents of "eonlib" or "diffuse", and of a profile, on each target that
+    they implement.
     """
     data = document.getDataLibrary() or document
     definitions = {each.getName(): each for each in data.getTargetDefs()}
@@ -279,7 +279,7 @@ def _shipped(library: str, profile: str | None) -> tuple[tuple[str, str], ...]:
 
 
 def _implementation(document: mx.Document, node: str, target: str, own: bool) -> Implementation:
-    """What a document implements a node with; a graph for every target does not count as a target's own."""
+    """A document's implementation of a node; with `own`, graphs for all targets do not count."""
     definition = document.getNodeDef(node)
     element = definition and definition.getImplementation(target)
     if not element or (own and not element.getTarget()):
@@ -288,9 +288,9 @@ def _implementation(document: mx.Document, node: str, target: str, own: bool) ->
 
 
 def assert_ours(document: mx.Document, library: str = "eonlib", profile: str | None = None) -> None:
-    """Raise LibraryError unless a document takes all that eonlib ships from eonlib.
+    """Raise LibraryError unless a document uses eonlib's implementation for everything that eonlib ships.
 
-    The message names node, target and other file; parameters as those of `implementations`.
+    The message has the node, the target and the other file; parameters as for `implementations`.
     """
     for each in implementations(document, library, profile):
         if not each.ours:
@@ -301,7 +301,7 @@ def assert_ours(document: mx.Document, library: str = "eonlib", profile: str | N
             )
 
 
-TESTED = ("1.39.3", "1.39.4", "1.39.5")  # versions of MaterialX; others run with a warning
+TESTED = ("1.39.3", "1.39.4", "1.39.5")  # MaterialX versions that run without a warning
 REQUIRED = ((mx.Document, "setDataLibrary"), (mx_gen.ShaderGenerator, "registerTypeDefs"))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Copies of eonlib for people without Python: a folder, or a zip archive of one."""
+"""Copies of eonlib for use without Python: a folder or a zip archive."""
 
 import os
 import shutil
@@ -37,16 +37,16 @@ CLIENTS = {
 
 
 def recipes(folder: AnyPath) -> str:
-    """How each client loads a folder of eonlib, a line each."""
+    """Instructions for loading a folder of eonlib, one line per client."""
     sources = source_folder(os.fspath(folder))
     return "\n".join(f"{name:<21} {text.format(folder, sources)}" for name, text in CLIENTS.items())
 
 
 def export_library(path: AnyPath) -> Path:
-    """Write eonlib, with its sources and license, to a new or empty folder, or to a zip archive.
+    """Write eonlib, with its sources and license, to a new or empty folder or to a zip archive.
 
-    What ends in ".zip" becomes an archive of a folder of that name; a file already there is replaced.
-    Nothing half-written stays behind.
+    A path ending in ".zip" becomes an archive of a folder with that name; an existing file is replaced.
+    No partial output is left behind.
     """
     target = Path(os.path.realpath(path))
     names = [] if target.suffix == ".zip" else ["*"]
@@ -57,7 +57,7 @@ def export_library(path: AnyPath) -> Path:
     if target.suffix == ".zip":
         with replacing(target) as beside, ZipFile(beside, "w") as archive:
             for name, data in _content().items():
-                entry = ZipInfo(f"{target.stem}/{name}")  # of 1980: the same archive each time
+                entry = ZipInfo(f"{target.stem}/{name}")  # dated 1980, so archives are reproducible
                 entry.external_attr = 0o644 << 16
                 archive.writestr(entry, data, ZIP_DEFLATED)
         return target
@@ -76,7 +76,7 @@ def export_library(path: AnyPath) -> Path:
 
 
 def _content() -> dict[str, bytes]:
-    """Files of the copy, by their paths in it."""
+    """Files of the copy, by relative path."""
     folders = {name: source_folder("eonlib") / name for name in SOURCE_FOLDERS}
     content = {
         f"{name}/{path.relative_to(folder).as_posix()}": path.read_bytes()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files of a library that is a folder: its own, and those of MaterialX that complete it.
+"""The files of a library in a folder: its own, plus MaterialX's files that complete it.
 
 A folder is one of three kinds.
 
@@ -9,7 +9,7 @@ part
     It has files at the same relative paths as MaterialX's libraries, or as one folder in them: pbrlib/,
     or a node's source with its lib/. They replace those files.
 overlay
-    Like eonlib it has its own names, and is loaded before MaterialX's libraries.
+    It has its own names, as eonlib does, and is loaded before MaterialX's libraries.
 
 MaterialX looks for a node's source next to its document, for included files next to that, and for the
 generator's includes on a search path. So a whole or a part becomes one tree of links, `libraries`, with both
@@ -33,25 +33,25 @@ from mxeon.errors import InputError
 from mxeon.io.files import AnyPath, regular
 from mxeon.jobs.signals import Temporary, block_signals
 
-# eonlib as a whole, its diffuse nodes alone, and MaterialX as it comes.
+# All of eonlib, only its diffuse nodes, and unmodified MaterialX.
 LIBRARIES = ("eonlib", "diffuse", "stock")
 WHOLE, PART, OVERLAY = "whole", "part", "overlay"
 NEEDED = ("targets", "stdlib", "pbrlib")  # subfolders of a whole
 DOCUMENT = ".mtlx"
 CODE = (".glsl", ".osl", ".h", ".metal", ".slang", ".mdl")
-FILES = (DOCUMENT, *CODE)  # endings of what a library is made of
+FILES = (DOCUMENT, *CODE)  # endings of a library's files
 
 
 @dataclass(frozen=True)
 class Tree:
     """The files of a library, and where MaterialX finds them."""
 
-    folder: str  # as given, as an absolute path
+    folder: str  # absolute path
     kind: str  # WHOLE, PART or OVERLAY
-    # folder of MaterialX's libraries that a part stands for, such as "pbrlib/genglsl"; "" for all
+    # folder of MaterialX's libraries that a part replaces, such as "pbrlib/genglsl"; "" for all
     place: str
     own: tuple[str, ...]  # documents and sources of the folder, relative to it
-    package: tuple[str, ...]  # files of the installed libraries that complete it, relative to these
+    package: tuple[str, ...]  # files of the installed libraries that complete it, as relative paths
     # the file behind each path below `libraries`; empty for an overlay
     links: Mapping[str, str] = field(repr=False)
 
@@ -70,7 +70,7 @@ def _tree(folder: str) -> Tree:
             f"library {folder}: must be the folder with {', '.join(NEEDED)}; pass {folder}/libraries"
         )
     installed = {path: file for root in standard_folders() for path, file in files_in(str(root))}
-    # In a whole, a library that it has not at all, such as lights/, is the package's.
+    # Libraries that a whole lacks entirely, such as lights/, come from the package.
     if all(os.path.isdir(os.path.join(folder, each)) for each in NEEDED):
         tops = {each.partition("/")[0] for each in own}
         missing = {
@@ -80,7 +80,7 @@ def _tree(folder: str) -> Tree:
         }
         return Tree(folder, WHOLE, "", named, tuple(missing), missing | own)
     place = _place(folder, named, installed)
-    # No source may look like another's replacement and be none, unless a search path finds it below `libraries`.
+    # Reject sources that look like a replacement but are not used as one, unless a search path below `libraries` finds them.
     known = {PurePosixPath(each).name: each for each in installed if each.endswith(CODE)}
     for each in named:
         other = known.get(PurePosixPath(each).name)
@@ -119,7 +119,7 @@ def _place(folder: str, own: tuple[str, ...], installed: Mapping[str, str]) -> s
 
 
 def files_in(folder: str) -> Iterator[tuple[str, str]]:
-    """Relative and whole path of every file in a folder, without hidden ones, through links."""
+    """Relative and full path of every file in a folder; follows links and skips hidden files."""
     for top, folders, names in os.walk(folder, followlinks=True):
         home = os.path.realpath(top)
         folders[:] = sorted(
@@ -141,7 +141,7 @@ def standard_folders() -> list[Path]:
 
 
 def origins(library: str) -> dict[str, tuple[str, ...]]:
-    """Files of a folder that is a library, and of MaterialX's libraries that complete it."""
+    """Files of a library folder, and MaterialX's files that complete it."""
     known = tree(library)
     package = {} if known.kind == OVERLAY else {"MaterialX": known.package}
     return {"folder": known.own, **package}
@@ -168,32 +168,32 @@ def _root(library: str) -> str:
     return temporary
 
 
-_KEPT: dict[str, TemporaryDirectory[str]] = {}  # until the process ends
+_KEPT: dict[str, TemporaryDirectory[str]] = {}  # deleted when the process ends
 
 
 def search_path(library: str) -> mx.FileSearchPath:
-    """Where MaterialX looks for `libraries`, and for what sources include from there."""
+    """Search path for `libraries` and for the files that sources include from there."""
     return mx.FileSearchPath(root(library)) if root(library) else mx.getDefaultDataSearchPath()
 
 
 def roots() -> list[str]:
-    """The folders that `root` laid in this process."""
+    """The folders that `root` created in this process."""
     return [root(library) for library in _KEPT]
 
 
 def in_words(library: str, text: str) -> str:
-    """A message of MaterialX that names the user's files instead of the links to them."""
+    """A MaterialX message with the links replaced by the user's files."""
     if laid := root(library):
         for path, file in tree(library).links.items():
             text = text.replace(f"{laid}/libraries/{path}", file)
     return text
 
 
-INCLUDE = "#include"  # as MaterialX seeks it, for every target
+INCLUDE = "#include"  # MaterialX's directive for every target
 
 
 def read_source(path: AnyPath, limit: int) -> bytes:
-    """Content of a regular file; if it is longer than the limit, one byte more than that."""
+    """Content of a regular file, at most one byte more than the limit."""
     try:
         with open(path, "rb", opener=regular) as file:
             return file.read(limit + 1)
@@ -202,7 +202,7 @@ def read_source(path: AnyPath, limit: int) -> bytes:
 
 
 def decode_source(data: bytes, path: AnyPath) -> str:
-    """Text of a file, with the ends of its lines as they are."""
+    """Text of a file with unchanged line endings."""
     try:
         return data.decode()
     except UnicodeDecodeError as error:
@@ -210,7 +210,7 @@ def decode_source(data: bytes, path: AnyPath) -> str:
 
 
 def included(line: str) -> str:
-    """File that a line of source includes for MaterialX, or "": what its outer quotes hold.
+    """File that MaterialX includes for a line of source, the text between its outer quotes, or "".
 
     >>> included('#include "lib/mx_math.glsl"')
     'lib/mx_math.glsl'
@@ -218,7 +218,7 @@ def included(line: str) -> str:
     return line[line.index('"') + 1 : line.rindex('"')] if INCLUDE in line and '"' in line else ""
 
 
-LARGEST = 16 * 2**20  # bytes of a file
+LARGEST = 16 * 2**20  # maximum bytes of a file
 
 
 def check_files(paths: Iterable[AnyPath]) -> None:
@@ -228,12 +228,12 @@ def check_files(paths: Iterable[AnyPath]) -> None:
 
 
 def check_sources(document: mx.Document, library: str, search: mx.FileSearchPath) -> None:
-    """Check every source that a library's implementations in a document name, and all that it includes.
+    """Check every source named by a library's implementations in a document, and everything it includes.
 
-    The library is given by its folder; MaterialX's own sources are looked for on the search path.
+    `library` is its folder; MaterialX's own sources are found on the search path.
     """
     folder = Path(library)
-    parents = cache(lambda uri: Path(uri).parents)  # of few documents, for many implementations
+    parents = cache(lambda uri: Path(uri).parents)  # many implementations share few documents
     waiting = [
         (each.getFile(), parents(uri)[0])
         for each in document.getImplementations()
@@ -252,7 +252,7 @@ def check_sources(document: mx.Document, library: str, search: mx.FileSearchPath
 
 
 def read_options() -> mx.XmlReadOptions:
-    """Options by which MaterialX reads the documents of a library, and checks what they include."""
+    """MaterialX's options for reading a library's documents, which check the included files."""
     options = mx.XmlReadOptions()
     options.readXIncludeFunction = _include
     return options
@@ -262,7 +262,7 @@ def _include(
     document: mx.Document,
     name: mx.FilePath,
     path: mx.FileSearchPath,
-    options: mx.XmlReadOptions,  # knows the documents that include this one
+    options: mx.XmlReadOptions,  # holds the documents that include this one
 ) -> None:
     file = path.find(name)
     _text(file.asString())
@@ -293,7 +293,7 @@ def check_definitions(
 
 
 def _replaces(element: mx.Element, base: mx.Document) -> bool:
-    """Whether a library has an element of that name, or an implementation of that node and target."""
+    """Whether a library has an element with this name, or an implementation for this node and target."""
     if base.getChild(element.getName()):
         return True
     implements = element.isA(mx.Implementation) or element.isA(mx.NodeGraph)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What MaterialX's generators for rasterizers let a client choose: one value, from the command to the generator."""
+"""Client choices for MaterialX's rasterizing generators, passed as one value from the command to the generator."""
 
 import re
 from collections.abc import Iterator
@@ -35,10 +35,10 @@ OPTIONS = {
 class Methods:
     """A client's methods; "", 0 and None leave the choice to the host.
 
-    - `environment`: How specular light of an environment is found: "fis", "prefilter" or "none".
-    - `transmission`: What passes a surface: "refraction" of the environment, or "opacity".
-    - `albedo`: Directional albedos of MaterialX's own functions: "analytic", "table" or "monteCarlo".
-    - `airy`: Iterations of MaterialX's own thin films.
+    - `environment`: Specular environment lighting: "fis", "prefilter" or "none".
+    - `transmission`: "refraction" of the environment, or "opacity".
+    - `albedo`: Directional albedos in MaterialX's own functions: "analytic", "table" or "monteCarlo".
+    - `airy`: Iterations in MaterialX's own thin films.
     - `premultiplied`: Whether `mix` folds its weight into its lobes' weights (premultipliedBsdfAdd).
     - `distributed`: Whether `layer` is distributed over `mix` (distributeLayerOverBsdfMix).
     - `searched`: Whether shader sources are looked up in the library's `genglsl/environment` before MaterialX's data.
@@ -60,11 +60,11 @@ class Methods:
             raise InputError(f"airy must lie in [1, {MOST_ITERATIONS}]; got {self.airy}")
 
     def over(self, host: "Methods") -> "Methods":
-        """The same with a host's methods where nothing is chosen."""
+        """These methods, completed by a host's."""
         return replace(host, **dict(self.chosen()))  # type: ignore[arg-type]
 
     def chosen(self) -> Iterator[tuple[str, str | int | bool]]:
-        """Names and values of what is chosen."""
+        """Names and values of the chosen methods."""
         for each in fields(self):
             value = getattr(self, each.name)
             if value is not None and (value or isinstance(value, bool)):
@@ -72,30 +72,30 @@ class Methods:
 
     @property
     def settings(self) -> dict[str, str | int | bool]:
-        """What is chosen of the generator's options."""
+        """The chosen options of the generator."""
         return {name: value for name, value in self.chosen() if name != "searched"}
 
     @property
     def options(self) -> dict[str, str]:
-        """What is chosen, by the option of the command."""
+        """The chosen methods, by the command's options."""
         return {OPTIONS[name]: str(value).lower() for name, value in self.chosen()}
 
     def __str__(self) -> str:
         return ", ".join(f"{name} {str(value).lower()}" for name, value in self.chosen())
 
 
-UNCHOSEN = Methods()  # nothing is chosen
+UNCHOSEN = Methods()  # leaves all choices to the host
 GENERATED = Methods("fis", "refraction", "analytic", 2)  # the defaults of MaterialX's generators
 STORM = Methods("prefilter", "opacity", "analytic", 2)  # hard-coded in hdSt/materialXFilter.cpp
 
-# How MaterialX's text declares each method.
+# MaterialX's declarations of the methods in a text.
 ALBEDO = re.compile(r"^#define DIRECTIONAL_ALBEDO_METHOD (\d+)$", re.MULTILINE)
 ITERATIONS = re.compile(r"^#define AIRY_FRESNEL_ITERATIONS (\d+)$", re.MULTILINE)
-REFRACTS = re.compile(r"if \((\w*refractionTwoSided)\)")  # in the text of refraction alone
+REFRACTS = re.compile(r"if \((\w*refractionTwoSided)\)")  # only occurs with refraction
 
 
 def assert_generated(text: str, methods: Methods) -> None:
-    """Raise NotRun unless the text of a pixel stage has the methods that were chosen, and is complete."""
+    """Raise NotRun unless the text of a pixel stage is complete and uses the chosen methods."""
     found: dict[str, str | int] = {}
     if numbers := ALBEDO.findall(text):
         found["albedo"] = CHOICES["albedo"][int(numbers[0])]

@@ -18,10 +18,10 @@ EON = "eon_diffuse_bsdf"
 DIFFUSE_NODES = (OREN_NAYAR, EON)
 NODEDEFS = tuple(f"ND_{category}" for category in DIFFUSE_NODES)
 
-# Nodes of eonlib that compute a color: the reflectance with which EON has the color given.
+# eonlib's nodes that compute the reflectance for which EON has a given color.
 INVERSIONS = ("eon_rho_from_albedo_normal", "eon_rho_from_albedo_avg")
 
-FLAG = "energy_compensation"  # which the first alone has: EON if true, else QON
+FLAG = "energy_compensation"  # only oren_nayar has it: EON if true, else QON
 INPUT_TYPES = {
     "weight": "float",
     "color": "color3",
@@ -30,7 +30,7 @@ INPUT_TYPES = {
     FLAG: "boolean",
 }
 
-# The other BSDF nodes of pbrlib, whose inputs MaterialX's definitions have.
+# The other BSDF nodes of pbrlib. Their inputs are read from MaterialX's definitions.
 BSDF_NODES = (
     "burley_diffuse_bsdf",
     "dielectric_bsdf",
@@ -51,15 +51,15 @@ DOCUMENT = """<?xml version="1.0"?>
 """
 
 
-FRAME_INPUTS = ("normal", "tangent", "curve_direction")  # inputs that are vectors of the surface
+FRAME_INPUTS = ("normal", "tangent", "curve_direction")  # vectors of the surface
 
 
 @cache
 def input_types(category: str) -> Mapping[str, str]:
-    """Type of each input of a BSDF node, by name; none for a node that is not known."""
+    """Type of each input of a BSDF node, by name; empty for unknown nodes."""
     if category not in BSDF_NODES:
         return INPUT_TYPES if category in DIFFUSE_NODES else {}
-    from mxeon.shaders.library import load_library  # which loads MaterialX
+    from mxeon.shaders.library import load_library  # imports MaterialX
 
     [definition] = load_library("stock").getMatchingNodeDefs(category)
     return {each.getName(): each.getType() for each in definition.getActiveInputs()}
@@ -67,7 +67,7 @@ def input_types(category: str) -> Mapping[str, str]:
 
 @cache
 def types_of(name: str) -> frozenset[str]:
-    """Types that an input of a name has in the nodes.
+    """Types of the inputs with this name in all nodes.
 
     >>> sorted(types_of("roughness"))
     ['float', 'vector2']
@@ -95,27 +95,27 @@ def input_text(name: str, kind: str, value: ArrayLike) -> str:
 
 
 def connection_text(name: str, kind: str, node: str, output: str = "") -> str:
-    """XML of an input that is connected to a node, or to an output of it."""
+    """XML of an input that is connected to a node or to one of its outputs."""
     port = f' output="{output}"' if output else ""
     return f'    <input name="{name}" type="{kind}" nodename="{node}"{port} />\n'
 
 
 def node_text(category: str, kind: str, name: str, inputs: str = "") -> str:
-    """XML of a node around that of its inputs."""
+    """XML of a node with the XML of its inputs."""
     return f'  <{category} name="{name}" type="{kind}">\n{inputs}  </{category}>\n'
 
 
 def vector_text(name: str, value: ArrayLike) -> str:
-    """XML of a node that is a vector."""
+    """XML of a constant vector node."""
     return node_text("constant", "vector3", name, input_text("value", "vector3", value))
 
 
-# Of a surface whose BSDF is the node `lobe`.
+# A surface with the BSDF node `lobe`.
 SURFACE = node_text("surface", "surfaceshader", "shading", connection_text("bsdf", "BSDF", "lobe"))
 
 
 def with_images(text: str, inputs: Mapping[str, str], file: str) -> "mx.Document":
-    """The document of a text whose inputs, of types by path, read an image, each at its own `PATH_place/value`."""
+    """A text's document in which `inputs` (types by path) read an image, each at its own `PATH_place/value`."""
     import MaterialX as mx
 
     document = mx.createDocument()
@@ -137,9 +137,9 @@ def lobe_text(
     name: str = "lobe",
     types: Mapping[str, str] | None = None,
 ) -> str:
-    """XML of a BSDF node; `types` of its inputs for one that is not known.
+    """XML of a BSDF node; `types` gives the types of an unknown node's inputs.
 
-    MaterialX ignores a normal or a tangent that is not connected: it comes from a separate node.
+    MaterialX ignores normals and tangents that are not connected, so they come from separate nodes.
     """
     kinds = input_types(category) if types is None else types
     text = constants = ""
@@ -154,7 +154,7 @@ def lobe_text(
 
 
 def document_text(nodes: str, name: str = "look") -> str:
-    """XML of a document with one material, whose surface shader is the node `shading`."""
+    """XML of a document with one material and its surface shader, the node `shading`."""
     return DOCUMENT.format(nodes=nodes, name=name)
 
 
@@ -164,11 +164,11 @@ def material_text(
     name: str = "look",
     types: Mapping[str, str] | None = None,
 ) -> str:
-    """XML of a document whose material is one BSDF node; see `lobe_text`."""
+    """XML of a document with a material of one BSDF node; see `lobe_text`."""
     return document_text(lobe_text(category, inputs or {}, types=types) + SURFACE, name)
 
 
-# Ports at which nodes take others, in the order of Node.sources.
+# Input ports for other nodes, in the order of Node.sources.
 PORTS = {
     "layer": ("top", "base"),
     "mix": ("fg", "bg"),
@@ -179,7 +179,7 @@ PORTS = {
 
 
 class Node(NamedTuple):
-    """A node of a document, by its category and type, the names of nodes that it takes, and XML of its inputs."""
+    """A node of a document: category, type, names of its source nodes, and XML of its inputs."""
 
     category: str
     kind: str
@@ -190,7 +190,7 @@ class Node(NamedTuple):
 def network_text(
     nodes: Mapping[str, Node], inputs: Iterable[tuple[str, str, ArrayLike]] = ()
 ) -> str:
-    """XML of nodes by name, with inputs by path, type and value; those without a path are of the last node."""
+    """XML of nodes by name, with inputs by path, type and value; inputs without a path belong to the last node."""
     texts = {name: each.text for name, each in nodes.items()}
     for path, kind, value in inputs:
         name, _, port = path.rpartition("/")

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Options of MaterialX's generators for rasterizers, also those without a Python binding.
+"""Options of MaterialX's rasterizing generators, including those without Python bindings.
 
-MaterialX 1.39.5 binds neither the transmission method, nor that of directional albedos, nor the number of Airy
-iterations. They are the three integers that follow `hwSpecularEnvironmentMethod` in the C++ object (two before 1.39.5,
-without Airy iterations), whose place is found by changing that member through its binding. They are written only where
-they hold their defaults, and `mxeon.shaders.methods.assert_generated` compares the generated text with what was chosen: another layout
-refuses the option instead of returning another shader.
+MaterialX 1.39.5 has no bindings for the transmission method, the directional albedo method and the number of Airy
+iterations. They are the three integers after `hwSpecularEnvironmentMethod` in the C++ object (two before 1.39.5,
+without Airy iterations). Changing that member through its binding reveals its offset. They are only written if
+they hold their defaults, and `mxeon.shaders.methods.assert_generated` compares the generated text with the chosen
+methods: with a different layout, the option is refused instead of returning a wrong shader.
 
-This module imports MaterialX alone; the worker of the host `materialx` loads it by its path.
+This module only imports MaterialX; the worker of the host `materialx` loads it by path.
 """
 
 import ctypes
@@ -15,7 +15,7 @@ import ctypes
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-ENVIRONMENTS = ("none", "fis", "prefilter")  # in the order of MaterialX's enumerations
+ENVIRONMENTS = ("none", "fis", "prefilter")  # order of MaterialX's enumeration
 ALBEDOS = ("analytic", "table", "monteCarlo")
 TRANSMISSIONS = ("refraction", "opacity")
 DEFAULTS = [0, 0, 2]  # analytic albedos, refraction, two Airy iterations
@@ -23,12 +23,12 @@ BOUND = {
     "premultiplied": "premultipliedBsdfAdd",
     "distributed": "distributeLayerOverBsdfMix",
 }
-SIZE = 512  # bytes in which the members are searched; the options are part of a larger object
-VALUE = 2 * ctypes.sizeof(ctypes.c_void_p)  # place of pybind11's pointer in a Python object
+SIZE = 512  # bytes to search for the members; the options are part of a larger object
+VALUE = 2 * ctypes.sizeof(ctypes.c_void_p)  # offset of pybind11's pointer in a Python object
 
 
 def offers(name: str) -> bool:
-    """Whether this MaterialX has an option of BOUND."""
+    """Whether this MaterialX has an option from BOUND."""
     return hasattr(mx_gen.GenOptions, BOUND[name])
 
 
@@ -55,7 +55,7 @@ def set_options(
 
 
 def unbound_members(options: mx_gen.GenOptions, count: int) -> "ctypes.Array[ctypes.c_int]":
-    """Members that follow hwSpecularEnvironmentMethod; LookupError unless they hold their defaults."""
+    """The members after hwSpecularEnvironmentMethod; LookupError unless they hold their defaults."""
     address = ctypes.c_void_p.from_address(id(options) + VALUE).value or 0
     memory = (ctypes.c_int * (SIZE // ctypes.sizeof(ctypes.c_int))).from_address(address)
     states = []

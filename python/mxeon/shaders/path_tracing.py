@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Generated text that a path tracer includes, the profile "path": docs/path_tracing.md.
+"""Generated text for inclusion in path tracers, the profile "path": docs/path_tracing.md.
 
-The text of the material stays as it is, but what a stage reads and writes becomes variables.
+The material's text is unchanged, but the inputs and outputs of the stage become variables.
 """
 
 import re
@@ -13,7 +13,7 @@ from mxeon.shaders.library import source_folder
 
 TARGETS = ("glsl", "essl", "vulkan", "slang")
 
-# What a shader reads of its vertex stage, from a Point; the object's space is the world's.
+# Values from the vertex stage, taken from a Point; object space equals world space.
 PLACES = {
     "position": "p.position",
     "normal": "p.normal",
@@ -24,7 +24,7 @@ PLACES = {
 MEMBER = re.compile(r"^ *(?:flat )?(?:in )?\w+ (([a-z]+)\w*)(?: : \w+)?;$", re.MULTILINE)
 LAYOUT = r"^(?:layout \(location = \d+\) )?"
 HEADS = re.compile(r"^#version.*\n|^#pragma shader_stage.*\n", re.MULTILINE)
-# The stage's inputs, its output and its main: as MaterialX writes them, and as a path tracer has them.
+# Replacements of MaterialX's stage inputs, output and main for a path tracer.
 GLSL = (
     (LAYOUT + r"in VertexData\n", "struct VertexData\n"),
     (LAYOUT + r"(?:flat )?in (\w+ \w+;\n)", r"\1"),
@@ -41,14 +41,14 @@ SLANG = (
     (r"^    vd = _vd;\n|^ *discard;\n", ""),
     (r"^    return (\w+);\n}\s*\Z", r"    path_out = \1;\n}\n"),
 )
-WORDS = {"vec2": "float2", "vec3": "float3", "vec4": "float4", "uvec4": "uint4"}  # of Slang
+WORDS = {"vec2": "float2", "vec3": "float3", "vec4": "float4", "uvec4": "uint4"}  # Slang's names
 GLOBAL = re.compile(r"^(?=(?:int|bool|float|vec\d) path_\w+;)", re.MULTILINE)
 
 
 def path_text(text: str, target: str, element: mx.TypedElement, library: str) -> str:
-    """The pixel stage of a material as text to include, behind a path tracer's version and declarations.
+    """A material's pixel stage as text to include after a path tracer's version and declarations.
 
-    InterfaceError if the text mixes surfaces, since a path could follow only one.
+    InterfaceError if the text mixes surfaces, since a path can follow only one.
     """
     if "mx_mix_surfaceshader(" in text:
         raise InterfaceError(
@@ -80,7 +80,7 @@ def path_text(text: str, target: str, element: mx.TypedElement, library: str) ->
 
 
 def own_text(name: str, library: str, slang: bool) -> str:
-    """A file of the interface, in the words of the target."""
+    """A file of the interface, in the target's language."""
     text = (source_folder(library) / "genglsl" / "path" / f"{name}.glsl").read_text(
         encoding="utf-8"
     )
@@ -92,7 +92,7 @@ def own_text(name: str, library: str, slang: bool) -> str:
 
 
 def thin_walled(element: mx.TypedElement) -> str:
-    """Whether the surface of a material is a thin wall, as GLSL has it; one that is computed is none."""
+    """Whether a material's surface is thin-walled, as a GLSL literal; computed values count as false."""
     shaders = mx.getShaderNodes(element) if element.getType() == "material" else [element]
     nodes = [each for each in shaders if isinstance(each, mx.Node)]
     names = ("thin_walled", "geometry_thin_walled")

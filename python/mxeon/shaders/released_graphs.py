@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the graphs of surface shaders say, and which of MaterialX's releases say it."""
+"""The graphs of surface shaders, and the MaterialX releases that contain them."""
 
 import sys
 from collections.abc import Container, Iterator, Mapping
@@ -12,8 +12,8 @@ import MaterialX as mx
 from mxeon.errors import NotRun
 from mxeon.shaders.library import load_library
 
-PARTS = 3  # that are named where two graphs differ in more
-# Digests of what the graphs of releases say, and the versions with each.
+PARTS = 3  # maximum differences reported between two graphs
+# Digests of released graphs, and the versions with each graph.
 RELEASES: Mapping[str, tuple[str, ...]] = {
     "14ecabb97635dfa0": ("1.39.3", "1.39.4"),  # open_pbr_surface
     "1e645305e1b7dc2b": ("1.39.5",),
@@ -28,7 +28,7 @@ RELEASES: Mapping[str, tuple[str, ...]] = {
 
 @cache
 def installed() -> mx.Document:
-    """The data libraries of the MaterialX that is installed, which a custom build only hides."""
+    """The data libraries of the installed MaterialX, even if a custom build hides them."""
     known = [path for each in sys.path if (path := Path(each, "MaterialX", "libraries")).is_dir()]
     if not known or known[-1].samefile(Path(mx.__file__).with_name("libraries")):
         return load_library("stock")
@@ -39,9 +39,9 @@ def installed() -> mx.Document:
 
 
 def said(node: mx.Node, known: Container[str]) -> dict[str, str]:
-    """The defaults of a surface shader, and the nodes and connections of its graph and of those in it.
+    """The defaults of a surface shader, and the nodes and connections of its graph and nested graphs.
 
-    Graphs of nodes in the categories `known` are not looked into.
+    Graphs of nodes in the categories `known` are not expanded.
     """
     ports, graph = node.getNodeDef().getActiveInputs(), node.getImplementation()
     if not (graph and graph.isA(mx.NodeGraph)):
@@ -61,7 +61,7 @@ def facts(graph: mx.NodeGraph) -> Iterator[tuple[str, str]]:
 
 
 def ports_of(node: mx.Node) -> dict[str, mx.Input]:
-    """The inputs of a node by name, those of its definition where it has none of its own."""
+    """The inputs of a node by name, completed from its definition."""
     definition = node.getNodeDef()
     ports = definition.getActiveInputs() if definition else ()
     return {each.getName(): each for each in (*ports, *node.getInputs())}
@@ -79,7 +79,7 @@ def _inside(
 
 
 def port_text(port: mx.PortElement) -> str:
-    """What an input or output is connected to, or its value."""
+    """The connection of an input or output, otherwise its value."""
     if node := port.getNodeName():
         return " ".join(filter(None, (node, port.getOutputString())))
     if port.isA(mx.Input) and port.hasInterfaceName():
@@ -96,7 +96,7 @@ def digest(parts: Mapping[str, str]) -> str:
 
 
 def differences(own: Mapping[str, str], right: Mapping[str, str]) -> tuple[str, ...]:
-    """The parts in which two graphs differ: three texts each, its name and what both say."""
+    """The differences between two graphs, three texts each: the name and both values."""
     return tuple(
         text
         for name in {**right, **own}

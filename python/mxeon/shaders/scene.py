@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes of pictures: a shape, seen orthographically along -z, and the light on it.
+"""Scenes of pictures: a shape, seen orthographically along -z, and its light.
 
 World frame: x to the right, y up, z towards the viewer. The frame of the picture is the square
 [-1, 1]^2, row 0 is its top. NumPy only: hosts and checks share this module and nothing else.
@@ -17,21 +17,21 @@ from mxeon.errors import InputError, assert_known
 from mxeon.io.images import Floats
 
 SHAPES = ("sphere", "ball")
-LARGEST = 8192  # the width that every OpenGL 4 device draws; an image of it takes some gigabytes
-MOST_SAMPLES = 65536  # a day of one core for a picture of 512 x 512 pixels
-MOST_BOUNCES = 1024  # the most that Cycles takes
+LARGEST = 8192  # supported by every OpenGL 4 device; such an image takes some gigabytes
+MOST_SAMPLES = 65536  # takes a core one day for a picture of 512 x 512 pixels
+MOST_BOUNCES = 1024  # Cycles' maximum
 
 
 @dataclass(frozen=True)
 class Paths:
-    """The paths of light that a host traces for a picture; None lets the host decide.
+    """Samples and bounces of a path-traced picture; None lets the host decide.
 
     >>> Paths(samples=64).bounces is None
     True
     """
 
-    samples: int | None = None  # of a pixel, in [1, MOST_SAMPLES]
-    bounces: int | None = None  # times that a path may be scattered, in [1, MOST_BOUNCES]
+    samples: int | None = None  # samples per pixel, in [1, MOST_SAMPLES]
+    bounces: int | None = None  # maximum bounces, in [1, MOST_BOUNCES]
 
     def __post_init__(self) -> None:
         for name, most in (("samples", MOST_SAMPLES), ("bounces", MOST_BOUNCES)):
@@ -42,41 +42,41 @@ class Paths:
 
 @dataclass(frozen=True)
 class Lamp:
-    """One of MaterialX's lights. It reads the angles of a spot light as cosines."""
+    """One of MaterialX's lights. MaterialX expects a spot light's angles as cosines."""
 
-    type: int = 1  # as the generator binds them: 1 directional, 2 point, 3 spot
+    type: int = 1  # the generator's binding: 1 directional, 2 point, 3 spot
     color: tuple[float, float, float] = (1.0, 1.0, 1.0)
     intensity: float = np.pi
-    direction: tuple[float, float, float] = (0.0, 0.0, -1.0)  # in which its light travels
+    direction: tuple[float, float, float] = (0.0, 0.0, -1.0)  # direction of travel of the light
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     decay_rate: float = 2.0
     inner_angle: float = 0.0
     outer_angle: float = 0.0
 
 
-Matrix: TypeAlias = tuple[float, ...]  # 16 numbers, column after column
+Matrix: TypeAlias = tuple[float, ...]  # 16 numbers in column-major order
 ONE: Matrix = tuple(np.eye(4).ravel().tolist())
 TURN: Matrix = tuple(np.diag([-1.0, 1.0, -1.0, 1.0]).ravel().tolist())
 
 
 @dataclass(frozen=True, eq=False)
 class Client:
-    """What a client binds beside a scene; the defaults are the generator's."""
+    """Values that a client binds in addition to the scene; the defaults are the generator's."""
 
     lamps: tuple[Lamp, ...] = ()
-    turn: Matrix = TURN  # from the world to the environment
-    intensity: float = 1.0  # of the environment
-    radiance: NDArray[np.float32] | None = None  # maps of the environment instead of the scene's
+    turn: Matrix = TURN  # world to environment
+    intensity: float = 1.0  # scale of the environment
+    radiance: NDArray[np.float32] | None = None  # environment map that replaces the scene's
     irradiance: NDArray[np.float32] | None = None
-    two_sided: bool = False  # whether light is tinted twice where it enters and leaves
-    shadow: Matrix = ONE  # from the world to the shadow map, in [-1, 1]
+    two_sided: bool = False  # whether transmitted light is tinted both on entry and on exit
+    shadow: Matrix = ONE  # world to shadow map, in [-1, 1]
     moments: tuple[float, float] = (
         1.0,
         1.0,
-    )  # of the depths in the shadow map, the same everywhere
-    ambient: float = 1.0  # what the map of ambient occlusion holds
-    gain: float = 1.0  # of the ambient occlusion
-    alpha: bool = False  # whether a picture shows alpha instead of the color
+    )  # moments of depth, constant over the shadow map
+    ambient: float = 1.0  # value of the ambient occlusion map
+    gain: float = 1.0  # gain of ambient occlusion
+    alpha: bool = False  # whether pictures show alpha instead of the color
 
 
 CLIENT = Client()
@@ -84,7 +84,7 @@ CLIENT = Client()
 
 @dataclass(frozen=True)
 class Scene:
-    """A shape and a light on it."""
+    """A shape and its light."""
 
     name: str  # one lower-case word, used in file names
     # unit vector towards a distant light whose irradiance is pi, so that a pixel holds pi f
@@ -93,10 +93,10 @@ class Scene:
     # radiance of a uniform environment, or a latitude-longitude image
     environment: float | Path | None = None
     size: int = 256  # width and height in pixels, in [1, LARGEST]
-    paths: Paths = Paths()  # for cycles and cycles-native; other hosts refuse any but the default
+    paths: Paths = Paths()  # hosts that do not trace paths only accept the default
     # one of SHAPES: the unit sphere, or the shader ball, which gl and webgl draw
     shape: str = "sphere"
-    client: Client = CLIENT  # gl and webgl alone draw others
+    client: Client = CLIENT  # only gl and webgl support other values
 
     def __post_init__(self) -> None:
         if not 1 <= self.size <= LARGEST:
@@ -121,12 +121,12 @@ SIDE = Scene("side", light=_towards(azimuth=20, polar=60))
 BACK = Scene("back", light=_towards(azimuth=160, polar=130))
 FURNACE = Scene("furnace", environment=1.0)
 SCENES = (FRONT, SIDE, BACK, FURNACE)
-# A floor, a ceiling and three soft boxes, which tools/site/gallery.py paints, and a light from behind.
+# A floor, a ceiling and three soft boxes, painted by tools/site/gallery.py, and a light from behind.
 STUDIO = Scene("studio", BACK.light, Path(__file__).with_name("studio.exr"), shape="ball")
 
 
 def scene(name: str) -> Scene:
-    """The scene with that name: one of SCENES, or STUDIO.
+    """The scene with this name: one of SCENES, or STUDIO.
 
     >>> scene("furnace").environment
     1.0
@@ -136,13 +136,13 @@ def scene(name: str) -> Scene:
     return scenes[name]
 
 
-@dataclass(frozen=True, eq=False)  # caches know it by its identity
+@dataclass(frozen=True, eq=False)  # cached by identity
 class VisiblePoints:
-    """The visible points of a shape, one per place in the frame."""
+    """The visible points of a shape, one per position in the frame."""
 
-    mask: NDArray[np.bool_]  # where the shape is
-    position: Floats  # outside the mask in the plane of the sphere's rim
-    normal: Floats  # outward unit vector; outside the mask that of the nearest point of the rim
+    mask: NDArray[np.bool_]  # pixels on the shape
+    position: Floats  # outside the mask, in the plane of the sphere's rim
+    normal: Floats  # outward unit vector; outside the mask, the normal of the nearest rim point
     # latitude-longitude coordinates in [0, 1], (0.5, 0.5) facing the viewer, v upwards
     texcoord: Floats
 
@@ -152,7 +152,7 @@ class VisiblePoints:
 
 
 def pixel_centers(size: int, margin: int = 0) -> tuple[Floats, Floats]:
-    """x and y of the pixel centers of a picture, and of `margin` more rows and columns around its frame."""
+    """x and y of a picture's pixel centers, with `margin` additional rows and columns on each side."""
     axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
     x, y = np.meshgrid(axis, -axis)
     return x, y
@@ -165,7 +165,7 @@ def sphere(size: int, margin: int = 0) -> VisiblePoints:
 
 
 def sphere_at(x: Floats, y: Floats) -> VisiblePoints:
-    """Points of the unit sphere at places of the frame."""
+    """Points of the unit sphere at positions in the frame."""
     radius = np.hypot(x, y)
     mask = radius < 1.0
     scale = 1.0 / np.maximum(radius, 1.0)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A shader ball as exact points: a ball with a groove and a belt, on a foot, seen from a little above.
+"""A shader ball as exact points: a ball with a groove and a belt, on a foot, seen slightly from above.
 
-The shape is a signed distance, whose surface each ray of the picture finds by sphere tracing; its
-gradient is the normal. Nothing casts a shadow, because shaders see one point at a time.
+The shape is a signed distance field. Each ray of the picture finds its surface by sphere tracing, and
+the gradient is the normal. Nothing casts a shadow, because shaders see one point at a time.
 """
 
 from functools import lru_cache
@@ -14,14 +14,14 @@ from mxeon.io.images import Floats
 from mxeon.shaders.scene import VisiblePoints, pixel_centers
 
 CENTER, RADIUS = np.array([0.0, 0.2, 0.0]), 0.72
-BELT_HEIGHT = 0.13  # half of it
-GROOVE, FILLET = 0.035, 0.02  # radius of the grooves beside the belt, and of rounded edges
+BELT_HEIGHT = 0.13  # half the height of the belt
+GROOVE, FILLET = 0.035, 0.02  # radii of the grooves next to the belt and of rounded edges
 FOOT_HEIGHT, FOOT_RADIUS = 0.1, 0.5
-TILT, ROLL = np.radians(20.0), np.radians(-24.0)  # of the view, and of the belt
+TILT, ROLL = np.radians(20.0), np.radians(-24.0)  # tilt of the view, roll of the belt
 
-NEAR, FAR = 2.0, -2.0  # ends of a ray, in z
-STEPS, CLOSE = 2000, 1e-5  # of sphere tracing; along an edge of the ball it takes hundreds
-STEP = 1e-4  # of the central differences of a normal
+NEAR, FAR = 2.0, -2.0  # z at both ends of a ray
+STEPS, CLOSE = 2000, 1e-5  # sphere tracing; rays along an edge take hundreds of steps
+STEP = 1e-4  # central differences for normals
 
 
 def _rotation(angle: float, axis: int) -> NDArray[np.float64]:
@@ -33,8 +33,8 @@ def _rotation(angle: float, axis: int) -> NDArray[np.float64]:
     return matrix
 
 
-OBJECT = _rotation(-TILT, 0)  # from the frame of the picture to that of the foot
-BELT = _rotation(ROLL, 2) @ _rotation(0.35, 0)  # and on to that of the belt
+OBJECT = _rotation(-TILT, 0)  # picture frame to foot frame
+BELT = _rotation(ROLL, 2) @ _rotation(0.35, 0)  # foot frame to belt frame
 
 
 def _cylinder(points: Floats, radius: float, height: float) -> Floats:
@@ -47,7 +47,7 @@ def _cylinder(points: Floats, radius: float, height: float) -> Floats:
 
 
 def distance(points: Floats) -> Floats:
-    """Signed distance of points (..., 3) of the picture's frame from the shader ball; at most that."""
+    """Lower bound of the signed distance from points (..., 3) in the picture's frame to the shader ball."""
     upright = points @ OBJECT.T
     inside = (upright - CENTER) @ BELT.T
     radius = np.linalg.norm(inside, axis=-1)
@@ -67,7 +67,7 @@ def shader_ball(size: int, margin: int = 0) -> VisiblePoints:
 
 
 def shader_ball_at(x: Floats, y: Floats) -> VisiblePoints:
-    """Points of the shader ball at places of the frame."""
+    """Points of the shader ball at positions in the frame."""
     points = np.stack([x, y, np.full_like(x, NEAR)], axis=-1)
     rays, mask = points.reshape(-1, 3), np.zeros(x.size, dtype=bool)
     running = np.arange(x.size)

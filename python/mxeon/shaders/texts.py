@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sources of a library's nodes as text: what they define, and nodes that cannot be in one shader.
+"""Sources of a library's nodes as text: their definitions, and nodes that cannot share a shader.
 
-A generator writes the source of a node once, and each included file once, but the source of a node again where it
-is included. So two files that define one function do not compile together.
+A generator writes the source of a node once, and each included file once, but repeats the source of a node
+that is also included. Two files that define the same function therefore do not compile together.
 """
 
 import os
@@ -20,7 +20,7 @@ from mxeon.shaders.library_tree import included
 
 Definition: TypeAlias = tuple[
     str, ...
-]  # a name, and for a function "(" and the types of its parameters
+]  # a name; for a function, followed by "(" and its parameter types
 Source: TypeAlias = tuple[str, Path]  # the function of a node, and its file
 
 TOKEN = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*$|[{};]", re.MULTILINE)
@@ -28,13 +28,13 @@ FUNCTION = re.compile(r"(\w+)\s*\(([^(){}]*)\)\s*$")
 MACRO = re.compile(r"\s*#\s*define\s+(\w+)")
 CONSTANT = re.compile(r"(\w+)\s*(?:\[[^\]]*\]\s*)*=")
 QUALIFIERS = {"const", "in", "out", "inout", "output", "thread", "constant", "highp", "static"}
-PLACED = "$fileTransformUv", "mx_transform_uv.glsl"  # an include that a generator fills in
+PLACED = "$fileTransformUv", "mx_transform_uv.glsl"  # include that the generator replaces
 MATH = "libraries/stdlib/genglsl/lib/mx_math.glsl"
 ARGUMENT = re.compile(r"\s*(?:(\w+)\s*:(?!:))?(.*)", re.DOTALL)
 
 
 class Clash(NamedTuple):
-    """A name that two sources define, and definitions of nodes that have them."""
+    """A name that two sources define, and the nodedefs that use them."""
 
     name: str
     nodes: tuple[str, str]
@@ -42,7 +42,7 @@ class Clash(NamedTuple):
 
 @cache
 def text_of(path: Path) -> str:
-    """Text of a source without its comments; "" for a file that cannot be read."""
+    """Text of a source without comments; "" if the file cannot be read."""
     try:
         return COMMENT.sub(" ", path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError):
@@ -51,7 +51,7 @@ def text_of(path: Path) -> str:
 
 @cache
 def definitions(path: Path) -> Mapping[Definition, str]:
-    """What a file defines, outside of conditions, by name; of a macro or a constant, its text."""
+    """Names that a file defines outside of conditions, with the text of macros and constants."""
     text, found = text_of(path), dict[Definition, str]()
     start = depth = conditions = 0
     for token in TOKEN.finditer(text):
@@ -69,7 +69,7 @@ def definitions(path: Path) -> Mapping[Definition, str]:
         head, body, _ = chunk.partition("{")
         function = FUNCTION.search(head) if body else None
         if function is None and token[0] == "}":
-            continue  # a structure or a list of numbers, which ends with ;
+            continue  # a structure or an initializer, which ends with ;
         start = token.end()
         if conditions:
             continue
@@ -85,12 +85,12 @@ def definitions(path: Path) -> Mapping[Definition, str]:
 
 
 def files(path: Path, search: mx.FileSearchPath) -> tuple[Path, ...]:
-    """A source and all that it includes, each once."""
+    """A source and everything it includes, without duplicates."""
     return _files(path, search.asString())
 
 
 def _reached(path: Path, search: mx.FileSearchPath) -> tuple[Path, ...]:
-    """The same, and the functions that a generator adds to all nodes of the GLSL family."""
+    """`files`, plus the functions that a generator adds to all nodes of the GLSL family."""
     return *files(path, search), Path(search.find(MATH).asString())
 
 
@@ -113,13 +113,13 @@ def source_of(element: mx.Element | None) -> Source | None:
     """The function and the file of an implementation; None if it has no file."""
     if element is None or not element.isA(mx.Implementation) or not element.hasFile():
         return None
-    # Links stay: what a linked file includes lies next to the link.
+    # Do not resolve links: included files lie next to the link.
     path = Path(element.getActiveSourceUri()).parent / element.getFile()
     return element.getFunction(), Path(os.path.normpath(path))
 
 
 def whole(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ...]:
-    """An implementation with the texts of all its files."""
+    """An implementation as the texts of all its files."""
     names = sorted(
         f"{each.getName()} {each.getImplementationName()}" for each in element.getInputs()
     )
@@ -130,7 +130,7 @@ def whole(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, .
 
 
 def said(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ...]:
-    """An implementation with the functions and constants that its function uses."""
+    """An implementation as the functions and constants that its function uses."""
     if (source := source_of(element)) is None:
         return whole(element, search)
     known: dict[str, list[str]] = defaultdict(list)
@@ -150,15 +150,15 @@ def said(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ..
 def clashes(
     document: mx.Document, target: str, search: mx.FileSearchPath, twice: bool = False
 ) -> Iterator[Clash]:
-    """Names that two nodes define which may be in one shader of a target.
+    """Names that are defined by two nodes that may share a shader of a target.
 
-    As a control, the source of one node is also included if `twice`.
+    As a control, `twice` includes the source of one node a second time.
     """
     nodes: dict[Path, str] = {}
     for each in document.getNodeDefs():
         if source := source_of(each.getImplementation(target)):
             nodes.setdefault(source[1], each.getName())
-    # Owners of a definition: a file, whether it is included, and a node that has it.
+    # Owners of a definition: the file, whether it is included, and a node that uses it.
     owners: dict[Definition, dict[tuple[Path, bool], str]] = defaultdict(dict)
     for path, node in nodes.items():
         for file in files(path, search):
@@ -175,7 +175,7 @@ def clashes(
 
 
 def arguments(code: str) -> tuple[str, dict[str, str]]:
-    """The function that a call in MDL names, and its arguments by name, or by number where they have none.
+    """The function called in MDL, and its arguments by name, or by position if they have no name.
 
     >>> arguments("m::f(mxp_a:{{a}}, 2.0)")
     ('m::f', {'mxp_a': '{{a}}', '1': '2.0'})

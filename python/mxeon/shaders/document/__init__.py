@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Material documents: read by `reading`, and limited by `policy`."""
+"""Material documents: `reading` reads them, `policy` limits them."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents that draw a value of another document, as an output or as an emission.
+"""Documents that show a value of another document, as an output or as an emission.
 
-A node inside a node's nodegraph gets its inputs as before: MaterialX puts the nodes of the nodegraph where the node
-around it is.
+A node inside a node's nodegraph keeps its inputs: MaterialX replaces the outer node by the nodes of its
+nodegraph.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from typing import TypeAlias
 
 import MaterialX as mx
 
-LIT = ("BSDF", "EDF", "VDF", "surfaceshader", "material")  # types of what scatters or emits light
+LIT = ("BSDF", "EDF", "VDF", "surfaceshader", "material")  # types that scatter or emit light
 CLOSURES = (*LIT, "displacementshader", "volumeshader", "lightshader")
 NAME = "mxeon_value"
-Elements: TypeAlias = Sequence[mx.Element]  # a node, after the nodes and nodegraphs around it
+Elements: TypeAlias = Sequence[mx.Element]  # enclosing nodes and nodegraphs, then the node itself
 
 
 def value_document(
@@ -24,7 +24,7 @@ def value_document(
 ) -> tuple[mx.Document, str]:
     """A document with an output that shows a node's value, and the output's name path.
 
-    `kind` is the type of the value, and `output` the name of a node's output; the elements are those of
+    `kind` is the type of the value, and `output` the name of a node's output; the elements belong to
     `document`.
     """
     copy = _copied(document)
@@ -34,14 +34,14 @@ def value_document(
         scope = _opened(copy, scope)
     name = outermost.getName()
     for element in inner:
-        # Replace the node around by the nodes of its nodegraph, which have new names in the same order.
+        # Replace the outer node by the nodes of its nodegraph, which get new names in the same order.
         before = {each.getName() for each in scope.getNodes()}
         place = [each.getName() for each in element.getParent().getNodes()].index(element.getName())
         scope.flattenSubgraphs(filter=partial(_is_named, name))
         name = [each.getName() for each in scope.getNodes() if each.getName() not in before][place]
     _drop_closures(copy)
     if scope.isA(mx.NodeGraph):
-        scope.setSourceUri("")  # outputs of graphs that a document includes are not drawn
+        scope.setSourceUri("")  # outputs of included graphs would not be drawn
     shown = scope.addOutput(scope.createValidChildName(NAME), kind)
     shown.setNodeName(name)
     if output:
@@ -76,12 +76,12 @@ def emission_document(document: mx.Document, output: mx.Output) -> tuple[mx.Docu
 
 
 def _copied(document: mx.Document) -> mx.Document:
-    """A copy of a document, in which values of nodegraphs have their color space by themselves."""
+    """A copy of a document in which values inside nodegraphs have explicit color spaces."""
     copy = mx.createDocument()
     copy.copyContentFrom(document)
     copy.setSourceUri(document.getSourceUri())
     copy.setDataLibrary(document.getDataLibrary())
-    for each in (*copy.getLooks(), *copy.getLookGroups()):  # which name materials
+    for each in (*copy.getLooks(), *copy.getLookGroups()):  # they refer to materials
         copy.removeChild(each.getName())
     for graph in _own_graphs(copy):
         for node in graph.getNodes() if graph.hasColorSpace() else ():
@@ -91,7 +91,7 @@ def _copied(document: mx.Document) -> mx.Document:
 
 
 def _own_graphs(document: mx.Document) -> list[mx.NodeGraph]:
-    """Its nodegraphs without the data library's, which getNodeGraphs returns too, and which documents share."""
+    """Its own nodegraphs; getNodeGraphs also returns those of the shared data library."""
     return [each for each in document.getChildren() if each.isA(mx.NodeGraph)]
 
 
@@ -100,7 +100,7 @@ def _is_named(name: str, node: mx.Node) -> bool:
 
 
 def _drop_closures(document: mx.Document) -> None:
-    """Remove the nodes and outputs that no value depends on, but for those of definitions."""
+    """Remove the nodes and outputs that no value depends on, except in definitions."""
     for scope in (document, *_own_graphs(document)):
         if scope.isA(mx.NodeGraph) and scope.getNodeDef():
             continue
@@ -110,7 +110,7 @@ def _drop_closures(document: mx.Document) -> None:
 
 
 def _opened(document: mx.Document, graph: mx.NodeGraph) -> mx.NodeGraph:
-    """A copy of a nodegraph that defines a node, with the defaults of the node as its own inputs."""
+    """A copy of a nodegraph that defines a node, with the node's defaults as inputs."""
     copy = document.addNodeGraph(document.createValidChildName(f"NG_{NAME}"))
     copy.copyContentFrom(graph)
     copy.removeAttribute("nodedef")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Limits on the number of nodes in a document's shaders, and on their depth, before generation.
 
-MaterialX writes a nodegraph once, however often it is used; a compiler copies it to each place. So
-nodes are counted as often as they are used, by weights, without visiting them as often. A graph is a
-mapping from each key to its parts. Nothing here recurses, because the depth is unknown.
+MaterialX writes a nodegraph once, but compilers copy it to each use. So nodes are counted once per
+use, by weights, without visiting them repeatedly. A graph is a mapping from each key to its parts.
+Nothing here recurses, because the depth is unknown.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
@@ -23,7 +23,7 @@ Graph = Mapping[Key, Iterable[Key]]
 def reachable(
     roots: Iterable[Key], parts: Callable[[Key], Iterable[Key] | None]
 ) -> dict[Key, tuple[Key, ...]]:
-    """The graph of all keys that are reachable from the roots; the parts of a key may be None.
+    """The graph of all keys reachable from the roots; the parts of a key may be None.
 
     >>> reachable("a", {"a": "bc", "b": "c", "d": "a"}.get)
     {'a': ('b', 'c'), 'c': (), 'b': ('c',)}
@@ -51,8 +51,8 @@ def check_shaders(
 ) -> int:
     """Number of nodes in the shaders of renderable elements; DocumentError if they exceed a limit.
 
-    Refused are nodes and nodegraphs that lead back to themselves, and too many of them, or of
-    their inputs: in all, in a row or within each other.
+    Cycles of nodes and nodegraphs are refused, and so are too many nodes or inputs, in total, in a chain or
+    in nested graphs.
     """
     title, rule = label(document), f"{label(document)}: must have"
     weights, total, ports = _Weights(document, policy), 0, 0
@@ -87,7 +87,7 @@ def categories(elements: Iterable[mx.Element]) -> set[str]:
 
 
 def inner_nodes(document: mx.Document) -> Iterator[mx.Element]:
-    """Elements of a document, and those of the graphs that define its nodes."""
+    """Elements of a document and of the graphs that define its nodes."""
     waiting, seen = [document], set()
     while waiting:
         for each in waiting.pop().traverseTree():
@@ -121,7 +121,7 @@ def check_interfaces(document: mx.Document, elements: Sequence[mx.Element], poli
 
 
 class _Weights(dict[str, int]):
-    """Number of nodes that a node stands for, by the name of its nodedef."""
+    """Number of nodes that a node expands to, by the name of its nodedef."""
 
     def __init__(self, document: mx.Document, policy: Policy) -> None:
         self._document, self._policy = document, policy
@@ -181,5 +181,5 @@ def _definition(element: mx.Element) -> str:
 
 
 def _inputs(element: mx.Element | None) -> int:
-    """Number of an element's inputs; 0 for one that cannot have any."""
+    """Number of an element's inputs; 0 if it cannot have any."""
     return element.getInputCount() if element and element.isA(mx.InterfaceElement) else 0

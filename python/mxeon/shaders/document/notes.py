@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Warnings about a document that MaterialX accepts, one per kind, at its first place."""
+"""Warnings about a document that MaterialX accepts, one per kind, with the first place."""
 
 import ctypes
 import math
@@ -15,18 +15,18 @@ from mxeon.shaders.document.values import NUMERIC, color_spaces, is_exact, label
 from mxeon.shaders.nodes import DIFFUSE_NODES, FLAG, OREN_NAYAR
 
 COLORED = ("color3", "color4", "filename")
-HALF_PI = ctypes.c_float(math.pi / 2.0).value  # as MaterialX keeps it, which is above pi / 2
+HALF_PI = ctypes.c_float(math.pi / 2.0).value  # MaterialX's float32, slightly above pi / 2
 
 
 class DocumentWarning(UserWarning):
-    """Text that MaterialX accepts but misreads; names the place, the rule and the value."""
+    """Text that MaterialX accepts but misreads; the message has the place, the rule and the value."""
 
     def __init__(self, message: str) -> None:
         super().__init__(one_line(message))
 
 
 class RangeWarning(DocumentWarning):
-    """A value for which the model of its node is not defined, or beyond the range that the node declares."""
+    """A value outside the domain of its node's model, or outside the range that the node declares."""
 
 
 class CodeWarning(UserWarning):
@@ -34,18 +34,18 @@ class CodeWarning(UserWarning):
 
 
 class MissingFileWarning(DocumentError, UserWarning):
-    """Missing files that a shader names: an error when they have to be read."""
+    """Missing files that a shader names; an error once they must be read."""
 
 
 def numbers(element: mx.ValueElement) -> tuple[float, ...]:
-    """Numbers of a value of a type in NUMERIC; empty if MaterialX reads none."""
+    """Numbers of a value with a type in NUMERIC; empty if MaterialX reads none."""
     value = plain(element.getValue(), element.getDocument())
     values = value if isinstance(value, tuple) else () if value is None else (value,)
     return cast(tuple[float, ...], values)
 
 
 def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> None:
-    """Warn about values that MaterialX misreads or that are outside a model's range, and about code."""
+    """Warn about values that MaterialX misreads or that are out of range, and about code."""
     values = [each for each in elements if each.isA(mx.ValueElement) and each.getValueString()]
     for kind, note in (
         (DocumentWarning, _misread),
@@ -66,9 +66,9 @@ def warn_of_files(inputs: Iterable[tuple[str, str]], document: mx.Document) -> N
 
 
 def same_names(element: mx.Element) -> tuple[str, ...]:
-    """Upstream nodes with the same name in several nodegraphs but different inputs, two per text.
+    """Upstream nodes that share a name in different nodegraphs but have different inputs, two per text.
 
-    MaterialX gives all of them the values of the first, because names of shader inputs omit the nodegraph.
+    MaterialX gives all of them the first one's values, because names of shader inputs omit the nodegraph.
     """
     nodes = [element, *(edge.getUpstreamElement() for edge in element.traverseGraph())]
     first: dict[tuple[str, str], mx.Node] = {}
@@ -82,7 +82,7 @@ def same_names(element: mx.Element) -> tuple[str, ...]:
 
 
 def _inputs(node: mx.Node) -> set[tuple[str, str]]:
-    """Inputs of a node that have a value, with that value."""
+    """Inputs of a node that have a value, with the value."""
     return {
         (port.getName(), port.getValueString())
         for port in node.getInputs()
@@ -91,16 +91,16 @@ def _inputs(node: mx.Node) -> set[tuple[str, str]]:
 
 
 def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None:
-    """Warn about nodes whose inputs MaterialX confuses with those of another."""
+    """Warn about nodes whose inputs MaterialX confuses with another node's."""
     if not any(each.isA(mx.NodeGraph) for each in document.getChildren()):
-        return  # within one graph no two nodes have one name
+        return  # names are unique within a graph
     pairs = dict.fromkeys(pair for element in elements for pair in same_names(element))
     rule = "must have different names; MaterialX gives both the values of one"
     _warn(DocumentWarning, [f"{label(document)}: nodes {pair} {rule}" for pair in pairs])
 
 
 def _warn(kind: type[Warning], texts: Sequence[str]) -> None:
-    """Warn with the first of similar texts and the number of others, which may be thousands.
+    """Warn with the first of similar texts and the number of the rest, which may be thousands.
 
     The warning points to the caller of the function that calls `warn_of_...`.
     """
@@ -110,7 +110,7 @@ def _warn(kind: type[Warning], texts: Sequence[str]) -> None:
 
 
 def _misread(element: mx.ValueElement) -> str | None:
-    """Warning of a number that MaterialX reads in part."""
+    """Warning about a number that MaterialX only reads partly."""
     kind, text = element.getType(), element.getValueString()
     if kind not in NUMERIC or is_exact(text, kind):
         return None
@@ -120,7 +120,7 @@ def _misread(element: mx.ValueElement) -> str | None:
 
 
 def out_of_range(element: mx.ValueElement) -> str | None:
-    """Warning of a value for which the model of its node, a rough diffuse one, is not defined."""
+    """Warning about a value outside the domain of its node's rough diffuse model."""
     node, name = element.getParent(), element.getName()
     diffuse = element.isA(mx.Input) and node.isA(mx.Node) and node.getCategory() in DIFFUSE_NODES
     if not diffuse or name not in ("weight", "color", "roughness"):
@@ -134,7 +134,7 @@ def out_of_range(element: mx.ValueElement) -> str | None:
 
 
 def _beyond(element: mx.ValueElement) -> str | None:
-    """Warning of a value beyond the uimin or uimax of its node's definition."""
+    """Warning about a value beyond the uimin or uimax of its node's definition."""
     node = element.getParent()
     definition = node.getNodeDef() if element.isA(mx.Input) and node.isA(mx.Node) else None
     port = definition and definition.getActiveInput(element.getName())
@@ -146,7 +146,7 @@ def _beyond(element: mx.ValueElement) -> str | None:
             [float(each) for each in text.split(",")] if text else [end]
             for text, end in zip(ends, (-math.inf, math.inf), strict=True)
         )
-    except ValueError:  # of a definition that is no number
+    except ValueError:  # uimin or uimax is not a number
         return None
     values = numbers(element)
     rows = ((values[k], low[k % len(low)], high[k % len(high)]) for k in range(len(values)))
@@ -157,7 +157,7 @@ def _beyond(element: mx.ValueElement) -> str | None:
 
 
 def _unknown_space(element: mx.ValueElement) -> str | None:
-    """Warning of a value without a transform from its color space to the document's."""
+    """Warning about a value without a transform from its color space to the document's."""
     spaces = color_spaces(element) if element.getType() in COLORED else None
     if not spaces or element.getDocument().getMatchingNodeDefs("_to_".join(spaces)):
         return None
@@ -167,7 +167,7 @@ def _unknown_space(element: mx.ValueElement) -> str | None:
 
 
 def _unconnected(element: mx.Element) -> str | None:
-    """Warning of an input that is connected to a nodegraph as if that were a node."""
+    """Warning about an input that is connected to a nodegraph as if it were a node."""
     if not element.isA(mx.Input) or not element.getNodeName() or element.getConnectedNode():
         return None
     rule = f"must be connected to a node; got nodename {element.getNodeName()!r}"

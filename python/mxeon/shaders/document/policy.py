@@ -9,7 +9,7 @@ from mxeon.io.files import names_of
 
 SEARCH_PATH = "MATERIALX_SEARCH_PATH"  # environment variable, MaterialX's own
 
-# Limits, which are options of the command, and what they count.
+# Limits, also options of the command, and the things that they count.
 LIMITS = {
     "size": "bytes in a document and everything it includes",
     "length": "characters in one attribute",
@@ -29,30 +29,30 @@ LIMITS = {
 
 
 def environment_path() -> tuple[str, ...]:
-    """Folders that MATERIALX_SEARCH_PATH names, as absolute paths."""
+    """Folders in MATERIALX_SEARCH_PATH, as absolute paths."""
     names = os.environ.get(SEARCH_PATH, "").split(os.pathsep)
     return tuple(os.path.abspath(name) for name in names if name)
 
 
-@dataclass(unsafe_hash=True)  # nothing changes it once it is made
+@dataclass(unsafe_hash=True)  # instances are never modified
 class Policy:
     """Permissions and limits of a document; plain data, so it can be pickled.
 
     - `outside`: Whether it may name files outside its own folder and the libraries.
     - `code`: Whether it may contain its own shader code, in text or in files.
     - `definitions`: Folders of definitions that it may use in addition to its library. They are
-      trusted as the library is.
-    - `path`: Folders, searched after its own, in which it may name files too; by default those of
-      the environment variable MATERIALX_SEARCH_PATH.
-    - the others: Limits of what LIMITS says. `size` and `includes` hold for the document's
-      sources of code too, and `elements` for their number; `text` counts functions once for each
-      shader and the longest expression once for each node; `texels` counts each file once.
+      trusted like the library.
+    - `path`: Folders, searched after its own, in which it may also name files; by default the
+      folders in the environment variable MATERIALX_SEARCH_PATH.
+    - All other fields are limits; see LIMITS. `size` and `includes` also apply to the document's
+      source code, and `elements` to the number of sources; `text` counts functions once per
+      shader and the longest expression once per node; `texels` counts each file once.
 
     Raises ValueError if a limit is negative.
 
-    The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst documents known; images that
-    are read for pictures take below 15 s and 2.75 GiB more. Seconds on a shared processor, for documents
-    as large as each limit permits:
+    The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst known documents; reading images
+    for pictures takes less than another 15 s and 2.75 GiB. Seconds on a shared processor, for documents
+    at each limit:
 
     ======================================================  =====
     9,800 names of files, with tokens                          12
@@ -100,7 +100,7 @@ class Policy:
 
     @property
     def options(self) -> dict[str, str]:
-        """Its values by the options of the command."""
+        """Its values, by the command's options."""
         prefixes = dict.fromkeys(LIMITS, "max") | {"outside": "allow", "code": "allow"}
         folders = {"path": self.path, "definitions": self.definitions}
         values = vars(self) | {n: os.pathsep.join(each) or "none" for n, each in folders.items()}

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Material documents from files and text, checked.
+"""Checked material documents from files and text.
 
 MaterialX accepts documents from which no shader can be generated, reads every file that a document
-names, and copies its words into shaders. Such documents are refused here, in one line, before
-generation: their text before MaterialX reads it (`xml`), their elements after.
+names, and copies its words into shaders. Such documents are refused here with a one-line message before
+generation: their text before MaterialX reads it (`xml`), their elements afterwards.
 """
 
 import math
@@ -38,17 +38,17 @@ from mxeon.shaders.library import load_library
 __all__ = ["Document", "DocumentError", "DocumentWarning", "read_document"]
 
 ERRORS = (mx.Exception, LookupError)  # raised by MaterialX
-ALIKE = 0.85  # of names of nodes, which end alike
+ALIKE = 0.85  # least similarity for suggestions; names of nodes have similar endings
 
 
 @dataclass(frozen=True)
 class Document:
     """A checked document."""
 
-    content: mx.Document  # with its data library attached
-    renderables: tuple[mx.TypedElement, ...]  # at least one
-    nodes: int  # in their shaders, nodegraphs counted wherever they are used
-    missing: tuple[str, ...] = ()  # a line for each file that they name and that does not exist
+    content: mx.Document  # its data library is attached
+    renderables: tuple[mx.TypedElement, ...]  # one or more
+    nodes: int  # number of nodes in their shaders; nodegraphs count at each use
+    missing: tuple[str, ...] = ()  # a line for each named file that does not exist
 
 
 def read_document(
@@ -60,8 +60,8 @@ def read_document(
     """A checked MaterialX document with its data library attached.
 
     The source is a file; XML text, a str that begins with `<` and names no file; or a document, which is
-    copied. XIncludes and relative file names are looked for in the folder of the file, or the working
-    folder, and then on the policy's search path. DocumentError lists all faults of the elements.
+    copied. XIncludes and relative file names are resolved against the file's folder, or the working
+    folder, and then the policy's search path. DocumentError lists all faults of the elements.
     """
     data = load_library(library, profile, policy.definitions)
     content = mx.createDocument()
@@ -82,7 +82,7 @@ def read_document(
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
     elements = tuple(content.traverseTree())
-    for each in elements:  # MaterialX would resolve tokens of names by themselves forever
+    for each in elements:  # MaterialX loops forever on self-referencing tokens
         if each.isA(mx.Token) and each.getType() in ("filename", "geomname"):
             raise DocumentError(
                 f"{location(each)} must not have the type {each.getType()}, which crashes "
@@ -111,7 +111,7 @@ def read_document(
 
 
 def _is_text(source: AnyPath) -> TypeGuard[str]:
-    """Whether a source is XML text; the path of a file is not, even if it begins with `<`."""
+    """Whether a source is XML text instead of the path of a file, which may also begin with `<`."""
     starts = isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<")
     return starts and not os.path.isfile(source)
 
@@ -119,7 +119,7 @@ def _is_text(source: AnyPath) -> TypeGuard[str]:
 def _resolve_files(
     document: mx.Document, elements: Iterable[mx.Element], folders: list[Path]
 ) -> None:
-    """Make names of files in one of the folders absolute, including sets of files."""
+    """Make file names absolute, including sets of files, if they exist in one of the folders."""
     path = mx.FileSearchPath()
     for each in folders:
         path.append(mx.FilePath(str(each)))
@@ -132,12 +132,12 @@ def _resolve_files(
 
 
 class _Reader:
-    """Reader of a document and its includes, whose text is checked before MaterialX reads it."""
+    """Reads a document and its includes, and checks their text before MaterialX reads it."""
 
     def __init__(self, policy: Policy, home: Path) -> None:
         self._policy, self._home = policy, home
         self._checker = XmlChecker(policy)
-        self._open: list[str] = []  # files being read, each included by the previous one
+        self._open: list[str] = []  # stack of the files being read
 
     def read_file(self, document: mx.Document, name: str) -> None:
         """Read a file into a document."""
@@ -150,7 +150,7 @@ class _Reader:
 
     def read_text(self, document: mx.Document, text: str) -> None:
         """Read XML text into a document."""
-        data = text.encode(errors="replace")  # halves of characters
+        data = text.encode(errors="replace")  # lone surrogates
         self._checker.check_size(data, TEXT)
         self._parse(document, data.decode().removeprefix("\ufeff"), TEXT)
 
@@ -186,13 +186,13 @@ class _Reader:
 
 
 def _raise(faults: Sequence[str]) -> None:
-    """Raise DocumentError with some faults, if there are any."""
+    """Raise DocumentError if there are faults, with the first ones."""
     if faults:
         raise DocumentError(*dict.fromkeys(faults))
 
 
 def _types(document: mx.Document) -> Iterator[str]:
-    """Members that crash a generator, or that no shader can have."""
+    """Faults of members that crash a generator or that shaders cannot have."""
     for each in filter(lambda child: child.isA(mx.TypeDef), document.getChildren()):
         for member in each.getChildren():
             if member.getAttribute("type") == "filename":
@@ -209,14 +209,14 @@ def _types(document: mx.Document) -> Iterator[str]:
 
 
 def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Policy) -> Iterator[str]:
-    """Wrong values and violations of MaterialX's own rules, for which it would silently use defaults."""
+    """Wrong values and violations of MaterialX's rules, which MaterialX would silently replace by defaults."""
     told = set()
     for each in elements:
         written = each.isA(mx.ValueElement) and each.getValueString()
         if written and (fault := _value_fault(each, policy)):
             told.add(each.asString())
             yield fault
-    # MaterialX names one wrong input of a node, without the one that was meant.
+    # MaterialX reports only one wrong input of a node, without a suggestion.
     try:
         valid, message = document.validate()
     except ERRORS as error:
@@ -234,7 +234,7 @@ def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Polic
 
 
 def _check_version(document: mx.Document, title: str) -> None:
-    """Raise DocumentError for a version that MaterialX did not upgrade while reading."""
+    """Raise DocumentError for a version that MaterialX does not upgrade while reading."""
     current = tuple(mx.getVersionIntegers()[:2])
     if tuple(document.getVersionIntegers()) != current:
         raise DocumentError(
@@ -253,8 +253,8 @@ def _value_fault(element: mx.ValueElement, policy: Policy) -> str:
 
 
 def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
-    """Inputs that a node must not have, or of a wrong type, each with its fault."""
-    if not (definition := node.getNodeDef("", True)):  # the nearest one, whose inputs may differ
+    """Unknown inputs of a node and inputs of a wrong type, with their faults."""
+    if not (definition := node.getNodeDef("", True)):  # nearest one; its inputs may differ
         return
     ports = {each.getName(): each.getType() for each in definition.getActiveInputs()}
     for each in node.getInputs():
@@ -267,7 +267,7 @@ def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
 
 
 def _undefined(document: mx.Document, nodes: Iterable[mx.Node]) -> Iterator[str]:
-    """Categories of nodes without a definition, each at its first node."""
+    """Faults for undefined categories, each at its first node."""
     groups: dict[tuple[str, str], list[mx.Node]] = {}
     for node in nodes:
         if not node.getNodeDef("", True):
@@ -284,7 +284,7 @@ def _undefined(document: mx.Document, nodes: Iterable[mx.Node]) -> Iterator[str]
 
 
 def _missing(nodes: Iterable[mx.Node], policy: Policy) -> Iterator[str]:
-    """Files of nodes' inputs that may be read and do not exist."""
+    """Files of nodes' inputs that may be read but do not exist."""
     for each in (port for node in nodes for port in node.getInputs()):
         port = each.getInterfaceInput() if each.hasInterfaceName() else each
         if port and port.getType() == "filename" and (name := port.getValueString()):
@@ -296,7 +296,7 @@ def _missing(nodes: Iterable[mx.Node], policy: Policy) -> Iterator[str]:
 def _renderables(document: mx.Document) -> tuple[mx.TypedElement, ...]:
     """Renderable elements of a document.
 
-    MaterialX looks for materials among the thousands of elements of the data library as well.
+    MaterialX's own search also visits the thousands of elements of the data library.
     """
     nodes = (each for each in document.getChildren() if each.isA(mx.Node))
     materials = [each for each in nodes if each.getType() == "material"]

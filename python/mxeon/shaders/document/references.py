@@ -33,27 +33,27 @@ from mxeon.shaders.library_tree import FILES, LARGEST, LIBRARIES, files_in, root
 CODE = ("file", "sourcecode")
 ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")
 NAMING = ("value", "file", "href", "fileprefix")
-# What shader code includes, and what documents of a library name, whatever its ending.
+# Matches files that shader code includes or that documents name, with any ending.
 INCLUDED = re.compile(r"""(?:#include\s+|\b(?:href|file)\s*=\s*)["']([^"'\n]+)["']""")
-# A part of a file's name that is filled in later: <UDIM>, [token], {frame}.
+# Matches placeholders in a file's name: <UDIM>, [token], {frame}.
 OPEN_PART = re.compile(r"<[^<>]*>|\[[^][]*\]|\{[^{}]*\}")
 
 
 def folder(document: mx.Document) -> Path:
-    """Folder where relative file names start: the document's, or the working folder for text."""
+    """Folder that file names are relative to: the document's, or the working folder for text."""
     file = document.getSourceUri()
     return Path(file).resolve().parent if file else Path.cwd()
 
 
 def inside(path: AnyPath, home: Path, others: Iterable[str] = ()) -> bool:
-    """Whether a path, its symbolic links resolved, lies in a folder, in others or the libraries."""
+    """Whether a path with resolved links lies in `home`, in other folders or in the libraries."""
     real = Path(os.path.realpath(path))
     roots = [home, *(Path(os.path.realpath(each)) for each in others), *_libraries()]
     return any(real.is_relative_to(root) for root in roots)
 
 
 def check_inside(path: AnyPath, home: Path, policy: Policy, prefix: str) -> None:
-    """Raise DocumentError unless a document in the folder `home` may name that file."""
+    """Raise DocumentError unless a document in the folder `home` may name this file."""
     if not policy.outside and not inside(path, home, policy.path):
         raise DocumentError(
             f"{prefix} must name a file in {home}, on the search path or in the libraries; got "
@@ -62,14 +62,14 @@ def check_inside(path: AnyPath, home: Path, policy: Policy, prefix: str) -> None
 
 
 def file_fault(element: mx.ValueElement, policy: Policy) -> str:
-    """Why the file that an input names must not be read if it exists; "" if it may.
+    """The reason why an input's file must not be read if it exists, or "".
 
     For a set of textures, every existing file is checked.
     """
     text, home, prefix = element.getValueString(), folder(element.getDocument()), location(element)
     if ENDS_A_STRING.search(text):
         return f"{prefix} must name a file without quotes and backslashes; got {text}"
-    path = home / text  # relative still if no file was found
+    path = home / text  # still relative if no file was found
     try:
         check_inside(path, home, policy, prefix)
         if "<" in str(path.parent):
@@ -90,23 +90,23 @@ def missing_fault(document: mx.Document, path: str, name: str) -> str:
 
 
 def files(path: Path) -> list[Path]:
-    """The existing files of a name: the file itself, or those of a set with `<UDIM>` in its name."""
+    """Existing files for a name: the file itself, or a set if the name contains `<UDIM>`."""
     if "<" not in path.name:
         return [path] if os.path.isfile(path) else []
     return list(path.parent.glob(re.sub(r"(<\w*>)+", "*", glob.escape(path.name))))
 
 
 def foreign_code(document: mx.Document) -> list[mx.Implementation]:
-    """Implementations with shader code of the document itself."""
+    """Implementations with the document's own shader code."""
     return [
         each
-        for each in document.getChildren()  # getImplementations has the data library's too
+        for each in document.getChildren()  # getImplementations includes the data library's
         if each.isA(mx.Implementation) and any(map(each.hasAttribute, CODE))
     ]
 
 
 def code_faults(document: mx.Document, policy: Policy) -> Iterator[str]:
-    """Code that a document must not contain, or not in these files."""
+    """Faults for code that the policy forbids, or forbids in these files."""
     home = folder(document)
     for element in foreign_code(document):
         prefix = location(element)
@@ -124,7 +124,7 @@ def code_faults(document: mx.Document, policy: Policy) -> Iterator[str]:
 
 
 def _sources(element: mx.Implementation, home: Path, path: Iterable[str]) -> list[Path]:
-    """Files that a generator may find for an implementation's `file`."""
+    """Files to which a generator may resolve an implementation's `file`."""
     name = element.getAttribute("file")
     origin = Path(element.getActiveSourceUri() or home / "document").parent
     bases = (origin, home, Path.cwd(), *map(Path, path), *_libraries())
@@ -132,7 +132,7 @@ def _sources(element: mx.Implementation, home: Path, path: Iterable[str]) -> lis
 
 
 def library_path(path: AnyPath) -> str:
-    """Path by which MaterialX opens a file of the libraries; "" for any other file."""
+    """MaterialX's path of a library file; "" for any other file."""
     if any(Path(path).is_relative_to(each) for each in roots()):
         return str(path)
     real = os.path.realpath(path)
@@ -151,11 +151,11 @@ def _libraries() -> dict[Path, str]:
 
 
 def named_files(document: str, policy: Policy) -> list[str]:
-    """A document, and the files that it and what it includes name."""
+    """A document, and all files named by it and its includes."""
     home, seen, texts = Path(os.path.realpath(document)).parent, {document: None}, [document]
-    for text in texts:  # which grows by what is included
+    for text in texts:  # includes are appended to it
         folders = {home, Path(os.path.realpath(text)).parent, Path.cwd(), *map(Path, policy.path)}
-        # A document with more elements than it may have is refused, and its files do not count.
+        # Documents with too many elements are refused, so their files do not matter.
         for key, name in islice(_names(_text(text, policy)), 6 * policy.elements):
             for path in _paths(name, folders):
                 if path not in seen and (policy.outside or inside(path, home, policy.path)):
@@ -166,7 +166,7 @@ def named_files(document: str, policy: Policy) -> list[str]:
 
 
 def _text(path: str, policy: Policy) -> str:
-    """Text of a document, or "" of one that is too large or cannot be read."""
+    """Text of a document, or "" if it is too large or cannot be read."""
     with suppress(OSError, DocumentError), open(path, "rb", opener=regular) as file:
         data = file.read(policy.size + 1)
         return strict(decode(data, path)) if len(data) <= policy.size else ""
@@ -174,7 +174,7 @@ def _text(path: str, policy: Policy) -> str:
 
 
 def _names(text: str) -> Iterator[tuple[str, str]]:
-    """Attributes of a document that may name files, each with every prefix that the document has."""
+    """Attributes of a document that may name files, combined with each of the document's prefixes."""
     found = dict.fromkeys(
         (key, html.unescape(value[1:-1])) for key, value in ATTRIBUTE.findall(text) if key in NAMING
     )
@@ -184,7 +184,7 @@ def _names(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
-    """The regular files that a name may mean, by their real paths."""
+    """Real paths of the regular files that a name may refer to."""
     for folder in folders:
         paths = [str(folder / name)]
         if OPEN_PART.search(name):
@@ -193,7 +193,7 @@ def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
 
 
 def documents_in(files: Iterable[AnyPath]) -> tuple[str, ...]:
-    """Files, and the documents in folders and below them, in order.
+    """Files, and the documents in and below folders, in order.
 
     Raise ValueError if a folder holds no document.
     """
@@ -211,10 +211,10 @@ def documents_in(files: Iterable[AnyPath]) -> tuple[str, ...]:
 def files_read(
     documents: Iterable[AnyPath], policy: Policy, libraries: Iterable[str] = ()
 ) -> dict[str, str]:
-    """Paths of every file that a run on documents may read.
+    """Paths of all files that a run on documents may read.
 
-    By path: the documents, what they include and name as far as the policy permits, and what folders of
-    libraries consist of. By names that begin with "mxeon", "eonlib" or "MaterialX": code and data here.
+    Listed by path: the documents, the files that they include or name if the policy permits, and the files of
+    library folders. Listed by names that begin with "mxeon", "eonlib" or "MaterialX": installed code and data.
     """
     paths = {path: path for document in documents for path in named_files(str(document), policy)}
     own = {*map(os.path.abspath, {*libraries, *policy.definitions} - {*LIBRARIES})}
@@ -232,7 +232,7 @@ def files_read(
 def _library_files(library: str) -> Iterator[str]:
     """Documents and sources in the folders of a library, and what they include."""
     for folder in library_folders(library):
-        profiles = (folder / profile for profile in PROFILES)  # whose documents end in .xml
+        profiles = (folder / profile for profile in PROFILES)  # their documents end in .xml
         names = [path for _, path in files_in(str(folder)) if path.endswith(FILES)]
         for path in (*names, *(str(file) for each in profiles for file in each.glob("*.xml"))):
             yield path
@@ -244,5 +244,5 @@ def _library_files(library: str) -> Iterator[str]:
 def digests(
     documents: Iterable[AnyPath], policy: Policy, libraries: Iterable[str] = ()
 ) -> dict[str, str]:
-    """SHA-256 of each of `files_read`; "" for what is no regular file or cannot be read."""
+    """SHA-256 of each of `files_read`; "" for files that are not regular or cannot be read."""
     return {name: digest(path) for name, path in files_read(documents, policy, libraries).items()}

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shader sources of a document: read and checked here, and passed to MaterialX as copies.
 
-MaterialX opens whatever a source includes, and what that includes. So mxeon reads the sources of a
-document itself, to any depth, and writes copies into a temporary folder. A copy includes copies, and
-files of the libraries: MaterialX opens no path that a document names.
+MaterialX opens whatever a source includes, recursively. So mxeon reads the sources of a
+document itself, to any depth, and writes copies into a temporary folder. Copies only include copies
+and library files, so MaterialX opens no path that a document names.
 """
 
 import os
@@ -22,8 +22,8 @@ from mxeon.shaders.document.references import check_inside, folder, foreign_code
 from mxeon.shaders.document.values import label, location
 from mxeon.shaders.library_tree import decode_source, included, read_source
 
-UNREAD = "genmdl"  # whose generator makes the name of a module from `file`, and opens nothing
-TOKEN = re.compile(r"\$[a-zA-Z0-9]+")  # word of an include that a generator replaces by a name
+UNREAD = "genmdl"  # MDL's generator derives a module name from `file` and opens nothing
+TOKEN = re.compile(r"\$[a-zA-Z0-9]+")  # token in an include that the generator replaces
 
 
 @contextmanager
@@ -35,9 +35,9 @@ def copied_sources(
 ) -> Iterator["Sources"]:
     """Make the implementations of a document use copies of their sources while the block runs.
 
-    `tokens` returns the names that the generator writes for words of an include. DocumentError if a source
-    of that target, or one that it includes, lies where the document may name no files, is no regular file
-    of text in UTF-8, or exceeds a limit.
+    `tokens` returns the generator's replacements for tokens in includes. DocumentError if a source
+    of that target, or one that it includes, lies where the document may not name files, is not a regular
+    UTF-8 text file, or exceeds a limit.
     """
     target = context.getShaderGenerator().getTarget()
     code = [] if target == UNREAD else foreign_code(document)
@@ -68,15 +68,15 @@ class Sources:
     ) -> None:
         self._document, self._context, self._policy = document, context, policy
         self._home, self._folder, self._tokens = folder(document), Path(copies), tokens
-        self._found: dict[tuple[str, str], str] = {}  # copies by name and the folder it starts from
-        self._copies: dict[str, str] = {}  # by the path that MaterialX would open
-        self._names: dict[str, str] = {}  # of copies, as the document has them
-        self._size = 0  # bytes of all files
-        self._functions = 0  # characters of the sources of functions, with all that they include
-        self._expressions = 0  # of the longest source that is an expression
+        self._found: dict[tuple[str, str], str] = {}  # copies by name and including folder
+        self._copies: dict[str, str] = {}  # copies by the path that MaterialX would open
+        self._names: dict[str, str] = {}  # the document's names of copies
+        self._size = 0  # total bytes of all files
+        self._functions = 0  # characters of function sources, includes counted
+        self._expressions = 0  # characters of the longest expression
 
     def copy(self, element: mx.Implementation) -> str:
-        """Path of the copy of an implementation's source; of a source of a library, its own path."""
+        """Path of the copy of an implementation's source; library sources keep their own path."""
         local = os.path.dirname(element.getActiveSourceUri())
         depth = 0 if element.hasFunction() else None
         return self._copy(element.getFile(), local, location(element), depth)
@@ -86,13 +86,13 @@ class Sources:
         return str(self._folder / "none.txt")
 
     def in_words(self, reason: str) -> str:
-        """A message of MaterialX with the document's names instead of the copies'."""
+        """A MaterialX message with the document's names instead of the copies'."""
         for copy, name in self._names.items():
             reason = reason.replace(copy, name)
         return reason
 
     def check_limit(self, shaders: int, nodes: int) -> None:
-        """Raise DocumentError if all shaders together may have too much code of the document."""
+        """Raise DocumentError if the document's code may be too long over all shaders."""
         inline = (each.getAttribute("sourcecode") for each in foreign_code(self._document))
         longest = max(map(len, inline), default=0)
         total = self._functions * shaders + max(self._expressions, longest) * nodes
@@ -100,7 +100,7 @@ class Sources:
         self._policy.check_limit("text", total, f"{label(self._document)}: must have", unit)
 
     def _copy(self, name: str, local: str, title: str, depth: int | None) -> str:
-        """Path of the copy of a file; depth: how many include each other, None: it is no function."""
+        """Path of the copy of a file; `depth` counts nested includes, and is None for expressions."""
         if (name, local) not in self._found:
             self._found[name, local] = self._new_copy(name, local, title, depth)
             rule, unit = f"{label(self._document)}: must have", "includes in its sources"
@@ -108,11 +108,11 @@ class Sources:
         return self._found[name, local]
 
     def _new_copy(self, name: str, local: str, title: str, depth: int | None) -> str:
-        """Path of the copy of a file that has another name than those before."""
+        """Path of the copy of a file under a new name."""
         tokens = self._tokens()
         opened = TOKEN.sub(lambda token: tokens.get(token[0], token[0]), name)
         path = os.path.abspath(self._context.resolveSourceFile(opened, local).asString())
-        if "\0" in path:  # where the system ends the name, and MaterialX does not
+        if "\0" in path:  # the system ends the name there, MaterialX does not
             return self.missing()
         if library := library_path(path):
             return library
@@ -125,7 +125,7 @@ class Sources:
         return self._copies[path]
 
     def _write(self, copy: str, path: str, depth: int | None) -> None:
-        """Check a file, and all that it includes, and write its copy, whose includes are copies."""
+        """Check a file and everything it includes, and write a copy that includes copies."""
         rule, title = f"{path}: must", label(self._document)
         self._policy.check_limit("includes", depth or 0, f"{rule} be included by", "files in a row")
         try:

@@ -20,7 +20,7 @@ def location(element: mx.Element) -> str:
     return f'{label(element.getDocument())}: {element.getCategory()} "{element.getNamePath()}"'
 
 
-# How numbers are written. MaterialX reads as much of a word as is one and ignores the rest.
+# Syntax of numbers. MaterialX reads the longest numeric prefix of a word and ignores the rest.
 FLOAT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?\s*", re.ASCII | re.IGNORECASE)
 INTEGER = re.compile(r"\s*[+-]?\d+\s*", re.ASCII)
 SCALARS = {"float": FLOAT, "integer": INTEGER}
@@ -33,13 +33,13 @@ Plain: TypeAlias = "bool | int | float | str | tuple[Plain, ...] | None"
 
 
 def plain(value: object, document: mx.Document) -> Plain:
-    """A value of any type of MaterialX, or its data, as a plain Python value.
+    """A value of any MaterialX type, or its data, as a plain Python value.
 
-    A color, a vector or an array is the tuple of its parts; a matrix that of its numbers, row after row,
-    as documents write it; a structure that of its members' plain values, in order.
+    A color, vector or array is a tuple of its components; a matrix is a tuple of its numbers, row by row,
+    as in documents; a structure is a tuple of its members' plain values, in order.
     """
     if isinstance(value, mx.Value):
-        if not hasattr(value, "getData"):  # of structures Python sees the text alone
+        if not hasattr(value, "getData"):  # Python only has the text of structures
             return _members(value.getValueString(), value.getTypeString(), document)
         value = value.getData()
     if isinstance(value, (mx.Matrix33, mx.Matrix44)):
@@ -70,7 +70,7 @@ def flat(
 
 
 def is_exact(text: str, kind: str) -> bool:
-    """Whether MaterialX reads the whole text as a value of a numeric type, not only its start."""
+    """Whether MaterialX reads the whole text as a numeric value, not only a prefix."""
     if kind in SCALARS:
         return bool(SCALARS[kind].fullmatch(text))
     if kind in ARRAYS:
@@ -100,14 +100,14 @@ def _parts(text: str) -> list[str]:
     return parts
 
 
-# Names that MaterialX's own color management takes for others; source: DefaultColorManagementSystem.cpp.
+# Aliases in MaterialX's own color management; source: DefaultColorManagementSystem.cpp.
 LEGACY = {
     "gamma18": "g18_rec709",
     "gamma22": "g22_rec709",
     "gamma24": "rec709_display",
     "lin_ap1": "acescg",
 }
-# Those of the Color Interop Forum, since the version that knows them.
+# First version with the names of the Color Interop Forum.
 INTEROP_VERSION = (1, 39, 4)
 INTEROP = {
     "lin_ap1_scene": "acescg",

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of the words of a document that may reach generated source.
+"""Checks of the document's words that may reach generated source.
 
-Generators write the names, the values of text and some of the attributes of a document into
-shaders unchanged, so anything but a plain word is code. `tests.fuzz.reach` finds out for every target
-which ones; all other attributes (`doc`, `uiname`, an application's own) are free.
+Generators copy the names, the text values and some attributes of a document into
+shaders unchanged, so anything but a plain word is code. `tests.fuzz.reach` finds these attributes for
+every target; all others (`doc`, `uiname`, application-specific ones) are free.
 """
 
 import re
@@ -16,14 +16,14 @@ import MaterialX as mx
 from mxeon.shaders.document.graphs import reachable
 from mxeon.shaders.document.values import location
 
-# Attributes that are names, or become part of one: identifiers, with `:` between namespaces.
+# Attributes that are names or become part of one: identifiers, with `:` between namespaces.
 NAMES = frozenset(
     """
     defaultgeomprop function geomprop implname impltype index inherit interfacename namespace node
     nodedef nodegraph nodename output semantic space type unit unittype
     """.split()  # noqa: SIM905
 )
-# Attributes of MaterialX that are text, and stand between quotes where they reach source at all.
+# MaterialX's text attributes, which are quoted if they reach source at all.
 TEXTS = frozenset(
     ["colorspace", "context", "file", "fileprefix", "geomprefix", "target", "value", "version"]
 )
@@ -52,7 +52,7 @@ def word_faults(document: mx.Document, elements: Iterable[mx.Element]) -> Iterat
     The value of an input that names a variable may be one word. The data library of the
     document is not checked.
     """
-    choices = cache(lambda: _choices(document))  # of a whole library, which few documents need
+    choices = cache(lambda: _choices(document))  # expensive (whole library), and rarely needed
     for element in elements:
         for name in ("name", *element.getAttributeNames()):
             text = element.getName() if name == "name" else element.getAttribute(name)
@@ -61,7 +61,7 @@ def word_faults(document: mx.Document, elements: Iterable[mx.Element]) -> Iterat
 
 
 def _broken(element: mx.Element, name: str, text: str, choices: Choices) -> str:
-    """Rule that an attribute breaks, or ""."""
+    """Rule broken by an attribute, or ""."""
     if name == "value" and element.hasAttribute("type"):
         return _broken_value(element, text, choices)
     if (name in NAMES or name == "name") and not NAME.fullmatch(text):
@@ -72,7 +72,7 @@ def _broken(element: mx.Element, name: str, text: str, choices: Choices) -> str:
 
 
 def _broken_value(element: mx.Element, text: str, choices: Choices) -> str:
-    """Rule that a value breaks, or ""; numbers and file names have their own rules."""
+    """Rule broken by a value, or ""; numbers and file names have their own rules."""
     kind = element.getAttribute("type")
     if kind in NUMBERS or kind == "filename" or WORD.fullmatch(text):
         return ""
@@ -84,7 +84,7 @@ def _broken_value(element: mx.Element, text: str, choices: Choices) -> str:
 
 
 def _choices(document: mx.Document) -> Collection[str]:
-    """Names of inputs whose text is written without quotes somewhere, and of all that feed them."""
+    """Names of inputs whose text is written unquoted somewhere, and of the inputs that feed them."""
     inputs = [
         each
         for tree in (document, document.getDataLibrary())

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of a document: decoded, made XML, and checked before MaterialX reads it.
+"""Text of a document: decoded, converted to strict XML, and checked before MaterialX reads it.
 
-MaterialX takes more than XML allows: `<` and `&` in attributes, `--` in comments, a declaration
-after blank lines. Here that becomes XML, once, so that the checked text is the text that is read.
+MaterialX accepts more than XML allows: `<` and `&` in attributes, `--` in comments, a declaration
+after blank lines. Here it becomes strict XML once, so that the checked text is also the text that is read.
 MaterialX keeps what it reads in memory and follows every include at once, so size, depth and
 number are counted here, by a parser that keeps nothing.
 """
@@ -33,7 +33,7 @@ AMPERSAND = re.compile(r"&(?!(?:lt|gt|amp|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
 
 
 def decode(data: bytes, location: str) -> str:
-    """Text of a document, which must be in UTF-8, or in ASCII whatever it declares."""
+    """Text of a document: UTF-8, or ASCII regardless of its declaration."""
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -47,7 +47,7 @@ def decode(data: bytes, location: str) -> str:
 
 
 def strict(text: str) -> str:
-    """A document's text as XML without comments and declaration; its lines keep their numbers."""
+    """A document's text as XML without comments and declaration; line numbers are preserved."""
     return PIECE.sub(_strict_piece, text)
 
 
@@ -62,11 +62,11 @@ def _strict_piece(piece: re.Match[str]) -> str:
     return QUOTED.sub(lambda value: AMPERSAND.sub("&amp;", value[0]).replace("<", "&lt;"), text)
 
 
-LONGEST_NAME = 128  # characters; a file's name may have 255 and has three names in it
+LONGEST_NAME = 128  # characters; file names contain three names and may have 255
 
 
 class XmlChecker:
-    """Checks of the text of a document and of everything it includes, counted as one."""
+    """Checks the text of a document and everything it includes, with common limits."""
 
     def __init__(self, policy: Policy) -> None:
         self._policy = policy
@@ -74,7 +74,7 @@ class XmlChecker:
         self._location = ""
 
     def read(self, file: AnyPath) -> bytes:
-        """Content of a file; if it is too long, one byte more than the limit."""
+        """Content of a file, at most one byte more than the limit."""
         try:
             with Path(file).open("rb") as stream:
                 size = min(self._policy.size - self._size, os.fstat(stream.fileno()).st_size)
@@ -83,7 +83,7 @@ class XmlChecker:
             raise DocumentError(f"{file}: must be readable; {error.strerror}") from None
 
     def check_size(self, data: bytes, location: str) -> None:
-        """Raise DocumentError if a document makes all that was read longer than the limit."""
+        """Raise DocumentError if a document makes the total size exceed the limit."""
         self._location = location
         self._size += len(data)
         self._limit("size", self._size, "bytes, with all that it includes")
