@@ -19,17 +19,17 @@ from mxeon.models import eon_brdf, varnished_brdf
 from mxeon.models.coat import dielectric_over_eon_brdf, openpbr_base_brdf
 from mxeon.models.core.arrays import Array, ArrayLike
 
-LEAST_ALPHA = 0.02  # below, a lobe is narrower than what is measured
+LEAST_ALPHA = 0.02  # narrower lobes cannot be resolved by measurements
 
 
 @dataclass(frozen=True)
 class FitModel:
-    """A model to fit: `value(wo, wi, color, *scalars)`, shape (N, C); named as `mxeon.model` names them."""
+    """A model to fit: `value(wo, wi, color, *scalars)`, shape (N, C), with the input names of `mxeon.model`."""
 
     value: Callable[..., Array]
     scalars: Mapping[
         str, tuple[float, ...]
-    ]  # least and largest value, and those a search starts from
+    ]  # least and largest value, and starting values of the search
     color: str = "color"
 
     @property
@@ -64,28 +64,28 @@ __all__ = [
     "read_merl",
 ]
 
-MISFIT = 1.5  # scatter above which a model does not fit data whose errors are known
-LEAST_SINGULAR = 1e-12  # of the largest one: below, a direction of parameters is undetermined
-ROUNDED = 1e-24  # of a squared unit vector: components that are 0 but for rounding
+MISFIT = 1.5  # larger scatter means that the model does not fit data with known errors
+LEAST_SINGULAR = 1e-12  # relative to the largest; smaller ones leave parameters undetermined
+ROUNDED = 1e-24  # squared components of unit vectors up to this are rounding
 
-UNDETERMINED = "not determined by the data"  # whose error is the parameter's whole range, or more
+UNDETERMINED = "not determined by the data"  # the error is at least the parameter's whole range
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Parameters of a model that fit a measured BRDF best, with their standard deviations.
+    """Best-fit parameters of a model for a measured BRDF, with their standard deviations.
 
-    - `values`, `errors`: By input of `mxeon.model(fit.model)`, which takes `**fit.values`: the color (C,),
+    - `values`, `errors`: By input name; `mxeon.model(fit.model)` accepts `**fit.values`: the color (C,),
       and numbers.
-    - `covariance`: (P, P). Of the color's channels and then the others, in the order of `values`; infinite where
+    - `covariance`: (P, P). The color's channels come first, in the order of `values`; infinite if
       the data do not determine a parameter.
     - `scatter`: Root of the mean squared difference from the data, per degree of freedom: in units
-      of `error`, about 1 where model and errors are right; in 1/sr without errors.
+      of `error`, about 1 if model and errors are right; in 1/sr without errors.
     - `weighted`: Whether the data had errors.
 
-    With errors of the data, `errors` are what they make of the parameters if the model is right: a scatter
-    of 10 says that it is not, and that the parameters are off by more. Without errors of the data the
-    scatter counts as the error of each value, whether it is noise or misfit.
+    If the data have errors, `errors` propagates them, assuming that the model is right: a scatter
+    of 10 means that it is not, and that the parameters are off by more. Without errors of the data, the
+    scatter is used as the error of each value, whether it is noise or misfit.
     """
 
     model: str
@@ -97,7 +97,7 @@ class Fit:
 
     @property
     def fits(self) -> bool:
-        """Whether nothing contradicts the model: no errors are known, or the scatter is at most 1.5."""
+        """Whether the data are compatible with the model: no errors are known, or the scatter is at most 1.5."""
         return not self.weighted or self.scatter <= MISFIT
 
     def brdf(self, wo: ArrayLike, wi: ArrayLike) -> Array:
@@ -120,26 +120,26 @@ class Fit:
 
 
 def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
-    """Parameters of a model that fit a measured BRDF best, by least squares.
+    """Best-fit parameters of a model for a measured BRDF, by least squares.
 
     - `model`: "eon", with `color` and `roughness`; "varnished", EON below a rough dielectric
       interface, with `alpha` and `ior` besides; "dielectric_over_eon", MaterialX's `layer` with
-      the same parameters, whose `color` is smaller than that of a pigment under varnish; or
+      the same parameters, with a smaller `color` than that of a pigment under varnish; or
       "openpbr_base", mixed with a metal, with `base_color` and other inputs.
 
     Returns the best one of several starts. Raises InputError if the model is unknown; PackageError if scipy, of the `fit` extra, is not
     installed.
 
-    Errors of the data that are set from the measured values, such as 2 % of each, bias the fit: a value
-    counts for more, the more noise has lowered it, and the color comes out too small by about twice the square of
-    the relative error, which can be one standard deviation. Fit twice, the second time with the same part
-    of the first fit's `brdf`.
+    Errors derived from the measured values, such as 2 % of each, bias the fit: values lowered by noise get
+    more weight, and the color comes out too small by about twice the square of the relative error, which can
+    be one standard deviation. Fit twice, the second time with the same fraction of the first fit's
+    `brdf`.
 
     Errors are those of the linearized model: sqrt(diag((J^T J)^-1)), J the derivatives of the differences
-    over the errors of the data, and of 1 without them; then they are multiplied by the scatter, which takes
-    more values than parameters. What the data do not determine, such as the roughness of a black surface or
-    four parameters of three values, has an infinite or very large error, and is printed without a number.
-    At an end of a parameter's range errors hold on the side that is left.
+    over the errors of the data, or over 1 without them; then they are multiplied by the scatter, which requires
+    more values than parameters. Undetermined parameters, such as the roughness of a black surface or
+    four parameters of three values, have an infinite or very large error, and are printed without a number.
+    At an end of a parameter's range, errors apply to the interior side.
 
         >>> from mxeon.models import eon_brdf
         >>> wo, wi = np.tile([0.6, 0.0, 0.8], (2, 1)), np.array([[0.0, 0.0, 1.0], [0.8, 0.0, 0.6]])
@@ -174,14 +174,14 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     found = (least_squares(residuals, start, **ends) for start in starts)
     best = min(found, key=lambda each: float(each.cost))
     x = best.x
-    # (J^T J)^-1. Rows of 0 complete the singular vectors where there are fewer values than parameters.
+    # (J^T J)^-1. Rows of 0 complete the singular vectors if there are fewer values than parameters.
     freedom = data.value.size - len(x)
     _, singular, rows = np.linalg.svd(np.pad(best.jac, ((0, max(-freedom, 0)), (0, 0))), False)
     seen = singular > LEAST_SINGULAR * singular[0]
     covariance = (rows[seen].T / singular[seen] ** 2) @ rows[seen]
     scatter = float(np.sqrt(2.0 * best.cost / max(freedom, 1)))
     covariance = covariance if data.error is not None else covariance * scatter**2
-    # What moves along a direction that the data do not see has any error, as has all without a scatter.
+    # Parameters along undetermined directions have infinite errors; without a scatter, all parameters do.
     blind = np.sum(rows[~seen] ** 2, axis=0) > ROUNDED
     blind |= data.error is None and freedom <= 0
     covariance[blind] = covariance[:, blind] = np.inf

@@ -12,7 +12,7 @@ from mxeon.errors import InputError
 from mxeon.io.files import AnyPath, one_name
 from mxeon.models.core.arrays import Array, Numbers
 
-# A file of MERL: cells of theta_h, theta_d and phi_d, and the scale of each channel: [Matusik2003].
+# MERL files: number of cells in theta_h, theta_d and phi_d, and the scale of each channel: [Matusik2003].
 MERL_CELLS = (90, 90, 180)
 MERL_SCALES = (1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0)
 
@@ -23,10 +23,10 @@ class MeasuredBrdf:
 
     - `wo`, `wi`: (N, 3). Directions to the viewer and to the light, unit vectors, normal +z.
     - `value`: (N, C). BRDF in 1/sr, without the cosine.
-    - `error`: (N, C), or a shape that broadcasts to it. Standard deviation of each value. Without it all
-      values count alike, and their scatter about the fit tells the uncertainty.
+    - `error`: (N, C), or a shape that broadcasts to it. Standard deviation of each value. Without it, all
+      values have the same weight, and their scatter about the fit gives the uncertainty.
 
-    Raises InputError if the shapes do not belong together, a value is not finite or an error not above 0.
+    Raises InputError if the shapes do not match, a value is not finite or an error is not positive.
     """
 
     wo: Array
@@ -57,7 +57,7 @@ class MeasuredBrdf:
 
 
 def _require(rule: str, array: Numbers, valid: Numbers) -> None:
-    """Raise InputError with the first number that is not valid and its index."""
+    """Raise InputError with the first invalid number and its index."""
     if not valid.all():
         index = tuple(np.argwhere(~valid)[0].tolist())
         place = f" at index {index}" if index else ""
@@ -68,11 +68,11 @@ def read_merl(path: AnyPath, step: int = 6) -> MeasuredBrdf:
     """Values of a file of the MERL database, in red, green and blue.
 
     - `path`: Binary file: three integers, and 90 x 90 x 180 numbers for each channel.
-    - `step`: Every how many cells of each of the three angles are taken, from half of it on; 1
-      takes them all.
+    - `step`: Stride over the cells of each of the three angles, starting at half of it; 1
+      takes all cells.
 
-    They are at the centers of the cells, without those below the horizon or marked as unmeasured; the
-    file tells no errors. Raises InputError if the file is none of that database.
+    Values are at the centers of the cells, except below the horizon or if marked as unmeasured; the
+    file has no errors. Raises InputError if the file is not from that database.
 
     [Matusik2003]; [Rusinkiewicz1998] for the angles.
     """
@@ -95,7 +95,7 @@ def read_merl(path: AnyPath, step: int = 6) -> MeasuredBrdf:
 
 
 def merl_directions(theta_h: Array, theta_d: Array, phi_d: Array) -> tuple[Array, Array]:
-    """wo and wi of half and difference angles in radian, the half vector at azimuth 0.
+    """wo and wi from half and difference angles in radian, with the half vector at azimuth 0.
 
     >>> wo, wi = merl_directions(*np.array([[0.0], [0.5 * np.pi / 3.0], [0.0]]))
     >>> wo.round(6), wi.round(6)

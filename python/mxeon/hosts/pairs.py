@@ -113,7 +113,7 @@ def unit(vectors: Vectors) -> Vectors:
 
 PIXEL = 2.0**-5  # width of a pixel
 JITTER = 0.5 * 0.01 * 2.0**0.5  # distance of a sample from the middle of its pixel, in pixels
-DISTANCE = 256.0  # from the light to the middle of the picture, at the same height
+DISTANCE = 256.0  # horizontal distance of the light from the middle of the picture
 TRIANGLE = 0.4 * PIXEL  # distance of a triangle's corners from the middle of the pixel
 HEIGHT = 16.0 * DISTANCE  # height of the camera; the highest point is at 12.5 DISTANCE
 VIEW = np.array([0.0, 0.0, 1.0])

@@ -40,8 +40,8 @@ FORMATS = {"float": "f4", "vec2": "2f4", "vec3": "3f4", "vec4": "4f4", "int": "i
 @dataclass(frozen=True)
 class Output:
     kind: str  # GLSL type
-    name: str  # for the capture
-    variable: str  # in the pixel stage
+    name: str  # name for the capture
+    variable: str  # name in the pixel stage
 
 
 def outputs(shader: Shader) -> tuple[Output, ...]:

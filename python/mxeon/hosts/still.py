@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Stills for people: antialiased, on a floor where the shader ball throws a shadow.
+"""Antialiased stills for presentation, on a floor where the shader ball casts a shadow.
 
-The picture of a host has one sample a pixel, at its center. Pixels that differ from a neighbor are drawn again with 16.
-The floor is Lambertian paper that bends up into a wall behind the ball; the ball, without its grooves, and the foot block
-the light of the environment on it.
+A host's picture has one sample per pixel, at its center. Pixels that differ from a neighbor are redrawn with 16.
+The floor is Lambertian paper that bends up into a wall behind the ball. The ball, without its grooves, and the foot
+block the environment's light on it.
 """
 
 from __future__ import annotations
@@ -27,27 +27,27 @@ from mxeon.shaders.shader_ball import CENTER, FOOT_HEIGHT, FOOT_RADIUS, OBJECT, 
 
 Mask = NDArray[np.bool_]
 
-SIDE = 4  # rows and columns of samples in a pixel that is drawn again
+SIDE = 4  # rows and columns of samples in a redrawn pixel
 BLOCKS = 64, 256  # columns and rows of such pixels in one frame
-# Least change of a display value, and largest cosine of normals, that call for more samples.
+# A pixel is redrawn above this change of a display value, or below this cosine of normals.
 SMOOTH = 0.06, 0.98
 
-DIRECTIONS = 64  # to sum an environment over, for each of 16 samples
-GRID = 96  # rows and columns of points of the floor; it is interpolated between them
-DRAWN = 512  # directions of light on the floor
+DIRECTIONS = 64  # environment directions for each of the 16 samples
+GRID = 96  # rows and columns of computed floor points, interpolated in between
+DRAWN = 512  # light directions for the floor
 PAPER = 0.5  # reflectance of the floor
-GROUND = -0.6 - FOOT_HEIGHT  # its height, under the foot
+GROUND = -0.6 - FOOT_HEIGHT  # height of the floor, under the foot
 EDGE = FOOT_RADIUS + 0.01
-BEND = -1.0, -4.5  # where the paper begins to bend up, and where it stands, in the foot's z
+BEND = -1.0, -4.5  # foot-frame z where the paper begins to bend up, and where it is vertical
 
 
 def still(host: Host, shader: Shader, scene: Scene) -> Array:
-    """Picture of a shader, linear (size, size, 3), antialiased where the host draws single points."""
+    """Picture of a shader, linear (size, size, 3), antialiased here if the host draws single points."""
     image = host.picture(shader, scene)
     mask = visible(scene.size, scene.shape).mask
     covered = mask.astype(np.float32)
     if isinstance(host, FragmentHost):
-        # A path tracer has antialiased its picture: what it covers of the pixels at its edges is left to find.
+        # A path tracer antialiases its picture: only the coverage of edge pixels remains to be found.
         traced = isinstance(host, PathTracerHost)
         for rows, columns in rough(0.0 * image if traced else image, mask, scene):
             draw = None if traced else partial(host.shade, shader, scene, directions=DIRECTIONS)
@@ -62,7 +62,7 @@ def still(host: Host, shader: Shader, scene: Scene) -> Array:
 def rough(image: Array, mask: Mask, scene: Scene) -> Iterator[tuple[Array, Array]]:
     """Rows and columns of pixels that differ from a neighbor, in batches."""
     shown, normal = pbr_neutral(image), visible(scene.size, scene.shape).normal
-    differs = mask.copy()  # at the edge of the frame the shape may end within a pixel
+    differs = mask.copy()  # the shape may end within a pixel at the edge of the frame
     differs[1:-1, 1:-1] = False
     for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):
         one = slice(0, -down or None), slice(max(-right, 0), -max(right, 0) or None)
@@ -80,7 +80,7 @@ def rough(image: Array, mask: Mask, scene: Scene) -> Iterator[tuple[Array, Array
 def samples(
     draw: Callable[[VisiblePoints], Array] | None, scene: Scene, rows: Array, columns: Array
 ) -> tuple[Array, Array]:
-    """Means over the samples of pixels, 0 off the shape, and the shares of them on it."""
+    """Means over the samples of pixels, 0 off the shape, and the share of samples on the shape."""
     wide = BLOCKS[0]
     number = np.minimum(np.arange(-(-len(rows) // wide) * wide), len(rows) - 1).reshape(-1, wide)
     block = number.repeat(SIDE, axis=0).repeat(SIDE, axis=1)
@@ -109,7 +109,7 @@ def floor(scene: Scene) -> Array:
     bend = 0.5 * np.pi * bend**2 * (3.0 - 2.0 * bend)
     around = np.hypot(points[:, 0], points[:, 2])[
         :, None
-    ]  # points under the foot stand for those beside it
+    ]  # extend the values next to the foot below it
     points[:, ::2] *= np.maximum(EDGE / np.maximum(around, 1e-9), 1.0)
     normal = np.stack([0.0 * bend, np.cos(bend), np.sin(bend)], axis=-1)
     towards, power = lights(scene)
@@ -123,7 +123,7 @@ def floor(scene: Scene) -> Array:
 
 
 def lights(scene: Scene) -> tuple[Floats, Floats]:
-    """Directions in the foot's frame, and the radiance of each times its solid angle, that stand for an environment."""
+    """Directions in the foot's frame that represent an environment, and the radiance times solid angle of each."""
     sky = reduced(read_latlong(scene.environment))
     if sky.shape[:2] == (1, 1):
         sky = np.broadcast_to(sky, (RADIANCE_SIZE, 2 * RADIANCE_SIZE, 3))
@@ -136,11 +136,11 @@ def lights(scene: Scene) -> tuple[Floats, Floats]:
 
 
 def blocked(points: Floats, towards: Floats) -> Mask:
-    """Whether the ball or its foot is between points of the floor and directions."""
+    """Whether the ball or its foot blocks directions from points of the floor."""
     out = CENTER - points
     along = out @ towards.T
     ball = (along > 0.0) & ((out**2).sum(axis=-1)[:, None] - along**2 < RADIUS**2)
-    # The way to the height of the foot's top, over the floor.
+    # Distance along the direction to the height of the foot's top.
     reach = (
         np.stack([towards[:, 0], towards[:, 2]], axis=-1)
         * 2.0

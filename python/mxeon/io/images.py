@@ -35,7 +35,7 @@ FAST_PNG: dict[str, str | int] = {
     "png:compressionLevel": 1,
     "png:filter": 8,
 }
-NO_THREADS = {"threads": 1, "exr_threads": -1}  # of OpenImageIO and OpenEXR
+NO_THREADS = {"threads": 1, "exr_threads": -1}  # OpenImageIO's and OpenEXR's threads
 INCOMPLETE = "the file is incomplete; the disk may be full"
 
 
@@ -44,9 +44,9 @@ class ImageWarning(UserWarning):
 
 
 def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
-    """Difference of each pixel, of the channel where it is largest, relative to a reference above 1.
+    """Largest difference over the channels of each pixel, relative where the reference exceeds 1.
 
-    It is infinite where a value is not finite.
+    It is infinite if a value is not finite.
 
     >>> difference([[1.0, 0.5, 9.0]], [[1.0, 0.25, 10.0]]).tolist()
     [0.25]
@@ -67,7 +67,7 @@ def difference_scale(difference_map: ArrayLike) -> float:
     """Full scale of a plot of a difference: the next of 1, 2, 5, 10, ... above almost all values.
 
     It is based on the 99th percentile, because a few pixels at a rim must not darken the rest, and is at
-    least 1e-9, so that equal images have a scale too. Values that are not finite are left out.
+    least 1e-9, so that equal images have a scale too. Non-finite values are ignored.
 
         >>> difference_scale([0.0, 0.003, 0.0031, float("nan")])
         0.005

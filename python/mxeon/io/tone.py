@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tone curve of pictures for people: Khronos PBR Neutral [Khronos2024].
 
-It keeps the color of what a studio lights moderately and compresses highlights without changing their hue.
+It preserves colors under moderate studio lighting and compresses highlights without changing their hue.
 """
 
 from __future__ import annotations
@@ -11,9 +11,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.io.images import Floats
 
-FRESNEL = (
-    0.04  # reflectance at normal incidence that the curve takes away, so that base colors come out
-)
+FRESNEL = 0.04  # normal reflectance that the curve subtracts, to reproduce base colors
 START = 0.8 - FRESNEL  # compression starts above it
 DESATURATION = 0.15
 

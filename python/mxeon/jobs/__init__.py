@@ -3,8 +3,8 @@
 
 from mxeon.errors import InputError
 
-TIMEOUT = 300.0  # for one item
-WAIT = 60.0  # for the workers of a cluster to arrive, or to return if all restart at once
+TIMEOUT = 300.0  # seconds per item
+WAIT = 60.0  # seconds until the workers of a cluster must arrive, or return if all restart at once
 LONGEST = 1e6  # the longest wait that timers accept
 
 

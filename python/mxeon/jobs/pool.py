@@ -240,7 +240,7 @@ def _outcome(future: Future[Any], attempt: Attempt, timeout: float) -> Outcome:
     error = future.exception() if future.done() else TimeoutError()
     if error is None:
         return Outcome(future.result(), attempts=attempt.number)
-    raised = error.__cause__ is not None  # by the work; pebble chains its traceback
+    raised = error.__cause__ is not None  # the work raised it; pebble chains its traceback
     if raised and attempt.number == ATTEMPTS:
         log_bug(error)
     end = f"{type(error).__name__}: {error}" if raised else _end(error, timeout)

@@ -24,7 +24,7 @@ ENDING = (*TERMINAL, signal.SIGTERM)
 # Signals that end a process without a handler.
 OTHERS = _existing("SIGALRM", "SIGUSR1", "SIGUSR2", "SIGXCPU")
 
-LOCK = ".lock"  # in a temporary folder
+LOCK = ".lock"  # file in a temporary folder
 YOUNG = 60.0  # age in seconds below which a folder may not be locked yet
 
 _pending: list[int] | None = None  # numbers of the signals that came while blocked

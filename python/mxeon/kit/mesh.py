@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The unit sphere as triangles, for renderers without an exact one.
+"""The unit sphere as triangles, for renderers without an exact sphere.
 
-Each vertex lies on the sphere and is its own normal, so that the interpolated normal of a point of
-a triangle has the direction of the point itself.
+Each vertex lies on the sphere and is its own normal, so the interpolated normal at a point of
+a triangle has the direction of the point.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class Mesh:
 
     @property
     def depth(self) -> float:
-        """Largest distance of the triangles below the sphere."""
+        """Largest depth of the triangles below the sphere."""
         a, b, c = np.moveaxis(self.vertices[self.triangles], 1, 0)
         normal = np.cross(b - a, c - a)
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)

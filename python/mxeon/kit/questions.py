@@ -84,7 +84,7 @@ class Question:
     key: str
     claim: str
     materials: tuple[Material, ...]
-    lit: bool  # by the distant light, else by the environment: a rasterizer has a formula for each
+    lit: bool  # distant light, otherwise environment: a rasterizer has a formula for each
     variant: str  # describes the negative control
     wrong: Callable[[View], NDArray[np.float64]]  # the control's values (N, 3)
     model: str = ""  # the same for every material; "" for the model of each material's node

@@ -35,14 +35,14 @@ from mxeon.models.microfacet.fresnel import dielectric, dielectric_avg, schlick,
 from mxeon.models.sampling import visible_density, visible_normal
 
 ALPHAS, IORS = (RANGES[name][:2] for name in ("coat_alpha", "coat_ior"))
-STEP = 1e-4  # of finite differences of the coefficients
+STEP = 1e-4  # step for finite differences of the coefficients
 
 
 class CoatPlugin(EonPlugin):
     """EON under a dielectric, sampled by their albedos.
 
-    `numbers` are the default and range of each number of the whole surface: `alpha` and `ior`, or what they
-    follow from.
+    `numbers` are the default and range of each number of the whole surface: `alpha` and `ior`, or the inputs
+    that determine them.
     """
 
     numbers: ClassVar[dict[str, tuple[float, ...]]] = {
@@ -50,7 +50,7 @@ class CoatPlugin(EonPlugin):
         "ior": (1.5, *IORS),
     }
     interface: Callable[[float, float], Any] = staticmethod(constant_coat)
-    count = 2  # curves that it has
+    count = 2  # number of curves
 
     def configure(self, properties: Mitsuba) -> None:
         EonPlugin.configure(self, properties)
@@ -75,7 +75,7 @@ class CoatPlugin(EonPlugin):
         self.tabulate()
 
     def tabulate(self) -> None:
-        """Compute the coefficients: linear in numbers that have gradients, about their values."""
+        """Compute the coefficients, linearized about the values of numbers with gradients."""
         numbers = self._dielectric()
         values = [float(np.array(self.dr.detach(each)).item()) for each in numbers]
         self.coat, self.average = self.interface(*values), dielectric_avg(numbers[1])
@@ -187,7 +187,7 @@ class CoatPlugin(EonPlugin):
         return np.append(np.stack(rows, axis=1), getattr(coat, "means", ()))
 
     def _slopes(self, values: list[float], k: int) -> Array:
-        """Derivatives of the table by one of both numbers, by differences within its range."""
+        """Derivatives of the table by number `k`, by finite differences within its range."""
         low, high = (ALPHAS, IORS)[k]
         ends = [min(max(values[k] + step, low), high) for step in (STEP, -STEP)]
         rows = [self._rows([end if n == k else v for n, v in enumerate(values)]) for end in ends]

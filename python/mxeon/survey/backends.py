@@ -29,7 +29,7 @@ FEW_CALLS = samples.Counts(1 << 13)  # calls of a renderer's own function
 SHORTEST = (
     2.0**-10
 )  # least length of wo + wi of special pairs, whose cosine Fresnel's formulas square and round
-EXACT_INPUTS: tuple[samples.Values, ...] = (  # from dark to white and from rough to smooth
+EXACT_INPUTS: tuple[samples.Values, ...] = (  # dark to white, rough to smooth
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.02, 0.05, 0.1), "roughness": 1.0},
     {"color": (1.0, 0.8, 0.0), "roughness": 0.75},
@@ -211,7 +211,7 @@ class FacetPairs(Facets):
 
 @lru_cache(maxsize=8)
 def facet_pairs(scene: Scene) -> backends.Pairs:
-    """The pixels within a facet of the polyhedron, as pairs."""
+    """The pixels that lie within one facet of the polyhedron, as pairs."""
     points = facet_points(scene.size)
     return backends.lit_pairs(points.normal[points.mask], scene)
 

@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 RINGS, SECTORS = 20, 40  # facets from pole to pole, and around
-AXIS = (0.48, 0.6, 0.64)  # from pole to pole: tilted, so that facets differ in both cosines
+AXIS = (0.48, 0.6, 0.64)  # polar axis, tilted so that facets differ in both cosines
 MARGIN = 1.05  # half width of a square that must lie in one facet, in half widths of a pixel
 
 
 class Polyhedron(NamedTuple):
     """A closed mesh of flat facets."""
 
-    vertices: NDArray[np.float64]  # on the unit sphere
+    vertices: NDArray[np.float64]  # points of the unit sphere
     triangles: NDArray[np.int64]  # indices, counterclockwise from outside
     normals: NDArray[np.float64]  # outward unit normals of the facets, in float64
     offsets: NDArray[np.float64]  # distances of their planes from the origin

@@ -33,7 +33,7 @@ from mxeon.survey.specs import RendererSpec
 Place: TypeAlias = tuple[str, str, str]  # host, library and node
 
 BACK = "back"
-# Checks by column, of which the first one that a node has counts; `back` comes from portraits.
+# Checks by column; the first check that a node has counts. `back` comes from portraits.
 CHECKS = {
     "direct": DIRECT,
     "surroundings": ("environment",),
@@ -65,9 +65,9 @@ class Entry:
     device: str
     claimed: str  # title of the claimed model
     form: str  # title of the published form that was judged
-    cells: Mapping[str, Result]  # by column of CHECKS
+    cells: Mapping[str, Result]  # keys: columns of CHECKS
     pages: tuple[str, ...]  # pages of docs/upstream on its defects
-    portraits: Mapping[str, Portrait]  # by scene
+    portraits: Mapping[str, Portrait]  # keys: scenes
     report: Path  # folder of its report
 
     @property

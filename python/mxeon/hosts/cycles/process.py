@@ -17,7 +17,7 @@ from mxeon.shaders.inner_lobes import SUBSURFACE
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import Scene
 
-CHECKOUT = data_folder()  # for an installed package, a folder without an environment
+CHECKOUT = data_folder()  # contains no environment in an installed package
 
 
 def interpreter(name: str = "cycles") -> Path:
@@ -55,7 +55,7 @@ class SceneParts(TypedDict):
     body: str
 
 
-DARK = Scene("dark")  # without light, for emission or other lights
+DARK = Scene("dark")  # no light; for emission or other lights
 PLACE = (
     "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"  # OSL expressions of a point's place on the body "plane"
 )

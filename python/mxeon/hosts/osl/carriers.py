@@ -23,7 +23,7 @@ class Signature:
     """Arguments of a closure, as OSL's stdosl.h documents them."""
 
     arguments: Mapping[str, str]  # OSL types by name, in order
-    keywords: tuple[str, ...] = ()  # without `label`, which has no effect
+    keywords: tuple[str, ...] = ()  # `label` has no effect and is not included
     kind: str = "float"  # type of the keywords' values; OSL drops a keyword with another type
 
 

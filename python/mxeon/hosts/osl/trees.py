@@ -30,7 +30,7 @@ TOKEN = re.compile(r"(\w+)<|(#(?: #)*)|'([^'<>|]*)'|([|>])")
 class ClosureTree:
     """A closure, or an operation on closures, at some points."""
 
-    name: str  # in CLOSURES or OPERATIONS
+    name: str  # key of CLOSURES or OPERATIONS
     parts: tuple[ClosureTree | None, ...] = ()  # operands of an operation
     # By name, (N,) or (N, 3); an operation has only `factor`.
     arguments: Mapping[str, Array | str] = field(default_factory=dict)
@@ -163,7 +163,7 @@ class KeptTrees:
     """
 
     def __init__(self) -> None:
-        self._trees: dict[str, ClosureTree | None] = {}  # by shape
+        self._trees: dict[str, ClosureTree | None] = {}  # keys: shapes
         self._counts: dict[str, int] = {}  # points by shape
         self._places: dict[bytes, tuple[str, int]] = {}  # shape of a point's tree, and its row
 
