@@ -29,3 +29,21 @@ vec3 path_root; // answer of the closure called last, which is that of the mater
 
 #define u_numActiveLightSources 1
 #define u_refractionTwoSided false
+
+// A unit vector on the octahedron |x| + |y| + |z| = 1, whose lower half is folded outwards.
+vec2 path_fold(vec2 w)
+{
+    return vec2(w.x < 0.0 ? abs(w.y) - 1.0 : 1.0 - abs(w.y), w.y < 0.0 ? abs(w.x) - 1.0 : 1.0 - abs(w.x));
+}
+
+vec2 path_packed(vec3 w)
+{
+    vec2 flat_w = w.xy / (abs(w.x) + abs(w.y) + abs(w.z));
+    return w.z < 0.0 ? path_fold(flat_w) : flat_w;
+}
+
+vec3 path_unpacked(vec2 w)
+{
+    float z = 1.0 - abs(w.x) - abs(w.y);
+    return normalize(vec3(z < 0.0 ? path_fold(w) : w, z));
+}

@@ -96,10 +96,11 @@ FUNCTION = re.compile(r"^\w[\w ]* (\w+)\([^;]*$", re.MULTILINE)
 def refused(host: str, words: str, text: str) -> ShaderError:
     """The error of a shader's text by a compiler's words: the function, the line and the first complaint.
 
-    >>> str(refused("gl", "0:3(1): error: no x", "float f()\\n{\\n    return x;\\n}\\n"))
+    >>> str(refused("gl", "0:2(1): warning: no use\\n0:3(1): error: no x", "float f()\\n{\\n    return x;\\n}\\n"))
     "gl: the shader does not compile, in f: 'return x;': no x"
     """
-    found, lines = REFUSED.search(words), text.split("\n")
+    lines = text.split("\n")
+    found = REFUSED.search("\n".join(each for each in words.split("\n") if "warning" not in each))
     number = (
         int(found["number"] or text[: text.find(found["line"])].count("\n") + 1) if found else 0
     )

@@ -406,6 +406,10 @@ PATHS = (
     (STANDARD, ASKED, "return path_root * path_out.a;", "return path_root;", "path_value", ()),
     (STANDARD, ASKED, "return path_out.a;", "return 1.0 - path_out.a;", "path_value", ()),
     (STANDARD, ASKED, "return path_out.rgb;", "return path_out.rgb * path_out.a;", "path_value", ()),
+    ("conical_edf", ASKED, "wo, wo, vec3(0.0));\n    return path_out.rgb;", "-wo, wo, vec3(0.0));\n    return path_out.rgb;",
+     "path_emission", ("other_path_emission",)),
+    ("eon_diffuse_bsdf", "genglsl/path/random.glsl", "vec4(v >> 8u)", "vec4(v >> 9u)", "path_random",
+     ("other_random_numbers",)),
 )  # fmt: skip
 DIFFUSE = next(iter(WRONG))
 ROWS = [(title, *row) for title, rows in WRONG.items() for row in rows] + list(PATHS)

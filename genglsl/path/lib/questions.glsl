@@ -42,24 +42,6 @@ float path_mean(vec3 color)
     return dot(max(color, 0.0), vec3(1.0 / 3.0));
 }
 
-// A unit vector on the octahedron |x| + |y| + |z| = 1, whose lower half is folded outwards.
-vec2 path_fold(vec2 w)
-{
-    return vec2(w.x < 0.0 ? abs(w.y) - 1.0 : 1.0 - abs(w.y), w.y < 0.0 ? abs(w.x) - 1.0 : 1.0 - abs(w.x));
-}
-
-vec2 path_packed(vec3 w)
-{
-    vec2 flat_w = w.xy / (abs(w.x) + abs(w.y) + abs(w.z));
-    return w.z < 0.0 ? path_fold(flat_w) : flat_w;
-}
-
-vec3 path_unpacked(vec2 w)
-{
-    float z = 1.0 - abs(w.x) - abs(w.y);
-    return normalize(vec3(z < 0.0 ? path_fold(w) : w, z));
-}
-
 // A direction in the frame of X and N, and back.
 vec3 path_local(vec3 w, vec3 X, vec3 N)
 {

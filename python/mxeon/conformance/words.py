@@ -242,6 +242,8 @@ DEFECTS = {
     "medium_in_reflection": "a medium takes light that is reflected above it",
     "negative_color": "a negative color reflects other light than in MaterialX's own text",
     "other_path_value": "a path tracer gets another value than a rasterizer",
+    "other_path_emission": "a path tracer gets another emission than the node's equation",
+    "other_random_numbers": "random numbers are not those of pcg4d",
     "other_path_albedo": "draws carry other light than a rasterizer reflects and transmits",
     "inside_is_not_outside": "light inside a solid is not that outside of one of the inverse index",
     "curve_below_0": "the curve is not clamped: values are below 0",

@@ -28,6 +28,7 @@ from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Values, float32, generator
 from mxeon.conformance.spec import Ability, LobeSpec, Spec, draw, materials
 from mxeon.conformance.specs.combinations import CombinedSpec
+from mxeon.conformance.specs.emission import EmissionSpec
 from mxeon.conformance.specs.microfacets import PASSING, THROUGHPUT, FacetSpec, TransmissionSpec
 from mxeon.conformance.specs.surface_shaders import ALBEDO, SurfaceShaderSpec
 from mxeon.conformance.tolerance import Compared, Measurement, Term, given, roundings, sum_of
@@ -65,7 +66,8 @@ SCATTERED = """if (what < 0.5)
     return what < 2.5 ? wi : what < 3.5 ? weight : vec3(pdf);"""
 # Apart, since a driver copies the material to each call.
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
-FUNCTIONS = ("evaluate", "pdf", "wi", "weight", "density", "opacity", "emission")
+RANDOM = "return path_random({0}4({0}3(u), 7u)).xyz;"
+FUNCTIONS = ("evaluate", "pdf", "wi", "weight", "density", "opacity", "emission", "random")
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # of mxeon.shaders.path_tracing
 DRAWS = 1 << 15
 ANSWERS = Recent[Array](64)  # to what a check and its control ask
@@ -170,7 +172,11 @@ class Paths:
                 f"{port.name} = {GIVEN.get(port.type, '{}').format(f'given_{port.name}')};"
                 for port in self.ports
             ),
-            answer=SCATTERED if number < 5 else PASSED,
+            answer=SCATTERED
+            if number < 5
+            else PASSED
+            if number < 7
+            else RANDOM.format("uint" if self.host.target == "slang" else "uvec"),
         )
         return ANSWERS.value(
             (self, *map(contents, rows)),
@@ -416,6 +422,42 @@ def path_value(case: Case) -> Iterator[Compared]:
         yield Compared(batch, ask("emission"), share * emitted)
 
 
+def path_emission(case: Case) -> Iterator[Compared]:
+    """Radiance towards views of both sides, in frames whose axes are exchanged, which rounds nothing."""
+    spec = case.of(EmissionSpec)
+    thirds = np.stack([np.roll(np.eye(3), turn, axis=0) for turn in range(3)])
+    for batch in (*case.batches, case.backend.take(spec.backs)):
+        if "normal" in batch.inputs:  # the axis of a cone, which is a node
+            continue
+        frame = thirds[np.arange(len(batch.wo)) % 3]
+        axes = {"normal": frame[:, :, 2], "tangent": frame[:, :, 0]}
+        placed = replace(batch, frame=frame)
+        text = paths(case.host, spec.document(), case.library, tuple(batch.inputs))
+        found = text.values("emission", placed.world(batch.wo), inputs={**batch.inputs, **axes})
+        yield spec.alike(Compared(batch, case.outputs(batch, found), case.expected(batch)))
+
+
+def pcg4d(v: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """One round of the generator."""
+    x, y, z, w = v
+    x = x + y * w
+    y = y + z * x
+    z = z + x * y
+    return np.stack([x, y, z, w + y * z])
+
+
+def path_random(case: Case) -> Iterator[Compared]:
+    """Random numbers beside those of pcg4d [Jarzynski2020], bit for bit."""
+    counters = np.arange(3 * 256).reshape(-1, 3) ** 2
+    [(text, _)] = subjects(case)
+    four = np.pad(counters, [(0, 0), (0, 1)], constant_values=7).T.astype(np.uint32)
+    once = pcg4d(four * np.uint32(1664525) + np.uint32(1013904223))
+    expected = (pcg4d(once ^ (once >> np.uint32(16)))[:3] >> np.uint32(8)).T / 2.0**24
+    found = text.values("random", NORMAL, u=counters.astype(np.float64))
+    views = Batch(np.broadcast_to(NORMAL, found.shape), np.broadcast_to(NORMAL, found.shape), {})
+    yield Compared(views, case.outputs(views, found), expected)
+
+
 def path_inside(case: Case) -> Iterator[Compared]:
     name, values = GLASS[case.spec.node]
     if isinstance(case.spec, SurfaceShaderSpec):
@@ -602,6 +644,18 @@ ROWS = (
           explain=always(defect("other_path_value")), requires=Ability.PAIRS, profile="path",
           hosts=has_paths,
           methods=lambda spec, methods: not methods.distributed),  # which changes sums above 1
+    Check(key="path_emission",
+          claim="A path tracer's emission is the node's equation, from both sides, in any frame.",
+          applies=family(EmissionSpec), measure=path_emission, tolerance="value",
+          control=controls.scale("values are 0.1 % too large", 1.001),
+          explain=always(defect("other_path_emission")), profile="path", hosts=has_paths),
+    Check(key="path_random",
+          claim="The random numbers of a tracer's text are those of pcg4d.",
+          applies=family(LobeSpec, lambda spec: spec.node == "eon_diffuse_bsdf"), measure=path_random,
+          tolerance=given(0.0, Quantity.VALUE, "the same bits"),
+          control=controls.scale("numbers are half as large", 0.5),
+          explain=always(defect("other_random_numbers")), requires=Ability.PAIRS, profile="path",
+          hosts=has_paths),
     Check(key="path_inside",
           claim="Light inside a solid is reflected and refracted as outside of one of the inverse index.",
           applies=GLASSY & Specs(lambda spec: spec.node in GLASS), measure=path_inside,
