@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MaterialX's specification of physically based shading, executable.
+"""Check MaterialX shaders, and evaluate the BRDFs of its specification.
 
 Importing this loads nothing but the standard library; the names below load what they need.
 """

@@ -145,9 +145,9 @@ def _some(lines: Sequence[str], noun: str) -> Iterator[str]:
     return map(one_line, lines)
 
 
-def assert_known(rule: str, name: object, known: Iterable[str]) -> None:
+def assert_known(rule: str, name: object, known: Iterable[str], listing: str = "") -> None:
     """Raise InputError unless a name is known; see `mxeon.names.unknown`."""
-    if message := unknown(rule, name, known):
+    if message := unknown(rule, name, known, listing=listing):
         raise InputError(message)
 
 

@@ -3,9 +3,11 @@
 
 import json
 import os
+import re
 import shutil
 import sys
 from dataclasses import replace
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import pytest
@@ -13,6 +15,7 @@ import pytest
 from mxeon import check
 from mxeon.cli import main
 from mxeon.cli.answer import LINES, answer
+from mxeon.cli.output import Line, wrapped
 from mxeon.errors import MISUSE
 from mxeon.errors import NOT_RUN as DID_NOT_RUN
 from mxeon.report import to_json
@@ -68,14 +71,14 @@ BENT, LAYER = (
     stock(diagnosis=caused("not finite", region=ZERO)),
     stock(key="layering", diagnosis=quoted("X")),
 )
-FIRST = f"tolerance 2e-06\ncause: gl with stock: {EON} "
+FIRST = f"0.37 (value)\ncause: gl with stock: {EON} "
 # Failures of the node with stock; fields of its picture; the answer's words and last line.
 ANSWERS = (
     ((stock(),), {}, f"{RIGHT}.", NOTHING),
     ((BENT,), {}, f"{RIGHT} for inputs that this material does not use.", NOTHING),
-    ((stock(),), {}, "wrong for other inputs, error 0.37", NOTHING),
+    ((stock(),), {}, "wrong for other inputs, 0.37 (value)", NOTHING),
     ((stock(),), CLOSE, WITHIN, LOAD),
-    ((stock(),), CLOSE, "  wrong, error 0.37", LOAD),
+    ((stock(),), CLOSE, "  wrong, 0.37 (value)", LOAD),
     ((LAYER, stock(diagnosis=quoted("Y"))), BACK, f"{FIRST}(value)", LOAD),
     ((stock(diagnosis=quoted("Y")), LAYER), WHITE, f"{FIRST}(layering)", LOAD),
     ((), IDLE | {"reason": FAR, "diagnosis": OWN}, f"not judged: {FAR}.", "To fix it, correct input"),
@@ -139,9 +142,7 @@ def test_what_fails_for_other_inputs_than_the_documents_comes_last():
         "library": "eonlib",
     }
     lines = answer(replace(run, contents={"a.mtlx": (GLASS,)}))
-    assert any(
-        "wrong for other inputs, error 0.37" in line and "wrong, error" in line for line in lines
-    )
+    assert any("wrong for other inputs" in line and "wrong, 0.37 (value)" in line for line in lines)
     causes = [line for line in lines if line.startswith("failed")]
     expected = ["fault: the weight is ignored", PAGE, "for inputs that no document uses"]
     assert [each in line for each, line in zip(expected, causes, strict=True)] == [True] * 3
@@ -205,14 +206,13 @@ def test_every_document_appears_those_that_look_wrong_first():
         (
             [made(), made(DIFFERS)],
             PASSED,
-            "1 of 2 checks passed on gl with eonlib; "
-            "1 differs where the specification leaves it open.",
+            "1 of 2 checks passed on gl with eonlib; 1 differs, but the specification allows it.",
         ),
         (
             [made(FAILED), made(FAILED, host="osl"), made(DIFFERS)],
             FAILED,
             "2 of 3 checks failed: 1 on gl with eonlib, 1 on osl with eonlib; "
-            "1 differs where the specification leaves it open.",
+            "1 differs, but the specification allows it.",
         ),
         ([made(FAILED), made()], FAILED, "1 of 2 checks failed on gl with eonlib."),
         (
@@ -253,7 +253,7 @@ def test_unreadable_documents_are_said_before_any_other_work(monkeypatch, capsys
     assert main(["check", "nosuch.mtlx", PLASTER, "--workers", "0"]) == MISUSE
     printed = capsys.readouterr()
     assert printed.err == f"mxeon: {line}\n"
-    assert printed.out.startswith("Refused and not judged: nosuch.mtlx. The check passed on gl")
+    assert printed.out.startswith("nosuch.mtlx was not checked: 1 error. The check passed on gl")
 
 
 def test_nothing_says_of_a_refused_document_that_it_passed(tmp_path, monkeypatch, capsys):
@@ -273,7 +273,7 @@ def test_nothing_says_of_a_refused_document_that_it_passed(tmp_path, monkeypatch
     printed = capsys.readouterr()
     names = [str(tmp_path / "bad.mtlx"), str(tmp_path / "late.mtlx")]
     first, *rest = printed.out.splitlines()
-    assert first.startswith(f"Refused and not judged: {', '.join(names)}. ")
+    assert first.startswith(f"{', '.join(names)} were not checked: 2 errors. ")
     assert "0 of 0" not in first
     assert not [line for line in rest if any(name in line for name in names)]
     assert [line.split(": ")[1] for line in printed.err.splitlines()] == names
@@ -298,7 +298,7 @@ def test_a_document_that_one_library_lacks_is_refused_in_its_column(tmp_path, mo
     libraries = ["--library", "eonlib", "--library", "stock"]
     assert main(["check", str(file), *libraries, "--workers", "0"]) == MISUSE
     printed = capsys.readouterr()
-    assert printed.out.startswith(f"Refused and not judged: {file} with stock. ")
+    assert printed.out.startswith(f"{file} with stock was not checked: 1 error. ")
     assert "with stock MaterialX" in printed.out and "refused" in printed.out
     assert printed.err.endswith("(with stock)\n")
     # Where stock is there for comparison, the document counts as eonlib has it.
@@ -337,7 +337,10 @@ def test_progress_is_shown_on_a_terminal_and_not_in_a_pipe(ends, shown, capsys, 
     ("arguments", "words"),
     [
         (["check", CLAY, "--host", "cycels"], "got 'cycels': did you mean cycles?"),
-        (["check", CLAY, "--node", "shen_bsdf"], "got 'shen_bsdf': did you mean sheen_bsdf?"),
+        (
+            ["check", CLAY, "--node", "shen_bsdf"],
+            "no node 'shen_bsdf': did you mean sheen_bsdf? see mxeon check --node list",
+        ),
         (["check", CLAY, "--library", "eonlb"], "got 'eonlb': did you mean eonlib?"),
         (["chek", CLAY], "got 'chek': did you mean check?"),
         (["check", CLAY, "--libary", "stock"], "got '--libary': did you mean --library?"),
@@ -355,4 +358,21 @@ def test_without_a_command_there_is_help(arguments, capsys):
     printed = capsys.readouterr()
     program = " ".join(["mxeon", *arguments])
     assert f"\nusage: {program} [options] " in printed.out
-    assert printed.err == f"{program}: must be followed by one of the commands above; got none\n"
+    assert printed.err == f"{program}: choose a command\n"
+
+
+@pytest.mark.parametrize("color", [True, False])
+def test_an_answer_is_as_wide_as_the_terminal_and_in_color_unless_it_is_not_wanted(
+    color, monkeypatch
+):
+    monkeypatch.setenv("COLUMNS", "40")
+    monkeypatch.setenv("NO_COLOR", "" if color else "1")
+    monkeypatch.setattr(sys, "stdout", SimpleNamespace(isatty=lambda: True))
+    path = "/" + 50 * "x"
+    lines = [Line.of(f"failed: {12 * 'word '}{path}", FAILED), "  a row of a table", "plain"]
+    shown = wrapped(lines)
+    assert ("\033[31m" in shown, "\033[0m" in shown) == (color, color)
+    plain = re.sub(r"\033\[\d+m", "", shown).splitlines()
+    assert [each for each in plain if len(each) > 40] == [f"  {path}"]
+    assert " ".join(" ".join(plain).split()) == " ".join(" ".join(lines).split())
+    assert plain[-2:] == lines[-2:]

@@ -49,9 +49,13 @@ def run(tmp_path, monkeypatch):
 
 def refusal(folder, files, **options):
     """What has changed since a run."""
-    with pytest.raises(InputError, match="--resume needs the same run") as error:
+    with pytest.raises(InputError, match="holds another run") as error:
         check(files or None, folder=folder, resume=True, **{"policy": CODE} | options)
-    return str(error.value).partition("changed: ")[2]
+    return (
+        str(error.value)
+        .partition("another run (")[2]
+        .removesuffix("); use a new folder, or omit --resume")
+    )
 
 
 def test_what_a_document_names_is_a_dependency(tmp_path, monkeypatch):
@@ -75,7 +79,10 @@ def test_a_texture_that_changed_is_named_and_the_run_not_resumed(run, capsys):
     command.append("--allowCode")
     assert main(command) == 2
     error = capsys.readouterr().err
-    assert error.endswith(f"changed: {file.parent / 'grid.png'}\n") and error.count("\n") == 1
+    assert (
+        error.endswith(f"run ({file.parent / 'grid.png'}); use a new folder, or omit --resume\n")
+        and error.count("\n") == 1
+    )
 
 
 def test_an_option_that_changed_is_named(run):

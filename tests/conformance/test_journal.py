@@ -120,9 +120,9 @@ def test_what_is_no_journal_is_refused(tmp_path, text):
 )
 def test_another_run_is_not_resumed(tmp_path, change, words):
     kept(tmp_path)
-    with pytest.raises(ValueError, match="--resume needs the same run, ") as error:
+    with pytest.raises(ValueError, match="holds another run") as error:
         journal(tmp_path, replace(PLAN, **change), resume=True).__enter__()
-    assert str(error.value).endswith(f"; changed: {words}")
+    assert str(error.value).endswith(f" another run ({words}); use a new folder, or omit --resume")
 
 
 def test_a_run_that_was_never_begun_is_begun(tmp_path):

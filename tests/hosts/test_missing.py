@@ -20,9 +20,9 @@ DISPLAY = (  # where MaterialX's renderer loads, and where it does not
 )
 NPM = f"npm ci --prefix {browser.packages_folder()}$"
 ENVIRONMENTS = [  # host, its environment, and the words
-    ("cycles", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; pip install bpy"),
+    ("cycles", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; in a checkout: ./run"),
     ("cycles", {BLENDER: sys.executable}, ".*No module named 'bpy'"),
-    ("storm", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; pip install bpy"),
+    ("storm", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; in a checkout: ./run"),
     ("storm", {BLENDER: sys.executable}, "no package bpy; pip install bpy==.* in the env"),
     ("mitsuba", {"MXEON_MITSUBA_PYTHON": NOWHERE}, r"not installed: pip install '\.\[mitsuba\]'"),
     ("three", {browser.MODULES: "/nowhere"}, f"no package three in /nowhere; {NPM}"),

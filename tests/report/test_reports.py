@@ -151,7 +151,7 @@ GATE = {
         {"error": 1.0, "tolerance": 0.0, "quantity": Quantity.INPUTS},
         {"error": 2.0, "tolerance": 0.0, "quantity": Quantity.INPUTS}, WORSE, "2 times larger",
     ),
-    "permitted no longer": (PERMITTED | errors(), errors(rms=0.01), WORSE, "no permitted reading explains it any"),
+    "permitted no longer": (PERMITTED | errors(), errors(rms=0.01), WORSE, "the specification no longer allows it"),
     "a permitted reading with a larger error": (PERMITTED | errors(), PERMITTED | errors(largest=0.6), WORSE, "largest"),
     "does not compile": ({}, {"error": None}, WORSE, "failed at 0.3 -> failed"),
     "no samples, and larger": ({}, {"error": 0.9}, WORSE, "failed at 0.3 -> failed at 0.9; 3 times larger"),

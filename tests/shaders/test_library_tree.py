@@ -74,7 +74,7 @@ FAULTS = {
         'file="mx_add_bsdf.glsl" function="mx_add_bsdf"',
         "layer",
         "combination",
-        " % of the pairs",
+        " % of view/light pairs",
     ),
 }
 

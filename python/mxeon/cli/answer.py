@@ -13,16 +13,26 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from mxeon.cli.output import fail, show
+from mxeon.cli.output import Line, fail, show, wrapped
 from mxeon.conformance import words
 from mxeon.conformance.pictures import DOCUMENT_KEY
-from mxeon.conformance.results import DIFFERS, DIRECT, FAILED, NOT_RUN, PASSED, Kind, Result, Run
+from mxeon.conformance.results import (
+    DIFFERS,
+    DIRECT,
+    FAILED,
+    NOT_RUN,
+    PASSED,
+    Kind,
+    Result,
+    Run,
+    Verdict,
+)
 from mxeon.conformance.results.known_issues import issues_of
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.spec import ValueSpec
 from mxeon.conformance.specs import ALL
 from mxeon.conformance.words import counted, listed
-from mxeon.errors import as_output, one_line, printable
+from mxeon.errors import as_output, one_line
 from mxeon.report.formats import link
 from mxeon.shaders.library import eonlib_folder, kind_of
 from mxeon.shaders.library_export import CLIENTS
@@ -78,11 +88,11 @@ def show_run(
             for name in names or ["nothing"]
         ]
         checks = [*map(_line, run.results), *files] if options.full else []
-        print(printable("\n".join([*checks, *answer(run, options.full)])))
+        print(wrapped([*checks, *answer(run, options.full)]))
         if page:
             show(f"report: {page}")
         if baseline:
-            print("\n".join(["compared with the baseline:", *diff.lines(changes)]))
+            print(wrapped(["compared with the baseline:", *diff.lines(changes)]))
     if getattr(options, "annotations", False):
         lines = diff.annotations(changes) if baseline else _annotations(run)
         print("\n".join(lines), file=sys.stderr if options.json else sys.stdout)
@@ -93,8 +103,8 @@ def _annotations(run: Run) -> Iterator[str]:
     """Failures by their cause, and what did not run, as commands to GitHub's log."""
     for line in _failures(replace(run, results=run.judged, compared=())):
         yield words.annotation("error", "mxeon check", one_line(line))
-    for line in _not_run(run, True, []):
-        yield words.annotation("warning", "mxeon check", one_line(line))
+    for reason in _not_run(run, True, []):
+        yield words.annotation("warning", "mxeon check", one_line(reason))
 
 
 def _line(result: Result) -> str:
@@ -104,18 +114,20 @@ def _line(result: Result) -> str:
         error, tolerance = result.error or 0.0, result.tolerance or 0.0
         numbers = f"{error:.3g} <= {tolerance:.3g} {result.unit}" if tolerance else ""
     about = f"{result.verdict}: {result.location}, {result.check}, {result.subject}"
-    return one_line(f"{about}: {numbers}".rstrip(": "))
+    return Line.of(one_line(f"{about}: {numbers}".rstrip(": ")), result.verdict)
 
 
 def answer(run: Run, full: bool = False) -> list[str]:
     """The lines of the summary, at most LINES for one document unless it is `full`."""
     many = len(run.contents) + len(run.refused) > MANY
-    looks = summary_by_cause(run) if many else list(map(one_line, _looks(run)))
+    looks = summary_by_cause(run) if many else list(_looks(run))
     rows = {} if many else _rows(run)
     remedy, failures = [one_line(line) for line in _remedy(run)], list(_failures(run))
     notes = [f"note: {note}" for note in run.notes]
     idle = _not_run(run, full, [] if many else looks)
-    first = list(map(one_line, [*words.origins(run), *idle, *words.not_judged(run)]))
+    stopped = [Line.of(one_line(each), NOT_RUN) for each in idle]
+    others = map(one_line, (*words.origins(run), *words.not_judged(run)))
+    first = [*stopped, *others]
     # The verdict comes first without documents, or if something was not judged.
     begins = run.refused or run.verdict == NOT_RUN or not run.contents
     alone = len(run.contents) == 1
@@ -128,9 +140,11 @@ def answer(run: Run, full: bool = False) -> list[str]:
     table = list(_table(run, rows, kept))
     causes = len(failures) if full else max(least, room - len(table) - bool(notes))
     noted = len(notes) if full else max(1, room - len(table) - len(failures[:causes]))
-    after = [*failures[:causes], *notes[:noted]]
-    lines = [*first, *looks[:seen], *table, *map(one_line, after)]
-    lines.insert(0 if begins else len(lines), one_line(run.summary))
+    failed = [Line.of(one_line(each), each.verdict) for each in failures[:causes]]
+    after = [*failed, *map(one_line, notes[:noted])]
+    lines: list[str] = [*first, *looks[:seen], *table, *after]
+    summary = Line.of(one_line(run.summary), run.verdict)
+    lines.insert(0 if begins else len(lines), summary)
     counts = (
         len(looks) - seen,
         len(rows) - kept,
@@ -222,11 +236,12 @@ def is_refused(run: Run, document: str, library: str) -> bool:
     return not run.refused.keys().isdisjoint((document, f"{document} with {library}"))
 
 
-def _looks(run: Run) -> Iterator[str]:
+def _looks(run: Run) -> Iterator[Line]:
     """Sentences on materials, worst first; materials that look alike share one."""
     hosts = {each.host for each in run.results if each.check in KEYS}
     alike: dict[str, list[str]] = {}
     ranks: dict[str, int] = {}
+    tones: dict[str, Verdict | None] = {}
     for document in run.contents:
         if document in run.refused:
             continue
@@ -243,8 +258,10 @@ def _looks(run: Run) -> Iterator[str]:
             sentence = _look(run, document, results)
             alike.setdefault(sentence, []).append(f"{name}{place}")
             ranks[sentence] = min(STATES.index(each.verdict) for each in results)
+            own = [each.verdict for each in results if each.library not in run.compared]
+            tones[sentence] = min(own, key=STATES.index, default=None)
     for sentence, names in sorted(alike.items(), key=lambda each: ranks.get(each[0], len(STATES))):
-        yield f"{', '.join(names)}: {sentence}."
+        yield Line.of(one_line(f"{', '.join(names)}: {sentence}."), tones.get(sentence))
 
 
 def _look(run: Run, document: str, results: Sequence[Result]) -> str:
@@ -336,7 +353,7 @@ def _table(run: Run, rows: Rows, kept: int) -> Iterator[str]:
         return
     hosts = _unique(host for _, host in rows)
     libraries = _unique(each.library for row in rows.values() for each in row)
-    table = [[f"nodes on {', '.join(hosts)}", *libraries]]
+    table = [[f"nodes on {', '.join(hosts)}, largest error", *libraries]]
     for (title, host), row in list(rows.items())[:kept]:
         cells = [_cell(run, [each for each in row if each.library == name]) for name in libraries]
         table.append([title if len(hosts) == 1 else f"{title} on {host}", *cells])
@@ -348,25 +365,27 @@ def _table(run: Run, rows: Rows, kept: int) -> Iterator[str]:
 
 
 def _cell(run: Run, results: Sequence[Result]) -> str:
-    """A node with one library: its model or fault, error and tolerance."""
+    """A node with one library: its model, or that it is wrong, its error, and the check that measured it."""
     if not results:
         return "not judged"
     rank = min(_rank(run, each) for each in results)
     chosen = [each for each in results if _rank(run, each) == rank and rank != RIGHT]
     direct = [each for each in results if each.check in DIRECT]
+    # The error in direct light says most.
     shown = max(
-        chosen or direct or results, key=lambda each: (each.error or 0.0) / (each.tolerance or 1.0)
+        chosen or direct or results,
+        key=lambda each: (each in direct, (each.error or 0.0) / (each.tolerance or 1.0)),
     )
     cell = {WRONG: "wrong", ELSEWHERE: "wrong for other inputs"}.get(rank, model_of(shown.subject))
     if rank == RIGHT and any(each.verdict == DIFFERS for each in results):
-        cell += ", differs as permitted"
-    if not shown.tolerance or shown.error is None:
+        cell += ", differs as allowed"
+    if shown.error is None:
         return cell
+    if not shown.tolerance:
+        return f"{cell}: {words.excess(shown)} ({shown.check})" if rank != RIGHT else cell
     if shown.error > UNBOUNDED and shown.quantity is not Quantity.KIT:
-        view = f"at a view cosine of {shown.worst['wo'][2]:.2g}" if "wo" in shown.worst else ""
-        place = words.region(shown.diagnosis.region) if shown.diagnosis.region else view
-        return f"{cell}, unbounded {place}".rstrip()
-    return f"{cell}, error {shown.error:.2g}, tolerance {shown.tolerance:.2g}"
+        return f"{cell}, unbounded ({shown.check})"
+    return f"{cell}, {shown.error:.2g}" + f" ({shown.check})" * (rank != RIGHT)
 
 
 def model_of(title: str) -> str:
@@ -432,7 +451,7 @@ def _remedy(run: Run) -> Iterator[str]:
         yield f"Nothing to do for {'these materials' if several else 'this material'}"
 
 
-def _failures(run: Run) -> Iterator[str]:
+def _failures(run: Run) -> Iterator[Line]:
     """A line for each page or diagnosis that explains failures.
 
     Compared libraries come last. Then failures at the documents' own inputs come first, then those without a page, then
@@ -461,11 +480,17 @@ def _failures(run: Run) -> Iterator[str]:
         if explained := [each for each in results if nodes & _lobes(each)]:
             shown.setdefault(place, []).extend(explained)
         else:
-            yield f"{place}: {_sentence(results)}"
+            yield Line.of(f"{place}: {_sentence(results)}", _tone(run, results))
     for place, results in shown.items() if not run.contents else ():
         names = _unique(name for each in results for _, name in sorted(nodes & _lobes(each)))
         subjects = listed([each.subject for each in results])
-        yield f"{place}: {counted(len(results), 'picture')} of {listed(names)}: {subjects}"
+        pictures = f"{place}: {counted(len(results), 'picture')} of {listed(names)}: {subjects}"
+        yield Line.of(pictures, _tone(run, results))
+
+
+def _tone(run: Run, results: Iterable[Result]) -> Verdict | None:
+    """The verdict that failures have for a run, which ignores those of compared libraries."""
+    return None if all(each.library in run.compared for each in results) else FAILED
 
 
 def _lobes(result: Result) -> set[tuple[str, str]]:

@@ -76,7 +76,7 @@ class Parser(argparse.ArgumentParser):
         is_command = self.get_default("run") is not None  # no group of commands
         if not (words or is_command):
             self.print_help()
-            self.error("must be followed by one of the commands above; got none")
+            self.error("choose a command")
         known = self._option_string_actions
         for word in itertools.takewhile("--".__ne__, words):
             if not (is_command or word.startswith("-")):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from mxeon import survey
 from mxeon.cli import arguments
 from mxeon.cli.output import Progress, fail
-from mxeon.errors import MISUSE, InputError
+from mxeon.errors import MISUSE, PASSED, InputError
 from mxeon.hosts import host_names, register
 from mxeon.jobs import WAIT
 from mxeon.jobs.signals import SignalExit, block_signals
@@ -54,14 +54,14 @@ def add_parser(commands: arguments.Commands) -> None:
         action="append",
         metavar="NAME",
         help=f"{arguments.LIBRARY}. Repeatable. Without it, FILEs are checked with stock too, "
-        "for comparison: only eonlib decides the exit status",
+        "for comparison; only eonlib sets the exit status",
     )
     command.add_argument(
         "--node",
         action="append",
         metavar="NAME",
         help="check the nodes of this category (such as sheen_bsdf), or 'common' or 'all' nodes, "
-        "even if no document uses them; repeatable",
+        "even if no document uses them; repeatable. 'list' prints the names",
     )
     arguments.add_shared(command, "--report")
     command.add_argument(
@@ -84,7 +84,7 @@ def add_parser(commands: arguments.Commands) -> None:
         type=int,
         default=1,
         metavar="N",
-        help="draw other random samples, and a different number of them (default: %(default)s)",
+        help="random seed; also varies the number of samples (default: %(default)s)",
     )
     command.add_argument("--scheduler", metavar="ADDRESS", help="run on this Dask cluster")
     command.add_argument(
@@ -106,7 +106,12 @@ def run(options: argparse.Namespace) -> int:
     from mxeon.cli.answer import show_run
     from mxeon.conformance.run import check
     from mxeon.conformance.run.journal import JOURNAL
+    from mxeon.conformance.run.plan import node_names
 
+    if "list" in (options.node or ()):
+        progress.clear()
+        print("\n".join(sorted(node_names())))
+        return PASSED
     if options.resume and not options.report:
         raise InputError("--resume needs the folder of the run to continue; pass --report DIR")
     if options.report:

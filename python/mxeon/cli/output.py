@@ -1,16 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Messages on standard error, progress, and closed streams."""
 
+from __future__ import annotations
+
 import os
 import re
 import shutil
 import sys
+import textwrap
 import time
 from collections.abc import Callable, Iterable, Iterator, Sized
 from io import TextIOWrapper
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from mxeon.errors import MISUSE, DocumentError, one_line, printable
+
+if TYPE_CHECKING:
+    from mxeon.conformance.results import Verdict
+
+COLUMNS = 100  # of an answer that goes to no terminal
+COLORS: dict[str | None, int] = {"passed": 32, "failed": 31, "not run": 33}  # of ANSI, by verdict
 
 
 def open_streams() -> None:
@@ -78,6 +87,39 @@ def on_one_line(name: object) -> str:
     return re.sub(r"[\t\n\r]", "\ufffd", printable(str(name)))
 
 
+class Line(str):
+    """A line of an answer, with the verdict that it states."""
+
+    verdict: Verdict | None = None
+
+    @classmethod
+    def of(cls, text: str, verdict: Verdict | None) -> Line:
+        line = cls(text)
+        line.verdict = verdict
+        return line
+
+
+def wrapped(lines: Iterable[str]) -> str:
+    """Lines as wide as the terminal, or 100 columns, and on a terminal in the color of their verdicts."""
+    width = shutil.get_terminal_size((COLUMNS, 1)).columns
+    colored = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+    shown = []
+    for line in lines:
+        indent = " " * (len(line) - len(line.lstrip()) + 2)
+        text = "\n".join(
+            textwrap.wrap(
+                line,
+                width,
+                subsequent_indent=indent,
+                break_long_words=False,
+                break_on_hyphens=False,
+            )
+        )
+        color = COLORS.get(getattr(line, "verdict", None)) if colored else None
+        shown.append(f"\033[{color}m{text}\033[0m" if color else text)
+    return "\n".join(shown)
+
+
 def warn(message: object) -> None:
     _print_line(f"warning: {one_line(message)}")
 
@@ -111,6 +153,11 @@ class Progress:
             line = one_line(f"{self._title}: {text}")[:columns]
             print(f"{self.take()}{line}", end="", file=sys.stderr, flush=True)
             Progress.visible = line
+
+    def clear(self) -> None:
+        """Erase the line."""
+        if self._open:
+            print(self.take(), end="", file=sys.stderr, flush=True)
 
     @classmethod
     def take(cls) -> str:

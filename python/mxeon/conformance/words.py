@@ -192,7 +192,9 @@ FAULTS = {
 # How the states of pixels are joined that all wrong sums have, and those of frames.
 STATES = {"state": "", "both_states": " and ", "either_state": " or "}
 FRAMES = {f"{key}_of_frames": word for key, word in STATES.items()}
-SUMS = "each part is right by itself, but {share} sums are wrong{states}"
+SUMS = (
+    "each part is right by itself, but {share} combinations of lobes and lights are wrong{states}"
+)
 # Other defects, with what `_filled` has in braces.
 DEFECTS = {
     "average_at_half_vector": "the compensation uses F at the half vector instead of its average",
@@ -302,7 +304,7 @@ FACTORS = {"pi": math.pi, "1/pi": 1.0 / math.pi, "pi^2": math.pi**2, "2": 2.0, "
 SAME_FACTOR = 0.005
 UNKNOWN = {
     "unknown": "the cause is unknown",
-    "no_model": "no known model matches",
+    "no_model": "it matches no known mistake",
     "singly_right": "each value on its own is within tolerance",
     "other_average": "the compensation uses a different average of the film's reflectance",
     "unmasked": "the visible facets are not weighted by masking and shadowing",
@@ -368,15 +370,24 @@ def _region(cause: Cause) -> str:
     if not cause.point:
         return f"{begins} {wrong} of {count} pairs"
     joint = ", worst" if cause.key == "wrong" else "; worst"
-    return f"{begins} {100.0 * wrong / count:.3g} % of the pairs{joint} {_point(cause.point)}"
+    return f"{begins} {_percent(wrong / count)} % of view/light pairs{joint} {_point(cause.point)}"
 
 
 def _point(point: Mapping[str, Sequence[float]]) -> str:
     if "wo" in point:
-        light = f" and a light cosine of {point['wi'][2]:.2g}" if "wi" in point else ""
-        return f"at a view cosine of {point['wo'][2]:.2g}{light}"
+        light = f" and the light at {_degrees(point['wi'])}" if "wi" in point else ""
+        return f"with the view at {_degrees(point['wo'])}{light} degrees"
     numbers = (f"{name} {' '.join(f'{x:.3g}' for x in each)}" for name, each in point.items())
     return f"with {', '.join(numbers)}"
+
+
+def _percent(share: float) -> str:
+    return _short(100.0 * share, 2 if share < 0.995 else 3)
+
+
+def _degrees(direction: Sequence[float]) -> str:
+    """Angle from the normal."""
+    return f"{math.degrees(math.acos(max(-1.0, min(1.0, direction[2])))):.0f}"
 
 
 def _not_finite(cause: Cause) -> str:
@@ -451,10 +462,7 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
     Kind.NOT_FINITE: _not_finite,
     Kind.CURE: _cure,
     Kind.DEFECT: lambda cause: _filled(DEFECTS[cause.key], cause),
-    Kind.UNKNOWN: lambda cause: (
-        UNKNOWN[cause.key]
-        + "".join(f", the closest is {name}{_rms(cause)}" for name in cause.names)
-    ),
+    Kind.UNKNOWN: lambda cause: UNKNOWN[cause.key],
     Kind.TEXT: lambda cause: cause.text,
     Kind.CONTROL: lambda cause: "inconclusive: the values are right, but the control passed too",
     # The reason of a result that was not run says it.
@@ -558,7 +566,7 @@ GROWTHS = {
     "wrong": "{0} % -> {1} % of the samples are wrong",
     "not_finite": "{0} % -> {1} % of the samples are not finite",
 }
-UNEXPLAINED = "no permitted reading explains it any longer"
+UNEXPLAINED = "the specification no longer allows it"
 
 
 def growth(key: str, before: float, after: float, place: Region | None) -> str:
@@ -610,7 +618,7 @@ def sentence(run: Run) -> str:
     differ = ""
     if counts[DIFFERS]:
         verb = "differs" if counts[DIFFERS] == 1 else "differ"
-        differ = f"; {counts[DIFFERS]} {verb} where the specification leaves it open"
+        differ = f"; {counts[DIFFERS]} {verb}, but the specification allows it"
     # Those that a failure keeps from running are part of it.
     idle = sum(each.verdict == NOT_RUN and not each.follows for each in results)
     missed = f"; {idle} did not run" if idle else ""
@@ -636,7 +644,13 @@ def sentence(run: Run) -> str:
         items = counted(len(run.missing), "item")
         text += f" The run is not finished: {items} {verb} missing."
     if run.refused:
-        text = f"Refused and not judged: {listed(tuple(run.refused))}. {text}"
+        names, faults = tuple(run.refused), counted(len(run.errors), "error")
+        checked = "was not checked" if len(names) == 1 else "were not checked"
+        if results and counts[PASSED] + counts[DIFFERS] + counts[FAILED]:
+            text = f"{listed(names)} {checked}: {faults}. {text}"
+        else:
+            verb = "has" if len(names) == 1 else "have"
+            text = f"{listed(names)} {verb} {faults}; nothing was checked."
     for library in run.compared:
         other = [each.verdict for each in run.results if each.library == library]
         ran = len(other) - other.count(NOT_RUN)

@@ -16,6 +16,7 @@ from mxeon.shaders.scene import Scene
 from mxeon.shaders.shader_ball import BELT, OBJECT
 
 SAMPLES, BOUNCES = 64, 8  # default paths per pixel and bounces per path
+NOISY = 0.02  # share of the light; more is told with a remedy
 HEAD = (
     "#version 430\n#define texture(map, at) textureLod(map, at, 0.0)\n"  # paths have no derivatives
 )
@@ -65,7 +66,9 @@ class PathTracerHost(gl.GlHost):
         gray = mean[..., :3].mean(axis=-1)
         variance = np.maximum(mean[..., 3] - gray**2, 0.0) / max(samples - 1, 1)
         noise = np.sqrt(variance.sum() / max((gray**2).sum(), 1e-30))
-        note = f"{shader.element}: {samples} paths a pixel leave a noise of {100.0 * noise:.2g} % of the light"
+        note = f"{shader.element}: noise of {100.0 * noise:.2g} % of the light"
+        if noise > NOISY:
+            note = f"{shader.element}: still noisy ({100.0 * noise:.2g} %); try --samples {16 * samples}"
         warnings.warn(NoiseNote(note), stacklevel=2)
         return mean[..., :3]
 

@@ -163,9 +163,9 @@ def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findin
 
 def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -> str:
     """The reason for not resuming the run in a folder: one line that lists what differs."""
-    changed = listed(differences)
-    rule = "--resume needs the same run, or another --report folder: this one keeps the earlier run"
-    return f"{folder}: {rule}; changed: {changed}"
+    return (
+        f"{folder}: holds another run ({listed(differences)}); use a new folder, or omit --resume"
+    )
 
 
 def _left(path: Path) -> str:

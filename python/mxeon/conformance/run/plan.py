@@ -201,7 +201,7 @@ def assert_known_names(hosts: Iterable[str], nodes: Iterable[str]) -> None:
     for name in hosts:
         assert_known("host", name, host_names())
     for name in nodes:
-        assert_known("node", name, (*node_names(), COMMON, ALL))
+        assert_known("node", name, (*node_names(), COMMON, ALL), "mxeon check --node list")
 
 
 def node_names() -> tuple[str, ...]:

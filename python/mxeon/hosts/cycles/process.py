@@ -29,10 +29,10 @@ def interpreter(name: str = "cycles") -> Path:
     python = Path(path or Path(CHECKOUT, ".venv-cycles", "bin", "python"))
     if python.is_file() and os.access(python, os.X_OK):
         return python
-    missing = f"no interpreter {path}" if path else "no folder .venv-cycles"
+    missing = f"no interpreter {path}" if path else "needs Blender's Python package (1 GB)"
     raise NotRun(
-        f"{name}: {missing}; pip install bpy==5.0.1 in an environment of Python 3.11 "
-        "and name its interpreter in MXEON_CYCLES_PYTHON"
+        f"{name}: {missing}; in a checkout: ./run demo --host cycles; else pip install bpy==5.0.1 with "
+        "Python 3.11 and name that Python in MXEON_CYCLES_PYTHON"
     )
 
 
