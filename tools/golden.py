@@ -28,7 +28,7 @@ Line = dict[str, object]
 def lines(host: str, library: str) -> list[Line]:
     """The results of all nodes and the bundled examples on a host."""
     command = ["mxeon", "check", "--host", host, "--library", library, "--json"]
-    for nodes in (["--node", "all"], []):  # a renderer with materials of its own takes no --node
+    for nodes in (["--node", "all"], []):  # renderers with own materials reject --node
         run = subprocess.run([*command, *nodes], capture_output=True, text=True, check=False)
         if run.stdout.startswith("{"):
             return [line(each) for each in json.loads(run.stdout)["results"]]
@@ -47,7 +47,7 @@ def line(result: Line) -> Line:
 
 
 def rounded(value: object) -> object:
-    """Fields of JSON with two digits of each number that is not whole."""
+    """Fields of JSON, with non-integer numbers rounded to two digits."""
     if isinstance(value, dict):
         return {name: rounded(each) for name, each in value.items()}
     if isinstance(value, list):
@@ -56,7 +56,7 @@ def rounded(value: object) -> object:
 
 
 def compare(before: Path, after: Path) -> int:
-    """Print what differs, and count it."""
+    """Print the differences, and count them."""
     old, new = (
         {tuple(each.get(key) for key in PLACE): each for each in map(json.loads, path.open())}
         for path in (before, after)

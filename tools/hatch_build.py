@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Puts the ledger into the wheel: the package reads its rows, answers and reports link to its pages."""
+"""Puts the ledger into the wheel: the package reads its rows, and answers and reports link to its pages."""
 
 from pathlib import Path
 from typing import Any

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A test whose host, program or package is missing is skipped; it fails if MXEON_REQUIRE names what is missing.
+"""Tests are skipped if a host, program or package is missing, and fail if MXEON_REQUIRE names it.
 
-MXEON_REQUIRE holds names of hosts, separated by commas, and `packages` for all programs and Python packages.
-`./run test --all` names all that it installs.
+MXEON_REQUIRE is a comma-separated list of hosts, and `packages` for all programs and Python packages.
+`./run test --all` names everything that it installs.
 """
 
 import os
@@ -21,7 +21,7 @@ VARIABLE, PACKAGES = "MXEON_REQUIRE", "packages"
 
 
 def required():
-    """Hosts that have to run, and `packages` if every test has to."""
+    """Hosts that must run, and `packages` if every test must run."""
     names = {name for name in os.environ.get(VARIABLE, "").split(",") if name}
     known = (*host_names(), PACKAGES)
     if unknown := names - set(known):
@@ -39,12 +39,12 @@ def missing(name, reason):
 
 
 def program(name):
-    """Path of a program on PATH, without which the test does not run."""
+    """Path of a program on PATH; skips the test without it."""
     return shutil.which(name) or missing(PACKAGES, f"no program {name}; ./run test --all has it")
 
 
 def package(name):
-    """A module of a Python package, without which the test does not run."""
+    """A module of a Python package; skips the test without it."""
     try:
         return import_module(name)
     except ImportError as error:
@@ -53,7 +53,7 @@ def package(name):
 
 @contextmanager
 def available(host):
-    """Skip the test if what is done here says that a host cannot run; fail if it is required."""
+    """Skip the test if this block reports that a host cannot run; fail if the host is required."""
     try:
         yield
     except NotRun as reason:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""BSDFs of Mitsuba, directions, and what judges both: Mitsuba's chi-square test, and a white furnace."""
+"""Mitsuba BSDFs, directions, and tests of both: Mitsuba's chi-square test, and a white furnace."""
 
 import numpy as np
 
 PARAMETERS = {"eon": "roughness", "fon": "roughness", "qon": "sigma"}
 COLOR = (0.25, 0.5, 1.0)  # exact in float32
 PAIRS, SEED = 512, 7
-SAMPLES = 100_000  # of a chi-square test
+SAMPLES = 100_000  # samples of a chi-square test
 
 
 def material(name, amount, color=COLOR):
@@ -23,14 +23,14 @@ def directions(rng):
 
 
 def surface(mi, wo):
-    """Points that are seen from these directions."""
+    """Surface points seen from these directions."""
     point = mi.SurfaceInteraction3f()
     point.wi = mi.Vector3f(np.asarray(wo).T)
     return point
 
 
 def chi_square(mi, angle, functions):
-    """Mitsuba's test of the pair of functions that its adapter makes of a BSDF."""
+    """Mitsuba's chi-square test of the functions that its adapter derives from a BSDF."""
     from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
 
     wi = [float(0.8 * np.sin(angle)), float(0.6 * np.sin(angle)), float(np.cos(angle))]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a program without mxeon does with a folder of eonlib, and MaterialX alone.
+"""Use of an eonlib folder by a program that only has MaterialX, not mxeon.
 
     python -m tests.support.client FOLDER OUTPUT [DATA]
 
@@ -14,7 +14,7 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenGlsl as mx_glsl
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-SURFACE = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, by the type of what they take
+SURFACE = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, by type
 FILLED = {"BSDF": "conductor_bsdf", "VDF": "absorption_vdf"}  # inputs of combinations
 
 
@@ -30,7 +30,7 @@ def main(folder, output, data=None):
 
 
 def shader(library, row, path):
-    """GLSL of a document that has one node; the implementation has to be that of the row."""
+    """GLSL of a document with one node; asserts that it uses the row's implementation."""
     document = mx.createDocument()
     document.setDataLibrary(library)
     element = rendered(document, document.getNodeDef(row.getNodeDefString()))
@@ -44,8 +44,8 @@ def shader(library, row, path):
 
 
 def rendered(document, definition):
-    """A node of a definition with what it combines, or the surface that shows it."""
-    # Add the node, and what a combination takes.
+    """A node of a definition with its operands, or the surface that shows it."""
+    # Add the node, and the operands of a combination.
     kind = definition.getType()
     node = document.addNode(definition.getNodeString(), "node", kind)
     node.setNodeDefString(definition.getName())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command in a process of its own, and the one line of its messages."""
+"""The command in a separate process, and its one-line messages."""
 
 import os
 import subprocess
@@ -12,7 +12,7 @@ from mxeon.shaders.library import examples_folder
 
 CLAY = str(examples_folder() / "clay.mtlx")
 PLASTER = str(examples_folder() / "plaster.mtlx")
-DEADLINE = 300.0  # seconds, for a machine that is busy
+DEADLINE = 300.0  # seconds, enough for a busy machine
 
 
 def run(*arguments, **environment):

@@ -7,7 +7,7 @@ COMPENSATED = {FLAG: True}
 
 
 def material(nodes):
-    """A document of some nodes, of which `lobe` is the material's BSDF."""
+    """A document of some nodes; `lobe` is the material's BSDF."""
     return document_text(nodes + SURFACE)
 
 
@@ -17,7 +17,7 @@ def lobe(category=OREN_NAYAR, name="lobe", **inputs):
 
 
 def connected(**inputs):
-    """A rough diffuse node with inputs connected as their attributes say."""
+    """A rough diffuse node with inputs connected by the given attributes."""
     ports = "".join(
         f'<input name="{each}" type="{INPUT_TYPES[each]}" {attributes}/>'
         for each, attributes in inputs.items()
@@ -33,7 +33,7 @@ def written(folder, text):
 
 
 def textured(files):
-    """A document whose color is the sum of the images in these files."""
+    """A document with a color that is the sum of the images in these files."""
     image = (
         '<image name="i{0}" type="color3"><input name="file" type="filename" value="{1}"/></image>'
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the parts of mxeon that need no engine where modules, functions and signals of POSIX are missing.
+"""Runs the parts of mxeon that need no engine, with POSIX modules, functions and signals removed.
 
 Every module is imported, then each command runs in the working folder. Under `-X warn_default_encoding`, a file
 that mxeon opens in the platform's encoding is an error.
@@ -44,7 +44,7 @@ COMMANDS = (
     "report diff before after",
     "report schema",
 )
-NOT_RUN = ("check", "report make")  # exit status 3: the text of msl is checked, and nothing runs
+NOT_RUN = ("check", "report make")  # exit status 3: only the text of msl is checked
 
 
 class Windows(ModuleType):
@@ -57,7 +57,7 @@ class Windows(ModuleType):
 
 
 def hide() -> None:
-    """Hide what Windows does not have from what is imported or called from now on."""
+    """Hide the modules and functions that Windows lacks."""
     warnings.filterwarnings("error", category=EncodingWarning, module="mxeon")
     sys.modules.update(dict.fromkeys(MODULES))  # an import of these raises ImportError
     for name in FUNCTIONS:
@@ -81,7 +81,7 @@ def import_all() -> None:
 
 
 def main() -> None:
-    """Run everything; the first command with another status than expected ends the process."""
+    """Run everything; exit at the first command with an unexpected status."""
     hide()
     import_all()
     import numpy as np

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An external renderer: renders a kit with Blender's Cycles, from the kit's files alone.
+"""An external renderer: renders a kit with Blender's Cycles, using only the kit's files.
 
     PYTHON_WITH_BPY external_renderer.py KIT OSL_FOLDER SAMPLES
 
@@ -11,7 +11,7 @@ import os
 import sys
 from pathlib import Path
 
-import bpy  # isort: skip  # first: its folder holds the others
+import bpy  # isort: skip  # imported first: its folder contains the other modules
 import _cycles
 from mathutils import Vector
 
@@ -74,7 +74,7 @@ def set_material(sphere, source):
 
 
 def set_light(scene, description):
-    """Light the scene as a scene of the kit, and by nothing else."""
+    """Light the scene exactly like a scene of the kit."""
     for lamp in list(bpy.data.lights):
         bpy.data.lights.remove(lamp)
     scene.world = bpy.data.worlds.new("world")
@@ -108,4 +108,4 @@ def main(folder, sources, samples):
 if __name__ == "__main__":
     main(Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3]))
     sys.stdout.flush()
-    os._exit(0)  # Blender's own exit waits for what no test needs.
+    os._exit(0)  # skip Blender's slow shutdown

@@ -17,7 +17,7 @@ def square(item):
 
 
 def misbehave(item):
-    """Do what the item says; a number is squared."""
+    """Misbehave as the item names; square a number."""
     if isinstance(item, int):
         return square(item)
     print(f"about to {item}", file=sys.stderr, flush=True)
@@ -50,7 +50,7 @@ class Lost:
 
 
 def meet(folder):
-    """Number of the process that works, once another has begun to work."""
+    """Process ID, once another process has begun to work."""
     Path(folder, str(os.getpid())).touch()
     end = time.monotonic() + 300.0
     while len(os.listdir(folder)) < 2 and time.monotonic() < end:
@@ -59,7 +59,7 @@ def meet(folder):
 
 
 def need(item):
-    """Ask for the environment variable that the item names."""
+    """Read the environment variable that the item names."""
     if item not in os.environ:
         raise NotRun(f"{item}: missing")
     return os.environ[item]
@@ -67,7 +67,7 @@ def need(item):
 
 @contextmanager
 def room_for(size):
-    """Let no file grow beyond so many bytes: what a full disk does, without one."""
+    """Limit the size of files in bytes, to simulate a full disk."""
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
     try:

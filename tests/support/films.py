@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Thin films by wavelengths, which the text approximates by Gaussians and a few orders: [Belcour2017], Section 3.
+"""Thin films by wavelength; the text approximates them by Gaussians and a few orders: [Belcour2017], Section 3.
 
 The amplitudes of both interfaces and the phase of one passage give the sum of all reflections in closed form.
 """

@@ -23,7 +23,7 @@ gauss_legendre = lru_cache(np.polynomial.legendre.leggauss)
 
 
 def rule(edges, count):
-    """Nodes and weights of Gauss-Legendre between each two edges, shape (panels, count)."""
+    """Nodes and weights of Gauss-Legendre between adjacent edges, shape (panels, count)."""
     x, w = gauss_legendre(count)
     edges = np.asarray(edges)[:, np.newaxis]
     half = 0.5 * np.diff(edges, axis=0)
@@ -79,7 +79,7 @@ def expected(sampler, mu, roughness, edges, count):
 
 
 def probability(sample, pdf, wo, u, count=12, nodes=24):
-    """Probability of a chi-square as large, for sample(wo, u) and pdf(wo, wi); what is below is a bin."""
+    """p-value of a chi-square test of sample(wo, u) against pdf(wo, wi); the lower hemisphere is one bin."""
     # Count samples, and integrate the density, in bins of equal projected area.
     edges = np.arccos(np.sqrt(np.linspace(1.0, 0.0, 9)))
     counts = binned(sample(wo, u)[0], edges, count)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Short runs: some of the checks, for tests of what a run does with its results."""
+"""Short runs of a few checks, for tests of the processing of results."""
 
 from dataclasses import replace
 
@@ -9,18 +9,18 @@ from mxeon.shaders.nodes import EON, OREN_NAYAR
 
 
 def keep_checks(patch, *keys):
-    """Let every run that this process plans consist of these checks of diffuse nodes alone."""
+    """Restrict the runs that this process plans to these checks of diffuse nodes."""
     others = {*node_names()} - {EON, OREN_NAYAR}
     keep(patch, lambda task: task.check in keys and task.subject.split(",")[0] not in others)
 
 
 def keep_host(patch, host):
-    """Let every run that this process plans consist of what a host is asked, without texts."""
+    """Restrict the runs that this process plans to one host, without texts."""
     keep(patch, lambda task: task.host == host)
 
 
 def keep(patch, kept):
-    """Let plans have the tasks that are kept alone."""
+    """Restrict plans to tasks for which `kept` is true."""
     whole = run.make_plan
 
     def make_plan(*arguments, **options):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Results that are made, not measured: for tests of what is done with them; and journals of runs."""
+"""Made-up results, for tests of their processing; and journals of runs."""
 
 from contextlib import contextmanager
 from dataclasses import replace
@@ -67,7 +67,7 @@ def journal(folder, plan=PLAN, **options):
 
 
 def kept(folder, *results):
-    """The folder of a run that had these results."""
+    """The folder of a run with these results."""
     tasks = tuple(Task(each.check, each.subject, each.host, each.library) for each in results)
     with journal(folder, replace(PLAN, tasks=tasks)) as written:
         for number, each in enumerate(results):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What takes long, made by one of pytest's processes for all of them."""
+"""Expensive values, computed by one of pytest's processes for all of them."""
 
 import os
 import pickle
@@ -11,35 +11,35 @@ import mxeon
 from mxeon.shaders.library import examples_folder
 from tests.support.plans import keep
 
-# Documents that are judged with each library: eonlib has to show all examples right.
+# Documents that are judged with each library: eonlib must render all examples correctly.
 EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough_base.mtlx")]
 DOCUMENTS = {"eonlib": sorted(examples_folder().glob("*.mtlx")), "stock": EXAMPLES}
 
 
-_MADE = {}  # by name, where one process tests
+_MADE = {}  # values by name, for tests in a single process
 
 
 def shared(factory, name, make):
-    """The value of `make`; where several processes test, that of the first of them to ask."""
+    """The value of `make`; with several test processes, the first one computes it."""
     if "PYTEST_XDIST_WORKER" not in os.environ:
         if name not in _MADE:
             _MADE[name] = make()
         return _MADE[name]
-    path = factory.getbasetemp().parent / f"{name}.pickle"  # a folder of this session alone
+    path = factory.getbasetemp().parent / f"{name}.pickle"  # this session's own folder
     with FileLock(f"{path}.lock"):
         if not path.exists():
             path.write_bytes(pickle.dumps(make()))
         return pickle.loads(path.read_bytes())
 
 
-# Checks of the text for path tracers, whose program of a surface shader takes a driver seconds.
+# Checks of the text for path tracers; drivers take seconds to compile a surface shader.
 DRAWN = ("pdf", "sample", "path_value", "path_inside", "path_energy", "path_leaving", "path_albedo")
 
 
 def every_node(factory, library):
-    """Every node and some documents on gl with a library, judged once for all tests that read the results.
+    """Results of every node and some documents on gl with a library, computed once for all tests.
 
-    The text of surface shaders for path tracers is judged by `test_path_tracing.py`, and by the longest tests.
+    `test_path_tracing.py` and the longest tests judge the text of surface shaders for path tracers.
     """
 
     def make():

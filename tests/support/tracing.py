@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lines that are executed and not traced."""
+"""Execution without line tracing."""
 
 from contextlib import contextmanager
 
@@ -8,7 +8,7 @@ from coverage import Coverage
 
 @contextmanager
 def untraced():
-    """Trace no lines meanwhile, which takes time."""
+    """Disable the slow tracing of lines meanwhile."""
     coverage = Coverage.current()
     if coverage is None:
         yield

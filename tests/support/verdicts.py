@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One check of one node, or one document, as a run judges it; and the words of results."""
+"""Verdicts on one check of one node, or on one document, as in a run; and the words of results."""
 
 from mxeon.conformance import words
 from mxeon.conformance.run.judge import Judge
@@ -8,13 +8,13 @@ from mxeon.hosts import open_engine
 from mxeon.shaders.document.policy import DEFAULT
 
 PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
-SOURCE = "source"  # in the place of a host
-STOCK, RENDERER_NODES = "stock", "its own nodes"  # in the place of a library
-SHADER_FUNCTIONS = "shader twins"  # in the place of a node
+SOURCE = "source"  # replaces a host
+STOCK, RENDERER_NODES = "stock", "its own nodes"  # names of libraries
+SHADER_FUNCTIONS = "shader twins"  # replaces a node
 
 
 class Verdicts:
-    """A judge whose hosts are those of the session, or of another function of their names."""
+    """A judge that uses the session's hosts, or a given function from names to hosts."""
 
     def __init__(self, hosts=open_engine):
         self._judge = Judge(DEFAULT, hosts)
@@ -25,21 +25,21 @@ class Verdicts:
         return result
 
     def all(self, check, subject, host="gl", library="eonlib", **task):
-        """Results of a task: those of texts and functions are several."""
+        """All results of a task; tasks on texts and functions have several."""
         return self._work(check, subject, host, library, **task).results
 
     def texts(self, check, library):
-        """Results of the checks of texts that have this key, by their subject."""
+        """Results of the text checks with this key, by subject."""
         task = check if check == "definition" else SOURCE
         results = self.all(task, EVERY_NODE, SOURCE, library)
         return {each.subject: each for each in results if each.check == check}
 
     def unjudged(self, check, library, host="gl"):
-        """What a task of a whole library does not judge, and the reasons."""
+        """Subjects that a task on a whole library does not judge, with the reasons."""
         return dict(self._work(check, EVERY_NODE, host, library).unjudged)
 
     def document(self, path, host="gl", library="eonlib"):
-        """Results, pictures and notes of a document, and why it cannot be read."""
+        """Results, pictures and notes of a document, and the errors of reading it."""
         return self._work("picture", str(path), host, library)
 
     def _work(self, check, subject, host, library, **task):
@@ -49,7 +49,7 @@ class Verdicts:
 def has(result, *wanted):
     """Whether one cause of a result has all of these: kind, key, branch, region, names and numbers.
 
-    A text with spaces may be a part of a title or of a name; numbers are compared to two digits.
+    A text with spaces may be part of a title or name; numbers are compared to two digits.
     """
     return not wanted or any(
         all(any(_matches(each, field) for field in _fields(cause)) for each in wanted)
@@ -58,7 +58,7 @@ def has(result, *wanted):
 
 
 def said(result):
-    """The diagnosis of a result in words, for tests of the words."""
+    """The diagnosis of a result in words, for tests of the wording."""
     return words.diagnosis(result.diagnosis)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Other versions of MaterialX, each a folder that comes first on the path of Python.
+"""Other versions of MaterialX, each in a folder that comes first on Python's path.
 
 A version is downloaded once and kept in `out/materialx`, which git ignores.
 """
@@ -22,18 +22,18 @@ from tools.site.ledger import linked
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = ROOT / "out" / "materialx"
-DOWNLOAD = 300.0  # seconds, of 25 MB
-# What the data of MaterialX's main branch has over those of the release.
+DOWNLOAD = 300.0  # seconds for 25 MB
+# Changes of MaterialX's data from the release to the main branch.
 MAIN = ROOT / "tests" / "materialx_main" / "libraries.patch"
 
 
 def wheel(version):
     """Folder of a version of MaterialX, "main" for the installed one with the data of its main branch.
 
-    Other versions are engines, which `./run test --all` installs; the test is skipped where one cannot be had.
+    `./run test --all` installs other versions; the test is skipped if one is not available.
     """
     if version == mx.getVersionString():
-        return ROOT  # which has none, so that the installed one is found
+        return ROOT  # contains no MaterialX, so the installed one is found
     folder = KEPT / (_main_name() if version == "main" else version)
     if not folder.is_dir():
         if version != "main" and PACKAGES not in required():
@@ -56,7 +56,7 @@ def _main_name():
 
 
 def _main(folder):
-    """Link to the installed MaterialX, and change its data to those of main."""
+    """Link to the installed MaterialX, with the data of main."""
     package = linked(Path(mx.__file__).parent, folder / "MaterialX")
     for file in re.findall(r"^--- a/(.*)$", MAIN.read_text(), re.MULTILINE):
         data = (package / file).read_bytes()
@@ -66,7 +66,7 @@ def _main(folder):
 
 
 def git(folder, *arguments):
-    """The output of git in a folder, with no settings of its user and none of a folder around it."""
+    """The output of git in a folder, without settings of the user or of enclosing folders."""
     who = {"user.name": "tests", "user.email": "tests@mxeon.invalid", "core.autocrlf": "false"}
     options = [word for name, value in who.items() for word in ("-c", f"{name}={value}")]
     alone = {
@@ -91,7 +91,7 @@ def install(version, folder):
 
 
 def run(folder, *arguments, module="mxeon"):
-    """A module run as a command with the MaterialX of a folder: the finished process."""
+    """Run a module as a command with the MaterialX in a folder; returns the finished process."""
     paths = [str(folder), *map(str, (ROOT, ROOT / "python"))]
     if os.environ.get("PYTHONPATH"):
         paths.append(os.environ["PYTHONPATH"])
@@ -104,12 +104,12 @@ def run(folder, *arguments, module="mxeon"):
 
 
 def run_with(version, module, *arguments):
-    """The output of a module with a version of MaterialX; it has to succeed."""
+    """The output of a module with a version of MaterialX; asserts success."""
     done = run(wheel(version), *map(str, arguments), module=module)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
 
 def verdicts_with(version, library, *nodes):
-    """Verdicts on the values of nodes of a library, or of all, with a version of MaterialX."""
+    """Verdicts on the values of some or all nodes of a library, with a version of MaterialX."""
     return json.loads(run_with(version, "tests.support.every_node", library, *nodes))

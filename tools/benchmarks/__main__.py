@@ -3,7 +3,7 @@
 
     python -m tools.benchmarks [GROUP ...] [--quick] [--kind TEXT] [--output DIR]
 
-Exit status: 0, or 1 if a value that was timed is wrong. A missed goal is shown and no error.
+Exit status: 0, or 1 if a timed value is wrong. A missed goal is reported, but is not an error.
 """
 
 import argparse
@@ -44,14 +44,14 @@ def main(arguments=None):
     if unknown:
         parser.error(f"group must be one of {', '.join(QUICK)}; got {', '.join(unknown)}")
     file, wrong = options.output / "performance.json", []
-    # Each group is printed and kept as soon as it is done, and the longest ones after each part.
+    # Print and save each group when it is done, and the longest groups after each part.
     for name in options.groups or QUICK:
         sizes = dict(QUICK[name]) if options.quick else {}
         kept = partial(rounds.write, file, kind=options.kind, start=time.monotonic())
         if name in ("materials", "check"):
             sizes["keep"] = kept
         try:
-            with patch.dict(os.environ, {CACHE: "true"}):  # or a compilation is read from a file
+            with patch.dict(os.environ, {CACHE: "true"}):  # otherwise compilations come from a file
                 group = import_module(f"tools.benchmarks.{name}").measure(**sizes)
         except NotRun as reason:
             print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)

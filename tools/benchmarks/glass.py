@@ -31,7 +31,7 @@ def eonlib(alpha):
 
 
 def mitsuba(alpha):
-    """The same by Mitsuba, whose normal leaves the ball."""
+    """The same function by Mitsuba, where the normal leaves the ball."""
     context = mi.BSDFContext(mi.TransportMode.Importance)
     bsdf = mi.load_dict(
         {

@@ -25,7 +25,7 @@ from tools.benchmarks.rounds import Check, Group, clock_of, figure, interleave
 SIZE = 512
 FIRST = 8  # pixels along a side of a first frame
 FRAMES = 3  # frames of each library in a process, after a dropped one
-PROCESSES = 7  # in one of six, llvmpipe's code of one text takes a sixth to two fifths longer
+PROCESSES = 7  # llvmpipe's code for the same text is 1/6 to 2/5 slower in one process of six
 MESH = 128  # squares along a side of the mesh, whose cost is negligible
 LIBRARIES = ("eonlib", "stock")
 
@@ -78,17 +78,17 @@ TIMES = (
 )
 TEXTS = dict.fromkeys(DIFFUSE, 1.0) | dict.fromkeys(BARE, 1.1)
 
-# Where both libraries have one model, of values up to 2: MaterialX's own EON loses digits of 1 - E.
+# Nodes with the same model in both libraries, and tolerances of values up to 2: MaterialX's EON loses digits of 1 - E.
 SAME = {"oren_nayar": 3e-4}
 
-# Cosine from which pixels are compared: the coarse mesh does not end on the rim of the sphere.
+# Least cosine of compared pixels: the coarse mesh does not end on the rim of the sphere.
 FACING = 0.2
 
 
 class Frame:
-    """A material on the sphere, drawn again and again with its uniforms and buffers in place.
+    """A material on the sphere, drawn repeatedly with its uniforms and buffers in place.
 
-    One picture as by `mxeon.hosts.gl`, with its functions, and the set-up kept apart.
+    It draws like `mxeon.hosts.gl`, with the same functions, but separates the setup.
     """
 
     def __init__(self, host, generated, size):
@@ -112,7 +112,7 @@ class Frame:
         self._mesh = context.vertex_array(program, buffers, context.buffer(indices))
 
     def resize(self, size):
-        """Draw into a picture of so many pixels along a side from now on."""
+        """Set the width and height of the picture."""
         picture = self._context.renderbuffer((size, size), 4, dtype="f4")
         self._target = self._context.framebuffer([picture])
 
@@ -136,7 +136,7 @@ class Run:
     lengths: Mapping[str, int]
     compilation: Mapping[str, float]
     frame: Mapping[str, float]
-    infinite: float  # number of pixels that are not
+    infinite: float  # number of non-finite pixels
     apart: float  # largest difference of the libraries
 
 
@@ -174,7 +174,7 @@ def run(node, size, libraries):
 def measure(
     processes=PROCESSES, size=SIZE, nodes=tuple(NODES), keep: Callable[[Group], None] | None = None
 ):
-    """The `Group` of materials, each in so many processes; `keep` is handed it after each, as far as it is."""
+    """The `Group` of materials, each in `PROCESSES` processes; `keep` gets the partial group after each."""
     group = Group("materials", "Materials")
     turns = [LIBRARIES[:: -1 if turn % 2 else 1] for turn in range(processes)]
     with ProcessPoolExecutor(1, get_context("spawn"), max_tasks_per_child=1) as pool:

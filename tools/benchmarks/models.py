@@ -5,8 +5,8 @@ Mitsuba computes in float32, the models in float64 with NumPy and in float32 und
 `eon` is the plugin of `mxeon.mitsuba`; it has no lobe of Schlick's curve or of sheen alone, but `principled` has
 both in one. Times of values a second are processor time.
 
-EON over many pairs is timed in mxeon's blocks against the printed formula as it is. Memory beyond
-arguments and result is the growth of the resident peak in a process of its own.
+EON over many pairs is timed in mxeon's blocks against the unmodified printed formula. Memory beyond
+arguments and result is the growth of the resident peak in a separate process.
 """
 
 import subprocess
@@ -37,7 +37,7 @@ from tools.benchmarks.rounds import (
     version_of,
 )
 
-VALUES = 1_000_000  # pairs of the values a second
+VALUES = 1_000_000  # pairs for values per second
 COLORS, R = np.array([0.2, 0.5, 0.8]), 0.7  # one material for all pairs
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 COMPENSATION = 1e-10  # tolerance of the table of E_ss
@@ -54,7 +54,7 @@ NODES = {
     "conductor": {"type": "roughconductor", "distribution": "ggx", "alpha": 0.3, "material": "Au"},
     "dielectric": {"type": "roughdielectric", "distribution": "ggx", "alpha": 0.3},
 }  # fmt: skip
-RIVALED = ("EON", "Schlick", "sheen")  # must be as fast
+RIVALED = ("EON", "Schlick", "sheen")  # must be as fast as Mitsuba
 GOALS = {(name, ONE) for name in RIVALED}
 
 C1 = 0.5 - 2.0 / (3.0 * np.pi)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Registers, instructions and estimated cycles of materials on a GPU that is not here, eonlib / stock.
+"""Registers, instructions and estimated cycles of materials on an absent GPU, eonlib / stock.
 
 Mesa's driver RADV compiles for a chip by name, `RADV_FORCE_FAMILY`, without the hardware, and reports statistics of the
 code. Shaders are compiled for one light, since the compiler may unroll the loop over lights for only one of the

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shared code of benchmarks: interleaved rounds, figures with goals, tables, and their record.
 
-Rivals take turns within a round, so that what else the machine does falls on all of them alike; a
-ratio is the median of the ratios of the rounds. Benchmark libraries time one function after the
-other, which makes ratios of what drifts between them; hence these few lines.
+Rivals take turns within a round, so that other load on the machine affects all of them equally; a
+ratio is the median of the rounds' ratios. Benchmark libraries time one function after
+another, so their ratios include drift; hence these few lines.
 """
 
 import json
@@ -29,12 +29,12 @@ class Figure:
     median: float
     low: float
     high: float
-    goal: float | None = None  # the median is at most this,
-    at_least: bool = False  # or at least
+    goal: float | None = None  # upper limit of the median
+    at_least: bool = False  # the goal is a lower limit instead
 
     @property
     def reached(self):
-        """Whether the goal is; None without a goal."""
+        """Whether the goal is reached; None without a goal."""
         if self.goal is None:
             return None
         return self.median >= self.goal if self.at_least else self.median <= self.goal
@@ -42,7 +42,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Check:
-    """Largest error of the values that were timed."""
+    """Largest error of the timed values."""
 
     name: str
     error: float
@@ -63,9 +63,9 @@ class Group:
 
 
 def interleave(rivals, rounds, clock=time.perf_counter):
-    """Seconds of each rival as an array, one call per round, in turn; a first round is dropped.
+    """Seconds of each rival as an array, one call per round, in turn; the first round is dropped.
 
-    `time.process_time` as the clock leaves out what else the machine does, and adds up the cores.
+    With `time.process_time` as the clock, other load is excluded and cores are summed.
     """
     found = {name: [] for name in rivals}
     for _ in range(rounds + 1):
@@ -77,7 +77,7 @@ def interleave(rivals, rounds, clock=time.perf_counter):
 
 
 def clock_of(device):
-    """The clock for a device of OpenGL: on a software device, processor time."""
+    """The clock for an OpenGL device; processor time for software devices."""
     return time.process_time if "llvmpipe" in device else time.perf_counter
 
 
@@ -95,7 +95,7 @@ def figure(name, unit, values, goal=None, at_least=False):
 
 
 def reset_memory():
-    """Resident MiB after the peak is set back to it."""
+    """Resident MiB, after resetting the peak to it."""
     with open("/proc/self/clear_refs", "w", encoding="ascii") as file:
         file.write("5")
     return peak_memory()
@@ -140,7 +140,7 @@ def write(file, group, kind="", start=None):
     """Add a group to the file; `start` is when its measurement began, by the monotonic clock."""
     try:
         context = moderngl.create_standalone_context(require=430, backend="egl")
-        renderer = context.info["GL_RENDERER"]  # for llvmpipe with the width of its vectors
+        renderer = context.info["GL_RENDERER"]  # llvmpipe includes the width of its vectors
         context.release()
     except Exception:  # moderngl and glcontext raise bare Exception
         renderer = "none"

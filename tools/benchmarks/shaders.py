@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values and sampling of EON in a compute shader, nanoseconds per call on one invocation's share.
+"""Values and sampling of EON in a compute shader, nanoseconds per call and invocation.
 
 Each invocation calls its function many times, with arguments that change unpredictably from call to call, and stores the
 sum. The time of a loop that only adds up the arguments is subtracted. A loop of one pass gives the values of the first
@@ -26,7 +26,7 @@ PRINTED = Path(__file__).with_name("printed.glsl")
 CALLS, INVOCATIONS = 256, 2**14
 COLUMNS = ("mu_o", "mu_i", "turn", "roughness", "r", "g", "b", "u1", "u2")
 
-# pi f cos in float32: as the conformance checks.
+# pi f cos in float32, as in the conformance checks.
 VALUE = diffuse.VALUE.value
 # Listing 1 in float32: 1 - E loses digits, 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
 EXACT = 3e-4
@@ -36,7 +36,7 @@ QUARTIC = 1.25e-3
 WEIGHT = 2e-4
 # Share of samples close to a border between parts, which may fall on its other side.
 SHARE = 2e-3
-# Largest weights but for that share, to scale the tolerances of values: cosine, and transformed.
+# Largest weights without that share, which scale the tolerances of values: cosine, and transformed.
 LARGEST, LARGEST_LTC = 20.0, 4.0
 
 KERNEL = """#version 430
@@ -172,7 +172,7 @@ class Device:
         return self.context.compute_shader(KERNEL % (self.source, statement))
 
     def run(self, kernel, calls=CALLS):
-        """The sums of so many calls, as raw memory of the device, complete."""
+        """The sums over `calls` calls, as raw device memory, after completion."""
         self._given.bind_to_storage_buffer(0)
         self._sums.bind_to_storage_buffer(1)
         kernel["calls"].value = calls
@@ -180,7 +180,7 @@ class Device:
         self.context.finish()
 
     def checked(self, name, kernel):
-        """The check of a rival's values: the largest error, but for the share of samples."""
+        """The check of a rival's values: the largest error, except for the share of samples."""
         rival = RIVALS[name]
         self.run(kernel, calls=1)
         values = np.frombuffer(self._sums.read(), np.float32).reshape(-1, 3)

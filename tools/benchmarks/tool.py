@@ -21,7 +21,7 @@ DOCUMENTS = (1, 10, 100, 1000)
 
 
 def starting(rounds):
-    """Figures of imports and of the command's help, each in a process of its own."""
+    """Figures of imports and of the command's help, each in its own process."""
     codes = {
         "numpy": "import numpy",
         "mxeon": "import numpy, mxeon, mxeon.models.table",
@@ -38,7 +38,7 @@ def starting(rounds):
 
 
 def raw(library, text, target):
-    """The calls that a MaterialX script makes for the same text, on a library already loaded."""
+    """The calls of a MaterialX script for the same text, with the library already loaded."""
     document = mx.createDocument()
     mx.readFromXmlString(document, text)
     document.setDataLibrary(library)
@@ -65,7 +65,7 @@ def raw(library, text, target):
 
 @contextmanager
 def unwarned():
-    """Without what MaterialX writes to the standard error of the process itself."""
+    """Suppress MaterialX's output to the process's standard error."""
     kept, nothing = os.dup(2), os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, 2)
     try:

@@ -4,11 +4,11 @@
     E(mu, r) = exp(-mu^2 / (r (8 - 4 mu^2))) s^2 / (mu + s)^3 N / D,
     s = sqrt(r),  z = sqrt(mu / (mu + s)),
 
-with polynomials N and D in z and s. At small roughness r the lobe keeps light near the horizon
-alone: the exponential is what is left of sin(theta_h)^(1 / r) at the lowest half vector that light
-above the horizon leaves, and the quotient has the limits at mu = 0 and 1. The largest absolute
-error of min(E, 1) is least. The quadrature takes sums, products, quotients and square roots alone,
-as that of `ggx_albedo.py`: roughness is 4 / k with whole k, so that its powers are products of roots.
+with polynomials N and D in z and s. At small roughness r only light near the horizon remains:
+the exponential is sin(theta_h)^(1 / r) at the lowest half vector that light above the horizon
+allows, and the quotient has the limits at mu = 0 and 1. The fit minimizes the largest absolute
+error of min(E, 1). As in `ggx_albedo.py`, the quadrature only uses sums, products, quotients and
+square roots: roughness is 4 / k with integer k, so that its powers are products of roots.
 
     python -m tools.fits.conty_kulla_albedo
 """
@@ -31,7 +31,7 @@ EIGHTHS = (
     *(4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 36, 40, 44, 48, 56, 64, 80, 100, 128),
     *(170, 230, 320, 450, 640, 900, 1300, 2000, 3000, 5000, 8000, 13000, 20000, 40000),
 )
-TOP, LEAST = 1.02, 1e-4  # albedos of the fit: above 1 the shaders clamp it, below it is no matter
+TOP, LEAST = 1.02, 1e-4  # range of fitted albedos: shaders clamp to 1, smaller ones do not matter
 NODES = 20  # nodes of each of two half turns
 
 

@@ -3,8 +3,8 @@
 
     python -m tools.fits.eon_inversion
 
-The forms are those of [Portsmouth2025], Eqs. (32) and (34), C + a (b - C) C r, in the second with
-b = 1. The largest error over colors and roughness in [0, 1] is least.
+The forms are those of [Portsmouth2025], Eqs. (32) and (34), C + a (b - C) C r, with b = 1 in the
+second. The fit minimizes the largest error over colors and roughness in [0, 1].
 """
 
 from tools.fits.minimax import least_largest, mp
@@ -12,8 +12,8 @@ from tools.fits.minimax import least_largest, mp
 C1 = mp.one / 2 - 2 / (3 * mp.pi)
 C2 = mp.mpf(2) / 3 - 28 / (15 * mp.pi)
 
-# Where color or roughness is 0, the polynomials are exact whatever their coefficients are; so is
-# that for the average albedo where the color is 1.
+# If color or roughness is 0, the polynomials are exact for any coefficients. The one for the average
+# albedo is also exact at color 1.
 GRID = [(mp.mpf(i) / 200, mp.mpf(j) / 20) for i in range(1, 201) for j in range(1, 21)]
 
 

@@ -17,7 +17,7 @@ from tools.fits.fon_loss import closed_form
 from tools.fits.minimax import least_largest, mp, roots
 
 COUNT = 400  # points of a fit
-STEPS = 4  # after which Newton's last changes no digit that is printed
+STEPS = 4  # Newton steps; a fifth changes no printed digit
 
 # Average of H over the projected hemisphere: c1 - c2 of [Portsmouth2025].
 LOSS_AVG = 6 / (5 * mp.pi) - mp.one / 6
@@ -67,7 +67,7 @@ def density_error(p, basis, density, root, coefficients):
 
 
 def fitted(points, basis, density, root):
-    """Coefficients with the least largest error of the density, by Newton steps."""
+    """Coefficients that minimize the largest error of the density, by Newton steps."""
     coefficients = [mp.zero] * len(basis(points[0])[0])
     for _ in range(STEPS):
         errors = [density_error(p, basis, density, root, coefficients) for p in points]
@@ -91,7 +91,7 @@ def root_rows(points):
 
 
 def root_fit():
-    """Coefficients of y / m in powers of m with the least largest relative error, and that."""
+    """Coefficients of y / m in powers of m that minimize the largest relative error, and that error."""
     return least_largest(root_rows(roots(COUNT)), [mp.one] * COUNT)
 
 
@@ -108,7 +108,7 @@ ROWS = (
 
 
 def printed(coefficients):
-    """Coefficients with the ten decimals that stand in the package."""
+    """Coefficients with the ten decimals used in the package."""
     return tuple(round(float(each), 10) for each in coefficients)
 
 

@@ -16,7 +16,7 @@ from numpy.polynomial.polynomial import polyval
 from mxeon.models import diffuse as formulas
 from tools.fits.minimax import extrema, least_largest, mp
 
-# One degree less in either costs a factor above ten; the table that this script prints says so.
+# One degree less in either costs a factor above ten, as the printed table shows.
 DEGREE_P, DEGREE_Q = 4, 3
 DIGITS = 9  # decimal digits that tell any two float32 numbers apart
 COUNT = 200  # points of the fit
@@ -43,7 +43,7 @@ def fitted(mu, p, q):
 
 
 def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
-    """Coefficients with the least largest relative error on `COUNT` points, dense towards both ends."""
+    """Coefficients that minimize the largest relative error on `COUNT` points, dense towards both ends."""
     rows = []
     for mu in extrema(COUNT + 1)[1:]:
         even = mu / closed_form(mu)
@@ -67,7 +67,7 @@ def largest_errors(p, q):
 
 
 def defines():
-    """The coefficients as the lines that stand in the shaders."""
+    """The coefficients as lines of the shaders."""
     rows = zip("PQ", fit(), strict=True)
     return [
         f"#define EON_{name}{k} {x:.{DIGITS}g}" for name, row in rows for k, x in enumerate(row)

@@ -24,7 +24,7 @@ from tools.fits.minimax import DIGITS, Form, defines, least_largest, mp, roots
 
 COUNT = 400  # points of the fit for dielectrics
 FORM = Form(above=tuple((k,) for k in range(5)), below=tuple((k,) for k in range(1, 4)))
-STEPS = 12  # steps of the reweighted fit; further steps change no printed digit
+STEPS = 12  # steps of the reweighted fit; more steps change no printed digit
 
 COSINES = (0.22, 0.58, 0.9)
 INDICES = tuple(mp.mpf(5) ** (mp.mpf(k) / 6 - 1) / 4 for k in range(0, 12)) + (mp.mpf(5),)
@@ -46,9 +46,9 @@ def dielectric_average(n):
 
 
 def dielectric_fit():
-    """Coefficients of N and D but for the constant 1 of D, by linear fits of N - D T over D.
+    """Coefficients of N and D, except the constant 1 of D, by linear fits of N - D T over D.
 
-    Each takes D of the one before as weight; where they agree, the largest error is least.
+    Each fit uses the previous D as weight; at convergence the largest error is minimal.
     """
     t, above = roots(COUNT), len(FORM.above)
     T = [(1 - dielectric_average(1 / x)) / x for x in t]
@@ -97,7 +97,7 @@ def conductor_error(weights, n, k):
 
 
 def conductor_fit():
-    """Weights of the cosines whose largest absolute error over the metals is least.
+    """Weights of the cosines that minimize the largest absolute error over the metals.
 
     F_ss of a metal is by Gauss-Legendre; its error is below 1e-6.
     """
@@ -122,6 +122,6 @@ if __name__ == "__main__":
         print(
             f"#define FRESNEL_AVG_C{place} {cosine}\n#define FRESNEL_AVG_W{place} {share:.{DIGITS}g}"
         )
-    for least in (0.5, 0.2):  # the domain, and below
+    for least in (0.5, 0.2):  # the domain, and beyond it
         error = conductor_error(shares, np.linspace(0.05, 5.0, 200), np.linspace(least, 10.0, 200))
         print(f"largest absolute error, metals of an extinction from {least}: {error:.3g}")

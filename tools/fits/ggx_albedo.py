@@ -29,9 +29,9 @@ START = (
     *(-1.49084, 5.82249, 1.60299, 0.74937, 1.79916),
     *(0.225562, -0.0983618, 4.00769, 1.57355, 0.538882, -12.0367, -1.69065, -1.00164, 7.53262),
 )
-DEGREE, PANELS = 12, 10  # of the quadrature: nodes of a panel, panels towards the mirror direction
+DEGREE, PANELS = 12, 10  # quadrature nodes per panel, panels towards the mirror direction
 NEWTON = 6  # steps to 40 digits from the asymptotic root
-LEAST = 1e-4  # least alpha and least cosine of the fit
+LEAST = 1e-4  # smallest alpha and cosine of the fit
 
 
 def legendre(count):
@@ -126,7 +126,7 @@ def largest_error(coefficients, across=145, along=97):
 
 
 def peak(mu, alpha, count=400):
-    """Largest value, pi f cos, of facets that reflect everything: it is in the plane of incidence."""
+    """Largest value, pi f cos, of perfectly reflecting facets, which lies in the plane of incidence."""
     mu_i = (np.arange(count) + 0.5).reshape(-1, *(1,) * np.ndim(mu)) / count
     s, s_i = (np.sqrt((1.0 - each) * (1.0 + each)) for each in (mu, mu_i))
     alpha2 = alpha * alpha
@@ -137,7 +137,7 @@ def peak(mu, alpha, count=400):
 
 
 def value_errors(coefficients, across=145, along=97):
-    """Largest error of a compensated value, over itself or 1, and the largest factor there of F_ss.
+    """Largest error of a compensated value, over itself or 1, and the largest factor of F_ss in it.
 
     A value v / E_ss has the error of E_ss over E_ss, and v (1 - E_ss) / E_ss times that of F_ss.
     """

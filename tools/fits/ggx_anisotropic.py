@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Isotropic facets that stand for anisotropic ones in the shaders' fits of E_ss and of Fresnel averages.
+"""Isotropic facets that replace anisotropic ones in the shaders' fits of E_ss and of Fresnel averages.
 
 With r^2 = (alpha_x^2 + alpha_y^2) / 2, the squared roughness along the azimuth of wo and across it are
 

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of the cosine at which a Fresnel curve has its average over the visible facets of GGX.
+"""Fits of the cosine at which a Fresnel curve equals its average over the visible facets of GGX.
 
 The directional albedo of GGX with a Fresnel reflectance F is E_ss F(c) for one cosine c, which
 depends on mu, alpha and a little on the curve. At alpha 0 it is mu:
 
     c = mu + alpha^2 / (mu + alpha) N / D,
 
-N and D being polynomials in x = mu / (mu + alpha), a root y of alpha, and s, which tells the curves
-of a kind apart. What is fitted is c, and the largest error of the albedo E_ss F(c) is least. Of the
-curves of Schlick, (1 - c)^q, the exponent 5 counts twice as much as the others.
+N and D being polynomials in x = mu / (mu + alpha), a root y of alpha, and s, which distinguishes the curves
+of a kind. The fit is for c, but minimizes the largest error of the albedo E_ss F(c). Among Schlick's
+curves, (1 - c)^q, exponent 5 has twice the weight of the rest.
 
 A third fit is for Hoffman's dip c (1 - c)^6, which is not monotone: its average is that at the
 cosine c of Schlick's curve of exponent 5 plus alpha^2 / (mu + alpha) N / D in mu and sqrt(alpha).
@@ -27,7 +27,7 @@ import numpy as np
 from tools.fits.ggx_albedo import incident, legendre
 from tools.fits.minimax import Form, defines, mp, numerator
 
-LEAST = 1e-4  # least alpha and least cosine of the fits
+LEAST = 1e-4  # smallest alpha and cosine of the fits
 BLOCK = 20  # points that are integrated together
 BISECTIONS = 50
 FLAT = 0.01  # least slope that counts
@@ -56,7 +56,7 @@ def dip(c):
 class Curves:
     """Fresnel curves of one kind, and the fit of their cosine."""
 
-    prefix: str  # of the coefficients' names
+    prefix: str  # prefix of the coefficients' names
     reflectance: Callable  # F of cosine and parameter
     parameters: tuple  # parameters of the curves
     shapes: tuple  # s of each curve
@@ -67,7 +67,7 @@ class Curves:
 
 
 def below(total, count):
-    """Monomials of so many variables of at most a total degree."""
+    """Monomials of `count` variables up to a total degree."""
     return tuple(m for m in product(range(total + 1), repeat=count) if sum(m) <= total)
 
 
@@ -152,7 +152,7 @@ def _averages(mu, alpha, functions):
     k, low, high, pre = (each[:, None] for each in incident(mu, alpha))
     tangents, widths = azimuths(np.sqrt(low / high))
     far, rest = (each[None, :, None] for each in legendre(OUTER))
-    # Squared sine of half the azimuth from the mirror's, whose tangent is 1 / far beyond 1.
+    # Squared sine of half the azimuth from the mirror's; beyond 1 the tangent is 1 / far.
     shape = (len(low), OUTER, low.shape[-1])
     sine2 = np.concatenate(
         [
@@ -214,7 +214,7 @@ def sample(curves, mu, alpha):
         low, high = np.maximum(c - 1e-5, 0.0), np.minimum(c + 1e-5, 1.0)
         slope = (function(low) - function(high)) / (high - low)
         arguments, factor = variables(curves, mu[kept], alpha[kept], shape)
-        # Where the curve is flat c must still be about right, lest it end where the curve is steep.
+        # c must be roughly right even where the curve is flat, or it could end up where the curve is steep.
         weight = np.maximum(count * slope, FLAT) * albedo[kept] * factor
         columns.append((*arguments, (c - mu[kept]) / factor, weight))
     *arguments, value, weight = (np.concatenate(each) for each in zip(*columns, strict=True))

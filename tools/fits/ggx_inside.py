@@ -35,8 +35,8 @@ from mxeon.models import dielectric_albedo_dir, fresnel_dielectric, fresnel_diel
 from mxeon.models.transmission import reversed_transmittance
 from mxeon.shaders.functions import source_file
 
-SEED, COUNT = 5, 3000  # of the views
-LEAST = 1e-4  # least cosine and least roughness
+SEED, COUNT = 5, 3000  # views
+LEAST = 1e-4  # smallest cosine and roughness
 INDICES = (0.33, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.93, 0.95, 0.98)
 START = (1.6, 0.0, -3.1, -3.8, 0.0, 0.9)  # constants of the logarithms
 REST = 0.7213
@@ -46,7 +46,7 @@ DIGITS = 5
 
 
 def points(seed=SEED, count=COUNT):
-    """Cosines and roughnesses: even ones, even logarithms, ratios near 1, views near the normal and critical angles."""
+    """Cosines and roughnesses: uniform, uniform in the logarithm, ratios near 1, near the normal and critical angles."""
     rng = np.random.default_rng(seed)
     pick, ratio = rng.random((3, count)), rng.random(count)
     alpha = np.where(pick[0] < 0.5, LEAST ** rng.random(count), rng.random(count))
@@ -65,7 +65,7 @@ def albedo(mu, alpha, ior):
 
 
 def passing(mu, alpha, ior, coefficients):
-    """S (1 - F), from 30 coefficients: five of each logarithm."""
+    """S (1 - F), from 30 coefficients: five for each logarithm."""
     s = np.sqrt(1.0 - mu * mu)
     x, y = mu / (mu + alpha), np.sqrt(alpha)
     terms = np.stack([np.ones_like(x), x, s / (s + alpha), y, x * y])
@@ -99,7 +99,7 @@ def passed(mu, alpha, ior):
 
 
 def fit_passed(mu, alpha, ior, exact):
-    """Coefficients of the share that passes, from those of the reflectance on."""
+    """Coefficients of the share that passes, starting from the reflectance's."""
     found = shipped()
 
     def powers(coefficients, power):
@@ -145,7 +145,7 @@ def shipped(reversed_paths=False):
 
 
 def main():
-    """Print the vectors of a search, and the error of those in the shader on other views."""
+    """Print the vectors found by a search, and the error of the shader's vectors on other views."""
     mu, alpha = points()
     ior = np.random.default_rng(SEED).uniform(INDICES[0], INDICES[-1], len(mu))
     reversed_paths = fit_passed(mu, alpha, ior, passed(mu, alpha, ior))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of sums over directions of an even environment, by the points that draw them.
+"""Errors of sums over directions of a uniform environment, for several point sets.
 
 A lobe's albedo is the mean of F G2 / G1 over directions drawn by its visible facets, and the compensation of a white one
-divides it by E_ss. MaterialX draws them by the points of a Fibonacci lattice; a library may take others that fill the
-square as evenly. The error falls with their number n: what is printed is n times the largest one, over views and alphas.
+divides it by E_ss. MaterialX draws them with a Fibonacci lattice; a library may use other points that fill the
+square as evenly. The error falls with their number n: it prints n times the largest error over views and alphas.
 
     python -m tools.fits.lattices
 """
@@ -41,7 +41,7 @@ LATTICES = {"Fibonacci": fibonacci, "R2": r2, "Hammersley": hammersley}
 
 
 def error(lattice, count, alpha):
-    """Largest error of a white lobe's albedo over it, over the cosines of the view, for either use of the two numbers."""
+    """Largest relative error of a white lobe's albedo over cosines of the view, for both uses of the two numbers."""
     numbers, found = lattice(count), 0.0
     wo = np.stack([np.sqrt(1.0 - COSINES**2), 0.0 * COSINES, COSINES], axis=-1)[:, None]
     for u in (numbers, numbers[::-1]):
@@ -55,7 +55,7 @@ def error(lattice, count, alpha):
 
 
 def main():
-    """Print n times the largest error, of each lattice and number of directions."""
+    """Print n times the largest error for each lattice and number of directions."""
     for name, lattice in LATTICES.items():
         for count in (64, 256, 1024):
             worst = max((error(lattice, count, alpha), alpha) for alpha in ALPHAS)

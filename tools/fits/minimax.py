@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Linear and rational fits whose largest error is least, in 40 digits: the same on every machine.
+"""Linear and rational minimax fits in 40 digits: the same on every machine.
 
-With N unknowns, the least largest residual over many rows is that over N + 1 of them, a reference,
-each of which takes it. Stiefel's exchange goes from reference to reference, each with a larger
-residual, until no row exceeds it: the simplex method on the dual linear program.
+With N unknowns, the minimax residual over many rows equals that over N + 1 of them, a reference,
+whose rows all attain it. Stiefel's exchange goes from reference to reference with increasing
+residuals, until no row exceeds it: the simplex method on the dual linear program.
 
-A rational fit is N / D with D = 1 + ..., both polynomials in some monomials. A search in float64, which
-need not be repeatable, finds a start, or a denominator that stays away from 0. From there on linear fits
-give coefficients that are repeatable.
+A rational fit is N / D with D = 1 + ..., both sums of given monomials. A search in float64, which
+need not be repeatable, finds a start, or a denominator that stays away from 0. Linear fits from there
+give repeatable coefficients.
 """
 
 import math
@@ -22,16 +22,16 @@ from mxeon.shaders.functions import source_file
 mp = MPContext()
 mp.dps = 40
 
-EXCHANGES = 500  # ten times what a fit of this project takes
+EXCHANGES = 500  # ten times the number that fits here need
 DIGITS = 8  # decimal digits of a printed coefficient, one more than float32 tells apart
 SCATTER = 2654435769  # 2^32 over the golden ratio
-STEPS = 2  # from a start of six digits; another changes no printed error
+STEPS = 2  # Newton steps from a start with six digits; a third changes no printed error
 
 
 def least_largest(rows, right):
     """Solution x of rows @ x = right, (M, N) with M > N, with the least largest residual; and that residual.
 
-    Of the rows that the exchange starts from, any N are independent. ArithmeticError if it does not end.
+    Any N of the starting rows must be independent. ArithmeticError if it does not converge.
     """
 
     def signed(i, sign):
@@ -53,7 +53,7 @@ def least_largest(rows, right):
         worst = max(range(len(rows)), key=lambda i: abs(residuals[i]))
         if abs(residuals[worst]) <= level * (1 + mp.sqrt(mp.eps)):
             return x, level
-        # It replaces the row that leaves all weights positive.
+        # The new row replaces the one that leaves all weights positive.
         sign = int(mp.sign(residuals[worst]))
         weights = mp.lu_solve(matrix.T, total)
         change = mp.lu_solve(matrix.T, mp.matrix(signed(worst, sign)))
@@ -64,12 +64,12 @@ def least_largest(rows, right):
 
 
 def roots(count):
-    """Roots of a Chebyshev polynomial on [0, 1]: dense at both ends, which are left out."""
+    """Roots of a Chebyshev polynomial on [0, 1]: dense at both ends, which are excluded."""
     return [(1 - mp.cos(mp.pi * (2 * k + 1) / (2 * count))) / 2 for k in range(count)]
 
 
 def extrema(count):
-    """Extrema of a Chebyshev polynomial on [0, 1], both ends among them."""
+    """Extrema of a Chebyshev polynomial on [0, 1], both ends included."""
     return [(1 - mp.cos(mp.pi * k / (count - 1))) / 2 for k in range(count)]
 
 
@@ -109,7 +109,7 @@ def _exact(*columns):
 
 
 def refined(form, variables, values, weights, start, steps=STEPS):
-    """Coefficients with the least largest weighted error, by Newton steps from a start."""
+    """Minimax coefficients of the weighted error, by Newton steps from a start."""
     points = list(zip(*_exact(*variables), strict=True))
     above, below = (
         [[_monomial(point, m) for m in monomials] for point in points]
@@ -131,14 +131,14 @@ def refined(form, variables, values, weights, start, steps=STEPS):
 
 
 def numerator(form, variables, values, weights, below):
-    """Numerator's coefficients with the least largest weighted error, and the denominator's given ones."""
+    """Minimax coefficients of the numerator for a given denominator, followed by the denominator's."""
     rows, right = [], []
     points = zip(*_exact(*variables), strict=True)
     for point, value, weight in zip(points, *_exact(values, weights), strict=True):
         D = 1 + mp.fdot([_monomial(point, m) for m in form.below], below)
         rows.append([weight / D * _monomial(point, m) for m in form.above])
         right.append(weight * value)
-    # Scattered, lest the rows that the exchange starts from lie on few lines of a grid.
+    # Shuffle, so that the starting rows of the exchange do not lie on few grid lines.
     order = sorted(range(len(rows)), key=lambda i: i * SCATTER % 2**32)
     found, _ = least_largest([rows[i] for i in order], [right[i] for i in order])
     return (*(float(mp.nstr(x, DIGITS)) for x in found), *below)

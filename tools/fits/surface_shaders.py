@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of surface shaders by the fits of eonlib's lobes: python -m tools.fits.surface_shaders.
 
-The layer equation takes each lobe's albedo by quadrature; eonlib takes fits. Here both are computed in
-float64, for the pairs and materials that checks ask for, drawn with other seeds: how much all fits
-together change a value and an albedo at most, and in the mean of a set.
+The layer equation uses each lobe's albedo by quadrature; eonlib uses fits. Here both are computed in
+float64, for pairs and materials drawn as in the checks, but with other seeds: the largest change of a value
+and an albedo by all fits together, and the change in the mean of a set.
 """
 
 from contextlib import ExitStack, contextmanager, suppress
@@ -23,7 +23,7 @@ from tools.fits import conty_kulla_albedo, fresnel_average, ggx_anisotropic, ggx
 from tools.fits.minimax import shipped
 
 SETS = 32
-LEAST = 1e-6  # cosine and roughness from which on shaders take their fits
+LEAST = 1e-6  # smallest cosine and roughness to which shaders apply their fits
 EXACT = nodes.ShadingPoints._albedo
 
 DIELECTRIC = shipped("fresnel_dielectric", "DIELECTRIC")
@@ -34,20 +34,20 @@ COSINES, WEIGHTS = (shipped("fresnel_conductor", "FRESNEL_AVG", kind) for kind i
 
 
 def facets(wo, roughness):
-    """Views (3, N) and alphas (2, N) as shaders take their fits of them."""
+    """Views (3, N) and alphas (2, N), clamped as in the shaders' fits."""
     alpha = np.broadcast_to(np.maximum(roughness, LEAST), (2, wo.shape[1]))
     return np.stack([*wo[:2], np.maximum(wo[2], LEAST)]), alpha
 
 
 def albedo(wo, roughness):
-    """E_ss by its fit."""
+    """E_ss from its fit."""
     factors = ggx_anisotropic.terms(wo, roughness)[1]
     scale = 1.0 + np.tensordot(ggx_anisotropic.MISSED, factors, axes=1)
     return 1.0 - ggx_anisotropic.missed(wo, roughness) * scale
 
 
 def missing(wo, roughness):
-    """(1 - E_ss) / E_ss by the fit of E_ss."""
+    """(1 - E_ss) / E_ss from the fit of E_ss."""
     E = albedo(*facets(wo, roughness))
     return (1.0 - E) / E
 
@@ -75,7 +75,7 @@ def fitted_albedo(points, exact, node, wo, inputs):
 
 
 def _microfacets(wo, inputs, curve):
-    """E_ss F(c) (1 + F_ss (1 - E_ss) / E_ss), of F(c) and F_ss from mu and alpha."""
+    """E_ss F(c) (1 + F_ss (1 - E_ss) / E_ss); `curve` computes F(c) and F_ss from mu and alpha."""
     wo, roughness = facets(wo.T, inputs["roughness"].T)
     E = albedo(wo, roughness)[:, np.newaxis]
     F, average = curve(*ggx_anisotropic.visible(wo, roughness))
@@ -111,7 +111,7 @@ def _sheen(wo, inputs):
     return inputs["color"] * E[:, np.newaxis]
 
 
-# By the name of a node.
+# Fitted albedos by name of the node.
 LAYERED = {"dielectric": _dielectric, "schlick": _schlick, "conty_kulla": _sheen}
 
 
@@ -124,7 +124,7 @@ def fits():
         stack.enter_context(patch.object(nodes.ShadingPoints, "_albedo", fitted_albedo))
         stack.enter_context(patch.object(microfacets, "missing_of", missing))
         stack.enter_context(patch.object(fresnel, "dielectric_avg", dielectric_average))
-        stack.callback(object.__setattr__, curve, "average", exact)  # of a frozen class
+        stack.callback(object.__setattr__, curve, "average", exact)  # the class is frozen
         object.__setattr__(curve, "average", conductor_average)
         yield
 
@@ -157,7 +157,7 @@ def errors(shader, seed):
 def largest(shader, sets=SETS):
     found, seeds = [], count(SEED.get() + 1)
     while len(found) < sets:
-        with suppress(OutsideModel):  # a material that the layer equation does not have
+        with suppress(OutsideModel):  # the layer equation does not cover the material
             found.append(errors(shader, next(seeds)))
     return {name: max(each[name] for each in found) for name in found[0]}
 

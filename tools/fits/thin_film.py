@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of `genglsl/lib/thin_film.glsl` against all orders and whole averages: python -m tools.fits.thin_film.
+"""Errors of `genglsl/lib/thin_film.glsl` against all orders and exact averages: python -m tools.fits.thin_film.
 
-The shader sums orders while they count, and averages over the hemisphere and over the visible facets in
-three cosines each. Each of these cosines stands for those around it, whose fringes damp each other. This
-measures what each costs at most, over films of up to 1000 nm on each kind of substrate, for cosines from
+The shader sums orders while they matter, and averages over the hemisphere and over the visible facets with
+three cosines each. Each cosine represents a neighborhood, whose fringes damp each other. This
+measures the largest error of each, over films of up to 1000 nm on each kind of substrate, for cosines from
 0.1 on. `thin_film_search.py` searches for the largest.
 """
 
@@ -16,7 +16,7 @@ from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.thin_film import SUBSTRATES, TEXT, film_albedo_dir, film_curve
 from tools.fits.thin_film_search import COLORED, WHITE, largest
 
-# Each in a range: roughness, cosine of the view, thickness in nm, index.
+# Ranges: roughness, cosine of the view, thickness in nm, index.
 FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
 CLEAR = {
     "alpha": SHARP.alpha,
@@ -26,9 +26,9 @@ CLEAR = {
 }
 DARK = 1e-3  # reflectance below which errors are no longer relative
 STEP = 1e-6  # relative change of a thickness to measure the slope of a curve
-# Of the shader, chosen by `thin_film_nodes.py`: three nodes for F_ss, their cosines, weights and widths; for
-# visible facets, polynomials of the mean of their cosines, of the reach of three nodes around it and of their
-# bend.
+# The shader's values, from `thin_film_nodes.py`: cosines, weights and widths of three nodes for F_ss; for
+# visible facets, polynomials for the mean of their cosines, for the reach of three nodes around it and for
+# their bend.
 NODES = (
     (0.17999, 0.55701, 0.88292),
     (0.10982, 0.43737, 0.4528),
@@ -82,7 +82,7 @@ def substrate(material):
 
 
 def counted_orders(z, opd, spread, count):
-    """Sum of so many orders, shape (3, ...), in each tristimulus.
+    """Sum of `count` orders, shape (3, ...), in each tristimulus.
 
     `spread` is the standard deviation of the path differences in m, whose fringes damp each other.
     """
@@ -104,9 +104,9 @@ def decay(mu, var, opd, spread):
 
 
 def order_count(weights, sizes, opd, spread, least):
-    """Orders that the shader sums, at least one, of weights and amplitudes of polarizations and channels.
+    """Number of orders that the shader sums, at least one, from weights and amplitudes of polarizations and channels.
 
-    Light polarized along s is reflected more at both interfaces, that along p is let through more.
+    s-polarized light is reflected more at both interfaces, p-polarized light transmitted more.
     """
     k2 = np.exp(-2.0 * decay(*NARROWEST[2:], opd, spread))
     along_p, along_s = weights[0], sizes[1]
@@ -133,7 +133,7 @@ def curve_errors(category, material, _, mu):
 
 
 def slopes(category, material, _, mu):
-    """Slopes of a curve in the logarithm of the thickness, as which a path difference rounds."""
+    """Slopes of a curve in the logarithm of the thickness, which scale the rounding of a path difference."""
     curve, thickness = film_curve(category), material["thinfilm_thickness"]
     up, down = (
         curve.at(mu, **{**material, "thinfilm_thickness": thickness * (1.0 + step)})
@@ -164,7 +164,7 @@ def wave_slopes(category, material, _, mu):
 
 
 def kept(category, material, _, mu):
-    """F (1 - F_ss), by which an error of E_ss enters a smooth lobe's F (E_ss + F_ss (1 - E_ss))."""
+    """F (1 - F_ss), the factor of an error of E_ss in a smooth lobe's F (E_ss + F_ss (1 - E_ss))."""
     airy = film_curve(category)
     return (airy.at(mu, **material) * (1.0 - airy.average(**material))).max(axis=0)
 
@@ -190,7 +190,7 @@ def visible_errors(category, material, alpha, mu):
 
 
 def albedo_errors(category, material, alpha, mu):
-    """Errors of the average over the visible facets and of F_ss, times the light that is lost."""
+    """Errors of the average over the visible facets and of F_ss, times the lost light."""
     lost = 1.0 - ggx_albedo_dir(mu, alpha)
     return visible_errors(category, material, alpha, mu) + lost * average_errors(category, material)
 
@@ -208,9 +208,9 @@ def visible_average(category, material, alpha, mu):
 
 
 def visible_mean(category, material, alpha, mu, coefficients=FACETS):
-    """The same in the shader's cosines, or by other coefficients.
+    """`visible_average` with the shader's cosines, or with other coefficients.
 
-    These are Gauss's nodes for a semicircle, which has fewer facets at its ends than in its middle.
+    The cosines are Gauss nodes for a semicircle, which has fewer facets at its ends than in its middle.
     """
     mean, reach, bend = facets(mu, alpha, coefficients)
     total = 0.0
@@ -237,12 +237,12 @@ def facets(mu, alpha, coefficients):
 
 
 def monomials(mu, alpha):
-    """Those of third degree in the cosine of the view and in alpha / (alpha + 1/5)."""
+    """Monomials up to third degree in the cosine of the view and alpha / (alpha + 1/5)."""
     y = alpha / (alpha + STEEP)
     return np.stack([mu**i * y**j for i in range(4) for j in range(4 - i)])
 
 
-# What is measured, by name: errors, and the ranges of films.
+# Measurements by name: errors, and ranges of films.
 MEASURED = {
     "orders": (orders_errors, FILMS, COLORED),
     "orders of curves": (curve_errors, CLEAR, COLORED),
@@ -261,7 +261,7 @@ MEASURED = {
 
 
 def search(name, category):
-    """The largest error of a name that a search finds."""
+    """The largest error of a measurement, by a search."""
     measured, ranges, *numbers = MEASURED[name]
     return largest(measured, ranges, category, *numbers)
 

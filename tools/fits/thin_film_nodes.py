@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Choice of the nodes in which `genglsl/lib/microfacet_film.glsl` averages a film.
 
-Over random films of up to 1000 nm on each kind of substrate, of which no check asks, what is least is the
-mean fourth power of the errors of F_ss, so that the largest count most, and the mean square of those of the
-mean over visible facets.
+Over random films of up to 1000 nm on each kind of substrate, different from those of the checks, it minimizes
+the mean fourth power of the errors of F_ss, which emphasizes the largest, and the mean square of the errors of
+the mean over visible facets.
 
     python -m tools.fits.thin_film_nodes
 """
@@ -16,14 +16,14 @@ from mxeon.models.thin_film import film_curve
 from tools.fits import thin_film as fit
 from tools.fits.thin_film_search import NUMBERS, filmed
 
-SEED, COUNT = 24, 400  # of random films
-BARE, HEAVY = 100, 8.0  # substrates without a film, whose F_ss is to change least, and their weight
+SEED, COUNT = 24, 400  # random films
+BARE, HEAVY = 100, 8.0  # substrates without a film, whose F_ss should be kept, and their weight
 START = ((0.2, 0.6, 0.9), (0.15, 0.4, 0.45), (0.15, 0.12, 0.09))  # cosines, weights and widths
 FACETS = 384  # films that coefficients for visible facets are fitted to
-GRID = 16  # views and roughness along a side, at which coefficients are tied to moments of facets
-TIE = 2e-2  # by which they are, relative to an error of a film
-BEND = 0.33  # of nodes, for a skewness of 1: those of a semicircle, a t + b (t^2 - 1), bent by b
-NEAR = 1e-5  # the difference of a coefficient that measures a slope
+GRID = 16  # views and roughnesses per side of a grid that ties coefficients to moments of facets
+TIE = 2e-2  # weight of the moments, relative to an error of a film
+BEND = 0.33  # bend b of a semicircle's nodes, a t + b (t^2 - 1), for a skewness of 1
+NEAR = 1e-5  # difference of a coefficient to measure slopes
 SCALE = 1e3  # makes squares of errors about 1
 
 
@@ -88,7 +88,7 @@ def facets():
 
 
 def grid():
-    """Cosines of views and roughness from end to end."""
+    """Cosines of views and roughnesses over the whole domain."""
     axis = (np.arange(GRID) + 0.5) / GRID
     return (each.ravel() for each in np.meshgrid(axis, axis))
 
@@ -104,7 +104,7 @@ def _rows(mu, alpha):
 
 
 def _moments():
-    """Coefficients by which nodes have mean, deviation and skewness of facets, as far as these can be had."""
+    """Coefficients that best match the mean, deviation and skewness of the facets."""
     mu, alpha = grid()
     mean, deviation, skewness = facet_moments(mu, alpha)
     b = np.clip(BEND * skewness, -0.8, 0.8)
@@ -127,7 +127,7 @@ def facet_moments(mu, alpha):
 def _facets(mu, alpha):
     """Cosines of 16 visible facets with their view, and their weights.
 
-    Lower ones than the lowest mirror no light along the normal.
+    Facets below `lowest` are excluded: they mirror no light along the normal.
     """
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
     x, w = np.polynomial.legendre.leggauss(4)

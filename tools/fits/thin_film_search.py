@@ -4,12 +4,12 @@
 import numpy as np
 from scipy.optimize import differential_evolution
 
-SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # films of a step; steps of evolution
-KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # the worst of them; distances from these, of a range of 1
+SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # films per step; steps of evolution
+KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # worst films to keep; distances from them in [0, 1]
 NUMBERS = 10  # numbers that describe a film, its substrate and its view
-COLORED = 17  # with color82, color90 and the exponent of Schlick's curve as well
-FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # then: distances
-MOVED = 0.3  # and the part of the numbers that moves
+COLORED = 17  # NUMBERS plus color82, color90 and the exponent of Schlick's curve
+FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # distances with COLORED numbers
+MOVED = 0.3  # share of the COLORED numbers that change
 LEAST = 1e-3  # least value of numbers except roughness, cosine and extinction: 0 reflects nothing
 # The worst films of longer searches, which random starts miss: of a metal with total reflection in the film,
 # and of glass at grazing, both with fringes of 1000 nm.
@@ -46,10 +46,10 @@ def filmed(category, ranges, unit):
 
 
 def largest(errors, ranges, category, numbers=NUMBERS):
-    """The largest error of films in ranges that a search finds.
+    """The largest error of films in ranges, by a search.
 
-    It goes around the worst of random films and a corner, in ever smaller steps, and lets the worst of these
-    evolve. Where a film has more numbers, more films are kept, and each goes a way along some numbers alone.
+    It searches around the worst random films and a corner in decreasing steps, and then evolves the worst of
+    these. For films with more numbers, more films are kept, and each only changes some of its numbers.
     """
     rng = np.random.default_rng(SEED)
     many = numbers > NUMBERS

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Root mean square errors of eonlib's thin film over sets of films: python -m tools.fits.thin_film_sets.
 
-Checks ask for the errors of one set of films. Here are those of other sets that are drawn in the same
-way: the largest is what a check allows. It is a third of the largest error of a film, or less, and so a
-wrong digit, which is wrong for all films, shows where a bound on the largest error hides it.
+A check measures the error of one set of films. This computes the errors of other sets drawn in the same
+way; the largest is the check's tolerance. It is at most a third of the largest error of a single film, so a
+wrong digit, which affects all films, exceeds it although it stays below the largest error.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ def smooth_errors(category, material, _, mu):
     return fit.average_errors(category, material) * F * (1.0 - E_ss) / E_ss
 
 
-# What is measured, by name: errors, and a set of films.
+# Measurements by name: errors, and a set of films.
 MEASURED = {
     "all orders": (fit.curve_errors, microfacets.ORDERED),
     "F_ss": (fit.average_errors, microfacets.FRINGED),
@@ -35,7 +35,7 @@ MEASURED = {
 
 
 def films(spec, ranges, seed):
-    """Category, material, roughness and cosine of the films that a check asks for, of another seed."""
+    """Category, material, roughness and cosine of a check's films, drawn with another seed."""
     SEED.set(seed)
     batch = microfacets.film_views(spec, ranges)
     material = {

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EON below an interface, by both models and by light that walks: python -m tools.fits.varnish_walk.
+"""EON below an interface, by both models and by random walks: python -m tools.fits.varnish_walk.
 
 `dielectric_over_eon` is a `layer`: EON gets what the dielectric does not reflect, and what EON returns
 passes freely. `varnished` has exits and internal reflections in closed form. Here light walks between EON and
-GGX facets, and among the facets as in [Heitz2016], so that the interface loses nothing. Printed for each rho:
-the quotients of both albedos and the walk's, the largest error of the second, and the quotients of what EON
-returns into twelfths of the hemisphere.
+GGX facets, and among the facets as in [Heitz2016], so that the interface loses nothing. It prints for each rho
+the quotients of both albedos and the walk's, the largest error of the second, and the quotients of the light
+that EON returns into twelfths of the hemisphere.
 """
 
 from itertools import product
@@ -24,7 +24,7 @@ from mxeon.models.sampling import eon_sample
 SEED, PATHS = 1, 1 << 18
 FAINT = 1e-5  # weight at which a path ends
 RHO = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
-BINS, NODES = (4, 3), 8  # of the squared cosine and the azimuth on one side; nodes of each
+BINS, NODES = (4, 3), 8  # bins in squared cosine and azimuth on one side; nodes per bin
 COSINES, ROUGHNESSES = (1.0, 0.5, 0.15, 0.05), (0.0, 1.0)
 ALPHAS, INDICES = (0.05, 0.1, 0.2, 0.4, 0.7), (1.1, 1.3, 1.5, 2.0)
 
@@ -41,9 +41,9 @@ def facets(w, alpha, rng):
 
 
 def interface(w, alpha, ior, rng):
-    """Directions in which light from above, along -w, leaves facets, z >= 0, and whether below them."""
+    """Directions, z >= 0, in which light from above, along -w, leaves the facets, and whether it leaves below."""
     out, passed = np.zeros_like(w), np.zeros(len(w), bool)
-    # Each path: its index, direction, height as the share of heights below it, and side; z is up there.
+    # State of each path: index, direction, height as the share of heights below it, and side.
     i, d, height, below = np.arange(len(w)), -w, np.ones(len(w)), passed.copy()
     while i.size:
         # Lambda, negative downwards, tells how far the next facet is: [Heitz2016].
@@ -69,13 +69,13 @@ def interface(w, alpha, ior, rng):
 
 
 def walk(mu, roughness, alpha, ior, paths=PATHS):
-    """Light that leaves along each path, (paths, 5), for each of RHO, and where to, (paths, 3)."""
+    """Light that leaves along each path for each of RHO, (paths, 5), and its direction, (paths, 3)."""
     rng = np.random.default_rng(SEED)
     out, inside = interface(np.tile(view(mu), (paths, 1)), alpha, ior, rng)
     total, weight = np.where(inside, 0.0, 1.0)[:, np.newaxis] + 0.0 * RHO, 1.0
     left, w = np.flatnonzero(inside), out[inside]
     while left.size:
-        # Neither layer has a grain, so that the side of a direction does not matter.
+        # Both layers are isotropic, so the azimuth of a direction does not matter.
         wi, pdf = eon_sample(w, rng.random((left.size, 2)), roughness, rho=1.0)
         value = eon_brdf(w, wi, np.broadcast_to(RHO, (left.size, RHO.size)), roughness)
         weight = weight * value * (wi[:, 2] / pdf)[:, np.newaxis]
@@ -103,7 +103,7 @@ def walked_bins(total, out):
 
 
 def model_bins(mu, *inputs):
-    """The same of `varnished`."""
+    """`walked_bins` by the model `varnished`."""
     x, weight = (each / 2.0 for each in np.polynomial.legendre.leggauss(NODES))
     square, azimuth = ((np.arange(n)[:, np.newaxis] + 0.5 + x) / n for n in BINS)
     square, azimuth = square[:, np.newaxis, :, np.newaxis], np.pi * azimuth[:, np.newaxis]
@@ -115,7 +115,7 @@ def model_bins(mu, *inputs):
 
 
 def rows(paths=PATHS):
-    """For each case the albedos by the layer, varnished and the walk, (3, 5), and quotients of bins, (12, 4)."""
+    """For each case: albedos by the layer, varnished and the walk, (3, 5), and quotients of bins, (12, 4)."""
     for ior, alpha, roughness, mu in product(INDICES, ALPHAS, ROUGHNESSES, COSINES):
         inputs = roughness, alpha, ior
         walked = walk(mu, *inputs, paths)

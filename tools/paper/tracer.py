@@ -2,7 +2,7 @@
 """A path tracer on the OpenGL host that calls the shader functions for value, sample and density.
 
 It shows a model and a sampler over many bounces, on a ball that is closed or cut open around a core.
-A distant light is evaluated at every reflection, a uniform environment where a path leaves the
+A distant light is evaluated at every reflection, a uniform environment when a path leaves the
 objects. A path ends early only if its weight is 0.
 """
 
@@ -28,7 +28,7 @@ SAMPLERS = {
     "eon_cltc": ("eon_cltc_sample(wo, u1, u2, r)", "eon_cltc_pdf(wo, wi, r)"),
     "eon": ("eon_sample(wo, u1, u2, TRACER_GREY, r)", "eon_pdf(wo, wi, TRACER_GREY, r)"),
 }
-# Call of a value, by the model's name; the lobes of EON are models too.
+# Call of a value, by the model's name; each lobe of EON is also a model.
 SIGMA_MODELS = ("oren_nayar", "qon", "qon_footnote", "qon_fujii")
 MODELS = {
     "lambert": "lambert_brdf(wo, wi, rho)",
@@ -53,7 +53,7 @@ class Trace:
     # Direction of a distant light of irradiance pi; zeros for none.
     light: tuple[float, float, float] = (0.0, 0.0, 0.0)
     environment: float = 0.0  # radiance of a uniform environment
-    bounces: int = 1  # reflections that a path may have
+    bounces: int = 1  # maximum reflections per path
     opened: bool = True  # the ball is a shell, cut open around a core, on a foot
     floor: float = -1.0  # reflectance of a Lambertian floor; negative for none
     eye: tuple[float, float, float] = (0.0, 0.0, 1.0)  # towards the viewer, orthographic

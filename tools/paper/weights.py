@@ -24,8 +24,8 @@ STATISTICS = (
     ("largest weight", np.max),
     ("mean weight", np.mean),
 )
-# Lower end of the plots of a variance. Exact samples have the variance of rounding over the density
-# that the sampler returns, which two fits leave within 1.3e-5 of the true one: (1.3e-5)^2.
+# Lower end of the variance plots. The variance of exact samples is due to the returned density: two fits
+# make it differ from the true one by up to 1.3e-5, so the variance is (1.3e-5)^2.
 EXACT_VARIANCE = 1.7e-10
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page on arrays: which functions do not take those of other libraries."""
+"""The page on arrays: lists the functions that do not accept other libraries' arrays."""
 
 import inspect
 import re
@@ -23,18 +23,18 @@ def public():
 
 
 def arrays(function):
-    """Names of the arguments that are arrays: by these it has gradients."""
+    """Names of the array arguments, which have gradients."""
     parameters = inspect.signature(function).parameters.values()
     return [each.name for each in parameters if each.annotation in ARRAYS]
 
 
 def takes_any(function):
-    """Whether a function takes arrays of any library."""
+    """Whether a function accepts arrays of any library."""
     return inspect.unwrap(function) is not function
 
 
 def page(text):
-    """The page with the list of the functions that take no arrays of other libraries, as they are now."""
+    """The page with the current list of functions that do not accept other libraries' arrays."""
     functions = public().items()
     others = [f"`{name.rpartition('.')[2]}`" for name, each in functions if not takes_any(each)]
     line = (

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures and tables of docs/brushed_metal.md: `python -m tools.site.brushed`, some minutes.
 
-The studio of the gallery becomes a grid of distant lights, whose pictures add up: stock and eonlib on the host `gl`,
-Smith at the geometric mean and the exact lobe by the float64 models.
+The gallery's studio becomes a grid of distant lights, and their pictures are summed: stock and eonlib on the host
+`gl`, Smith at the geometric mean and the exact lobe by the float64 models.
 """
 
 import json
@@ -63,7 +63,7 @@ SURROUNDED = (("stock", UNCHOSEN), ("eonlib", UNCHOSEN), ("eonlib", Methods(sear
 
 
 def lights():
-    """Distant lights that stand for the studio: unit vectors (N, 3), and radiance times solid angle (N, 3)."""
+    """Distant lights that represent the studio: unit vectors (N, 3), and radiance times solid angle (N, 3)."""
     radiance = studio()
     rows, columns = radiance.shape[:2]
     polar = (np.arange(rows)[:, None] + 0.5) / rows * np.pi
@@ -251,7 +251,7 @@ def eonlib_white(wo, alpha):
 
 
 def white_rows(host, folder):
-    """White metal's albedos, and the ranges of errors in an environment over all views of a cosine of 0.05 and more."""
+    """White metal's albedos, and the ranges of errors in an environment over views with cosines >= 0.05."""
     rows, ranges = [], []
     mu, phi = np.meshgrid(np.linspace(0.05, 1.0, 96), np.linspace(0.0, 0.5 * np.pi, 33))
     grid = directions_at(mu.ravel(), phi.ravel())

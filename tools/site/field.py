@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Make `docs/field.html`: `python -m tools.site.field` checks every host that runs here, one after the other.
+"""Make `docs/field.html`: `python -m tools.site.field` checks every available host in sequence.
 
 `python -m tools.site.field DIR` makes it from the reports in a folder instead.
 """
@@ -18,7 +18,7 @@ from mxeon.survey.field import read_field
 from mxeon.survey.field_page import write_field
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "field.html"
-PAGES = "upstream/{}.md"  # in the checkout; the site has pages in their place, see hooks.py
+PAGES = "upstream/{}.md"  # links into the checkout; hooks.py replaces them on the site
 EXAMPLE = examples_folder() / "clay.mtlx"
 DIFFUSE = tuple(dict.fromkeys(row.node for row in (*DIFFUSE_SPECS, *SURFACE_LOBES)))
 LIBRARIES = ("eonlib", "stock")

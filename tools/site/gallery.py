@@ -31,7 +31,7 @@ from tools.site import DOCS
 PAGE = DOCS / "gallery.md"
 EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
-DIFFERENCES = PICTURES / "differences.json"  # in sRGB codes, by material; null without stock
+DIFFERENCES = PICTURES / "differences.json"  # sRGB codes by material; null without stock
 SIZE = 512  # pixels
 QUALITY = 85  # WebP quality
 ROWS = 96  # rows of the studio's picture
@@ -43,8 +43,8 @@ BOXES = (  # soft boxes of the studio: azimuth from the viewer and elevation, ha
 )
 SOFT = 2.5  # degrees over which the edge of a box falls off
 BACKGROUND = 30  # sRGB code
-SEEN = 3  # sRGB codes: the least difference that an eye may find side by side
-TITANIUM = DOCS / "images" / "titanium.mtlx"  # of the README
+SEEN = 3  # sRGB codes; least difference visible side by side
+TITANIUM = DOCS / "images" / "titanium.mtlx"  # material in the README
 
 HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
 # Gallery
@@ -101,7 +101,7 @@ def materials(document):
 
 
 def pictures(host, document):
-    """A document's materials, each with its sRGB codes with stock, where that can generate it, and eonlib."""
+    """A document's materials, each with its sRGB codes with stock, if stock can generate it, and with eonlib."""
     shaders, scene = [], replace(FURNACE if "furnace" in document.stem else STUDIO, size=SIZE)
     for library in ("stock", "eonlib"):
         with suppress(DocumentError):
@@ -134,7 +134,7 @@ def save(path, codes, labels=("stock", "eonlib")):
 def render():
     """Write the pictures, the difference of each material, and the README's picture of two balls.
 
-    The difference is that in sRGB codes which one pixel in a hundred exceeds.
+    The difference is the 99th percentile over pixels, in sRGB codes.
     """
     PICTURES.mkdir(parents=True, exist_ok=True)
     painted = oiio.ImageBuf(studio())
@@ -154,7 +154,7 @@ def render():
 
 
 def trace(folder):
-    """Write the path-traced pictures of a folder's documents, and what is said of their noise."""
+    """Write the path-traced pictures of a folder's documents, and the sentences on their noise."""
     said, paths = {}, Paths(SAMPLES)
     even, ball = Scene("even", SIDE.light, 0.5, TRACED_SIZE), replace(STUDIO, size=TRACED_SIZE)
     with open_host("gl") as host, closing(path_tracer.PathTracerHost()) as tracer:
@@ -164,7 +164,7 @@ def trace(folder):
                 warnings.simplefilter("always", path_tracer.NoiseNote)
                 spheres = {
                     "rasterizer": host.picture(flat, even),
-                    # It takes a light or an environment.
+                    # The reference supports a light or an environment, not both.
                     "reference": sum(
                         Reference().picture(flat, replace(even, light=each))
                         for each in (even.light, None)

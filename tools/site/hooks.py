@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Add the pages of the site that lie outside `docs/`, fit others to the site, and fill the ledger's figures in."""
+"""Add pages from outside `docs/` to the site, adapt pages to the site, and fill in the ledger's figures."""
 
 import re
 from pathlib import Path
@@ -9,7 +9,7 @@ from mkdocs.structure.files import File
 from tools.site.ledger.pages import filled
 
 ROOT = Path(__file__).resolve().parents[2]
-# Page of the site -> file of the repository, whose links are relative to the root.
+# Page of the site -> file of the repository; its links are relative to the root.
 OUTSIDE = {
     "index.md": "README.md",
     "changelog.md": "CHANGELOG.md",
@@ -26,7 +26,7 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, **_):
-    """Make links relative to `docs/`, and leave out the column of a section where there is none."""
+    """Make links relative to `docs/`, and remove the section column on pages without sections."""
     if page.parent is None:
         page.meta["hide"] = ["navigation"]
     if page.file.src_uri.startswith("upstream/"):
@@ -34,24 +34,24 @@ def on_page_markdown(markdown, page, **_):
     is_outside = page.file.src_uri in OUTSIDE
     root = "" if is_outside else "../"
     for page_name, name in OUTSIDE.items():
-        markdown = markdown.replace(f"](../../{name}", f"](../{page_name}")  # on pages of docs/api
+        markdown = markdown.replace(f"](../../{name}", f"](../{page_name}")  # used in docs/api
         markdown = markdown.replace(f"]({root}{name}", f"]({page_name}")
     return markdown.replace("](docs/", "](") if is_outside else markdown
 
 
 def on_page_content(html, page, **_):
-    """Show the halves of each picture of the gallery as two, which stand below each other on a phone."""
+    """Split each gallery picture into two halves, which a phone shows below each other."""
     if page.file.src_uri != "gallery.md":
         return html
     picture = r'<p><img alt="(.*?)" src="(.*?)" ?/?></p>'
-    whole = r"(?!\n<p><em>[^<]*: stock MaterialX cannot)"  # eonlib's picture alone
+    whole = r"(?!\n<p><em>[^<]*: stock MaterialX cannot)"  # only eonlib's picture
     half = r'<span data-library="{0}"><img alt="\1, {0}" src="\2" loading="lazy"></span>'
     halves = half.format("stock") + half.format("eonlib")
     return re.sub(picture + whole, f'<p class="halves">{halves}</p>', html)
 
 
 def on_post_build(config):
-    """Lead the links of the page of the field, which are to files of the checkout, to the site's pages."""
+    """Redirect the field page's links from files of the checkout to pages of the site."""
     page = Path(config.site_dir, "field.html")
     text = page.read_text(encoding="utf-8")
     page.write_text(re.sub(r'href="(upstream/\w+)\.md"', r'href="\1.html"', text), encoding="utf-8")

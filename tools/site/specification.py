@@ -18,7 +18,7 @@ from tools.site.ledger import figure
 PAGE = DOCS / "results.md"
 HOST, LIBRARIES = "gl", ("stock", "eonlib")  # the host of the table
 JUDGED = (*DIFFUSE, *PBRLIB)
-# Rows of the table, and what stock computes.
+# Rows of the table, and descriptions of stock's computation.
 SUMMARY = (
     ("value", "sheen_bsdf, mode zeltner", "a singular frame where the viewer is along the normal"),
     ("transmitted", "dielectric_bsdf, scatter_mode RT", "a division by the masking G1"),
@@ -63,7 +63,7 @@ def mode_of(subject):
 
 
 def summary(results):
-    """A table of what stock computes instead of the specification."""
+    """A table of stock's deviations from the specification."""
     errors = {
         (each.check, each.subject, each.library): "" if each.error is None else figure(each)
         for each in results

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the OSL files that equal GLSL but for a few words: `python -m tools.site.twins`."""
+"""Writes the OSL files that only differ from GLSL in a few words: `python -m tools.site.twins`."""
 
 import re
 from pathlib import Path
@@ -21,7 +21,7 @@ HEADER = "// Generated from genglsl/{stem}.glsl by `python -m tools.site.twins`;
 def osl_text(stem: str) -> str:
     """OSL of a GLSL file.
 
-    GLSL's vec3 is a vector in the samplers and where it declares wo, wi or wh, and a color elsewhere.
+    GLSL's vec3 becomes a vector in the samplers and in declarations of wo, wi or wh, otherwise a color.
     """
     text = (ROOT / "genglsl" / f"{stem}.glsl").read_text(encoding="utf-8")
     text = re.sub(r"\bvec3(?= w[oih]\b)", "vector", text)

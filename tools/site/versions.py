@@ -2,8 +2,8 @@
 """Judge eonlib and stock with every version of MaterialX: `python -m tools.site.versions` writes the page.
 
 It runs `mxeon check --host gl --node all` with each version, 13 minutes of processor time in all, and keeps
-what the page shows in `ledger/versions.json`, from which `python -m tools.site` writes the page, and the site its
-lines on the ledger's pages.
+the data in `ledger/versions.json`. From it `python -m tools.site` writes the page, and the site the lines on
+the ledger's pages.
 """
 
 import json
@@ -24,7 +24,7 @@ COMMAND = ("check", "--host", "gl", "--node", "all", "--workers", "0", "--json")
 
 
 def judged(version):
-    """Results of a run with a version, as it prints them."""
+    """Results of a run with a version, as printed."""
     libraries = [word for each in LIBRARIES for word in ("--library", each)]
     done = run(wheel(version), *COMMAND, *libraries)
     if done.returncode not in (0, 1):
@@ -33,10 +33,10 @@ def judged(version):
 
 
 def record(versions):
-    """What the pages show, of the results of all versions by their names.
+    """The data of the pages, from the results of all versions by name.
 
-    By version: how many results of each library's nodes have which verdict, which of eonlib's do not pass,
-    and whether all pass that show a defect of MaterialX on gl, or in its texts, by the page of the defect.
+    By version: number of results per verdict for each library's nodes, eonlib's results that do not pass, and,
+    by page of a defect of MaterialX on gl or in its texts, whether all results that show it pass.
     """
     found = {
         "commit": (MAIN.parent / "commits.txt").read_text().split(" ", 2)[:2],

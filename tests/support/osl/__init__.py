@@ -17,14 +17,14 @@ from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
 FOLDER = Path(__file__).parent
-TITLE = "oslc -- Open Shading Language compiler 1.15.6.0"  # of the build that was recorded
+TITLE = "oslc -- Open Shading Language compiler 1.15.6.0"  # title of the recorded build
 PICTURE = FOLDER / "pairs.tif"  # testrender's picture of the pairs
 INPUTS = {"color": (0.2, 0.5, 0.8), "roughness": 1.0, FLAG: True}
 VIEWS = np.array([(0.6, 0.0, 0.8), (0.0, 0.28, 0.96), (-0.48, 0.64, 0.6), (0.96, 0.0, 0.28)])
 LIGHTS = np.array([(0.0, 0.6, 0.8), (0.96, 0.0, 0.28), (0.48, -0.6, 0.64), (-0.6, 0.0, 0.8)])
 
 # Replays the recording: help with the recorded title, a compiled shader for each source, and the
-# recorded picture for the recorded scene alone.
+# recorded picture, only for the recorded scene.
 REPLAY = {
     "oslc": """case "$1" in
     --help) echo "{title}"; exit 0 ;;
@@ -47,7 +47,7 @@ def shader():
 
 
 def values(host):
-    """What a host has for the recorded pairs."""
+    """A host's values for the recorded pairs."""
     return host.evaluate(shader(), VIEWS, LIGHTS, {}, "direct")
 
 

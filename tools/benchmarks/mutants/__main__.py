@@ -4,7 +4,7 @@
     python -m tools.benchmarks.mutants [--only PATTERN] [--resume]    the rows of the table
     python -m tools.benchmarks.mutants --seed N [--share 0.1]         a share of what the operators make
 
-Exit status: 0, or 1 if a mutant survives that is not listed so, or one that is does not.
+Exit status: 0, or 1 if the survivors differ from the listed ones.
 """
 
 import argparse
@@ -63,12 +63,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def noticed(check: str) -> dict[str, Any]:
-    """A mutant that a check noticed in a program of many."""
+    """The verdict for a mutant that a check noticed in a shared program."""
     return {"verdict": KILLED, "host": "gl", "checks": [check], "explanation": ""}
 
 
 def lines(mutants: Sequence[Mutant], trials: dict[str, Any]) -> list[str]:
-    """Counts by group and verdict, and each mutant whose verdict is not the one expected."""
+    """Counts by group and verdict, and each mutant with an unexpected verdict."""
     counts = Counter((each.group, trials[each.name]["verdict"]) for each in mutants)
     wrong = [
         f"{each.name}: {trials[each.name]['verdict']} ({each.reason})"

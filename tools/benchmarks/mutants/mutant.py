@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of mutants: single textual changes of eonlib's sources, read from `table/*.toml`.
 
-Beside them, for each file a change of its first comment: a negative control, which must survive.
+In addition, each file gets a changed first comment: a negative control, which must survive.
 """
 
 import re
@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[3]
 TWINS = (*STEMS, "hair_parameters")  # files whose functions have one text in two languages
 FOLDERS = ("libraries", "genglsl", "genosl")  # eonlib
 CONTROLS = "Negative controls"  # group of the mutants that change a comment
-COMMENT = "SPDX-License-Identifier"  # in the first comment of every file
+COMMENT = "SPDX-License-Identifier"  # occurs in the first comment of every file
 
 
 @dataclass(frozen=True)
@@ -30,15 +30,15 @@ class Mutant:
     old: str  # occurs once in the file
     new: str
     reason: str  # why it is wrong, or the proof that it is equivalent
-    host: str  # the cheapest that can see it; "text" where none is needed
+    host: str  # cheapest host that can detect it; "text" if none is needed
     equivalent: bool  # the same function on the whole valid domain
-    survives: bool  # no check notices it, for that reason
+    survives: bool  # no check notices it, for the stated reason
     tests: tuple[str, ...] = ()  # test files to run first on a wrong reference
-    operator: str = ""  # that made it, and its place in the file
+    operator: str = ""  # operator that made it, and position in the file
     place: tuple[int, int] = (0, 0)
 
     def texts(self) -> dict[str, str]:
-        """Text of each mutated file, by its path: of the functions in GLSL, that in OSL as well."""
+        """Text of each mutated file, by path; shared GLSL functions include their OSL twin."""
         texts = {self.file: self._replaced(self.file, re.escape(self.old), self.new)}
         twin = self.file.replace("glsl", "osl")
         if self.file.startswith("genglsl/") and Path(self.file).stem in TWINS:

@@ -12,9 +12,9 @@ from pathlib import Path
 from tools.benchmarks.mutants.mutant import ROOT, Mutant, read_table
 
 GROUP = "Operators"
-SURVIVORS = Path(__file__).with_name("survivors.toml")  # lines => wrong ones that nothing notices
+SURVIVORS = Path(__file__).with_name("survivors.toml")  # lines => wrong lines that nothing notices
 FOLDERS = ("genglsl", "genosl")
-# Shared programs compile neither these nor the lines that they define: `table` has their mutants.
+# Shared programs do not compile these; `table` has mutants for them.
 ENVIRONMENT = "genglsl/environment/"
 UNCOMPILED = r"^#ifdef (?:EONLIB_PREFILTERED|MX_REFRACTION_UNMASKED)\b.*?(?=^#e)"
 COMMENT = re.compile(
@@ -30,7 +30,7 @@ SWAPPED = {
     "min(": "max(", "max(": "min(",
 }  # fmt: skip
 CONSTANT = re.compile(r"(?<![\w.])\d+\.\d*(?:[eE][-+]?\d+)?(?![\w.])")
-GROUP1 = r"\((?:[^()]|\([^()]*\))*\)"  # parentheses that hold others
+GROUP1 = r"\((?:[^()]|\([^()]*\))*\)"  # nested parentheses
 PARENTHESES = rf"\((?:[^()]|{GROUP1})*\)"
 # A name, a number, a call, or parentheses; and a product of such.
 OPERAND = rf"(?<![\w.)\]])(?:-?[\w.]+(?:\[\w+\])?(?:{PARENTHESES})?|{PARENTHESES})(?![\w.(\[])"
@@ -54,9 +54,9 @@ OPERATORS = {
 
 
 def made(seed: int, share: float) -> tuple[Mutant, ...]:
-    """A share in (0, 1] of the mutants that the operators make.
+    """A share in (0, 1] of the operators' mutants.
 
-    A digest decides, so that for the same seed a mutant is chosen or not whatever the others are.
+    A digest decides, so the choice of a mutant only depends on the seed and the mutant itself.
     """
     return tuple(each for each in every() if _fraction(f"{seed} {each.file} {each.new}") < share)
 
@@ -67,13 +67,13 @@ def _fraction(text: str) -> float:
 
 
 def _digest(mutant: Mutant) -> tuple[str, str]:
-    """The file of a mutant, and its text but for white space."""
+    """The file of a mutant, and its text without white space."""
     return mutant.file, "".join(mutant.texts()[mutant.file].split())
 
 
 @cache
 def every() -> tuple[Mutant, ...]:
-    """All of them, those that survive with the reason in the table, which has the same text, or in SURVIVORS."""
+    """All mutants; survivors have the reason from the table's row with the same text, or from SURVIVORS."""
     table = {_digest(each): each.reason for each in read_table() if each.survives}
     listed = tomllib.loads(SURVIVORS.read_text(encoding="utf-8"))["survivors"]
     reasons = {
@@ -96,7 +96,7 @@ def files() -> tuple[str, ...]:
 
 
 def mutants_of(file: str) -> Iterator[Mutant]:
-    """Mutants of a file, each text once; those whose twin in OSL differs at the place are left out."""
+    """Distinct mutants of a file, except where the OSL twin differs."""
     texts = set()
     text = (ROOT / file).read_text(encoding="utf-8")
     code = code_of(text)
@@ -122,7 +122,7 @@ def mutants_of(file: str) -> Iterator[Mutant]:
 
 
 def code_of(text: str) -> str:
-    """A source with blanks instead of comments, includes and what is not compiled."""
+    """A source with comments, includes and inactive code replaced by blanks."""
     return COMMENT.sub(lambda match: re.sub(r"\S", " ", match[0]), text)
 
 
@@ -137,7 +137,7 @@ def changed(operator: str, code: str) -> str:
 
 
 def unique(text: str, start: int, end: int, new: str) -> tuple[str, str]:
-    """The fewest whole lines around a place that occur once, as they are and changed."""
+    """The fewest whole lines around a place that are unique in the file, before and after the change."""
     first = text.rfind("\n", 0, start) + 1
     last = text.find("\n", end - 1) + 1 or len(text)
     while text.count(text[first:last]) > 1:

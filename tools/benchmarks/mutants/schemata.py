@@ -264,9 +264,9 @@ Subject = tuple[str, bool, str, Asked]
 
 
 def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
-    """By name of each mutant of a node's GLSL, or of a function that OSL has in the same text: what notices it.
+    """The check and subject that notices each mutant of a node's GLSL, or of a function shared with OSL, by name.
 
-    That is a check and its subject. Others have SURVIVED, or are UNWRITTEN.
+    SURVIVED if no check does, and UNWRITTEN if the mutant cannot be written.
     """
     twins = [each for each in mutants if each.file in OSL_TWINS]
     own = [each for each in mutants if each.file.startswith("genglsl/")]
@@ -285,7 +285,7 @@ def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
 
 
 def is_another_text(mutant: Mutant) -> bool:
-    """Whether a mutant of OSL has a function or constant that differs from GLSL, as in the check `languages`."""
+    """Whether an OSL mutant makes a function or constant differ from GLSL, as in the check `languages`."""
     texts = (ROOT / mutant.file.replace("osl", "glsl")).read_text(), mutant.texts()[mutant.file]
     glsl, osl = (parts(operators.COMMENT.sub(" ", each)) for each in texts)
     return glsl != osl
@@ -339,7 +339,7 @@ def _rows(case: Case, turn: int) -> Callable[[], list[tuple[Check, Tolerance]]]:
 
 
 class Functions:
-    """The shader functions, all by one call, at some of the points at which they are judged."""
+    """The shader functions, evaluated in one call at a subset of the judged points."""
 
     def __init__(self, host: SchemataHost) -> None:
         self._host, self.language = host, host.language
@@ -352,7 +352,7 @@ class Functions:
             self._rows.append((row.key, probe.tolerance(row), scale, scale * values[::EACH]))
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """The host's answer; of a call of all functions, the points are kept."""
+        """The host's answer; calls of all functions use a subset of the points."""
         if function == EVERY:
             points = np.arange(len(np.asarray(arguments[0]))) % EACH == 0
             self._asked = source, function, *(np.asarray(each)[points] for each in arguments)

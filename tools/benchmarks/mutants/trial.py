@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The trial of a mutant: `mxeon check` of a copy of eonlib that holds it, cheapest tasks first.
+"""The trial of a mutant: `mxeon check` on a copy of eonlib with the mutant, cheapest tasks first.
 
-A wrong node of pbrlib is judged by the checks of the nodes whose implementation it changes, other sources by
-those of a library, the text first, and a wrong reference by the tests of the models on a copy of mxeon.
+A wrong node of pbrlib is judged by the checks of the nodes that it changes, other sources by the checks
+of a library, text first, and a wrong reference by the tests of the models on a copy of mxeon.
 """
 
 import os
@@ -33,26 +33,24 @@ from tools.benchmarks.mutants import operators
 from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
 
 KILLED, SURVIVED = "killed", "survived"
-CRASHED = "crashed"  # a traceback in place of a verdict
-TEXT, TESTS = "text", "tests"  # instead of a host
+CRASHED = "crashed"  # traceback instead of a verdict
+TEXT, TESTS = "text", "tests"  # replace the name of a host
 
-# What Cycles cannot show exactly or at all, tests run in Blender's OSL.
+# Cycles cannot show these exactly or at all; tests run them in Blender's OSL.
 PROFILE, PROFILE_TESTS = "genosl/cycles/", ("tests/hosts/test_osl.py",)
 PATH, PATH_TESTS = "genglsl/path/", ("tests/shaders/test_path_tracing.py",)  # run by no check
-LOBE = (
-    "genglsl/lib/microfacet_lobe.glsl"  # calls lookups of an environment, which no source includes
-)
+LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups that no source includes
 ENVIRONMENT_TESTS = (
     "tests/conformance/test_conformance.py::test_other_lobes_are_lit_alike_by_eonlib_s_lookups",
     "tests/hosts/test_document_hosts.py::"
     "test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo",
 )
 NOISY = ("environment", "furnace")  # checks that take Cycles longest
-# Files that no shader for gl holds: there the gl host has nothing to see.
+# Files that no shader for gl contains: the gl host cannot detect mutants in them.
 ON_CYCLES = ("genosl/",)
-CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls of them, which host osl evaluates
+CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls of closures, which host osl evaluates
 NOT_ON_GL = (*ON_CYCLES, CLOSURES, "libraries/diffuse/eonlib_genmdl")
-TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # other checks fail for what its check names
+TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # its mistakes also fail other checks
 
 
 def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
@@ -90,7 +88,7 @@ def _on_hosts(mutant: Mutant, judge: Judge, every: bool) -> dict[str, Any]:
 
 
 def write_wrong(mutant: Mutant, base: str, *folders: str) -> None:
-    """Copy folders of the repository with the mutant's files."""
+    """Copy folders of the repository, with the mutant's files."""
     for name in folders:
         shutil.copytree(ROOT / name, Path(base, name))
     for file, text in mutant.texts().items():
@@ -99,7 +97,7 @@ def write_wrong(mutant: Mutant, base: str, *folders: str) -> None:
 
 @contextmanager
 def wrong_library(mutant: Mutant) -> Iterator[str]:
-    """Path of a library that is eonlib with one change, in a folder that no cache knows."""
+    """Path of eonlib with one change, in a folder that no cache contains."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
         write_wrong(mutant, base, *FOLDERS)
         try:
@@ -112,7 +110,7 @@ def wrong_library(mutant: Mutant) -> Iterator[str]:
 def failures_of(
     tasks: Sequence[Task], judge: Judge, every: bool = True, clean: str = "eonlib"
 ) -> list[Result]:
-    """Results that pass only without the mutant: of all tasks, or of the first."""
+    """Results that only pass without the mutant, of all tasks or of the first."""
     failures: list[Result] = []
     for task in tasks:
         found = _failed(task, judge)
@@ -135,7 +133,7 @@ def _clean_failures(task: Task, judge: Judge) -> frozenset[tuple[str, str]]:
 
 
 def ordered(failures: list[Result]) -> list[dict[str, str]]:
-    """Failures as plain data, those with the largest error in tolerances first, and before all what does not compile."""
+    """Failures as plain data: compiler errors first, then by descending error over tolerance."""
 
     def ratio(result: Result) -> float:
         if result.error is None:
@@ -155,7 +153,7 @@ def ordered(failures: list[Result]) -> list[dict[str, str]]:
 
 
 def first_line(text: str) -> str:
-    """The first line of a text, where compilers print many."""
+    """The first line of a text; compilers print many."""
     return text.strip().splitlines()[0] if text.strip() else ""
 
 
@@ -336,4 +334,4 @@ def _failure(package: str, tests: Sequence[str]) -> dict[str, str] | None:
     return {"check": test or "import", "excess": "", "host": TESTS, "diagnosis": diagnosis}
 
 
-_first_failure = cache(_failure)  # for the unchanged package
+_first_failure = cache(_failure)  # cached for the unchanged package

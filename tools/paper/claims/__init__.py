@@ -21,11 +21,11 @@ A claim *holds* if all of its measured values meet its limit, holds *in part* if
 does; NaN meets no limit. The tables have the claims that do not hold, with the limit in the column *required*.
 The last section is about MaterialX's text, not the paper.
 """
-LARGEST = "largest difference "  # begins the sentence of a claim that holds up to roundings
+LARGEST = "largest difference "  # begins sentences of claims that hold up to roundings
 TALLY = "{count} claims; verdicts: {holds} holds, {part} holds in part, {fails} fails."
 
 
-# A sentence with the numbers, and the values that are bounded.
+# A sentence with the numbers, and the values to compare with the bounds.
 Measured = tuple[str, ArrayLike]
 Measure = Callable[[], Measured]
 ROUNDING = 1e-12  # agreement of two forms of a formula
@@ -33,7 +33,7 @@ ROUNDING = 1e-12  # agreement of two forms of a formula
 
 @dataclass(frozen=True)
 class Claim:
-    """A sentence or formula in print, its measurement, and the bound that it has to meet."""
+    """A printed sentence or formula, its measurement, and the bounds that it must meet."""
 
     where: str  # place in the paper
     text: str  # the claim in our words
@@ -59,7 +59,7 @@ class Section:
     """Claims under one heading."""
 
     heading: str
-    remark: str = ""  # below the table, for what cannot be measured
+    remark: str = ""  # text below the table on claims that cannot be measured
     claims: list[Claim] = field(default_factory=list)
 
     def claim(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Appendix A of [Portsmouth2025]: the rho that gives a wanted albedo."""
+"""Appendix A of [Portsmouth2025]: the rho for a given albedo."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ COLORS = np.linspace(0.0, 1.0, 401)
 ROUGHNESS = np.linspace(0.0, 1.0, 101)
 ROUNDING = 1e-14
 STATED = 3e-3
-# The rounding of float32: a form of float64 that is worse than this has failed.
+# The rounding of float32: a float64 formula with a larger error has failed.
 FLOAT32 = 2.0**-24
 # Our fits to the forms of Eqs. (32) and (34), tools/fits/eon_inversion.py: slope and zero.
 REFIT = {"normal": (0.2531091, 0.9883170), "avg": (0.1843278, 1.0)}

@@ -107,7 +107,7 @@ def qon_gain() -> Measured:
     least=ROUNDING,
 )
 def full_gain() -> Measured:
-    """The distance of the largest albedo from 1, on the side that is claimed."""
+    """The distance of the largest albedo from 1, on the claimed side."""
     mu = np.array([1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2])
     albedos = np.array([albedo_dir_quadrature(oren_nayar_brdf, mu, 1.0, s).max() for s in SIGMA])
     listed = ", ".join(f"{E:.3f} at sigma = {s:.2g}" for s, E in zip(SIGMA, albedos, strict=True))
@@ -144,7 +144,7 @@ def rms_to_full() -> Measured:
     most=0.1,
 )
 def kink() -> Measured:
-    """Jumps of the slope of f in s where s = 0, roughest, both directions at the same angle."""
+    """Jumps of the slope of f in s at s = 0, at the largest roughness, both directions at the same angle."""
     parts, ratios = [], []
     for degrees in (5, 25, 60):
         mu = np.cos(np.radians(degrees))
@@ -203,7 +203,7 @@ def fon_loses() -> Measured:
 
 @claim("Eqs. (16), (19)", "EON as printed is EON as computed here")
 def printed_eon() -> Measured:
-    """Eqs. (16) and (19) as printed, with divisions that vanish together."""
+    """Eqs. (16) and (19) as printed, with quotients 0/0."""
     wo, wi = pairs()
     errors = []
     for r in ROUGHNESS:

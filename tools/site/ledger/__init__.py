@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ledger of upstream defects: what was measured of its pages, and the patches.
+"""The ledger of upstream defects: the measurements of its pages, and the patches.
 
-`docs/upstream` has a page for each defect, `measured.json` beside them what the suite said of it last, and
-`patches/` the repairs as commits. A patch names its page in its message. The site fills the figures in.
+`docs/upstream` has a page for each defect, the suite's latest results in `measured.json`, and the repairs
+as commits in `patches/`. A patch names its page in its message. The site fills in the figures.
 
     python -m tools.site.ledger.measure [HOST ...]  measures the tables anew
     python -m tools.site.ledger.pictures            draws the pictures anew
@@ -28,12 +28,12 @@ MEASURED = FOLDER / "measured.json"
 
 
 def measured() -> dict[str, Any]:
-    """What was measured, by page: its rows of checks, place and diagnosis, and its picture."""
+    """The measurements by page: rows of checks, place, diagnosis, and picture."""
     return dict(json.loads(MEASURED.read_text(encoding="utf-8")))
 
 
 def write_measured(found: dict[str, Any]) -> None:
-    """Write what was measured and what patches change, a line for each page."""
+    """Write the measurements and the changes by patches, one line per page."""
     write_text(MEASURED, dumped(dict(sorted(with_patches(found).items())), 1) + "\n")
 
 
@@ -46,7 +46,7 @@ def dumped(found: Any, depth: int) -> str:
 
 
 def with_patches(found: dict[str, Any]) -> dict[str, Any]:
-    """What was measured, with the shortest change of MaterialX by each page's patch, by which it is recognized."""
+    """The measurements, with the shortest change by each page's patch, which identifies patched copies."""
     files = patches("materialx")
     return found | {
         page: found[page] | {"patch": _shortest_change(path.read_bytes().decode())}
@@ -62,7 +62,7 @@ def _shortest_change(patch: str) -> tuple[str, str, str]:
     ):
         for run in re.findall(r"^(?: .*\n)?(?:[+-].*\n)+(?: .*\n)?", part, re.MULTILINE):
             lines = run.splitlines(keepends=True)
-            if {line[0] for line in lines} >= {"+", "-"}:  # else the lines around are needed
+            if {line[0] for line in lines} >= {"+", "-"}:  # otherwise context lines are needed
                 lines = [line for line in lines if line[0] != " "]
             old, new = ("".join(line[1:] for line in lines if line[0] != sign) for sign in "+-")
             changes.append((file, old, new))
@@ -79,7 +79,7 @@ def figure(result: Result) -> str:
 
 @cache
 def patches(project: str) -> dict[str, Path]:
-    """The patches of a project in their order, by the page that each is from."""
+    """The patches of a project in order, by page."""
     found = {}
     for path in sorted((PATCHES / project).glob("*.patch")):
         [page] = re.findall(r"docs/upstream/(\w+)\.md", path.read_text(encoding="utf-8"))
@@ -88,20 +88,20 @@ def patches(project: str) -> dict[str, Path]:
 
 
 def patches_of(page: str) -> list[Path]:
-    """The patches from a page: MaterialX's before those of copies."""
+    """The patches of a page, those for MaterialX before those for copies."""
     projects = sorted(path.name for path in PATCHES.iterdir() if path.is_dir())
     return [found[page] for each in projects if page in (found := patches(each))]
 
 
 def own_diff(page: str) -> str:
-    """The repair that a page shows itself, as a diff; "" where it is a patch."""
+    """The diff in a page's own text; "" if its repair is a patch."""
     return "".join(
         re.findall(r"^```diff\n(.*?)^```", issues()[page].text, re.DOTALL | re.MULTILINE)
     )
 
 
 def needed(page: str) -> set[str]:
-    """The page, and those whose patches its own needs, and theirs."""
+    """The page, and all pages whose patches its own requires, recursively."""
     found = {page}
     while more := {each for name in found for each in issues()[name].needs} - found:
         found |= more
@@ -116,9 +116,9 @@ def linked(source: Path, target: Path) -> Path:
 
 
 def apply(folder: Path, *diffs: Path | str, strip: int = 1) -> Path:
-    """Apply patches, or texts of diffs, to a tree of files or of links; the tree.
+    """Apply patches, or texts of diffs, to a tree of files or links, and return the tree.
 
-    `strip` is how many parts of their paths lie above the tree.
+    `strip` is the number of path components to drop.
     """
     alone = {"GIT_CEILING_DIRECTORIES": str(folder.resolve().parent), "GIT_CONFIG_NOSYSTEM": "1"}
     command = ["git", "-c", "core.autocrlf=false", "apply", "--unidiff-zero", f"-p{strip}", "-"]

@@ -22,9 +22,9 @@ CHECKED = [each for each in issues().values() if each.rows]  # their pages have 
 
 
 def judged(host: str, rows: Collection[Row] = ()) -> tuple[list[Result], str]:
-    """The results of some checks on a host or on "source", and device and versions.
+    """Results of some checks on a host or on "source", with device and versions.
 
-    Without `rows`, those of the tables of the pages whose host it is.
+    Without `rows`, the checks in the tables of this host's pages.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def judged(host: str, rows: Collection[Row] = ()) -> tuple[list[Result], str]:
 
 
 def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any]:
-    """What the page of an issue shows of results, among which are those of its rows."""
+    """The data of an issue's page, from results that include its rows."""
     found = {(each.check, each.subject): each for each in results}
     shown = [found[row] for row in issue.rows]
     rows = [
@@ -61,11 +61,11 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
     nearest = [title for _, title in others if title != diagnosis.first.key]
     if diagnosis.kind is Kind.MODEL and nearest:
         measures["next"] = nearest[0]
-    return dict(json.loads(json.dumps(measures)))  # as it is read
+    return dict(json.loads(json.dumps(measures)))  # same types as when read
 
 
 def fields(cause: Cause) -> dict[str, Any]:
-    """The fields of a cause that depend on no driver, but for those that say nothing."""
+    """The driver-independent fields of a cause, without empty ones."""
     found = asdict(cause) | {"kind": cause.kind.value}
     if cause.region:
         found["region"] = {
@@ -76,7 +76,7 @@ def fields(cause: Cause) -> dict[str, Any]:
 
 
 def main(names: Sequence[str]) -> None:
-    """Measure what shows on some hosts; on all of them if there are none, and the largest errors anew."""
+    """Measure the defects of some hosts; without names, of all hosts, together with the largest errors."""
     found = measured()
     everywhere = [host for each in issues().values() for host in (each.host, *each.also) if host]
     if not names:

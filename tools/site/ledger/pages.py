@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the site adds to the pages of the ledger: figures, diffs of patches, versions; and the list of all pages."""
+"""The site's additions to the ledger's pages: figures, diffs of patches, versions; and the list of all pages."""
 
 import json
 import re
@@ -16,10 +16,10 @@ from tools.site.ledger import FOLDER, ROOT, measured, patches, patches_of
 
 VERSIONS = Path(__file__).with_name("versions.json")
 PAGE = FOLDER / "README.md"
-PLACE = re.compile(r"<!-- patches (\S+) -->")  # where the index has the table of a project
-WHOLE = 20  # a diff of fewer lines is shown whole
+PLACE = re.compile(r"<!-- patches (\S+) -->")  # placeholder for a project's table in the index
+WHOLE = 20  # shorter diffs are shown in full
 SHOWN = 8  # lines of a longer diff on a page, unless its first change is longer
-# The parts of the index: what stands above the pages of each.
+# The parts of the index, with the text above each part's pages.
 GROUPS = {
     "rough_diffuse": "`oren_nayar_diffuse_bsdf`",
     "diffuse": "`burley_diffuse_bsdf`, `subsurface_bsdf`, `translucent_bsdf`",
@@ -45,7 +45,7 @@ GROUPS = {
 def page(text: str) -> str:
     """The index with its list of all pages.
 
-    Raises ValueError if the group of a page is none of the index.
+    Raises ValueError if a page's group is not in the index.
     """
     groups: dict[str, list[str]] = {name: [] for name in GROUPS}
     for issue in issues().values():
@@ -60,7 +60,7 @@ def page(text: str) -> str:
 
 
 def filled(name: str, text: str) -> str:
-    """The Markdown of a page of the ledger, or of its index, with what the site adds."""
+    """The Markdown of a ledger page, or of the index, with the site's additions."""
     if name == PAGE.stem:
         return PLACE.sub(lambda found: patch_table(found[1]), text)
     issue = issues()[name]
@@ -79,7 +79,7 @@ def filled(name: str, text: str) -> str:
 
 
 def table(issue: Issue) -> str:
-    """What was measured of the rows of a page, and the diagnosis of the first; "" without rows."""
+    """The measured rows of a page, and the diagnosis of the first; "" without rows."""
     found = measured().get(issue.page, {})
     if not issue.rows or not issue.cause:
         return ""
@@ -101,7 +101,7 @@ def said(issue: Issue, found: dict[str, Any]) -> str:
 
 
 def short_diff(page: str) -> tuple[str, int]:
-    """A short repair, the first changes of a long one, or its shortest one, and how many lines that leaves out.
+    """A short repair, or the first or shortest change of a long one, and the number of omitted lines.
 
     The repair is the page's first patch; "" and 0 for a page without one.
     """
@@ -123,7 +123,7 @@ def short_diff(page: str) -> tuple[str, int]:
     shown: list[str] = []
     left = 0
     whole = sum(len(lines) for _, lines in changes) < WHOLE
-    if not whole and len(changes[0][1]) >= SHOWN:  # then a short one comes first
+    if not whole and len(changes[0][1]) >= SHOWN:  # then start with a short one
         changes.sort(key=lambda change: len(change[1]))
     for number, (file, lines) in enumerate(changes):
         head = f"--- {file}" if f"--- {file}" not in shown else "@@"
@@ -135,7 +135,7 @@ def short_diff(page: str) -> tuple[str, int]:
 
 
 def outcome(issue: Issue, numbers: dict[str, str]) -> str:
-    """What the checks say with the patch of a page, and with those that it needs."""
+    """The checks' outcome with a page's patch and its prerequisites."""
     subjects: dict[tuple[str, bool], list[str]] = {}
     for check, subject in issue.repaired:
         subjects.setdefault((subject, True), []).append(f"`{check}`")
@@ -158,7 +158,7 @@ def outcome(issue: Issue, numbers: dict[str, str]) -> str:
 
 
 def seen(issue: Issue, versions: dict[str, Any]) -> str:
-    """The line on the versions of MaterialX that have a defect; empty where no check of them shows it."""
+    """The line on the MaterialX versions with a defect; empty if no check of them shows it."""
     if issue.page not in versions["pages"]:
         return ""
     shown = versions["pages"][issue.page]
@@ -182,7 +182,7 @@ def patch_table(project: str) -> str:
         issue = issues()[page]
         text = " ".join(path.read_text(encoding="utf-8").split("\n\n", 1)[0].split())
         picture = found.get(page, {}).get("picture")
-        # The figure of the first row that the patch repairs.
+        # Use the figure of the first row that the patch repairs.
         measures = found.get(page, {}).get("rows", [])
         chosen = [row for row in measures if (row[0], row[1]) in issue.mended]
         figures = [

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draw the pictures of the ledger: `python -m tools.site.ledger.pictures`.
 
-Each has the document of a page on gl with MaterialX as installed, with the page's patch and those that it
-needs, and the difference of both.
+Each shows a page's document on gl with the installed MaterialX, with the page's patch and its
+prerequisites, and the difference of both.
 """
 
 import sys
@@ -31,7 +31,7 @@ BASE = lobe_text("oren_nayar_diffuse_bsdf", WHITE, "base")
 
 
 def _operator(category: str, name: str, **inputs: str) -> str:
-    """XML of a node of BSDFs, whose inputs are names of nodes, or numbers."""
+    """XML of a BSDF node with inputs that are node names or numbers."""
     text = "".join(
         input_text(each, "float", value)
         if value[0].isdigit()
@@ -76,12 +76,12 @@ LOBES = ("roughness_R", "roughness_TT", "roughness_TRT")
 
 
 def _hair(variance: float, scale: float) -> str:
-    """White hair whose lobes all have a variance and a scale."""
+    """White hair with the same variance and scale for all lobes."""
     clear = {"absorption_coefficient": (0.0, 0.0, 0.0)}
     return _lobe("chiang_hair_bsdf", {**dict.fromkeys(LOBES, (variance, scale)), **clear})
 
 
-# The scene and the document that the picture of a page shows; the page says it in words.
+# The scene and the document of each page's picture; the page describes them in words.
 PAGES = {
     "genglsl_clamped_dot": ("back", _lobe("oren_nayar_diffuse_bsdf", ROUGH)),
     "genglsl_film_half": (
@@ -144,13 +144,13 @@ def draw(folder: str, *pages: str) -> None:
 
 
 def measure(page: str) -> dict[str, str]:
-    """Write the picture of a page, stock, repaired and difference; what is measured of it."""
+    """Write a page's picture (stock, repaired and difference), and return its measurements."""
     with TemporaryDirectory(prefix="mxeon-picture-") as base:
         stock, own = (_drawn(page, Path(base, name), name == "own") for name in ("stock", "own"))
-    # Compare them where the sphere is.
+    # Only compare pixels on the sphere.
     mask = visible(SIZE, "sphere").mask
     apart = np.where(mask[..., None], np.abs(stock - own), 0.0)
-    # White surroundings are shown gray, so that more light than arrives is visible.
+    # Show white surroundings as gray, so that excess light is visible.
     gain = 0.5 if PAGES[page][0] == "furnace" else 1.0
     codes = [srgb_encoded(each) for each in (gain * stock, gain * own, apart / apart.max())]
     codes = [np.where(mask[..., None], each, np.uint8(BACKGROUND)) for each in codes]
@@ -162,7 +162,7 @@ def measure(page: str) -> dict[str, str]:
 
 
 def _drawn(page: str, folder: Path, repair: bool) -> np.typing.NDArray[np.float32]:
-    """The picture of a page with MaterialX, or with the page's patch and those that it needs."""
+    """A page's picture with MaterialX, or with the page's patch and its prerequisites."""
     package = linked(Path(mx.__file__).parent, folder / "MaterialX")
     if repair:
         names = needed(page)
@@ -174,7 +174,7 @@ def _drawn(page: str, folder: Path, repair: bool) -> np.typing.NDArray[np.float3
 
 
 def main() -> None:
-    """Draw the pictures, and write the pages with what is measured of them."""
+    """Draw the pictures, and write their measurements."""
     found = measured()
     for page in PAGES:
         found[page] = found.get(page, {}) | {"picture": measure(page)}
