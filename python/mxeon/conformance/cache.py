@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small LRU caches of values by the numbers that they depend on.
+"""Small LRU caches of values, keyed by the numbers that they depend on.
 
-A check, its control, other checks and libraries ask for the same ones. Batches are equal if their numbers are:
-reading them takes less time than computing their values.
+Checks, controls and libraries share many values. Batches are compared by their numbers: hashing
+them takes less time than computing their values.
 """
 
 from collections import OrderedDict
@@ -13,14 +13,14 @@ import numpy as np
 
 from mxeon.conformance.samples import Array, Batch
 
-LARGEST = 1 << 14  # pairs of a batch whose values are kept
-KEPT = 32  # batches whose values are kept, of up to 400 kB each
-EVALUATIONS = 16  # batches whose values of a host are kept, of up to 3.5 megabytes each
+LARGEST = 1 << 14  # maximum pairs of a cached batch
+KEPT = 32  # cached batches, up to 400 kB each
+EVALUATIONS = 16  # cached batches of a host's values, up to 3.5 megabytes each
 T = TypeVar("T")
 
 
 class Recent(Generic[T]):
-    """An LRU cache of at most so many values, of which arrays are read-only."""
+    """An LRU cache of a limited number of values; arrays are read-only."""
 
     def __init__(self, most: int) -> None:
         self._most = most
@@ -38,7 +38,7 @@ class Recent(Generic[T]):
 
 
 def contents(value: object) -> Hashable:
-    """A key for an array, a number, a string or None: of an array type, shape and a hash of 64 bits."""
+    """A key for an array (type, shape and a 64-bit hash), a number, a string or None."""
     if value is None or isinstance(value, (str, bool)):
         return value
     array = np.asarray(value)
@@ -60,6 +60,6 @@ class Remembered:
 
 
 def parts(batch: Batch) -> tuple[Hashable, ...]:
-    """A key for a batch, but for its scene."""
+    """A key for a batch, without its scene."""
     inputs = tuple((name, contents(values)) for name, values in batch.inputs.items())
     return contents(batch.wo), contents(batch.wi), contents(batch.frame), inputs

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A node on an engine with a library: its samples, the engine's values of them, and the ones expected.
+"""A node on an engine with a library: its samples, the engine's values, and the expected values.
 
-A negative control is the same case with other inputs or outputs.
+A negative control is the same case with wrong inputs or outputs.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from mxeon.conformance.tolerance import Compared, Tolerance
 from mxeon.hosts.base import Engine, Host
 
 F = TypeVar("F", bound=Spec)
-Change = Callable[[Batch, Array], Array]  # of values of a batch
-KEPT_SPECS = 2  # whose expected values are kept: that of a case, and another that it asks
+Change = Callable[[Batch, Array], Array]  # changes values of a batch
+KEPT_SPECS = 2  # specs with cached expected values: the case's own and a related one
 
 
 @lru_cache(maxsize=2 * KEPT_SPECS)
@@ -35,7 +35,7 @@ def remembered(spec: Spec, quantity: str) -> Remembered:
 
 @lru_cache(maxsize=KEPT_SPECS)
 def albedo_candidates(spec: LobeSpec) -> tuple[Candidate, ...]:
-    """The candidates of a spec's albedo, whose values several comparisons ask for."""
+    """The candidates for a spec's albedo, cached for several comparisons."""
     return tuple(
         Candidate(each.title, Remembered(each.values), each.permitted)
         for each in spec.albedo_candidates
@@ -44,16 +44,16 @@ def albedo_candidates(spec: LobeSpec) -> tuple[Candidate, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A node on a backend; `inputs`, `outputs` and `throughputs` are what a control does wrong."""
+    """A node on a backend; `inputs`, `outputs` and `throughputs` are a control's mistakes."""
 
     spec: Spec
     backend: Backend
     inputs: Callable[[Batch], Batch] = lambda batch: batch
     outputs: Change = lambda batch, values: values
     throughputs: Change = lambda batch, values: values
-    control: bool = False  # on a subset: one failing sample is enough
-    chosen: tuple[Batch, ...] = ()  # by a diagnosis, instead of the samples
-    explained: dict[object, Diagnosis] = field(default_factory=dict, init=False)  # by comparison
+    control: bool = False  # uses a subset: one failing sample is enough
+    chosen: tuple[Batch, ...] = ()  # a diagnosis's batches, which replace the samples
+    explained: dict[object, Diagnosis] = field(default_factory=dict, init=False)  # cache
 
     @property
     def host(self) -> Host:
@@ -64,13 +64,13 @@ class Case:
         return self.backend.library
 
     def of(self, family: type[F]) -> F:
-        """The spec of a case that a check asks of one family alone."""
+        """The spec, for a check that only applies to one family."""
         assert isinstance(self.spec, family), f"{self.spec.title} is no {family.__name__}"
         return self.spec
 
     @property
     def opaque(self) -> bool:
-        """Whether transmission is rendered as opacity, for which nothing is looked up."""
+        """Whether transmission is rendered as opacity, without an environment lookup."""
         return self.host.active.transmission == "opacity"
 
     @property
@@ -82,7 +82,7 @@ class Case:
         return self.of(ValueSpec)
 
     def another(self, spec: Spec) -> Case:
-        """The same engine and library for another spec."""
+        """A case of another spec on the same engine and library."""
         return make_case(type(self.backend), self.host, spec, self.library)
 
     # Samples.
@@ -114,11 +114,11 @@ class Case:
         return self.outputs(batch, self.evaluating.transmitted(self.inputs(batch), radiance))
 
     def throughput(self, batch: Batch, branch: str) -> Array:
-        """The share of the light from below that passes the node, in a branch, (N, 3)."""
+        """The share of the light from below that passes the node in a branch, (N, 3)."""
         return self.throughputs(batch, self.evaluating.throughput(self.inputs(batch), branch))
 
     def measured(self, evaluate: Callable[[Batch], Array], batch: Batch) -> Array:
-        """What a function of the engine returns for a batch."""
+        """Values of a batch from one of the engine's functions."""
         return self.outputs(batch, evaluate(self.inputs(batch)))
 
     @property
@@ -126,7 +126,7 @@ class Case:
         assert isinstance(self.backend, Evaluating), f"{self.host.name} evaluates no pairs"
         return self.backend
 
-    # Values that are expected, and how wrong they may be.
+    # Expected values and tolerances.
 
     def expected(self, batch: Batch) -> Array:
         return remembered(self.valued, "value")(batch)
@@ -136,7 +136,7 @@ class Case:
 
     @property
     def changes(self) -> Mapping[str, Changes]:
-        """For each input that the engine sets: inputs without and with a change of it alone."""
+        """For each input that the engine sets: inputs without and with a change of that input."""
         changes, unset = self.spec.changes, self.backend.unset
         return {name: changes[name] for name in changes if name not in unset}
 
@@ -145,7 +145,7 @@ class Case:
         return albedo_candidates(self.lobe)
 
     def tolerance(self, *quantities: str) -> Tolerance:
-        """The error in the first of these quantities that the spec has, and what the engine adds."""
+        """The spec's error for the first of these quantities that it has, plus the engine's error."""
         errors = self.backend.errors(self.spec)
         for quantity in quantities:
             if error := errors.get(quantity):
@@ -161,19 +161,19 @@ def make_case(backend: type[Backend], host: Engine, spec: Spec, library: str) ->
     return Case(made.spec, made)
 
 
-SCATTERING = ("direct", "environment", "transmission")  # branches of light that is scattered
+SCATTERING = ("direct", "environment", "transmission")  # branches of scattered light
 BRANCHES = (*SCATTERING, "emission")
-LIGHT = ("direct", "environment")  # branches that light a base from above
+LIGHT = ("direct", "environment")  # branches with light from above
 
 
 def values(case: Case) -> Iterator[Compared]:
-    """Values against the expected ones, over all samples."""
+    """Values compared with the expected ones, over all samples."""
     for batch in case.batches:
         yield Compared(batch, case.direct(batch), case.expected(batch))
 
 
 def albedos(case: Case) -> Iterator[Compared]:
-    """The environment branch against the directional albedo, or MaterialX's fit of it."""
+    """The environment branch compared with the directional albedo, or with MaterialX's fit of it."""
     spec, fitted = case.spec, case.backend.prefiltered
     for batch in case.views:
         if fitted and isinstance(spec, FacetSpec):
@@ -192,9 +192,9 @@ def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
 
 
 def frames(case: Case) -> Iterator[Compared]:
-    """Values in turned frames, half of them with a normal that faces away, against those in none."""
+    """Values in turned frames, half of them with a normal that faces away, compared with unturned ones."""
     turned = case.backend.turned
-    # A sum over the environment for each: one of five, of both sides.
+    # Each sums over the environment: use every fifth pair, which covers both sides.
     for output, batch in ((case.direct, turned), (case.albedo, turned.where(slice(None, None, 5)))):
         local = replace(batch.altered(normal=(0.0, 0.0, 1.0), tangent=(1.0, 0.0, 0.0)), frame=None)
         yield Compared(batch, output(batch), output(local))
@@ -203,9 +203,9 @@ def frames(case: Case) -> Iterator[Compared]:
 def dead_inputs(
     case: Case, batch: Batch | None = None, show: Callable[[Batch], Array] | None = None
 ) -> list[str]:
-    """Names of the inputs whose change has no effect on the values, or on what is shown of a batch."""
+    """Names of inputs that do not affect the values, or other shown quantities of a batch."""
     batch, show = batch or case.few[0], show or case.direct
-    plain = show(batch)  # most changes are of the batch as it is
+    plain = show(batch)  # most changes start from the unmodified batch
     dead = []
     for name, (before, after) in case.changes.items():
         one = show(batch.altered(**before)) if before else plain
@@ -215,7 +215,7 @@ def dead_inputs(
 
 
 def edge_values(case: Case) -> Compared:
-    """Values and albedos at the edges of the domain, beside 0."""
+    """Values and albedos at the edges of the domain, compared with 0."""
     batch = case.backend.edges
     found = np.concatenate([case.direct(batch), case.albedo(batch)], axis=1)
     return Compared(batch, found, np.zeros_like(found))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A check: a claim, what is measured of a case, how wrong it may be, and the control that it must catch.
+"""A check: a claim, a measurement of a case, its tolerance, and a control that it must catch.
 
-A check passes at error <= tolerance. Its control is the same case with other inputs or outputs, on the same
-engine; the check has to fail on it.
+A check passes at error <= tolerance. Its control is the same case with wrong inputs or outputs, on the same
+engine; the check must fail on it.
 """
 
 import math
@@ -52,12 +52,12 @@ class Specs:
 
 
 def family(kind: type[S], holds: Callable[[S], bool] = lambda spec: True) -> Specs:
-    """The specs of a family, or some of them."""
+    """The specs of a family that satisfy a condition."""
     return Specs(lambda spec: isinstance(spec, kind) and holds(spec))
 
 
 def compared_of(found: Compared | Iterable[Compared] | Measurement) -> list[Compared]:
-    """What was compared; none for a number of its own."""
+    """The comparisons of a measurement; empty if it is a single number."""
     if isinstance(found, Measurement):
         return []
     return [found] if isinstance(found, Compared) else list(found)
@@ -72,24 +72,24 @@ def always(diagnosis: Diagnosis) -> Explain:
 class Check:
     """A claim about nodes."""
 
-    key: str  # one word
-    claim: str  # a sentence
+    key: str  # single word
+    claim: str  # full sentence
     applies: Specs
-    measure: Measure  # the worst row counts, or a number of its own
-    tolerance: str | Tolerance  # an error of the spec, by its name, or the same for all
+    measure: Measure  # comparisons, judged by their worst row, or a single number
+    tolerance: str | Tolerance  # name of one of the spec's errors, or a fixed tolerance
     control: Control
     explain: Explain
     requires: Ability = NO_ABILITY  # what a backend must support to be judged
-    # Profile of the generated text, if not the rasterizer's; only for nodes that the user names.
+    # Profile of the generated text, if not the rasterizer's; only judged for nodes that the user names.
     profile: str = ""
-    # Whether an error differs, and does not fail, where a permitted function explains it.
+    # Whether an error that a permitted function explains is "differs" instead of a failure.
     open: bool = False
-    # Whether it can be measured on the host of a name, and with a client's methods.
+    # Whether it can be measured on a host, by name, and with a client's methods.
     hosts: Callable[[Spec, str], bool] = lambda spec, host: True
     methods: Callable[[Spec, Methods], bool] = lambda spec, methods: True
 
     def measured(self, case: Case, tolerance: Tolerance) -> Measurement:
-        """The worst error of a case; all of its errors if that is too large."""
+        """The worst error of a case, with all errors if it is too large."""
         found = self.measure(case)
         if isinstance(found, Measurement):
             return found
@@ -100,11 +100,11 @@ class Check:
         return Measurement(worst.error, worst.worst, *errors(compared, tolerance))
 
     def gives(self, case: Case, title: str, tolerance: Tolerance) -> bool:
-        """Whether a permitted function gives the engine's values for the check's own samples.
+        """Whether a permitted function reproduces the engine's values on the check's samples.
 
-        Negative values, which the check `dark` judges, count as 0.
+        Negative values count as 0; the check `dark` judges them.
         """
-        model = copy(case.backend)  # with values of that function
+        model = copy(case.backend)  # returns the function's values
         for name, candidates in (
             ("direct", case.spec.all_candidates if isinstance(case.spec, ValueSpec) else ()),
             ("albedo", case.albedo_candidates if isinstance(case.spec, LobeSpec) else ()),
@@ -123,7 +123,7 @@ class Check:
     def applies_to(
         self, spec: Spec, backend: type[Backend], host: str, methods: Methods = GENERATED
     ) -> bool:
-        """Whether a node is judged by it on a host, by one of its backends, with a client's methods."""
+        """Whether it judges a node on a host, by one of its backends, with a client's methods."""
         if not (self.applies(spec) and self.hosts(spec, host) and self.methods(spec, methods)):
             return False
         own = self.tolerance
@@ -142,7 +142,7 @@ class Check:
         tolerance = self.allowed(case)
 
         def explain() -> Diagnosis:
-            diagnosis = self.explain(case)  # a permitted function excuses an open check alone
+            diagnosis = self.explain(case)  # permitted functions only excuse open checks
             causes = diagnosis.causes
             if diagnosis.first in UNTOLD and (compared := compared_of(self.measure(case))):
                 causes = (searched(diagnosis.first, compared, tolerance),)
@@ -167,10 +167,10 @@ def judge(
     variant: str,
     diagnose: Callable[[], Diagnosis],
 ) -> Result:
-    """The result of a check that measures a subject, and its control if True, whose mistake is `variant`.
+    """The result of a check that measures a subject, and with True its control, described by `variant`.
 
-    `place` is the result of a check that is not run: it stays so without an engine; a shader error fails it.
-    The renderer's own warnings are part of a diagnosis, others are shown with their own lines.
+    `place` is the result to return if the check does not run; a shader error makes it fail.
+    The renderer's warnings become part of the diagnosis, all other warnings are shown as usual.
     """
     try:
         with warnings.catch_warnings(record=True) as records:
@@ -179,7 +179,7 @@ def judge(
             diagnosis = diagnose() if right.error > tolerance.value else Diagnosis()
     except (NotRun, ShaderError) as error:
         return not_measured(place, error)
-    notes: dict[str, None] = {}  # each once
+    notes: dict[str, None] = {}  # ordered, without duplicates
     for record in records:
         if isinstance(record.message, RendererWarning):
             notes[str(record.message)] = None
@@ -211,7 +211,7 @@ def judge(
 
 
 def not_measured(place: Result, error: NotRun | ShaderError) -> Result:
-    """The result of a check without a measurement: not run, or failed by a shader error."""
+    """The result of a check without a measurement: not run, or failed due to a shader error."""
     if isinstance(error, ShaderError):
         return replace(place, verdict=results.FAILED, diagnosis=results.quoted(str(error)))
     causes: tuple[Cause, ...] = ()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Negative controls: mistakes that a check must catch, each the same case with other inputs or outputs."""
+"""Negative controls: mistakes that a check must catch, as cases with wrong inputs or outputs."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from mxeon.conformance.samples import Array, Batch
 
 @dataclass(frozen=True)
 class Control:
-    """A mistake that a check must catch: in words, and the case that makes it."""
+    """A mistake that a check must catch: its description, and the case with the mistake."""
 
     words: str
     make: Callable[[Case], Case]
@@ -23,7 +23,7 @@ class Control:
 
 
 def with_batch(words: str, change: Callable[[Batch], Batch]) -> Control:
-    """The engine gets another batch than the right one."""
+    """The engine gets a wrong batch."""
     return Control(words, lambda case: replace(case, inputs=change))
 
 
@@ -40,7 +40,7 @@ def scale(words: str, factor: float) -> Control:
 
 
 def scale_cosine(words: str, power: int) -> Control:
-    """Values carry a power of cos(theta_o) too many."""
+    """Values have an extra power of cos(theta_o)."""
 
     def change(batch: Batch, values: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A library against the installed release of MaterialX: definitions, units, graphs and texts of nodes.
+"""Comparison of a library with the installed MaterialX release: definitions, units, graphs and texts of nodes.
 
-Nodes with a model are judged by their model. Everything else has the release as its reference: what is written
-differently is evaluated beside the released one for the same inputs, and must have the same values. A library that
-lacks nodes of the release is of an older version and is not compared. One with further nodes in MaterialX's own
-documents may be of a newer version, so its differences are permitted.
+Nodes with a model are judged by their model. For everything else the release is the reference: nodes that are
+written differently are evaluated for the same inputs and must have the same values. A library that lacks nodes of
+the release is an older version and is not compared. A library with additional nodes in MaterialX's own
+documents may be a newer version, so its differences are permitted.
 """
 
 from collections.abc import Iterator
@@ -53,23 +53,23 @@ from mxeon.shaders.scene import FURNACE, SIDE, Client
 RELEASE, SUBJECT = "release", "definitions, units, graphs and texts"
 CLAIM = "What has no model is as MaterialX released it, or has the same values."
 ROWS = 64  # samples of the inputs
-MOST = 12  # maximum nodes that are evaluated
-SIZE, MATERIALS = 24, 3  # pictures of materials whose lobes are arranged differently
-# Attributes of an input or output that are compared; a range only guides an editor.
+MOST = 12  # maximum number of evaluated nodes
+SIZE, MATERIALS = 24, 3  # size and number of pictures for differently arranged lobes
+# Compared attributes of inputs and outputs; ranges only guide editors.
 ATTRIBUTES = ("type", "defaultgeomprop", "uniform", "unit", "unittype", "colorspace", "enum")
 COMPONENTS = {"float": 1, "integer": 1, "boolean": 1, "vector2": 2, "color3": 3, "vector3": 3}
-# Definitions of the nodes that join three components and a fourth one, and the type of the three.
+# Nodes that append a fourth component to three, and the type of the three.
 JOINED = {
     "color4": ("ND_combine2_color4CF", "color3"),
     "vector4": ("ND_combine2_vector4VF", "vector3"),
 }
-SHADED = ("BSDF", "EDF", "surfaceshader")  # types of which there are pictures
-SHADERS = ("surfaceshader", "volumeshader", "displacementshader")  # which nothing feeds
-ALPHA = ("hwTransparency",)  # the option by which a shader has an alpha
+SHADED = ("BSDF", "EDF", "surfaceshader")  # types that are compared by pictures
+SHADERS = ("surfaceshader", "volumeshader", "displacementshader")  # types that stay unconnected
+ALPHA = ("hwTransparency",)  # option that adds an alpha to shaders
 PICTURES = tuple(
     replace(each, size=SIZE) for each in (SIDE, FURNACE, replace(SIDE, client=Client(alpha=True)))
 )
-LOBES = {"BSDF": "burley_diffuse_bsdf", "EDF": "uniform_edf"}  # that feed the inputs of a type
+LOBES = {"BSDF": "burley_diffuse_bsdf", "EDF": "uniform_edf"}  # sources for inputs, by type
 ZEROS = {
     "float": "0",
     "integer": "0",
@@ -80,18 +80,18 @@ ZEROS = {
 }
 PROBE = "mxeon_probe"
 MODELLED = {(each.node, isinstance(each, UtilitySpec)) for each in ALL}
-Place: TypeAlias = tuple[mx.GraphElement, mx.PortElement]  # a port of a graph
-# A definition in a library, its output's name and type, and a port in its graph instead of an output.
+Place: TypeAlias = tuple[mx.GraphElement, mx.PortElement]  # a graph and one of its ports
+# A definition in a library, its output's name and type, and optionally a port in its graph instead.
 Subject: TypeAlias = (
     "tuple[mx.NodeDef, str, tuple[str, str]] | tuple[mx.NodeDef, str, tuple[str, str], Place]"
 )
 
-# A definition, and the library or a port in its graph that stands for it.
+# A definition, its library, and optionally a port in its graph.
 Side: TypeAlias = "tuple[mx.NodeDef, str] | tuple[mx.NodeDef, str, Place]"
 
 
 def released(library: str) -> mx.Document | None:
-    """The installed release, or None if the library lacks nodes of it."""
+    """The installed release, or None if the library lacks some of its nodes."""
     own = {each.getName() for each in load_library(library).getNodeDefs()}
     for release in (installed(), load_library("stock")):
         if own.issuperset(each.getName() for each in release.getNodeDefs()):
@@ -100,7 +100,7 @@ def released(library: str) -> mx.Document | None:
 
 
 def newer(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
-    """Nodes in documents with the names of MaterialX's own which the release lacks."""
+    """Nodes that the release lacks, in documents with the names of MaterialX's own."""
     known = {Path(each.getActiveSourceUri()).name: None for each in release.getNodeDefs()}
     return tuple(
         each.getNodeString()
@@ -112,7 +112,7 @@ def newer(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
 def definition_facts(
     document: mx.Document, release: mx.Document, names: list[str]
 ) -> dict[str, str]:
-    """What a document says of some definitions, and of the units and geometric properties, of a release."""
+    """A document's version of a release's definitions (some of them), units and geometric properties."""
     found: dict[str, str] = {}
     for name in names:
         own, right = document.getNodeDef(name), release.getNodeDef(name)
@@ -138,7 +138,7 @@ def definition_facts(
 
 
 def versions(document: mx.Document, name: str) -> tuple[str, ...]:
-    """The releases that have the graph and the defaults of a surface shader; none for a graph of nobody's."""
+    """The releases with the graph and the defaults of a surface shader; empty for an unknown graph."""
     definition = document.getNodeDef(name)
     graph = definition.getImplementation()
     if definition.getType() != "surfaceshader" or not (graph and graph.isA(mx.NodeGraph)):
@@ -149,7 +149,7 @@ def versions(document: mx.Document, name: str) -> tuple[str, ...]:
 
 
 class Terms:
-    """Numbers of the terms of graphs: terms with one number have the same value."""
+    """Numbers the terms of graphs; terms with the same number have the same value."""
 
     def __init__(self) -> None:
         self._numbers: dict[object, int] = {}
@@ -166,7 +166,7 @@ class Terms:
     def _node(self, graph: mx.GraphElement, node: mx.Node) -> int:
         key = id(graph), node.getName()
         if key not in self._nodes:
-            self._nodes[key] = -1  # a node that depends on itself
+            self._nodes[key] = -1  # marks nodes that depend on themselves
             ports = {name: self.port((graph, port)) for name, port in ports_of(node).items()}
             kind = node.getCategory(), node.getType(), node.getNodeDefString()
             self._nodes[key] = self._number((*kind, *sorted(ports.items())))
@@ -177,7 +177,7 @@ class Terms:
 
 
 def apart(terms: Terms, own: Place, right: Place) -> Iterator[tuple[Place, Place]]:
-    """Ports of two graphs with different terms: inputs of the same lobes, or lobes that are not the same."""
+    """Ports of two graphs with different terms: inputs of equal lobes, or different lobes."""
     if terms.port(own) == terms.port(right):
         return
     nodes = [graph.getNode(port.getNodeName()) for graph, port in (own, right)]
@@ -191,7 +191,7 @@ def apart(terms: Terms, own: Place, right: Place) -> Iterator[tuple[Place, Place
 
 
 class Comparison:
-    """A library beside the release, on a host that evaluates its texts."""
+    """Compares a library with the release, on a host that evaluates its texts."""
 
     def __init__(self, host: Host, library: str, release: mx.Document) -> None:
         self._host, self._library, self._release = host, library, release
@@ -200,7 +200,7 @@ class Comparison:
         self.unjudged: list[tuple[str, str]] = []
 
     def definitions(self, changed: bool = False) -> list[Cause]:
-        """Differences of definitions, units and properties; with a changed default as a control."""
+        """Differences of definitions, units and properties; `changed` changes a default as a control."""
         first, *others = self._release.getNodeDefs()
         names = [
             each.getName()
@@ -221,9 +221,9 @@ class Comparison:
 
     @cached_property
     def nodes(self) -> list[Cause]:
-        """Nodes whose graph or text has other values than the released one.
+        """Nodes whose graph or text has different values than the released one.
 
-        Of nodes that differ in the same text, the first that has other values stands for all.
+        If several nodes differ in the same text, only the first with different values is reported.
         """
         groups: dict[object, list[str]] = {}
         for right in self._release.getNodeDefs():
@@ -254,7 +254,7 @@ class Comparison:
         return found
 
     def _change(self, name: str) -> object:
-        """What a node has different, unless a model judges it; None if nothing."""
+        """The difference of a node that no model judges, or None."""
         own, right = (each.getNodeDef(name) for each in (self._document, self._release))
         ours, theirs = (each.getImplementation(self._target) for each in (own, right))
         if theirs is None or (ours is not None and ours == theirs and ours.isA(mx.NodeGraph)):
@@ -288,7 +288,7 @@ class Comparison:
     def _graph(
         self, definition: mx.NodeDef, ours: mx.NodeGraph, theirs: mx.NodeGraph
     ) -> Iterator[Cause]:
-        """Where the values of two graphs differ."""
+        """The places where the values of two graphs differ."""
         terms, error = Terms(), 0.0
         for output in theirs.getOutputs():
             other = ours.getOutput(output.getName())
@@ -330,7 +330,7 @@ class Comparison:
             yield Cause(Kind.DEFECT, RELEASE, (right.getNodeString(), *rows), (error,))
 
     def _apart(self, definition: mx.NodeDef, own: Place, right: Place) -> float:
-        """The largest difference of the values of two ports of graphs; infinity for words."""
+        """The largest difference between the values of two graph ports; infinity for text."""
         kind = right[1].getType()
         if kind not in (*COMPONENTS, *JOINED) or own[1].getType() != kind:
             return np.inf
@@ -338,7 +338,7 @@ class Comparison:
         return self._distance(*sides)
 
     def _distance(self, own: Subject, right: Subject) -> float:
-        """The largest difference of the values of two subjects; NotRun if the released one does not compile."""
+        """The largest difference between two subjects' values; NotRun if the released one does not compile."""
         try:
             expected = self._values(*right)
         except (DocumentError, ShaderError) as error:
@@ -384,7 +384,7 @@ class Comparison:
         return np.concatenate(found, axis=1).astype(np.float64)
 
     def _drawn(self, *sides: Side) -> float:
-        """The largest difference of pictures of a node, their alpha included; infinity without pictures."""
+        """The largest difference between pictures of a node, alpha included; infinity without pictures."""
         kind = sides[0][0].getType()
         if kind not in SHADED:
             return np.inf
@@ -439,7 +439,7 @@ class Comparison:
 
     @cached_property
     def tolerance(self) -> Tolerance:
-        """The largest difference of values of one graph that is written in two ways."""
+        """The largest difference between the values of one graph that is written in two ways."""
         base, exponent = float32(np.linspace(0.01, 1.0, ROWS)), float32(np.full(ROWS, 2.0))
         power = float(POWER.errors(self._host, base, exponent).max())
         return sum_of(
@@ -450,7 +450,7 @@ class Comparison:
 
 
 def samples(definition: mx.NodeDef) -> dict[str, Array]:
-    """Values of the nodes that feed the inputs of a definition, by their paths: half of them in [0, 1]."""
+    """Values of the nodes that feed a definition's inputs, by path; half of them in [0, 1]."""
     rng, found = generator(), {}
     for port in definition.getActiveInputs():
         kind = JOINED.get(port.getType(), ("", port.getType()))[1]
@@ -471,7 +471,7 @@ def instance(
     kind: str,
     place: Place | None = None,
 ) -> mx.Node:
-    """A node of a definition, or of a port in its graph, whose inputs are nodes of their own."""
+    """A node of a definition, or of a port in its graph, with a separate node for each input."""
     category, name = definition.getNodeString(), definition.getName()
     left_out = ("VDF",) if kind in CLOSURES else CLOSURES
     ports = [each for each in definition.getActiveInputs() if each.getType() not in left_out]
@@ -484,7 +484,7 @@ def instance(
         graph.copyContentFrom(place[0])
         for output in graph.getOutputs():
             graph.removeOutput(output.getName())
-        for each in graph.getNodes():  # a number depends on no lobe
+        for each in graph.getNodes():  # numbers do not depend on lobes
             if each.getType() in CLOSURES and kind not in CLOSURES:
                 graph.removeNode(each.getName())
         graph.setNodeDefString(name)
@@ -520,7 +520,7 @@ def instance(
 
 
 def finish(document: mx.Document, node: mx.Node) -> None:
-    """Make a material of a node."""
+    """Complete a node to a material."""
     if node.getType() != "surfaceshader":
         surface = document.addNode("surface", "shading", "surfaceshader")
         surface.addInput(node.getType().lower(), node.getType()).setNodeName(node.getName())
@@ -530,10 +530,10 @@ def finish(document: mx.Document, node: mx.Node) -> None:
 
 
 def distance(own: Array, right: Array) -> float:
-    """The largest difference, relative above 1, infinite where only one value is finite.
+    """The largest difference, relative above 1, infinite if only one value is finite.
 
-    Of inputs outside [0, 1], the last half, only finite values count: graphs of equal values in [0, 1] may have
-    different ones for the root of a negative number.
+    For inputs outside [0, 1], the last half, only finite values count: graphs that agree in [0, 1] may differ for the
+    root of a negative number.
     """
     with np.errstate(invalid="ignore"):
         error = np.abs(own - right) / np.maximum(1.0, np.abs(right))
@@ -548,7 +548,7 @@ def distance(own: Array, right: Array) -> float:
 def check_release(
     host: Host, library: str
 ) -> tuple[tuple[Result, ...], tuple[tuple[str, str], ...]]:
-    """The result of a library beside the installed release, and what of it is not judged."""
+    """The result of comparing a library with the installed release, and the parts that are not judged."""
     release = released(library)
     if release is None:
         why = f"the library lacks nodes of MaterialX {mx.getVersionString()}: it is an older one"

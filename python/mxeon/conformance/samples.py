@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pairs of directions with the inputs of a node: random ones, exact ones, turned frames, an uneven sky.
+"""Pairs of directions with a node's inputs: random and exact ones, turned frames, and an uneven sky.
 
-All numbers are float32 numbers in float64, so that a float32 engine sees the same samples.
+All numbers are float32 values stored in float64, so that float32 engines see the same samples.
 """
 
 import math
@@ -19,37 +19,37 @@ from mxeon.hosts.base import TURN
 from mxeon.hosts.textures import latlong_directions
 from mxeon.shaders.scene import Scene
 
-# Of `mxeon check`: verdicts must not depend on it, nor can a shader know it.
+# Seed of `mxeon check`: verdicts must not depend on it, and shaders cannot know it.
 SEED: ContextVar[int] = ContextVar("seed", default=1)
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
-GOLDEN_RATIO = 0.618  # its multiples are spread evenly over [0, 1)
+GOLDEN_RATIO = 0.618  # its multiples, modulo 1, are evenly spread
 PAIRS = 1 << 16
 FEW = 1 << 14  # default number of pairs for expensive checks
 GRAZING = 1e-6  # smallest cosine of the random pairs
-RIM = 0.05  # smallest cosine judged in a picture: nearer to the rim a pixel's place is uncertain
-LOBE_RIM = 0.25  # of a lobe below others
+RIM = 0.05  # smallest cosine judged in pictures; pixel positions matter closer to the rim
+LOBE_RIM = 0.25  # RIM for a lobe below other lobes
 
 Array: TypeAlias = NDArray[np.float64]
 Mask: TypeAlias = NDArray[np.bool_]
-Values: TypeAlias = Mapping[str, ArrayLike]  # of a node's inputs, by name
-Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change of one of them
+Values: TypeAlias = Mapping[str, ArrayLike]  # values of a node's inputs, by name
+Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change of one input
 
 
 @dataclass(frozen=True)
 class Counts:
-    """How many samples a spec draws."""
+    """Numbers of samples of a spec."""
 
-    pairs: int = PAIRS  # random pairs, and those of them for what takes long
+    pairs: int = PAIRS  # random pairs; expensive checks use fewer
     few: int = FEW
-    diagnosed: int = FEW  # pairs of each batch that a diagnosis looks at
-    albedos: int = 1 << 7  # views whose albedo is measured
-    # Materials whose values are integrated or averaged, and nodes of a quadrature on each axis.
+    diagnosed: int = FEW  # pairs per batch in a diagnosis
+    albedos: int = 1 << 7  # views with measured albedos
+    # Materials whose values are integrated or averaged, and quadrature nodes per axis.
     materials: int = 64
     nodes: int = 48
     mirrored: int = 1 << 11  # views with lights near the mirror direction
 
     def varied(self) -> "Counts":
-        """These for the seed 1, else up to an eighth fewer: their number tells a shader nothing."""
+        """The same counts for seed 1, otherwise up to 1/8 fewer, so that shaders cannot recognize them."""
         share = 1.0 - (SEED.get() - 1) * GOLDEN_RATIO % 1.0 / 8.0
         names = "pairs", "few", "albedos", "mirrored"
         return replace(self, **{name: math.ceil(share * getattr(self, name)) for name in names})
@@ -59,21 +59,21 @@ class Counts:
 class Batch:
     """Pairs of directions and the node's inputs for them."""
 
-    # Local frame; float32 numbers, so that a float32 host sees the same pairs. `wo` is on or above
+    # Local frame; float32 values, so that float32 hosts see the same pairs. `wo` is on or above
     # the horizon.
     wo: Array
     wi: Array
     # Node inputs and "occlusion", (N, ...) or constant. The normal is in world space.
-    inputs: Mapping[str, Any]  # array_like, which NumPy types so that nobody can compute with it
-    scene: Scene | None = None  # the picture whose points these are
-    # World axes of the local frames, as columns; None where they are the same.
+    inputs: Mapping[str, Any]  # NumPy's ArrayLike does not allow arithmetic
+    scene: Scene | None = None  # scene of the picture with these points
+    # World axes of the local frames, as columns; None if they equal the world's.
     frame: Array | None = None
 
     def altered(self, **inputs: ArrayLike) -> "Batch":
         return replace(self, inputs={**self.inputs, **inputs})
 
     def with_row(self, row: int, wo: ArrayLike, **inputs: ArrayLike) -> "Batch":
-        """The same with another view and other inputs in a row."""
+        """A copy with another view and other inputs in one row."""
         views, changed = self.wo.copy(), {name: np.array(self.inputs[name]) for name in inputs}
         for values, value in ((views, wo), *((changed[name], inputs[name]) for name in inputs)):
             values[row] = value
@@ -83,7 +83,7 @@ class Batch:
         return self.where(slice(count))
 
     def where(self, rows: slice | NDArray[np.bool_] | NDArray[np.integer]) -> "Batch":
-        """Some pairs of the batch: a slice, a mask or indices of them."""
+        """Some pairs of the batch, by a slice, a mask or indices."""
         count = len(self.wo)
         inputs = {
             name: values[rows] if np.shape(values)[:1] == (count,) else values
@@ -93,7 +93,7 @@ class Batch:
         return replace(self, wo=self.wo[rows], wi=self.wi[rows], inputs=inputs, frame=frame)
 
     def world(self, local: Array) -> Array:
-        """Local directions (N, 3) in world space, as float32 numbers."""
+        """Local directions (N, 3) in world space, as float32 values."""
         if self.frame is None:
             return local
         return rounded((self.frame @ local[:, :, np.newaxis])[:, :, 0].T)
@@ -105,12 +105,12 @@ class Batch:
 
     @property
     def strength(self) -> Array:
-        """Factor of an albedo, (N, 1) or (1, 1): the weight; a negative one counts as 0."""
+        """Factor of an albedo, (N, 1) or (1, 1): the weight, or 0 if it is negative."""
         return np.maximum(np.reshape(self.inputs.get("weight", 1.0), (-1, 1)), 0.0)
 
     @property
     def rough(self) -> Array:
-        """Roughness of each pair, the larger of two; 0 where there is none, (N,)."""
+        """Roughness of each pair, (N,): the larger of two, or 0 without a roughness."""
         roughness = np.asarray(self.inputs.get("roughness", 0.0), np.float64)
         if roughness.shape[-1:] == (2,):
             roughness = roughness.max(axis=-1)
@@ -119,15 +119,15 @@ class Batch:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A function that may explain some values."""
+    """A function that may explain measured values."""
 
     title: str
     values: Callable[[Batch], Array]
-    permitted: bool = False  # whether the specification leaves it open
+    permitted: bool = False  # whether the specification permits it
 
 
 def generator() -> np.random.Generator:
-    """A generator of random numbers; each kind of samples has its own, of one seed."""
+    """A random generator; each kind of samples uses its own, with the same seed."""
     return np.random.default_rng(SEED.get())
 
 
@@ -145,30 +145,30 @@ def float32(values: ArrayLike) -> Array:
 
 
 def rounded(columns: Iterable[Array]) -> Array:
-    """Columns as rows of float32 numbers in float64."""
+    """Columns as rows of float32 values in float64."""
     return float32(np.stack(list(columns), axis=-1))
 
 
 EACH = 256  # pairs of each kind
 GRID = (1.0, 0.999, 0.6, 0.25, 0.05, 1e-3, 1e-5, 1e-6, 3e-7, 1e-7)  # cosines
 AZIMUTHS = (0.0, 0.5 * np.pi, np.pi)
-ABOVE_ONE = 1.0 + 2.0**-23  # a cosine of unit vectors, by a rounding of float32
-HORIZON = 0.1  # least cosine of the other direction where one is at the horizon or below it
-POLE = 0.99  # largest height of a normal in turned frames: a map of the sky ends at the poles
-TURNED = (0.25, 0.95)  # cosines in turned frames, where a cosine has roundings
-LEAST_SHEEN = 0.01  # roughness of the other lobes, which the Zeltner sheen has at least
-LEAST_COLOR82 = 0.5  # of a lobe whose albedo is measured; see docs/loading.md
-LEAST_TURNED = 0.1  # roughness of microfacets in turned frames
+ABOVE_ONE = 1.0 + 2.0**-23  # a cosine of unit vectors after one float32 rounding
+HORIZON = 0.1  # least cosine of one direction if the other is at or below the horizon
+POLE = 0.99  # largest height of normals in turned frames: sky maps end at the poles
+TURNED = (0.25, 0.95)  # range of cosines in turned frames, where cosines have roundings
+LEAST_SHEEN = 0.01  # least roughness; the Zeltner sheen clamps to it
+LEAST_COLOR82 = 0.5  # for lobes with measured albedos; see docs/loading.md
+LEAST_TURNED = 0.1  # least roughness of microfacets in turned frames
 WEIGHTS = (-0.5, 0.0, 1e-4, 0.01, 0.5)
 OCCLUSIONS = (0.0, 1e-3, 0.5)
 
 
 def special_directions(rng: np.random.Generator) -> tuple[Array, Array]:
-    """Exact directions `wo` and `wi`, above the horizon or on it.
+    """Exact directions `wo` and `wi`, on or above the horizon.
 
-    A grid of cosines down to 1e-7 with equal, perpendicular and opposite azimuths; and with a random
-    other direction: exact retro-reflection, the mirror direction, the viewer or the light along the
-    normal, the viewer or the light on the horizon.
+    A grid of cosines down to 1e-7 with equal, perpendicular and opposite azimuths; exact
+    retro-reflection and mirror directions; and one direction along the normal or on the horizon,
+    with a random second one.
     """
     mu_o, mu_i, azimuth = np.array(list(product(GRID, GRID, AZIMUTHS))).T
     free, other = directions(rng, EACH), directions(rng, EACH)
@@ -193,7 +193,7 @@ def special_directions(rng: np.random.Generator) -> tuple[Array, Array]:
 
 
 def outside_directions(rng: np.random.Generator) -> tuple[Array, Array]:
-    """Directions that no model has: light from below the horizon, and cosines that exceed 1."""
+    """Directions outside the models' domain: light from below the horizon, and cosines above 1."""
     below = directions(rng, EACH) * [1.0, 1.0, -1.0]
     high = directions_at(
         HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH)
@@ -205,9 +205,9 @@ def outside_directions(rng: np.random.Generator) -> tuple[Array, Array]:
 
 
 def turned_frames(rng: np.random.Generator, count: int) -> Array:
-    """Axes of at most so many random frames, as columns.
+    """Axes of up to `count` random frames, as columns.
 
-    Each normal points to the middle of a texel of the sky, and none to a pole.
+    Each normal points to the middle of a sky texel, away from the poles.
     """
     axes, _ = np.linalg.qr(rng.standard_normal((count, 3, 3)))
     axes = axes[np.abs(axes[:, 1, 2]) <= POLE]
@@ -215,9 +215,9 @@ def turned_frames(rng: np.random.Generator, count: int) -> Array:
 
 
 def aimed(axes: Array, of: Array, to: Array) -> Array:
-    """Frames (N, 3, 3), turned the shortest way that takes unit vectors `of` to others `to`, (N, 3).
+    """Frames (N, 3, 3), turned by the smallest rotation from unit vectors `of` to `to`, (N, 3).
 
-    That is half a turn about the middle of both, and half a turn about the second.
+    That is half a turn about the bisector, followed by half a turn about `to`.
     """
     for vectors in (of + to, to):
         about = vectors[:, :, np.newaxis]
@@ -235,28 +235,28 @@ def turned_directions(rng: np.random.Generator, count: int) -> Array:
 
 
 def with_edges(rng: np.random.Generator, values: Array, edges: ArrayLike) -> Array:
-    """Values of which half are replaced by random edges, as float32 numbers."""
+    """Values, half of them replaced by random edges, as float32 values."""
     picked = rng.choice(np.asarray(edges, np.float64), np.shape(values))
     mixed = np.where(rng.random(np.shape(values)) < 0.5, picked, values)
     return float32(mixed)
 
 
 def directions_at(mu: ArrayLike, azimuth: ArrayLike) -> Array:
-    """Directions of cosines, which are rounded to float32, and azimuths, (..., 3)."""
+    """Directions from cosines, which are rounded to float32, and azimuths, (..., 3)."""
     mu = float32(mu)
     radius = np.sqrt(1.0 - mu * mu)
     columns = radius * np.cos(azimuth), radius * np.sin(azimuth), mu
     return rounded(np.broadcast_arrays(*columns))
 
 
-FRAMES = 1 << 12  # pairs in frames of their own
-LEAN = 0.3  # slope of their tangents
-SKY_ROWS = 128  # of its map, which has twice as many columns
-SLOPE = 0.5  # of the irradiance over a component of the normal
+FRAMES = 1 << 12  # pairs with individual frames
+LEAN = 0.3  # largest slope of their tangents
+SKY_ROWS = 128  # rows of the sky's map, which has twice as many columns
+SLOPE = 0.5  # slope of the irradiance by a component of the normal
 
 
 def sky(normal: Array) -> Array:
-    """Irradiance over pi at normals (N, 3): each channel grows along an axis of its own."""
+    """Irradiance over pi at normals (N, 3): each channel increases along a different axis."""
     return 0.5 + SLOPE * normal
 
 
@@ -268,9 +268,9 @@ def sky_map() -> NDArray[np.float32]:
 
 
 def texel_middles(near: Array) -> Array:
-    """The directions to the middles of texels of the map next to unit vectors, both (N, 3).
+    """The directions to the texel middles nearest to unit vectors, both (N, 3).
 
-    There every filter reads one texel. So is the opposite direction such a middle.
+    There every filter reads a single texel. The opposite direction is also a texel middle.
     """
     polar = np.arccos(np.clip(near[:, 1], -1.0, 1.0)) / np.pi
     azimuth = np.arctan2(near[:, 0], -near[:, 2]) / (2.0 * np.pi) + 0.5

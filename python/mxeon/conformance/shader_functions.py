@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of the shader functions of a library, each against the NumPy one, on a host.
+"""Checks of a library's shader functions against their NumPy versions, on a host.
 
-The host compiles one program for all of them, with one function more that calls each by its number. A function
-has its parameters' names in common with its NumPy version, and so takes the columns of those names.
+The host compiles one program for all functions, with an additional one that calls each by its index. Shader and
+NumPy functions share their parameters' names, which select the columns of arguments.
 """
 
 import inspect
@@ -36,19 +36,19 @@ from mxeon.hosts.base import Host
 from mxeon.models import diffuse, sampling
 from mxeon.shaders import functions
 
-KINDS = ("pairs", "pictures", "rendered")  # of probes whose hosts evaluate functions
-STEP = 2.0**-22  # of the arguments by which a function's condition is measured
+KINDS = ("pairs", "pictures", "rendered")  # ways of hosts that can evaluate functions
+STEP = 2.0**-22  # change of arguments that measures a function's condition
 PART = sum_in(Quantity.CONDITIONED, roundings(16))
 
 
 class FunctionCheck(NamedTuple):
     """A check of some of the shader functions."""
 
-    key: str  # one word, and a sentence
+    key: str  # single word; the claim is a sentence
     claim: str
-    names: str  # a pattern; the first row whose pattern is a function's name takes it
+    names: str  # regular expression; the first matching row judges a function
     error: Tolerance
-    turns: bool = False  # whether its functions turn directions by the engine's sine and cosine
+    turns: bool = False  # whether its functions rotate by the engine's sine and cosine
 
 
 FUNCTION_CHECKS = (
@@ -80,7 +80,7 @@ FUNCTION_CHECKS = (
         "densities",
         "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
         r"\w+_pdf|ltc_(density|m[abcd])",
-        # An inverse fourth power takes the 8 of an entry of a matrix four times, and 16 beside them.
+        # An inverse fourth power takes the 8 of a matrix entry four times, plus 16.
         sum_in(Quantity.CONDITIONED, roundings(48, "four times the 8 of a matrix entry, and 16")),
     ),
     FunctionCheck(
@@ -98,7 +98,7 @@ def row_of(function: str) -> FunctionCheck:
 
 
 def _error(function: str, values: Array) -> float:
-    """Largest error of a function's values, relative to what they are sensitive to."""
+    """Largest error of a function's values, relative to their sensitivity."""
     expected, scale = exact(function)
     return float(row_of(function).error.metric(scale * values, scale * expected).max())
 
@@ -107,7 +107,7 @@ def _error(function: str, values: Array) -> float:
 def exact(function: str) -> tuple[Array, Array]:
     """Values of a shader function in NumPy, and the factor of its errors.
 
-    That is pi cos(theta_i) for a BRDF; for others over 1, or the value, and its change with each number.
+    The factor is pi cos(theta_i) for a BRDF, otherwise the inverse of 1 or the value, plus its change with each argument.
     """
     columns = random_columns()
     values = _expected(function, columns)
@@ -116,11 +116,11 @@ def exact(function: str) -> tuple[Array, Array]:
         return values, np.pi * columns["mu_i"][:, np.newaxis] if brdf else np.ones((1, 1))
     total: Array = np.maximum(1.0, np.abs(values).max(axis=1))
     for kind, parameter in functions.signature("glsl", function):
-        # A quotient is off in proportion to itself, and huge beside a divisor of 0.
+        # A quotient has a relative error, and is huge next to a divisor of 0.
         if parameter == "divisor" or (kind != "float" and parameter != "wo"):
             continue
         name = "gray" if parameter == "rho" else parameter
-        # Towards the middle of the range, which wo has in its cosine alone.
+        # Step towards the middle of the range; only the cosine of wo has a range.
         middle = np.array([0.0, 0.0, 0.5]) if name == "wo" else 0.5
         moves = np.where(columns[name] > middle, -STEP, STEP) * (middle != 0.0)
         moved = {**columns, name: columns[name] + moves}
@@ -129,10 +129,10 @@ def exact(function: str) -> tuple[Array, Array]:
     return values, 1.0 / total[:, np.newaxis]
 
 
-POINTS = 4096  # of each function
-CORNERS = 64  # of which so many have arguments at the ends of their ranges
+POINTS = 4096  # points per function
+CORNERS = 64  # points with arguments at the ends of their ranges
 
-# Along the normal and beyond it by a rounding, at the horizon, and between.
+# Along the normal, beyond it by a rounding, at the horizon, and in between.
 AXES = (
     (0.0, 0.0, 1.0),
     (0.0, 0.0, 1.0 + 2.0**-23),
@@ -144,13 +144,13 @@ AXES = (
 Columns = Mapping[str, Array]
 
 
-# Functions that have another name in NumPy, or other parameters.
+# Functions with another name or other parameters in NumPy.
 NAMED: Mapping[str, Callable[..., Array]] = {
     "eon_around": sampling.around,
     "eon_azimuth_frame": lambda wo: sampling.stack_xyz(*sampling.azimuth_frame(wo)),
     "eon_gray_ratio": lambda gray, roughness: diffuse.eon_multiple_ratio(gray, roughness),
     "eon_rotate_z": lambda wi, cosine, sine: sampling.rotate_z(wi, cosine, sine),
-    # y of the angle whose cosine is 1 - m, by the integral of which the shader has a fit.
+    # y of the angle with cosine 1 - m, from the exact integral that the shader fits.
     "eon_upper_root": lambda m: sampling.eon_upper_limit(1.0 - m, np.sqrt(m * (2.0 - m))),
     "ltc_transformed": lambda wo, wh, roughness, d: sampling.ltc_transformed(wo, wh, roughness, d)[
         0
@@ -164,7 +164,7 @@ def _expected(function: str, columns: Columns) -> Array:
     version = NAMED.get(function) or getattr(sampling, function, None) or getattr(diffuse, function)
     parameters = inspect.signature(version).parameters
     arguments = {name: columns[name] for name in parameters if name in columns}
-    # Colors are one channel, or have their channels first: public functions take rows of colors.
+    # Internal functions take one channel or channels first, public ones rows of colors.
     own = "rho" in parameters and parameters["rho"].annotation == "Array"
     channels_first = own and version.__module__ == diffuse.__name__
     if "rho" in arguments:
@@ -182,7 +182,7 @@ def _takes_gray(function: str) -> bool:
 
 @cache
 def random_columns() -> Columns:
-    """Random arguments by the names of parameters; those of one name may be of several functions."""
+    """Random arguments by parameter name, shared by all functions."""
     rng = generator()
     wo, wi = directions(rng, POINTS), directions(rng, POINTS)
     pairs = np.array(list(product(AXES, AXES)))
@@ -193,7 +193,7 @@ def random_columns() -> Columns:
     azimuth, elevation = 2.0 * np.pi * rng.random(POINTS), 0.5 * np.pi * _unit(rng)
     mu, roughness = np.clip(wo[:, 2], GRAZING, 1.0), unit["roughness"]
     rho, value = np.stack([_unit(rng) for _ in range(3)], axis=-1), 2.0 * _unit(rng) - 1.0
-    divisors = _unit(rng)  # a quarter log-uniform down to 1e-36: a shader takes 1e-37 for 0
+    divisors = _unit(rng)  # a quarter log-uniform down to 1e-36; shaders treat 1e-37 as 0
     divisors[CORNERS : POINTS // 4] = 10.0 ** (-36.0 * divisors[CORNERS : POINTS // 4])
     return {
         name: float32(values)
@@ -224,7 +224,7 @@ def random_columns() -> Columns:
 
 
 def _unit(rng: np.random.Generator) -> Array:
-    """Numbers of 24 bits in [0, 1), as shaders' random numbers; the first lie on either end."""
+    """24-bit numbers in [0, 1), like shaders' random numbers; the first ones are at both ends."""
     numbers = rng.integers(0, 1 << 24, POINTS).astype(np.float64)
     numbers[:CORNERS] = (numbers[:CORNERS] % 2.0) * (2.0**24 - 1.0)
     return numbers * 2.0**-24
@@ -232,7 +232,7 @@ def _unit(rng: np.random.Generator) -> Array:
 
 @dataclass(frozen=True)
 class FunctionProbe:
-    """The shader functions of a library, which brings such functions, on a host."""
+    """The shader functions of a library on a host."""
 
     host: Host
     library: str
@@ -243,19 +243,19 @@ class FunctionProbe:
 
     @cached_property
     def missing_functions(self) -> tuple[str, ...]:
-        """Functions of eonlib that the library lacks, or has with other parameters."""
+        """Functions of eonlib that the library lacks or declares with other parameters."""
         own = functions.signatures(self.text)
         ours = functions.signatures(functions.source(self.host.language))
         return tuple(name for name in ours if own.get(name) != ours[name])
 
     @cached_property
     def values(self) -> Mapping[bool, Mapping[str, Array]]:
-        """Values of every function that the library has; with True, those of the control."""
+        """Values of all functions of the library; with True, the control's values."""
         return {wrong: self._values(0.95 if wrong else 1.0) for wrong in (False, True)}
 
     @cached_property
     def turn(self) -> Term:
-        """The error of the engine's own cosine and sine over a turn, of which samples are made."""
+        """The error of the engine's own cosine and sine over a full turn, used for samples."""
         error = float(TURN.errors(self.host, random_columns()["u2"]).max())
         return Term(4.0 * error, "the engine's sine and cosine, which turn a direction twice")
 
@@ -263,7 +263,7 @@ class FunctionProbe:
         return row.error.plus(self.turn) if row.turns else row.error
 
     def _values(self, scale: float) -> Mapping[str, Array]:
-        """Values of every function of eonlib that the library has, with its last argument scaled, in one call."""
+        """Values of all eonlib functions in the library, with scaled last arguments, in one call."""
         language, columns = self.host.language, random_columns()
         names = [name for name in functions.names(language) if name not in self.missing_functions]
         text = functions.dispatched(self.text, names, language)
@@ -302,7 +302,7 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
         return not_measured(place, error)
 
     def measure(wrong: bool) -> Measurement:
-        """The function of the row that is furthest from its NumPy version."""
+        """The row's function with the largest error."""
         errors = {
             name: _error(name, each)
             for name, each in probe.values[wrong].items()
@@ -317,7 +317,7 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
 
 
 def _causes(check: FunctionCheck, probe: FunctionProbe) -> tuple[Cause, ...]:
-    """The functions that are wrong by themselves, and those of the row that use them."""
+    """The functions that are wrong on their own, and the row's functions that use them."""
     values = probe.values[False]
     errors = {name: _error(name, each) for name, each in values.items()}
     wrong = [name for name in errors if errors[name] > probe.tolerance(row_of(name)).value]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a node is judged by: its inputs and their ranges, its models, its errors and the samples it needs.
+"""Specs of nodes: inputs with their ranges, models, errors and samples.
 
-A family of nodes is one file under `specs`. How an engine evaluates it is a backend's business.
+Each family of nodes is one file under `specs`. Backends define how an engine evaluates a spec.
 """
 
 from abc import ABC, abstractmethod
@@ -32,31 +32,31 @@ from mxeon.shaders.nodes import (
 
 COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type
 CHANGED_COLOR = (0.9, 0.1, 0.6)
-F = TypeVar("F")  # a function of a row
+F = TypeVar("F")  # type of a row's function
 
 
 @dataclass(frozen=True)
 class Input:
-    """An input of a node, by name or path."""
+    """An input of a node, identified by name or path."""
 
     name: str
-    type: str = "float"  # in MaterialX
-    low: ArrayLike = 0.0  # ends of the range of random values, of all components or of each
+    type: str = "float"  # MaterialX type
+    low: ArrayLike = 0.0  # range of random values, for all components or per component
     high: ArrayLike = 1.0
-    edges: tuple[float, ...] = ()  # what half of the special values are; () for none
-    # Another value than the default, which must have an effect; None where it has none by itself.
+    edges: tuple[float, ...] = ()  # values of half of the special samples; () for none
+    # A value other than the default that must have an effect; None if it has none by itself.
     change: ArrayLike | None = None
-    needs: Values = field(default_factory=dict, hash=False)  # inputs with which the change shows
-    # Whether random values are uniform in their logarithm; else a tenth is on either end.
+    needs: Values = field(default_factory=dict, hash=False)  # inputs that make the change visible
+    # Whether random values are uniform in the logarithm; otherwise a tenth is at each end.
     logarithmic: bool = False
-    often: float | None = None  # every other random value, of an input that is rarely set
-    equal: bool = False  # both components are the same in every other random value
-    # Values in the two materials that stand for a node in pictures; () for the default.
+    often: float | None = None  # value of every other sample, for rarely set inputs
+    equal: bool = False  # both components are equal in every other sample
+    # Values in the two materials that represent a node in pictures; () for the default.
     materials: tuple[ArrayLike, ...] = ()
-    variable: str = ""  # that a host sets instead, where the default is a variable
-    default: ArrayLike = 1.0  # in a document that has to set it
-    beyond: tuple[float, ...] = ()  # values outside the range that hosts pass, too
-    ends: tuple[float, float] = (-np.inf, np.inf)  # beyond which the node takes the nearest value
+    variable: str = ""  # shader variable that a host sets instead, if it is the default
+    default: ArrayLike = 1.0  # value in documents that must set the input
+    beyond: tuple[float, ...] = ()  # values outside the range that hosts also pass
+    ends: tuple[float, float] = (-np.inf, np.inf)  # range to which the node clamps
 
 
 def color(name: str, *materials: ArrayLike, edges: tuple[float, ...] = (0.0, 1e-3, 1.0)) -> Input:
@@ -64,7 +64,7 @@ def color(name: str, *materials: ArrayLike, edges: tuple[float, ...] = (0.0, 1e-
 
 
 def materials(*inputs: Input) -> tuple[Values, ...]:
-    """Two materials that stand for a node in pictures."""
+    """Two materials that represent a node in pictures."""
     return tuple(
         {each.name: each.materials[which] for each in inputs if len(each.materials) > which}
         for which in (0, 1)
@@ -74,7 +74,7 @@ def materials(*inputs: Input) -> tuple[Values, ...]:
 def draw(
     rng: np.random.Generator, count: int, inputs: Sequence[Input], edged: bool = False
 ) -> dict[str, Array]:
-    """Random values of inputs in their ranges, by name; half of them on an edge if `edged`."""
+    """Random values of inputs within their ranges, by name; half of them on an edge if `edged`."""
     drawn = {}
     for each in inputs:
         low, high = np.asarray(each.low, np.float64), np.asarray(each.high, np.float64)
@@ -95,7 +95,7 @@ def draw(
 
 
 def broadcast_inputs(batch: Batch) -> dict[str, Array]:
-    """The inputs of a batch with a row for each pair."""
+    """The inputs of a batch, with a row for each pair."""
     count = len(batch.wo)
     return {
         name: np.broadcast_to(values, (count, *np.shape(values)[-1:]))
@@ -106,11 +106,11 @@ def broadcast_inputs(batch: Batch) -> dict[str, Array]:
 
 
 class Ability(Flag):
-    """What a backend can do, and a node or a check needs."""
+    """Abilities of a backend, as required by nodes and checks."""
 
-    # Nodes whose values it has: rough diffuse ones, a renderer's own, and lobes of pbrlib.
+    # Supported nodes: rough diffuse ones, a renderer's own, and lobes of pbrlib.
     DIFFUSE = auto()
-    BELOW = auto()  # a diffuse lobe below others
+    BELOW = auto()  # a diffuse lobe below other lobes
     OWN = auto()
     LOBE = auto()
     HAIR = auto()
@@ -118,15 +118,15 @@ class Ability(Flag):
     FILM = auto()
     TRANSMISSION = auto()
     COMBINATION = auto()
-    MATERIAL = auto()  # a surface shader with all of its lobes
+    MATERIAL = auto()  # a surface shader with all its lobes
     SCATTERS = DIFFUSE | BELOW | OWN | LOBE | MATERIAL
     EMISSION = auto()
-    SURFACE = auto()  # one that emits
+    SURFACE = auto()  # an emitting surface
     MEDIUM = auto()
-    IMPLEMENTATION = auto()  # of nodes without values
+    IMPLEMENTATION = auto()  # only the implementation of a node without values
     OUTPUT = auto()
-    # For checks: pairs at the edges of the domain, too; how light is found, summed or let through.
-    FRAME = auto()  # the whole main under what a client binds
+    # Required by checks: pairs at the edges of the domain, and branches of lighting.
+    FRAME = auto()  # the whole main with a client's bindings
     PAIRS = auto()
     LIGHT = auto()
 
@@ -135,7 +135,7 @@ NO_ABILITY = Ability(0)
 
 
 class EngineError(NamedTuple):
-    """A term by a function that engines have themselves, measured on each."""
+    """A term for an engine's own function, measured on each engine."""
 
     words: str
     measure: Callable[[Host], float]
@@ -156,44 +156,44 @@ class Spec(ABC):
     """A node in one mode."""
 
     requires: ClassVar[Ability]
-    coarse: ClassVar[int] = 1  # by which its pictures are smaller
-    rim: ClassVar[float] = samples.RIM  # least cosines that are judged in a picture
+    coarse: ClassVar[int] = 1  # factor by which pictures are smaller
+    rim: ClassVar[float] = samples.RIM  # least judged cosines in pictures
 
-    title: str  # in reports; unique
-    node: str  # category
-    model: str = ""  # name of the model that it has to be; "" for none
-    inputs: tuple[Input, ...] = ()  # all but those that select the mode
-    errors: Mapping[str, Tolerance] = field(default_factory=dict)  # of a right shader, by quantity
+    title: str  # unique title for reports
+    node: str  # category of the node
+    model: str = ""  # name of the expected model; "" for none
+    inputs: tuple[Input, ...] = ()  # inputs, except those that select the mode
+    errors: Mapping[str, Tolerance] = field(default_factory=dict)  # a correct shader's, by quantity
     # Errors outside the usual range of an input: by quantity, input and value.
     outside_errors: Mapping[tuple[str, str, float], Tolerance] = field(default_factory=dict)
-    libraries: tuple[str, ...] = ()  # with which it is judged; () for all
-    closure: bool = True  # whether eonlib leaves it to a renderer's own closures, in OSL
+    libraries: tuple[str, ...] = ()  # libraries that it applies to; () for all
+    closure: bool = True  # whether eonlib's OSL uses a renderer's own closure for it
     counts: Counts = USUAL
-    # Inputs that an evaluation sets unless a batch does.
+    # Inputs of evaluations, unless a batch sets them.
     fixed: Values = field(default_factory=dict)
-    # What is evaluated for a value: a branch, an output, and the factor of what a host returns.
+    # The evaluated branch and output, and a factor for the host's values.
     evaluated: tuple[str, str, float] = ("direct", "response", np.pi)
     flat: bool = False  # whether its values have no peak
-    # Slope of values or albedos by the angle from a view along the normal, which no cosine near 1 tells.
+    # Slope of values or albedos by the angle to the normal, which cosines near 1 do not resolve.
     along: float = 0.0
-    optional: bool = False  # whether a target may lack the node, so that it is not run there
-    # What functions of an engine's own, measured there, add to the error of a quantity.
+    optional: bool = False  # whether targets may lack the node; it is then not run
+    # Errors of an engine's own functions, measured there, by quantity.
     engines: Mapping[str, tuple[EngineError, ...]] = field(default_factory=dict)
-    # What MaterialX's fit of prefiltered light adds to the error of a quantity.
+    # Additional error by MaterialX's fit of prefiltered light, by quantity.
     prefiltered_fits: Mapping[str, tuple[Term, ...]] = field(default_factory=dict)
 
     @abstractmethod
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of a material of this node alone, with these inputs."""
+        """MaterialX text of a material with only this node and these inputs."""
 
     @property
     def side(self) -> float:
-        """-1 where it scatters light from below the horizon, else 1."""
+        """-1 if it scatters light from below the horizon, otherwise 1."""
         return 1.0
 
     @property
     def materials(self) -> tuple[Values, ...]:
-        """The materials that stand for the node in pictures."""
+        """The materials that represent the node in pictures."""
         return materials(*self.inputs)
 
     @property
@@ -203,7 +203,7 @@ class Spec(ABC):
 
     @property
     def changes(self) -> Mapping[str, samples.Changes]:
-        """For each input: inputs without and with a change of it alone."""
+        """For each input: inputs without and with a change of that input."""
         return {
             each.name: (each.needs, {**each.needs, each.variable or each.name: each.change})
             for each in self.inputs
@@ -211,30 +211,30 @@ class Spec(ABC):
         }
 
     def within(self, library: str) -> "Spec":
-        """The spec where the document is that of a library: most do not depend on it."""
+        """This spec adapted to a library; usually unchanged."""
         return self
 
     def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
-        """What functions of an engine's own add to the error of a quantity."""
+        """Errors of an engine's own functions for a quantity."""
         found = ((_measured(each, host), each.words) for each in self.engines.get(quantity, ()))
         return tuple(Term(error, words) for error, words in found if error)
 
 
 class ValueSpec(Spec):
-    """A node with values that have a reference: light that it scatters or emits, or an output."""
+    """A node with reference values: scattered or emitted light, or an output."""
 
     @abstractmethod
     def value(self, batch: Batch) -> Array:
-        """Values of a right shader, (N, 3): pi f |cos(theta_i)|, a radiance, or an output."""
+        """Values of a correct shader, (N, 3): pi f |cos(theta_i)|, a radiance, or an output."""
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
-        """Functions that may explain the values, its own model first."""
+        """Functions that may explain the values, starting with the node's own model."""
         return ()
 
     @property
     def all_candidates(self) -> tuple[Candidate, ...]:
-        """The same, and those of samples that `batches` lacks."""
+        """`value_candidates`, plus candidates for samples outside `batches`."""
         return self.value_candidates
 
     @abstractmethod
@@ -242,24 +242,24 @@ class ValueSpec(Spec):
         """All samples."""
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Some of them, for controls and for what takes long."""
+        """A subset of the samples, for controls and expensive checks."""
         return tuple(batch.first(counts.few) for batch in batches)
 
     def alike(self, compared: Compared) -> Compared:
-        """Values in a unit in which their errors are alike."""
+        """Values in a unit in which errors are uniform."""
         return compared
 
 
 class LobeSpec(ValueSpec):
     """A node that scatters light."""
 
-    curved: ClassVar[bool] = False  # whether they depend on how the surface bends
-    # Axes of `checks.states` of which it has the first state alone, and states that it lacks.
+    curved: ClassVar[bool] = False  # whether it depends on the surface's curvature
+    # Axes of `checks.states` for which it only supports the first state, and unsupported states.
     plain: ClassVar[tuple[str, ...]] = ()
 
     @property
     def mode(self) -> Values:
-        """Inputs that select the mode."""
+        """The inputs that select the mode."""
         return self.fixed
 
     @property
@@ -268,7 +268,7 @@ class LobeSpec(ValueSpec):
         return {**input_types(self.node), **{each.name: each.type for each in self.inputs}}
 
     def two_lobes(self) -> str:
-        """MaterialX text of a material of two such lobes, `first` and `second`, which has a frame of its own."""
+        """MaterialX text of a material with two such lobes; `second` has its own frame."""
         own = [name for name in FRAME_INPUTS if name in input_types(self.node)]
         frame = {name: NORMAL if name == "normal" else TANGENT for name in own}
         modes = {"first": self.mode, "second": {**self.mode, **frame}}
@@ -278,11 +278,11 @@ class LobeSpec(ValueSpec):
 
     @abstractmethod
     def albedo(self, batch: Batch) -> Array:
-        """Directional albedo of a right shader, (N, 3)."""
+        """Directional albedo of a correct shader, (N, 3)."""
 
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
-        """Functions that may explain the albedo, its own model first."""
+        """Functions that may explain the albedo, starting with the node's own model."""
         return ()
 
     @abstractmethod
@@ -296,7 +296,7 @@ class LobeSpec(ValueSpec):
         """Pairs and inputs at the edges of the domain."""
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
+        """Random pairs, with a quarter of each direction grazing; special pairs; and outside pairs."""
         rng, count = generator(), counts.pairs
         pairs = directions(rng, count), directions(rng, count)
         return (
@@ -306,7 +306,7 @@ class LobeSpec(ValueSpec):
         )
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Few of the random pairs, and the special ones; none of them is outside."""
+        """A few of the random pairs, and the special ones, without outside pairs."""
         return batches[0].first(counts.few), batches[1]
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
@@ -314,10 +314,10 @@ class LobeSpec(ValueSpec):
         return (*self.few(batches, counts), batches[-1])
 
     def turned(self, counts: Counts) -> Batch:
-        """Pairs in frames of their own.
+        """Pairs with individual frames.
 
         Half of the normals face away from the viewer. Tangents lean out of the surface by up to LEAN,
-        as those of a geometry do where a picture turns the normal.
+        like a geometry's tangents under a normal map.
         """
         rng = generator()
         frames = samples.turned_frames(rng, samples.FRAMES)
@@ -334,7 +334,7 @@ class LobeSpec(ValueSpec):
     def _batch(
         self, rng: np.random.Generator, pairs: tuple[Array, Array], edged: bool = False
     ) -> Batch:
-        """Pairs with random inputs, weights and occlusions, lit from the side that it scatters."""
+        """Pairs with random inputs, weights and occlusions, lit from the side that the node scatters."""
         wo, wi = pairs
         inputs, count = self.random_inputs(rng, len(wo), edged), len(wo)
         for name, edges in (("weight", samples.WEIGHTS), ("occlusion", samples.OCCLUSIONS)):
@@ -344,7 +344,7 @@ class LobeSpec(ValueSpec):
 
 
 class Names(TypedDict):
-    """What a spec takes from its row by name."""
+    """Fields of a spec that come from its row."""
 
     title: str
     node: str
@@ -357,13 +357,13 @@ def named(row: NodeRow[object], title: str = "") -> Names:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RowSpec(ValueSpec, Generic[F]):
-    """A node whose functions are those of a row."""
+    """A node with a row's functions."""
 
     row: NodeRow[F]
 
     @property
     def drawn(self) -> tuple[Input, ...]:
-        """The inputs that its functions read."""
+        """The inputs used by its functions."""
         inputs = {each.name: each for each in self.inputs}
         return tuple(inputs[name] for name in self.row.inputs)
 
@@ -379,12 +379,12 @@ class RowSpec(ValueSpec, Generic[F]):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """What else may explain the values."""
+        """Additional candidates for the values."""
         return ()
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
-        """The functions of the row: its own and its variants; and others."""
+        """The row's own function and its variants, followed by `others`."""
         own = Candidate(self.row.title, self.value)
         variants = (
             Candidate(each.title, partial(self.values, each.value), each.permitted)
@@ -395,7 +395,7 @@ class RowSpec(ValueSpec, Generic[F]):
 
 
 def ports(inputs: Iterable[Input], values: Values | None) -> list[tuple[str, str, Array]]:
-    """Paths and types of inputs, and their values or those of a document."""
+    """Paths and types of inputs, and their given values or a document's."""
     return [
         (each.name, each.type, np.broadcast_to(value, COMPONENTS[each.type]))
         for each in inputs
@@ -403,19 +403,19 @@ def ports(inputs: Iterable[Input], values: Values | None) -> list[tuple[str, str
     ]
 
 
-ARGUMENTS = 1 << 14  # of a function that is measured
+ARGUMENTS = 1 << 14  # arguments per measured function
 
 
 @dataclass(frozen=True)
 class EngineFunction:
-    """A function that engines have themselves."""
+    """A built-in function of engines."""
 
-    name: str  # in GLSL, of x or of x and y
+    name: str  # GLSL function of x, or of x and y
     expression: str
-    exact: Callable[..., Array]  # the same in NumPy
+    exact: Callable[..., Array]  # NumPy equivalent
 
     def errors(self, host: Host, *arguments: Array) -> Array:
-        """Errors of a host's values of arguments that are float32 numbers, (N,)."""
+        """Errors of a host's values for float32 arguments, (N,)."""
         function = f"mxeon_{self.name}"
         parameters = ", ".join(f"float {name}" for name in "xy"[: len(arguments)])
         text = f"float {function}({parameters})\n{{\n    return {self.expression};\n}}\n"
@@ -425,7 +425,7 @@ class EngineFunction:
     def error(
         self, arguments: Callable[[], Sequence[Array]], allowed: float = 1.0
     ) -> Callable[[Host], float]:
-        """What measures a host's largest error of some arguments, beyond so many roundings of 1."""
+        """A measurement of a host's largest error on some arguments, beyond a number of roundings of 1."""
         return lambda host: max(
             float(self.errors(host, *arguments()).max()) - allowed * ROUNDING, 0.0
         )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measured values beside expected ones, their errors, and the largest error that passes as a sum of terms."""
+"""Measured and expected values, their errors, and tolerances as sums of terms."""
 
 import math
 from collections.abc import Callable, Iterable, Sequence
@@ -15,7 +15,7 @@ from mxeon.conformance.results import Errors, Region
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Mask, Values
 
-Metric = Callable[[Array, Array], Array]  # of measured and expected values: error of each row
+Metric = Callable[[Array, Array], Array]  # measured, expected -> error of each row
 
 ROUNDING = 2.0**-24  # unit roundoff of float32
 
@@ -42,16 +42,16 @@ class Measurement:
     error: float
     worst: dict[str, list[float]]  # inputs and values of the worst sample, by name
     errors: tuple[Errors, ...] = ()
-    samples: str = ""  # equal for equal samples
+    samples: str = ""  # checksum of the samples
 
 
 def _largest(values: Array) -> Array:
-    """Largest of the last axis, channel by channel: NumPy's maximum takes five times as long."""
+    """Maximum over the last axis, channel by channel: NumPy's maximum takes five times as long."""
     return reduce(np.maximum, np.moveaxis(values, -1, 0))
 
 
 def absolute(measured: ArrayLike, expected: ArrayLike) -> Array:
-    """Largest difference of each row; infinity for what is not a number."""
+    """Largest difference of each row; infinity if it is not a number."""
     error = _largest(np.abs(np.subtract(measured, expected)))
     return np.where(np.isfinite(error), error, np.inf)
 
@@ -61,7 +61,7 @@ def _scale(expected: Array) -> Array:
 
 
 def scaled(measured: Array, expected: Array) -> Array:
-    """Largest difference of each row, relative to its largest expected value where that exceeds 1."""
+    """Largest difference of each row, relative to its largest expected value if that exceeds 1."""
     scale = _scale(expected)
     return absolute(measured / scale, expected / scale)
 
@@ -71,12 +71,12 @@ def relative(measured: Array, expected: Array) -> Array:
 
 
 def mean_error(measured: Array, expected: Array) -> Array:
-    """Difference of the means over all rows, for every row: noise averages out."""
+    """Difference of the means over all rows, repeated for every row; averages noise out."""
     return np.broadcast_to(absolute(np.mean(measured - expected, axis=0), 0.0), len(measured))
 
 
 def mean_scaled(measured: Array, expected: Array) -> Array:
-    """Mean of the differences of all rows, each relative to its largest expected value above 1."""
+    """Mean of the differences of all rows, each relative to its largest expected value if above 1."""
     scale = _scale(expected)
     return mean_error(measured / scale, expected / scale)
 
@@ -84,7 +84,7 @@ def mean_scaled(measured: Array, expected: Array) -> Array:
 def root_mean_square(measured: Array, expected: Array) -> Array:
     """Root mean square of the largest differences of all rows, for every row.
 
-    It notices a small error of many rows, where the largest error leaves room for that of a few.
+    It detects small errors in many rows, which a tolerance for the largest error would hide.
     """
     errors = absolute(measured, expected)
     return np.broadcast_to(np.sqrt(np.mean(errors * errors)), len(errors))
@@ -103,7 +103,7 @@ def worst_of(metric: Metric, compared: Iterable[Compared]) -> Measurement:
 
 
 def errors_of(rows: NDArray[np.floating], tolerance: float, region: Region | None = None) -> Errors:
-    """The errors of samples, or of those in a region."""
+    """The errors of all samples, or of the samples in a region."""
     finite = rows[np.isfinite(rows)]
     rms = float(np.sqrt(np.mean(finite**2))) if len(finite) else 0.0
     wrong = int(np.count_nonzero(~(rows <= tolerance)))
@@ -112,7 +112,7 @@ def errors_of(rows: NDArray[np.floating], tolerance: float, region: Region | Non
 
 
 def checksum(batches: Iterable[Batch]) -> str:
-    """Equal for equal samples."""
+    """Checksum of samples."""
     found = 0
     for batch in batches:
         for column in (batch.wo, batch.wi, *batch.inputs.values()):
@@ -121,7 +121,7 @@ def checksum(batches: Iterable[Batch]) -> str:
 
 
 def count_not_finite(compared: Compared) -> Measurement:
-    """Number of measured rows that are not finite, and the first of them."""
+    """Number of non-finite measured rows, and the first of them."""
     bad = ~np.isfinite(compared.measured).all(axis=1)
     if not bad.any():
         return Measurement(0, {})
@@ -131,7 +131,7 @@ def count_not_finite(compared: Compared) -> Measurement:
 
 
 def count_named(names: Sequence[str]) -> Measurement:
-    """Number of inputs that are wrong, and their names."""
+    """Number of wrong inputs, and their names."""
     return Measurement(len(names), {name: [0.0] for name in names})
 
 
@@ -148,20 +148,20 @@ def point_of(batch: Batch, row: int) -> dict[str, list[float]]:
 
 
 class Term(NamedTuple):
-    """An error that adds to others, and what makes it."""
+    """A summand of a tolerance, and its cause."""
 
     value: float
     words: str
 
 
 def roundings(count: float, words: str = "") -> Term:
-    """The error of so many roundings of float32, each half a unit in the last place of 1."""
+    """The error of `count` float32 roundings, each half a unit in the last place of 1."""
     return Term(count * ROUNDING, f"{count:.3g} float32 roundings{words and ' '}{words}")
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """The largest error that passes: a sum of terms, rounded up to one digit unless it is `exact`."""
+    """The largest error that passes: a sum of terms, rounded up to one digit unless `exact`."""
 
     terms: tuple[Term, ...]
     quantity: Quantity = Quantity.VALUE
@@ -181,18 +181,18 @@ class Tolerance:
         return text if self.exact or not self.value else f"{text}, rounded up"
 
     def wrong(self, compared: Compared) -> Mask:
-        """Which rows have a larger error."""
+        """Mask of rows with a larger error."""
         return np.asarray(self.metric(compared.measured, compared.expected) > self.value)
 
     def plus(self, *terms: Term) -> "Tolerance":
         return replace(self, terms=(*self.terms, *terms))
 
     def term(self, words: str, factor: float = 1.0) -> Term:
-        """The whole as a term of another tolerance."""
+        """This tolerance as a term of another one."""
         return Term(factor * self.value, words)
 
     def scale(self, expected: Array) -> Array:
-        """Numbers that errors are divided by, which are 1 but for large scaled values, (N, 1)."""
+        """Divisors of errors, (N, 1): 1, except for large values under scaled metrics."""
         if self.metric is not scaled:
             return np.ones((len(expected), 1))
         return _scale(expected)
@@ -210,12 +210,12 @@ def sum_in(quantity: Quantity, *terms: Term, exact: bool = False) -> Tolerance:
 
 
 def given(value: float, quantity: Quantity, words: str, metric: Metric = absolute) -> Tolerance:
-    """A tolerance of one term, taken as it is."""
+    """A tolerance with one term, not rounded."""
     return Tolerance((Term(value, words),), quantity, metric, exact=True)
 
 
 def count_of(quantity: Quantity) -> Tolerance:
-    """The tolerance of a count, which must be 0."""
+    """The tolerance of a count: 0."""
     return given(0.0, quantity, "a count")
 
 

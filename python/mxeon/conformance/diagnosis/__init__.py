@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The explanation of a failure: the known model, defect or fault that gives the values, or their place."""
+"""The explanation of a failure: a known model, defect or fault that gives the values, or the wrong region."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -51,27 +51,27 @@ from mxeon.models.shading_model import UP
 
 Measure: TypeAlias = Callable[[Case], Iterable[Compared]]
 
-EXCHANGES = (NO_FAULT,)  # no fault but exchanged inputs and a factor
-PLACELESS = Ability.MEDIUM | Ability.OUTPUT  # nodes without a view and a light
-# Causes after which the values of the check itself are searched for a range of an input.
+EXCHANGES = (NO_FAULT,)  # no faults except exchanged inputs and a factor
+PLACELESS = Ability.MEDIUM | Ability.OUTPUT  # nodes without view and light
+# After these causes, the check's own values are searched for an input range.
 SINGLY_RIGHT, UNKNOWN, OTHER_AVERAGE, UNMASKED = UNTOLD = tuple(
     Cause(Kind.UNKNOWN, key) for key in ("singly_right", "unknown", "other_average", "unmasked")
 )
-WORST = 32  # pairs of which one input is changed, and the fewest that have to be wrong
-CURES = 2  # inputs that are named
-DIMMING = ("weight", "occlusion")  # inputs that make any error small
-SHOWN = 0.1  # share of the light that has to be left where another input is changed
-# Share of the distance to any other explanation up to which one explains all, and up to which it is
-# called the nearest.
+WORST = 32  # pairs with one changed input, and least number of wrong pairs
+CURES = 2  # maximum number of reported inputs
+DIMMING = ("weight", "occlusion")  # inputs that reduce any error
+SHOWN = 0.1  # least share of the light that remains after changing another input
+# An explanation is complete up to the first share of the distance to any other, and is
+# reported as the nearest up to the second.
 SAME, NEAR = 0.03, 0.3
-FAR = 0.2  # share of the distance to the claimed model from which another model is no match
-NAMED = 0.5  # share of the values' own size up to which the closest model is named
-INEXACT = 30.0  # tolerances up to which the right model is called inexact, and not another one
-LEAST_LIGHT = 1e-3  # cosine of the light up to which factors of it cannot be told apart
+FAR = 0.2  # another model does not match beyond this share of the distance to the claimed model
+NAMED = 0.5  # the closest model is reported up to this share of the values' magnitude
+INEXACT = 30.0  # up to this many tolerances, the expected model counts as inexact
+LEAST_LIGHT = 1e-3  # cosine of the light below which its factors are indistinguishable
 
 
 def defect(key: str, *names: str) -> Diagnosis:
-    """The diagnosis of a row of `mxeon.conformance.words.DEFECTS`."""
+    """The diagnosis for a row of `mxeon.conformance.words.DEFECTS`."""
     return Diagnosis((Cause(Kind.DEFECT, key, names),))
 
 
@@ -83,14 +83,14 @@ def explain(
     tolerance: Tolerance,
     measure: Measure | None = None,
 ) -> Diagnosis:
-    """The explanation of values, by candidates and by faults on the way to the first, the own one.
+    """The explanation of values by candidates, and by faults of the first one, the node's own model.
 
-    `candidates` are functions that may give the values, its own model first; a value is right up to the
-    tolerance. `measure` compares the values of a case.
+    `candidates` are functions that may give the values, starting with the node's own model. A value is correct
+    within the tolerance. `measure` compares the values of a case.
     """
     if infinite := not_finite(
         cases
-    ):  # which has no distance to anything; others are judged by themselves
+    ):  # NaN has no distance to anything; finite values are judged on their own
         finite = [each.where(np.isfinite(each.measured.sum(axis=1))) for each in cases]
         rest = NO_DIAGNOSIS
         if any(tolerance.wrong(each).any() for each in finite):
@@ -98,16 +98,16 @@ def explain(
         return Diagnosis((*infinite, *rest.causes), rest.distances)
     few = case.backend.counts.diagnosed
     short = [Compared(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
-    # Many a fault leaves the inputs of the own model alone.
+    # Many faults do not change the inputs of the own model.
     own = replace(candidates[0], values=Remembered(candidates[0].values))
     candidates = [own, *candidates[1:]]
     models = {each.title: _distance(short, each, NO_FAULT, tolerance) for each in candidates}
     ranking = sorted(models.items(), key=lambda item: item[1])
-    # Look for a fault of the first where no other explains the values.
+    # Search for a fault of the first candidate if no other one explains the values.
     if ranking[0][0] == own.title or ranking[0][1] > tolerance.value:
         names = [each.name for each in case.spec.inputs if each.name not in DIMMING]
         exchanged = exchanges(names) if faults else ()
-        # The factor by which the expected values come nearest to the measured ones.
+        # The factor that brings the expected values closest to the measured ones.
         weighed = [(each, np.maximum(1.0, np.abs(each.expected)) ** 2) for each in short]
         squares = sum(np.sum(each.expected**2 / scale) for each, scale in weighed)
         products = sum(np.sum(each.expected * each.measured / scale) for each, scale in weighed)
@@ -121,7 +121,7 @@ def explain(
         if least <= SAME * models[own.title] and least <= enough:
             return Diagnosis((faults[order[0]].cause(least),), models)
     nearest = next(each for each in candidates if each.title == ranking[0][0])
-    # What is near on average may be far off where values are wrong.
+    # A model that is near on average may be far off for the wrong values.
     near, far = (
         max(tolerance.metric(each.measured, model.values(each.batch)).max() for each in short)
         for model in (nearest, own)
@@ -137,16 +137,16 @@ def explain(
 def _distance(
     cases: Sequence[Compared], candidate: Candidate, fault: Fault, tolerance: Tolerance
 ) -> float:
-    """Root-mean-square distance of the measured values from those of a candidate with a fault.
+    """Root-mean-square distance between the measured values and a candidate with a fault.
 
-    A roughness above 1 is left out, which not every model takes; and light up to LEAST_LIGHT. Where the
-    tolerance is that of a mean, values have noise and means are compared.
+    Roughness above 1, which not every model supports, and light up to LEAST_LIGHT are excluded. With the
+    tolerance of a mean, values are noisy and means are compared.
     """
     errors = []
     for case in cases:
         try:
             values = fault.values(case.batch, candidate.values(fault.batch(case.batch)))
-        except ValueError:  # inputs that are exchanged may lie outside each other's domain
+        except ValueError:  # exchanged inputs may lie outside each other's domain
             return float("inf")
         kept = case.batch.rough <= 1.0
         if not tolerance.quantity.of_views:
@@ -167,10 +167,10 @@ def _model(
     measure: Measure | None,
     explains: bool,
 ) -> tuple[Cause, ...]:
-    """The closest model, which may explain every wrong value, the region that is wrong, or that no model is close."""
+    """The closest model, which may explain all wrong values; or the wrong region; or that no model is close."""
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     (first, least), (_, rival) = ranking[:2]
-    # Another model explains all.
+    # Another model explains all values.
     if explains and least <= max(tolerance.value, SAME * rival):
         flags = (
             (float(spec.flag),)
@@ -179,7 +179,7 @@ def _model(
             if spec.flag is not None and reference.diffuse_model(spec.model).title == first
         )
         return (Cause(Kind.MODEL, first, values=next(flags, ()), rms=least),)
-    # Its own model is correct except in a region or for a range of an input, or not accurate enough.
+    # The own model is correct except in a region or input range, or is not accurate enough.
     if not wrong.any():
         return (SINGLY_RIGHT,)
     if place := smallest(cases, tolerance):
@@ -218,7 +218,7 @@ def _model(
         point = {name: point[name] for name in ("wo", "wi")}
     if first == own and mostly:
         return (replace(share, point=point),)
-    # What is off by as much as black would be resembles nothing.
+    # Values whose error is as large as black's resemble no model.
     black = Candidate("", lambda batch: np.zeros((len(batch.wo), 1)))
     far = _distance(cases, black, NO_FAULT, tolerance)
     near = least < NAMED * (far if first == own else min(far, dict(ranking)[own]))
@@ -229,7 +229,7 @@ def _model(
 
 
 def searched(cause: Cause, cases: Sequence[Compared], tolerance: Tolerance) -> Cause:
-    """A cause that is not known, or the region or the range of an input that holds all wrong values."""
+    """An unknown cause, or the region or input range that contains all wrong values."""
     if place := place_of(cases, tolerance):
         return correct_except(cases, tolerance, place)
     if cause == SINGLY_RIGHT and tolerance.metric in (absolute, relative, scaled):
@@ -240,12 +240,12 @@ def searched(cause: Cause, cases: Sequence[Compared], tolerance: Tolerance) -> C
 def _cures(
     case: Case, cases: Sequence[Compared], tolerance: Tolerance, measure: Measure
 ) -> dict[str, float]:
-    """Values of single inputs with which the worst values are right."""
+    """Values of single inputs that make the worst values correct."""
     most = max(cases, key=lambda each: np.count_nonzero(tolerance.wrong(each)))
     worst = np.argsort(tolerance.metric(most.measured, most.expected))[-WORST:]
-    pairs = Ability.PAIRS in case.backend.abilities  # a picture has all of its points
+    pairs = Ability.PAIRS in case.backend.abilities  # pictures always contain all points
     batch, found = most.batch.where(worst) if pairs else most.batch, {}
-    # An input that only darkens what should be dark cures nothing.
+    # An input that only darkens values that should be dark is not a cure.
     light = np.maximum(np.abs(most.expected), np.abs(most.measured))[worst]
     least = SHOWN * min(float(light.mean()), 1.0)
     for port in case.spec.inputs:
@@ -263,30 +263,30 @@ def _cures(
 
 
 def not_finite(cases: Sequence[Compared]) -> tuple[Cause, ...]:
-    """Where values are not finite; none if all are."""
+    """Causes for non-finite values; empty if all are finite."""
     zeros = list(map(regions.unbounded, cases))
     if not any(EXACT.wrong(each).any() for each in zeros):
         return ()
     return (Cause(Kind.NOT_FINITE, region=place_of(zeros, EXACT)),)
 
 
-# What is compared with what, by quantity.
+# Comparisons by quantity.
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Values of a quantity against the ones expected."""
+    """Measured and expected values of a quantity, with candidates for their explanation."""
 
-    quantity: str  # by whose error they are judged
+    quantity: str  # its error is the tolerance
     compared: Callable[[Case], Iterable[Compared]]
-    candidates: Callable[[Case], Sequence[Candidate]]  # that may explain them, its own model first
-    faults: Sequence[Fault] = ()  # of the way from the inputs to that model
+    candidates: Callable[[Case], Sequence[Candidate]]  # possible explanations, own model first
+    faults: Sequence[Fault] = ()  # possible faults between the inputs and the own model
 
     def __call__(self, case: Case) -> Iterable[Compared]:
         return self.compared(case)
 
     def diagnose(self, case: Case) -> Diagnosis:
-        """The explanation of a case, made once: several checks of a node fail for one reason."""
+        """The explanation of a case, cached: several checks of a node fail for the same reason."""
         known = case.explained
         if self not in known:
             tolerance = case.tolerance(self.quantity, "value")
@@ -298,7 +298,7 @@ class Comparison:
 
 
 def _rests(case: Case) -> Sequence[Candidate]:
-    """Functions that may explain throughputs: what each albedo leaves, or all light."""
+    """Candidates for throughputs: 1 - E for each albedo, or all light."""
     *own, nothing = case.albedo_candidates
     named = [*own, replace(nothing, title="all light passes", permitted=False)]
 
@@ -309,13 +309,13 @@ def _rests(case: Case) -> Sequence[Candidate]:
 
 
 def _backs(case: Case) -> Iterator[Compared]:
-    """Radiance towards views from the back."""
+    """Radiance for views of the back."""
     batch = case.backend.take(case.of(EmissionSpec).backs)
     yield case.valued.alike(Compared(batch, case.direct(batch), case.expected(batch)))
 
 
 def _alike(case: Case) -> Sequence[Candidate]:
-    """Functions that may explain values, in the unit in which their errors are alike."""
+    """Candidates for values, in the unit in which errors are uniform."""
 
     def alike(candidate: Candidate, batch: Batch) -> Array:
         values = candidate.values(batch)
@@ -325,7 +325,7 @@ def _alike(case: Case) -> Sequence[Candidate]:
 
 
 def _transmittances(case: Case) -> Iterator[Compared]:
-    """Light through a medium and the throughput of a surface over it, against its transmittance."""
+    """Light through a medium, and the throughput of a surface over it, compared with its transmittance."""
     spec, evaluate = case.of(MediumSpec), case.evaluating.evaluate
     [batch] = case.batches
     expected = case.expected(batch)
@@ -341,12 +341,12 @@ def _transmittances(case: Case) -> Iterator[Compared]:
 VALUES, ALBEDOS = attrgetter("valued.value_candidates"), attrgetter("albedo_candidates")
 VALUE = Comparison("value", values, VALUES, DIRECT_FAULTS)
 ALBEDO = Comparison("albedo", albedos, ALBEDOS, ENVIRONMENT_FAULTS)
-# Of a layer, for light from above, and for light through the base.
+# Throughput of a layer, for light from above and for light through the base.
 THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), _rests, EXCHANGES)
 TRANSMISSION = Comparison(
     "throughput", lambda case: throughputs(case, "transmission"), _rests, EXCHANGES
 )
-# Of a utility node, or of an emission from the front.
+# Output of a utility node, or emission from the front.
 OUTPUT = Comparison(
     "value", lambda case: map(case.valued.alike, values(case)), _alike, COLOR_FAULTS
 )
@@ -354,9 +354,9 @@ BACK = Comparison("value", _backs, _alike)
 TRANSMITTANCE = Comparison("value", _transmittances, VALUES)
 
 
-# What surrounds a model: the throughput, the frame and the environment.
+# Parts around a model: throughput, frame and environment.
 
-# The irradiance that a wrong look-up finds, by what it does.
+# The irradiance found by each kind of wrong lookup.
 LOOKUPS: dict[str, Callable[[Batch], Array]] = {
     "opposite": lambda batch: sky(-batch.normal),
     "viewer": lambda batch: sky(batch.world(batch.wo)),
@@ -382,7 +382,7 @@ def diagnose_finite(case: Case) -> Diagnosis:
 
 
 def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) -> Diagnosis:
-    """The outputs that are not 0, with their values, regions and branches."""
+    """The nonzero outputs, with their values, regions and branches."""
     found: dict[Cause, list[str]] = {}
     for (output, branch), compared in passed.items():
         values = np.concatenate([each.measured[EXACT.wrong(each)] for each in compared])
@@ -395,7 +395,7 @@ def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) ->
 
 
 def diagnose_frame(case: Case) -> Diagnosis:
-    """Whether the normal is dropped or not turned, in the first branch that is wrong."""
+    """Whether the normal is dropped or not turned, in the first wrong branch."""
     tolerance = case.tolerance("frame")
     for compared, branch in zip(frames(case), ("direct", "environment"), strict=True):
         if not tolerance.wrong(compared).any():
@@ -405,7 +405,7 @@ def diagnose_frame(case: Case) -> Diagnosis:
         if not tolerance.wrong(dropped).any():
             causes = defect("normal_of_surface").causes
         else:
-            # Where it is wrong, or which axis has no effect.
+            # The wrong region, or the axis without effect.
             causes = not_finite([compared]) or _region([compared], tolerance)
             axes = ("normal", "tangent", "curve_direction")
             dead = (found for name in axes for found in without_effect(case, name))
@@ -416,7 +416,7 @@ def diagnose_frame(case: Case) -> Diagnosis:
 
 
 def _beside_equal(case: Case, compared: Compared, branch: str) -> tuple[Cause, ...]:
-    """That the worst pair of turned frames is right in pixels that all have its inputs; none if it is not."""
+    """The cause that the worst turned pair is correct if all pixels share its inputs, if that is so."""
     tolerance, output = case.tolerance("frame"), case.direct if branch == "direct" else case.albedo
     worst = np.full(4, tolerance.metric(compared.measured, compared.expected).argmax())
     same = compared.where(worst)
@@ -425,28 +425,28 @@ def _beside_equal(case: Case, compared: Compared, branch: str) -> tuple[Cause, .
 
 
 def _region(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[Cause, ...]:
-    """The region that holds all wrong pairs, with its share; none without one."""
+    """The region that contains all wrong pairs, with its share; empty without one."""
     place = smallest(cases, tolerance)
     return (correct_except(cases, tolerance, place),) if place else ()
 
 
 def ignored(name: str) -> Callable[[Case], Diagnosis]:
-    """Whether an input is dropped, or else the explanation of the values."""
+    """Whether an input is dropped; otherwise the explanation of the values."""
     return lambda case: Diagnosis(without_effect(case, name) or VALUE.diagnose(case).causes)
 
 
 def without_effect(case: Case, name: str) -> tuple[Cause, ...]:
-    """That an input changes nothing; none if it does, or there is none."""
+    """The cause that an existing input has no effect; empty if it has one."""
     dead = name in case.changes and name in dead_inputs(case)
     return defect("input_ignored", name).causes if dead else ()
 
 
 def diagnose_surroundings(compared: Compared, tolerance: Tolerance) -> Diagnosis:
-    """The direction at which the environment is looked up."""
+    """The direction in which the environment is looked up."""
     batch, measured, expected = compared
     irradiances = {
         **{key: found(batch) for key, found in LOOKUPS.items()},
-        # With every normal turned around the sky is 1 minus itself.
+        # With reversed normals the sky is 1 minus itself.
         "other_side": 1.0 - expected,
         "viewer_side": sky(batch.normal),
     }

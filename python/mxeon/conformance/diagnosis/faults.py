@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known faults of the way from a node's inputs to a model, whatever the model, to name them by."""
+"""Known model-independent faults between a node's inputs and a model."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -14,21 +14,21 @@ from mxeon.conformance.samples import Array, Batch
 from mxeon.models.core.arguments import RANGES
 
 CHANNELS = ("red", "green", "blue")
-CONSTANTS = (0.1, 0.25, 0.3, 0.5, 0.75, 1.0)  # roughness that may be wired in
+CONSTANTS = (0.1, 0.25, 0.3, 0.5, 0.75, 1.0)  # possible hard-coded roughnesses
 
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault, as it changes what a model gives: its batch on the way in, its values on the way out."""
+    """A fault that changes a model's input batch or its values."""
 
-    key: str  # of a row of `mxeon.conformance.words.FAULTS`
+    key: str  # key of `mxeon.conformance.words.FAULTS`
     batch: Callable[[Batch], Batch] = lambda batch: batch
     values: Callable[[Batch, Array], Array] = lambda batch, values: values
-    names: tuple[str, ...] = ()  # that it is about, as the numbers
+    names: tuple[str, ...] = ()  # affected inputs; numbers likewise
     numbers: tuple[float, ...] = ()
 
     def cause(self, rms: float) -> Cause:
-        """This fault as the cause of values, at a distance from those that it gives."""
+        """This fault as a cause, with the distance between the measured values and its own."""
         return Cause(Kind.FAULT, self.key, self.names, self.numbers, rms=rms)
 
 
@@ -36,7 +36,7 @@ NO_FAULT = Fault("")
 
 
 def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Batch]:
-    """A change of an input, where the batch has it."""
+    """A change of an input, if the batch has it."""
 
     def batch(batch: Batch) -> Batch:
         if name not in batch.inputs:
@@ -47,7 +47,7 @@ def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Bat
 
 
 def _scaled(scale: Callable[[Batch], Array]) -> Callable[[Batch, Array], Array]:
-    """A change of values by a factor for each pair; 0 where the factor has no value."""
+    """A change of values by a factor per pair; 0 where the factor has no value."""
 
     def values(batch: Batch, values: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -137,13 +137,13 @@ ENVIRONMENT_FAULTS = (
 
 
 def exchanges(names: Iterable[str]) -> Iterator[Fault]:
-    """Two inputs in each other's place, or all those of two nodes, whose names are before a slash."""
+    """Exchanges of two inputs, or of all inputs of two nodes, named before a slash."""
     for pair in combinations(dict.fromkeys(name.split("/")[0] for name in names), 2):
         yield Fault("inputs_exchanged", partial(_exchanged, *pair), names=pair)
 
 
 def _exchanged(one: str, other: str, batch: Batch) -> Batch:
-    """A batch with two inputs exchanged; what one of them cannot be is the nearest that it can."""
+    """A batch with two inputs exchanged, each clamped to its range."""
     changes, inputs = {}, batch.inputs
     for name in inputs:
         node, *port = name.split("/")
@@ -155,7 +155,7 @@ def _exchanged(one: str, other: str, batch: Batch) -> Batch:
 
 
 def scaled_by(factor: float) -> Fault:
-    """The fault of values that carry a factor."""
+    """The fault of an extra factor."""
     for key, known in (("pi_missing", np.pi), ("pi_twice", 1.0 / np.pi)):
         if np.isclose(factor, known, rtol=1e-5):
             return Fault(key, values=lambda batch, values: factor * values)
@@ -163,7 +163,7 @@ def scaled_by(factor: float) -> Fault:
 
 
 def normal_ignored(batch: Batch) -> Batch:
-    """The pairs of a batch in turned frames as a node sees them that uses the surface's normal, +z."""
+    """A batch in turned frames, as seen by a node that uses the surface's normal, +z."""
     wo, wi = batch.world(batch.wo), batch.world(batch.wi)
     side = np.where(wo[:, 2:] < 0.0, -1.0, 1.0)
     return replace(batch, wo=wo * side, wi=wi * side, frame=None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Named sets of pairs and inputs, to say of a shader that is wrong for some of them for which."""
+"""Named sets of pairs and inputs, which describe where a shader is wrong."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
@@ -12,9 +12,9 @@ from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Mask
 from mxeon.conformance.tolerance import Compared, Tolerance, checksum, count_of, errors_of, relative
 
-COLORS = ("color", "tint", "color0")  # inputs of which one is the color of a node
+COLORS = ("color", "tint", "color0")  # names of a node's color input
 INDICES = {"index": "ior", "extinction": "extinction"}
-# The inputs that regions are about, by the first word of their names.
+# Inputs that regions depend on, by the first word of the regions' names.
 ABOUT = {
     "weight": ("weight",),
     "roughness": ("roughness",),
@@ -28,42 +28,42 @@ FRAME = (
     "curve_direction",
     "position",
     "surface_normal",
-)  # inputs whose ranges say nothing
-USUAL = {"weight": 1.0, "occlusion": 1.0}  # where a batch has none
+)  # inputs whose ranges are never reported
+USUAL = {"weight": 1.0, "occlusion": 1.0}  # defaults for batches without them
 CHANNELS = "red", "green", "blue"
 EXACT = count_of(Quantity.VALUES)
-# Largest share of the right values in a range of an input that has all wrong ones, and in one of an input that is
-# known to be the cause.
+# Largest share of the correct values in an input range with all wrong values, usually and if the
+# input is known to be the cause.
 RIGHT, WEAK = 0.4, 0.7
-CLEARER = 0.5  # of it, in a range with two ends that is named instead of one with a single end
+CLEARER = 0.5  # a range with two ends must reduce that share by this factor over a one-sided range
 CHANCE = 12.0  # least logarithm of the odds against finding a range by chance
-LARGEST = 0.6  # share of the pairs, or of their values, that a region may have to be worth its name
-DENSITY = 0.1  # least share of a region's pairs that have to be wrong
+LARGEST = 0.6  # largest share of the pairs, or of their values, in a reported region
+DENSITY = 0.1  # least share of wrong pairs in a region
 UPRIGHT = 1e-3  # tangent of a half vector along the normal: its cosine rounds to about 1
 COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
 
 
 def place_of(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
-    """The region, or else the range of an input, that holds all wrong pairs; None if there is none."""
+    """The region or input range that contains all wrong pairs, or None."""
     return smallest(cases, tolerance) or span(cases, tolerance)
 
 
 def correct_except(
     cases: Sequence[Compared], tolerance: Tolerance, place: Region | None = None
 ) -> Cause:
-    """How many pairs are wrong, and the region of all of them."""
+    """The number of wrong pairs, and the region that contains them."""
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     return Cause(Kind.REGION, region=place, wrong=int(np.count_nonzero(wrong)), of=len(wrong))
 
 
 def unbounded(compared: Compared) -> Compared:
-    """0 for finite values and NaN for others, beside 0."""
+    """0 for finite values and NaN otherwise, compared with 0."""
     zeros = np.where(np.isfinite(compared.measured), 0.0, np.nan)
     return Compared(compared.batch, zeros, np.zeros_like(zeros))
 
 
 def smallest(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
-    """The smallest region that holds all wrong pairs; None if there is none worth a name."""
+    """The smallest reportable region that contains all wrong pairs, or None."""
     bad = np.concatenate(list(map(tolerance.wrong, cases)))
     sizes: dict[Region, int] = {}
     found = (chain(_directions(case.batch), _inputs(case.batch)) for case in cases)
@@ -77,9 +77,9 @@ def smallest(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
 
 
 def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -> Region | None:
-    """The range of an input that holds all wrong values and the fewest right ones; None if none tells them apart.
+    """The input range with all wrong values and the fewest correct ones; None if none separates them.
 
-    A color's channels are values of their own, each with its own channel of the inputs.
+    Each channel of a color is judged separately, with the same channel of the inputs.
     """
     found = []
     for _, measured, right in cases:
@@ -91,7 +91,7 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
     wrong = np.asarray(bad.any(axis=0))
     bad = bad[:, wrong]
     best: Region | None = None
-    if bad.all():  # or there are none
+    if bad.all():  # vacuously true without values
         return best
     channels = tuple(each for each, is_wrong in zip(CHANNELS, wrong, strict=False) if is_wrong)
     if wrong.all():
@@ -116,7 +116,7 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
                 share, least = float(mask[~bad].mean()), most
                 if low < high and first == low and last == high:
                     least *= CLEARER
-                # The wrong values would hardly all lie in the range if they were any others.
+                # Logarithm of the odds against all wrong values being in the range by chance.
                 odds = -np.log(max(mask.mean(), 1.0 / mask.size)) * (bad.any(axis=1).sum() - 1)
                 dense = odds * min(bad[mask].mean() / DENSITY, 1.0) >= CHANCE
                 if share < least and dense:
@@ -139,7 +139,7 @@ def _parts(name: str, columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]
 
 
 def unreached(values: Mapping[str, Sequence[float]]) -> tuple[Region, ...]:
-    """The regions that a node with constant inputs is not in, of inputs that are all known."""
+    """The regions that a node with constant inputs cannot be in, if all their inputs are known."""
     one = np.array([[0.0, 0.0, 1.0]])
     inputs = {name: np.array([each if len(each) > 1 else each[0]]) for name, each in values.items()}
     batch = Batch(one, one, inputs)
@@ -157,7 +157,7 @@ def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     s = dot - mu_o * mu_i
     half = wo + wi
     upright = np.abs(half[:, :2]).max(axis=1) <= UPRIGHT * half[:, 2]
-    # Where formulas divide or cancel.
+    # Singularities and cancellations of formulas.
     yield Region("viewer_above_1"), mu_o > 1.0
     yield Region("light_above_1"), mu_i > 1.0
     yield Region("both_on_horizon"), (mu_o == 0.0) & (mu_i == 0.0)
@@ -166,7 +166,7 @@ def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     yield Region("mirror"), (wo * [-1.0, -1.0, 1.0] == wi).all(axis=1)
     yield Region("half_vector_upright"), upright
     yield Region("viewer_along_tangent"), (np.abs(wo) == [1.0, 0.0, 0.0]).all(axis=1)
-    # By one cosine, then by both.
+    # One cosine, then both.
     for name, mu in (("viewer", mu_o), ("light", mu_i)):
         yield Region(f"{name}_along_normal"), mu >= 1.0
         yield Region(f"{name}_cosine_above", low=0.99), mu > 0.99
@@ -182,7 +182,7 @@ def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
             Region("cosines_within", low=0.0, high=limit),
             (mu_i >= 0.0) & (np.maximum(mu_o, mu_i) <= limit),
         )
-    # By the side of the light, and by the angle between the two.
+    # Side of the light, and angle between view and light.
     yield Region("light_below_horizon"), mu_i < 0.0
     yield Region("light_above_horizon"), mu_i > 0.0
     yield Region("dot_above", low=0.999), dot > 0.999
@@ -200,7 +200,7 @@ def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     )
     colors = [batch.inputs[name] for name in COLORS if name in batch.inputs]
     color = np.broadcast_to(colors[0] if colors else 0.5, (count, 3))
-    # By numbers that every node has.
+    # Weight and occlusion.
     yield Region("weight_negative"), weight < 0.0
     yield Region("weight_zero"), weight == 0.0
     yield Region("weight_not_positive"), weight <= 0.0
@@ -215,13 +215,13 @@ def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     yield Region("roughness_largest"), roughness >= 0.999999 * roughness.max()
     yield Region("roughness_above_1"), roughness > 1.0
     yield Region("roughness_positive"), roughness > 0.0
-    # By inputs of some nodes.
+    # Node-specific inputs.
     for name, port in INDICES.items():
         index = _rows(batch.inputs.get(port, 1.0), count)
         yield Region(f"{name}_zero"), np.asarray((index == 0.0).any(axis=1))
     if "cuticle_angle" in batch.inputs:
         yield Region("cuticle_tilted"), _rows(batch.inputs["cuticle_angle"], count)[:, 0] != 0.5
-    # By colors and normals.
+    # Colors and normals.
     yield Region("color_white"), (color == 1.0).all(axis=1)
     yield Region("color_black"), (color == 0.0).all(axis=1)
     yield Region("color_gray"), (color == color[:, :1]).all(axis=1)
@@ -237,13 +237,13 @@ def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     yield Region("normal_away"), away
 
 
-HALF = 0.5  # cosine that divides views and lights
+HALF = 0.5  # cosine that splits views and lights into two regions
 
 
 def errors(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[tuple[Errors, ...], str]:
     """Errors of all samples, then below and above the median of each input; and a checksum of the samples.
 
-    Of a color and of two alphas, the larger component counts.
+    For colors and two alphas, the larger component is used.
     """
     batches = [each.batch for each in cases]
     rows = np.concatenate([tolerance.metric(*each[1:]) for each in cases])
@@ -271,7 +271,7 @@ def errors(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[tuple[Error
 
 
 def _rows(values: ArrayLike, count: int) -> Array:
-    """Values of an input with a row for each pair: of numbers or colors, or one for all pairs."""
+    """Values of an input, numbers or colors, with a row for each pair."""
     array = np.asarray(values, np.float64)
     if array.shape[:1] == (count,):
         return array.reshape(count, -1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A conformance run: tasks are planned, worked on in processes, and kept in a journal."""
+"""A conformance run: tasks are planned, executed in processes, and recorded in a journal."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from mxeon.shaders.methods import UNCHOSEN, Methods
 
 __all__ = ["check", "read_run", "to_run", "work"]
 
-EVALUATING = tuple(row.name for row in HOSTS if row.way == "pairs")  # texts of any library
+EVALUATING = tuple(row.name for row in HOSTS if row.way == "pairs")  # hosts for any library
 
 Outcomes = Iterable[tuple[int, Findings]]
 Executor = Callable[[Sequence[Task]], Iterable[tuple[int, pool.Outcome]]]
@@ -58,38 +58,38 @@ def check(
     seed: int = 1,
     methods: Methods | None = None,
 ) -> Run:
-    """Run every check on every host, and compare pictures of documents with the reference's.
+    """Run every check on every host, and compare pictures of documents with the reference.
 
     Parameters of type `Names` take one name or path, or several.
 
-    - `files`: MaterialX documents, and folders for all documents below them; None for the library's common
+    - `files`: MaterialX documents, and folders with documents; None for the library's common
       nodes and the bundled examples.
     - `hosts`: Hosts to judge, or "all"; `mxeon.hosts.host_names` lists them.
-    - `libraries`: "eonlib", "stock" for MaterialX as it comes, and folders of MaterialX documents.
-    - `workers`: Processes that share the work, each of which may crash or hang; 0 to work in this
+    - `libraries`: "eonlib", "stock" for unmodified MaterialX, and folders of MaterialX documents.
+    - `workers`: Number of worker processes, which may crash or hang; 0 to work in this
       one.
-    - `timeout`: Seconds that one task may take in a worker.
-    - `folder`: Folder of the journal, from which an interrupted run can be resumed; None to keep
-      none. It must hold no file that the run reads, and no other interrupted run. Results of an
+    - `timeout`: Seconds per task in a worker.
+    - `folder`: Folder of the journal, from which an interrupted run can be resumed; None for
+      no journal. It must not contain files that the run reads, nor another interrupted run. Results of an
       earlier run move to its subfolder `previous_run`.
     - `resume`: Continue the run in `folder`.
     - `scheduler`, `wait`: Address of a Dask scheduler whose workers do the work, and seconds to
-      wait for one that fits.
+      wait for a compatible one.
     - `policy`: Permissions and limits of documents; None for `Policy()`.
-    - `nodes`: Categories of nodes to judge; "all", or "common" for those of an audit. None for the
-      nodes of `files`, or the common ones without files.
+    - `nodes`: Categories of nodes to judge; "all", or "common" for the nodes of an audit. None for
+      the nodes of `files`, or the common ones without files.
     - `progress`: Called as `progress(tasks, total)`; returns the tasks as an iterator that shows its
       progress, such as `lambda tasks, total: tqdm(tasks, total=total)`.
     - `refuse`: Called with each fault of each document that cannot be read, before any other work.
-    - `compared`: Further libraries, judged for comparison: what fails with them does not change the
-      verdict. `compared="stock"` does what the command does with documents.
+    - `compared`: Additional libraries for comparison: their failures do not change the
+      verdict. `compared="stock"` is what the command does with documents.
     - `seed`: Seed of the samples, at least 0; verdicts should not depend on it.
-    - `methods`: How generated shaders find light; None for each host's own methods.
+    - `methods`: How generated shaders compute lighting; None for each host's own methods.
 
-    A document that cannot be judged is among those refused; the others are judged. The run has then not
+    Documents that cannot be judged are refused, and the rest is judged. The run has then not
     passed: see `mxeon.Run`.
 
-    Raises ValueError if a name or number is wrong, the run to resume is another one, or no
+    Raises ValueError if a name or number is wrong, the run to resume differs, or no
     scheduler answers; NotRun if no process can start, or the cluster has no workers for too long.
     """
     begin = time.monotonic()
@@ -114,7 +114,7 @@ def check(
             for target in {host_row(host).target for host in engines} & {*TARGETS}:
                 try:
                     check_generator(library, target)
-                except InterfaceError as reason:  # nothing would run
+                except InterfaceError as reason:  # no task would run
                     raise InputError(str(reason)) from None
         if workers < 0:
             raise InputError(f"workers must be at least 0; got {workers}")
@@ -145,7 +145,7 @@ def check(
             done: dict[int, Findings] = journal.findings if journal else {}
             numbers = [n for n in range(len(planned.tasks)) if n not in done]
             waiting = [planned.tasks[number] for number in numbers]
-            # A farm's machines may differ from each other.
+            # The machines of a farm may differ.
             earlier = [] if scheduler else [host for part in done.values() for host in part.hosts]
             identities = {host.name: host for host in earlier}
             found = (
@@ -168,7 +168,7 @@ def check(
                     ]:
                         raise InputError(refusal(folder, differences))
                     if journal:
-                        journal.add(numbers[position], findings)  # with its pictures on disk
+                        journal.add(numbers[position], findings)  # writes its pictures to disk
                     else:
                         done[numbers[position]] = findings
             return replace(to_run(planned, done), seconds=round(time.monotonic() - begin, 3))
@@ -185,12 +185,12 @@ def _inputs(files: Sequence[AnyPath], libraries: Iterable[str], policy: Policy) 
 
 
 def read_run(folder: AnyPath) -> Run:
-    """The run in a folder, as far as it is done; ValueError if it holds no journal of this version."""
+    """The completed part of the run in a folder; ValueError without a journal of this version."""
     return to_run(*read_journal(folder))
 
 
 def work(policy: Policy, rows: Sequence[Row], task: Task) -> Findings:
-    """Findings of a task; runs in workers, to which it brings the rows of renderers.
+    """Findings of a task; runs in workers, and registers the rows of renderers there.
 
     Raise NotRun if the host cannot be opened here.
     """
@@ -199,7 +199,7 @@ def work(policy: Policy, rows: Sequence[Row], task: Task) -> Findings:
 
 
 def work_or_not_run(policy: Policy, rows: Sequence[Row], task: Task) -> Findings:
-    """The same; "not run" where the host cannot be opened here."""
+    """`work`, with "not run" if the host cannot be opened here."""
     register(*rows)
     return _or_not_run(_judge(policy), task)
 
@@ -217,7 +217,7 @@ def _judge(policy: Policy) -> Judge:
 
 
 def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
-    """A run from its plan and the findings of the tasks that are done, by their numbers."""
+    """A run from its plan and the findings of the completed tasks, by number."""
     done = [findings[number] for number in sorted(findings)]
     results = tuple(result for part in done for result in part.results)
     notes = tuple(note for part in done for note in part.notes)
@@ -226,7 +226,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         if lines := findings[number].errors:
             file = planned.tasks[number].subject
             refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
-    # A document that only a compared library cannot read.
+    # Documents that only a compared library cannot read.
     for document, library in product(planned.contents, planned.compared):
         lines = refused.pop(f"{document} with {library}", ())
         notes += tuple((line, document) for line in lines)
@@ -234,7 +234,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     version = planned.software.get("MaterialX")
     if version and (warning := untested(version)):
         notes += ((warning, "every result"),)
-    places: dict[str, list[str]] = {}  # of each note
+    places: dict[str, list[str]] = {}  # note -> its places
     for text, place in dict.fromkeys(notes):
         places.setdefault(text, []).append(place)
     hosts = tuple(dict.fromkeys(host for part in done for host in part.hosts))
@@ -261,7 +261,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
 
 
 def texts_not_run(hosts: Container[str]) -> Iterator[tuple[str, str]]:
-    """The languages of a library's texts that none of these hosts compiles, each with the reason."""
+    """The languages of a library's texts that none of these hosts compiles, with the reasons."""
     targets = {row.target for row in HOSTS if row.name in hosts}
     for row in HOSTS:
         if row.target and row.target not in targets:
@@ -286,9 +286,9 @@ def _executor(
 
 
 def _subject(task: Task) -> tuple[str, str, str]:
-    """What the checks of a subject have in common: its shader, its samples and its diagnosis.
+    """The part of a task that checks share: its shader, samples and diagnosis.
 
-    What is expected is the same with every library, but a host that reads them itself opens one at a time.
+    Expected values are the same with every library, but a host that reads libraries itself opens one at a time.
     """
     return task.host, "" if task.host in EVALUATING else task.library, task.subject
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The journal of a run: the findings of each task, on disk as soon as it ends.
+"""The journal of a run: the findings of each task, written to disk as soon as it ends.
 
 `journal/items.jsonl` in the folder of a run is JSON Lines. The first line is the plan of the run, with its
-version, options and the hashes of its files: --resume needs the same. Each further line is the findings of a
-task; a last line that the end of a run tore is dropped. Pictures are NumPy files, named by their SHA-256.
+version, options and the hashes of its files: --resume requires the same. Each following line has the findings
+of a task; an incomplete last line is dropped. Pictures are NumPy files, named by their SHA-256.
 """
 
 import hashlib
@@ -36,11 +36,11 @@ TASK = re.compile(rb'\{"task": (\d+),.*\n')
 
 
 class Journal:
-    """The folder of a run: locked while it is entered, without the results of an earlier run.
+    """The folder of a run, locked while entered, without the results of an earlier run.
 
     Entering moves an earlier run's journal, results and page to the folder PREVIOUS; with `resume`, the
     journal stays. It raises InputError if another process writes here, or, without `resume`, if the
-    earlier run was interrupted. A folder that does not exist yet is made by `begin`.
+    earlier run was interrupted. `begin` creates the folder if it does not exist.
     """
 
     def __init__(self, folder: str | os.PathLike[str], resume: bool = False) -> None:
@@ -49,7 +49,7 @@ class Journal:
         self._exit = ExitStack()
         self._converter = make_converter(self._path.parent)
         self._held = False
-        self.findings: dict[int, Findings] = {}  # by the number of the task in the plan
+        self.findings: dict[int, Findings] = {}  # keys: task numbers in the plan
 
     def __enter__(self) -> Self:
         if os.path.lexists(self._folder):
@@ -79,7 +79,7 @@ class Journal:
         self._held = True
 
     def _clear(self) -> None:
-        """Move the results of an earlier run away; of a run to resume, `report make` makes them again."""
+        """Move an earlier run's results away; for a run to resume, `report make` recreates them."""
         there = [name for name in (RESULTS, JUNIT, PAGE) if (self._folder / name).is_file()]
         if self._path.exists() and self._resume:
             for name in there:
@@ -97,9 +97,9 @@ class Journal:
                 os.replace(self._folder / name, previous / name)
 
     def begin(self, plan: Plan) -> None:
-        """Write the plan of the run, or read what is done of the run to resume.
+        """Write the plan of the run, or read the completed part of the run to resume.
 
-        Raises InputError if that is another run; OSError if nothing can be written.
+        Raises InputError if that run differs; OSError if nothing can be written.
         """
         with self._exit as stack:
             if not self._held:
@@ -120,9 +120,9 @@ class Journal:
             self._exit = stack.pop_all()
 
     def add(self, number: int, findings: Findings) -> None:
-        """Keep the findings of a task: on disk when this returns, the pictures first.
+        """Record the findings of a task: pictures first, all on disk when this returns.
 
-        Raises OSError if there is no room; the journal is then as it was before.
+        Raises OSError if the disk is full; the journal is then unchanged.
         """
 
         def stored(picture: Picture) -> Picture:
@@ -134,7 +134,7 @@ class Journal:
                 path = below(self._path.parent, f"{digest}.npy")
                 with replacing(path) as beside:
                     beside.write_bytes(stream.getbuffer())
-                own[name] = StoredImage(path)  # read anew by each use
+                own[name] = StoredImage(path)  # read again by each use
             return replace(picture, **own)
 
         findings = replace(findings, pictures=tuple(map(stored, findings.pictures)))
@@ -153,25 +153,25 @@ class Journal:
 
 
 def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findings]]:
-    """The plan of the run in a folder, and the findings of the tasks that are done.
+    """The plan of the run in a folder, and the findings of the completed tasks.
 
-    A task whose pictures are not as they were written is not done. Raises InputError if there is no
-    journal, or one with other lines than mxeon of this version writes.
+    A task with modified or missing pictures is not complete. Raises InputError if there is no
+    journal, or if another version of mxeon wrote it.
     """
     return _read(Path(folder))[:2]
 
 
 def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -> str:
-    """The reason for not resuming the run in a folder: one line that lists what differs."""
+    """The reason for not resuming the run in a folder, a line that lists the differences."""
     return (
         f"{folder}: holds another run ({listed(differences)}); use a new folder, or omit --resume"
     )
 
 
 def _left(path: Path) -> str:
-    """How many tasks an interrupted run has left, in words; "" for a complete one, or none.
+    """The number of remaining tasks of an interrupted run, in words; "" for a complete run or none.
 
-    Journals of other versions count too, so this reads no more than the numbers of tasks.
+    Journals of other versions count too, so this only reads the numbers of tasks.
     """
     try:
         with open(path, "rb", opener=regular) as file:
@@ -183,14 +183,14 @@ def _left(path: Path) -> str:
 
 
 def _read(folder: Path) -> tuple[Plan, dict[int, Findings], int]:
-    """Plan and findings of a journal, and the bytes of its whole lines."""
+    """Plan and findings of a journal, and the size of its complete lines in bytes."""
     path, converter = folder / JOURNAL, make_converter((folder / JOURNAL).parent)
     try:
         with open(path, "rb", opener=regular) as file:
             lines = list(file)
     except FileNotFoundError:
         raise InputError(f"{folder}: must hold the {JOURNAL} of a run; there is none") from None
-    whole = [line for line in lines if line.endswith(b"\n")]  # the last one may be torn
+    whole = [line for line in lines if line.endswith(b"\n")]  # the last one may be incomplete
     findings: dict[int, Findings] = {}
     place = "its first line"
     try:
@@ -221,7 +221,7 @@ def _line(record: dict[str, object]) -> bytes:
 
 
 def _differences(before: Plan, after: Plan) -> tuple[str, ...]:
-    """The differences of two plans: values before and now, and names of files."""
+    """The differences between two plans: old and new values, and names of files."""
     old, new = (
         {"mxeon": plan.version}
         | plan.software

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The judge: works on tasks, one after the other, and keeps the hosts it opens."""
+"""The judge: executes tasks in sequence and keeps its hosts open."""
 
 import os
 import time
@@ -65,7 +65,7 @@ CLAIMS = {
 def one_result(
     task: Task, verdict: Verdict, reason: str = "", diagnosis: Diagnosis = NO_DIAGNOSIS
 ) -> Findings:
-    """Findings of a task that measured nothing, by the reason or the diagnosis."""
+    """Findings of a task without a measurement, from the reason or the diagnosis."""
     if not (claim := CLAIMS.get(task.check)):
         own_nodes(task.host)  # adds the checks of a renderer
         claim = next(each.claim for each in CHECKS if each.key == task.check)
@@ -74,16 +74,16 @@ def one_result(
 
 
 class Judge:
-    """Works on tasks, one after the other, and keeps the hosts it opens."""
+    """Executes tasks in sequence and keeps its hosts open."""
 
     def __init__(self, policy: Policy, opened: Callable[[str], Engine] = open_engine) -> None:
         self._policy, self._opened = policy, opened
-        self._hosts: dict[str, Engine | NotRun] = {}  # or the reason why there is none
+        self._hosts: dict[str, Engine | NotRun] = {}  # hosts, or why they cannot run
         self._reference = Reference()
-        self._case = lru_cache(maxsize=1)(_case)  # its pairs take some memory
+        self._case = lru_cache(maxsize=1)(_case)  # pairs take much memory
 
     def work(self, task: Task) -> Findings:
-        """Findings of a task; a document that cannot be read is among its errors.
+        """Findings of a task; errors include documents that cannot be read.
 
         Raise NotRun if the host cannot be opened here.
         """
@@ -97,7 +97,7 @@ class Judge:
             return replace(findings, results=tuple(results))
         except InterfaceError as reason:
             return one_result(task, NOT_RUN, reason=str(reason))
-        except DocumentError as reason:  # a document of ours
+        except DocumentError as reason:  # one of mxeon's own documents
             refused = Cause(Kind.DEFECT, "own_document_refused", text=str(reason))
             return one_result(task, FAILED, diagnosis=Diagnosis((refused,)))
 
@@ -107,7 +107,7 @@ class Judge:
                 host.close()
 
     def _host(self, name: str) -> Engine:
-        """The host of that name, opened once."""
+        """The host of this name, opened once."""
         if name not in self._hosts:
             try:
                 self._hosts[name] = self._opened(name)
@@ -154,7 +154,7 @@ class Judge:
         surface = isinstance(case.spec, SurfaceShaderSpec)
         known = not surface and with_pages(result, _copy(task)).pages
         if result.verdict == FAILED and not known and isinstance(case.backend, Evaluating):
-            # Checks of a lobe set all of its inputs but the surface's own vectors.
+            # Checks of a lobe set all inputs except the surface's own vectors.
             keys = ("value", "defaultgeomprop")[not surface :]
             if causes := redefined(case.evaluating.shader.document, task.library, keys):
                 told = (each for each in result.diagnosis.causes if each.kind is not Kind.UNKNOWN)
@@ -163,12 +163,12 @@ class Judge:
         results = (result,)
         pictures: tuple[Picture, ...] = ()
         if task.check in DIRECT:
-            with suppress(NotRun, ShaderError):  # the check's result says so
+            with suppress(NotRun, ShaderError):  # the check itself reports these
                 pictures = comparison_pictures(case)
         return Findings(results, pictures)
 
     def _document(self, task: Task, host: Host | None = None) -> Findings:
-        """Findings of a document: its pictures on a host, or that its shaders are generated."""
+        """Findings of a document: its pictures on a host, or the generation of its shaders."""
         path = Path(task.subject)
         pictures: tuple[Picture, ...] = ()
         try:
@@ -187,12 +187,12 @@ class Judge:
 
 
 def _copy(task: Task) -> str:
-    """The folder whose `libraries` take the place of MaterialX's, if the library of a task has one."""
+    """The folder whose `libraries` replace MaterialX's for a task's library, or ""."""
     return root(task.library) if os.path.isabs(task.library) else ""
 
 
 def _case(host: Engine, title: str, library: str, seed: int, methods: Methods) -> Case:
     spec = next(each for each in own_nodes(host.name) or ALL if each.title == title)
     backend = backend_of(host.name, spec)
-    assert backend is not None  # or there were no task
+    assert backend is not None  # otherwise the task would not exist
     return make_case(backend, host, spec, library)
