@@ -46,6 +46,9 @@ def test_the_demo_says_first_what_it_installs_and_installs_that_alone(run):
     assert said.startswith("demo: install 260 MB of packages (half a minute), check eonlib on gl ")
     assert installed.startswith("pip install ") and installed.endswith(" --editable .[report]")
     assert checked == DEMO
+    failure, repaired, *hints = hints
+    assert "stock MaterialX, and repaired by eonlib" in failure
+    assert repaired == "mxeon check examples/plaster.mtlx --report out/demo/plaster"
     assert hints[0].endswith(" type: . .venv/bin/activate") and len(hints) == 4
     assert all(": mxeon " in hint for hint in hints[1:])
     said, checked, *_ = run("demo")

@@ -95,7 +95,10 @@ NODES = {
         IMAGE.format("/") + connected(color='nodename="image"'),
         'input "image/file" must name a file in ',
     ),
-    "unconnected node": (connected(color='nodename="none"'), "Invalid port connection: <input"),
+    "unconnected node": (
+        connected(color='nodename="none"'),
+        "input \"lobe/color\" is connected to 'none', which does not exist",
+    ),
     "another type": (
         '<constant name="a" type="float"/>' + connected(color='nodename="a"'),
         'Mismatched types in port connection: <input name="color"',

@@ -253,7 +253,7 @@ def _value_fault(element: mx.ValueElement, policy: Policy) -> str:
 
 
 def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
-    """Unknown inputs of a node and inputs of a wrong type, with their faults."""
+    """Inputs of a node that are unknown, of a wrong type, or connected to nothing, with their faults."""
     if not (definition := node.getNodeDef("", True)):  # nearest one; its inputs may differ
         return
     ports = {each.getName(): each.getType() for each in definition.getActiveInputs()}
@@ -262,8 +262,12 @@ def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
         rule = f"must be an input of {own}; got {name!r}{meant(name, ports)}"
         if name in ports:
             rule = f"must have the type {ports[name]} of {own}; got {kind}"
+        source = each.getNodeName()
         if kind != ports.get(name):
             yield each, f"{location(each)} {rule}"
+        elif source and not (each.getConnectedNode() or node.getDocument().getNodeGraph(source)):
+            near = meant(source, [other.getName() for other in node.getParent().getNodes()])
+            yield each, f"{location(each)} is connected to {source!r}, which does not exist{near}"
 
 
 def _undefined(document: mx.Document, nodes: Iterable[mx.Node]) -> Iterator[str]:
