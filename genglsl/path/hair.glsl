@@ -45,7 +45,14 @@ PathHair path_hair(vec3 wo, vec3 tint_R, vec3 tint_TT, vec3 tint_TRT, float ior,
     return hair;
 }
 
-// Density of wi by all lobes. A light beyond the end of the fiber is the same light at the other azimuth.
+vec2 path_hair_untilted(vec2 tilted, vec2 tilt)
+{
+    return chiang_hair_product(tilted, tilt * vec2(1.0, -1.0));
+}
+
+// Density of wi by all lobes. The model folds tilted directions at the end of the fiber, so that up to two directions of
+// light have the same tilted one; a draw chooses between them in proportion to their cosines. If there are none, it
+// passes the end of the fiber, to the opposite azimuth.
 float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
 {
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
@@ -59,7 +66,9 @@ float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
             vec2 from_exit = chiang_hair_product(side / c * wi.zy * vec2(1.0, -1.0), hair.exit[p]);
             float N = p < 3 ? chiang_hair_around(from_exit, hair.roughness[p].y) : 0.5 * M_PI_INV;
             float M = chiang_hair_along(tilted, inclined_o, hair.roughness[p].x);
-            sum += hair.weight[p] * M * N * max(tilted.x, 0.0) / c;
+            float other = path_hair_untilted(tilted * vec2(-1.0, 1.0), hair.tilt[p]).x;
+            float passed = other > 0.0 ? 0.0 : max(tilted.x, 0.0) / c;
+            sum += hair.weight[p] * M * N * (side > 0.0 ? abs(tilted.x) / (c + max(other, 0.0)) : passed);
         }
     }
     return sum / dot(hair.weight, vec4(1.0));
@@ -84,7 +93,13 @@ vec3 path_hair_draw(PathHair hair, vec3 wo)
     float z = clamp(1.0 + v * log(u.x + (1.0 - u.x) * exp(-2.0 / v)), -1.0, 1.0);
     float across = sqrt((1.0 - z) * (1.0 + z)) * mx_cos(2.0 * M_PI * u.y);
     float S = clamp(across * length(wo.yz) - z * wo.x, -1.0, 1.0);
-    vec2 inclined = chiang_hair_product(vec2(sqrt((1.0 - S) * (1.0 + S)), S), hair.tilt[p] * vec2(1.0, -1.0));
+    vec2 tilted = vec2(sqrt((1.0 - S) * (1.0 + S)), S);
+    vec2 inclined = path_hair_untilted(tilted, hair.tilt[p]);
+    vec2 folded = path_hair_untilted(tilted * vec2(-1.0, 1.0), hair.tilt[p]);
+    float folds = max(folded.x, 0.0) / (max(inclined.x, 0.0) + max(folded.x, 1e-30));
+    bool folding = path_u.z < folds;
+    inclined = folding ? folded : inclined;
+    path_u.z = folding ? path_u.z / folds : (path_u.z - folds) / (1.0 - folds);
 
     float scale = sqrt(M_PI / 8.0) * hair.roughness[p].y;
     float rest = exp(-M_PI / scale);

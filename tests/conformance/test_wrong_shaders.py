@@ -367,7 +367,7 @@ WRONG = {
     ),
 }  # fmt: skip
 ASKED, PATH = "genglsl/path/interface.glsl", "genglsl/path/microfacets.glsl"
-QUESTIONS = "genglsl/path/lib/questions.glsl"
+QUESTIONS, FIBER = "genglsl/path/lib/questions.glsl", "genglsl/path/hair.glsl"
 RT, GLASS = "dielectric_bsdf, scatter_mode RT", "open_pbr_surface, every lobe"
 STANDARD = "standard_surface, every lobe"
 INSIDE, LOST = ("inside_is_not_outside",), ("light_from_inside",)
@@ -400,6 +400,7 @@ PATHS = (
     ("burley_diffuse_bsdf", QUESTIONS, "closureData.occlusion = 1.0;", "closureData.occlusion = path_inside ? 0.5 : 1.0;",
      "path_value", ("other_path_value",)),
     (RT, PATH, "below && retroreflective", "false", "pdf", ("drawn_density", "outside")),
+    ("chiang_hair_bsdf", FIBER, "abs(tilted.x) / (c", "max(tilted.x, 0.0) / (c", "sample", ("undrawn_light",)),
     ("conductor_bsdf", PATH, "wo.z = lobe.mu_o;", "wo = path_local(closureData.V, lobe.X, lobe.N);\n        OLD", "pdf", ()),
     ("conductor_bsdf", ASKED, "path_wi = ", "if (wi.z > 0.9) wi = p.normal;\n    OLD", "path_value", ("other_path_value",)),
     ("burley_diffuse_bsdf", QUESTIONS, "V = path_wo;", "V = vec3(path_wo.xy, abs(path_wo.z));", "path_value", ()),

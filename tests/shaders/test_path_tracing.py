@@ -164,6 +164,18 @@ def test_a_furnace_by_sampling_is_the_albedo(gl, materials, name):
     assert (error < noise + ALBEDO_ERRORS.get(name, 5e-3)).all()
 
 
+@pytest.mark.parametrize("angle", [0.3, 0.7, 0.95])
+def test_draws_of_hair_find_the_light_that_tilted_cuticles_fold(gl, angle):
+    material = paths(gl, material_text("chiang_hair_bsdf", FIBER | {"cuticle_angle": angle}))
+    wo = np.array([-0.64, 0.1, np.sqrt(1.0 - 0.64**2 - 0.1**2)])
+    w = directions(np.random.default_rng(2), 1 << 18)
+    values, densities = (4.0 * np.pi * material.values(what, wo, w) for what in ("evaluate", "pdf"))
+    weights = material.values("weight", wo, u=uniforms(1 << 16))
+    noise = 5.0 * np.hypot(values.std(axis=0) / 2.0**9, weights.std(axis=0) / 2.0**8)
+    assert (abs(values.mean(axis=0) - weights.mean(axis=0)) < noise).all()
+    assert (abs(densities.mean(axis=0) - 1.0) < 5.0 * densities.std(axis=0) / 2.0**9).all()
+
+
 @every_document
 def test_no_answer_is_nan(materials, name):
     for mu in (1.0, 1e-3, 1e-7):

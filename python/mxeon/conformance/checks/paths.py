@@ -78,6 +78,7 @@ MATERIALS_DRAWN = 6  # materials whose draws are counted, each at a view of its 
 LEAST_LIGHT = (
     1e-5  # value that a draw must find: a sheen's fit of its albedo may be 0 where 3e-6 is left
 )
+LEAST_DRAWN = 1e-5  # density over a value, below which the light is never drawn in practice
 LEAST_COUNTED = 0.2  # least roughness of the lobes whose draws are counted: the cells are coarse
 # An input as a parameter gives it, a float or a vector of three numbers.
 GIVEN = {"boolean": "{} > 0.5", "integer": "int({})", "vector2": "{}.xy"}
@@ -345,7 +346,7 @@ def pdf(case: Case) -> Measurement:
 
 
 def parts(case: Case) -> Iterator[tuple[str, bool, Compared]]:
-    """Weights times densities against values, densities against those of material_pdf, and values where that is 0.
+    """Weights times densities against values, densities against those of material_pdf, and values without one.
 
     The first two are over what each is.
     """
@@ -357,7 +358,7 @@ def parts(case: Case) -> Iterator[tuple[str, bool, Compared]]:
                 ask(what, wo, batch.world(batch.wi), inputs=batch.inputs)
                 for what in ("evaluate", "pdf")
             )
-            missed = value * ((stated <= 0.0) & (value > LEAST_LIGHT))
+            missed = value * ((stated <= LEAST_DRAWN * value) & (value > LEAST_LIGHT))
             yield "undrawn_light", inside, Compared(batch, missed, np.zeros_like(missed))
             wi, weight, density = (
                 ask(what, wo, u=u, inputs=batch.inputs) for what in ("wi", "weight", "density")
