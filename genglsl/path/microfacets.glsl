@@ -6,6 +6,10 @@
 // weighs much more than the lobe's albedo. Transmission: the light that is not reflected passes the visible facets,
 // refracted by the index, each alike as in MaterialX's own transmission of an environment.
 //
+// From inside, a facet may lose its light: it neither reflects into the solid nor refracts out of it. Its partner takes
+// its place, the facet where the spherical cap of visible normals [Dupuy2023] is turned upside down. That map keeps
+// areas and is its own inverse, so a facet whose partner loses its light is drawn exactly twice as often.
+//
 // Into a thinner medium light takes the paths of light that comes from there, reversed. If P is the share that passes
 // from outside and p the density of refracted directions, then n^2 mu_i T(wi, wo) = P(wo) p(wo, wi) mu_o, and p by
 // visible normals turns this into
@@ -66,6 +70,23 @@ bool path_is_denser()
     return path_eta < 1.0 && !path_thin;
 }
 
+// Whether the facet H loses its light.
+bool path_is_lost(MicrofacetLobe lobe, vec3 H)
+{
+    return dot(lobe.N, path_turned(lobe.wo, H)) <= 0.0 && dot(lobe.N, path_refracted(lobe.wo, H, lobe.N)) >= 0.0;
+}
+
+// The partner of path_facet. The height z on the cap goes from -wo.z to 1.
+vec3 path_partner(MicrofacetLobe lobe)
+{
+    vec3 stretch = vec3(lobe.roughness, 1.0);
+    vec3 wo = normalize(microfacet_local(lobe, lobe.wo) * stretch);
+    vec3 cap = path_turned(wo, normalize(microfacet_local(lobe, path_facet) / stretch));
+    float z = 1.0 - wo.z - cap.z;
+    vec2 flat_cap = cap.xy * sqrt(max(1.0 - z * z, 0.0) / max(1.0 - cap.z * cap.z, M_FLOAT_EPS));
+    return path_world(vec3(flat_cap + wo.xy, max(z + wo.z, M_FLOAT_EPS)) * stretch, lobe.X, lobe.N);
+}
+
 // From the denser side a lobe has the averages of the direction outside to which its facet refracts. Values of
 // reflection have none: any tells how a curve differs from that of a dielectric, here the one that a smooth surface
 // refracts to, of a cosine of at least 0.5.
@@ -105,6 +126,10 @@ MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec
         vec3 wo = path_local(lobe.wo, lobe.X, lobe.N);
         wo.z = lobe.mu_o;
         path_facet = path_world(mx_ggx_importance_sample_VNDF(path_u.xy, wo, lobe.roughness), lobe.X, lobe.N);
+        if (path_is_denser() && path_is_lost(lobe, path_facet))
+        {
+            path_facet = path_partner(lobe);
+        }
     }
     lobe.mu_h = clamp(dot(lobe.wo, path_facet), M_FLOAT_EPS, 1.0);
     if (path_is_denser())
@@ -138,11 +163,20 @@ float path_facet_pdf(MicrofacetLobe lobe, bool through)
     return cosine_o > 0.0 && cosine_i > 0.0 ? 2.0 * visible * cosine_o * jacobian : 0.0;
 }
 
+// G_2 / G_1, the share of the light reflected by path_facet that no other facet shadows; 0 below the horizon.
+float path_unshadowed(MicrofacetLobe lobe)
+{
+    vec3 wi = path_turned(lobe.wo, path_facet);
+    float mu_i = max(dot(lobe.N, wi), 0.0);
+    float stretched = microfacet_stretched(lobe, lobe.wo);
+    return mu_i * (lobe.mu_o + stretched) / (stretched * mu_i + microfacet_stretched(lobe, wi) * lobe.mu_o);
+}
+
 // The direction into which the drawn facet reflects or refracts, packed.
 vec2 path_facet_draw(MicrofacetLobe lobe, bool through, bool retroreflective)
 {
     vec3 H = path_facet;
-    vec3 wi = 2.0 * dot(lobe.wo, H) * H - lobe.wo;
+    vec3 wi = path_turned(lobe.wo, H);
     if (through)
     {
         wi = path_thin ? path_mirrored(wi, lobe.N) : path_refracted(lobe.wo, H, lobe.N);
@@ -193,17 +227,18 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     }
     else
     {
-        float reflects = path_mean(F.value * factor * scale);
+        float reflects = path_mean(F.value * factor * scale) * path_unshadowed(lobe);
         float refracts = path_mean(through * scale);
         reflects = refracts > 0.0 ? reflects / (reflects + refracts) : 1.0;
         bool drawn = path_asked == PATH_DRAW;
         below = drawn ? path_u.z >= reflects : below;
         float part = below ? 1.0 - reflects : reflects;
         path_u.z = drawn ? (below ? path_u.z - reflects : path_u.z) / part : path_u.z;
+        float draws = path_is_denser() && path_is_lost(lobe, path_partner(lobe)) ? 2.0 : 1.0;
         bool turned = distance(lobe.wo, closureData.V) > 0.0;
         bsdf.response = path_answer(path_mean((scatter_mode == 0 ? albedo : vec3(1.0)) * scale),
                                     drawn ? path_facet_draw(lobe, below, turned) : PATH_WASTED,
-                                    part * path_facet_pdf(lobe, below));
+                                    part * draws * path_facet_pdf(lobe, below));
     }
 }
 

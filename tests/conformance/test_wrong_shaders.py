@@ -400,6 +400,7 @@ PATHS = (
     ("burley_diffuse_bsdf", QUESTIONS, "closureData.occlusion = 1.0;", "closureData.occlusion = path_inside ? 0.5 : 1.0;",
      "path_value", ("other_path_value",)),
     (RT, PATH, "below && retroreflective", "false", "pdf", ("drawn_density", "outside")),
+    (RT, PATH, "? 2.0 : 1.0;", "? 1.0 : 1.0;", "pdf", ("drawn_density", "inside")),
     ("chiang_hair_bsdf", FIBER, "abs(tilted.x) / (c", "max(tilted.x, 0.0) / (c", "sample", ("undrawn_light",)),
     ("conductor_bsdf", PATH, "wo.z = lobe.mu_o;", "wo = path_local(closureData.V, lobe.X, lobe.N);\n        OLD", "pdf", ()),
     ("conductor_bsdf", ASKED, "path_wi = ", "if (wi.z > 0.9) wi = p.normal;\n    OLD", "path_value", ("other_path_value",)),

@@ -20,6 +20,7 @@ from tests.support.availability import program
 from tests.support.cases import direction
 from tests.support.verdicts import PASSED
 from tests.support.wrong_libraries import copy_of_eonlib
+from tools.benchmarks import glass
 
 DEVIATION = 5.0  # standard deviations, which chance reaches once in 3.5 million tests
 COLOR = {"color": (0.8, 0.4, 0.2)}
@@ -176,15 +177,29 @@ def test_draws_of_hair_find_the_light_that_tilted_cuticles_fold(gl, angle):
     assert (abs(densities.mean(axis=0) - 1.0) < 5.0 * densities.std(axis=0) / 2.0**9).all()
 
 
+# By alpha, variance over the squared mean of walks through a ball of glass, and the largest weight of a draw.
+VARIANCES = {0.1: (0.051, 1.8), 0.4: (0.25, 1.8), 1.0: (0.31, 2.2)}
+
+
+@pytest.mark.parametrize("alpha", VARIANCES)
+def test_walks_through_rough_glass_vary_little(gl, alpha):
+    total, largest = glass.walks(glass.eonlib(alpha), np.random.default_rng(1))
+    variance, weight = VARIANCES[alpha]
+    assert total.var() < 1.05 * variance * total.mean() ** 2
+    assert largest < 1.05 * weight
+
+
+@pytest.mark.parametrize("inside", [False, True])
 @every_document
-def test_no_answer_is_nan(materials, name):
+def test_no_answer_is_nan(materials, name, inside):
     for mu in (1.0, 1e-3, 1e-7):
+        ask = partial(materials(name).values, wo=view(mu), inside=inside)
         for what in ("wi", "weight", "density"):
-            assert np.isfinite(materials(name).values(what, view(mu), u=uniforms(2048))).all()
+            assert np.isfinite(ask(what, u=uniforms(2048))).all()
         w = directions(np.random.default_rng(5), 2048)
         w[:2] = view(mu), -view(mu)
         for what in ("pdf", "evaluate", "emission"):
-            assert np.isfinite(materials(name).values(what, view(mu), w)).all()
+            assert np.isfinite(ask(what, wi=w)).all()
 
 
 def test_no_edge_of_an_input_is_nan(gl):
@@ -248,8 +263,8 @@ def test_the_text_compiles_for_other_targets(tmp_path, target, name):
     assert validated(tmp_path, VERSIONS[target] + shader.stages["pixel"] + MAIN, *options) == ""
 
 
-@pytest.mark.parametrize("host", ["vulkan", "webgl", "slang"])
-def test_other_hosts_draw_by_their_density(judged, host):
+@pytest.mark.parametrize("host", ["gl", "vulkan", "webgl", "slang"])
+def test_hosts_draw_by_their_density(judged, host):
     result = judged("pdf", "dielectric_bsdf, scatter_mode RT", host)
     assert result.verdict == PASSED and result.control.caught
 

@@ -7,7 +7,6 @@ The right weight of a walk is 1. On a sphere, light meets the surface again at t
 is a chain of draws. Radiance lacks the factor of the squared index in both.
 """
 
-import mitsuba as mi
 import numpy as np
 
 from mxeon.conformance.checks.paths import paths
@@ -32,6 +31,9 @@ def eonlib(alpha):
 
 def mitsuba(alpha):
     """The same function by Mitsuba, where the normal leaves the ball."""
+    import mitsuba as mi
+
+    mi.set_variant("llvm_ad_rgb")
     context = mi.BSDFContext(mi.TransportMode.Importance)
     bsdf = mi.load_dict(
         {
@@ -74,7 +76,6 @@ def walks(draw, rng):
 
 def main():
     """Print a table of Markdown: mean, standard deviation, its quotient by the mean, and the largest draw."""
-    mi.set_variant("llvm_ad_rgb")
     print("| alpha | drawn by | mean | deviation | deviation / mean | largest draw |")
     print("|---|---|---|---|---|---|")
     for alpha in ALPHAS:
