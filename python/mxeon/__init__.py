@@ -7,7 +7,7 @@ Importing this loads nothing but the standard library; the names below load what
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:  # for type checkers and the API reference, which run no code
+if TYPE_CHECKING:  # type checkers and the API reference run no code
     from mxeon.conformance.results import Run
     from mxeon.conformance.run import check
     from mxeon.models.catalog import model, model_names

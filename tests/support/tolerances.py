@@ -222,7 +222,7 @@ REVERSED = 5e-5
 MITSUBA_BTDF = 64 * 2.0**-24 / 0.3
 
 # Subsurface scattering, each measured over the whole range of colors.
-SUBSURFACE_PEAK = 1.3e-5  # at the zero of d, just below color 1
+SUBSURFACE_PEAK = 1.3e-5  # measured near the zero of d, just below color 1
 # van de Hulst's fit of a half space, against the H function: 0.00206 at color 0.18.
 SUBSURFACE_FIT = 0.0021
 # The similarity relation adds its own error: walks of 100,000 paths miss by 0.009 at most, at g = -0.5.

@@ -57,7 +57,7 @@ from mxeon.models.microfacet import DIELECTRIC, fresnel, ggx
 from mxeon.models.microfacet.slopes import refracting_nodes
 from mxeon.models.sampling import visible_normal
 
-LEAST_IOR = 1e-50  # below this index all light is reflected; its square is a divisor
+LEAST_IOR = 1e-50  # all light is reflected below this index; its square is a divisor
 
 
 @any_array

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All nodes that are judged, a family a file."""
+"""All judged nodes, one file per family."""
 
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.clients import CLIENT_FRAME
@@ -15,7 +15,7 @@ from mxeon.conformance.specs.surface_shaders import SURFACE_SHADERS
 from mxeon.conformance.specs.utilities import INVERSION_SPECS, UTILITY_SPECS
 
 PLAIN_LOBES = (BURLEY, TRANSLUCENT, CONTY_KULLA, ZELTNER, *FACET_SPECS)
-# Every run judges the common ones; the others only if the user names them.
+# Every run judges the common ones, and the rest only if the user names them.
 COMMON: tuple[Spec, ...] = (*PLAIN_LOBES, *COMBINED_SPECS, *INVERSION_SPECS, CLIENT_FRAME)
 PBRLIB: tuple[Spec, ...] = (
     *COMMON,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A material for a client's frame: a mix of two matte surfaces with opacities, one of them a mix of two lobes."""
+"""A material for clients' frames: a mix of two matte surfaces with opacities, one of them a mix of two lobes."""
 
 from dataclasses import dataclass
 
@@ -19,11 +19,11 @@ from mxeon.shaders.nodes import (
 )
 
 LOBES = {"first": (0.9, 0.3, 0.1), "second": (0.2, 0.5, 0.8), "behind": (0.3, 0.8, 0.4)}
-SHARE = 0.25  # of the first lobe in the mix of both
+SHARE = 0.25  # weight of the first lobe in the mix
 FRONT = SHARE * np.array(LOBES["first"]) + (1.0 - SHARE) * np.array(LOBES["second"])
 BACK = np.array(LOBES["behind"])
-INTENSITY = 1.75  # of an environment
-# Uneven light bends with the cosine of a direction between its texels, and filters have weights of 8 bits.
+INTENSITY = 1.75  # scale of the environment
+# Uneven light is not linear between texels, and filter weights have 8 bits.
 TEXEL = np.pi / SKY_ROWS
 FILTERED = Term(
     INTENSITY * SLOPE * 2.0 * (TEXEL**2 / 8.0 + TEXEL / 512.0),
@@ -34,12 +34,12 @@ FRAME = sum_of(roundings(64, "of directions, distances and powers, four lights i
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FrameSpec(Spec):
-    """The node `surface` with all that a client binds."""
+    """The node `surface` with all client bindings."""
 
     requires = Ability.FRAME
 
     def document(self, inputs: Values | None = None) -> str:
-        """The front surface has the opacity `front/opacity`, and the share `shading/mix` before the other."""
+        """The front surface has the opacity `front/opacity` and the mix weight `shading/mix`."""
         lobes = (
             lobe_text("oren_nayar_diffuse_bsdf", {"color": each}, name)
             for name, each in LOBES.items()

@@ -27,7 +27,7 @@ from mxeon.shaders.nodes import (
 VALUE = sum_of(
     ZELTNER_VALUE.term("two values", 2.0), ZELTNER_THROUGHPUT.term("a throughput between them")
 )
-# Of a sum in a mix over a base too: the slopes of its albedo by the two are at most 1 and 2.
+# Also covers a sum in a mix over a base: its albedo has slopes of at most 1 and 2 by the two.
 ALBEDO = sum_of(
     ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0), quantity=Quantity.ALBEDO
 )
@@ -40,7 +40,7 @@ NESTED_VALUE = sum_of(
 ERRORS = {
     "albedo": ALBEDO,
     "throughput": ALBEDO,
-    # The same products, of a factor that is exact.
+    # The same products, with an exact factor.
     "factor": sum_of(Term(ROUNDING, "one float32 rounding"), exact=True),
     "frame": sum_of(FLAT_FRAME.term("three lobes in another frame", 3.0)),
 }
@@ -54,7 +54,7 @@ SHEEN = Node("sheen_bsdf", "BSDF", text=input_text("mode", "string", "zeltner"))
 LOBES = {"top": SHEEN, "base": SHEEN}
 SUM = {"sum": over("add", "top", "base")}
 WHITE_INPUT = input_text("color", "color3", np.ones(3))
-# Opaque lobes and shares of mixes that are connected, which MaterialX folds into the weights of the lobes.
+# Connected opaque lobes and mix weights, which MaterialX folds into the weights of the lobes.
 MASKED = {
     **dict.fromkeys(("white", "other"), Node("oren_nayar_diffuse_bsdf", "BSDF", text=WHITE_INPUT)),
     **dict.fromkeys(("inner", "outer"), Node("multiply", "float")),
@@ -62,7 +62,7 @@ MASKED = {
     "both": over("mix", "masked", "other")._replace(text=connection_text("mix", "float", "outer")),
     "lobe": over("layer", "both", "base"),
 }
-# By the name of the row: its title, and the nodes over both lobes.
+# Row name -> title, and the nodes that combine both lobes.
 NETWORKS: dict[str, tuple[str, dict[str, Node]]] = {
     "layer": ("layer", {"lobe": over("layer", "top", "base")}),
     "mix": ("mix", {"lobe": over("mix", "top", "base")}),
@@ -82,20 +82,20 @@ NETWORKS: dict[str, tuple[str, dict[str, Node]]] = {
     "layer_masked": ("layer, under connected masks", MASKED),
     "layer_colored": ("layer, under a colored sum", {**SUM, "lobe": over("layer", "sum", "base")}),
 }
-SINGLE = ("multiply_float", "multiply_color3")  # rows of `top` alone
-COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
+SINGLE = ("multiply_float", "multiply_color3")  # rows that only use `top`
+COLORED = ("multiply_color3", "multiply_sum")  # rows with a color as their factor
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CombinedSpec(PbrSpec):
-    """A node of `mxeon.models.nodes.combinations`, whose weights stay 1."""
+    """A node of `mxeon.models.nodes.combinations` with weights 1."""
 
     requires = Ability.LOBE | Ability.COMBINATION
-    # MaterialX scales a lobe by the share of a mix that is connected wherever the lobe is used.
+    # MaterialX scales a lobe by a connected mix weight wherever the lobe is used.
     plain = ("lobes", "inputs from an image")
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs and special ones; those outside are judged with the lobes."""
+        """Random and special pairs; pairs outside the domain are judged with the lobes."""
         rng, count = generator(), counts.pairs
         wo, wi = directions(rng, count), directions(rng, count)
         special = samples.special_directions(rng)
@@ -117,7 +117,7 @@ def _spec(row: PbrNode) -> CombinedSpec:
         color(FACTOR, edges=()) if row.name in COLORED else Input(FACTOR, change=0.3),
     )
     inputs = {each.name: each for each in known}
-    if row.name in SINGLE:  # the functions read the other lobe, too
+    if row.name in SINGLE:  # the functions also read the other lobe
         inputs[ROUGHNESS[1]] = replace(inputs[ROUGHNESS[1]], change=None)
     return CombinedSpec(
         **named_mode(row, NETWORKS[row.name][0]),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rough diffuse nodes, each mode with the model it has to be, and the diffuse lobes of surface shaders."""
+"""The rough diffuse nodes, each mode with its expected model, and the diffuse lobes of surface shaders."""
 
 import math
 from collections.abc import Callable
@@ -19,13 +19,13 @@ from mxeon.models.nodes.node import PbrNode, Variant
 from mxeon.models.table import Model
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, document_text, input_text, node_text
 
-EDGES = (0.0, 1e-6, 1e-3, 1.0)  # of a color channel, and of the roughness in units of the largest
-# Colors and roughnesses of the pictures that stand for a rough diffuse node.
+EDGES = (0.0, 1e-6, 1e-3, 1.0)  # edges of color channels, and of roughness over its maximum
+# Colors and roughnesses of the pictures that represent a rough diffuse node.
 PICTURE_INPUTS: tuple[Values, ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
 )
-COUNTS = Counts(nodes=16)  # which reach 2e-8, the rounding of directions
+COUNTS = Counts(nodes=16)  # error 2e-8, the rounding of directions
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H: tools/fits
 
 VALUE = sum_in(
@@ -33,11 +33,11 @@ VALUE = sum_in(
     roundings(28, "(14, of numbers up to 2)"),
     Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
 )
-# 12 in the longest chain, two in the cosine, and two for the fit of H, which enters times 0.29.
+# 12 in the longest chain, two in the cosine, and two for the fit of H, which has the factor 0.29.
 ENVIRONMENT = sum_in(
     Quantity.ALBEDO, roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
 )
-# In each of two cosines of at least 1/4 five, times 4 by s / t, 3 by a sine, and 2 by s and the cosine.
+# Five in each of two cosines of at least 1/4, times 4 by s / t, 3 by a sine, and 2 by s and the cosine.
 FRAME = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     roundings(2 * 28, "of two values"),
@@ -74,16 +74,16 @@ def inputs_of(*names: str) -> tuple[Input, ...]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DiffuseModelSpec(ScatteringSpec):
-    """What has to be a rough diffuse model: a row of `mxeon.models.table`."""
+    """A node or lobe that must be a rough diffuse model: a row of `mxeon.models.table`."""
 
-    requires = Ability.OWN  # unless it is a node of a library
+    requires = Ability.OWN  # overridden for library nodes
 
     counts: Counts = COUNTS
     flat: bool = True
 
     @property
     def drawn(self) -> tuple[Input, Input]:
-        """Its inputs; no roughness exceeds the model's largest by a rounding."""
+        """Its inputs; roughness is kept from exceeding the model's maximum by a rounding."""
         largest = reference.diffuse_model(self.model).largest
         most = np.float32(largest)
         high = float(most if most <= largest else np.nextafter(most, np.float32(0.0)))
@@ -101,7 +101,7 @@ class DiffuseModelSpec(ScatteringSpec):
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False
     ) -> dict[str, Array]:
-        """The last colors are gray, but on edges."""
+        """The last colors are gray, except on edges."""
         inputs = super().random_inputs(rng, count, edged)
         gray = slice(count if edged else count - count // 16, None)
         inputs["color"][gray] = inputs["color"][gray, :1]
@@ -121,7 +121,7 @@ class DiffuseModelSpec(ScatteringSpec):
 
 
 def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
-    """The row of a node that has to be a model; its variants are all models that it may be instead."""
+    """The row of a node with its expected model; the variants are all models that it may be instead."""
     known = others + reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS
     rows = {each.name: each for each in known}
     own = reference.diffuse_model(model)
@@ -136,7 +136,7 @@ def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
 
 
 def _limited(function: Callable[..., Array], most: float) -> Callable[..., Array]:
-    """A function of directions and inputs where no roughness exceeds the largest."""
+    """A function of directions and inputs with the roughness limited to the maximum."""
     return lambda *given: function(
         *given[:-1], {**given[-1], "roughness": np.minimum(given[-1]["roughness"], most)}
     )
@@ -144,11 +144,11 @@ def _limited(function: Callable[..., Array], most: float) -> Callable[..., Array
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DiffuseSpec(DiffuseModelSpec):
-    """A rough diffuse node with its flag."""
+    """A rough diffuse node and its flag."""
 
     requires = Ability.DIFFUSE
 
-    flag: bool | None  # energy_compensation, or None where the node has no such input
+    flag: bool | None  # energy_compensation, or None if the node has no such input
 
 
 def _diffuse(node: str, flag: bool | None, model: str) -> DiffuseSpec:
@@ -175,24 +175,24 @@ DIFFUSE = (
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceLobe(DiffuseModelSpec):
-    """The diffuse lobe of a surface shader, whose other lobes cannot be switched off.
+    """The diffuse lobe of a surface shader; its other lobes cannot be disabled.
 
-    What lies over the lobe depends on the directions alone, so that values of other colors tell the lobe
-    apart: a black lobe leaves the other lobes, and a white one at roughness 0, which is Lambert in every
-    model, gives how much of the light reaches the lobe and comes back.
+    The lobes above only depend on the directions, so other colors isolate the diffuse lobe:
+    a black lobe leaves the other lobes, and a white one at roughness 0, which is Lambert in every
+    model, gives the share of the light that reaches the lobe and returns.
     """
 
     requires = Ability.BELOW
-    coarse = 4  # the shaders are long
-    rim = LOBE_RIM  # an error in position is divided twice
+    coarse = 4  # the shaders are slow
+    rim = LOBE_RIM  # position errors are divided twice
 
-    color: str  # names of the inputs of the lobe
-    roughness: str = ""  # "" for none
-    set_inputs: tuple[tuple[str, str, str], ...] = ()  # name, type and value of further inputs
+    color: str  # names of the lobe's inputs
+    roughness: str = ""  # "" if there is none
+    set_inputs: tuple[tuple[str, str, str], ...] = ()  # name, type and value of additional inputs
 
     @property
     def ports(self) -> dict[str, str]:
-        """The names of its inputs, by those of a rough diffuse node."""
+        """The names of its inputs, by the names of a rough diffuse node's."""
         return {"color": self.color, "roughness": self.roughness}
 
     def document(self, inputs: Values | None = None) -> str:
@@ -225,8 +225,8 @@ def _lobe(
     )
 
 
-# OpenPBR asks for EON, Standard Surface for Oren-Nayar, USD Preview Surface and glTF for Lambert.
-# The thin-walled lobe is MaterialX's own whatever the library, so it is judged once.
+# OpenPBR specifies EON, Standard Surface Oren-Nayar, USD Preview Surface and glTF Lambert.
+# The thin-walled lobe is MaterialX's own in every library, so it is judged once.
 SURFACE_LOBES = (
     _lobe("open_pbr_surface", "eon", "base_color", "base_diffuse_roughness"),
     _lobe(

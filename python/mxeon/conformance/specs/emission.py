@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The EDF nodes, those that combine EDFs, and surfaces that emit: views from the front and the back; the VDF nodes."""
+"""The EDF nodes, nodes that combine EDFs, emitting surfaces viewed from both sides, and the VDF nodes."""
 
 from dataclasses import dataclass, replace
 
@@ -29,7 +29,7 @@ from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
 
 def title_of(row: Emission | Medium, kind: str) -> str:
-    """A node that combines others has its name in common with those of other types."""
+    """Title of a row; nodes that combine others share their names with nodes of other types."""
     factor = f", in2 {row.name.rpartition('_')[2]}" if row.category == "multiply" else ""
     return f"{row.category}, {kind}{factor}" if "/" in next(iter(row.inputs)) else row.category
 
@@ -43,7 +43,7 @@ def inputs_of(row: Emission | Medium) -> tuple[Input, ...]:
 def chained(
     row: Emission | Medium, kind: str, source: str, name: str, text: str = ""
 ) -> dict[str, Node]:
-    """A node with the nodes that it takes, whose names are in the paths of its inputs."""
+    """A node with its source nodes, whose names are in the paths of its inputs."""
     paths = (each.rpartition("/")[0] for each in row.inputs)
     sources = tuple(dict.fromkeys(path for path in paths if path not in ("", name)))
     return dict.fromkeys(sources, Node(source, kind)) | {
@@ -61,7 +61,7 @@ EXPONENTS = (0.5, 20.0)
 BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
 INNER, OUTER = "inner_angle", "outer_angle"
 LEAST, LARGEST = 1e-3, 16.0  # coefficients, 1/m: of 1e-3 and 1 - 1e-7 of the light
-# In pictures the falloff takes half of the sphere, so that it is not steep.
+# In pictures the falloff covers half of the sphere, so that it is not steep.
 INPUTS = {
     each.name: each
     for each in (
@@ -76,7 +76,7 @@ INPUTS = {
         Input("exponent", "float", *EXPONENTS, change=2.0, materials=(5.0, 2.0), default=5.0),
         Input(INNER, change=20.0, materials=(60.0, 0.0), default=60.0),
         Input(OUTER, change=150.0, materials=(140.0, 150.0), default=90.0),
-        # Of a medium: from one that hardly shows to one that hides nearly all.
+        # Media from barely visible to nearly opaque.
         *(
             Input(name, "vector3", LEAST, LARGEST, change=spec.CHANGED_COLOR, logarithmic=True)
             for name in ("absorption", "scattering", media.FIRST, media.SECOND)
@@ -94,15 +94,15 @@ FACTORS = {
     (media.FACTOR, "color3"): replace(color(media.FACTOR, edges=()), high=3.0),
 }
 
-# Cosine from a hard edge within which the engine's own cosine decides; of narrow cones, half of 1 - cos.
+# Cosine distance from a hard edge in which the engine's own cosine decides; for narrow cones, half of 1 - cos.
 EDGE = 1e-3
 SMALL = Scene("dark", size=8)
 OPACITIES = (0.0, 0.25, 1.0)
 
 
-# Ten of 1 - cos of both angles, of which a view takes 1 - mu in all, and two of differences.
+# Ten for 1 - cos of both angles, which add up to 1 - mu for a view, and two for differences.
 CONE_ROUNDINGS = 12
-# By name of the row.
+# Errors by name of the row.
 ERRORS = {
     "conical": sum_of(
         roundings(2 * CONE_ROUNDINGS, "relative to 1 and the slope, of colors up to 2"),
@@ -131,14 +131,14 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
     """A row of `mxeon.models.nodes.emissions`."""
 
     requires = Ability.EMISSION
-    coarse = 4  # every pixel of one view is alike
+    coarse = 4  # all pixels of a view are equivalent
 
     row: Emission
 
     def document(self, inputs: Values | None = None) -> str:
-        """A material of the node and of those that it takes, with a value of each input."""
+        """A material of the node and its source nodes, with a value for each input."""
         axis = turned = ""
-        if "normal" in (inputs or {}):  # a value without a node is ignored
+        if "normal" in (inputs or {}):  # unconnected normals are ignored
             axis = vector_text("axis", (inputs or {})["normal"])
             turned = connection_text("normal", "vector3", "axis")
         nodes = chained(self.row, "EDF", "uniform_edf", "emission", turned)
@@ -146,7 +146,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
         return document_text(text, "look")
 
     def values(self, function: emissions.Value, batch: Batch) -> Array:
-        """Radiance, (N, 3), of views whose cosines do not exceed 1 by a rounding."""
+        """Radiance, (N, 3), with the cosines of views limited to 1."""
         return function(np.clip(batch.wo, -1.0, 1.0), spec.broadcast_inputs(batch))
 
     @property
@@ -169,12 +169,12 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
 
 
 class ConeSpec(EmissionSpec):
-    """An emission inside a cone, whose axis is an input."""
+    """An emission inside a cone; the cone's axis is an input."""
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Half of the cones have a falloff, of at least LEAST_FALLOFF degrees; a quarter are narrow.
+        """Half of the cones have a falloff of at least LEAST_FALLOFF degrees; a quarter are narrow.
 
-        Of those without one, some have twice the same angle.
+        Some cones without a falloff have two equal angles.
         """
         inputs, turn = super().random_inputs(rng, count), rng.random(count)
         wide = rng.random(count) < 0.5
@@ -185,7 +185,7 @@ class ConeSpec(EmissionSpec):
         return inputs | {INNER: float32(inner), OUTER: float32(outer)}
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Those of any emission; views in falloffs, or a little inside and outside of the cones; and turned axes."""
+        """An emission's batches; views in falloffs, or slightly inside and outside the cones; and turned axes."""
         rng, count = generator(), counts.few
         inputs = self.random_inputs(rng, count)
         angle = np.where(np.arange(count) % 2, inputs[INNER], inputs[OUTER])
@@ -201,7 +201,7 @@ class ConeSpec(EmissionSpec):
         return *super().batches(counts), _away(near), _away(turned)
 
     def alike(self, compared: Compared) -> Compared:
-        """Values over 1 and the largest slope of the falloff in the cosines to which a view may round."""
+        """Scales errors by 1 + the falloff's largest slope among the cosines to which a view may round."""
         batch = compared.batch
         inner, outer = (batch.inputs[name] for name in (INNER, OUTER))
         width = np.where(outer > inner, cone_width(inner, outer), np.inf)
@@ -215,7 +215,7 @@ class ConeSpec(EmissionSpec):
 
 
 def _away(batch: Batch) -> Batch:
-    """Views of a batch that are not at the hard edge of a cone."""
+    """Views of a batch away from hard edges of cones."""
     hard = batch.inputs[OUTER] <= batch.inputs[INNER]
     away = np.abs(np.maximum(batch.wo[:, 2], 0.0) - cone_cosine(batch.inputs[INNER]))
     return batch.where(~hard | (away >= _edge(batch.inputs[INNER])))
@@ -227,17 +227,17 @@ def _edge(angle: Array) -> Array:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AbsentSpec(spec.Spec):
-    """A node that no library of ours has: only its implementation is judged."""
+    """A node that eonlib does not implement: only the existence of an implementation is judged."""
 
     requires = Ability.IMPLEMENTATION
 
-    text: str  # XML of a document's nodes that use it
+    text: str  # XML of document nodes that use it
 
     def document(self, inputs: Values | None = None) -> str:
         return document_text(self.text)
 
 
-# A node that its document defines, without an implementation: a surface that is not lit.
+# A node defined without an implementation: an unlit surface.
 UNIMPLEMENTED = AbsentSpec(
     title="a node without an implementation",
     node="mxeon_absent",
@@ -260,7 +260,7 @@ ABSENT = (
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class EmittingSurface(spec.ValueSpec):
-    """The node `surface` with an emission, in the dark, one picture for each of OPACITIES."""
+    """The node `surface` with an emission, in the dark, with one picture for each of OPACITIES."""
 
     requires = Ability.SURFACE
 
@@ -318,7 +318,7 @@ EMISSION_SPECS = tuple(map(_spec, (*emissions.EMISSIONS, *emissions.COMBINED_EMI
 
 # --- media: the VDF nodes, below a surface that lets light through --------------------------------
 
-# Of the exponential of a rounded sum, of a product and of the quotient of two such values.
+# Roundings of the exponential of a sum, of a product, and of the quotient of two such values.
 TRANSMITTANCE = sum_of(roundings(12), quantity=Quantity.TRANSMITTANCE)
 INTERFACE = lobe_text(
     "dielectric_bsdf",
@@ -344,13 +344,13 @@ class MediumSpec(spec.RowSpec[media.Value]):
         return document_text(INTERFACE + media + layer + SURFACE)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views, none at grazing where refraction may fail instead, and random inputs of the node."""
+        """Random views, except at grazing where refraction may fail, and random inputs."""
         rng, count = generator(), counts.pairs
         wo = samples.turned_directions(rng, count)
         return (Batch(wo, wo * [1.0, 1.0, -1.0], self.random_inputs(rng, count)),)
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Random coefficients, an eighth of them 0, shares and factors."""
+        """Random coefficients, an eighth of them 0, weights and factors."""
         inputs = spec.draw(rng, count, self.inputs)
         for each in self.inputs:
             if each.type == "vector3":
@@ -366,7 +366,7 @@ ENGINE = (
     EngineError("the engine's exp(), twice", exponential_error, 2.0),
     EngineError("the engine's pow(), twice", power_error, 2.0),
 )
-# The text gives the anisotropy of a medium no part in what passes.
+# By the text, a medium's anisotropy does not affect the transmittance.
 ANISOTROPY = Input("anisotropy", low=-0.9, high=0.9, default=0.5)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The hair node: pairs of the whole sphere, pairs in its lobes, and regions where shaders differ from it."""
+"""The hair node: pairs over the whole sphere, pairs in its lobes, and regions where shaders differ."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -18,12 +18,12 @@ from mxeon.models.nodes.lobes import BESSEL, CLAMPED, HAIR_NODE, UNIFORM
 from mxeon.models.nodes.node import Scattering
 
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 9)
-LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # of random pairs
-WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # least ones of values that are integrated
-MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # which the node of artistic roughness reaches
+LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # smallest values of random pairs
+WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # smallest values of integrated lobes
+MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # largest outputs of the node for artistic roughness
 FRONT = np.array([1.0, 0.0, 1.0, 0.5])  # share of R, TT, TRT and TRRT+ from the viewer's side
-STEP = 1e-6  # of an angle, by which slopes are measured
-LEAST = 0.01  # value of which errors count relative, where there is less
+STEP = 1e-6  # change of an angle that measures slopes
+LEAST = 0.01  # errors of smaller values are relative to this
 
 INPUTS = (
     *(color(name, edges=()) for name in TINTS),
@@ -43,18 +43,18 @@ INPUTS = (
     Input("cuticle_angle", change=0.55, often=0.5),
     Input("absorption_coefficient", "vector3", 0.0, 4.0, (0.0,), (0.9, 0.1, 0.6)),
     NORMAL,
-    # The variable of its default is the surface's tangent.
+    # Its default variable is the surface's tangent.
     Input("curve_direction", "vector3", change=(0.6, 0.8, 0.0), variable="tangent"),
 )
 
 REACH = math.sqrt(
     2.0 * math.log(1e5)
 )  # times sqrt(v): from the largest pi f, 1e5, a lobe falls to 1
-ANGLE, CHAIN = 12, 48  # roundings of an angle, and of all that follows
+ANGLE, CHAIN = 12, 48  # roundings of an angle, and of the following operations
 
 
 def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Term, ...]:
-    """Error of pi f of lobes that are no narrower, where an angle has so many roundings.
+    """Error of pi f for lobes at least this wide, with `angle` roundings of an angle.
 
     The logarithm of M changes by at most REACH / sqrt(v) in an angle, and that of N by 1 / s'.
     """
@@ -66,11 +66,11 @@ def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Ter
 
 
 VALUE = sum_of(*lobe_terms(LEAST_VARIANCE, LEAST_SCALE), quantity=Quantity.FULL_SPHERE)
-# Two values, in which five roundings of each product of turned vectors come to those of an angle.
+# Two values; turned vectors add five roundings per product to those of an angle.
 FRAME = sum_of(
     *lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5)), quantity=Quantity.FULL_SPHERE
 )
-# Mean slopes of the logarithms of a Gaussian and of a logistic function.
+# Mean slopes of the logarithms of a Gaussian and of a logistic density.
 MEAN_SLOPE = math.sqrt(2.0 / (math.pi * WIDE_VARIANCE)) + 0.5 / (SCALE * WIDE_SCALE)
 MEAN = sum_of(
     roundings(MEAN_SLOPE * ANGLE, "(12 of an angle, times the mean slope of the logarithm)"),
@@ -85,28 +85,28 @@ REGION = sum_in(
 )
 
 LOBE_TINTS = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
-APART: Values = {**LOBE_TINTS, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in two channels
-STRAIGHT = 0.05  # azimuth, in radian, up to which a view counts as along the normal
-SLANTED = (0.3, 1.2)  # azimuths of other views
+APART: Values = {**LOBE_TINTS, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in separate channels
+STRAIGHT = 0.05  # largest azimuth, in radian, of a view along the normal
+SLANTED = (0.3, 1.2)  # azimuths of all other views
 
 
 @dataclass(frozen=True)
 class Region:
-    """Views and roughnesses of which a check asks."""
+    """Views and roughnesses of a check."""
 
     claim: str
-    azimuths: tuple[float, float] = SLANTED  # of the views from the normal, in radian
+    azimuths: tuple[float, float] = SLANTED  # range of views relative to the normal, in radian
     variances: tuple[float, float] = (0.2, 1.0)
     scales: tuple[float, float] = (0.2, 1.0)
-    tints: Values = field(default_factory=lambda: APART)  # which lobe is in which channel
-    tilt: float = 0.05  # largest distance of `cuticle_angle` from 1/2
-    ior: tuple[float, float] | None = None  # ends of the index; None for those of any pair
-    # Title of the form of the model that shaders have in its place there; "" if there is none.
+    tints: Values = field(default_factory=lambda: APART)  # assign lobes to channels
+    tilt: float = 0.05  # largest deviation of `cuticle_angle` from 1/2
+    ior: tuple[float, float] | None = None  # range of the index; None for the default range
+    # Title of the form that shaders use there instead of the model, or "".
     form: str = ""
 
 
 NARROW = partial(Region, variances=(1e-3, 0.1), scales=(0.9, 1.0), form=BESSEL)
-# By the key of the check.
+# Regions by key of the check.
 REGIONS = {
     "each_lobe": Region(
         "Each lobe matches the equations: R, TT, and TRT with all higher orders.",
@@ -140,7 +140,7 @@ ERRORS = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HairSpec(PbrSpec):
-    """The hair node. Light comes from the whole sphere, and its values take no cosine."""
+    """The hair node. Light comes from the whole sphere, and values include no cosine."""
 
     requires = Ability.LOBE | Ability.HAIR
 
@@ -152,7 +152,7 @@ class HairSpec(PbrSpec):
         return np.asarray(np.pi * function(batch.wo, batch.wi, broadcast_inputs(batch)) * occlusion)
 
     def sky(self, batch: Batch) -> Array:
-        """R and TRT leave on the side where light comes in, TT on the other one, and the rest on both."""
+        """R and TRT leave on the side of the light, TT on the opposite side, and the rest on both."""
         inputs = broadcast_inputs(batch)
         A = chiang_hair_attenuation(batch.wo, inputs["ior"], inputs["absorption_coefficient"])
         shares = A * np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)
@@ -162,7 +162,7 @@ class HairSpec(PbrSpec):
         )
 
     def alike(self, compared: Compared) -> Compared:
-        """Values over themselves, or LEAST, and their slopes in inclination and azimuth of both directions."""
+        """Values over themselves, or over LEAST, plus their slopes in inclination and azimuth of both directions."""
         batch = compared.batch
         total = np.maximum(self.value(batch), LEAST)
         for step in np.eye(4) * STEP:
@@ -176,7 +176,7 @@ class HairSpec(PbrSpec):
         return compared.over(total)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs, as many in the lobes, and special ones, with roughness above 0."""
+        """Random pairs, equally many in the lobes, and special pairs, with roughness above 0."""
         rng, count = generator(), counts.pairs
         wo, inputs = samples.directions(rng, count), self.random_inputs(rng, count)
         free = samples.directions(rng, count) * _sides(rng, count)
@@ -188,11 +188,11 @@ class HairSpec(PbrSpec):
         )
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views of fibers without tilt, whose albedo has a closed form."""
+        """Views of untilted fibers, whose albedo has a closed form."""
         return tuple(batch.altered(cuticle_angle=0.5) for batch in super().views(batches, counts))
 
     def edges(self, counts: Counts) -> Batch:
-        """Exact directions, those along the fiber among them, and inputs on their edges."""
+        """Exact directions, including those along the fiber, and inputs on their edges."""
         rng = generator()
         along = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
         pairs = np.repeat(along, 4, axis=0), np.tile(along, (4, 1))
@@ -204,7 +204,7 @@ class HairSpec(PbrSpec):
         return Batch(wo, wi, self.random_inputs(rng, len(wo), edged=True))
 
     def turned(self, counts: Counts) -> Batch:
-        """Pairs in frames of their own, none with a narrow lobe, whose place would be uncertain."""
+        """Pairs with individual frames, without narrow lobes, whose position would be uncertain."""
         batch = super().turned(counts)
         wide = {
             name: np.maximum(batch.inputs[name], [LEAST_TURNED**2, LEAST_TURNED])
@@ -214,7 +214,7 @@ class HairSpec(PbrSpec):
         return replace(batch.altered(**wide), wi=batch.wi * sides)
 
     def region(self, key: str, count: int) -> Batch:
-        """Pairs in the lobes of a row of REGIONS, with each lobe in a channel of its own."""
+        """Pairs in the lobes of a row of REGIONS, with a channel per lobe."""
         rng, row = generator(), REGIONS[key]
         sine = 0.9 * (2.0 * rng.random(count) - 1.0)
         low, high = row.azimuths
@@ -233,13 +233,13 @@ class HairSpec(PbrSpec):
         return Batch(wo, in_lobes(rng, wo, inputs), {**inputs, **row.tints})
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """Wide lobes without tilt."""
+        """Wide, untilted lobes."""
         least = WIDE_VARIANCE, WIDE_SCALE
         wide = {name: np.maximum(inputs[name], least) for name in ROUGHNESSES}
         return {**inputs, **wide, "cuticle_angle": np.full(len(inputs["ior"]), 0.5)}
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Over all lights.
+        # Integrate over the whole sphere.
         x, w = np.polynomial.legendre.leggauss(count)
         phi = np.pi * (np.arange(2 * count) + 0.5) / count
         sine, angle = (each.ravel() for each in np.meshgrid(x, phi))
@@ -259,16 +259,16 @@ def _turned(direction: Array, inclination: float, azimuth: float) -> Array:
 
 
 def _sides(rng: np.random.Generator, count: int) -> Array:
-    """Factors of directions, (count, 3), by which half change the side of the surface."""
+    """Factors of directions, (count, 3), that flip half of them to the other side of the surface."""
     return np.stack([np.ones(count), np.ones(count), rng.choice([-1.0, 1.0], count)], axis=-1)
 
 
 def in_lobes(rng: np.random.Generator, wo: Array, inputs: dict[str, Array]) -> Array:
-    """Directions of light in one of the lobes R, TT and TRT of each view, float32 numbers, (N, 3)."""
+    """Light directions in one of the lobes R, TT and TRT of each view, float32 values, (N, 3)."""
     count = len(wo)
     lobe, chosen = rng.integers(0, 3, count), np.arange(count)
     v, s = (np.stack([inputs[name] for name in ROUGHNESSES])[lobe, chosen]).T
-    # Draw the longitudinal angle around the one that the cuticle sends it to.
+    # Draw the longitudinal angle around the direction set by the cuticle.
     view, _ = section(wo.T, inputs["ior"])
     tilt = (2.0 - 3.0 * lobe) * np.pi * (inputs["cuticle_angle"] - 0.5)
     theta = -np.arcsin(np.clip(view.sin_o, -1.0, 1.0)) - tilt

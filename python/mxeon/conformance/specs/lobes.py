@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A mode of a BSDF node of `mxeon.models.nodes`, and the terms of errors that such nodes share."""
+"""A mode of a BSDF node of `mxeon.models.nodes`, and error terms that such nodes share."""
 
 from abc import abstractmethod
 from collections.abc import Callable
@@ -19,24 +19,24 @@ from mxeon.models.nodes.node import Inputs, PbrNode, Scattering
 from mxeon.shaders.nodes import material_text
 
 COUNTS = Counts(pairs=1 << 12, few=1 << 10, diagnosed=1 << 11)
-LEAST_VIEW = 0.02  # cosine of the views whose values are integrated
-# Weights and normals are not drawn: samples have weights of their own, and frames.
+LEAST_VIEW = 0.02  # least cosine of views with integrated values
+# Weights and normals are not drawn here: samples have their own weights and frames.
 WEIGHT = Input("weight", change=0.5, materials=(1.0, 0.5))
-# Of lobes that are no microfacets.
+# Roughness of lobes other than microfacets.
 ROUGHNESS = Input(
     "roughness", low=samples.LEAST_SHEEN, edges=(0.01, 0.05, 1.0), change=0.3, materials=(0.8, 0.4)
 )
 COLOR = spec.color("color", (0.2, 0.5, 0.8), (0.8, 0.4, 0.1))
 NORMAL = Input("normal", "vector3", change=(0.0, 0.6, 0.8))
 
-# Five roundings in each of three cosines, over the least of them.
+# Five roundings in each of three cosines, over the smallest of them.
 FLAT_FRAME = sum_of(roundings(15 / TURNED[0], "of three cosines of at least 1/4, five in each"))
 
 
 def lobe_errors(
     value: Tolerance, albedo: Tolerance, throughput: Tolerance, frame: Tolerance, quadrature: float
 ) -> dict[str, Tolerance]:
-    """Errors of a lobe whose integrals are off by the quadrature on the equations."""
+    """Errors of a lobe; `quadrature` is the error of its integrals for the exact equations."""
     integral = sum_in(
         Quantity.ALBEDO,
         value.term("an average of values"),
@@ -54,18 +54,18 @@ def lobe_errors(
     }
 
 
-EXTINCTIONS = (("extinction", 0, 6), ("extinction", 1, 6))  # edges without and with an index
+EXTINCTIONS = (("extinction", 0, 6), ("extinction", 1, 6))  # edges with index 0 and 1
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
-    """A node that scatters light as a row says."""
+    """A node that scatters light as defined by a row."""
 
     row: PbrNode
 
     @property
     def black(self) -> Values:
-        """Inputs with which it scatters nothing; none where it always scatters some light."""
+        """Inputs with which it scatters nothing; empty if it always scatters some light."""
         names = ("color", "tint", "color0", "color90", *TINTS)
         return {name: (0.0, 0.0, 0.0) for name in names if name in self.row.inputs}
 
@@ -76,10 +76,10 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
     def document(self, inputs: Values | None = None) -> str:
         return material_text(self.node, {**self.mode, **(inputs or {})}, self.node, self.types)
 
-    # What it has to be.
+    # Expected values.
 
     def values(self, function: Scattering, batch: Batch) -> Array:
-        """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the other side."""
+        """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the opposite side."""
         side = np.where(batch.wi[:, 2:] < 0.0, -1.0, 1.0) * (-1.0 if self.row.transmits else 1.0)
         wi = batch.wi * np.concatenate([np.ones((len(side), 2)), side], axis=1)
         occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
@@ -93,11 +93,11 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return _albedo(self.row.albedo, batch)
 
     def sky(self, batch: Batch) -> Array:
-        """Mean of the uneven sky that it scatters, (N, 3)."""
+        """Mean of the scattered uneven sky, (N, 3)."""
         return samples.sky(self.side * batch.normal)
 
     def integral(self, batch: Batch) -> Array:
-        """Integral of the values with weight, (N, 3)."""
+        """Integral of the values, weight included, (N, 3)."""
         return _albedo(self.row.integral or self.row.albedo, batch)
 
     @property
@@ -118,17 +118,17 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return spec.draw(rng, count, self.drawn, edged)
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """The inputs of which a quadrature has all light."""
+        """Inputs that a quadrature can integrate accurately."""
         return inputs
 
     def integrated(
         self, counts: Counts, taken: Callable[[dict[str, Array]], dict[str, Array]]
     ) -> tuple[Batch, Array]:
-        """Materials, each lit from the directions of a quadrature, and the weights of their values."""
+        """Materials, each lit from the directions of a quadrature, and the quadrature weights."""
         rng, count = samples.generator(), counts.materials
         mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(count)
         inputs = self.random_inputs(rng, count)
-        if self.row.mirror:  # a rough one: a fit of a compensation makes most light of it
+        if self.row.mirror:  # a rough mirror, where the fit of the compensation matters most
             mu[0] = 0.1
             for name, value in {**self.row.mirror, "roughness": 1.0}.items():
                 inputs[name][0] = value
@@ -150,7 +150,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
 
 
 def named_mode(row: PbrNode, title: str = "") -> spec.Names:
-    """The names of a mode, whose title has the inputs that select it."""
+    """The names of a mode; its title lists the inputs that select it."""
     words = [row.category, *(f"{name} {value}" for name, value in row.fixed.items())]
     return spec.named(row, title or ", ".join(words))
 
@@ -164,11 +164,11 @@ class PbrSpec(ScatteringSpec):
 
     counts: Counts = COUNTS
 
-    least_cosine: float = 0.0  # of a view whose albedo is compared
+    least_cosine: float = 0.0  # least cosine of views with compared albedos
 
     @property
     def bounded(self) -> tuple[Input, ...]:
-        """The inputs that are also measured outside their ranges."""
+        """Inputs that are also measured outside their ranges."""
         return tuple(each for each in self.drawn if each.beyond)
 
     @property
@@ -177,7 +177,7 @@ class PbrSpec(ScatteringSpec):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """A lobe that transmits, taken for one that reflects; and zero."""
+        """A transmitting lobe instead of a reflecting one; and zero."""
         if not self.row.transmits:
             return (ZERO,)
         opaque = replace(self, row=replace(self.row, transmits=False))
@@ -186,7 +186,7 @@ class PbrSpec(ScatteringSpec):
             return self.row.value(wo, wi * [1.0, 1.0, -1.0], inputs)
 
         def reflection(batch: Batch) -> Array:
-            return opaque.values(mirrored, batch.altered(occlusion=1.0))  # light through the base
+            return opaque.values(mirrored, batch.altered(occlusion=1.0))  # light from below
 
         return Candidate("a reflection instead", reflection), ZERO
 
@@ -199,7 +199,7 @@ class PbrSpec(ScatteringSpec):
         )
 
     def edges(self, counts: Counts) -> Batch:
-        """Exact directions, some of light opposite the view; edges of inputs, roughness and index 0 among them."""
+        """Exact directions, some with light opposite the view; input edges, including roughness and index 0."""
         rng = samples.generator()
         wo, wi = samples.special_directions(rng)
         inputs = self.random_inputs(rng, len(wo), edged=True)
@@ -211,7 +211,7 @@ class PbrSpec(ScatteringSpec):
         return Batch(wo, wi, inputs)
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Gauss nodes, moved to the horizon and to the normal, and even azimuths.
+        # Gauss nodes, concentrated at the horizon and the normal, and uniform azimuths.
         x, w = np.polynomial.legendre.leggauss(count)
         t = 0.5 * (x + 1.0)
         mu = t * t * (3.0 - 2.0 * t)  # dense at the horizon and around the normal
@@ -224,11 +224,11 @@ class PbrSpec(ScatteringSpec):
 
 
 def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
-    """A directional albedo with weight, (N, 3)."""
+    """A directional albedo times the weight, (N, 3)."""
     return batch.strength * albedo(batch.wo, spec.broadcast_inputs(batch))
 
 
-# 17 in each factor of Burley's, ten of them in the cosine of the half vector, and seven in the products.
+# 17 in each factor of Burley's model, ten of them in the cosine of the half vector, and seven in the products.
 BURLEY_VALUE = sum_of(
     roundings(2 * 17 + 7, "of the value or 1: 17 in each factor, 7 in the products")
 )

@@ -27,15 +27,15 @@ from mxeon.models.nodes.node import Scattering
 from mxeon.models.sampling import ggx_pdf, ggx_sample
 from mxeon.models.transmission import reversed_transmittance
 
-COUNTS = replace(PbrSpec.counts, diagnosed=1 << 8)  # references take long
-LEAST_ALPHA = 1e-3  # of random pairs
-LEAST_STRETCHED = 0.05  # alpha and cosine of anisotropic albedos: a sum over directions is coarse
-LEAST_INVERTED = 0.1  # index of a dielectric of which the inverse is taken
-LEAST_INDEX = 1.05  # above 1, to which shaders fit their averages: tools/fits/ggx_cosine.py
-COSINE_STEP = 2.0**-18  # difference of the cosines of a half vector with two directions
-RIM_COLOR = 0.05  # least color90 of some channel, or |wo + wi|
-LEAST_TANGENT_ALPHA = 0.05  # of values whose tangent is turned: what rounds is divided by it
-LEAST_TANGENT_COSINE = 0.1  # of the same
+COUNTS = replace(PbrSpec.counts, diagnosed=1 << 8)  # references are slow
+LEAST_ALPHA = 1e-3  # least alpha of random pairs
+LEAST_STRETCHED = 0.05  # least alpha and cosine of anisotropic albedos, whose sums are coarse
+LEAST_INVERTED = 0.1  # least index of a dielectric that is inverted
+LEAST_INDEX = 1.05  # least index above 1 in the shaders' fits of averages: tools/fits/ggx_cosine.py
+COSINE_STEP = 2.0**-18  # difference between the cosines of a half vector with two directions
+RIM_COLOR = 0.05  # least color90 in some channel, or |wo + wi|
+LEAST_TANGENT_ALPHA = 0.05  # least alpha with turned tangents, as roundings are divided by it
+LEAST_TANGENT_COSINE = 0.1  # least cosine with turned tangents
 
 INDEX = Input(
     "ior",
@@ -47,7 +47,7 @@ INDEX = Input(
     beyond=(0.0, 0.2, 1.0015, 1.02, 4.0, 10.0, 100.0),
 )
 FILM: Values = {"thinfilm_thickness": 400.0}
-# A film on nothing, for which MaterialX's average is off by most; its row has no special light in `domain`.
+# A film on nothing has the largest error of MaterialX's average; its row has no special light in `domain`.
 BUBBLE: Values = {
     "weight": 1.0,
     "tint": 1.0,
@@ -132,12 +132,12 @@ INPUTS = {
     ),
 }
 
-# Largest errors of the fits that shaders are held to, each found by its script in tools/fits.
+# Largest errors of the shaders' fits, each found by its script in tools/fits.
 ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
-SMOOTH_ESS_FIT = 5.3e-5  # the same of smooth lobes, from a cosine of 0.05 on
-ESS_VALUE_FIT = 1.14e-3  # of E_ss over itself, times the value or 1: at alpha 0.97 along the normal
+SMOOTH_ESS_FIT = 5.3e-5  # the same for smooth lobes, for cosines from 0.05
+ESS_VALUE_FIT = 1.14e-3  # relative error of E_ss times the value or 1: at alpha 0.97 along the normal
 METAL_FIT = 4.6e-4  # fresnel_average.py: F_ss of a metal
-# ggx_albedo.py: largest (1 - E_ss) / E_ss, times the value of facets that reflect everything or 1.
+# ggx_albedo.py: largest (1 - E_ss) / E_ss, times 1 or the value of perfectly reflecting facets.
 COMPENSATED = 0.6
 LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
 INSIDE_FIT = 2.8e-2  # ggx_inside.py: albedo of a dielectric of index below 1
@@ -147,9 +147,9 @@ LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
 
 
 def sum_over(directions: int) -> Term:
-    """Error of a sum over so many directions of an environment, drawn for a microfacet lobe, over E_ss.
+    """Error of a sum over `directions` directions of an environment, drawn for a microfacet lobe, over E_ss.
 
-    `tools/fits/lattices.py` has it for three sets of points: of MaterialX's own it is half as large.
+    `tools/fits/lattices.py` computes it for three point sets: MaterialX's own has half of this error.
     """
     return Term(3.6 / directions, f"a sum over {directions} directions of an environment")
 
@@ -175,7 +175,7 @@ HALF_DIP = Term((1.0 - samples.LEAST_COLOR82) * DIP_FIT, "half of the fit of the
 
 
 def compensated(average: float, words: str) -> Tolerance:
-    """Of values whose F_ss has an error."""
+    """Tolerance of values if F_ss has an error."""
     fit = Term(ESS_VALUE_FIT, "the fit of E_ss over E_ss")
     return sum_of(fit, Term(COMPENSATED * average, f"{words}, times 0.6"), exact=True)
 
@@ -199,7 +199,7 @@ FRAME = sum_of(
 )
 WEAK = "the fit of a cosine at index 1.03, scaled"
 A_COSINE, THREE_COSINES = "the fit of a cosine, which", "F_ss in three cosines,"
-# Outside the domains of fits: a quantity, an input, its value, and the largest error that was found there.
+# Outside the domains of fits: quantity, input, value, and the largest error found there.
 BEYOND: tuple[tuple[str, str, float, float, str], ...] = (
     ("throughput", "ior", 1.0015, 9.3e-3, WEAK),
     ("throughput", "ior", 1.02, 2.9e-3, WEAK),
@@ -228,9 +228,9 @@ ERRORS = {
         *COMPENSATION, ANISOTROPIC, sum_over(1024), quantity=Quantity.ALBEDO
     ),
     "anisotropic_value": ANISOTROPIC_VALUE,
-    # The half vector of exact directions has no other errors.
+    # Exact directions have an exact half vector.
     "shape": sum_in(Quantity.RELATIVE, roundings(2 * 64, "of two values")),
-    # One function of the same numbers but for signs.
+    # The same function, with numbers that only differ in their signs.
     "retroreflection": BURLEY_VALUE,
     "anisotropy": sum_of(
         roundings(
@@ -241,15 +241,15 @@ ERRORS = {
     "dip": sum_in(Quantity.ALBEDO, HALF_DIP),
     "denser": sum_in(Quantity.ALBEDO, INSIDE, ESS),
 }
-QUADRATURE = 6e-4  # on the equations
+QUADRATURE = 6e-4  # quadrature error for the exact equations
 
 
-# Where MaterialX's fit B is 0, no curve moves its prefiltered sum, and its fit A is this far below 1.
+# At zeros of MaterialX's fit B, curves do not affect its prefiltered sum, and its fit A is this far below 1.
 PREFILTERED = Term(5.06e-2, "MaterialX's fit of prefiltered light")
 
 
 def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
-    # The fit of E_ss takes from a throughput what it adds to values.
+    # The error of the E_ss fit that raises values lowers throughputs.
     light = sum_in(
         Quantity.LIGHT, *throughput.terms[1:], Term(QUADRATURE, "the quadrature on the equations")
     )
@@ -279,7 +279,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FacetSpec(PbrSpec):
-    """A node of microfacets, whose values are large near the mirror direction."""
+    """A microfacet node, with large values near the mirror direction."""
 
     counts: Counts = COUNTS
     least_cosine: float = FIT_COSINE
@@ -288,17 +288,17 @@ class FacetSpec(PbrSpec):
     )
 
     def prefiltered(self, batch: Batch) -> Array:
-        """Albedo in a prefiltered environment, which has MaterialX's fit, (N, 3)."""
+        """Albedo in a prefiltered environment by MaterialX's fit, (N, 3)."""
         return batch.strength * LOBES[self.node].prefiltered(batch.wo, batch.inputs)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Those of any lobe, and lights near the mirror direction; two alphas are another check."""
+        """A lobe's batches, plus lights near the mirror direction; another check covers two alphas."""
         others = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
         return tuple(_with_one_alpha(batch) for batch in (*others, self.mirrored(counts)[0]))
 
     @property
     def value_candidates(self) -> tuple[samples.Candidate, ...]:
-        """Those of the row without masking at the mean alpha, which is its own where both alphas are one."""
+        """The row's candidates without masking at the mean alpha, which is equivalent for equal alphas."""
         return tuple(each for each in self.all_candidates if not each.title.startswith(MEAN_ALPHA))
 
     @property
@@ -306,7 +306,7 @@ class FacetSpec(PbrSpec):
         return super().value_candidates
 
     def anisotropic(self, counts: Counts) -> Batch:
-        """Lights near the mirror direction of materials whose alphas differ, in the domain of the fits."""
+        """Lights near the mirror direction of materials with two alphas, within the domain of the fits."""
         batch = self.mirrored(counts)[0]
         alpha = batch.inputs["roughness"]
         least = alpha.max(axis=1, keepdims=True) / LARGEST_RATIO
@@ -317,7 +317,7 @@ class FacetSpec(PbrSpec):
         return *super().few(batches, counts), batches[-1].first(counts.few)
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views whose smoothest lobes are mirrors, which have an albedo, but no values; no curve falls below 0."""
+        """Views; the smoothest lobes are mirrors, with an albedo but no values; no curve falls below 0."""
         rows = [(batch, simple(batch.inputs)) for batch in super().views(batches, counts)]
         for _, inputs in rows:
             inputs["roughness"][inputs["roughness"] < LEAST_ALPHA] = 0.0
@@ -325,7 +325,7 @@ class FacetSpec(PbrSpec):
         return tuple(batch.where(~falls_below_0(batch)) for batch in changed)
 
     def mirrored(self, counts: Counts) -> tuple[Batch, Batch]:
-        """Two lights near the mirror direction of each view, by normals that the view sees."""
+        """Two lights near the mirror direction of each view, from normals that the view sees."""
         rng, count = generator(), counts.mirrored
         wo, inputs = directions(rng, count), self.random_inputs(rng, count)
         first, second = (
@@ -338,7 +338,7 @@ class FacetSpec(PbrSpec):
         return batches[0].where(known), batches[1].where(known)
 
     def stretched(self, counts: Counts) -> tuple[Batch, Array]:
-        """Views of materials whose roughness has a direction, and their albedos."""
+        """Views of anisotropic materials, and their albedos."""
         rng, count = generator(), counts.materials
         inputs = simple(self.random_inputs(rng, count))
         inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, count)))
@@ -347,17 +347,17 @@ class FacetSpec(PbrSpec):
         return batch, self.integral(batch)
 
     def stretched_sums(self, counts: Counts) -> tuple[Batch, Array]:
-        """The same views with MaterialX's sums over visible normals, whose masking G_2 / G_1 has the mean alpha."""
+        """The same views with MaterialX's sums over visible normals, with masking G_2 / G_1 at the mean alpha."""
         batch, _ = self.stretched(counts)
         albedo = node_albedo(self.node, batch.wo, batch.inputs, summed=True)
         return batch, batch.strength * albedo
 
     def single(self, batch: Batch) -> Array:
-        """Values without compensation, which cancels in ratios for one view."""
+        """Values without compensation, which cancels in ratios for the same view."""
         return self.values(partial(LOBES[self.node].value, terms=Lobe(uncompensated)), batch)
 
     def summed(self, pairs: Batch) -> Array:
-        """`single` as the sum over visible normals weights it, by G_2 / G_1 of the mean alpha."""
+        """`single` with the weights of the sum over visible normals, G_2 / G_1 at the mean alpha."""
         alpha = pairs.inputs["roughness"]
         mean = np.sqrt(alpha.prod(axis=1))
         weight = smith_g2(pairs.wo[:, 2], pairs.wi[:, 2], mean)
@@ -366,9 +366,9 @@ class FacetSpec(PbrSpec):
         return np.asarray(self.single(pairs) * weight[:, np.newaxis])
 
     def turned(self, counts: Counts) -> Batch:
-        """Pairs in frames of their own, none with a sharp lobe, whose place would be uncertain.
+        """Pairs with individual frames, without sharp lobes, whose position would be uncertain.
 
-        Dielectrics are denser than air: at a critical angle their curve has an infinite slope.
+        Dielectrics are denser than air, because curves have an infinite slope at a critical angle.
         """
         batch = super().turned(counts)
         changes = {"roughness": np.maximum(batch.inputs["roughness"], samples.LEAST_TURNED)}
@@ -381,7 +381,7 @@ class FacetSpec(PbrSpec):
         return simple(inputs)
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Gauss nodes of the height of the normals that each view sees, and even azimuths.
+        # Gauss nodes for the height of the normals that each view sees, and uniform azimuths.
         x, w = np.polynomial.legendre.leggauss(count)
         height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(count) + 0.5) / count)
         size = height.size
@@ -397,12 +397,12 @@ class FacetSpec(PbrSpec):
 
 
 def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
-    """Inputs whose albedo is that of the lobe and can be integrated.
+    """Inputs whose albedo is the lobe's own and can be integrated.
 
-    The roughness is the same in both directions. The index of a dielectric is 1, where nothing is
-    reflected, or LEAST_INDEX and more: the fits of shaders begin there (docs/loading.md says how far off
-    they are between), and nodes^2 directions do not resolve a critical angle. Deep dips at 82 degrees,
-    which turn F negative, are left out.
+    The roughness is isotropic. The index of a dielectric is 1, without reflection, or at least
+    LEAST_INDEX: the shaders' fits begin there (docs/loading.md has their error in between), and
+    nodes^2 directions do not resolve a critical angle. Deep dips at 82 degrees, which make F
+    negative, are excluded.
     """
     changed = dict(inputs)
     changed["roughness"] = np.repeat(inputs["roughness"][:, :1], 2, axis=1)
@@ -415,18 +415,18 @@ def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
 
 
 def _with_one_alpha(batch: Batch) -> Batch:
-    """A batch whose lobes are isotropic."""
+    """A batch with isotropic lobes."""
     alpha = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))
     return batch.altered(roughness=np.repeat(alpha[:, :1], 2, axis=1))
 
 
 def _has_curve(batch: Batch) -> samples.Mask:
-    """Pairs for which float32 holds the Fresnel curve.
+    """Pairs whose Fresnel curve is accurate in float32.
 
-    Lengths of directions differ from 1 by a rounding, and the cosines of both with the half vector by that
-    over |wo + wi|: where they are nearly opposite, a right shader's curve may be at either. At grazing only
-    color90 remains, and where that is dark, a curve that rises from 0 has few digits; and shaders take a
-    cosine of GRAZING at least. Where a printed curve is below 0, the text does not say what is reflected.
+    Lengths of directions differ from 1 by a rounding, and the cosines of both with the half vector by the rounding
+    over |wo + wi|: for nearly opposite directions, a correct shader may use either cosine. At grazing only
+    color90 remains, and if it is dark, a curve that rises from 0 has few digits; also, shaders clamp the
+    cosine to GRAZING. If the printed curve is below 0, the text does not define the reflection.
     """
     half = np.linalg.norm(batch.wo + batch.wi, axis=1)
     apart = np.abs((batch.wo**2).sum(axis=1) - (batch.wi**2).sum(axis=1))
@@ -436,12 +436,12 @@ def _has_curve(batch: Batch) -> samples.Mask:
 
 
 def is_below_0(batch: Batch) -> samples.Mask:
-    """Pairs for which a printed curve is below 0 in some channel, which dark colors with a small color82 have."""
+    """Pairs with a printed curve below 0 in some channel, as for dark colors with a small color82."""
     return _below_0(batch, np.minimum(0.5 * np.linalg.norm(batch.wo + batch.wi, axis=1), 1.0))
 
 
 def falls_below_0(batch: Batch) -> samples.Mask:
-    """Materials whose printed curve is below 0 at some cosine."""
+    """Materials with a printed curve that is below 0 at some cosine."""
     cosines = np.linspace(0.0, 1.0, 65)
     found = (_below_0(batch, np.full(len(batch.wo), each)) for each in cosines)
     return np.asarray(np.any([*found], axis=0))
@@ -456,7 +456,7 @@ def _below_0(batch: Batch, cosine: Array) -> samples.Mask:
 
 
 def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
-    """Mirror images of views about normals that they see, (N, 3)."""
+    """Mirror images of views at normals that they see, (N, 3)."""
     return rounded(ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0].T)
 
 
@@ -471,18 +471,18 @@ FACET_SPECS = tuple(
 )
 
 
-# Largest slope of a Fresnel curve in the cosine, 0.05 from a critical angle: at index 1.02, cosine 0.05.
+# Largest slope of a Fresnel curve in the cosine 0.05 away from a critical angle: at index 1.02, cosine 0.05.
 FRESNEL_SLOPE = 7.3
 
 
 def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
     return {
         "methods": passed.plus(PREFILTERED),
-        "value": passed,  # light that passes
+        "value": passed,  # transmitted light
         "light": sum_in(
             Quantity.LIGHT, ENVIRONMENT.term("a reflected albedo"), passed.term("light that passes")
         ),
-        "kept": BURLEY_VALUE,  # one function of the same numbers
+        "kept": BURLEY_VALUE,  # the same function of the same numbers
         "inside": PASSING.plus(sum_over(1024)),
         "rough_refraction": sum_in(Quantity.IRRADIANCE, sum_over(1024), TEXEL),
         "states": sum_of(roundings(32, "of the same parts in two programs")),
@@ -500,7 +500,7 @@ class TransmissionSpec(FacetSpec):
     """A node of `mxeon.models.nodes.microfacets`."""
 
     requires = Ability.LOBE | Ability.TRANSMISSION
-    # In another frame a rounding decides about what total reflection takes from a sum of refractions.
+    # In another frame, roundings decide which refracted samples are totally reflected.
     plain = ("frame", "shape")
 
     @property
@@ -509,11 +509,11 @@ class TransmissionSpec(FacetSpec):
 
     @property
     def reflects(self) -> bool:
-        """Whether it reflects as well."""
+        """Whether it also reflects."""
         return self.row.fixed["scatter_mode"] == "RT"
 
     def reversed(self, mu: Array, alpha: float, index: float, inputs: Mapping[str, Array]) -> Array:
-        """Share of the light from the denser side of that index that passes, a mean over the channels, (N,)."""
+        """Share of the light that passes from the denser side with this index, averaged over the channels, (N,)."""
 
         def reflected(cosines: Array) -> Array:
             views = samples.directions_at(cosines, 0.0)
@@ -527,7 +527,7 @@ class TransmissionSpec(FacetSpec):
 
     @property
     def reflection(self) -> FacetSpec:
-        """The node where it only reflects."""
+        """The same node when it only reflects."""
         row = replace(self.row, fixed={"scatter_mode": "R"})
         inputs, errors = self.inputs, self.errors
         return FacetSpec(
@@ -549,32 +549,32 @@ TRANSMISSION_SPECS = tuple(
 
 # --- thin films -----------------------------------------------------------------------------------
 
-# Largest errors of the shader's thin film, for cosines from 0.1 on and up to 1000 nm: tools/fits/thin_film.py
-# searches for each.
+# Largest errors of the shader's thin film, for cosines from 0.1 and up to 1000 nm, found by
+# tools/fits/thin_film.py.
 FILM_SEEN = (
-    7.82e-2  # mean over the visible facets in three cosines and F_ss in three, times the light lost
+    7.82e-2  # average over visible facets in three cosines and F_ss in three, times the lost light
 )
-FILM_OILED = 6.92e-2  # the same of films of index 1.25 or more
+FILM_OILED = 6.92e-2  # the same for films with index >= 1.25
 FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
 CURVE_ROUNDINGS = (
     10 * 9.5 + 16
-)  # ten in a phase, times the slope of a curve in its logarithm, and 16
+)  # ten in a phase, times the curve's slope in its logarithm, plus 16
 
 FILM_ALBEDO = sum_in(
     Quantity.ALBEDO,
     Term(FILM_OILED, "the mean over visible facets and F_ss, in three cosines each"),
     Term(ESS_FIT, "the fit of E_ss"),
 )
-# A metal of a lower index reflects totally below such a film, in fringes that few cosines do not see.
+# A metal with a lower index reflects totally below such a film, with fringes that three cosines do not resolve.
 FILM_TRAPPED = given(FILM_SEEN - FILM_OILED, Quantity.ALBEDO, "films of a lower index than 1.25")
 
 
 def _mean(value: float, words: str) -> Tolerance:
-    """The largest error of 64 sets of 64 films, by tools/fits/thin_film_sets.py."""
+    """The largest error over 64 sets of 64 films, from tools/fits/thin_film_sets.py."""
     return given(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
 
 
-# Few films come near to it: thin metals at grazing have the first, indices far apart the second.
+# Few films approach it: thin metals at grazing the first, very different indices the second.
 FILM_VALUE = sum_of(
     *compensated(3.61e-2, "F_ss in three cosines").terms, Term(8e-4, "orders that are not summed")
 )
@@ -598,9 +598,9 @@ FILM_ERRORS = {
         quantity=Quantity.REFLECTANCE_RMS,
         metric=tolerance.root_mean_square,
     ),
-    # F_ss under a film that changes nothing, against the fit of it without one.
+    # F_ss under a film without effect, compared with its fit without a film.
     "film_limit": sum_of(Term(4.4e-3 * COMPENSATED, "F_ss in three cosines, times 0.6")),
-    # Of the compensation a mirror has another share than a film.
+    # A mirror's share of the compensation differs from a film's.
     "film_energy": VALUE,
     "retroreflection": BURLEY_VALUE,
     "film_average": _mean(7e-3, "F_ss in three cosines of films of 50 to 1000 nm"),
@@ -614,7 +614,7 @@ FILM_ERRORS = {
 
 
 class Films(NamedTuple):
-    """So many lobes under films, in mirrored lights, with a roughness, a cosine and a thickness in ranges."""
+    """A number of lobes under films, in mirrored lights, with ranges of roughness, cosine and thickness."""
 
     size: int
     alpha: tuple[float, float]
@@ -622,23 +622,23 @@ class Films(NamedTuple):
     thickness: tuple[float, float]  # nm
 
 
-# tools/fits/thin_film_sets.py bounds the mean errors of sets of these sizes.
-# Rough lobes under films of few fringes, where masking takes facets of another curve.
+# tools/fits/thin_film_sets.py measures the mean errors of sets of these sizes.
+# Rough lobes under films with few fringes, where masking selects facets with another curve.
 STEEP = Films(1 << 6, (0.6, 1.0), (0.6, 1.0), (50.0, 100.0))
-FRINGED = STEEP._replace(thickness=(50.0, 1000.0))  # the same under films of up to many fringes
-# Lobes whose visible facets are much alike, so that few cosines stand for them, under few fringes.
+FRINGED = STEEP._replace(thickness=(50.0, 1000.0))  # the same with up to many fringes
+# Lobes with similar visible facets, which few cosines represent, under few fringes.
 GLOSSY = STEEP._replace(alpha=(0.03, 0.1))
-# Lobes of two alphas, whose albedo fits find by isotropic ones.
+# Lobes with two alphas, whose albedos are fitted by isotropic lobes.
 BRUSHED = Films(1 << 5, (0.05, 1.0), (0.1, 1.0), (50.0, 100.0))
-# Smooth lobes, whose film's curve is seen at one cosine, under films whose first orders count.
+# Smooth lobes, which see the film's curve at one cosine, under films with few significant orders.
 SHARP = Films(1 << 6, (1e-3, 1e-3), (0.3, 1.0), (200.0, 1000.0))
-# Smooth lobes at grazing under films so thin that all orders count.
+# Smooth lobes at grazing under thin films with many significant orders.
 ORDERED = Films(1 << 10, (1e-3, 1e-3), (0.1, 0.2), (40.0, 100.0))
-# Each average over a film's curve takes long.
+# Averages over a film's curve are slow.
 FILM_COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)
-LEAST_OIL = 1.2  # index of these films, or there is none to see
-LEAST_FILM = 1.25  # where albedos are compared: below, metals of a lower index reflect totally, in finer fringes
-LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
+LEAST_OIL = 1.2  # least index of films with a visible effect
+LEAST_FILM = 1.25  # least index for albedos: below, metals with a lower index reflect totally, in finer fringes
+LEAST_FACET = 0.1  # least cosine with the half vector: near grazing all orders of a film matter
 THICK = (0.0, 1.0, 100.0, 1e4)  # thicknesses at the edges of the domain
 
 
@@ -659,9 +659,9 @@ class FilmSpec(FacetSpec):
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False
     ) -> dict[str, Array]:
-        """A dielectric below 1 counts as 1, a film in air; on edges, a quarter of the films have its index.
+        """Dielectrics below 1 are raised to 1, a film in air; on edges, a quarter of the films have the dielectric's index.
 
-        From below 1 on, total reflection gives the curve a kink, which no short average sees.
+        Below 1, total reflection gives the curve a kink that short averages do not resolve.
         """
         inputs = super().random_inputs(rng, count, edged)
         if "tint" in inputs:
@@ -672,12 +672,12 @@ class FilmSpec(FacetSpec):
         return inputs
 
     def values(self, function: Scattering, batch: Batch) -> Array:
-        """Values of a function of the row; a film of an index below that of vacuum has index 1."""
+        """Values of the row's function; film indices below 1 are raised to 1."""
         index = np.maximum(batch.inputs["thinfilm_ior"], 1.0)
         return super().values(function, batch.altered(thinfilm_ior=index))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs and special ones whose facets are not at grazing, and mirrored ones."""
+        """Random and special pairs without grazing facets, and mirrored pairs."""
         rng, count = generator(), counts.pairs
         special = _some_special(rng, count)
         random = directions(rng, count), directions(rng, count)
@@ -693,7 +693,7 @@ class FilmSpec(FacetSpec):
         return batch.where(_steep(batch))
 
     def stretched(self, counts: Counts) -> tuple[Batch, Array]:
-        """Lobes of two alphas under films of few fringes, and their albedos."""
+        """Lobes with two alphas under films with few fringes, and their albedos."""
         batch, rng = film_views(self, BRUSHED), generator()
         alpha = rounded(LEAST_STRETCHED ** rng.random((2, BRUSHED.size)))
         batch = batch.altered(roughness=alpha, weight=1.0)
@@ -702,7 +702,7 @@ class FilmSpec(FacetSpec):
     few = ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views of the random pairs, and as many where few facets stand for all the least."""
+        """Views of the random pairs, and as many for which few facets are least representative."""
         batch = batches[0].where(batches[0].wo[:, 2] >= self.least_cosine)
         easy = batch.first(counts.albedos)
         easy = replace(easy, inputs=simple(easy.inputs))
@@ -715,7 +715,7 @@ class FilmSpec(FacetSpec):
         )
 
     def edges(self, counts: Counts) -> Batch:
-        """Pairs and inputs at the edges of the domain, films next to vacuum and vast ones."""
+        """Pairs and inputs at the edges of the domain, with films near vacuum and very large values."""
         rng = generator()
         wo, wi = _some_special(rng, 2 * counts.pairs)
         inputs = self.random_inputs(rng, len(wo), edged=True)
@@ -731,7 +731,7 @@ def _some_special(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
 
 
 def film_views(spec: PbrSpec, films: Films) -> Batch:
-    """Views of films in ranges, and mirrored lights."""
+    """Views of films within ranges, and mirrored lights."""
     rng, (count, *ranges) = generator(), films
     alpha, mu, thickness = (low + (high - low) * rng.random(count) for low, high in ranges)
     wo = samples.directions_at(mu, 2.0 * np.pi * rng.random(count))
@@ -745,14 +745,14 @@ def film_views(spec: PbrSpec, films: Films) -> Batch:
 
 
 def _steep(batch: Batch) -> np.ndarray:
-    """Pairs whose half vector is not at grazing to either."""
+    """Pairs whose half vector is not grazing."""
     half = batch.wo + batch.wi
     length = np.linalg.norm(half, axis=1)
     cosine = np.abs((half * batch.wo).sum(axis=1)) / np.maximum(length, 1e-12)
     return np.asarray(cosine >= LEAST_FACET)
 
 
-# Of the phases of a film, beyond two roundings. The slope of curves of films from 200 nm in cosines and sines is 2.
+# Error of a film's phases beyond two roundings. Curves from 200 nm have slope 2 in cosines and sines.
 WAVE_ERROR = EngineError(
     "the engine's own cosine and sine, times 2",
     WAVE.error(lambda: [samples.float32(np.linspace(0.0, FILM_PHASE, ARGUMENTS))], 2.0),

@@ -23,13 +23,13 @@ INPUTS, ZELTNER_INPUTS = (
     for beyond, least in (((1e-3, 1e-4, 2.0), 1e-4), ((0.0, 1e-3, 2.0), 0.01))
 )
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
-EXPONENT = 1.0 / LEAST_SHEEN  # largest of a sine
+EXPONENT = 1.0 / LEAST_SHEEN  # largest exponent of the sine
 
 ZELTNER_VALUE = sum_of(
     roundings(48, "of the value or 1: an inverse fourth power takes the 8 of a length four times"),
     roundings(10 * 11.6, "in the exponent of the albedo, 11.6 where values are about 1"),
 )
-# The albedo, which an environment returns, and 1 - E, which passes to the base.
+# The albedo in an environment, and 1 - E, the throughput.
 CLOSED = roundings(32, "of the albedo or 1: 20 in an exponent, times 0.6, and 20 beside it")
 ZELTNER_ALBEDO = sum_of(CLOSED, quantity=Quantity.ALBEDO)
 ZELTNER_THROUGHPUT = sum_of(CLOSED, quantity=Quantity.ALBEDO)
@@ -50,7 +50,7 @@ CONTY_KULLA_THROUGHPUT = sum_in(Quantity.ALBEDO, *FIT, exact=True)
 
 
 def power_error(host: Host) -> float:
-    """Error of the sheen by the engine's own power beyond that of a logarithm, relative where the sheen exceeds 1.
+    """Error of the sheen due to the engine's power, beyond a logarithm's error, relative if the sheen exceeds 1.
 
     The sheen, as pi f cos, is at most (2 + n) / 8 times a sine to the power of n, 1 / roughness.
     """
@@ -85,7 +85,7 @@ CONTY_KULLA = lobes.PbrSpec(
             lobes.FLAT_FRAME,
             quadrature=2e-4,
         ),
-        # The half vector has the same digits, and so has its power.
+        # Both orders have identical half vectors and powers.
         "reciprocity": sum_of(roundings(32)),
     },
     outside_errors={

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subsurface scattering: Lambert on a plane, and on a sphere, over which its profile spreads light."""
+"""Subsurface scattering: Lambert on a plane; on a sphere, the profile spreads light."""
 
 from dataclasses import replace
 from functools import lru_cache, partial
@@ -18,18 +18,18 @@ from mxeon.shaders.scene import BACK, SIDE, VIEW, Scene, local_directions, spher
 
 LEAST_COSINE = 1e-6  # M_FLOAT_EPS of MaterialX
 COSINES = np.linspace(-1.0, 1.0, 129)
-SCENES = tuple(replace(scene, size=32) for scene in (SIDE, BACK))  # of a sphere of radius 1
-LEAST_HEIGHT = 0.3  # of its normals; next to the rim a pixel's point is far from the next one's
-MATERIALS: tuple[Values, ...] = (  # from one whose light is everywhere to one like a plane
+SCENES = tuple(replace(scene, size=32) for scene in (SIDE, BACK))  # unit sphere
+LEAST_HEIGHT = 0.3  # least height of normals; neighboring pixels are far apart near the rim
+MATERIALS: tuple[Values, ...] = (  # ranges from light everywhere to nearly planar behavior
     {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": -0.5},
     {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
     *(dict[str, ArrayLike](color=(1, 1, 1), radius=each, anisotropy=0.0) for each in np.eye(3)),
 )
-# What may stand in the place of the radius, and of the far exponential's length, which is 3.
+# Alternatives for the radius, and for the length of the far exponential, which is 3.
 EVEN = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
 FARTHER = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 6.0, 9.0, 12.0)
 
-# Straight towards or away from the light a whole circle comes into light at once: 9.3e-3 at most.
+# Straight towards or away from the light, a whole circle becomes lit at once: 9.3e-3 at most.
 RINGS = given(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
 RINGS_MEAN = given(
     0.003, Quantity.MEAN, "twice the mean over a sphere of the errors of six circles", mean_error
@@ -37,25 +37,25 @@ RINGS_MEAN = given(
 
 
 class SubsurfaceSpec(PbrSpec):
-    """The node on a plane, where its radius and its anisotropy have no effect, and on a sphere."""
+    """The node on a plane, where radius and anisotropy have no effect, and on a sphere."""
 
     requires = Ability.LOBE | Ability.SUBSURFACE
     curved = True
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """Zero, and what MaterialX has in its place."""
+        """Zero, and MaterialX's implementation."""
         return ZERO, Candidate("MaterialX's blur along a circle of radius 100", _blurred)
 
     def spheres(self, counts: Counts) -> tuple[Batch, ...]:
-        """Points of a sphere under each light, for some materials."""
+        """Points of a sphere under each light, for several materials."""
         return tuple(_points(scene, inputs) for scene in SCENES for inputs in MATERIALS)
 
 
 def _blurred(batch: Batch) -> Array:
-    """What MaterialX has on a plane: light below the horizon and in shadow.
+    """MaterialX on a plane: light below the horizon and in shadow.
 
-    It has none where a cosine is rounded above 1, of which the arc cosine is not a number.
+    It is missing where a cosine rounds above 1, since the arc cosine is then not a number.
     """
     mu = batch.wi[:, 2]
     shadow = 1.0 - np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
@@ -75,7 +75,7 @@ SUBSURFACE = SubsurfaceSpec(
 
 
 def spread(batch: Batch, far: float = FAR, **changes: ArrayLike) -> Array:
-    """Light on a unit sphere by the profile of l / (1 - g), (N, 3), of a batch with other inputs."""
+    """Light on a unit sphere by the profile of l / (1 - g), (N, 3), for a batch with changed inputs."""
     inputs = {**batch.inputs, **changes}
     reach = np.array(inputs["radius"]) / (1.0 - inputs["anisotropy"])
     light = [np.interp(batch.wi[:, 2], COSINES, _profile(each, far)) for each in reach.tolist()]
@@ -84,12 +84,12 @@ def spread(batch: Batch, far: float = FAR, **changes: ArrayLike) -> Array:
 
 @lru_cache(maxsize=128)
 def _profile(reach: float, far: float) -> Array:
-    """The blurred cosine at COSINES: between them it is straight within 2e-4."""
-    return blur_to(COSINES, np.array(max(reach, 1e-9)), far)  # of 0 it has the limit alone
+    """The blurred cosine at COSINES; linear in between, within 2e-4."""
+    return blur_to(COSINES, np.array(max(reach, 1e-9)), far)  # reach 0 only has a limit
 
 
 def _around(batch: Batch) -> Array:
-    """Light on a unit sphere as MaterialX blurs it."""
+    """Light on a unit sphere with MaterialX's blur."""
     mu = np.clip(batch.wi[:, 2], -1.0, 1.0)
     radius = np.broadcast_to(batch.inputs["radius"], batch.wi.shape)
     return np.asarray(batch.inputs["color"] * circle_blur(mu, radius, body=1.0))
@@ -133,7 +133,7 @@ ON_SPHERES = (
 
 
 def _points(scene: Scene, inputs: Values) -> Batch:
-    """Points of a sphere away from its rim, those in the shadow among them."""
+    """Points of a sphere away from its rim, including shadowed ones."""
     normal = sphere(scene.size).normal[inner(scene.size)]
     wo, wi = (local_directions(normal, each) for each in (VIEW, scene.light or VIEW))
     return Batch(wo, wi, inputs, scene)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Surface shaders, each with all of its lobes, against the layer equation."""
+"""Surface shaders with all their lobes, compared with the layer equation."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from mxeon.conformance.specs.microfacets import sum_over
 from mxeon.conformance.tolerance import Term, Tolerance, mean_scaled, roundings, sum_in, sum_of
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
-if TYPE_CHECKING:  # which load MaterialX
+if TYPE_CHECKING:  # these imports load MaterialX
     from mxeon.conformance.reference.graph import Graphs
     from mxeon.shaders.generation import Shader
 
-# Inputs by their range, with values of a material in which every lobe takes part; a change is
-# another value than any default.
+# Inputs by range, with values of a material in which all lobes contribute; changed values
+# differ from all defaults.
 RANGES = {
     "color": spec.color("", (0.5, 0.6, 0.7), edges=(1.0,)),
     "share": Input("", edges=(0.0, 1.0), change=0.7, materials=(0.5,)),
@@ -37,32 +37,32 @@ RANGES = {
     "thickness": Input("", high=1000.0, change=700.0, materials=(400.0,)),
     "film": Input("", low=100.0, high=1000.0, change=730.0, materials=(400.0,)),
 }
-# The mean free path below the surface, which shows on a curved one: an evaluation has a plane.
+# Mean free paths below the surface, which only affect curved surfaces: evaluations use a plane.
 FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
 TURNED_FRAME = {"normal": (0.48, 0.36, 0.8), "tangent": (0.6, 0.8, 0.0)}
 
 
 def _ports(**names: str) -> tuple[Input, ...]:
-    """Inputs with the names in each of RANGES."""
+    """Inputs with the given names for each of RANGES."""
     return tuple(
         replace(RANGES[key], name=name) for key, words in names.items() for name in words.split()
     )
 
 
 def _whole(names: str) -> Values:
-    """Inputs of 1, colors among them."""
+    """Inputs with value 1, including colors."""
     return {name: WHITE if "color" in name.lower() else 1.0 for name in names.split()}
 
 
-GRAPHS = 64  # pairs by which a graph is compared with another
-LEAST, LARGEST = 0.05, 2.0  # of their inputs: no transmittance is 0, and no emission hides the rest
-OFTEN, SELDOM = 0.75, 0.5  # shares of them that set an input, and one of `further`
-TIED = 3  # every third of them ties inputs that the graph compares
-SPREAD = 0.3  # alpha of the lobe in which half of the lights lie about the mirror direction
-STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too coarsely for them
-# Largest errors by the fits of all lobes of a material, of 32 sets of the size that a check asks for, with
-# the layer equation in float64: tools/fits/surface_shaders.py. They are a third of the sum of what each lobe's
-# fits change at most, since no material has the worst of all. The fits of two alphas change the mean of a set by up to
+GRAPHS = 64  # pairs for the comparison of two graphs
+LEAST, LARGEST = 0.05, 2.0  # input range of those pairs: transmittances above 0, moderate emission
+OFTEN, SELDOM = 0.75, 0.5  # shares of the pairs that set an input, or an input in `further`
+TIED = 3  # every third pair has equal values for inputs that the graph compares
+SPREAD = 0.3  # alpha of the lobe for half of the lights, around the mirror direction
+STRETCHED = "anisotropy"  # part of input names; environment sums are too coarse for them
+# Largest errors due to the fits of all lobes of a material, over 32 sets of a check's size, against the layer
+# equation in float64: tools/fits/surface_shaders.py. They are a third of the sum of the largest errors by each
+# lobe's fits, since no material has all of them. The fits for two alphas change the mean of a set by up to
 # 4e-4.
 VALUE = sum_of(Term(3.5e-3, "the fits of all lobes of a material, over 32 sets of 256 pairs"))
 ALBEDO = sum_in(
@@ -70,21 +70,21 @@ ALBEDO = sum_in(
     Term(2.7e-3, "the fits of all lobes of a material, over 32 sets of 64 views"),
     sum_over(1024),
 )
-STRETCHED_FIT = 0.019  # largest error of a value by the fits of two alphas
-# The sums of 64 views err independently of each other.
+STRETCHED_FIT = 0.019  # largest error of a value due to the fits for two alphas
+# The sums for 64 views have independent errors.
 MEAN = sum_of(
     Term(2.4e-4, "the mean of the errors by fits, over 32 sets of 64 views"),
     Term(sum_over(1024).value / 8.0, "sums over 1024 directions, over the root of 64 views"),
     quantity=Quantity.MATERIAL_MEAN,
     metric=mean_scaled,
 )
-# Of R over T, whose light is (1 - E)^2: slopes by E of at most 2 in what passes, and of 1 in the sum.
+# R over T passes (1 - E)^2: the slope by E is at most 2 for the transmitted light and 1 for the sum.
 GLASS = sum_in(
     Quantity.ALBEDO,
     Term(2.0 * microfacets.LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),
     Term(2.0 * sum_over(1024).value, "two sums over 1024 directions"),
 )
-COUNTS = Counts(256, albedos=64, materials=1 << 11)  # a material a pair
+COUNTS = Counts(256, albedos=64, materials=1 << 11)  # one material per pair
 ERRORS = {
     "value": VALUE,
     "albedo": ALBEDO,
@@ -99,27 +99,27 @@ ERRORS = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceShaderSpec(spec.LobeSpec):
-    """A surface shader with every lobe on."""
+    """A surface shader with all lobes enabled."""
 
     requires = spec.Ability.MATERIAL
     plain = ("frame", "shape", "lobes", "inputs from an image")
 
-    judged: tuple[Input, ...]  # those whose values have a reference
-    others: tuple[Input, ...]  # those of other lobes and of thin films, judged by energy
+    judged: tuple[Input, ...]  # inputs with reference values
+    others: tuple[Input, ...]  # inputs of other lobes and thin films, judged by energy
     # Inputs that change no value of rasterized targets; docs/upstream/
     # surface_inputs.md says why.
     without_effect: tuple[str, ...]
-    white: Values  # a material that loses no light, by the layer equation
-    glass: Values  # a clear one, of any of `finish`
-    finish: tuple[str, ...]  # roughness and index of its interface
-    # What else the material has where an input is changed.
+    white: Values  # a lossless material by the layer equation
+    glass: Values  # a clear material with any `finish`
+    finish: tuple[str, ...]  # roughness and index of the interface
+    # Additional inputs of the material for a changed input.
     needs: Mapping[str, Values] = field(default_factory=dict)
     errors: Mapping[str, Tolerance] = field(default_factory=lambda: ERRORS)
     counts: Counts = COUNTS
-    # Inputs without a judged value: an opacity blends what lies behind with the whole surface, not with a lobe,
-    # and an occlusion is what an evaluation sets itself.
+    # Inputs without a judged value: an opacity blends the whole surface, not a lobe, with the background,
+    # and an occlusion is set by the evaluation itself.
     unseen: tuple[str, ...] = ()
-    library: str = "eonlib"  # whose document the reference evaluates
+    library: str = "eonlib"  # the reference evaluates this library's document
 
     @property
     def film(self) -> tuple[Input, ...]:
@@ -129,7 +129,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
 
     @cached_property
     def further(self) -> Values:
-        """Inputs that are not drawn, each with a value that the material with every lobe does not have."""
+        """Undrawn inputs, each with a value that differs from the material with all lobes."""
         from mxeon.shaders.library import load_library
 
         values = dict[str, ArrayLike]()
@@ -148,7 +148,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
 
     @cached_property
     def changed_inputs(self) -> Values:
-        """The same of each input but FREE_PATHS."""
+        """Changed values of all inputs except FREE_PATHS."""
         ports = (*self.judged, *self.others)
         known = {each.name: each.change for each in ports if each.change is not None}
         return {**{name: known[name] for name in known if name not in FREE_PATHS}, **self.further}
@@ -159,7 +159,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
 
     @property
     def changes(self) -> Mapping[str, samples.Changes]:
-        """Of the material with every lobe."""
+        """Changes of the material with all lobes."""
         seen, _ = spec.materials(*self.judged, *self.others)
         wholes = {name: {**seen, **self.needs.get(name, {})} for name in self.names}
         return {
@@ -183,7 +183,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         )
         return document_text(node_text(self.node, "surfaceshader", "shading", "".join(ports)))
 
-    # What it has to be.
+    # Expected values.
 
     def value(self, batch: Batch) -> Array:
         return np.pi * self._reference(batch, "direct")
@@ -192,11 +192,11 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return self._reference(batch, "environment")
 
     def transmitted(self, batch: Batch, opacity: bool) -> Array:
-        """The share of a uniform environment that is transmitted, by refraction or as opacity."""
+        """The transmitted share of a uniform environment, by refraction or as opacity."""
         return self._reference(batch, "opacity" if opacity else "transmission")
 
     def clear(self, batch: Batch) -> Batch:
-        """The same views of glass, with the roughness and the index of the materials."""
+        """The same views of glass, with the materials' roughness and index."""
         return replace(
             batch, inputs={**{name: batch.inputs[name] for name in self.finish}, **self.glass}
         )
@@ -224,11 +224,11 @@ class SurfaceShaderSpec(spec.LobeSpec):
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False
     ) -> dict[str, Array]:
-        """Those of all lobes on edges, where most light leaves."""
+        """Random inputs of all lobes; on edges, where most light leaves."""
         return draw(rng, count, (*self.judged, *self.others) if edged else self.judged, edged)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs, half of them near the mirror direction, with random materials."""
+        """Random pairs with random materials, half of them near the mirror direction."""
         rng, count = generator(), counts.pairs
         wo, wi = _views(rng, count), samples.directions(rng, count)
         alpha = np.full((count, 2), SPREAD)
@@ -246,9 +246,9 @@ class SurfaceShaderSpec(spec.LobeSpec):
     few = spec.ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views of isotropic materials; a metal's curve stays above 0, which MaterialX's sum does not clamp."""
+        """Views of isotropic materials; metal curves stay above 0, because MaterialX's sum does not clamp."""
         batch = _isotropic(batches[0].first(counts.albedos))
-        if "base_metalness" in self.names:  # OpenPBR's, the one with a color at 82 degrees
+        if "base_metalness" in self.names:  # only OpenPBR's metal has a color at 82 degrees
             color0 = batch.inputs["base_color"] * batch.inputs["base_weight"][:, np.newaxis]
             color82, color90 = batch.inputs["specular_color"], np.ones((1, 3))
             curve = {"color0": color0, "color82": color82, "color90": color90, "exponent": 5.0}
@@ -256,15 +256,15 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return (batch,)
 
     def edges(self, counts: Counts) -> Batch:
-        """Views of materials in which every lobe takes part."""
+        """Views of materials in which all lobes contribute."""
         rng, count = generator(), counts.materials
         wo, inputs = _views(rng, count), self.random_inputs(rng, count, edged=True)
-        # QON makes up to 1.4 % of light itself, at grazing.
+        # QON itself gains up to 1.4 % of light at grazing.
         inputs |= {name: 0.0 * inputs[name] for name in inputs if name == "diffuse_roughness"}
         return _isotropic(Batch(wo, wo, inputs))
 
     def drawn(self, counts: Counts) -> Batch:
-        """Pairs with every input of the node; NaN stands for a default."""
+        """Pairs with all inputs of the node; NaN means the default."""
         rng, pairs = generator(), self.batches(counts)[0].first(GRAPHS)
         count = len(pairs.wo)
         inputs = {**pairs.inputs, **draw(rng, count, self.others)}
@@ -287,7 +287,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
 
     @cached_property
     def compared(self) -> set[tuple[str, str]]:
-        """Inputs that the released graph compares with each other."""
+        """Pairs of inputs that the released graph compares."""
         from mxeon.shaders.library import load_library
 
         names = [
@@ -308,13 +308,13 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return {(one, other) for one, other in ends if one and other}
 
     def films(self, counts: Counts) -> Batch:
-        """Some of the pairs, of lobes with one alpha, under random films."""
+        """Some of the pairs, with isotropic lobes under random films."""
         batch = _isotropic(self.batches(counts)[0])
         return batch.altered(**draw(generator(), len(batch.wo), self.film))
 
 
 def _views(rng: np.random.Generator, count: int) -> Array:
-    """Random directions, none so grazing that a sheen's own equations gain energy, and one that just is not."""
+    """Random directions, limited to cosines at which the sheen's own equations gain no energy, and one at the limit."""
     wo = samples.directions(rng, count)
     wo = samples.float32(np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo))
     wo[0] = samples.directions_at(LEAST_VIEW, 0.0)
@@ -322,18 +322,18 @@ def _views(rng: np.random.Generator, count: int) -> Array:
 
 
 def _stretching(batch: Batch) -> list[str]:
-    """The inputs that give a lobe two alphas."""
+    """The inputs that make a lobe anisotropic."""
     return [name for name in batch.inputs if STRETCHED in name and "rotation" not in name]
 
 
 def stretched(batch: Batch) -> NDArray[np.bool_]:
-    """Whether a lobe of a pair has two alphas."""
+    """Whether a lobe of a pair is anisotropic."""
     count = np.zeros(len(batch.wo), int)
     return np.asarray(sum((batch.inputs[name] != 0.0 for name in _stretching(batch)), count) > 0)
 
 
 def _isotropic(batch: Batch) -> Batch:
-    """The same pairs with lobes that are not stretched."""
+    """The same pairs with isotropic lobes."""
     return batch.altered(**{name: np.zeros(len(batch.wo)) for name in _stretching(batch)})
 
 
@@ -392,7 +392,7 @@ SURFACE_SHADERS = (
             "subsurface_scatter_anisotropy",
         ),
         needs={
-            "subsurface_weight": {"subsurface_color": CHANGED_COLOR},  # on a plane, its base else
+            "subsurface_weight": {"subsurface_color": CHANGED_COLOR},  # else it equals the base
             "emission_color": {"emission_luminance": 1000.0},
         },
         unseen=("geometry_opacity",),

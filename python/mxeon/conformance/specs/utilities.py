@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each output of the utility nodes, which compute numbers and colors that feed the lobes.
+"""The outputs of the utility nodes, which compute numbers and colors for lobes.
 
-Those of pbrlib, and the nodes of eonlib that return the reflectance with which EON has a given albedo.
+Covers pbrlib's, and eonlib's nodes that return the reflectance for which EON has a given albedo.
 
-An error is relative to the largest component where that exceeds 1; of an artistic index it is in units
-in which its roundings are alike.
+Errors are relative to the largest component if it exceeds 1; artistic indices use a unit with uniform
+roundings.
 """
 
 from collections.abc import Mapping
@@ -31,13 +31,13 @@ from mxeon.models.nodes.utilities import (
 from mxeon.shaders import nodes
 from mxeon.shaders.nodes import INVERSIONS, Node, connection_text, document_text, node_text
 
-NAME, COLOR = "value", "color"  # of the node in its document, and of its conversion to a color
-TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # types of the inputs by shape
+NAME, COLOR = "value", "color"  # names of the node and of its conversion to a color
+TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # input types by shape
 SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # edges of most inputs
 PIGMENTS = (0.01, 0.5, 1.0)
 TEMPERATURES = (800.0, 1000.0, 1667.0, 2222.0, 4000.0, 6504.0, 25000.0)
-BEYOND = (-1.0, 0.0, 0.5, 1.0, 2.0, 1e3)  # of an input that may leave its range
-# Inputs with a range or a change of their own. A change is from the default of a document.
+BEYOND = (-1.0, 0.0, 0.5, 1.0, 2.0, 1e3)  # values for inputs that may leave their range
+# Inputs with their own range or change. A change starts from a document's default.
 INPUTS = {
     each.name: each
     for each in (
@@ -56,7 +56,7 @@ INPUTS = {
     )
 }
 
-# 0.98 is rounded by half of one, over 2 (1 - 0.98) in the aspect; the least alpha, 1e-8, is less than either.
+# 0.98 has half a rounding, over 2 (1 - 0.98) in the aspect; the least alpha, 1e-8, is smaller than either.
 ALPHA = sum_in(
     Quantity.ALPHA, roundings(12), roundings(0.25 / 0.02, "(half of one of 0.98, over 0.04)")
 )
@@ -69,12 +69,12 @@ REFLECTANCE = sum_in(
     Term(3 * 5e-7, "three constants of six decimals"),
     roundings(12, "of numbers up to 1"),
 )
-# Errors of values, by title or category; and of other quantities.
+# Errors of values, by title or category, and of other quantities.
 VALUES: Mapping[str, Tolerance] = {
     **dict.fromkeys(INVERSIONS, REFLECTANCE),
     **dict.fromkeys(("roughness_anisotropy", "glossiness_anisotropy"), ALPHA),
     "roughness_dual": sum_in(Quantity.ALPHA, roundings(2)),
-    # n_max is 1 in this unit at most.
+    # n_max is at most 1 in this unit.
     "artistic_ior, ior": sum_in(
         Quantity.INDEX, roundings(16, "four over 1 - sqrt(r), six beside, six in the mix")
     ),
@@ -99,21 +99,21 @@ OTHERS: Mapping[str, dict[str, Tolerance]] = {
         )
     }
 }
-FEWER = 1 << 12  # arguments of an engine's functions
-LEAST_LOGARITHM = 1e-4  # number whose logarithm is measured
+FEWER = 1 << 12  # arguments for an engine's functions
+LEAST_LOGARITHM = 1e-4  # smallest argument of measured logarithms
 
 
 def _shares() -> Array:
-    """Numbers in [0, 1], the last of which is 1."""
+    """Numbers in [0, 1], ending with 1."""
     return float32(np.append(generator().random(FEWER), 1.0))
 
 
-# The 20th and 22nd power in [0, 1], and the logarithm of numbers below 1.
+# The 20th and 22nd powers in [0, 1], and logarithms of numbers below 1.
 _power_error = spec.POWER.error(lambda: (_shares(), np.resize([22.0, 20.0], FEWER + 1)), 0.0)
 _logarithm_error = spec.LOGARITHM.error(
     lambda: [float32(LEAST_LOGARITHM ** (1.0 - _shares()))], 0.0
 )
-# What an engine's function adds, by node: times the other factor of a product, or a slope.
+# Errors of engine functions, by node, times the other factor of a product or a slope.
 ENGINE = {
     "chiang_hair_roughness": EngineError(
         "the engine's pow(), times 2 x 3.7 / 5.24", _power_error, 1.5
@@ -140,7 +140,7 @@ class UtilitySpec(spec.RowSpec[Outputs]):
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(  # one scale belongs to one lobe
+        return tuple(  # each scale belongs to one lobe
             name
             for name in self.row.inputs
             if not name.startswith("scale_") or name.endswith(self.output.removeprefix("roughness"))
@@ -167,7 +167,7 @@ class UtilitySpec(spec.RowSpec[Outputs]):
         )
 
     def outside(self, counts: Counts) -> Batch:
-        """Values at the ends of the ranges and beyond them."""
+        """Values at and beyond the ends of the ranges."""
         rng, count = generator(), counts.pairs
         beyond = (
             rng.choice(each.beyond, (count, *spec.COMPONENTS[each.type])) for each in self.inputs
@@ -175,14 +175,14 @@ class UtilitySpec(spec.RowSpec[Outputs]):
         return _batch({each.name: values for each, values in zip(self.inputs, beyond, strict=True)})
 
     def values(self, function: Outputs, batch: Batch) -> Array:
-        """The output as a color, whose missing channels are 0, (N, 3)."""
+        """The output as a color with 0 for missing channels, (N, 3)."""
         output = np.asarray(function(spec.broadcast_inputs(batch))[self.output])
         color = np.zeros((len(batch.wo), 3))
         color[:, : output.shape[-1]] = output
         return color
 
     def alike(self, compared: Compared) -> Compared:
-        """An artistic index in a unit in which its roundings are alike; other outputs as they are.
+        """An artistic index in a unit with uniform roundings; other outputs unchanged.
 
         n (1 - sqrt(r))^2: a rounding of 1 - sqrt(r) is divided by it in n. And k^2 (1 - r) / (n_max + 1)^2: k^2 is
         a difference of terms that large, over 1 - r.
@@ -198,14 +198,14 @@ class UtilitySpec(spec.RowSpec[Outputs]):
 
 
 def _batch(inputs: Mapping[str, Array]) -> Batch:
-    """A batch of inputs, whose directions mean nothing."""
+    """A batch of inputs with arbitrary directions."""
     count = len(next(iter(inputs.values())))
     up = np.broadcast_to([0.0, 0.0, 1.0], (count, 3))
     return Batch(up, up, inputs)
 
 
 def _inversion(node: str) -> UtilityNode:
-    """A node of eonlib, with the other inversions that it may be instead, and its input as it is."""
+    """A node of eonlib, with the other inversions and its unchanged input as variants."""
 
     def output(name: str) -> Outputs:
         function = getattr(diffuse, name)

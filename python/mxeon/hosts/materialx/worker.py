@@ -39,7 +39,7 @@ except ImportError as error:
 Chosen: TypeAlias = tuple[tuple[str, str | int | bool], ...]
 FAR = 1e6  # distance of the camera; the shader computes the view from its position
 DIRECTIONS = 256  # directions over which microfacet shaders sum the environment
-TABLE_SIZE = 64  # as MaterialX's text has it
+TABLE_SIZE = 64  # same as in MaterialX's text
 PICTURES = 8  # cached renderers, each with the program of a document
 ANISOTROPY = ("GL_ARB_texture_filter_anisotropic", "GL_EXT_texture_filter_anisotropic")
 SCREEN = ("-screen", "0", "64x64x24", "-nolisten", "tcp")

@@ -247,7 +247,7 @@ def _split_azimuths(
     last = _cone_azimuth(slopes.mu_o, squared - slopes.mu_o**2)
     inside, right = slopes.mu_o * slopes.mu_o >= squared, 0.5 * np.pi
     nodes = []
-    for center in (0.0, np.pi):  # in front, where lean grows with r, then behind
+    for center in (0.0, np.pi):  # the front half, where lean grows with r, then the back
         low, high = (
             xp.where(
                 inside,

@@ -26,8 +26,8 @@ FACETS: dict[str, Value] = {
     "thinfilm_thickness": 0.0,
     "thinfilm_ior": 1.5,
 }
-# Defaults of a node's inputs in the order of its definition, without those that select a mode and those
-# in BY_NAME. A test compares them with MaterialX's definitions.
+# Defaults of a node's inputs in the order of its definition, except mode selectors and inputs in BY_NAME.
+# A test compares them with MaterialX's definitions.
 DEFAULTS: dict[str, dict[str, Value]] = {
     "oren_nayar_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
     "burley_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
