@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All checks, in the order in which they are made: rows of a table in each module."""
+"""All checks in the order of execution; each module has a table of them."""
 
 from mxeon.conformance.check import Check
 from mxeon.conformance.checks import (
@@ -12,7 +12,7 @@ from mxeon.conformance.checks import (
     surface_shaders,
 )
 
-# `mxeon.survey.checks` adds those of renderers' own samplers.
+# `mxeon.survey.checks` adds checks of renderers' own samplers.
 CHECKS: list[Check] = [
     *lobes.ROWS,
     *states.ROWS,

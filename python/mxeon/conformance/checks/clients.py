@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a client binds to a generated shader beside the material: lights, an environment, shadows, and blending.
+"""A client's bindings besides the material: lights, an environment, shadows, and blending.
 
 The whole generated main is drawn, with point and spot lights, a shadow map, ambient occlusion and transparency.
-AXES lists the states; every two states of different axes meet in some frame.
+AXES lists the states; any two states of different axes occur together in some frame.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -26,20 +26,20 @@ from mxeon.hosts.base import TURN
 from mxeon.shaders.methods import GENERATED, UNCHOSEN, Methods
 from mxeon.shaders.scene import VIEW, Client, Lamp, Matrix, Scene, sphere
 
-if TYPE_CHECKING:  # which loads MaterialX
+if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
 SIZE = 16  # pixels on a side of a frame
-POLE = 0.999  # height from which an uneven environment has no neighbors to filter
-EVERY = 6  # a control draws one of so many frames
+POLE = 0.999  # above this height, filtering an uneven environment lacks neighbors
+EVERY = 6  # a control draws every sixth frame
 WHITE = np.ones((1, 1, 3), np.float32)
 NAMES = {"shading/mix": "mix", "front/opacity": "front", "back/opacity": "back"}
-# Depths of the sphere lie within [0.2, 0.7] in this map, and its w is not 1.
+# Depths of the sphere are in [0.2, 0.7] in this map, and w is not 1.
 SHADOW: Matrix = (1.2, 0.1, 0.3, 0.0, 0.2, 1.1, 0.2, 0.0, 0.1, 0.3, -0.6, 0.0, 0.0, 0.0, 0.0, 1.5)
 
 
 class Frame(NamedTuple):
-    """A frame: what a client binds, the generator's methods, and inputs of the material."""
+    """A frame: a client's bindings, the generator's methods, and inputs of the material."""
 
     client: Client = Client()
     methods: Methods = UNCHOSEN
@@ -54,7 +54,7 @@ def same(frame: Frame) -> Frame:
 
 
 def folded(frame: Frame) -> Frame:
-    """A frame by premultiplied mixes, which MaterialX before 1.39.5 does not have."""
+    """A frame with premultiplied mixes, which MaterialX supports since 1.39.5."""
     from mxeon.shaders.options import offers
 
     return frame._replace(
@@ -63,7 +63,7 @@ def folded(frame: Frame) -> Frame:
 
 
 def bound(**values: Any) -> Build:
-    """What sets members of `Client`."""
+    """A state that sets members of `Client`."""
     return lambda frame: frame._replace(client=replace(frame.client, **values))
 
 
@@ -72,12 +72,12 @@ def lit(*lamps: Lamp) -> Build:
 
 
 def given(**inputs: float) -> Build:
-    """What sets inputs of the material: `mix`, and the opacities `front` and `back`."""
+    """A state that sets inputs of the material: `mix`, and the opacities `front` and `back`."""
     return lambda frame: frame._replace(inputs={**frame.inputs, **inputs})
 
 
 def _turned() -> Matrix:
-    """A turn of the environment that is not its own inverse, nor about an axis."""
+    """A rotation of the environment that is neither its own inverse nor about an axis."""
     (cos, sin), (low, high) = ((np.cos(x), np.sin(x)) for x in (0.7, 0.4))
     about_y = np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
     about_x = np.array([[1.0, 0.0, 0.0], [0.0, low, -high], [0.0, high, low]])
@@ -98,8 +98,8 @@ SPOT = Lamp(
     outer_angle=0.8,
     decay_rate=1.5,
 )
-# The first state of each axis is that of other checks. States whose words are the same up to a colon are diagnosed
-# together, too.
+# Other checks use the first state of each axis. States with the same words up to a colon are also diagnosed
+# together.
 AXES: dict[str, dict[str, Build]] = {
     "methods": {
         "the default methods": same,
@@ -141,7 +141,7 @@ AXES: dict[str, dict[str, Build]] = {
 
 @lru_cache(maxsize=1)
 def frames() -> tuple[tuple[set[str], Frame], ...]:
-    """The frames with the words of their states, those of a program one after the other."""
+    """The frames with the words of their states, grouped by program."""
     found = []
     for states in covering(tuple(map(tuple, AXES.values()))):
         frame = Frame()
@@ -152,7 +152,7 @@ def frames() -> tuple[tuple[set[str], Frame], ...]:
 
 
 def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
-    """Colors and alphas of each frame beside those of the equations, with the words of its states."""
+    """Measured and expected colors and alphas of each frame, with the words of its states."""
     from mxeon.conformance.reference.clients import alpha_of, light
     from mxeon.shaders.generators import CLIENT_OPTIONS
 
@@ -186,7 +186,7 @@ def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
 
 
 def diagnose(case: Case) -> Diagnosis:
-    """The states that all wrong frames have."""
+    """The states that all wrong frames share."""
     tolerance, rows = case.tolerance("frame"), list(drawn(case))
     bad = np.array([tolerance.wrong(each).any() for _, each in rows])
     compared = [each for _, each in rows]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a lobe: its values and albedos, its frame, its inputs, its edges, and its energy; of two; and of hair."""
+"""Checks of a lobe: values and albedos, frame, inputs, edges, and energy; of two lobes; and of hair."""
 
 import math
 from collections.abc import Iterator
@@ -49,10 +49,10 @@ from mxeon.models.nodes.combinations import FACTOR
 from mxeon.models.nodes.lobes import FORMS, TILTED
 from mxeon.shaders.methods import Methods
 
-LEAST_LIGHT = 0.01  # of a uniform environment where an uneven one is measured
-# Texels are pi / 128 high and wide, their middles are read, and engines keep filters' weights in eight bits.
+LEAST_LIGHT = 0.01  # least light of a uniform environment for measurements of an uneven one
+# Texels are pi / 128 high and wide and read at their middles; engines have 8-bit filter weights.
 TEXEL = math.sqrt(2.0) * math.pi / samples.SKY_ROWS * 2.0**-8
-ARC_SINE = 4e-4  # largest error of an engine's arc sine: llvmpipe's, ten times that of others
+ARC_SINE = 4e-4  # largest error of an engine's arc sine: llvmpipe's, ten times the rest
 SURROUNDINGS = sum_in(
     Quantity.IRRADIANCE,
     Term(samples.SLOPE * TEXEL, "2^-8 of a texel, times the slope of the map, 1/2"),
@@ -64,40 +64,40 @@ OPAQUE = sum_in(Quantity.THROUGHPUT, roundings(1, "of 1 - weight"))
 
 
 def of_model(*names: str) -> Specs:
-    """The specs of a rough diffuse model, or of a diffuse lobe with others over it."""
+    """The specs of a rough diffuse model, or of a diffuse lobe below other lobes."""
     return family(DiffuseModelSpec, lambda spec: spec.model in names)
 
 
-# Sets of nodes that rows apply to.
+# Sets of nodes for the rows.
 FILMS, TRANSMITTING = family(FilmSpec), family(TransmissionSpec)
-CLEAR = family(TransmissionSpec, lambda spec: spec.reflects)  # which reflect as well
-DARK = TRANSMITTING - CLEAR  # which reflect nothing
+CLEAR = family(TransmissionSpec, lambda spec: spec.reflects)  # also reflect
+DARK = TRANSMITTING - CLEAR  # reflect nothing
 # As opacity, these pass all light.
 UNTINTED = DARK - family(LobeSpec, lambda spec: "tint" in colored(spec))
 COMBINED, SUBSURFACE = family(CombinedSpec), family(SubsurfaceSpec)
 FACETS, BELOW = family(FacetSpec), family(SurfaceLobe)
-PLAIN = family(PbrSpec) - COMBINED - FILMS - TRANSMITTING  # one lobe of pbrlib by itself
-LAYERS = PLAIN & family(PbrSpec, lambda spec: spec.row.layerable)  # which let 1 - E through
+PLAIN = family(PbrSpec) - COMBINED - FILMS - TRANSMITTING  # single lobes of pbrlib
+LAYERS = PLAIN & family(PbrSpec, lambda spec: spec.row.layerable)  # pass 1 - E
 RECIPROCAL = PLAIN & family(PbrSpec, lambda spec: spec.row.reciprocal)
 LAMBERT, BURLEY = of_model("lambert"), of_model("burley")
 LOBES = PLAIN | BURLEY | of_model("burley_lambert")
 EON = of_model("eon", "eon_fitted")
-MODES = of_model("eon", "eon_fitted", "qon")  # of a rough diffuse node
+MODES = of_model("eon", "eon_fitted", "qon")  # modes of a rough diffuse node
 ROUGH = MODES | of_model("fon")
 VALUED = LOBES | FILMS | ROUGH  # one lobe of a node or of a renderer
 
 
 def shows_exactly(spec: Spec, host: str) -> bool:
-    """Whether a host has directions to the last bit, those on the horizon too; closures have no film of index 0."""
+    """Whether a host uses exact directions, including the horizon; closures have no film of index 0."""
     others = ("rendered", "pictures", *["closures"] * (Ability.FILM in spec.requires))
     return all(row.way not in others for row in HOSTS if row.name == host)
 
 
 def finds_albedo(spec: Spec, methods: Methods) -> bool:
-    """Whether the environment branch returns an albedo that is known.
+    """Whether the environment branch returns a known albedo.
 
-    With a prefiltered environment films and surface shaders carry the errors of MaterialX's fit, and microfacets
-    those of its 64 samples where these replace the fit, or of eonlib's fits of their curves.
+    With a prefiltered environment, films and surface shaders have the errors of MaterialX's fit, and microfacets
+    the errors of its 64 samples, if these replace the fit, or of eonlib's fits of their curves.
     """
     sampled = isinstance(spec, FacetSpec) and (
         methods.albedo != "analytic" or bool(methods.searched)
@@ -107,7 +107,7 @@ def finds_albedo(spec: Spec, methods: Methods) -> bool:
 
 
 def has_environment(spec: Spec, host: str) -> bool:
-    """Whether a host has the spec's model for all pairs, as an environment needs."""
+    """Whether a host has the spec's model for all pairs, as environments require."""
     return not front_lit_only(host, spec.model)
 
 
@@ -134,7 +134,7 @@ def surroundings(case: Case) -> Compared:
         batch = batch.altered(color=samples.WHITE)
     level = case.albedo(batch)
     bright = level.min(axis=1) > LEAST_LIGHT
-    if bright.any():  # or what is dark is wrong
+    if bright.any():  # otherwise the uniform light is wrong
         batch, level = batch.where(bright), level[bright]
     with np.errstate(divide="ignore", invalid="ignore"):
         measured = case.albedo(batch, samples.sky_map()) / level
@@ -162,7 +162,7 @@ def sphere(case: Case) -> Iterator[Compared]:
 
 
 def in_srgb(case: Case) -> Iterator[Compared]:
-    """Values of colors in sRGB, against the engine's own of what they stand for."""
+    """Values of colors in sRGB, compared with the engine's own values of the decoded colors."""
     batch, evaluating = case.few[0].first(case.backend.counts.albedos), case.evaluating
     ask = partial(evaluating.evaluate, branch="direct", shader=evaluating.decoded)
     yield Compared(batch, np.pi * case.measured(ask, batch), of_decoded(case, batch))
@@ -183,16 +183,16 @@ COLOR_SPACE = Comparison(
 )
 
 
-# Outputs that an opaque node of weight 1 has none of, and their branches.
+# Outputs that are 0 for an opaque node of weight 1, and their branches.
 NOTHING = (*product(["throughput"], BRANCHES), *product(["response"], ["transmission", "emission"]))
 
 
 def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
-    """An output of an opaque node, whose throughput is 1 - weight; hair has no weight."""
+    """An output of an opaque node; its throughput is 1 - weight, and hair has no weight."""
     for batch in case.few:
         weight = np.array(np.broadcast_to(batch.inputs.get("weight", 1.0), len(batch.wo)))
         if "weight" in batch.inputs:
-            weight[0] = 2.0  # above 1 a lobe is opaque, and no more
+            weight[0] = 2.0  # weights above 1 count as opaque
             batch = batch.altered(weight=weight)
         values = case.evaluating.evaluate(case.inputs(batch), branch, output)
         left = 1.0 - np.clip(weight, 0.0, 1.0) if output == "throughput" else 0.0 * weight
@@ -201,11 +201,11 @@ def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
 
 
 def reciprocity(case: Case) -> Iterator[Compared]:
-    """f(wo, wi) against f(wi, wo), both times both cosines."""
+    """f(wo, wi) compared with f(wi, wo), both times both cosines."""
     for batch in case.few:
-        side = -1.0 if np.all(batch.wi[:, 2] <= 0.0) else 1.0  # light through the surface
+        side = -1.0 if np.all(batch.wi[:, 2] <= 0.0) else 1.0  # light from below
         swapped = replace(batch, wo=side * batch.wi, wi=side * batch.wo)
-        with np.errstate(invalid="ignore"):  # inf x 0 is NaN, which `absolute` notices
+        with np.errstate(invalid="ignore"):  # inf x 0 is NaN, which `absolute` detects
             forward = case.direct(batch) * batch.wo[:, 2:]
             backward = case.direct(swapped) * np.abs(batch.wi[:, 2:])
         yield Compared(batch, forward, backward)
@@ -219,11 +219,11 @@ def lambert(case: Case) -> Iterator[Compared]:
 
 # --- energy: what a lobe scatters in all, what it lets through, and both of two lobes together ----
 
-ROUNDED = 1e-9  # difference of two albedos that are the same
+ROUNDED = 1e-9  # difference between equal albedos
 
 
 def reads(name: str) -> Specs:
-    """The layers that have an input of a name."""
+    """The layers that have an input with this name."""
     return LAYERS & family(PbrSpec, lambda spec: name in spec.row.inputs)
 
 
@@ -245,7 +245,7 @@ def denser(case: Case) -> Iterator[Compared]:
 
 
 def _passed(case: Case, batch: Batch) -> Compared:
-    """Throughput at full weight against 1 - E."""
+    """Throughput at full weight, compared with 1 - E."""
     full = batch.altered(weight=1.0)
     passed = np.maximum(1.0 - case.expected_albedo(full), 0.0)
     return Compared(full, case.throughput(full, "direct"), passed)
@@ -254,7 +254,7 @@ def _passed(case: Case, batch: Batch) -> Compared:
 def layer(case: Case) -> Compared:
     views, albedo = integrals(case)
     total = albedo + case.throughput(views, "direct")
-    # Where the equations gain energy by themselves, no throughput makes up for it.
+    # If the equations themselves gain energy, no throughput can compensate for it.
     own = case.lobe.albedo(views)
     sound = np.asarray((case.backend.integrals <= own + ROUNDED).all(axis=1))
     return Compared(views, total, np.ones_like(total)).where(sound)
@@ -272,12 +272,12 @@ def energy(case: Case) -> Compared:
 
 
 def integrals(case: Case) -> tuple[Batch, Array]:
-    """Views of the integrated materials, and their albedos from the host's values, (N, 3)."""
+    """Views of the integrated materials, and albedos from the host's values, (N, 3)."""
     return summed(case, *case.backend.integrated)
 
 
 def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
-    """Views of materials in many directions of light, and their albedos, (N, 3)."""
+    """Views of materials under many light directions, and their albedos, (N, 3)."""
     count, nodes = weights.shape
     values = case.direct(batch).reshape(count, nodes, 3)
     albedo = (weights[..., np.newaxis] * values).sum(axis=1)
@@ -288,7 +288,7 @@ def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
 
 
 def combined_throughput(case: Case) -> Iterator[Compared]:
-    """A negative throughput counts as 0, as `layer` takes it."""
+    """Negative throughputs count as 0, as in `layer`."""
     for compared in THROUGHPUT(case):
         yield compared._replace(measured=np.maximum(compared.measured, 0.0))
 
@@ -313,7 +313,7 @@ TURN_FIBER = controls.with_inputs(
 
 
 def region_values(key: str, case: Case) -> Compared:
-    """Values of a region, and the expected ones."""
+    """Measured and expected values of a region."""
     batch = case.of(HairSpec).region(key, case.backend.counts.few)
     return Compared(batch, case.direct(batch), case.expected(batch))
 
@@ -323,8 +323,8 @@ def in_region(key: str, case: Case) -> Compared:
 
 
 def explain_region(key: str, case: Case) -> Diagnosis:
-    """The explanation of the values of a region."""
-    others = set(FORMS) - {REGIONS[key].form, TILTED}  # which may be the same there
+    """The explanation of a region's values."""
+    others = set(FORMS) - {REGIONS[key].form, TILTED}  # indistinguishable there
     candidates = [each for each in case.valued.value_candidates if each.title not in others]
     compared = region_values(key, case)
     brightest = min(float(compared.expected.max()), 1.0)
@@ -335,13 +335,13 @@ def explain_region(key: str, case: Case) -> Diagnosis:
 
 # --- inputs outside the ranges that the other checks draw from, as far as hosts pass them ---------
 
-PAIRS = 16  # of each value
-LEAST_WEIGHT = 0.3  # of weights and occlusions, so that each pair shows it
+PAIRS = 16  # pairs per value
+LEAST_WEIGHT = 0.3  # least weight and occlusion, so that effects stay visible
 TOLERANCES = given(1.0, Quantity.TOLERANCES, "the tolerance of each quantity")
 
 
 def quantities(case: Case, batch: Batch, right: Batch) -> Iterator[tuple[str, Compared]]:
-    """Values, albedos and throughputs, each by its name, against those that are expected of other inputs."""
+    """Named values, albedos and throughputs, compared with the expected ones for other inputs."""
     albedo = case.expected_albedo(right)
     yield "value", Compared(batch, case.direct(batch), case.expected(right))
     yield "albedo", Compared(batch, case.albedo(batch), albedo)
@@ -351,14 +351,14 @@ def quantities(case: Case, batch: Batch, right: Batch) -> Iterator[tuple[str, Co
 
 
 def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
-    """Each quantity of a few pairs for each input and value, but for what is wrong inside the ranges already.
+    """Quantities of a few pairs for each input and value, except those already wrong inside the ranges.
 
-    Values are divided by the largest error that passes.
+    Values are divided by their tolerance.
     """
     spec, views = case.of(PbrSpec), case.backend.views[0]
     row, names = np.arange(len(views.wo))[:, np.newaxis], {"weight", "occlusion"}
     wo = np.where(row == 1, NORMAL, views.wo)
-    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # microfacets reflect most
+    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # peak of microfacets
     seen = {
         name: np.maximum(views.inputs[name], LEAST_WEIGHT) for name in names & views.inputs.keys()
     }
@@ -389,7 +389,7 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
 
 
 def diagnose_domain(case: Case) -> Diagnosis:
-    """The inputs, and the values of each, with which a quantity is wrong."""
+    """The inputs and values with which a quantity is wrong."""
     wrong: dict[tuple[str, str], list[float]] = {}
     for quantity, name, value, compared in outside(case):
         if absolute(*compared[1:]).max() > TOLERANCES.value:
@@ -404,13 +404,13 @@ def diagnose_domain(case: Case) -> Diagnosis:
 
 # --- negative colors, as MaterialX's own text takes them -------------------------------------------
 
-CLAMPED = FACETS | COMBINED | family(HairSpec)  # whose negative colors count as 0
+CLAMPED = FACETS | COMBINED | family(HairSpec)  # negative colors count as 0
 NEGATIVE = 64  # pairs
 LEAST_NEGATIVE = 0.1
 
 
 def colored(spec: LobeSpec) -> list[str]:
-    """Inputs that are reflectances or factors; a color of a lobe under combinations belongs to that lobe."""
+    """Inputs that are reflectances or factors; colors of lobes under combinations belong to the lobes."""
     words = (FACTOR,) if COMBINED(spec) else ("color", "tint")
     return [
         each.name for each in spec.inputs if each.type == "color3" and each.name.startswith(words)
@@ -424,12 +424,12 @@ def unsigned(batch: Batch) -> Batch:
 
 
 def negative(case: Case) -> Iterator[Compared]:
-    """Light with a negative red, against that of red 0, or of the positive red with the other sign.
+    """Light with a negative red, compared with red 0, or with the negated light of the positive red.
 
-    That of EON is a rho + b rho^2 / (1 - rho (1 - <E>)), whose a and b follow from rho and half of it.
+    EON's light is a rho + b rho^2 / (1 - rho (1 - <E>)); a and b follow from rho and half of it.
     """
     asks = [(case.backend.direct, case.direct)]
-    if not family(HairSpec)(case.spec):  # whose albedo MaterialX takes of the tint as it is
+    if not family(HairSpec)(case.spec):  # MaterialX uses its unclamped tint for the albedo
         asks.append((case.backend.albedo, case.albedo))
     if TRANSMITTING(case.spec):
         asks.append((case.evaluating.transmitted, case.transmitted))
@@ -451,7 +451,7 @@ def negative(case: Case) -> Iterator[Compared]:
                 expected = known(whole) + red * (second * (least + most) - 2.0 * known(whole))
             else:
                 expected = known(whole) * (1.0 - 2.0 * red)
-            finite = np.asarray(np.isfinite(expected).all(axis=1))  # others fail other checks
+            finite = np.asarray(np.isfinite(expected).all(axis=1))  # NaN fails other checks
             yield Compared(low, ask(low), expected).where(finite)
 
 

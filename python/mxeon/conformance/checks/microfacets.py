@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of lobes of microfacets alone, of the light that they transmit, and of those under a thin film."""
+"""Checks specific to microfacet lobes: reflection, transmitted light, and thin films."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -42,13 +42,13 @@ from mxeon.models.transmission import refraction_direction
 from mxeon.shaders.methods import GENERATED, UNTABLED, Methods
 from mxeon.shaders.scene import Client
 
-if TYPE_CHECKING:  # which loads MaterialX
+if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
-PAIRS = 1 << 12  # near the mirror direction
-LEAST_DIVIDED = 1.2  # index of a dielectric whose values are divided
-SKIES = 8  # lobes whose mean of an uneven sky is measured
-# A lobe whose view sees facets that reflect, and facets where the printed curve is below 0, -0.035 in sum.
+PAIRS = 1 << 12  # pairs near the mirror direction
+LEAST_DIVIDED = 1.2  # least index of dielectrics in ratios of values
+SKIES = 8  # lobes with a measured mean of an uneven sky
+# A lobe whose view sees facets that reflect, and facets with a negative printed curve; they sum to -0.035.
 DIP: Values = {
     "weight": 1.0,
     "color0": (0.06, 0.06, 0.06),
@@ -57,10 +57,10 @@ DIP: Values = {
     "exponent": 5.0,
     "roughness": (0.2, 0.2),
 }
-LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is measured
+LEAST_VALUE = 1e-3  # least pi f cos of values in ratios
 
 
-FACETS = lobes.PLAIN & lobes.FACETS  # by themselves
+FACETS = lobes.PLAIN & lobes.FACETS  # uncombined microfacet lobes
 rougher = controls.with_batch(
     "the roughness is 10 % larger",
     lambda batch: batch.altered(roughness=np.minimum(1.1 * batch.inputs["roughness"], 1.0)),
@@ -99,9 +99,9 @@ def dark(case: Case) -> Compared:
 
 
 def _clear(batch: Batch, index: float = LEAST_DIVIDED, least_82: float = LEAST_COLOR82) -> Batch:
-    """A batch without curves of which float32 cannot hold F: its terms cancel.
+    """A batch without curves that are inaccurate in float32 because their terms cancel.
 
-    These are dielectrics whose index is near 1, and deep dips at 82 degrees, which turn F negative.
+    These are dielectrics with an index near 1, and deep dips at 82 degrees, which make F negative.
     """
     changes: dict[str, ArrayLike] = {}
     if np.ndim(batch.inputs.get("ior", 0.0)) == 1:
@@ -135,7 +135,7 @@ def anisotropy(case: Case) -> Compared:
 
 
 def reflected_sky(case: Case) -> Iterator[Compared]:
-    """Means of the sky under each lobe, which one for a mirrored view has by retroreflection; factors cancel."""
+    """Means of the sky under each lobe; retroreflection must give the mirrored view's mean. Factors cancel."""
     views = case.backend.take(case.of(FacetSpec).stretched)[0].first(SKIES)
     part, weights = case.of(FacetSpec).lit(views, case.backend.counts.nodes)
     shape = (*weights.shape, 3)
@@ -151,23 +151,23 @@ def reflected_sky(case: Case) -> Iterator[Compared]:
 
 
 def diagnose_sky(case: Case) -> Diagnosis:
-    """Whether the mirror lobe is wrong, or the retroreflective one alone."""
+    """Whether the mirror lobe is wrong, or only the retroreflective one."""
     if case.tolerance("sky").wrong(next(reflected_sky(case))).any():
         return defect("other_directions")
     return defect("retroreflective_environment")
 
 
 def anisotropic_albedo(case: Case) -> Iterator[Compared]:
-    """Albedos by the methods of the host, and by the library's own lookups where it has them."""
+    """Albedos by the host's methods, and by the library's own lookups if it has any."""
     yield from albedos(case, case.host.active)
     for methods in searching(case, Methods("fis"), Methods("prefilter")):
         yield from albedos(case, methods, generated(case, methods))
 
 
 def albedos(case: Case, methods: Methods, shader: "Shader | None" = None) -> Iterator[Compared]:
-    """Albedos by a client's methods: the library's own sum also clamps curves below 0.
+    """Albedos by a client's methods; the library's own sum also clamps curves below 0.
 
-    Its prefiltered lobes have fits of their curves, which are loose for metals; those of mirrors have none.
+    Its prefiltered lobes use fits of their curves, which are coarse for metals; mirrors need none.
     """
     spec = case.of(FacetSpec)
     batch, expected = exact = case.backend.take(spec.stretched)
@@ -184,7 +184,7 @@ def albedos(case: Case, methods: Methods, shader: "Shader | None" = None) -> Ite
 
 
 def searching(case: Case, *methods: Methods) -> Iterator[Methods]:
-    """Methods with the library's own lookups of an environment, if it has them and none are chosen."""
+    """Methods with the library's own environment lookups, if it has any and no methods are chosen."""
     from mxeon.shaders.library import environment_folders
 
     if case.host.active == GENERATED and not case.control and environment_folders(case.library):
@@ -192,13 +192,13 @@ def searching(case: Case, *methods: Methods) -> Iterator[Methods]:
 
 
 def generated(case: Case, methods: Methods) -> "Shader":
-    """Shader of the node with a client's methods."""
+    """The node's shader with a client's methods."""
     [shader] = case.host.compile(case.spec.document(), library=case.library, methods=methods)
     return shader
 
 
 def stretched_values(case: Case) -> Iterator[Compared]:
-    """Values of lobes with two alphas against the model's."""
+    """Values of lobes with two alphas, compared with the model's."""
     for batch in case.chosen or (case.backend.take(case.of(FacetSpec).anisotropic),):
         yield Compared(batch, case.direct(batch), case.expected(batch))
 
@@ -218,15 +218,15 @@ def anisotropic_throughput(case: Case) -> Iterator[Compared]:
 # --- light that is transmitted, in the branch that looks up an environment ------------------------
 
 SEEN = 64  # views in a turned environment
-SUMMED = 1e-3  # rms by which a sum over the normals of an engine differs from it
-SMOOTH_VIEWS = 1 << 9  # of smooth surfaces
-CHANGED_VIEWS = 1 << 6  # whose inputs are changed
-LEAST_SEEN = 0.05  # cosine of them
-CRITICAL = 0.05  # distance from the critical angle, in its cosine: F has an infinite slope there
+SUMMED = 1e-3  # rms error of an engine's sum over the normals
+SMOOTH_VIEWS = 1 << 9  # views of smooth surfaces
+CHANGED_VIEWS = 1 << 6  # views for changed inputs
+LEAST_SEEN = 0.05  # least cosine of views
+CRITICAL = 0.05  # distance from the critical cosine, where F has an infinite slope
 ROUGH_VIEWS, FACETS_SEEN = 1 << 6, 32  # facets along each of two random numbers
 ROUGH = 0.1  # least alpha of rough glass
-LEAST_PASSED = 0.01  # light whose place is measured
-# Slope of a refracted ray in a cosine, index^2 / cosine, above which errors count relative to it.
+LEAST_PASSED = 0.01  # least light whose direction is measured
+# Above this slope of a refracted ray in a cosine, index^2 / cosine, errors are relative to the slope.
 BENT = 1000.0
 REFRACTED = lobes.SURROUNDINGS.plus(roundings(4 * BENT, "four of a cosine, times a slope of 1000"))
 NORMAL = (0.0, 0.0, 1.0)
@@ -235,12 +235,12 @@ ONE = np.ones((1, 3))
 
 
 def with_directions(spec: Spec, methods: Methods) -> bool:
-    """Whether an environment is summed over directions: a prefiltered map is read once, times a fit."""
+    """Whether an environment is summed over directions; a prefiltered map is read once, times a fit."""
     return methods.environment == "fis"
 
 
 def diagnose_transmitted(case: Case) -> Diagnosis:
-    """Whether the light is what facets pass, or that over G_1, as MaterialX has it; and where it is NaN."""
+    """Whether the light is that of the facets, or divided by G_1 as in MaterialX; and where it is NaN."""
     compared, spec = list(transmitted(case)), case.of(TransmissionSpec)
 
     def distance(found: Callable[[Compared], Array]) -> float:
@@ -264,12 +264,12 @@ def _seen(spec: TransmissionSpec, batch: Batch, masked: bool = False) -> Array:
 
 
 def transmitted(case: Case) -> Iterator[Compared]:
-    """Light of a uniform environment through the surface, against the nearest value inside the limits.
+    """Light of a uniform environment through the surface, compared with the nearest value within two limits.
 
-    One is what the BTDF passes, without compensation; the other all that is not reflected, with tint and
-    weight. The first is the larger for some colors of Schlick's curve, of which the text compensates too
-    much. As opacity, a lobe that only transmits
-    passes its tint: a layer over it takes away what it reflects.
+    One limit is the light passed by the BTDF, without compensation; the other is all light that is not reflected,
+    with tint and weight. The first is larger for some colors of Schlick's curve, which the text compensates
+    too much. As opacity, a lobe that only transmits
+    passes its tint, and a layer above it subtracts its reflection.
     """
     spec = case.of(TransmissionSpec)
     for batch in case.views:
@@ -277,7 +277,7 @@ def transmitted(case: Case) -> Iterator[Compared]:
 
 
 def limited(spec: TransmissionSpec, batch: Batch, measured: Array, opaque: bool) -> Compared:
-    """Light through the surface against the nearest value inside the limits."""
+    """Light through the surface, compared with the nearest value within the limits."""
     functions = spec.functions
     if opaque and not spec.reflects:
         return Compared(batch, measured, batch.strength * functions.tint(batch.inputs))
@@ -293,9 +293,8 @@ def clear(case: Case) -> Iterator[Compared]:
         yield Compared(white, case.albedo(white) + case.transmitted(white), ONE)
 
 
-# Methods of clients: Storm's, and a prefiltered environment with refraction, as MaterialXView has it; for a mirror with
-# albedos by samples and from a table. An environment is dim, turned for what reflects it, and tinted twice for what
-# refracts it.
+# Clients' methods: Storm's, and a prefiltered environment with refraction, as in MaterialXView; for mirrors, with
+# sampled and tabulated albedos. The environment is dim, turned for reflection, and tinted twice for refraction.
 OTHERS = (Methods("prefilter", "opacity"), Methods("prefilter", "refraction"))
 SAMPLED = Methods("prefilter", "refraction", "monteCarlo")
 BOUND = Client(turn=TURNING, intensity=0.5, two_sided=True)
@@ -309,12 +308,12 @@ def others(case: Case) -> Iterator[Methods]:
             yield replace(SAMPLED, albedo="table")
         return
     yield from OTHERS
-    if CLEAR(case.spec):  # whose shaders have the text of mode T as well
+    if CLEAR(case.spec):  # their shaders also have the text of mode T
         yield from searching(case, Methods("fis"), Methods("prefilter"))
 
 
 def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
-    """Light with a client's methods against what a node has by any, with the methods."""
+    """Each method, and light with a client's methods compared with the node's method-independent values."""
     transmits = TRANSMITTING(case.spec)
     for methods in others(case):
         ask = partial(case.evaluating.evaluate, shader=generated(case, methods))
@@ -323,7 +322,7 @@ def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
 
 
 def shares(case: Case, ask: Callable[..., Array], methods: Methods) -> Iterator[Compared]:
-    """Light through the surface, against the nearest value inside the limits."""
+    """Light through the surface, compared with the nearest value within the limits."""
     opaque = methods.transmission == "opacity"
     for batch in case.views:
         found = case.outputs(batch, ask(case.inputs(batch), "transmission", client=BOUND))
@@ -336,9 +335,9 @@ def shares(case: Case, ask: Callable[..., Array], methods: Methods) -> Iterator[
 
 
 def mirrored(case: Case, ask: Callable[..., Array]) -> Iterator[Compared]:
-    """What passes a mirror by default, what a white one reflects, and what it shows of turned surroundings.
+    """Light through a mirror by default, reflection of a white mirror, and reflection of turned surroundings.
 
-    A white mirror reflects all, or what MaterialX's fit of that has over the albedo.
+    A white mirror reflects everything, or MaterialX's fit of it over the albedo.
     """
     white = {name: np.ones(3) for name in ("color0", "color82", "color90")}
     for batch in case.views:
@@ -373,7 +372,7 @@ def diagnose_kept(case: Case) -> Diagnosis:
 
 
 def modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
-    """Values of a mode against those of mode R, or none, and of mode R against none, with the cause of an error."""
+    """Values of a mode compared with mode R or 0, and of mode R compared with 0, with the cause of an error."""
     spec = case.of(TransmissionSpec)
     only = case.another(spec.reflection) if spec.reflects else None
     none, unlike = 0.0 * ONE, "_unlike_R" * bool(only)
@@ -413,7 +412,7 @@ DENSE, VIEWED = ((1.5, 0.4), (2.0, 1.0)), np.array([0.05, 0.2, 0.5, 0.75, 1.0])
 
 
 def inside(case: Case) -> Iterator[Compared]:
-    """Light that passes is in balance: its average over all views, times the index squared, is that from outside."""
+    """Balance of transmitted light: its average over all views, times the squared index, equals that from outside."""
     spec, views = case.of(TransmissionSpec), directions_at(VIEWED, 0.5)
     for index, alpha in DENSE:
         rows = case.views[0].first(len(VIEWED))
@@ -431,14 +430,14 @@ def inside(case: Case) -> Iterator[Compared]:
 def refraction(case: Case) -> Compared:
     index = case.of(TransmissionSpec).functions.ior
     batch = _smooth(case)
-    # Views in frames from which a sphere refracts them to middles of texels of the sky.
+    # Views in frames in which a sphere refracts them to the middles of sky texels.
     out = through_sphere(batch.wo, index(batch.inputs))
     place = samples.texel_middles(out)
     frames = aimed(np.broadcast_to(np.eye(3), (len(out), 3, 3)), out, place)
     axes = {"tangent": rounded(frames[:, :, 0].T), "normal": rounded(frames[:, :, 2].T)}
     batch = replace(batch.altered(**axes), frame=frames)
     slope = (index(batch.inputs) ** 2 / batch.wo[:, 2])[:, np.newaxis]
-    condition = np.maximum(1.0, slope / BENT)  # of a ray that turns by more than its cosine
+    condition = np.maximum(1.0, slope / BENT)  # amplification of a cosine's error
     level = case.transmitted(batch)
     bright = np.asarray(level.min(axis=1) > LEAST_PASSED)
     measured = case.transmitted(batch, sky_map()) / np.where(bright[:, np.newaxis], level, 1.0)
@@ -446,18 +445,16 @@ def refraction(case: Case) -> Compared:
 
 
 def rough_refraction(case: Case) -> Compared:
-    """Light of an uneven sky through lobes of two alphas over that of a uniform one, against a mean of the sky.
+    """Light of an uneven sky through lobes of two alphas over a uniform one, compared with a mean of the sky.
 
-    Each visible facet passes the same share, into the direction in which a solid sphere refracts the view.
+    Each visible facet passes the same share, in the direction in which a solid sphere refracts the view.
     """
     functions, rng = case.of(TransmissionSpec).functions, samples.generator()
     batch = case.few[0].first(ROUGH_VIEWS)
     count = len(batch.wo)
     wo, alpha = samples.turned_directions(rng, count), rounded(ROUGH ** rng.random((2, count)))
     if "color0" in batch.inputs:
-        color = (
-            0.2 * batch.inputs["color0"]
-        )  # without a curve, by which facets may weigh differently
+        color = 0.2 * batch.inputs["color0"]  # no curve, so all facets have the same weight
         batch = batch.altered(color0=color, color82=(1.0, 1.0, 1.0), color90=color)
     else:
         batch = batch.altered(ior=1.2 + 0.8 * rng.random(count))
@@ -481,12 +478,12 @@ def rough_refraction(case: Case) -> Compared:
 
 
 def through_sphere(wo: Array, index: Array, facet: Array = UPWARD) -> Array:
-    """Direction of a view that a solid sphere has refracted twice, (N, 3), at its normal or at a facet.
+    """Direction of a view after a solid sphere refracts it twice, (N, 3), at its normal or at a facet.
 
-    At the far side the ray meets the surface at the same angle: it turns twice by the same amount.
+    The ray meets the far surface at the same angle, so it turns by the same amount twice.
     """
     inner = refraction_direction(wo, facet, index)
-    far = inner * 2.0 * np.sum(inner * facet, axis=-1, keepdims=True) - facet  # towards the inside
+    far = inner * 2.0 * np.sum(inner * facet, axis=-1, keepdims=True) - facet  # pointing inwards
     cosine = -np.sum(inner * far, axis=1, keepdims=True)
     n = index[:, np.newaxis]
     out = np.sqrt(np.maximum(1.0 - n * n * (1.0 - cosine * cosine), 0.0))
@@ -494,26 +491,26 @@ def through_sphere(wo: Array, index: Array, facet: Array = UPWARD) -> Array:
 
 
 def _smooth(case: Case) -> Batch:
-    """Views of smooth surfaces of all indices, with the node's colors."""
+    """Views of smooth surfaces for all indices, with the node's colors."""
     batch = case.few[0].first(SMOOTH_VIEWS)
-    if "color0" in batch.inputs:  # as clear as a curve may be, whose index is the highest
+    if "color0" in batch.inputs:  # clearest possible curve, with the highest index
         batch = batch.with_row(0, samples.directions_at(0.1, 0.5), weight=1.0, color0=0.99)
     batch = batch.where(batch.wo[:, 2] >= LEAST_SEEN)
     return batch.altered(roughness=(0.0, 0.0))
 
 
 def _edges(case: Case) -> Compared:
-    """Light at the edges of the domain, of every fifth pair: each costs a sum over directions."""
+    """Light at the edges of the domain, for every fifth pair, because each requires a sum over directions."""
     batch = case.backend.edges
     batch = batch.where(np.arange(len(batch.wo)) % 5 == 0)
     return Compared(batch, case.transmitted(batch), np.zeros((1, 3)))
 
 
 def wrong_inputs(case: Case) -> list[str]:
-    """Inputs that change no light through the surface, and those that must not.
+    """Inputs that wrongly do not change the light through the surface, and those that wrongly do.
 
-    The retroreflective mode is of the reflection alone. As opacity, a lobe that only transmits passes its tint.
-    By every other method, the albedo of two alphas depends on the tangent.
+    The retroreflective mode only affects reflection. As opacity, a lobe that only transmits passes its tint.
+    With every other method, the albedo of two alphas depends on the tangent.
     """
     batch = case.few[0].first(CHANGED_VIEWS)
     dead = dead_inputs(case, batch, lambda each: case.transmitted(each, sky_map()))
@@ -527,12 +524,12 @@ def wrong_inputs(case: Case) -> list[str]:
 
 Function = Callable[[Batch], Array]
 MIRRORED = (-1.0, -1.0, 1.0)
-ROUGHNESSES = (1.0, 0.3)  # with much and with little compensation
-SMOOTH = (0.04, 0.005)  # with next to none, for whose average a shader may take fewer cosines
-LEAST_F = 0.01  # of a curve by which its averages are divided
-THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
+ROUGHNESSES = (1.0, 0.3)  # much and little compensation
+SMOOTH = (0.04, 0.005)  # almost no compensation; shaders may average over fewer cosines
+LEAST_F = 0.01  # smaller curves do not divide averages
+THIN_LIMIT = 1e-3  # thickness in nm of a film without effect
 SLANT = 2.0 / 3.0  # mean cosine of a hemisphere, weighted by the cosine
-RARE = 0.5  # index of a film that MaterialX counts as vacuum
+RARE = 0.5  # index of a film that MaterialX treats as vacuum
 
 dropped = controls.with_inputs("the film is dropped", thinfilm_thickness=0.0)
 
@@ -542,9 +539,9 @@ def brighter(batch: Batch, values: Array) -> Array:
 
 
 def curves(films: microfacets.Films, case: Case) -> Compared:
-    """Curves: values in mirrored lights over those of a mirror.
+    """Curves: values in mirrored lights over a mirror's.
 
-    The lobes are so smooth that their compensation is 1, whatever average it has.
+    The lobes are so smooth that their compensation is 1 for any average.
     """
     batch = film_views(case.of(FilmSpec), films)
     (measured, mirror), (expected, white) = (
@@ -554,20 +551,20 @@ def curves(films: microfacets.Films, case: Case) -> Compared:
 
 
 def film_limit(case: Case) -> list[Compared]:
-    """Values under a film of index 1, and under one of THIN_LIMIT, against those without.
+    """Values under a film of index 1, and under a film of thickness THIN_LIMIT, compared with no film.
 
-    A film of an index below that of vacuum counts as one of index 1, whatever that one does. Under a thin
-    one the sensitivities count, of five digits, whose sum is not 1: as much as in the equations is right.
+    A film with an index below 1 counts as index 1, whatever the latter does. Under a thin film, the sum of the
+    five-digit sensitivities is not 1: the same deviation as in the equations is correct.
     """
-    # Under a film Schlick's curve has no dip: where that is negative, a film's counts as 0.
-    # Where most of a film shows; of one alpha, since the masking of two is another matter.
+    # Schlick's curve has no dip under a film: where the dip makes it negative, the film's curve counts as 0.
+    # Use the most visible part of a film, with one alpha, since the masking of two is a separate issue.
     batch = backends.isotropic(case.backend.mirrored[0].first(case.backend.counts.few))
     batch = _clear(batch, microfacets.LEAST_INDEX, 1.0).altered(thinfilm_thickness=300.0)
     without = batch.altered(thinfilm_thickness=0.0)
     bare = case.direct(without)
     empty, rare = (case.direct(batch.altered(thinfilm_ior=index)) for index in (1.0, RARE))
     cases = [Compared(batch, empty, bare), Compared(batch, rare, empty)]
-    if "color0" not in batch.inputs:  # whose curve is taken at another angle under a film
+    if "color0" not in batch.inputs:  # Schlick's curve uses another angle under a film
         thin = batch.altered(thinfilm_thickness=THIN_LIMIT)
         sensed = case.expected(thin) - case.expected(without)
         cases.append(Compared(batch, case.direct(thin), bare + sensed))
@@ -576,7 +573,7 @@ def film_limit(case: Case) -> list[Compared]:
 
 def film_energy(case: Case) -> list[Compared]:
     cases = []
-    for batch in case.few[::2]:  # a mirror of index 0 is another check where directions are exact
+    for batch in case.few[::2]:  # with exact directions, a mirror of index 0 is a separate check
         mirror = batch.altered(thinfilm_thickness=0.0, **case.of(FilmSpec).row.mirror)
         most = case.direct(mirror)
         cases.append(Compared(batch, np.maximum(case.direct(batch), most), most))
@@ -584,7 +581,7 @@ def film_energy(case: Case) -> list[Compared]:
 
 
 def diagnose_average(case: Case) -> Diagnosis:
-    """Whether F at one cosine, or by its ends, replaces its average, or nothing is compensated."""
+    """Whether F at one cosine or between its ends replaces the average, or nothing is compensated."""
     batch, measured, expected = film_average(case)
     rough = batch.altered(roughness=(max(ROUGHNESSES),) * 2)
     lost, most = (_parts(case, each, rough)[1].max() for each in (case.direct, case.expected))
@@ -607,7 +604,7 @@ def diagnose_average(case: Case) -> Diagnosis:
 
 
 def film_average(case: Case) -> Compared:
-    """F_ss of films whose curve is not next to 0."""
+    """F_ss of films with a curve away from 0."""
     batch = film_views(case.of(FilmSpec), microfacets.FRINGED)
     (_, measured), (F, expected) = (
         _averages(case, each, batch) for each in (case.direct, case.expected)
@@ -616,8 +613,8 @@ def film_average(case: Case) -> Compared:
 
 
 def film_smooth(case: Case) -> Compared:
-    """Values F (1 + F_ss k) of lobes that lose little, against those of lobes that lose less. F and k are the host's,
-    and F_ss that of the equations.
+    """Values F (1 + F_ss k) of lobes with small losses, compared with smoother lobes. F and k are the host's,
+    and F_ss comes from the equations.
     """
     batch = film_views(case.of(FilmSpec), microfacets.FRINGED)
     F, F_ss = _averages(case, case.expected, batch)
@@ -629,15 +626,15 @@ def film_smooth(case: Case) -> Compared:
 
 
 def diagnose_visible(case: Case) -> Diagnosis:
-    """The explanation of a film's albedo, or the weights of the facets where that is right."""
+    """The explanation of a film's albedo, or the weights of the facets if the albedo is right."""
     explained = ALBEDO.diagnose(case)
     return explained if diagnosis.SINGLY_RIGHT not in explained.causes else Diagnosis((UNMASKED,))
 
 
 def visible(films: microfacets.Films, case: Case) -> Compared:
-    """Means F_o over the visible facets of films whose curve is not next to 0, by albedos E_ss F_o (1 + F_ss k).
+    """Means F_o over the visible facets of films with a curve away from 0, from albedos E_ss F_o (1 + F_ss k).
 
-    An albedo counts over the one of a mirror, E_ss (1 + k) = 1.
+    An albedo is divided by a mirror's, E_ss (1 + k) = 1.
     """
     batch = film_views(case.of(FilmSpec), films)
 
@@ -652,9 +649,9 @@ def visible(films: microfacets.Films, case: Case) -> Compared:
 
 
 def film_brushed(case: Case) -> Compared:
-    """Albedos of two alphas over those of a mirror, where those of one alpha have the film that is expected.
+    """Albedos of two alphas over a mirror's, if albedos of one alpha have the expected film.
 
-    What the specification leaves open in a film, film_visible judges; here it would fail.
+    The options that the specification leaves open for films are judged by film_visible; here they would fail.
     """
     if (
         not case.control
@@ -668,8 +665,8 @@ def film_brushed(case: Case) -> Compared:
 def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
     """F at the half vector of mirrored lights, and F_ss, (N, 3) each, from values at two roughnesses.
 
-    A value over that of facets that reflect everything is F (1 + F_ss k), k = (1 - E_ss) / E_ss, in
-    which a lobe that reflects everything has F = F_ss = 1.
+    A value over that of perfectly reflecting facets is F (1 + F_ss k), k = (1 - E_ss) / E_ss; a
+    perfectly reflecting lobe has F = F_ss = 1.
     """
     (first, k), (second, other_k) = (
         _parts(case, direct, batch.altered(roughness=(alpha, alpha))) for alpha in ROUGHNESSES
@@ -679,14 +676,14 @@ def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]
 
 
 def _parts(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
-    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each: values over those of facets that reflect all."""
+    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each: values over those of perfect reflectors."""
     alpha, mu = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))[:, 0], batch.wo[:, 2]
     facets = 0.25 / (alpha * alpha * smith_lambda(mu, alpha))[:, np.newaxis]
     return direct(batch) / facets, direct(_mirror(case, batch)) / facets - 1.0
 
 
 def _mirror(case: Case, batch: Batch) -> Batch:
-    """The same pairs with a lobe that reflects everything."""
+    """The same pairs with a perfectly reflecting lobe."""
     return batch.altered(thinfilm_thickness=0.0, **case.of(FilmSpec).row.mirror)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of the nodes that scatter nothing: those that emit light, media, and utility nodes."""
+"""Checks of nodes that do not scatter light: emissions, media, and utility nodes."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -51,13 +51,13 @@ def above(case: Case) -> Iterator[Compared]:
 
 
 def outside(case: Case) -> Compared:
-    """Outputs at the ends of the ranges and beyond, beside 0."""
+    """Outputs at and beyond the ends of the ranges, compared with 0."""
     batch = case.backend.take(case.of(UtilitySpec).outside)
     return Compared(batch, case.direct(batch), np.zeros((1, 3)))
 
 
 def explained_finite(case: Case) -> Diagnosis:
-    """How many outputs are not finite, and the range of an input that has all of them."""
+    """The number of non-finite outputs, and the input range that contains all of them."""
     compared = unbounded(outside(case))
     share = correct_except([compared], EXACT, span([compared], EXACT))
     return Diagnosis((replace(share, kind=Kind.NOT_FINITE),))

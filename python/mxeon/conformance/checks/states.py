@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a pixel may hold beside one lobe under one light: a value is the sum of what each part has by itself.
+"""Pixels with more than one lobe under one light: their value must be the sum of the values of the parts.
 
-AXES lists the states, one line each. Every two states of different axes meet in some pixels. The host's own
-values of the parts are the expected ones, so a wrong model passes, and a failure has one reason.
+AXES lists the states, one line each. Any two states of different axes occur together in some pixels. The
+expected values are the host's own values of the parts, so a wrong model passes, and a failure has one reason.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -43,35 +43,35 @@ from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.nodes import FRAME_INPUTS, with_images
 from mxeon.shaders.scene import CLIENT, Client
 
-if TYPE_CHECKING:  # which loads MaterialX
+if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
-EACH = 12  # pixels of a combination of states: three squares of 2 x 2 of a frame of two rows
-STEP = 0.05  # radian from pixel to pixel of a surface that bends, whose radius is 1
+EACH = 12  # pixels per combination of states: three 2 x 2 squares in a frame of two rows
+STEP = 0.05  # radian between pixels of a bent surface with radius 1
 FRAME = ("normal", "tangent", "position", SURFACE)
 FLAT = NORMAL, TANGENT, (0.0, 0.0, 0.0), NORMAL
 WEIGHTS = (0.0, 0.3, 1.0, 1.0)
-FEW = 6  # combinations that a control measures
-CLEARER = 0.7  # share of the pixels of one state that those of two may have to be named instead
+FEW = 6  # combinations in a control
+CLEARER = 0.7  # two states replace one if they have at most this share of its pixels
 Inputs = Mapping[str, Array]
 Random = np.random.Generator
-Layout = tuple[tuple[int, ...], tuple[int, ...]]  # shape and order of axes of a list of pixels
+Layout = tuple[tuple[int, ...], tuple[int, ...]]  # shape and axis order of a list of pixels
 
 
 @dataclass(frozen=True)
 class Pixels:
-    """Pixels that share a combination of states."""
+    """Pixels with the same combination of states."""
 
     batch: Batch
     states: tuple[str, ...]
     light: Array  # direction of a second light, in the local frame
-    second: Inputs | None = None  # inputs of another lobe beside that of the batch
-    aside: Array | None = None  # its frame, if that is not the batch's
-    differ: tuple[str, ...] = ()  # the input in which the lobes of each pixel differ
+    second: Inputs | None = None  # inputs of a second lobe
+    aside: Array | None = None  # frame of the second lobe, if it differs
+    differ: tuple[str, ...] = ()  # input that differs between the lobes of each pixel
     lights: int = 1
     sky: str = ""  # "uniform" or "uneven"
     client: Client = CLIENT  # how the environment is turned and scaled
-    image: bool = False  # whether the inputs of its last lobe are texels of an image
+    image: bool = False  # whether the last lobe's inputs are texels of an image
 
 
 Build = Callable[[Pixels, Random], Pixels]
@@ -82,7 +82,7 @@ def same(pixels: Pixels, rng: Random) -> Pixels:
 
 
 def lit(pixels: Pixels, rng: Random, count: int, first: float = 1.0, second: float = 1.0) -> Pixels:
-    """So many lights; -1 for one on the side that the lobe does not scatter."""
+    """A number of lights; -1 for one on the side that the lobe does not scatter."""
     wi = pixels.batch.wi
     batch = replace(pixels.batch, wi=wi * [1.0, 1.0, first])
     light = np.roll(wi, 1, axis=0) * [1.0, 1.0, second]
@@ -100,7 +100,7 @@ def framed(
     along: bool = False,
     scaled: bool = False,
 ) -> Pixels:
-    """Frames made of random ones; the view may lie along the normal, the tangent may lean and have any length."""
+    """Frames from random ones; the view may be along the normal, and tangents may lean and have any length."""
     batch = pixels.batch
     assert batch.frame is not None
     frame = make(batch.frame, rng)
@@ -110,7 +110,7 @@ def framed(
         tangent = length * (tangent + rng.uniform(-0.5, 0.5, (len(frame), 1)) * normal)
     axes = {"normal": rounded(normal.T), "tangent": rounded(tangent.T)}
     wo = np.broadcast_to(NORMAL, batch.wo.shape) if along else batch.wo
-    # An axis may be a pole of the environment, from which azimuths count from roundings once it is turned.
+    # An axis may be a pole of the environment, where azimuths come from roundings once it is turned.
     client = CLIENT if make is on_axes and pixels.sky == "uneven" else pixels.client
     batch = replace(batch.altered(**axes), wo=wo, frame=frame)
     return replace(pixels, batch=batch, client=client)
@@ -121,7 +121,7 @@ def upright(frames: Array, rng: Random) -> Array:
 
 
 def on_axes(frames: Array, rng: Random) -> Array:
-    """Frames whose normals are the axes in both directions, in any order, and whose tangents are axes or not."""
+    """Frames whose normals are axes in both directions, in any order; tangents may also be axes."""
     turns = [np.roll(np.eye(3), shift, axis=0) for shift in range(3)]
     tangents = np.eye(3), np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
     rows = product(tangents, turns, ([1, 1, 1], [1, -1, -1]))
@@ -129,7 +129,7 @@ def on_axes(frames: Array, rng: Random) -> Array:
 
 
 def bent(pixels: Pixels, rng: Random, columns: float = 0.0, rows: float = 0.0) -> Pixels:
-    """A surface that bends in each square by so many radian from column to column and from row to row."""
+    """A surface that bends in each square by `columns` and `rows` radian per column and row."""
     batch, pixel = pixels.batch, np.arange(EACH)
     assert batch.frame is not None
     first, column, row = pixel // 4 * 4, pixel % 2, pixel // 2 % 2
@@ -153,7 +153,7 @@ def bent(pixels: Pixels, rng: Random, columns: float = 0.0, rows: float = 0.0) -
 
 
 def doubled(pixels: Pixels, rng: Random, component: bool = False, swapped: bool = False) -> Pixels:
-    """Another lobe, which differs in one input of each pixel, or in one component of it."""
+    """A second lobe that differs in one input of each pixel, or in one component of it."""
     first = broadcast_inputs(pixels.batch)
     second, words = dict(first), [""] * EACH
     names = [name for name in first if name not in FRAME]
@@ -168,7 +168,7 @@ def doubled(pixels: Pixels, rng: Random, component: bool = False, swapped: bool 
 
 
 def leaning(pixels: Pixels, rng: Random) -> Pixels:
-    """Another lobe with the same inputs, and the same normal in a square or one halfway to the viewer."""
+    """A second lobe with the same inputs, and with the same normal or one halfway to the viewer in each square."""
     batch = pixels.batch
     assert batch.frame is not None
     normal = batch.frame[:, :, 2]
@@ -185,7 +185,7 @@ def leaning(pixels: Pixels, rng: Random) -> Pixels:
 
 
 def changed(pixels: Pixels, change: Callable[[Array], Array]) -> Pixels:
-    """The same with other values of all inputs but the frame, in both lobes."""
+    """A copy with changed values of all inputs except the frame, in both lobes."""
     batch, second = pixels.batch, pixels.second
     inputs, others = (
         {name: each if name in FRAME else change(each) for name, each in values.items()}
@@ -195,26 +195,26 @@ def changed(pixels: Pixels, change: Callable[[Array], Array]) -> Pixels:
 
 
 def constant(pixels: Pixels, rng: Random) -> Pixels:
-    """The inputs of one pixel in all."""
+    """One pixel's inputs for all pixels."""
     row = rng.integers(EACH)
     differ = pixels.differ and (pixels.differ[row],) * EACH
     return replace(changed(pixels, lambda values: values[row]), differ=differ)
 
 
 def in_image(pixels: Pixels, rng: Random) -> Pixels:
-    """Inputs that half floats hold, as images and textures do."""
+    """Inputs rounded to half floats, as in images and textures."""
     halves = changed(pixels, lambda values: values.astype(np.float16).astype(np.float64))
     return replace(halves, image=True)
 
 
 TWO_SIDED, TURNED_SKY = "an environment: dim and two-sided", "an environment: turned"
-# A turn about y that takes the middles of texels of the sky to others.
+# A rotation about y that maps the middles of sky texels to each other.
 ANGLE = 37.0 * np.pi / SKY_ROWS
 COSINE, SINE = np.cos(ANGLE), np.sin(ANGLE)
 ROTATION = np.array([[COSINE, 0.0, SINE], [0.0, 1.0, 0.0], [-SINE, 0.0, COSINE]])
 TURNING = tuple((TURN @ np.pad(ROTATION, (0, 1))).T.ravel().tolist())
-# The first state of each axis is that of every other check. States whose words are the same up to a colon are
-# diagnosed together, too.
+# Other checks use the first state of each axis. States with the same words up to a colon are also
+# diagnosed together.
 AXES: dict[str, dict[str, Build]] = {
     "lights": {
         "one light": partial(lit, count=1),
@@ -261,7 +261,7 @@ AXES: dict[str, dict[str, Build]] = {
 
 @lru_cache(maxsize=8)
 def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
-    """Combinations of a state of each axis, in which every two states of different axes meet.
+    """Combinations of one state per axis that contain every pair of states from different axes.
 
     >>> covering((("a", "b"), ("x", "y"), ("1",)))
     (('a', 'x', '1'), ('b', 'y', '1'), ('a', 'y', '1'), ('b', 'x', '1'))
@@ -283,15 +283,15 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
 
 
 def pixels_of(case: Case) -> list[Pixels]:
-    """Pixels of combinations of the states that the node and the engine can have."""
+    """Pixels with combinations of the states that the node and the engine support."""
     rng, plain = samples.generator(), {*case.lobe.plain, *case.backend.plain}
     if not case.host.reads_images:
         plain.add("inputs from an image")
     if "frame" in plain:
         plain.add(TURNED_SKY)
-    if Ability.MATERIAL in case.spec.requires:  # whose tints are inside
+    if Ability.MATERIAL in case.spec.requires:  # its tints are internal
         plain.add(TWO_SIDED)
-    if case.host.active.transmission == "opacity":  # which no environment scales
+    if case.host.active.transmission == "opacity":  # environments do not scale it
         plain.add(TWO_SIDED)
     axes = tuple(
         tuple(state for n, state in enumerate(each) if not n or not {name, state} & plain)
@@ -300,14 +300,14 @@ def pixels_of(case: Case) -> list[Pixels]:
     rows = covering(axes)
     turned = case.backend.turned
     batch = turned.where(np.arange(EACH * len(rows)) % len(turned.wo))
-    if case.lobe.curved:  # else no light leaves elsewhere
+    if case.lobe.curved:  # otherwise light does not leave elsewhere
         batch = batch.altered(**case.lobe.random_inputs(rng, len(batch.wo)))
     if case.lobe.types.get("roughness") == "vector2":
         alpha = np.array(batch.inputs["roughness"])
-        alpha[::2, 1] = np.roll(alpha[:, 0], 1)[::2]  # two alphas in every other pixel at least
+        alpha[::2, 1] = np.roll(alpha[:, 0], 1)[::2]  # two alphas in at least every other pixel
         batch = batch.altered(roughness=alpha)
     if "weight" in case.spec.names:
-        # The same in a square: where a lobe is left, derivatives have no values.
+        # Equal within a square: derivatives are undefined where a lobe is skipped.
         batch = batch.altered(weight=np.repeat(rng.choice(WEIGHTS, len(batch.wo) // 4), 4))
     found = []
     for number, states in enumerate(rows):
@@ -329,7 +329,7 @@ def states(case: Case) -> Iterator[Compared]:
     groups = pixels_of(case)
     if case.control:
         groups = [each for each in groups if not each.image][:FEW]
-    # Constant inputs by themselves.
+    # Draw constant inputs separately.
     frames: dict[tuple[bool, str, Client, bool, int], list[int]] = {}
     for number, pixels in enumerate(groups):
         alone = number if "constant inputs" in pixels.states else -1
@@ -354,7 +354,7 @@ def states(case: Case) -> Iterator[Compared]:
         yield Compared(pixels.batch, measured[number], expected)
 
 
-# How pixels lie in a frame of two rows: each four in a square of 2 x 2, the same turned, or far from each other.
+# Layouts in a frame of two rows: four pixels per 2 x 2 square, the same transposed, or far apart.
 SQUARES, TURNED, APART = ((-1, 2, 2), (1, 0, 2)), ((-1, 2, 2), (2, 0, 1)), ((-1, EACH), (1, 0))
 
 
@@ -376,7 +376,7 @@ def imaged(
     client: Client,
     two: bool,
 ) -> Array:
-    """Light in pixels whose last lobe has texels of an image as inputs, each a square of 2 x 2 equal ones."""
+    """Light in pixels whose last lobe reads its inputs from an image, each from 2 x 2 equal texels."""
     count, last = len(batch.wo), "second/" if two else "lobe/"
     own = {name.removeprefix("second/"): name for name in batch.inputs if ("/" in name) == two}
     names = [name for name in own if name in case.lobe.types and name not in FRAME]
@@ -404,7 +404,7 @@ def compile_imaged(
 
 
 def batch_of(pixels: Pixels) -> Batch:
-    """The batch of pixels with the inputs of all their states."""
+    """The batch of pixels with the inputs of all states."""
     batch, count = pixels.batch, len(pixels.batch.wo)
     inputs: Values = {
         LIGHTS: np.full(count, float(pixels.lights)),
@@ -425,10 +425,10 @@ def batch_of(pixels: Pixels) -> Batch:
 
 
 def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
-    """Sums of the parts of pixels, each by itself, and beside pixels with other inputs.
+    """Sums of the separately evaluated parts of pixels, next to pixels with other inputs.
 
-    They are on a plane in the surface's frame, but under an uneven sky. Where a shape changes them, they are on
-    the same shape, which bends the other way on the screen.
+    They are on a plane in the surface's frame, except under an uneven sky. If the shape affects them, they are on
+    the same shape, bent the other way on the screen.
     """
     curved = case.lobe.curved
     layout = TURNED if curved else APART
@@ -472,7 +472,7 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
 
 
 def in_turn(batch: Batch, client: Client) -> Batch:
-    """The same where the surface turns instead of the environment."""
+    """A batch in which the surface is turned instead of the environment."""
     if client.turn == CLIENT.turn:
         return batch
     frame = (
@@ -486,7 +486,7 @@ def in_turn(batch: Batch, client: Client) -> Batch:
 
 
 def diagnose(case: Case) -> Diagnosis:
-    """The states in which all wrong pixels are."""
+    """The states that contain all wrong pixels."""
     tolerance, compared = case.tolerance("states"), list(states(case))
     bad = np.concatenate(list(map(tolerance.wrong, compared)))
     pixels = [words for each in pixels_of(case) for words in _words(each)]
@@ -494,7 +494,7 @@ def diagnose(case: Case) -> Diagnosis:
 
 
 def shared(bad: Mask, pixels: Sequence[set[str]]) -> Cause:
-    """The states that all wrong pixels have: one, two that meet in them, or either of two."""
+    """The states that all wrong pixels share: one, a pair that meets, or either of two."""
     names = sorted(set().union(*pixels))
     found: dict[tuple[str, ...], Mask] = {
         (name,): np.array([name in each for each in pixels]) for name in names
@@ -522,14 +522,14 @@ def shared(bad: Mask, pixels: Sequence[set[str]]) -> Cause:
 
 
 def _words(pixels: Pixels) -> Iterator[set[str]]:
-    """The states of each pixel but the first ones, in the words of a diagnosis."""
+    """The states of each pixel, except the first ones, in the words of a diagnosis."""
     common = named(pixels.states, AXES)
     for name in pixels.differ or ("",) * EACH:
         yield common | ({f"two lobes that differ in {name}"} if name else set())
 
 
 def named(states: Iterable[str], axes: Mapping[str, Mapping[str, object]]) -> set[str]:
-    """States that are not the first of their axes, and what their words have before each colon."""
+    """States other than the first of their axes, and their words before each colon."""
     first = {next(iter(each)) for each in axes.values()}
     parts = [words.split(":") for words in states if words not in first]
     return {":".join(each[: count + 1]) for each in parts for count in range(len(each))}
@@ -541,7 +541,7 @@ ROWS = (
           claim="Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not.",
           applies=family(LobeSpec), measure=states, tolerance="states", control=exchanged,
           explain=diagnose, requires=Ability.PAIRS,
-          # As opacity, such a lobe is its tint: no control could show a wrong view.
+          # As opacity, such a lobe equals its tint: a control could not detect a wrong view.
           methods=lambda spec, methods: methods.transmission != "opacity" or not DARK(spec)),
 )
 # fmt: on

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of surface shaders as a whole; a failure names the lobe without which it vanishes."""
+"""Checks of whole surface shaders; a failure names the lobe that causes it."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -23,9 +23,9 @@ from mxeon.conformance.tolerance import Compared, Measurement, count_named, coun
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
 
-WORST = 32  # pairs that are looked at
-CHANGED = 8  # pairs that a change of an input has to show in
-# Inputs that take a lobe away, by its name.
+WORST = 32  # worst pairs to diagnose
+CHANGED = 8  # pairs that must react to a changed input
+# Inputs that disable each lobe, by its name.
 LOBE_INPUTS = {
     "coat": ("coat", "coat_weight", "clearcoat"),
     "sheen": ("sheen", "fuzz_weight", "sheen_color"),
@@ -35,7 +35,7 @@ LOBE_INPUTS = {
 
 
 def diagnose_lobes(case: Case) -> Diagnosis:
-    """The lobe whose absence leaves the smallest error of the worst pairs."""
+    """The lobe whose removal leaves the smallest error of the worst pairs."""
     [batch] = case.batches
     compared = values(case)
     wrong = scaled(compared.measured, compared.expected)
@@ -57,7 +57,7 @@ def diagnose_lobes(case: Case) -> Diagnosis:
 
 
 def wrong_layers(case: Case) -> list[str]:
-    """Lobes of a material that let through what they should not, or the reverse, each by itself."""
+    """Lobes of a material with a wrong throughput, each judged separately."""
     from mxeon.shaders.document.graphs import categories, inner_nodes
 
     used, found = categories(inner_nodes(case.evaluating.shader.document)), []
@@ -73,9 +73,9 @@ MATERIALS, SUM = family(SurfaceShaderSpec), always(defect("sum_of_lobes"))
 
 
 def values(case: Case) -> Compared:
-    """Values against the layer equation.
+    """Values compared with the layer equation.
 
-    Those of lobes with two alphas have the mean of their errors, or their own in units of their fits' largest.
+    Lobes with two alphas use the mean error, or individual errors in units of their fits' largest.
     """
     [batch] = case.batches
     expected = case.expected(batch)
@@ -114,14 +114,14 @@ def glass(case: Case) -> Iterator[Compared]:
     through = spec.transmitted(batch, methods.transmission == "opacity")
     measured = case.transmitted(batch)
     yield Compared(batch, measured, through)
-    if methods.environment == "fis":  # others reflect by MaterialX's fit of the albedo, or nothing
+    if methods.environment == "fis":  # else a fit, or no reflection
         yield Compared(batch, measured + case.albedo(batch), through + case.expected_albedo(batch))
 
 
 def diagnose_graph(case: Case) -> Diagnosis:
     graphs = case.of(SurfaceShaderSpec).graphs
     causes = [Cause(Kind.DEFECT, key, names) for key, names in graphs.difference.items()]
-    # A graph of another release, or of another version of the node, is permitted.
+    # The graph of another release, or of another version of the node, is permitted.
     return Diagnosis(tuple(causes), permitted=len(causes) > 1)
 
 
@@ -134,23 +134,23 @@ def graph(case: Case) -> Compared:
 
 
 def misplaced(case: Case) -> list[str]:
-    """Inputs that change something where the page says nothing, or the reverse."""
+    """Inputs with an effect although the page says none, or the reverse."""
     wrong = set(expected_dead(case)).symmetric_difference(without_effect(case))
     return sorted(wrong.difference(case.backend.unset))
 
 
 def expected_dead(case: Case) -> tuple[str, ...]:
-    """Inputs that may change nothing; as opacity, light has no roughness."""
+    """Inputs that may have no effect; as opacity, transmitted light has no roughness."""
     spec = case.of(SurfaceShaderSpec)
     blur = ("transmission_extra_roughness",)
     return (*spec.without_effect, *(blur if case.opaque and blur[0] in spec.names else ()))
 
 
 def without_effect(case: Case) -> list[str]:
-    """Inputs that change no value in any branch, and no emission."""
+    """Inputs that change neither a value in any branch nor the emission."""
     spec, evaluating = case.of(SurfaceShaderSpec), case.evaluating
     given = {port.path.rsplit("/", 1)[-1]: port.value for port in evaluating.shader.inputs}
-    for name in spec.names:  # which have no value in a document
+    for name in spec.names:  # inputs without a value in a document
         if name.endswith(("normal", "tangent")):
             given.setdefault(name, TANGENT if "tangent" in name else NORMAL)
     rows = [row for changes in spec.changes.values() for row in changes]
@@ -172,7 +172,7 @@ def without_effect(case: Case) -> list[str]:
     return [name for name, each in zip(spec.names, effective, strict=True) if not each]
 
 
-# The host sees the first pair only.
+# The host only gets the first pair.
 ignore_changes = controls.Control(
     "every change is dropped",
     lambda case: replace(

@@ -135,7 +135,7 @@ INPUTS = {
 # Largest errors of the shaders' fits, each found by its script in tools/fits.
 ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
 SMOOTH_ESS_FIT = 5.3e-5  # the same for smooth lobes, for cosines from 0.05
-ESS_VALUE_FIT = 1.14e-3  # relative error of E_ss times the value or 1: at alpha 0.97 along the normal
+ESS_VALUE_FIT = 1.14e-3  # relative error of E_ss, times the value or 1: alpha 0.97, normal view
 METAL_FIT = 4.6e-4  # fresnel_average.py: F_ss of a metal
 # ggx_albedo.py: largest (1 - E_ss) / E_ss, times 1 or the value of perfectly reflecting facets.
 COMPENSATED = 0.6
@@ -556,9 +556,7 @@ FILM_SEEN = (
 )
 FILM_OILED = 6.92e-2  # the same for films with index >= 1.25
 FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
-CURVE_ROUNDINGS = (
-    10 * 9.5 + 16
-)  # ten in a phase, times the curve's slope in its logarithm, plus 16
+CURVE_ROUNDINGS = 10 * 9.5 + 16  # ten in a phase, times the curve's slope in its logarithm, plus 16
 
 FILM_ALBEDO = sum_in(
     Quantity.ALBEDO,
