@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ways of evaluating a node on an engine: what each supports, its samples, and what it adds to an error.
+"""The ways of evaluating a node on an engine: supported nodes, samples, and additional errors.
 
 An engine evaluates any pairs of directions, returns closures, lights a point by a camera and a light, or
 renders pictures of a sphere. Each returns its values in the same form, so that a check is written once.
@@ -55,15 +55,15 @@ if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
 LINEAR, SRGB_COLOR = 'colorspace="lin_rec709" version="', 'name="color" colorspace="srgb_texture"'
-POWERS = 1 << 12  # colors whose powers are measured
+POWERS = 1 << 12  # colors with measured powers
 NO_IMPLEMENTATION = "Could not find a matching implementation"
-Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
-Errors: TypeAlias = Mapping[str, Tolerance | None]  # by quantity; None where none is measured
+Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and a mask of the judged ones
+Errors: TypeAlias = Mapping[str, Tolerance | None]  # quantity -> tolerance, None if not measured
 T = TypeVar("T")
 
 
 def implementation(host: Host, text: str, library: str) -> Shader | None:
-    """Shader of a document; None where the target has no implementation of one of its nodes."""
+    """Shader of a document; None if the target lacks an implementation of one of its nodes."""
     try:
         return host.compile(text, library=library)[0]
     except DocumentError as error:
@@ -73,14 +73,14 @@ def implementation(host: Host, text: str, library: str) -> Shader | None:
 
 
 class Backend(ABC):
-    """A way of evaluating one node on an engine: its samples, its shader, and values of it."""
+    """A way of evaluating one node on an engine: its samples, shader and values."""
 
-    abilities: ClassVar[Ability]  # nodes whose values it has, and what checks need
-    # Axes of `checks.states` of which it has the first state alone.
+    abilities: ClassVar[Ability]  # supported nodes and checks
+    # Axes of `checks.states` for which it only supports the first state.
     plain: ClassVar[tuple[str, ...]] = ()
-    whole: ClassVar[bool] = False  # whether controls and what takes long get all samples
-    fewer: ClassVar[Counts | None] = None  # counts of samples where a spec has more
-    own_errors: ClassVar[Errors | None] = None  # instead of the spec's
+    whole: ClassVar[bool] = False  # whether controls and expensive checks use all samples
+    fewer: ClassVar[Counts | None] = None  # upper limits of a spec's sample counts
+    own_errors: ClassVar[Errors | None] = None  # replace the spec's errors
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
         self.host, self.spec, self.library = host, spec, library
@@ -91,17 +91,17 @@ class Backend(ABC):
 
     @classmethod
     def supports(cls, spec: Spec) -> bool:
-        """Whether it has values of a node."""
+        """Whether it can evaluate a node."""
         return spec.requires in cls.abilities
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        """The largest error of each quantity, engine functions apart."""
+        """The largest error of each quantity, without engine functions."""
         return spec.errors if cls.own_errors is None else cls.own_errors
 
     @property
     def prefiltered(self) -> bool:
-        """Whether microfacets reflect MaterialX's fit of their albedo."""
+        """Whether microfacets use MaterialX's fit of their albedo."""
         return self.host.active.environment == "prefilter" and not self.searched
 
     @property
@@ -110,7 +110,7 @@ class Backend(ABC):
         return bool(self.host.active.searched)
 
     def implemented(self, text: str) -> Shader:
-        """Shader of a document; NotRun where the target has no implementation of an optional node."""
+        """Shader of a document; NotRun if the target lacks an implementation of an optional node."""
         if not self.spec.optional:
             return self.host.compile(text, library=self.library)[0]
         shader = implementation(self.host, text, self.library)
@@ -119,7 +119,7 @@ class Backend(ABC):
         return shader
 
     def precision(self, quantity: str) -> tuple[Term, ...]:
-        """What the engine's own functions, measured on the host, add to the error of a quantity."""
+        """Errors of the engine's own functions for a quantity, measured on the host."""
         return ()
 
     @property
@@ -129,17 +129,17 @@ class Backend(ABC):
 
     @property
     def claims(self) -> Claims:
-        """What a result says of a renderer's own node beside its verdict."""
+        """A result's additional fields for a renderer's own node."""
         return {}
 
     def judged(self) -> Spec:
-        """The spec with what the engine may have instead of its model, or in the form nearest to what is measured."""
+        """The spec with the engine's alternatives to its model, or in the form nearest to the measured values."""
         return self.spec
 
     # Samples, each drawn once.
 
     def take(self, draw: Callable[[Counts], T]) -> T:
-        """What a method of the spec draws."""
+        """The result of one of the spec's sampling methods."""
         if draw.__qualname__ not in self._drawn:
             self._drawn[draw.__qualname__] = draw(self.counts)
         return cast(T, self._drawn[draw.__qualname__])
@@ -158,7 +158,7 @@ class Backend(ABC):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """Some of them, for what takes long and for controls."""
+        """A subset of the samples, for expensive checks and controls."""
         return self.batches if self.whole else self.valued.few(self.batches, self.counts)
 
     @cached_property
@@ -184,17 +184,17 @@ class Backend(ABC):
 
     @cached_property
     def integrals(self) -> Array:
-        """Integrals of the values of the integrated materials, by the equations, (N, 3)."""
+        """Integrals of the integrated materials' values by the equations, (N, 3)."""
         batch, weights = self.integrated
         views = batch.where(np.arange(len(weights)) * weights.shape[1])
         return cast(ScatteringSpec, self.spec).integral(views)
 
     def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
-        """Inputs as the backend takes them."""
+        """Inputs in the backend's form."""
         return dict(inputs)
 
     def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
-        """Pairs at the points of a picture, which are judged, and the pixels of the points."""
+        """Pairs at the points of a picture, the mask of judged ones, and the pixels of the points."""
         wo, wi, judged = picture_pairs(scene)
         return samples.rounded(wo.T), samples.rounded(wi.T), judged, sphere(scene.size).mask
 
@@ -210,7 +210,7 @@ class Backend(ABC):
 
 
 def isotropic(batch: Batch) -> Batch:
-    """The same with the mean alpha in all directions: a prefiltered environment has one roughness."""
+    """A batch with the mean alpha in all directions, since a prefiltered environment has one roughness."""
     inputs: dict[str, Array] = {}
     for name, value in batch.inputs.items():
         if name == "roughness" and np.shape(value)[-1:] == (2,):
@@ -275,7 +275,7 @@ class Evaluating(Backend):
         return self.evaluate(batch, "environment", irradiance=irradiance)
 
     def throughput(self, batch: Batch, branch: str) -> Array:
-        """The share of the light from below that passes the node, in a branch, (N, 3)."""
+        """The share of the light from below that passes the node in a branch, (N, 3)."""
         return self.evaluate(batch, branch, "throughput")
 
     def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
@@ -284,7 +284,7 @@ class Evaluating(Backend):
 
     @cached_property
     def two(self) -> Shader:
-        """A shader of two lobes in one pixel."""
+        """A shader with two lobes in one pixel."""
         return self.host.compile(self.lobe.two_lobes(), library=self.library)[0]
 
     @cached_property
@@ -296,7 +296,7 @@ class Evaluating(Backend):
     def together(
         self, batch: Batch, irradiance: NDArray[np.float32] | None, client: Client, two: bool
     ) -> Array:
-        """Light of several lights and of an environment in one pixel, from one lobe or from two."""
+        """Light of several lights and an environment in one pixel, from one or two lobes."""
         shader = self.two if two else self.shader
         return self.evaluate(batch, LIT, irradiance=irradiance, shader=shader, client=client)
 
@@ -327,17 +327,17 @@ class Evaluating(Backend):
 
 
 class InTheDark(Evaluating):
-    """The same of media, and of nodes whose implementation alone is judged, on a renderer."""
+    """Evaluation of media, and of nodes with only an implementation to judge, on a renderer."""
 
     abilities = Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.PAIRS | Ability.LIGHT
 
 
 # OSL: closures are trees of arguments and weights, which the models evaluate in float64.
 
-# The closures are few, and their values are those of the models: more pairs would tell the models apart.
+# The closures are few, and the models give their values: more pairs would only compare the models.
 FEW_CLOSURES = Counts(1 << 11, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
-SOME = 1 << 8  # pairs of every kind but the random ones
-# The models round in float64, 2^-53, and the sharpest lobe, of alpha 1e-4, takes that 1e8 times.
+SOME = 1 << 8  # pairs of every kind except random ones
+# The models round in float64, 2^-53, and the sharpest lobe, with alpha 1e-4, amplifies that by 1e8.
 ARGUMENTS = sum_of(roundings(1, "of arguments with nine digits, evaluated in float64"), exact=True)
 GRAPH = sum_of(
     roundings(
@@ -347,7 +347,7 @@ GRAPH = sum_of(
 
 
 def joined(batches: Sequence[Batch]) -> Batch:
-    """One batch of all pairs, whose inputs have the same names."""
+    """One batch of all pairs; their inputs must have the same names."""
     if len(batches) == 1:
         return batches[0]
     wo, wi = (np.concatenate(each) for each in ([b.wo for b in batches], [b.wi for b in batches]))
@@ -358,7 +358,7 @@ def joined(batches: Sequence[Batch]) -> Batch:
 
 
 def _altered(batch: Batch) -> Batch:
-    """The batch with weights of at least 0, by which OSL multiplies closures, and some dielectrics of index 0."""
+    """The batch with nonnegative weights, which OSL multiplies closures by, and some dielectrics of index 0."""
     changes: dict[str, Array] = {}
     if "weight" in batch.inputs:
         changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
@@ -369,7 +369,7 @@ def _altered(batch: Batch) -> Batch:
 
 
 class Closures(Evaluating):
-    """A host that returns closures; arguments have no errors, and no closure finds light."""
+    """A host that returns closures; arguments are exact, and closures do not compute lighting."""
 
     abilities = Evaluating.abilities & ~Ability.LIGHT
     plain = ("lights", "environment", "shape", "inputs")
@@ -383,8 +383,8 @@ class Closures(Evaluating):
         exact = GRAPH if Ability.MATERIAL in spec.requires else ARGUMENTS
         absent = ["integral", "light", "reciprocity"]
         if Ability.TRANSMISSION in spec.requires:
-            absent.append("states")  # a light shows nothing of what it transmits
-        if Ability.FILM in spec.requires:  # no closure has the flag, and none finds light
+            absent.append("states")  # lights do not show its transmission
+        if Ability.FILM in spec.requires:  # closures have no flag and no lighting
             absent += ["retroreflection", "albedo", "throughput"]
         return {
             **own,
@@ -400,7 +400,7 @@ class Closures(Evaluating):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """Few of each, together where possible: a run takes its time however few they are."""
+        """A few of each kind, joined if possible, because every run has a fixed cost."""
         groups: dict[tuple[str, ...], list[Batch]] = {}
         for batch in self.batches:
             few, names = batch.first(self.counts.few), tuple(sorted(batch.inputs))
@@ -421,7 +421,7 @@ class Closures(Evaluating):
 
         assert query.irradiance is None, "closures look no environment up"
         if query.shader is self.shader and self.spec.requires & (Ability.DIFFUSE | Ability.LOBE):
-            # A constant that is not the surface's own frame is the node's input, of its document.
+            # A constant other than the surface's own frame is an input of the document's node.
             frame = {
                 name: query.inputs[name]
                 for name, axis in (("normal", UP), ("tangent", ALONG))
@@ -442,20 +442,20 @@ class Closures(Evaluating):
 
     @property
     def unset(self) -> tuple[str, ...]:
-        """Frames of a surface shader's lobes: its text takes them from the surface, and has no input."""
+        """Frames of a surface shader's lobes, which its text takes from the surface instead of an input."""
         names = self.spec.names if Ability.MATERIAL in self.spec.requires else ()
         return tuple(each for each in names if each.endswith(("normal", "tangent")))
 
 
-# Renderers whose camera and light show one pair for each pixel.
+# Renderers whose camera and light show one pair per pixel.
 
 SMOOTH = ("eon", "qon", "burley")  # models whose roughness sharpens no lobe
-# Sine times cosine of a view whose mirror direction is far from it and from its opposite.
+# Sine times cosine of a view that is far from its mirror direction and the opposite of it.
 OBLIQUE = 0.25
 FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=32, mirrored=1 << 10)
-FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # by its source
+FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # stated in its source
 POINT = 3.0 * EYE / NEAREST  # roundings of a point at the distance 40, seen from a light 1/2 away
-FLAT_SLOPE = 8.0  # largest of the diffuse models
+FLAT_SLOPE = 8.0  # largest slope of the diffuse models
 SHARP_SLOPE = (
     2.0 / samples.LEAST_TURNED + 3.0
 )  # twice over the least alpha, and 3 for Fresnel and shadowing
@@ -463,7 +463,7 @@ FLAT, SHARP = (
     sum_of(roundings(each * POINT, f"of a point, times the slope {each:g}"), FAST_ARC_COSINE)
     for each in (FLAT_SLOPE, SHARP_SLOPE)
 )
-# A light seen from a point of a triangle that is steep.
+# Angular error of a light seen from a point of a steep triangle.
 TURN = JITTER * PIXEL / (RIM * DISTANCE)
 BESIDE = "a point up to 0.007 pixels beside the middle, at cosine 0.05"
 TRACED_FLAT, TRACED_SHARP = (
@@ -473,7 +473,7 @@ BELOW = sum_of(
     roundings(4.0 * 16.0 * POINT, "of a point, times 16 by the lobes above, in four values"),
     FAST_ARC_COSINE,
 )
-VIEWS, PIXELS = 8, 1 << 12  # of a case, and of a picture of them
+VIEWS, PIXELS = 8, 1 << 12  # views of a case, and pixels of their picture
 NOISE = sum_in(
     Quantity.ALBEDO,
     Term(
@@ -493,16 +493,16 @@ LIGHT = sum_in(Quantity.LIGHT, INTEGRAL.term("an integral of values"), PASSED.te
 
 
 def _is_shown(batch: Batch, rim: float = RIM) -> Mask:
-    """Which pairs of a batch a renderer shows."""
+    """Mask of the pairs that a renderer can show."""
     least = np.minimum(batch.wo[:, 2], np.abs(batch.wi[:, 2]))
     return np.asarray(visible(batch.wo, batch.wi) & (least >= rim))
 
 
 class Shown(Evaluating):
-    """A renderer, or a host that is given the pairs and inputs that renderers take.
+    """A renderer, or a host restricted to the pairs and inputs that renderers support.
 
-    Both cosines are at least RIM, and no lobe is so sharp that the place of a pixel counts. A roughness is at
-    most 1, as OSL's stdosl.h has it, a weight is not negative, and there is no occlusion.
+    Both cosines are at least RIM, and no lobe is so sharp that the pixel position matters. Roughness is at
+    most 1, as in OSL's stdosl.h, weights are not negative, and there is no occlusion.
     """
 
     fewer = FEW_RENDERED
@@ -514,7 +514,7 @@ class Shown(Evaluating):
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """Few views of the random pairs: each has its share of the paths."""
+        """Few views of the random pairs, because they share the paths."""
         return (super().views[0].first(self.counts.albedos),)
 
     @cached_property
@@ -530,7 +530,7 @@ class Shown(Evaluating):
 
     @cached_property
     def integrated(self) -> tuple[Batch, Array]:
-        """Views of which the nodes next to them are smooth."""
+        """Views for which neighboring quadrature nodes are smooth."""
         batch, weights = super().integrated
         nodes = weights.shape[1]
         height = batch.wo[::nodes, 2]
@@ -559,7 +559,7 @@ class Rendered(Shown):
     variants: ClassVar[Mapping[str, tuple[Variant[Scattering], ...]]] = BSDL_VARIANTS
     flat: ClassVar[Tolerance] = FLAT
     sharp: ClassVar[Tolerance] = SHARP
-    place: ClassVar[Tolerance | None] = None  # error of values of microfacets by a pixel's place
+    place: ClassVar[Tolerance | None] = None  # error of microfacets due to the pixel position
 
     def judged(self) -> Spec:
         return _with_variants(type(self), self.spec)
@@ -585,7 +585,7 @@ class Rendered(Shown):
         }
 
     def direct(self, batch: Batch) -> Array:
-        """Values, where need be of a pair that is shown next to the one that is not."""
+        """Values; pairs that cannot be shown are replaced by a pair next to them."""
         return super().direct(replace(batch, wi=apart(batch.wo, batch.wi)))
 
 
@@ -598,14 +598,14 @@ class Traced(Rendered):
 
 
 class LobesBelow(Shown):
-    """The diffuse lobe of a surface shader, told apart from what lies over it; see SurfaceLobe."""
+    """The diffuse lobe of a surface shader, isolated from the lobes above; see SurfaceLobe."""
 
     abilities = Ability.BELOW | Ability.LIGHT
     whole = True
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """Random pairs far from the rim, with colors and roughnesses of a lobe below others."""
+        """Random pairs far from the rim, with colors and roughnesses of a lower lobe."""
         rng, count = samples.generator(), self.counts.few
         inputs = self.taken(self.lobe.random_inputs(rng, count))
         wo, wi = samples.directions(rng, count), samples.directions(rng, count)
@@ -623,7 +623,7 @@ class LobesBelow(Shown):
 
 
 class RenderedLobes(LobesBelow):
-    """The same on testrender."""
+    """Lower lobes on testrender."""
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
@@ -631,16 +631,16 @@ class RenderedLobes(LobesBelow):
 
 
 def diffuse_alone(show: Callable[[Batch], Array], batch: Batch) -> Array:
-    """Values of the diffuse lobe of what is shown, without those over it; see SurfaceLobe."""
+    """Values of the diffuse lobe, without the lobes above; see SurfaceLobe."""
     others = show(batch.altered(color=samples.BLACK))
     lambert = show(batch.altered(color=samples.WHITE, roughness=0.0)) - others
-    with np.errstate(divide="ignore", invalid="ignore"):  # a shader that stays black has no value
+    with np.errstate(divide="ignore", invalid="ignore"):  # an always black shader has no value
         return (show(batch) - others) / lambert * batch.wi[:, 2:]
 
 
 @lru_cache(maxsize=16)
 def _with_variants(backend: type[Rendered], spec: Spec) -> Spec:
-    """A spec with the functions of a renderer among those that may explain its values."""
+    """A spec with a renderer's functions added to its candidates."""
     if not isinstance(spec, PbrSpec) or spec.row.name not in backend.variants:
         return spec
     variants = (*backend.variants[spec.row.name], *spec.row.variants)
@@ -650,8 +650,8 @@ def _with_variants(backend: type[Rendered], spec: Spec) -> Spec:
 # Hosts that render pictures: the lit points of a sphere are the pairs.
 
 PICTURE_SIZE = 128
-HALF_CUT = Term(2.0**-10, "half floats, cut off")  # as llvmpipe does
-# A ray's point is off by an angle, by which the logarithm of a lobe changes at most so many times as fast:
+HALF_CUT = Term(2.0**-10, "half floats, cut off")  # llvmpipe truncates
+# A ray's point has an angular error, which the logarithm of a lobe multiplies by at most this slope:
 # twice 1 / alpha of a distribution, whose alpha is at least 0.4, and 3 for Fresnel, shadowing and the cosine.
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
 # In each of two cosines of at least 0.05 five roundings, times 20 by s / t, and times 2 by s and the cosine.
@@ -679,15 +679,15 @@ HALF_LOBE = sum_in(
 )
 
 
-# A point is a ray's origin plus its length, both at most 2: three roundings of 2^-23 together. A ray that
-# grazes divides them by its cosine, and cos(theta_i), relative to itself, by the other.
+# A point is a ray's origin plus its length, both at most 2: three roundings of 2^-23 together. A
+# grazing ray divides them by its cosine, and the relative error of cos(theta_i) is divided by the other cosine.
 CYCLES_RAY = sum_of(
     roundings(3.0 * 2.0 / RIM**2, "of a pixel's point, over the least cosine squared"),
     Term(1e-5, "a roughness that counts as 0"),
     quantity=Quantity.RELATIVE,
     metric=relative,
 )
-# Of 256 samples each. Measured over seeds 0 to 15 at roughness 1 and reflectance 1: a pixel is off by 1.3e-3
+# With 256 samples each. Measured over seeds 0 to 15 at roughness 1 and reflectance 1: a pixel is off by 1.3e-3
 # rms, and the mean of 3212 has a standard deviation of 3.1e-5, 1.34 times that of independent ones.
 CYCLES_NOISE = sum_of(
     Term(
@@ -720,7 +720,7 @@ class Pictures(Backend):
         return diffuse_alone(self.picture, batch) if alone else self.picture(batch)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        """Values in the batch's own environment."""
+        """Values in the batch's environment."""
         return self.picture(batch)
 
     def picture(self, batch: Batch) -> Array:
@@ -733,7 +733,7 @@ class Pictures(Backend):
 
 
 class Spheres(Pictures):
-    """Pictures whose lit points, away from rim and terminator, are the samples, for each light and material."""
+    """Pictures whose lit points, away from rim and terminator, are the samples, per light and material."""
 
     scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
     whole = True
@@ -762,9 +762,9 @@ class Spheres(Pictures):
         return tuple(self.batch(scene, inputs) for inputs in self.materials)
 
 
-@lru_cache(maxsize=8)  # a check makes many pictures of a few documents
+@lru_cache(maxsize=8)  # a check renders many pictures of few documents
 def _compile(host: Host, text: str, library: str) -> Shader:
-    from mxeon.shaders.generation import ApproximationWarning  # which loads MaterialX
+    from mxeon.shaders.generation import ApproximationWarning  # loads MaterialX
 
     with warnings.catch_warnings():  # approximations are not judged: see CyclesPictures.points
         warnings.simplefilter("ignore", ApproximationWarning)
@@ -801,7 +801,7 @@ class CyclesPictures(Spheres):
     }
 
     def points(self, scene: Scene) -> Pairs:
-        """The points for which the host has a closure that can be the model."""
+        """The points for which the host has a closure that may be the model."""
         wo, wi, mask = super().points(scene)
         if front_lit_only(self.host.name, self.spec.model):
             mask = mask & (wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1] >= 0.0)
@@ -809,7 +809,7 @@ class CyclesPictures(Spheres):
 
 
 class Drawn(Spheres):
-    """Pictures of a sphere whose points and light have no error but rounding."""
+    """Pictures of a sphere with points and light exact up to rounding."""
 
     abilities = Ability.LOBE | Ability.DIFFUSE | Ability.BELOW | Ability.LIGHT
     exact: ClassVar[Errors] = {"value": EXACT, "albedo": EXACT_ALBEDO, "lambert": EXACT}
@@ -826,13 +826,13 @@ class Drawn(Spheres):
 
     @classmethod
     def drawn(cls, error: Tolerance) -> Tolerance:
-        """Error of a node's picture with exact points, of its value or albedo."""
+        """Error of a node's value or albedo in a picture with exact points."""
         points = roundings(LOBE_SLOPE * 2 * 5 / RIM, "of two cosines of at least 0.05, times 8")
         return sum_of(error.term("a number"), points, quantity=error.quantity)
 
 
 class Half(Drawn):
-    """The same on a host that keeps colors as half floats: Storm, whose modes are the default ones."""
+    """Exact pictures with half-float colors: Storm, with its default modes."""
 
     exact: ClassVar[Errors] = {"value": HALF, "albedo": HALF_ALBEDO, "lambert": HALF}
     lobe_error = HALF_LOBE
@@ -843,7 +843,7 @@ class Half(Drawn):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        """Those of pictures; the furnace of a node of pbrlib has another sum of directions."""
+        """Errors of pictures; the furnace of pbrlib's nodes sums over other directions."""
         own = super().errors(spec)
         return {**own, "albedo": None} if Ability.LOBE in spec.requires else own
 
@@ -854,7 +854,7 @@ class Half(Drawn):
 
     @property
     def unset(self) -> tuple[str, ...]:
-        """Inputs later than MaterialX 1.39.3, which Storm has."""
+        """Inputs added after MaterialX 1.39.3, Storm's version."""
         return ("retroreflective",)
 
 
@@ -873,7 +873,7 @@ class DarkPictures(Pictures):
 
 
 class Frames(Pictures):
-    """A whole main, drawn under what a client binds."""
+    """The whole main, drawn with a client's bindings."""
 
     abilities = Ability.FRAME | Ability.LIGHT
 
@@ -890,14 +890,14 @@ class EmissionPictures(Spheres):
 
 
 class UtilityOsl(Evaluating):
-    """Outputs of a utility node on a renderer with OSL, which has mathematics of its own."""
+    """Outputs of a utility node on an OSL renderer, which has its own math functions."""
 
     abilities = Ability.OUTPUT | Ability.LIGHT
     whole = True
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """All samples in one batch, which takes a renderer one run."""
+        """All samples in one batch, for a single run of the renderer."""
         return (joined(super().batches),)
 
     @classmethod
@@ -905,8 +905,8 @@ class UtilityOsl(Evaluating):
         return {**spec.errors, "value": spec.errors.get("osl_value", spec.errors["value"])}
 
 
-# By the word of a host's row for how it is evaluated; the first that supports a spec evaluates it. `mxeon.survey`
-# adds those of renderers with materials of their own.
+# Backends by `way` of a host's row; the first one that supports a spec evaluates it. `mxeon.survey`
+# adds backends of renderers with their own materials.
 BACKENDS: dict[str, tuple[type[Backend], ...]] = {
     "pairs": (Evaluating, LobesBelow, DarkPictures, Frames),
     "closures": (Closures,),
@@ -918,13 +918,13 @@ BACKENDS: dict[str, tuple[type[Backend], ...]] = {
 
 
 def ways_of(host: str) -> tuple[type[Backend], ...]:
-    """The backends of a host; () where only the text of its target is checked."""
+    """The backends of a host; () if only the text of its target is checked."""
     own_nodes(host)  # adds a renderer's backends
     return BACKENDS.get(host_row(host).way, ())
 
 
 def own_nodes(host: str) -> tuple[Spec, ...]:
-    """Nodes of a host's own that are judged; none for a host of generated shaders."""
+    """A host's own judged nodes; empty for hosts of generated shaders."""
     nodes = host_row(host).nodes
     return tuple(nodes(host)) if nodes else ()
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of text that nothing here runs: definitions of nodes, twins of functions, generated sources.
+"""Checks of texts that are not executed: definitions of nodes, twins of functions, generated sources.
 
-Each counts faults, of which there must be none, and counts those of a text with one more as its control.
-What a renderer's closure does with its arguments is taken from its documentation.
+Each check counts faults, which must be 0; its control is a text with one more fault.
+The meaning of a renderer's closure arguments comes from its documentation.
 """
 
 import re
@@ -39,9 +39,9 @@ from mxeon.shaders.nodes import EON, FLAG, INVERSIONS, OREN_NAYAR
 
 # --- checks --------------------------------------------------------------------------------------
 
-Faults: TypeAlias = tuple[list[Cause], int]  # and the number that the control has
+Faults: TypeAlias = tuple[list[Cause], int]  # faults, and the control's count
 Inputs = Mapping[str, Array]
-# By check: its claim, what it counts, and the error that its control makes.
+# Check -> claim, counted quantity, and the control's mistake.
 CLAIMS = {
     "definition": (
         "The node's inputs and output match its specification.",
@@ -77,7 +77,7 @@ CLAIMS = {
 
 
 def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, ...]:
-    """Results of all checks of generated text and of functions for the nodes of a library."""
+    """Results of all checks of generated text and of functions, for the nodes of a library."""
     subjects = tuple(subjects)
     results = [
         _judged("closure", f"{each.title}, mdl", library, partial(_closure_faults, each, library))
@@ -112,14 +112,14 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
             )
             for each in (*subjects, *PLAIN_LOBES)
             for target in TARGETS
-            # Of MDL's rough diffuse nodes the check of closures compares every argument.
+            # The check of closures compares every argument of MDL's rough diffuse nodes.
             if target in TEXT_ONLY and (target != "mdl" or isinstance(each, PbrSpec))
         ),
     )
 
 
 def _judged(check: str, subject: str, library: str, faults: Callable[[], Faults]) -> Result:
-    """Result of the faults of something."""
+    """Result for the faults of a subject."""
     claim, quantity, variant = CLAIMS[check]
     place = Result(check, claim, subject, SOURCE, library, NOT_RUN)
     try:
@@ -137,7 +137,7 @@ def _judged(check: str, subject: str, library: str, faults: Callable[[], Faults]
 
 # --- definitions ----------------------------------------------------------------------------------
 
-# A range only guides an editor, and pbrlib leaves some out, which is no fault.
+# Ranges only guide editors, and pbrlib may omit them.
 RANGE = ("lower end of the range", "upper end of the range")
 WORDS = {"type": "type", "value": "default", "uimin": RANGE[0], "uimax": RANGE[1]}
 WORDS |= {name: name for name in ("uniform", "defaultgeomprop")}
@@ -160,7 +160,7 @@ SPECIFICATIONS = f"""<materialx version="1.39">
 
 
 def check_definitions(library: str) -> tuple[Result, ...]:
-    """Results of the nodes' definitions, and of one that has its name but another category."""
+    """Results of the nodes' definitions, including a definition with the right name but another category."""
     document, specifications = load_library(library), mx.createDocument()
     mx.readFromXmlString(specifications, SPECIFICATIONS)
     results = []
@@ -181,7 +181,7 @@ def check_definitions(library: str) -> tuple[Result, ...]:
 def redefined(
     document: mx.Document, library: str, keys: Iterable[str] = ("value", "defaultgeomprop")
 ) -> tuple[Cause, ...]:
-    """Defaults that a library gives to the nodes of a document, and MaterialX does not."""
+    """Defaults of a document's nodes that a library changes from MaterialX's."""
     found: dict[Cause, None] = {}
     for node in inner_nodes(document):
         definition = node.getNodeDef(target="", allowRoughMatch=True) if node.isA(mx.Node) else None
@@ -218,7 +218,7 @@ def _definition_faults(definition: mx.NodeDef, specification: mx.NodeDef) -> Fau
 
 
 def _facts(definition: mx.NodeDef) -> dict[str, str]:
-    """What a definition says, by words for it."""
+    """The properties of a definition, by description."""
     inputs, outputs = definition.getActiveInputs(), definition.getActiveOutputs()
     facts = {
         "the category": definition.getNodeString(),
@@ -234,7 +234,7 @@ def _facts(definition: mx.NodeDef) -> dict[str, str]:
 
 
 def _plain(text: str) -> tuple[object, ...]:
-    """A value for comparison: numbers as numbers, and "false" as what is not said."""
+    """A value for comparison: numbers are parsed, and "false" equals an omission."""
     parts = text.replace("false", "").replace(",", " ").split()
     try:
         return tuple(map(float, parts))
@@ -246,7 +246,7 @@ def _plain(text: str) -> tuple[object, ...]:
 
 
 def _clashes(library: str) -> Faults:
-    """Names that two nodes of a library define, except for those of MaterialX as it is installed."""
+    """Names that two nodes of a library define, except those in the installed MaterialX."""
 
     def found(name: str, target: str, twice: bool = False) -> dict[texts.Clash, str]:
         search = search_path(name)
@@ -266,7 +266,7 @@ def _clashes(library: str) -> Faults:
 
 
 def _arguments(library: str, release: mx.Document) -> Faults:
-    """Arguments of calls in MDL that have another value than in a release."""
+    """Arguments of MDL calls with values that differ from a release."""
 
     def faults(exchanged: bool) -> Iterator[Cause]:
         for definition in release.getNodeDefs():
@@ -292,16 +292,16 @@ def _arguments(library: str, release: mx.Document) -> Faults:
 
 # --- generated sources ----------------------------------------------------------------------------
 
-SOURCES = ("genglsl", "genslang", "genmsl", "genosl")  # targets whose nodes have files
-TEXT_ONLY = tuple(row.target for row in HOSTS if row.needs)  # targets that no host runs
-# The call of a function that fills a node's lobe, or the expression that the lobe is.
+SOURCES = ("genglsl", "genslang", "genmsl", "genosl")  # targets with source files
+TEXT_ONLY = tuple(row.target for row in HOSTS if row.needs)  # targets without a host
+# Matches the call that fills a node's lobe, or the lobe's expression.
 FILLED = re.compile(r"\b(\w+\([^;]*), lobe_out\);")
 ASSIGNED = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
 CALLEE = re.compile(r"(?:\w+::)*\w+(?=\()")
 
 
 def source(subject: ScatteringSpec, target: str, library: str) -> str:
-    """Pixel stage of a subject; the variable of an input is `lobe_` and its name."""
+    """Pixel stage of a subject; variables of inputs are named `lobe_` and the input's name."""
     frame = {"normal": (0.0, 0.6, 0.8), "tangent": (1.0, 0.0, 0.0)}
     document = subject.document({name: frame[name] for name in frame if name in subject.names})
     with warnings.catch_warnings():
@@ -323,7 +323,7 @@ def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object])
 
 
 def _dropped(subject: ScatteringSpec, target: str, library: str) -> Faults:
-    """Inputs whose values, which no text holds by itself, are no arguments of a call."""
+    """Inputs whose unique values do not occur as arguments of a call."""
     expression = _expression(source(subject, target, library))
     names = tuple(subject.types) if isinstance(subject, PbrSpec) else subject.names
     inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}
@@ -347,16 +347,16 @@ def _dropped(subject: ScatteringSpec, target: str, library: str) -> Faults:
 # --- closures: the node's arguments for random materials, in MDL -----------------------------------
 
 MATERIALS = 256
-ROUNDED = 1e-12  # 4500 roundings of float64: no text has as many
+ROUNDED = 1e-12  # 4500 float64 roundings, more than in any text
 TINT = "multiscatter_tint"
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
-UP = np.array([[0.0, 0.0, 1.0]])  # the normal of the surface, which is not the node's
+UP = np.array([[0.0, 0.0, 1.0]])  # the surface's normal, which differs from the node's
 Closure: TypeAlias = dict[
     str, ArrayLike
-]  # arguments by the names of the node's inputs, its weight among them
+]  # arguments by the names of the node's inputs, weight included
 
 
-# The functions below take what MDL's documentation says.
+# The functions below have parameters as in MDL's documentation.
 def diffuse_reflection_bsdf(
     tint: ArrayLike = 1.0, roughness: ArrayLike = 0.0, multiscatter_tint: ArrayLike = 0.0
 ) -> Closure:
@@ -377,7 +377,7 @@ FUNCTIONS: Mapping[str, object] = {
     "material_surface": lambda *, scattering: scattering,
     "df::weighted_layer": weighted_layer,
     "df::diffuse_reflection_bsdf": diffuse_reflection_bsdf,
-    # FON, and with the flag a white lobe beside it.
+    # FON, plus a white lobe with the flag.
     PBRLIB: lambda mxp_weight, mxp_color, mxp_roughness, mxp_normal, mxp_energy_compensation: (
         weighted_layer(
             mxp_weight,
@@ -389,7 +389,7 @@ FUNCTIONS: Mapping[str, object] = {
 
 
 def _closure_faults(subject: DiffuseSpec, library: str) -> Faults:
-    """Arguments of the closure that are not the node's inputs, and their number without the weight."""
+    """Arguments of the closure that differ from the node's inputs, and their count without the weight."""
     expression = _expression(source(subject, "mdl", library))
     rng = generator()
     rows = {

@@ -30,7 +30,7 @@ if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
 SIZE = 16  # pixels on a side of a frame
-POLE = 0.999  # above this height, filtering an uneven environment lacks neighbors
+POLE = 0.999  # filtering an uneven environment lacks neighbors above this height
 EVERY = 6  # a control draws every sixth frame
 WHITE = np.ones((1, 1, 3), np.float32)
 NAMES = {"shading/mix": "mix", "front/opacity": "front", "back/opacity": "back"}

@@ -573,7 +573,7 @@ def film_limit(case: Case) -> list[Compared]:
 
 def film_energy(case: Case) -> list[Compared]:
     cases = []
-    for batch in case.few[::2]:  # with exact directions, a mirror of index 0 is a separate check
+    for batch in case.few[::2]:  # a mirror of index 0 is a separate check for exact directions
         mirror = batch.altered(thinfilm_thickness=0.0, **case.of(FilmSpec).row.mirror)
         most = case.direct(mirror)
         cases.append(Compared(batch, np.maximum(case.direct(batch), most), most))

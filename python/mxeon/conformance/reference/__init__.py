@@ -24,26 +24,26 @@ from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import TRANSMISSION, inner_lobes
 from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
 
-SCENES = 4  # whose points are kept: the pictures of a run have as many
+SCENES = 4  # cached scenes' points, as many as a run has pictures
 
 FEW, PATTERNS_DRAWN = (
     32,
     16,
-)  # size of pictures of patterns, and how many are drawn to find a wrong one
-OTHER = 0.01  # difference of a pattern that is named, more than filters and powers of engines make
-ROWS = 32  # and columns of pixels that are judged where each has a material of its own
-MOST = 2000  # pixels of which all are judged then: an integral takes about a millisecond
+)  # size of pattern pictures, and how many are drawn to find a wrong pattern
+OTHER = 0.01  # least reported difference of a pattern, above the errors of filters and powers
+ROWS = 32  # rows and columns of judged pixels if each has a different material
+MOST = 2000  # up to this many pixels are all judged then; an integral takes a millisecond
 
-PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # of which a generator draws three components
-TARGETS = ("glsl", "essl", "vulkan", "wgsl")  # whose shaders of an output draw its value
+PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # generators draw at most three components
+TARGETS = ("glsl", "essl", "vulkan", "wgsl")  # shaders of an output draw its value
 
 
 class HostValues:
-    """Array of a shader's nodes at the pixels of a picture, as a host draws them; NotRun if it cannot.
+    """Values of a shader's nodes at the pixels of a picture, drawn by a host; NotRun if it cannot.
 
-    Patterns are not what the reference knows: where it has no function for a node, the value that comes
-    from it is drawn by the host that is judged, as an output of a document of its own, and the reference
-    goes on from there.
+    The reference does not know patterns: if it has no function for a node, the judged host
+    draws the node's value, as an output of a separate document, and the reference
+    continues from there.
     """
 
     def __init__(self, host: base.Host, shader: Shader, library: str, policy: Policy) -> None:
@@ -52,9 +52,9 @@ class HostValues:
         self._pictures: dict[tuple[str, ...], Array] = {}
 
     def __call__(self, size: int, elements: Elements, kind: str, output: str = "") -> Array:
-        """Array of a node in a picture on which no light falls, (size, size, components).
+        """Values of a node in an unlit picture, (size, size, components).
 
-        Of an output, it shows a surface that emits its color.
+        An output is shown as a surface that emits its color.
         """
         shown, document = elements[-1], self._shader.document
         name = shown.getNamePath()
@@ -79,13 +79,13 @@ class HostValues:
 
 @dataclass(frozen=True, eq=False)
 class ExpectedPicture:
-    """What a host's picture has to show."""
+    """The expected picture of a host."""
 
     image: NDArray[np.float64]
-    # Pixels that were computed; each other one has the value of one nearby.
+    # Computed pixels; all others have the value of a neighbor.
     judged: NDArray[np.bool_]
-    measured: tuple[str, ...]  # inputs of nodes whose values were taken from the host
-    lobes: tuple[ShownLobe, ...] = ()  # the lobes that it shows
+    measured: tuple[str, ...]  # node inputs with values from the host
+    lobes: tuple[ShownLobe, ...] = ()  # visible lobes
 
 
 class Reference(base.Host):
@@ -97,7 +97,7 @@ class Reference(base.Host):
         return Identity(self.name, f"NumPy {np.__version__}", "CPU, float64")
 
     def picture(self, shader: Shader, scene: Scene) -> NDArray[np.float64]:
-        """Picture of the sphere with the shader's document on it; see `mxeon.hosts.base.Host`.
+        """Picture of the sphere with the shader's document; see `mxeon.hosts.base.Host`.
 
         Raise NotRun if the material has lobes that the models do not cover, or the light is an
         image; ValueError if the scene asks for paths.
@@ -109,9 +109,9 @@ class Reference(base.Host):
     def expected(
         self, shader: Shader, scene: Scene, values: HostValues | None = None, stride: int = 1
     ) -> ExpectedPicture:
-        """What a host's picture has to show, some inputs of lobes being as that host has them.
+        """The expected picture of a host, with some inputs of lobes measured on that host.
 
-        With such values, at every so many rows and columns if there are too many materials for all. Raise NotRun as
+        With measured values and too many materials, only every `stride`-th row and column is computed. Raise NotRun as
         `picture` does.
         """
         mask = sphere(scene.size).mask
@@ -138,7 +138,7 @@ class Reference(base.Host):
             shown = shader.document.getDescendant(shader.element)
             if values is None or not shown.isA(mx.Output) or shown.getType() in LIT:
                 raise
-            # Of a pattern, a host draws the color that a surface emits of it; black for other types.
+            # Patterns are drawn as the color of an emitting surface; other types are black.
             if shown.getType() in PATTERNS:
                 image = values(scene.size, [shown], "color3")
             return ExpectedPicture(image, mask, (shown.getName(),))
@@ -147,7 +147,7 @@ class Reference(base.Host):
         return ExpectedPicture(image, chosen, tuple(graph.measured), tuple(graph.lobes))
 
     def other_node(self, shader: Shader, values: HostValues) -> tuple[str, ...]:
-        """Category and name of the first node of a pattern that a host evaluates otherwise; none without one."""
+        """Category and name of the first pattern node that a host evaluates differently; empty if there is none."""
         scene = Scene(NAME, VIEW, size=FEW)
         mask = sphere(scene.size).mask
 
@@ -160,15 +160,15 @@ class Reference(base.Host):
                 own = drawn(elements, elements[-1].getType(), "")
                 if np.abs(own - right).max() > OTHER * max(1.0, np.abs(right).max()):
                     return elements[-1].getCategory(), elements[-1].getName()
-        except NotRun:  # nothing is known about such a node
+        except NotRun:  # such nodes cannot be compared
             pass
         return ()
 
     def _values(self, query: Query) -> NDArray[np.float64]:
-        """Array of the document's lobes; see `mxeon.hosts.base.Host.evaluate`.
+        """Values of the document's lobes; see `mxeon.hosts.base.Host.evaluate`.
 
-        The branch "opacity" is "transmission" by that method of MaterialX. Raise NotRun unless the response to a
-        light or to a uniform environment, or the share of that which is transmitted, is requested.
+        The branch "opacity" is "transmission" with MaterialX's method of that name. Raise NotRun unless the request is
+        the response to a light or to a uniform environment, or the transmitted share of the latter.
         """
         shader, wo, wi, inputs, branch, output, irradiance, _ = query
         if (
@@ -188,14 +188,14 @@ class Reference(base.Host):
 
 
 def _lattice(size: int, stride: int) -> NDArray[np.bool_]:
-    """Pixels in the middle of squares of so many rows and columns."""
+    """Pixels in the middle of squares of `stride` rows and columns."""
     chosen = np.arange(size) % stride == stride // 2
     return np.asarray(np.logical_and.outer(chosen, chosen), np.bool_)
 
 
 @lru_cache(maxsize=2 * SCENES)
 def _shown(scene: Scene, stride: int, most: float) -> ShadingPoints:
-    """The points that a picture shows, and the light at them.
+    """The points of a picture, and their light.
 
     Raise NotRun if the light is an image.
     """
@@ -212,5 +212,5 @@ def _shown(scene: Scene, stride: int, most: float) -> ShadingPoints:
     return ShadingPoints(wo, wi, strength, normal, tangents(normal), texcoord, most, True)
 
 
-# Any target will do: the document behind the shader is what is evaluated.
+# Any target works, because the document behind the shader is evaluated.
 ROW = Row("reference", target=Reference.target, start=lambda name: Reference())

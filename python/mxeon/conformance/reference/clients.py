@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a client's frame shows: a matte sphere in MaterialX's lights, in float64.
+"""Expected frames of a client: a matte sphere in MaterialX's lights, in float64.
 
-The lights, shadows and alpha are those of MaterialX's text, which no specification describes: a light at the distance
-d is dimmed by (1 + d)^decay, a spot light falls smoothly between two cosines, and a shadow is the bound of Chebyshev.
+Lights, shadows and alpha follow MaterialX's text, since no specification describes them: at distance d a light is
+divided by (1 + d)^decay, a spot light falls off smoothly between two cosines, and shadows use Chebyshev's bound.
 """
 
 import numpy as np
@@ -12,12 +12,12 @@ from mxeon.hosts.base import TURN
 from mxeon.shaders.methods import Methods
 from mxeon.shaders.scene import Client, Lamp
 
-LEAST_VARIANCE = 1e-5  # of the depths in a shadow map
+LEAST_VARIANCE = 1e-5  # least variance of depths in a shadow map
 TRANSPARENT = 0.3333  # weight of each channel of the transparency in alpha
 
 
 def lamp_light(lamp: Lamp, position: Array) -> tuple[Array, Array]:
-    """Direction to a light and the irradiance of a surface that faces it, at positions (N, 3)."""
+    """Direction to a light, and the irradiance of a surface facing it, at positions (N, 3)."""
     direction = np.broadcast_to(np.negative(lamp.direction), position.shape)
     irradiance = np.broadcast_to(np.multiply(lamp.color, lamp.intensity), position.shape)
     if lamp.type == 1:
@@ -43,7 +43,7 @@ def shadow(client: Client, position: Array) -> Array:
 
 
 def environment(client: Client, normal: Array) -> Array:
-    """Irradiance over pi by the environment, whose uneven map is that of `mxeon.conformance.samples.sky`, (N, 3)."""
+    """Irradiance over pi from the environment; the uneven map is `mxeon.conformance.samples.sky`, (N, 3)."""
     if client.irradiance is None:
         return np.zeros_like(normal)
     if client.irradiance.shape[0] == 1:
@@ -53,7 +53,7 @@ def environment(client: Client, normal: Array) -> Array:
 
 
 def light(client: Client, methods: Methods, normal: Array) -> Array:
-    """What a white matte point of the unit sphere reflects, (N, 3)."""
+    """Light reflected by a white matte point of the unit sphere, (N, 3)."""
     total = np.zeros_like(normal)
     for number, lamp in enumerate(client.lamps):
         to, irradiance = lamp_light(lamp, normal)
@@ -66,5 +66,5 @@ def light(client: Client, methods: Methods, normal: Array) -> Array:
 
 
 def alpha_of(covered: float) -> float:
-    """Alpha of a surface that covers a share of what is behind it."""
+    """Alpha of a surface that covers a share of its background."""
     return 1.0 - 3.0 * TRANSPARENT * (1.0 - covered)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Closures that a shader makes, evaluated by the models: what OSL's documentation says that they are."""
+"""A shader's closures, evaluated by the models as OSL's documentation defines them."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ from mxeon.shaders.nodes import FLAG, OREN_NAYAR
 Arguments: TypeAlias = Mapping[str, Array]
 THROUGH, GRAPH = "transmission", "graph"  # branches of `Host.evaluate`
 ONE = np.ones((1, 1))
-ROUNDED = 1e-4  # component of a unit vector that roundings may make
-LEAST_HAIR = 1e-12  # roughness, below which the model is a delta
-GGX = "ggx"  # the facets' only distribution
+ROUNDED = 1e-4  # smaller components of unit vectors count as roundings
+LEAST_HAIR = 1e-12  # the model is a delta function below this roughness
+GGX = "ggx"  # the only supported distribution
 EMISSION, MEDIUM, HAIR = "uniform_edf", "anisotropic_vdf", HAIR_NODE.category
 LIGHTLESS = (EMISSION, MEDIUM, "transparent")  # closures that scatter no light at the surface
 SCHLICK = node("schlick")
 MICROFACETS = {row.category: row for row in (node("dielectric"), node("conductor"), SCHLICK)}
 OTHERS = (node("burley"), node("translucent"), HAIR_NODE)
-# Closures have the names of their nodes, but for one.
+# Closures have the names of their nodes, with one exception.
 ROWS = MICROFACETS | {row.category: row for row in OTHERS} | {"subsurface_bssrdf": SUBSURFACE_NODE}
-# By a keyword, 0 unless given, that picks the model.
+# Closures with a keyword, by default 0, that selects the model.
 FLAGGED = {
     OREN_NAYAR: (FLAG, (DIFFUSE[False], DIFFUSE[True])),
     "sheen_bsdf": ("mode", (node("conty_kulla"), node("zeltner"))),
@@ -52,17 +52,17 @@ FLAGGED = {
 
 @dataclass(frozen=True)
 class Views:
-    """Some points, and the light whose way is followed."""
+    """Some points, and the branch of their light."""
 
     points: ShadingPoints
     occlusion: Array  # share of a light that reaches the surface from above
-    branch: str  # as in `mxeon.hosts.base.Host.evaluate`
+    branch: str  # branch of `mxeon.hosts.base.Host.evaluate`
 
     def bsdf(self, tree: ClosureTree | None, layered: bool) -> Bsdf:
-        """Value of closures, and their throughput if something may lie below them."""
+        """Value of closures, and their throughput if they may be layered."""
         if tree is None or tree.name in LIGHTLESS:
             return NOTHING
-        if tree.name in FLAGGED:  # by a keyword, which is 0 unless it is given
+        if tree.name in FLAGGED:  # the keyword defaults to 0
             keyword, models = FLAGGED[tree.name]
             flag = np.asarray(tree.arguments.get(keyword, 0.0), np.float64)
             unset, given = (partial(self._lobe, tree, each, layered) for each in models)
@@ -75,7 +75,7 @@ class Views:
             medium = _coefficient(second, "extinction", MEDIUM)
             if medium is None or not _only_medium(second):
                 return layering.layer(self.bsdf(first, True), self.bsdf(second, layered))
-            # A medium dims what passes the surface.
+            # A medium attenuates light that passes the surface.
             passed, surface = transmittance(medium, 0.0, METER), self.bsdf(first, layered)
             value = surface.value * (passed if self.branch == THROUGH else 1.0)
             return Bsdf(value, surface.throughput * passed)
@@ -91,7 +91,7 @@ class Views:
         return Bsdf(factor * scaled.value, 1.0 - factor * (1.0 - scaled.throughput))
 
     def _lobe(self, closure: ClosureTree, row: PbrNode, layered: bool) -> Bsdf:
-        """A lobe in its frame; stdosl.h lets through a layer what its top does not reflect."""
+        """A lobe in its frame; by stdosl.h, a layer passes the light that its top does not reflect."""
         if (facets := closure.arguments.get("distribution", GGX)) != GGX:
             raise ShaderError(
                 f"osl: distribution of {closure.name} must be {GGX}, as that of the node; got {facets}"
@@ -105,11 +105,11 @@ class Views:
         if np.any(opposite & ((self.points.wo * self.points.normal).sum(axis=1) > ROUNDED)):
             rule = "must be the node's, or face the viewer; got the opposite"
             raise ShaderError(f"osl: normal of {closure.name} {rule}")
-        if names[1] not in closure.arguments:  # any serves that is not parallel to the normal
+        if names[1] not in closure.arguments:  # any vector not parallel to the normal
             tangent = np.where(np.abs(normal[:, :1]) > 0.9, UP, ALONG)
         wo, wi = self.points.directions(normal, tangent)
         inputs = _inputs(closure, row)
-        # Schlick's curve has no tint of its own, and the closure has one.
+        # Schlick's curve has no separate tint, but the closure does.
         tinted = row is SCHLICK
         tint = np.asarray(closure.arguments["reflection_tint"], np.float64) if tinted else ONE
         try:
@@ -129,13 +129,13 @@ class Views:
 
 
 def radiance(tree: ClosureTree | None) -> Array:
-    """What closures emit, (N or 1, 3)."""
+    """Emission of closures, (N or 1, 3)."""
     emitted = _coefficient(tree, "color", EMISSION)
     return np.zeros((1, 3)) if emitted is None else emitted
 
 
 def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Array | None:
-    """An argument of the closures of a name, by which light depends linearly on them; None without any."""
+    """An argument of all closures with a name, as their linear coefficient; None without such closures."""
     if tree is None:
         return None
     if tree.name == name:
@@ -151,14 +151,14 @@ def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Array | 
 
 
 def _only_medium(tree: ClosureTree | None) -> bool:
-    """Whether closures are nothing but mediums."""
+    """Whether closures only consist of media."""
     if tree is None or tree.name not in OPERATIONS:
         return tree is None or tree.name == MEDIUM
     return all(map(_only_medium, tree.parts))
 
 
 def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Array) -> Bsdf:
-    """A share of the second of two lobes beside the first; what has none is not evaluated."""
+    """A blend of two lobes by the share of the second; lobes without a share are not evaluated."""
     if not np.any(share):
         return first()
     return second() if np.all(share == 1.0) else layering.mix(second(), first(), share)
@@ -174,7 +174,7 @@ def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
             rough = np.stack([given[f"variance_{lobe}"], given[f"scale_{lobe}"]], axis=-1)
             given[name] = np.clip(rough, LEAST_HAIR, None)
     if closure.name in MICROFACETS:
-        # OpenPBR stretches a lobe beyond 1, and shaders take 1.
+        # OpenPBR exceeds 1 for anisotropic lobes; shaders clamp to 1.
         alphas = np.stack([given["roughness_x"], given["roughness_y"]], axis=-1)
         given["roughness"] = np.clip(alphas, 0.0, 1.0)
         given["tint"] = given.get("reflection_tint", np.ones((1, 3)))
@@ -186,7 +186,7 @@ def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
 
 
 def column(values: ArrayLike) -> Array:
-    """Numbers as (N, 1), colors as they are."""
+    """Numbers as (N, 1), colors unchanged."""
     array = np.asarray(values, np.float64)
     return array if array.ndim == 2 else array.reshape(-1, 1)
 

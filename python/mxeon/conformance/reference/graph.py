@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Material graphs evaluated in NumPy, over all the points of a picture at once.
+"""Material graphs evaluated in NumPy, vectorized over the points of a picture.
 
-A graph may contain the lobes that have a model, with their combinations; emissions; images; the
-operations that surface shaders are made of; and nodes that are nodegraphs of these. Any other node is
-NotRun, with its name, unless a mix leaves it out.
+A graph may contain lobes with a model and their combinations; emissions; images; the
+operations in surface shaders; and nodes that are nodegraphs of these. Any other node raises
+NotRun with its name, unless a mix skips it.
 """
 
 from __future__ import annotations
@@ -39,20 +39,20 @@ from mxeon.shaders.released_graphs import RELEASES, differences, digest, install
 
 # Types that a generator draws as a color, and their components.
 DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
-# Array of a node, by its type and the name of its output.
+# Values of a node, by its type and the name of its output.
 Measure: TypeAlias = Callable[[Elements, str, str], Array]
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
-# Where nothing is connected: black, and for a lobe zero, which hides nothing.
+# Values of unconnected inputs: black, and for lobes zero, which passes all light.
 UNCONNECTED: dict[str, Value] = {
     "BSDF": nodes.NOTHING,
     "EDF": np.zeros(3),
     "surfaceshader": np.zeros(3),
     "VDF": None,
 }
-CHANNELS = {"float": 1, "color3": 3}  # of an image, by the type that it is read as
+CHANNELS = {"float": 1, "color3": 3}  # channels of an image, by its type
 UTILITIES = {row.category: row for row in utilities.UTILITIES}
-SHADER = "shading"  # name of the surface shader in a document that has one alone
+SHADER = "shading"  # name of the surface shader in a document with a single one
 
 
 class Graph(Nodes):
@@ -62,28 +62,28 @@ class Graph(Nodes):
         self,
         document: mx.Document,
         points: ShadingPoints,
-        inputs: Mapping[str, ArrayLike] | None = None,  # instead of the document's
+        inputs: Mapping[str, ArrayLike] | None = None,  # replace the document's values
         emits: bool = True,  # whether emission and opacity count
         measure: Measure
         | None = None,  # values of nodes without a function; None: they are not run
-        marked: bool = False,  # whether lobes and volumes have marks of their inputs instead of values
+        marked: bool = False,  # whether lobes and volumes return marks of their inputs instead of values
     ) -> None:
         super().__init__()
         self._document, self._points, self._inputs = document, points, inputs or {}
         self._emits, self._measure, self._marked = emits, measure, marked
-        self.measured: dict[str, None] = {}  # inputs, each behind the name of its node
+        self.measured: dict[str, None] = {}  # inputs, each after the name of its node
         self.lobes: list[nodes.ShownLobe] = []
-        self._shader: Path | None = None  # the surface shader that is a nodegraph
-        self._tops: list[Path] = []  # of layers: their throughputs are needed
-        self._hiding: set[Path] = set()  # and those of what they are made of
+        self._shader: Path | None = None  # the surface shader, if it is a nodegraph
+        self._tops: list[Path] = []  # tops of layers, which need throughputs
+        self._hiding: set[Path] = set()  # tops and their parts
         self._steps: dict[Path, Step] = {}
 
     def element(self, name_path: str) -> Array:
-        """Array of the renderable element at a name path, (N, 3).
+        """Value of the renderable element at a name path, (N, 3).
 
-        Raise NotRun if the graph holds a node that is none of the above.
+        Raise NotRun if the graph contains an unsupported node.
         """
-        # Ignore what is not finite: another node may leave it out.
+        # Ignore non-finite values: another node may skip them.
         with np.errstate(divide="ignore", invalid="ignore"):
             path = self._root(name_path)
             self._parts([path])
@@ -91,7 +91,7 @@ class Graph(Nodes):
             return np.asarray(nodes.fitted("color3", self._evaluate(path)), np.float64)
 
     def patterns(self, name_path: str) -> Iterator[tuple[list[mx.Element], Array]]:
-        """Nodes that a renderable element depends on and that can be drawn, sources first, with their values."""
+        """Drawable nodes that a renderable element depends on, sources first, with their values."""
         order = TopologicalSorter(self._parts([self._root(name_path)])).static_order()
         for path in [each for each in order if each in self.elements]:
             if self.elements[path].isA(mx.Node) and self.elements[path].getType() in DRAWN:
@@ -107,7 +107,7 @@ class Graph(Nodes):
         return reachable(roots, lambda path: self._step(path)[1])
 
     def _evaluate(self, root: Path) -> Value:
-        """Value at a path: neither a long chain nor a part with many uses does harm."""
+        """Value at a path, without recursion or repeated evaluation."""
         parts = self._parts([root])
         uses = Counter(part for inner in parts.values() for part in inner)
         values: dict[Path, Value] = {}
@@ -148,7 +148,7 @@ class Graph(Nodes):
 
     @cached_property
     def _operations(self) -> dict[str, nodes.Operation]:
-        """Nodes that compute numbers or colors, some of them by the points: inputs and function."""
+        """Nodes that compute numbers or colors, some of them from the points: inputs and function."""
         known = nodes.OPERATIONS | nodes.VOLUMES | {"surfacematerial": (("surfaceshader",), same)}
         for row in EMISSIONS:
             ports = tuple("base" if name == BASE else name for name in row.inputs)
@@ -162,7 +162,7 @@ class Graph(Nodes):
         ) -> Array:
             return np.asarray((bsdf.value + edf) * opacity + thin, np.float64)
 
-        # What counts of a surface: the opacity, what it emits, and whether its walls are thin.
+        # The relevant inputs of a surface: opacity, emission and thin walls.
         ports = ("bsdf", "opacity", "edf", "thin_walled")
         known["surface"] = ports[: 1 + self._emits + emits + self._marked], surface
         unlit = ("emission", "emission_color", "opacity")
@@ -170,7 +170,7 @@ class Graph(Nodes):
         return known
 
     def _inside(self, path: Path, node: mx.Node, output: str = "") -> Path:
-        """Path of what an output of a node, or its only one, has in its nodegraph."""
+        """Path inside a node's nodegraph of the given output, or of its only one."""
         graph = node.getImplementation()
         outputs = graph.getOutputs() if graph and graph.isA(mx.NodeGraph) else []
         found = [each for each in outputs if each.getName() == output] or outputs
@@ -183,7 +183,7 @@ class Graph(Nodes):
 
         def lobe(*values: Array) -> Bsdf:
             inputs = dict(zip(names, values, strict=True))
-            if self._marked:  # without a weight an input may be no number
+            if self._marked:  # inputs may be NaN without a weight
                 weight = np.reshape(inputs.get("weight", np.ones(1)), (-1, 1))
                 shown = weight * np.where(weight, _marks(node, names, *values), 0.0)
                 return Bsdf(shown, 1.0 - shown[..., ::-1])
@@ -194,7 +194,7 @@ class Graph(Nodes):
         return lobe, self._sources(path, names)
 
     def _combination(self, path: Path, node: mx.Node) -> Step:
-        """Step of a node that combines lobes; a mix leaves out what has no share."""
+        """Step of a node that combines lobes; a mix skips lobes without a share."""
         category = node.getCategory()
         ports, operation = COMBINATIONS[category]
         if category == "mix":
@@ -202,7 +202,7 @@ class Graph(Nodes):
             for port, none in (("bg", 0.0), ("fg", 1.0)):
                 if np.all(share == none):
                     return same, self._sources(path, (port,))
-        # A layer asks its top for a throughput; a volume below dims what is transmitted alone.
+        # A layer needs its top's throughput; a volume below only attenuates transmitted light.
         if category == "layer":
             self._tops.append(self._source(path, "top"))
             if node.getNodeDef().getActiveInput("base").getType() != "BSDF":
@@ -227,7 +227,7 @@ class Graph(Nodes):
         return tuple(self._source(path, name) for name in names)
 
     def _source(self, path: Path, name: str) -> Path:
-        """Path of an input's value: of the node connected to it, or of a constant."""
+        """Path of an input's value: the connected node, or a constant."""
         owner = path
         while (given := self._given(path, name)) is None:
             port = self._port(path, name)
@@ -238,13 +238,13 @@ class Graph(Nodes):
             return self._constant(path, name, given)
         if not port.getConnectedNode():
             return self._constant(path, name, self._written(path, name, port))
-        # An input has a name to measure if a lobe, or a node around one, asks for it.
+        # An input is measured by name if a lobe, or a node around a lobe, uses it.
         scatters = any(each.getType() in CLOSURES for each in self._along(owner, path))
         shown = f"{port.getParent().getName()}.{name}" if scatters else ""
         return self._connected(path[:-1], port, shown)
 
     def _given(self, path: Path, name: str) -> Array | None:
-        """Value that was handed in for an input, (N, 1) if it is one number for each point; or None."""
+        """Value passed in for an input, (N, 1) for one number per point; or None."""
         lobe = path in self.elements and self.elements[path].getCategory() in LOBES
         if name not in self._inputs or not (path == self._shader if self._shader else lobe):
             return None
@@ -256,10 +256,10 @@ class Graph(Nodes):
         )
 
     def _connected(self, around: Path, port: mx.PortElement, shown: str = "") -> Path:
-        """Path of what an input or output within another path is connected to.
+        """Path that an input or output within another path is connected to.
 
-        Where a value comes from a node without a function, and is an input that has a name as
-        `shown`, all of it is measured.
+        If a value comes from a node without a function, and is an input with the name `shown`,
+        the whole value is measured.
         """
         path, kind = self.upstream(around, port), port.getType()
         assert path
@@ -277,7 +277,7 @@ class Graph(Nodes):
         return found
 
     def _output(self, path: Path, output: str) -> Path:
-        """Path of an output of a node: of several outputs, the one of that name."""
+        """Path of a node's output, by name if there are several."""
         node = self.elements[path]
         if node.getType() != "multioutput":
             return path
@@ -288,13 +288,13 @@ class Graph(Nodes):
         return self._inside(path, node, output)
 
     def _constant(self, path: Path, name: str, value: Value) -> Path:
-        """Path of a value that has no parts."""
+        """Path of a value without parts."""
         constant = (*path, f":{name}")
         self._steps[constant] = (lambda: value), ()
         return constant
 
     def _along(self, path: Path, outer: Path = ()) -> list[mx.Element]:
-        """Elements at a path and around it, up to one within another path, the outermost first."""
+        """Elements at and around a path, outermost first, down from another path's element."""
         ends = range(max(len(outer), 1), len(path) + 1)
         return [self.elements[path[:end]] for end in ends if path[:end] in self.elements]
 
@@ -304,14 +304,14 @@ class Graph(Nodes):
         raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
 
     def _written(self, path: Path, name: str, port: mx.Input) -> Value:
-        """Value of an input without a connection, in the document's color space and in meters."""
+        """Value of an unconnected input, in the document's color space and in meters."""
         element = self.elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
         declared = nodedef.getActiveInput(name) if nodedef else port
-        if declared and declared.hasDefaultGeomPropString():  # nothing else sets it
+        if declared and declared.hasDefaultGeomPropString():  # this is its only source
             return self._points.geometry(declared.getDefaultGeomPropString())
         value = port.getValue()
-        if value is None and declared:  # a connection that MaterialX ignores
+        if value is None and declared:  # MaterialX ignores the connection
             value = declared.getValue()
         if port.getType() in UNCONNECTED:
             return UNCONNECTED[port.getType()]
@@ -328,7 +328,7 @@ class Graph(Nodes):
         return constant * float(scales.get(port.getUnit(), 1.0))
 
     def _image(self, node: mx.Node) -> Array:
-        """Array of an image node: texel centers at half-integers, v = 0 at the bottom."""
+        """Values of an image node: texel centers at half-integers, v = 0 at the bottom."""
         if self._points.texcoord is None or node.getInput("texcoord") is not None:
             raise NotRun("reference: images are read at the sphere's own coordinates only")
         file = node.getInput("file")
@@ -348,7 +348,7 @@ class Graph(Nodes):
 
 
 def _marks(node: mx.Node, names: tuple[str, ...], *values: Value) -> Array:
-    """Numbers in [0.1, 0.9] that stand for all inputs of a node which are not its defaults, (N, 3) or (3,)."""
+    """Numbers in [0.1, 0.9] that represent all non-default inputs of a node, (N, 3) or (3,)."""
     phase = np.zeros(3)
     for name, value in zip(names, values, strict=True):
         port = node.getNodeDef().getActiveInput(name)
@@ -364,7 +364,7 @@ def _marks(node: mx.Node, names: tuple[str, ...], *values: Value) -> Array:
 
 
 def _rows(names: Iterable[str], values: Iterable[Array], count: int = 1) -> dict[str, Array]:
-    """Inputs of a model with a row for each point, of which there are at least so many; numbers have one axis."""
+    """Inputs of a model with at least `count` rows, one per point; numbers have one axis."""
     columns = [np.atleast_2d(np.asarray(value, np.float64)) for value in values]
     count = max(count, *map(len, columns))
     rows = [np.broadcast_to(each, (count, each.shape[1])) for each in columns]
@@ -377,7 +377,7 @@ def _rows(names: Iterable[str], values: Iterable[Array], count: int = 1) -> dict
 def _radiance(
     row: Emission, ports: tuple[str, ...], points: ShadingPoints, *values: Array
 ) -> Array:
-    """Radiance of an emission to the viewer."""
+    """Radiance of an emission towards the viewer."""
     wo, _ = points.own
     try:
         return row.value(wo, _rows(ports, values, len(wo)))
@@ -386,15 +386,15 @@ def _radiance(
 
 
 def _utility(row: utilities.UtilityNode, *values: Array) -> Array | Mapping[str, Array]:
-    """The one output of a utility node, or all by name."""
+    """The only output of a utility node, or all by name."""
     outputs = row.value(_rows(row.inputs, values))
     return next(iter(outputs.values())) if len(outputs) == 1 else outputs
 
 
 def _linear(element: mx.Element, value: Array) -> Array:
-    """Color in the document's space, as the generators' color management has it; alpha stays.
+    """Color in the document's space, by the generators' color management; alpha is unchanged.
 
-    Raise NotRun if that takes a transform other than the decoding of sRGB.
+    Raise NotRun if this requires a transform other than the decoding of sRGB.
     """
     spaces = color_spaces(element)
     if spaces is None:
@@ -405,7 +405,7 @@ def _linear(element: mx.Element, value: Array) -> Array:
 
 
 class Graphs:
-    """The surface shader of a document, and that of the installed release or of its own."""
+    """A document's surface shader, and the installed release's or its own."""
 
     def __init__(self, own: mx.Document, text: str) -> None:
         self.own, self._said = own, self._says(own)
@@ -422,13 +422,13 @@ class Graphs:
 
     @cached_property
     def same(self) -> bool:
-        """Whether both say the same, so that their values are equal."""
+        """Whether both graphs are equivalent, so that their values are equal."""
         return self._said == self._says(self.right)
 
     def values(self, batch: Batch, right: bool = False) -> Array:
-        """What a surface shader makes of marks that stand for the inputs of its lobes, and emits, (N, 3).
+        """A surface shader's values from marks that represent its lobes' inputs, plus its emission, (N, 3).
 
-        An input that is NaN has the default of the definition.
+        NaN inputs use the definition's default.
         """
         document = self.right if right else self.own
         definition, inputs = document.getNode(SHADER).getNodeDef(), {}
@@ -446,7 +446,7 @@ class Graphs:
 
     @property
     def difference(self) -> dict[str, tuple[str, ...]]:
-        """Which graph it is, if that is known, and where it differs, by the keys of `conformance.words.DEFECTS`."""
+        """The identity of the graph, if known, and its differences, by the keys of `conformance.words.DEFECTS`."""
         version, other = (
             each.getNode(SHADER).getNodeDef().getVersionString() for each in (self.own, self.right)
         )

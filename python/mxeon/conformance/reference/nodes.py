@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of a document: BSDFs as rows of the models, those that combine them, and those that compute numbers.
+"""Nodes of a document: BSDFs as rows of the models, nodes that combine them, and nodes that compute numbers.
 
-A host draws the values of every other node that is no nodegraph of these: see `HostValues`.
+For every other node that is not a nodegraph of these, a host draws the values: see `HostValues`.
 
-A value is an array whose last axis holds its components; a number is () or (N, 1). What a function returns is
+A value is an array with its components on the last axis; a number is () or (N, 1). A function's result is
 repeated over the components of the node's type, so that a number becomes a color.
 """
 
@@ -41,18 +41,18 @@ from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, value_text
 
 Albedo: TypeAlias = Callable[[Array, Inputs], Array]
 
-# An albedo is interpolated over a picture if its last coefficients are below this, far below the errors
-# of fits: degrees in sqrt(mu) and in cos(2 phi).
+# An albedo is interpolated over a picture if its last coefficients are below this, well below the errors
+# of the fits; the degrees are in sqrt(mu) and in cos(2 phi).
 TAIL = 1e-6
 ISOTROPIC = ((32, 0), (64, 0), (128, 0), (256, 0))
 ANISOTROPIC = ((24, 12), (48, 32))
-AT_ONCE = 1 << 12  # arguments of a series at once
-KEPT = 4  # lobes of the pictures of a scene, of up to 2.5 megabytes each
-SEPARATE = 1000  # directions, whose albedos are as soon computed one by one
+AT_ONCE = 1 << 12  # arguments of a series per block
+KEPT = 4  # cached lobes of a scene's pictures, up to 2.5 megabytes each
+SEPARATE = 1000  # up to this many directions, individual albedos are as fast
 
 
 class ManyMaterialsError(Exception):
-    """More points with a material of their own than may be integrated one by one."""
+    """Too many points with different materials to integrate them individually."""
 
 
 def _directions(mu: Array, phi: Array) -> Array:
@@ -67,20 +67,20 @@ def _interpolated(series: Array, wo: Array, low: float, turns: bool) -> Array:
     u = np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0)
     x, y = np.square(wo[:, 0]), np.square(wo[:, 1])
     v = np.zeros_like(u) if turns else (x - y) / np.maximum(x + y, 1e-300)
-    # Many directions of a picture are alike.
+    # A picture contains many equal directions.
     each, indices = np.unique(np.round(u + 1j * v, 13), return_inverse=True)
     parts = np.array_split(each, 1 + len(each) // AT_ONCE)
     sums = [chebyshev.chebval2d(part.real, part.imag, series).T for part in parts]
     return np.asarray(np.concatenate(sums)[indices], np.float64)
 
 
-ALBEDOS, SERIES = Recent[Array](8), Recent[Array | None](32)  # of materials
+ALBEDOS, SERIES = Recent[Array](8), Recent[Array | None](32)  # caches by material
 
 
 def _series(
     albedo: Albedo, inputs: Inputs, low: float, degrees: tuple[tuple[int, int], ...]
 ) -> Array | None:
-    """Chebyshev coefficients of an albedo, (., ., 3), or None where they fall too slowly."""
+    """Chebyshev coefficients of an albedo, (., ., 3), or None if they decay too slowly."""
     for degree, turns in degrees:
         x, y = chebyshev.chebpts1(degree + 1), chebyshev.chebpts1(turns + 1)
         mu, phi = np.meshgrid(
@@ -97,25 +97,25 @@ def _series(
     return None
 
 
-COSINES = np.linspace(-1.0, 1.0, 1025)  # of the light, between which its blur is straight
-REACHES = (1e-6, 1e3)  # of mean free paths, over the radius of the sphere
+COSINES = np.linspace(-1.0, 1.0, 1025)  # grid for the blur, interpolated linearly
+REACHES = (1e-6, 1e3)  # range of mean free paths over the sphere's radius
 
 
 def _dark(wo: Array, *_: object) -> Array:
-    """Light that a node in scatter mode T reflects."""
+    """Reflection of a node in scatter mode T."""
     return np.zeros(wo.shape)
 
 
 def _not_reflected(category: str, wo: Array, inputs: Inputs) -> Array:
-    """Share of a uniform environment that passes microfacets."""
+    """Share of a uniform environment that passes through microfacets."""
     functions = TRANSMISSIONS[category]
     rest = 1.0 - functions.reflected(wo, microfacets.isotropic(inputs))
     return np.asarray(functions.tint(inputs) * np.maximum(rest, 0.0))
 
 
 def _spread(wo: Array, wi: Array, inputs: Inputs) -> Array:
-    """Radiance of subsurface scattering over the irradiance of a distant light."""
-    # The mean free path of isotropic scattering.
+    """Radiance of subsurface scattering, relative to the irradiance of a distant light."""
+    # The mean free path for isotropic scattering.
     count = len(wi)
     forward = np.broadcast_to(inputs["anisotropy"], (count,))[:, np.newaxis]
     radius = np.broadcast_to(inputs["radius"], (count, 3))
@@ -134,15 +134,15 @@ def _blur(reach: float) -> Array:
     return diffusion_blur(COSINES, reach)
 
 
-# Share of a uniform environment that is transmitted, by the name of a row.
+# Transmitted share of a uniform environment, by name of the row.
 LET_THROUGH: dict[str, Callable[[Array, Inputs], Array]] = {
     row.name: partial(_not_reflected, row.category) for row in TRANSMISSION_NODES
 }
-# Share of a white environment that a lobe of two alphas reflects by MaterialX's sum, by its category.
+# Share of a white environment that a lobe with two alphas reflects by MaterialX's sum, by category.
 SUMS: dict[str, Callable[[Array, Inputs], Array]] = {
     row.category: partial(node_albedo, row.category, summed=True) for row in MICROFACET_NODES
 }
-# What takes light from all sides, without a cosine.
+# Lobes over the full sphere, without a cosine factor.
 AROUND = (
     replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy"), value=_spread),
     HAIR_NODE,
@@ -158,25 +158,25 @@ INNER_NODES = (
 )
 
 
-UNIT = 1e-3  # by how much the length of a normal may differ from 1
+UNIT = 1e-3  # tolerance for the length of a normal
 
 
 @dataclass(frozen=True, eq=False)
 class ShadingPoints:
-    """Where a graph is evaluated, and by which light."""
+    """The points at which a graph is evaluated, and their light."""
 
     wo: Array  # unit vectors to the viewer, in world space
     wi: Array | None  # unit vectors to a distant light; None in a uniform environment
     strength: float  # irradiance of the light, or radiance of the environment
-    normal: Array  # of the surface, orthogonal unit vectors in world space
+    normal: Array  # the surface's axes, orthogonal unit vectors in world space
     tangent: Array
     texcoord: Array | None = None
-    # Points with materials of their own whose albedos are integrated; more raise ManyMaterialsError.
+    # Maximum points with different materials and integrated albedos; more raise ManyMaterialsError.
     most: float = np.inf
     round: bool = False  # whether these are points of the unit sphere
     behind: bool = False  # whether only transmitted light counts
-    opacity: bool = False  # whether lobes that only transmit pass all light, and their tops take what they reflect
-    searched: bool = False  # whether eonlib's sum of an environment masks both alphas
+    opacity: bool = False  # whether lobes that only transmit pass all light, minus the reflection of layers above
+    searched: bool = False  # whether eonlib's environment sum uses both alphas for masking
 
     def lobe(
         self, node: PbrNode, inputs: Inputs, layered: bool, normal: Array, tangent: Array
@@ -193,15 +193,15 @@ class ShadingPoints:
 
         if not own:
             return scattered()
-        # The last ones are kept, which another library's document has too.
+        # Cache the latest ones: another library's document repeats them.
         key = node, layered, *((name, contents(each)) for name, each in inputs.items())
         return self._known.value(key, scattered)
 
     def scattered(self, node: PbrNode, wo: Array, wi: Array | None, inputs: Inputs) -> Array:
-        """Light that a lobe sends to the viewer, by directions in its frame, (N, 3).
+        """Light that a lobe sends to the viewer, from directions in its frame, (N, 3).
 
-        Under a distant light f |cos(theta_i)|, 0 on the dark side; in an environment the directional albedo, or the
-        share that is transmitted.
+        It is f |cos(theta_i)| under a distant light, 0 on the dark side; in an environment, the directional albedo or
+        the transmitted share.
         """
         if wi is None:
             share = LET_THROUGH.get(node.name) if self.behind else node.integral or node.albedo
@@ -220,14 +220,14 @@ class ShadingPoints:
         return value
 
     def _albedo(self, albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-        """Albedo at directions: over a picture of one material by a series, unless it is computed fast."""
+        """Albedo at directions; for a picture of one material by a series, unless it is fast to compute."""
         closed = not node.fitted and node.integral is None
         varied = any(len(value) > 1 for value in inputs.values())
         if varied and not closed and len(wo) > self.most:
             raise ManyMaterialsError
         if closed or varied or not self.round or len(wo) < SEPARATE:
             return albedo_at(albedo, node, wo, inputs)
-        # Whether the lobe stays itself when it is turned about the normal.
+        # Whether the lobe is invariant under rotation about the normal.
         roughness = inputs.get("roughness", np.zeros(1))
         turns = roughness.ndim == 1 or bool(np.ptp(roughness[0]) == 0.0)
         low, degrees = float(np.sqrt(wo[:, 2].min())), ISOTROPIC if turns else ANISOTROPIC
@@ -239,15 +239,15 @@ class ShadingPoints:
             raise NotRun(
                 "reference: the albedo of so anisotropic a lobe takes too long over a picture"
             )
-        # The symmetric points of a sphere have cosines that differ by roundings.
+        # Cosines of symmetric points of a sphere differ by roundings.
         mu = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
         upright = _directions(mu, np.zeros(len(mu)))
-        # All scenes of a document ask for them.
+        # All scenes of a document use them.
         integrated = partial(albedo_at, albedo, node, upright, inputs)
         return ALBEDOS.value((contents(upright), *key), integrated)
 
     def geometry(self, name: str) -> Array:
-        """A property of the surface by its name in MaterialX; raises NotRun if it is not known."""
+        """A property of the surface by MaterialX's name; raises NotRun if it is unknown."""
         known = {
             "Nworld": self.normal,
             "Tworld": self.tangent,
@@ -260,7 +260,7 @@ class ShadingPoints:
 
     @cached_property
     def own(self) -> tuple[Array, Array | None]:
-        """Directions to the viewer and to the light in the frame of the surface."""
+        """Directions to the viewer and the light in the surface's frame."""
         return self.directions(self.normal, self.tangent)
 
     @cached_property
@@ -268,7 +268,7 @@ class ShadingPoints:
         return Recent(KEPT)
 
     def directions(self, normal: Array, tangent: Array) -> tuple[Array, Array | None]:
-        """Directions to the viewer and to the light in a frame, whose normal is turned to the viewer.
+        """Directions to the viewer and the light in a frame with the normal turned to the viewer.
 
         Raise OutsideModel if a normal is no unit vector.
         """
@@ -280,19 +280,19 @@ class ShadingPoints:
         z = np.where((self.wo * normal).sum(axis=-1, keepdims=True) < 0.0, -1.0, 1.0) * normal
         x = tangent - (tangent * z).sum(axis=-1, keepdims=True) * z
         axes = np.stack(np.broadcast_arrays(x, np.cross(z, x), z), axis=1)
-        with np.errstate(invalid="ignore"):  # a tangent along the normal shows in the values
+        with np.errstate(invalid="ignore"):  # values reveal a tangent along the normal
             axes = np.asarray(axes / np.linalg.norm(axes, axis=2, keepdims=True))
         return _within(axes, self.wo), None if self.wi is None else _within(axes, self.wi)
 
 
 def at(inputs: Inputs, points: NDArray[np.intp]) -> dict[str, Array]:
-    """Inputs at some of the points; what all of them have, the models compute once."""
+    """Inputs at some of the points; the models evaluate shared inputs once."""
     return {name: each[points] if len(each) > 1 else each for name, each in inputs.items()}
 
 
 def albedo_at(albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-    """An albedo of a lobe, once for the points that have the same view and inputs if it is no closed form."""
-    wo = np.minimum(wo, 1.0)  # a rounding may have made a cosine larger
+    """An albedo of a lobe; without a closed form, computed once for equal views and inputs."""
+    wo = np.minimum(wo, 1.0)  # rounding may exceed 1
     if not node.fitted and node.integral is None:
         return np.asarray(np.broadcast_to(albedo(wo, inputs), wo.shape))
     varied = [np.reshape(each, (len(wo), -1)) for each in inputs.values() if len(each) > 1]
@@ -302,7 +302,7 @@ def albedo_at(albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array
 
 
 def _within(axes: Array, directions: Array) -> Array:
-    """Directions in a frame, whose axes are the rows, as unit vectors (N, 3)."""
+    """Directions in a frame with the axes as rows, as unit vectors (N, 3)."""
     local = (axes @ directions[:, :, np.newaxis])[:, :, 0]
     return np.asarray(local / np.linalg.norm(local, axis=1, keepdims=True), np.float64)
 
@@ -314,9 +314,9 @@ LOBES = {
     for category in (*DIFFUSE_NODES, *(row.category for row in ROWS))
 }
 
-NOTHING = Bsdf(np.zeros(3), np.ones(3))  # a lobe that is not there
+NOTHING = Bsdf(np.zeros(3), np.ones(3))  # an absent lobe
 
-# Nodes that combine lobes: category -> inputs, and the function of them.
+# Nodes that combine lobes: category -> inputs, and a function of them.
 COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
     "layer": (("top", "base"), layering.layer),
     "mix": (("fg", "bg", "mix"), layering.mix),
@@ -327,16 +327,16 @@ COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
 
 @dataclass(frozen=True, eq=False)
 class ShownLobe:
-    """A lobe of a picture that has a weight."""
+    """A lobe of a picture with a nonzero weight."""
 
-    category: str  # of its node
-    inputs: Mapping[str, Array]  # as `node_lobe` gets them
+    category: str  # category of the node
+    inputs: Mapping[str, Array]  # same as for `node_lobe`
 
 
 def node_lobe(
     node: mx.Node, inputs: Mapping[str, Array], points: ShadingPoints, layered: bool
 ) -> Bsdf:
-    """Lobe of a node; raises NotRun if an input has a value that the models do not cover."""
+    """Lobe of a node; raises NotRun for input values that the models do not cover."""
     # A lobe without a weight scatters nothing.
     weight = np.reshape(inputs.get("weight", np.ones(1)), (-1, 1))  # hair has none
     if (beyond := weight[~((weight >= 0.0) & (weight <= 1.0))]).size:
@@ -347,7 +347,7 @@ def node_lobe(
     uniform = points.wi is None and row.name in LET_THROUGH
     if row in INNER_NODES and not (points.round or uniform):
         raise NotRun(f"reference: there is no model for this mode of node {node.getCategory()!r}")
-    # An input that the model does not have must be its default.
+    # Inputs that the model lacks must have their defaults.
     known = {"weight", "normal", "tangent", "curve_direction", FLAG, *FILM, *row.inputs, *row.fixed}
     for port, value in inputs.items():
         default = node.getNodeDef().getActiveInput(port).getValue()
@@ -358,7 +358,7 @@ def node_lobe(
     film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()
     arguments = {port: _argument(node, port, inputs[port], weight) for port in (*row.inputs, *film)}
     if row.name == "qon":
-        # MaterialX keeps float32, in which pi / 2 is above pi / 2: that alone is lowered to it.
+        # MaterialX stores pi / 2 as a float32 that is slightly larger: only this value is lowered.
         rounded = np.float32(arguments["roughness"]) == np.float32(np.pi / 2.0)
         arguments["roughness"] = np.where(rounded, np.pi / 2.0, arguments["roughness"])
     tangent = inputs.get("tangent", inputs.get("curve_direction", points.tangent))
@@ -371,7 +371,7 @@ def node_lobe(
 
 
 def _outside(node: mx.Node, words: str) -> OutsideModel:
-    """The error for a value outside of a node's model: the note on its input, where the document has the value."""
+    """The error for a value outside a node's model, with the note on its input if the document has the value."""
     document = f"{label(node.getDocument())}: "
     for port in node.getInputs():
         if text := out_of_range(port):
@@ -380,7 +380,7 @@ def _outside(node: mx.Node, words: str) -> OutsideModel:
 
 
 def _row(node: mx.Node, inputs: Mapping[str, Array]) -> PbrNode:
-    """Row of the model that a node with these inputs has."""
+    """Row of the model for a node with these inputs."""
     category = node.getCategory()
     if category in DIFFUSE_NODES:
         return DIFFUSE[category == EON or bool(np.any(inputs[FLAG]))]
@@ -391,16 +391,16 @@ def _row(node: mx.Node, inputs: Mapping[str, Array]) -> PbrNode:
 
 
 def _argument(node: mx.Node, port: str, value: Array, weight: Array) -> Array:
-    """Value of an input as (1,) or (N,) if it is a number, else with its components.
+    """Value of an input as (1,) or (N,) if it is a number, otherwise with its components.
 
-    Where its lobe has no weight it is another point's: there it may be no number.
+    Points where the lobe has no weight, and the value may be NaN, get another point's value.
     """
     kind = node.getNodeDef().getActiveInput(port).getType()
     if kind not in WIDTHS:
         array = np.reshape(np.asarray(value, np.float64), -1)
     else:
         array = np.atleast_2d(np.asarray(value, np.float64))
-        if port == "roughness":  # OpenPBR stretches a lobe beyond 1, and shaders take 1
+        if port == "roughness":  # OpenPBR exceeds 1 for anisotropic lobes; shaders clamp to 1
             array = np.clip(array, 0.0, 1.0)
         array = np.broadcast_to(array, (len(array), WIDTHS[kind]))
     idle = weight[:, 0] == 0.0
@@ -422,7 +422,7 @@ def plain(value: Plain) -> Array | bool | str | None:
 
 # --- nodes that compute numbers -------------------------------------------------------------------
 
-# What a node or an input of a document has: numbers, a flag, a text, a lobe, outputs by name, or nothing.
+# Value of a node or input: numbers, a flag, a text, a lobe, outputs by name, or None.
 Value: TypeAlias = Array | bool | str | Bsdf | Mapping[str, Array] | None
 Operation: TypeAlias = tuple[tuple[str, ...], Callable[..., Value]]  # its inputs, the function
 
@@ -431,7 +431,7 @@ WIDTHS = {"vector2": 2, "color3": 3, "vector3": 3, "color4": 4, "vector4": 4}
 
 
 def fitted(kind: str, value: Value) -> Value:
-    """Value with the components of a type: a number once for each, what is missing 0 or opaque."""
+    """Value with a type's components: numbers are repeated, missing components are 0 or opaque."""
     width = WIDTHS.get(kind, 1)
     if width == 1 or value is None or isinstance(value, str):
         return value
@@ -446,7 +446,7 @@ def fitted(kind: str, value: Value) -> Value:
 
 
 def same(value: Value) -> Value:
-    """The value of a node that passes its input on."""
+    """The value of a node that passes its input through."""
     return value
 
 
@@ -473,7 +473,7 @@ def _rotate3d(value: Array, amount: Array, axis: Array) -> Array:
 def _normalmap(
     value: Array, scale: Array, normal: Array, tangent: Array, bitangent: Array
 ) -> Array:
-    """Unit vector in world space of one in the surface's frame, written as a color."""
+    """World-space unit vector from one in the surface's frame, encoded as a color."""
     x, y, z = np.moveaxis(2.0 * value - 1.0, -1, 0)[..., np.newaxis]
     scale = np.atleast_1d(scale)
     turned = tangent * x * scale[..., :1] + bitangent * y * scale[..., -1:] + normal * z
@@ -482,7 +482,7 @@ def _normalmap(
 
 
 def _when(compare: Callable[..., NDArray[np.bool_]]) -> Operation:
-    """One of two values, by a comparison of two others."""
+    """One of two values, selected by comparing two others."""
 
     def choose(value1: Array, value2: Array, in1: Array, in2: Array) -> Array:
         return np.where(compare(value1, value2), in1, in2)
@@ -492,7 +492,7 @@ def _when(compare: Callable[..., NDArray[np.bool_]]) -> Operation:
 
 UNARY, BINARY = ("in",), ("in1", "in2")
 
-# Category -> its inputs, and the function of them.
+# Category -> inputs, and a function of them.
 OPERATIONS: dict[str, Operation] = {
     "constant": (("value",), same),
     "convert": (UNARY, lambda value: np.asarray(value, np.float64)),
@@ -528,7 +528,7 @@ OPERATIONS: dict[str, Operation] = {
 
 # --- volumes --------------------------------------------------------------------------------------
 
-# Nodes of a volume below a layer, by the light that passes them.
+# Volume nodes below a layer, represented by their transmittance.
 VOLUMES: dict[str, Operation] = {
     "absorption_vdf": (("absorption",), lambda a: transmittance(a, 0.0, METER)),
     "anisotropic_vdf": (("absorption", "scattering"), lambda a, s: transmittance(a, s, METER)),
