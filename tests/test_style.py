@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The style that tools can check: lint, format and types, as pyproject.toml configures them."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -28,3 +29,36 @@ def test_the_code_passes(tool):
     command = [sys.executable, "-m", *TOOLS[tool]]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+FRAGMENT = re.compile(
+    "(^|  ) *# (of|from|for|to|in|by|with|that|which|whose|where|as|on|at|over|than|beside|below|above"
+    "|without) "
+)
+# Files that still contain such comments.
+REMAINING = re.compile(
+    "mxeon/(cli|report|explorer|conformance/results)/|conformance/(checks/paths|words|pictures|run/plan)[.]"
+    "|hosts/(base|raster|gl|webgl|vulkan|slang)[.]"
+)
+
+
+def fragments(text):
+    """Lines with a comment that only completes the code; continuation lines are not included."""
+    lines = [line.lstrip() for line in text.splitlines()]
+    pairs = zip(["", *lines], lines, strict=False)
+    return [b for a, b in pairs if FRAGMENT.search(b) and not (a[:1] == b[:1] == "#")]
+
+
+def test_a_fragment_is_found():
+    assert fragments("# One\n# of two\nA = 1  # of three\n\n    # in four\n") == [
+        "A = 1  # of three",
+        "# in four",
+    ]
+
+
+def test_comments_stand_by_themselves():
+    files = [
+        f for part in ("python", "tools", "tests/support") for f in (ROOT / part).rglob("*.py")
+    ]
+    texts = [f.read_text("utf-8") for f in files if not REMAINING.search(f.as_posix())]
+    assert [line for text in texts for line in fragments(text)] == []
