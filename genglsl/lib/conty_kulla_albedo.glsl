@@ -21,8 +21,8 @@
 #define CONTY_KULLA_ALBEDO_D20 1.0250566
 #define CONTY_KULLA_ALBEDO_D30 -0.067575435
 
-// min(E, 1) of [MaterialX2026], sheen_bsdf: below a roughness of 0.21 the lobe returns more than it
-// gets at grazing.
+// min(E, 1) of [MaterialX2026], sheen_bsdf: below a roughness of 0.21 the lobe gains energy at
+// grazing.
 //   E = exp(-mu^2 / (r (8 - 4 mu^2))) s^2 / (mu + s)^3 N / D,  s = sqrt(r), z = sqrt(mu / (mu + s))
 float conty_kulla_albedo_dir(float mu, float roughness)
 {

@@ -24,7 +24,7 @@
 #define EON_Q2 -0.125382218
 #define EON_Q3 0.0571913429
 
-// H(mu) = c1 - G_F(mu) / pi, with G_F of [Portsmouth2025], Eq. (13). It carries the energy that FON
+// H(mu) = c1 - G_F(mu) / pi, with G_F of [Portsmouth2025], Eq. (13). It gives the energy that FON
 // loses, 1 - E(mu) = r H(mu) / (1 + c1 r), and vanishes at grazing like mu / pi.
 float fon_loss(float mu)
 {
@@ -75,15 +75,15 @@ float qon_albedo_dir(float mu, float sigma)
     return qon_aq(sigma) + qon_bq(sigma) * G_over_pi;
 }
 
-// [Portsmouth2025], Eq. (28), where all but a loss cancels: rho (1 - r H (1 - rho) / D).
+// [Portsmouth2025], Eq. (28), simplified to rho (1 - r H (1 - rho) / D).
 vec3 eon_albedo_dir(float mu, vec3 rho, float roughness)
 {
     vec3 loss = roughness * fon_loss(mu) * (vec3(1.0) - rho) / eon_denominator(rho, roughness);
     return rho * (vec3(1.0) - loss);
 }
 
-// A divisor at or below 1e-37, a cosine or sine, counts as 0, and the quotient as 0: there it might
-// overflow, and overflow times a cosine of 0 is NaN.
+// For divisors (cosines or sines) up to 1e-37 the quotient is 0: it might overflow, and
+// overflow times a cosine of 0 is NaN.
 float oren_nayar_quotient(float value, float divisor)
 {
     return divisor > 1.0e-37 ? value / divisor : 0.0;
@@ -101,8 +101,8 @@ float fon_quotient(float mu_o, float mu_i, float s)
     return s > 0.0 ? oren_nayar_quotient(s, max(mu_o, mu_i)) : s;
 }
 
-// Weight of H(mu_o) H(mu_i) beside 1 + r s / t_F: [Portsmouth2025], Eq. (19) over Eq. (10). With
-// 1 - E = r H / (1 + c1 r) the powers of r cancel, and nothing in it vanishes.
+// Weight of H(mu_o) H(mu_i) relative to 1 + r s / t_F: [Portsmouth2025], Eq. (19) over Eq. (10). With
+// 1 - E = r H / (1 + c1 r) the powers of r cancel, and no divisor vanishes.
 vec3 eon_multiple_ratio(vec3 rho, float roughness)
 {
     float weight = roughness * (1.0 + EON_C2 * roughness) * (1.0 / EON_LOSS_AVG);

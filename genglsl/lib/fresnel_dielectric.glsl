@@ -13,7 +13,7 @@
 #define FRESNEL_AVG_D2 43.891479
 #define FRESNEL_AVG_D3 -53.815382
 
-// The cosine at which the curve has its average over the visible facets: mu + alpha^2 / (mu + alpha) N / D,
+// The cosine at which the curve equals its average over the visible facets: mu + alpha^2 / (mu + alpha) N / D,
 // x = mu / (mu + alpha).
 // Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], index of refraction in [1.03, 3].
 // Largest absolute error of the albedo: 0.003, in [1.05, 2.5] 0.0017.
@@ -60,7 +60,7 @@ float eonlib_fresnel_dielectric(float mu, float ior)
     return g2 <= 0.0 ? 1.0 : 0.5 * (s * s + p * p);
 }
 
-// F_ss of a dielectric; below 1 from the other side, 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)).
+// F_ss of a dielectric; for an index below 1 from the other side, 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)).
 float eonlib_fresnel_dielectric_avg(float ior)
 {
     float t = ior > 1.0 ? 1.0 / ior : ior;
@@ -70,7 +70,7 @@ float eonlib_fresnel_dielectric_avg(float ior)
     return 1.0 - (ior > 1.0 ? lost : ior * ior * lost);
 }
 
-// That cosine. Indices beyond the domain have that of its end.
+// The fitted cosine. Indices are clamped to the domain.
 float ggx_cosine_dielectric(float mu, float alpha, float ior)
 {
     float n = clamp(ior, 1.03, 3.0);
@@ -94,7 +94,7 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 
-// asinh(x), which HLSL lacks; below 0.1 by its series, because log(1 + x) rounds x.
+// asinh(x), which HLSL lacks. The series below 0.1 avoids the rounding of log(1 + x).
 float eonlib_asinh(float x)
 {
     float u = abs(x);
@@ -102,11 +102,11 @@ float eonlib_asinh(float x)
     return sign(x) * (u < 0.1 ? u * (1.0 - u2 * (1.0 / 6.0 - 0.075 * u2)) : log(u + sqrt(u2 + 1.0)));
 }
 
-// What passes to the thinner side, of index below 1: the mean of 1 - F over the visible facets; reversed (1), the share
-// by the paths of light from there. tau, cotangent of the angle to a facet, is tau_c at the critical one, and tau_m
-// near the median:
+// Light that passes to the less dense side (index below 1): the mean of 1 - F over the visible facets; reversed (1), the
+// share by reversed paths from that side. tau, the cotangent of the angle to a facet, is tau_c at the critical angle and
+// tau_m near the median:
 //   share below the critical angle: t^-p, t = 1 + exp(g asinh(k ln(tau_c^2 / tau_m^2)))
-//   their reflectance: F(tau), the tau above which 0.7213 of them are: 1 / 0.7213 = exp(0.326707)
+//   their reflectance: F(tau), with 0.7213 of them above tau: 1 / 0.7213 = exp(0.326707)
 // Source and derivation: tools/fits/ggx_inside.py.
 // Domain: mu and alpha in [1e-4, 1], index in [0.33, 0.98]. Largest absolute error of the albedo: 2.8e-2; reversed, from
 // mu 0.01 on: 3.6e-2.
@@ -135,8 +135,8 @@ float eonlib_dielectric_passing(float mu, float alpha, float ior, float reversed
     return (1.0 - eonlib_fresnel_dielectric(1.0 / sqrt(1.0 + exp(-typical) / median2), ior)) / pow(t, k1_p_g.y);
 }
 
-// Average over the visible facets. Near index 1 the curve depends on the cosine over sqrt(n^2 - 1) alone: an index below
-// 1.03 has the average of 1.03 for k times mu and alpha, at most 1. Where k mu exceeds 1, the cosine grows with mu.
+// Average over the visible facets. Near index 1 the curve only depends on the cosine over sqrt(n^2 - 1): an index below
+// 1.03 uses the average of 1.03 at k mu and k alpha, at most 1. If k mu exceeds 1, the cosine grows with mu.
 // Largest absolute error of the albedo below index 1.03, where k alpha exceeds 1: 9.3e-3.
 float eonlib_fresnel_dielectric_visible(float mu, float alpha, float ior)
 {

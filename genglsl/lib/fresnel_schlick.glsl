@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Averages of Hoffman's generalization of Schlick's curve: F_ss, weighted by the cosine over the hemisphere, and
-// over the visible facets of GGX, by the cosine at which the curve has it. mu is the cosine of wo with the normal.
+// over the visible facets of GGX, by the cosine at which the curve equals it. mu is the cosine of wo with the normal.
 
-// That cosine is mu + alpha^2 / (mu + alpha) N / D, x = mu / (mu + alpha).
+// The cosine is mu + alpha^2 / (mu + alpha) N / D, x = mu / (mu + alpha).
 // Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], exponent 1 to 10. Largest absolute
 // error of the albedo: 0.0032, at exponent 5 0.0019.
 #define SCHLICK_N000 5.211763
@@ -79,7 +79,7 @@ vec3 eonlib_fresnel_schlick_dip(vec3 color0, vec3 color82, vec3 color90, float e
     return mix(color0, color90, pow(m, exponent)) * (1.0 - color82) * (7.0 / (m2 * m2 * m2));
 }
 
-// Cosine for (1 - c)^exponent. Exponents beyond the domain have that of its end.
+// Cosine for (1 - c)^exponent. Exponents are clamped to the domain.
 float ggx_cosine_schlick(float mu, float alpha, float exponent)
 {
     float x = mu / (mu + alpha);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional albedo of isotropic GGX microfacets with height-correlated Smith shadowing; of anisotropic ones
-// see ggx_anisotropic.glsl.
+// Directional albedo of isotropic GGX microfacets with height-correlated Smith shadowing; for anisotropic
+// ones see ggx_anisotropic.glsl.
 //
 // mu is the cosine of wo with the normal, alpha the roughness of GGX. Both lie in [1e-8, 1].
 
@@ -26,7 +26,7 @@
 #define GGX_ALBEDO_D22 -1.0114147
 #define GGX_ALBEDO_D30 7.5515813
 
-// 1 - E_ss of [MaterialX2026], Energy Compensation, what the albedo lacks where every facet reflects everything:
+// 1 - E_ss of [MaterialX2026], Energy Compensation, the energy lost by perfectly reflecting facets:
 //   1 - E_ss = z^2 N / D,  z = sqrt(mu / (mu + alpha))
 float ggx_missing(float mu, float alpha)
 {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Isotropic GGX facets that stand for anisotropic ones in fits. wo is in the frame of tangent, bitangent and normal.
+// Isotropic GGX facets that replace anisotropic ones in fits. wo is in the frame of tangent, bitangent and normal.
 // Source and equations: tools/fits/ggx_anisotropic.py. Domain: alphas in [1e-3, 1], one up to 50 times the other,
 // cosines from 0.01. Largest relative error of E_ss: 2.5e-2; of a dielectric's albedo, absolute: 3.4e-2.
 
 #include "ggx_albedo.glsl"
 
-// Cosine and alpha for E_ss, with a factor of 1 - E_ss; and those for averages over the visible facets.
+// Cosine and alpha for E_ss, with a factor for 1 - E_ss; and cosine and alpha for averages over the visible facets.
 vec3 ggx_facets(vec3 wo, vec2 roughness, out vec2 visible)
 {
     vec2 a2 = roughness * roughness;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Roughness and absorption of hair from what an artist sets.
+// Roughness and absorption of hair from artistic parameters.
 
-// Roughnesses and colors below are taken for this one: a lobe without a width divides by 0.
+// Least roughness and color: a lobe without width divides by 0.
 #define HAIR_LEAST 1e-3
 
-// Share of light that the largest concentration of melanin leaves.
+// Share of light that remains at the largest concentration of melanin.
 #define HAIR_LEAST_SHARE 1e-4
 
-// The least share that a pigment leaves, whose logarithm is finite.
+// Least color of a pigment, with a finite logarithm.
 #define HAIR_LEAST_COLOR 1e-30
 
 // [MaterialX2026], Hair Roughness Conversion Equations: the longitudinal variance v.
@@ -18,14 +18,14 @@ float hair_variance(float longitudinal)
     return root * root;
 }
 
-// The same: the azimuthal logistic scale s.
+// [MaterialX2026], Hair Roughness Conversion Equations: the azimuthal logistic scale s.
 float hair_logistic(float azimuthal)
 {
     float a = clamp(azimuthal, HAIR_LEAST, 1.0);
     return a * (0.265 + 1.194 * a) + 5.372 * pow(a, 22.0);
 }
 
-// Absorption of a mix of both melanins: [dEon2011], with amounts as implementations take them.
+// Absorption of a mix of both melanins: [dEon2011], with the amounts that implementations use.
 vec3 hair_absorption_of_melanin(float concentration, float redness, vec3 eumelanin, vec3 pheomelanin)
 {
     float melanin = -log(max(1.0 - max(concentration, 0.0), HAIR_LEAST_SHARE));
@@ -35,7 +35,7 @@ vec3 hair_absorption_of_melanin(float concentration, float redness, vec3 eumelan
     return melanin * ((1.0 - red) * brown + red * blond);
 }
 
-// Absorption of hair of an apparent albedo: [Chiang2016], the fit of the absorption.
+// Absorption of hair with a given apparent albedo: [Chiang2016], the fit of the absorption.
 vec3 hair_absorption_of_albedo(vec3 scattering, float azimuthal)
 {
     float b = clamp(azimuthal, 0.0, 1.0);

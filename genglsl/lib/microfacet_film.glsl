@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reflectances of a microfacet lobe under a thin film: F_airy at the half vector, its average F_ss over the hemisphere,
-// and its average over the visible facets. Each average is a sum over three nodes, whose waves fade over a width.
+// and its average over the visible facets. Each average is a sum over three nodes, whose waves are damped over a width.
 
 #include "microfacet_lobe.glsl"
 #include "thin_film.glsl"
 
 // F_ss: cosine, weight and width of its nodes. Source: tools/fits/thin_film_nodes.py. Domain: films up to 1000 nm
-// of indices in [1, 2.5]. Largest error: 3.61e-2, of a film that vanishes 4.4e-3.
+// with index in [1, 2.5]. Largest error: 3.61e-2, for a vanishing film 4.4e-3.
 #define FILM_AVERAGE_1 vec3(0.17999, 0.10982, 0.19938)
 #define FILM_AVERAGE_2 vec3(0.55701, 0.43737, 0.13743)
 #define FILM_AVERAGE_3 vec3(0.88292, 0.4528, 0.088681)
 
 // Visible facets: mean of the nodes' cosines, their reach and their bend, coefficients of mu^i y^j with
 // y = alpha / (alpha + 0.2). Source and films as above. Domain: mu in [0.1, 1], alpha in [0.01, 1]. Largest error:
-// 7.7e-2, of index 1.16 over a metal of a lower index, which reflects totally. Below, 0.14.
+// 7.7e-2, at index 1.16 over a metal with a lower index, which reflects totally. Outside the domain, 0.14.
 #define FILM_FACETS_00 vec3(3.252, 0.32298, 0.14542)
 #define FILM_FACETS_01 vec3(-0.91173, 3.3428, 0.030955)
 #define FILM_FACETS_02 vec3(-4.1529, -4.255, -0.22576)
@@ -25,11 +25,11 @@
 #define FILM_FACETS_21 vec3(8.1838, 3.5172, 2.1385)
 #define FILM_FACETS_30 vec3(0.0010818, -0.34239, 0.018052)
 
-// Nodes x, 0 and -x of Gauss's rule for a semicircle over [-1, 1], of weights (1 - x^2) / 2. Each stands for a third of
-// the reach to both sides.
+// Nodes x, 0 and -x of Gauss's rule for a semicircle over [-1, 1], with weights (1 - x^2) / 2. Each represents a third of
+// the reach on both sides.
 #define FILM_OUTER 0.70710678
 
-// Cosine and width of a node, and its weights: 0 to 2 are of the visible facets, 3 to 5 of F_ss, 6 is the half vector.
+// Cosine, width and weights of a node: 0 to 2 are for the visible facets, 3 to 5 for F_ss, 6 is the half vector.
 vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
 {
     float x = FILM_OUTER * float(i - 1);
@@ -42,8 +42,8 @@ vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
     return i > 5 ? vec4(mu_h, 0.0, 0.0, 0.0) : node;
 }
 
-// Reflectances under a film, but for the value in an environment and a metal's visible facets in a light: nothing lies
-// below it.
+// Reflectances under a film, without unused ones: the value in an environment, and a metal's visible facets in direct
+// light, since nothing lies below it.
 void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresnel F)
 {
     F.outside = vec3(1.0);

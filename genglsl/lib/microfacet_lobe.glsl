@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the microfacet nodes share: geometry, reflectances and reflection of a GGX lobe.
+// Code shared by the microfacet nodes: geometry, reflectances and reflection of a GGX lobe.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 #include "ggx_anisotropic.glsl"
 #include "half_vector.glsl"
 
-// Least index of MaterialX's curve, which divides 0 by 0 along the normal where float32 adds nothing to 1.
+// Least index for MaterialX's curve, which is 0/0 along the normal if the index is lost next to 1 in float32.
 #define MICROFACET_LEAST_INDEX 1e-3
 
 #define MICROFACET_MIRROR_INDEX 1e8
@@ -38,7 +38,7 @@ struct MicrofacetFresnel
     vec3 outside;
 };
 
-// Whether a lobe has weight 0 or less, or only transmits (scatter_mode 1, T; 0 is R, 2 is RT) and has to reflect.
+// Whether a lobe does not reflect: its weight is 0 or less, or it only transmits (scatter_mode 1, T; 0 is R, 2 is RT).
 bool microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
 {
     bool transmission = closureData.closureType == CLOSURE_TYPE_TRANSMISSION;
@@ -57,7 +57,7 @@ float microfacet_stretched(MicrofacetLobe lobe, vec3 w)
     return length(microfacet_local(lobe, w) * vec3(lobe.roughness, 1.0));
 }
 
-// Cosines and alphas of 0 would divide by 0. Retroreflection mirrors wo at the normal.
+// Clamps cosines and alphas, which divide. Retroreflection mirrors wo about the normal.
 MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness,
                                bool retroreflective)
 {
@@ -84,7 +84,7 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
     return lobe;
 }
 
-// D G_2 / (4 mu_o), the value of facets that reflect everything, times mu_i: 0 below the horizon. [MaterialX2026],
+// D G_2 / (4 mu_o), the value of perfectly reflecting facets times mu_i; 0 below the horizon. [MaterialX2026],
 // Height-Correlated Smith Masking-Shadowing of July 2026: G_2 = 2 mu_o mu_i / (l_o mu_i + l_i mu_o).
 float microfacet_lossless(MicrofacetLobe lobe)
 {
@@ -93,7 +93,7 @@ float microfacet_lossless(MicrofacetLobe lobe)
     return mx_ggx_NDF(microfacet_local(lobe, lobe.wh), lobe.roughness) * mu_i / (2.0 * smith);
 }
 
-// Light of an environment. MaterialX's sum masks facets by the mean alpha. Under a film they reflect everything.
+// Light of an environment. MaterialX's sum uses the mean alpha for masking. With a film, its facets reflect everything.
 vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData fd)
 {
     fd.ior = fd.model == FRESNEL_MODEL_DIELECTRIC ? max(fd.ior, MICROFACET_LEAST_INDEX) : fd.ior;

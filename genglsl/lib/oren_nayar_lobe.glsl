@@ -2,7 +2,7 @@
 // Response of a rough diffuse lobe, shared by the entry points of the nodes: EON with
 // energy_compensation, qualitative Oren-Nayar without. The models are in eon.glsl.
 //
-// Inputs are not clamped: outside [0, 1] the formulas go on, and give finite numbers for a
+// Inputs are not clamped: outside [0, 1] the formulas continue, with finite results for
 // roughness in [-1, 10] and colors up to 1. A negative weight counts as 0.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
@@ -14,7 +14,7 @@ void oren_nayar_lobe(ClosureData closureData, float weight, vec3 color, float ro
 {
     bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // opaque, where it is
 
-    // A lobe that is switched off costs nothing; a negative weight, never valid, counts as 0.
+    // Disabled lobes cost nothing; negative weights are invalid and count as 0.
     if (weight <= 0.0)
     {
         return;
@@ -24,12 +24,12 @@ void oren_nayar_lobe(ClosureData closureData, float weight, vec3 color, float ro
     vec3 wi = closureData.L;
     N = mx_forward_facing_normal(N, wo);
 
-    // Unit vectors give cosines rounded above 1, of which the albedo takes a square root.
+    // Cosines may round above 1, and the albedo takes a square root of 1 - mu^2.
     float mu_o = min(dot(N, wo), 1.0);
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {
-        // Light from below the horizon has the cosine 0, and with it the response.
+        // Light from below the horizon has cosine 0, so the response is 0.
         float mu_i = clamp(dot(N, wi), 0.0, 1.0);
         float s = dot(wo, wi) - mu_o * mu_i;
         vec3 brdf = energy_compensation ? eon_brdf_mu(mu_o, mu_i, s, color, roughness)

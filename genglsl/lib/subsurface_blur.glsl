@@ -7,14 +7,14 @@
 #define SUBSURFACE_GAUSS2 vec2(0.66120939, 0.36076157)
 #define SUBSURFACE_GAUSS3 vec2(0.23861919, 0.46791393)
 
-// Means of max(cos(theta), 0) over the circles at the ends of chords from a point whose cosine is mu.
+// Means of max(cos(theta), 0) over the circles at the ends of chords from a point with cosine mu.
 vec3 subsurface_ring(float mu, vec3 chord)
 {
     vec3 squared = chord * chord;
     vec3 along = mu * (1.0 - 0.5 * squared);
     vec3 across = sqrt(max((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared), 0.0));
 
-    // A circle that the terminator cuts has more than the cosine of its middle.
+    // A circle cut by the terminator has a larger mean than the cosine of its middle.
     vec3 height = min(abs(along) / max(across, 1e-30), 1.0);
     vec3 more = across * (sqrt(1.0 - height * height) - height * acos(height));
     return max(along, 0.0) + more / 3.14159265358979;
@@ -28,7 +28,7 @@ vec3 subsurface_blur(float mu, vec3 reach)
     vec3 light = vec3(0.0);
     vec3 total = vec3(0.0);
 
-    // One ring serves a plane. A count that depends on an input keeps compilers from writing all rings out.
+    // A plane needs one ring. A count that depends on an input keeps compilers from unrolling all rings.
     int rings = max(reach.x, max(reach.y, reach.z)) > 0.0 ? SUBSURFACE_RINGS : 1;
     for (int i = 0; i < rings; i++)
     {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// F_airy of [MaterialX2026], Thin-Film Iridescence Model, whose sections comments name: what vacuum (1), a film (2) and
-// a substrate (3) reflect, in linear Rec. 709. Each channel has its own substrate and sum over CIE XYZ. Amplitudes are
+// F_airy of [MaterialX2026], Thin-Film Iridescence Model (comments name its sections): reflectance of vacuum (1), film (2)
+// and substrate (3) in linear Rec. 709. Each channel has its own substrate and sum over CIE XYZ. Amplitudes are
 // complex: with z = r_21 r_23, r_123^m cos(mu_k phi m + m (phi_21 + phi_23)) is the real part of z^m exp(i mu_k phi m).
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
-// Spectral Sensitivity of X, X, Y and Z: wavenumbers mu_k in 1/m, sigma_k^2 in 1/m^2, of which the first is least,
-// and v_k sqrt(2 pi sigma_k^2) / 1.0685e-7. Colors of X, Y and Z in Rec. 709, white E to its white by Bradford.
+// Spectral Sensitivity of X, X, Y and Z: wavenumbers mu_k in 1/m, sigma_k^2 in 1/m^2 (the first is the smallest), and
+// v_k sqrt(2 pi sigma_k^2) / 1.0685e-7. Colors of X, Y and Z in Rec. 709, white E adapted by Bradford.
 #define THIN_FILM_POSITIONS vec4(1.6810e6, 2.2399e6, 1.7953e6, 2.2084e6)
 #define THIN_FILM_VARIANCES vec4(4.3278e9, 4.5282e9, 9.3046e9, 6.6121e9)
 #define THIN_FILM_HEIGHTS vec4(0.84659, 0.15386831, 1.0002219, 1.0011225)
@@ -52,13 +52,13 @@ ThinFilmComplex thin_film_interface(ThinFilmComplex a, ThinFilmComplex b)
     return z;
 }
 
-// Second Interface: r_23 of both polarizations, below a film of index n, at a cosine mu_t in it.
+// Second Interface: r_23 of both polarizations, below a film of index n, at cosine mu_t in the film.
 void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out ThinFilmComplex r23_s,
                          out ThinFilmComplex r23_p)
 {
     if (fd.model == FRESNEL_MODEL_SCHLICK)
     {
-        // The phase is pi below a denser film, whose F0 may round. A negative curve has no amplitude.
+        // The phase is pi below a denser film; F0 may have roundings. A negative curve has no amplitude.
         float F0 = (1.0 - 1e-6) * mx_ior_to_f0(n);
         vec3 r = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0));
         r23_p.re = r * (2.0 * step(vec3(F0), fd.F0) - 1.0);
@@ -69,7 +69,7 @@ void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out Th
     else
     {
         // Second Interface Phase: U + i V, the root of (eta_3 + i kappa_3)^2 - sin^2(theta). The smaller part is a
-        // quotient, since as a difference it cancels.
+        // quotient, since the difference would cancel.
         vec3 n2 = fd.ior * fd.ior - fd.extinction * fd.extinction;
         vec3 Q = fd.ior * fd.extinction;
         vec3 A = n2 - sin2;
@@ -90,7 +90,7 @@ void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out Th
     }
 }
 
-// Airy Summation, DC term: C_0 = R_dc - T_12 as a product, in which nothing cancels. R_12 + R_dc is 1 + C_0.
+// Airy Summation, DC term: C_0 = R_dc - T_12 as a product without cancellation. R_12 + R_dc is 1 + C_0.
 vec3 thin_film_c0(float r21, ThinFilmComplex r23)
 {
     float R12 = r21 * r21;
@@ -98,7 +98,7 @@ vec3 thin_film_c0(float r21, ThinFilmComplex r23)
     return (R12 - 1.0) * (1.0 - R23) / max(1.0 - R12 * R23, THIN_FILM_LEAST);
 }
 
-// Color Conversion of what X, X, Y and Z respond with.
+// Color Conversion of the responses of X, X, Y and Z.
 vec3 thin_film_rec709(vec4 S)
 {
     return (S.x + S.y) * THIN_FILM_COLOR_X + S.z * THIN_FILM_COLOR_Y + S.w * THIN_FILM_COLOR_Z;
@@ -121,7 +121,7 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
     vec4 S_re = THIN_FILM_HEIGHTS * cosine;  // S_m / 2 times the heights
     vec4 S_im = THIN_FILM_HEIGHTS * sine;
 
-    // Squares of the largest order, and of its ratio to the next: s reflects more at both interfaces, p passes more.
+    // Squares of the largest order and of its ratio to the next: s reflects more at both interfaces, p transmits more.
     vec3 R = z_s.re * z_s.re + z_s.im * z_s.im;
     vec3 first = C0_p * C0_p * R;
     float order2 = max(first.x, max(first.y, first.z)) * fade2.x;
@@ -164,10 +164,10 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
     return sum;
 }
 
-// F_airy at a cosine mu, or its mean over a width of cosines. A film of an index below 1 is none.
+// F_airy at cosine mu, or its mean over a width of cosines. An index below 1 means no film.
 vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
 {
-    // Three-Layer Geometry: g = n mu_t, whose square loses no digits of a grazing mu.
+    // Three-Layer Geometry: g = n mu_t; its square keeps all digits of a grazing mu.
     float n = max(fd.tf_ior, 1.0);
     float g = sqrt((n - 1.0) * (n + 1.0) + mu * mu);
 
@@ -184,7 +184,7 @@ vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
     z_p.re *= r21_p;
     z_p.im *= r21_p;
 
-    // Optical Path Difference: phi = 2 pi Delta = 4 pi d g, whose slope in mu is 4 pi d mu / g.
+    // Optical Path Difference: phi = 2 pi Delta = 4 pi d g, with slope 4 pi d mu / g in mu.
     float scale = 4.0e-9 * M_PI * fd.tf_thickness;
     float phi = scale * g;
     float spread = scale * width * mu / max(g, THIN_FILM_LEAST);
