@@ -54,7 +54,7 @@ LISTING_EPSILON = 1.4e-7
 
 # --- fits --------------------------------------------------------------------------------------
 
-# The figures that stand beside the coefficients, each the largest error of what is printed, last
+# The errors stated next to the coefficients, each the largest error of the printed digits, last
 # digit rounded up. They hold everywhere: exact values come from closed forms, which a rounding of
 # theirs moves by 1e-15. fon_loss, relative, in float64 and in float32; ROOT, relative; density of
 # exact samples, relative, for the worse of the two fits.
@@ -166,7 +166,7 @@ KIT_FALSE_ALARMS = 2
 
 # --- microfacet and sheen nodes ------------------------------------------------------------------
 
-# The fits of E_ss and of the Conty-Kulla albedo: the errors that stand beside them, and quadrature.
+# The fits of E_ss and of the Conty-Kulla albedo: their stated errors, plus quadrature.
 FIT_GGX = 4.92e-4 + 1e-6
 FIT_CONTY_KULLA = 1.51e-3 + 1e-5
 
@@ -242,5 +242,5 @@ MITSUBA_DENSITY = 4e-7
 
 # Curves of a dielectric over EON, as their docstring promises: 9e-8 measured, at alpha 0.01 and index 1.02.
 COAT = 2e-7
-# Integral of its value at alpha 0.5 by 256 x 256 nodes, of which the specular lobe at mu 0.1 needs the most.
+# Integral of its value at alpha 0.5 by 256 x 256 nodes; the specular lobe at mu 0.1 is the hardest.
 COAT_INTEGRAL = 2e-6

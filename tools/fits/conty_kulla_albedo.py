@@ -61,7 +61,7 @@ def albedo(mu, eighths):
 
 
 def variables(mu, roughness):
-    """z and s, and the factor of N / D but for the exponential, and the exponent."""
+    """z and s, the factor of N / D without the exponential, and the exponent."""
     s = np.sqrt(roughness)
     factor = roughness / ((mu + s) * (mu + s) * (mu + s))
     exponent = -mu * mu / (roughness * (8.0 - 4.0 * mu * mu))

@@ -9,7 +9,7 @@ both ends whatever the coefficients are. What counts is the density that results
 right as it can: the largest relative error of the density is least (minimax fits on Newton steps,
 which need the exact density but not the exact inverse).
 
-ROOT, of the shaders alone, is the root y of K for a given cosine, y = (K / K(pi / 2))^(2/5), which
+ROOT, only used by shaders, is the root y of K for a given cosine, y = (K / K(pi / 2))^(2/5), which
 is analytic in m = 1 - cos: it takes an arc tangent, a cancellation and a power from them.
 """
 

@@ -3,10 +3,10 @@
 
     E_ss(mu, alpha) = 1 - z^2 N / D,  z = sqrt(mu / (mu + alpha)),
 
-with polynomials N and D in z and alpha. At small alpha E_ss depends on mu / alpha alone, which z
-carries; and 1 - E_ss vanishes at grazing like mu log(mu), which a polynomial in z follows better
-than one in mu. The largest absolute error is least. The quadrature takes sums, products, quotients
-and square roots of float64 alone, which are the same on every processor.
+with polynomials N and D in z and alpha. At small alpha E_ss only depends on mu / alpha, which z
+represents; and 1 - E_ss vanishes at grazing like mu log(mu), which polynomials in z approximate better
+than those in mu. The fit minimizes the largest absolute error. The quadrature only uses sums, products,
+quotients and square roots of float64, which are the same on every processor.
 
     python -m tools.fits.ggx_albedo
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reflection models in NumPy: values, albedos, inversion and sampling.
 
-The models import NumPy alone. A call uses the caller's thread, unless `threads` asks for more.
+The models only import NumPy. A call uses the caller's thread, unless `threads` sets more.
 """
 
 from mxeon.models.catalog import model as model

@@ -23,7 +23,7 @@ rho 0.2: tools/fits/varnish_walk.py. `varnished_brdf` has both in closed form.
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
-Where there is one dielectric, its albedo and energy compensation depend on the viewer's cosine alone: one integral at
+For a single dielectric, albedo and energy compensation only depend on the viewer's cosine: one integral at
 some cosines, interpolated.
 
 **A varnish**: EON below a rough dielectric interface, with its exits and internal reflections. The interface reflects
@@ -443,7 +443,7 @@ def dielectric_over_eon_sample(
     """Direction reflected by a visible facet or drawn for EON, chosen by their albedos, and its density.
 
     `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr:
-    the density of both lobes together, each times the probability of its choice. The dielectric is
+    the sum of both lobes' densities, each times its probability. The dielectric is
     chosen with probability E_r / E at the mean of the channels. The weight of a sample is the mean
     of those of both lobes alone, of which EON's is E for gray. [Dupuy2023]; docs/sampling.md.
 

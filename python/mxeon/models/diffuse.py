@@ -114,7 +114,7 @@ def eon_denominator(rho: Array, roughness: Array) -> Array:
 
 
 def eon_multiple_ratio(rho: Array, roughness: Array) -> Array:
-    """Weight of H(mu_o) H(mu_i) beside FON's 1 + r s / t_F: Eq. (19) over Eq. (10).
+    """Weight of H(mu_o) H(mu_i) relative to FON's 1 + r s / t_F: Eq. (19) over Eq. (10).
 
         rho r (1 + c2 r) / ((c1 - c2) D)
 

@@ -4,7 +4,7 @@
 A radiance is per channel, in any unit; the exitance is its integral over the hemisphere times the cosine, pi times
 that unit. Directions leave the surface, normal +z, or the position where light is scattered, so that light that goes
 straight on has wi = -wo; one below the horizon sees the back of the surface. `measured_edf` has no function here: its
-values are those of a file. The albedo inversion is that of van de Hulst's fit for a half space.
+values come from a file. The albedo inversion is van de Hulst's fit for a half space.
 
 - `wo`, `wi` (..., 3): Unit vectors to 1e-6; z may be negative.
 - `radiance` (..., C): c per channel, that inside the cone for a conical emitter, in [0, 1e50].
@@ -421,7 +421,7 @@ def subsurface_albedo(rho: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Ar
         d = 4.09712 + 4.20863 rho - sqrt(9.59217 + 41.6808 rho + 17.7126 rho^2)
         w0 = 1 - d^2,  w = w0 / (1 - g (1 - w0))
 
-    It rises with rho but for the last 1.2e-5 of its range: the printed digits leave d = -5e-6 at rho = 1, and w0 = 6e-6
+    It rises with rho except in the last 1.2e-5 of its range: the printed digits give d = -5e-6 at rho = 1, and w0 = 6e-6
     at rho = 0. Accuracy: a half space of this albedo reflects rho within 0.0021 for g = 0, by its H function.
     [MaterialX2026], Subsurface Scattering Model, Albedo Inversion.
 
@@ -485,8 +485,8 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
     - `mu`: Cosine of the light with the normal, in [-1, 1].
     - `reach`: Mean free path over the radius of the sphere, in [1e-150, 1e150]; its limit 0 is max(mu, 0).
 
-    Its mean over the sphere is 1/4, that of max(mu, 0). Distances are those of the text, through the body; light whose
-    distance has no point on the sphere leaves as the rest does. Accuracy: absolute error below 1e-6.
+    Its mean over the sphere is 1/4, as for max(mu, 0). Distances are through the body, as in the text; light whose
+    distance exceeds the sphere is distributed like the rest. Accuracy: absolute error below 1e-6.
 
         >>> diffusion_blur([-0.5, 0.0, 1.0], 0.1).round(4)
         array([0.0097, 0.074 , 0.9344])
@@ -542,8 +542,8 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
     """CIE 1931 XYZ of a black body, with Y = 1.
 
     Result (..., 3). Sums over the observer's table, of 5 nm, which are within 5e-5 of those over 1
-    nm. Spectra are scaled by their largest exponential, so that cold bodies, of which no light is
-    left in float64, keep their color. [Planck1901]; ISO/CIE 11664-1.
+    nm. Spectra are scaled by their largest exponential, so that cold bodies, whose light underflows
+    in float64, keep their color. [Planck1901]; ISO/CIE 11664-1.
 
         >>> blackbody_xyz(6504.0).round(4)
         array([0.9688, 1.    , 1.1218])
@@ -563,8 +563,8 @@ def blackbody(temperature: ArrayLike) -> Array:
     """Color of a black body in linear Rec. 709, with luminance 1.
 
     Result (..., 3): Channels are negative outside Rec. 709's gamut: blue below 1900 K, green below
-    964 K. The specification says "radiant emittance", in words alone. The true one grows with the
-    fourth power of the temperature; implementations give the color with luminance 1, as here.
+    964 K. The specification says "radiant emittance" without an equation. The true one grows with the
+    fourth power of the temperature; implementations return the color with luminance 1, as here.
     [MaterialX2026], blackbody; [Planck1901]; ISO/CIE 11664-1.
 
         >>> blackbody([2000.0, 6504.0]).round(3)

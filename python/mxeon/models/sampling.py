@@ -18,7 +18,7 @@ not broadcast.
 
 **EON**, exactly: two random numbers, no table, no iteration. On the unit disk below the hemisphere, with `wo`
 turned to azimuth 0, S = sqrt(1 - mu^2) and q = r S_o, the value of EON at unit reflectance is A / pi times the
-sum of four parts, none of which is ever negative:
+sum of four nonnegative parts:
 
 | part     | value                                   | integral over the disk, over pi            |
 |----------|-----------------------------------------|--------------------------------------------|
@@ -29,7 +29,7 @@ sum of four parts, none of which is ever negative:
 
 with K(theta) = (theta - sin(theta) cos(theta))/2 - sin^3(theta)/3. The integrals sum to 1 + c1 r, which is 1 / A:
 docs/sampling.md has the proof. Each part is drawn by its inverse distribution. Those of `flat` and `lower` are
-closed forms; those of `multiple` and `upper` depend on no parameter, and are fitted. The density returned is that
+closed forms; those of `multiple` and `upper` have no parameter and are fitted. The returned density is that
 of the four parts. Directions follow it with a relative error of at most 1.3e-5 of the part: a mean of the parts'
 errors under non-negative weights, so that the sum has no larger error anywhere.
 
@@ -377,7 +377,7 @@ def ltc0_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
     """Direction sampled by the transformed cosine without the coefficient d, and its density.
 
     `wi` (..., 3): Unit vectors above the horizon. `pdf` (...): 1/sr. The paper fits a, b and c
-    again for d = 0 and prints no result. Here they are those of the general fit. [Portsmouth2025],
+    again for d = 0 and prints no result. Here the general fit's values are used. [Portsmouth2025],
     Section 4, Eqs. (22) to (25), Listing 2.
 
         >>> wi, pdf = ltc0_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)

@@ -436,7 +436,7 @@ COSINE = Parameter("cos_theta", 1.0, "cos_theta")
 
 @dataclass(frozen=True, repr=False)
 class EmissionModel(NodeModel):
-    """An EDF node by its name.
+    """An EDF node as functions of MaterialX's inputs.
 
     Inputs and their shapes are those of `ShadingModel`.
 
@@ -465,7 +465,7 @@ class EmissionModel(NodeModel):
 
 @dataclass(frozen=True, repr=False)
 class MediumModel(NodeModel):
-    """A VDF node by its name.
+    """A VDF node as functions of MaterialX's inputs.
 
     Inputs and their shapes are those of `ShadingModel`.
 

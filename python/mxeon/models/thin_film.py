@@ -52,7 +52,7 @@ from mxeon.models.microfacet import CATEGORIES, Curve, Lobe, evaluate_lobe, fres
 Complex: TypeAlias = tuple[Array, Array]  # real and imaginary part
 
 # Gaussians of the sensitivities, as the text has them: tristimulus, v in m, mu in 1/m, sigma^2 in 1/m^2. XYZ of films
-# up to 2000 nm of indices up to 2.3 are off from those of wavelengths by at most 0.012 over dielectrics, 0.017 over metals.
+# up to 2000 nm with indices up to 2.3 differ from sums over wavelengths by at most 0.012 over dielectrics, 0.017 over metals.
 GAUSSIANS = (
     (0, 5.4856e-13, 1.6810e6, 4.3278e9),
     (0, 9.7470e-14, 2.2399e6, 4.5282e9),
@@ -115,7 +115,7 @@ def over_index(
     """
     xp = array_namespace(mu, film_ior, ior, extinction)
     c, S2 = film_ior * refracted(mu, film_ior), (1.0 - mu) * (1.0 + mu)
-    # W = U + iV, of which U V = ior extinction gives the smaller part without a cancellation.
+    # W = U + iV; U V = ior extinction gives the smaller part without a cancellation.
     Q, A = ior * extinction, (ior - extinction) * (ior + extinction) - S2
     larger = root(0.5 * (fresnel.modulus(A, 2.0 * Q) + arrays.magnitude(A)))
     smaller = Q / xp.where(larger > 0.0, larger, 1.0)
@@ -229,7 +229,7 @@ def _integrated(x: Array, y: Array, phi: Array) -> Array:
 
     The sum over m >= 1 is w / (1 - w), with the real part (Re(w) - |w|^2) / |1 - w|^2, which is
     ((1 - |w|^2) / |1 - w|^2 - 1) / 2, since |1 - w|^2 = 1 - 2 Re(w) + |w|^2. The mean is the trapezoidal rule of
-    HEIGHTS; a node turns w by a multiple of one step, so that no node takes a sine of its own.
+    HEIGHTS; each node turns w by a multiple of one step, so that nodes need no individual sines.
     """
     xp, angle = array_namespace(phi), _column(CENTERS, phi) * phi
     step = _column(np.sqrt(2.0) * STEP * SPREADS, phi) * phi
@@ -285,7 +285,7 @@ class Form:
     - `matrix`: From CIE XYZ to linear RGB, by rows.
     - `orders`: M; None sums all orders.
     - `mixed`: Whether the index of RGB channel k enters XYZ value k. If not, each RGB channel has
-      its index in all of XYZ, so that a film that vanishes leaves the channels alone.
+      its index in all of XYZ, so that a vanishing film does not change the channels.
     - `share`: Factor of the Schlick substrate's reflectance in each polarization; by the text 1.
     - `least`: Smallest color0 that is converted to the index of a Schlick substrate.
     - `clamped`: Whether values outside [0, 1] are clamped, as the text does.

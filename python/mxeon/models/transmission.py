@@ -398,7 +398,7 @@ def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
 
         ior = (1 + sqrt(r)) / (1 - sqrt(r)),  r in [0.01, 0.99]
 
-    The bounds are those of stock MaterialX: the index lies in [1.22, 399], so that a reflectance of 0 still refracts.
+    The bounds are stock MaterialX's: the index lies in [1.22, 399], so that a reflectance of 0 still refracts.
     [MaterialX2026], Generalized Schlick Equations, Thin-Film Iridescence.
 
         >>> schlick_ior([0.04, 0.25]).round(4), schlick_ior([0.04, 0.25], "channel").round(4)

@@ -249,7 +249,7 @@ LAST = (
     *("frame", "finite", "layer", "integral", "energy", "states", "lossless", "domain", "sky"),
     *("narrow_lobes", "tilted_lobes", "wide_lobes", "straight_views", "low_index", "each_lobe"),
 )
-COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # consist of lobes that are also judged alone
+COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # consist of lobes that are also judged separately
 UNWRITTEN = "unwritten"
 OSL_TWINS = {
     source_file("osl", stem).relative_to(ROOT).as_posix()

@@ -233,8 +233,8 @@ def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
 def _tasks(host: str) -> tuple[Task, ...]:
     """All tasks of a host with eonlib: subject by subject, since each has a shader to compile.
 
-    The last subjects come first, those of transmission, which need most of a source; films, whose failures take
-    longest to diagnose, come last.
+    The last subjects come first (transmission, which uses most of a source); films come last, because their
+    failures take longest to diagnose.
     """
     places = {spec.title: -place for place, spec in enumerate(PBRLIB)}
     tasks = make_plan((), [host], ["eonlib"], nodes=["all"]).tasks

@@ -62,7 +62,7 @@ def evaluate(
 
     - `formula`: `formula(wo, wi, rho, *parameter)` for one block: directions (..., 3) with contiguous
       components, `rho` (C, ...), the parameter (...), all float64; returns (C, ...). Axes of length 1 stay
-      so, and with them everything that depends on the material alone stays small.
+      so, which keeps everything that only depends on the material small.
     - `rho` (..., C): A list of N numbers for N directions is rejected, unless it is red, green and blue.
     - `**parameter` (...): At most one, named as in `RANGES`.
     """

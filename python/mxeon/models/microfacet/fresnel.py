@@ -308,7 +308,7 @@ def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> A
     """Fresnel reflectance of a conductor for unpolarized light.
 
     Result (..., C): in [0, 1]. Without extinction it is `fresnel_dielectric`. Accuracy: absolute
-    error below 1e-12, but for the critical angle of a dielectric that absorbs next to nothing.
+    error below 1e-12, except at the critical angle of an almost non-absorbing dielectric.
     [MaterialX2026], Conductor Fresnel Equations.
 
         >>> fresnel_conductor(0.5, [0.183, 1.373], [3.424, 1.770]).round(6)

@@ -14,7 +14,7 @@ Raises `ValueError`, which names the first bad element, if an argument leaves it
 not broadcast.
 
 (1 - E_ss) / E_ss, the light that the facets' own lobe misses, comes from a table that is computed once. E_ss changes on
-the scale mu = alpha. In s = mu (1 + alpha) / (mu + alpha), which is in [0, 1], it is smooth but for terms like
+the scale mu = alpha. In s = mu (1 + alpha) / (mu + alpha), which is in [0, 1], it is smooth except for terms like
 s log(s), and in sqrt(alpha) throughout; a cube root spreads the former over the nodes of Chebyshev polynomials.
 """
 
@@ -379,7 +379,7 @@ def missing_light(mu: Array, alpha: Array) -> Array:
 
 
 def _interpolated(mu: Array, alpha: Array) -> Array:
-    """Sum of the table's polynomials, those of alpha first."""
+    """Sum of the table's polynomials, starting with alpha's."""
     xp = array_namespace(mu, alpha)
     table = _table()
     powers = chebyshev.chebyshev_polynomials(root(alpha), table.shape[1])
