@@ -135,7 +135,7 @@ def radiance(tree: ClosureTree | None) -> Array:
 
 
 def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Array | None:
-    """An argument of all closures with a name, as their linear coefficient; None without such closures."""
+    """Sum of an argument over all closures with a name, weighted as in the tree; None without any."""
     if tree is None:
         return None
     if tree.name == name:
