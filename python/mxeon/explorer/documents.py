@@ -124,7 +124,7 @@ def _pages(titles: Iterable[str], library: str) -> tuple[str, ...]:
         for issue in issues().values()
         if "webgl" in (issue.host, *issue.also)
         and issue.library == library
-        and not issue.kind
+        and not (issue.kind or issue.differs)
         and {subject for _, subject in issue.rows}.intersection(titles)
     )
 

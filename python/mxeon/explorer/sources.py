@@ -178,7 +178,8 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
     reference = reference_of(shaders["eonlib"])
     [paths] = path_texts(material.text).values()
     # Of several lobes no permitted form is known; `mxeon check` has a verdict on them.
-    judged = LIBRARIES if reference and not reference.forms else ()
+    several = reference and not reference.forms and OREN_NAYAR not in material.text
+    judged = LIBRARIES if several else ()
     with temporary_folder("mxeon-explore-") as folder:
         file = Path(folder, "material.mtlx")
         file.write_text(material.text, encoding="utf-8")

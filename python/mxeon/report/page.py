@@ -80,9 +80,12 @@ def worst(results: Iterable[Result]) -> Verdict:
 
 
 def tally(results: Iterable[Result | CheckResults]) -> str:
-    """Counts of verdicts, worst first: "2 failed, 5 passed"."""
+    """Counts of verdicts, worst first: "2 failed, 1 allowed, 5 passed"."""
     verdicts = [each.verdict for each in results]
-    return ", ".join(f"{verdicts.count(each)} {each}" for each in WORST_FIRST if each in verdicts)
+    said = {DIFFERS: "allowed"}
+    return ", ".join(
+        f"{verdicts.count(each)} {said.get(each, each)}" for each in WORST_FIRST if each in verdicts
+    )
 
 
 def checks_by_place(
