@@ -283,6 +283,7 @@ HARMLESS = {
     f"{BXDF}/disney_principled.mtlx": {"coat_roughness_vector": "rough", TOP.format("bsdf"): HALVED.format("1.0")},
     f"{STDLIB}/mx_smoothstep_float.glsl": {"result = 1.0;": "result = 0.5 + 0.5; // the upper end"},
     "cmlib/cmlib_ng.mtlx": {'value="1.8"': 'value="1.80"'},
+    "stdlib/stdlib_defs.mtlx": {'scale="0.0254"': 'scale="0.02540"'},
     "pbrlib/pbrlib_defs.mtlx": {'uimin="0.0"': 'uimin="0.00" uifolder="lobe"'},
 }  # fmt: skip
 

@@ -130,11 +130,18 @@ def definition_facts(
         for element in (own, *own.getChildren()) if own else ():
             place = f"{element.getCategory()} {element.getName()}"
             found |= {
-                f"{fact} of {place}": element.getAttribute(fact)
+                f"{fact} of {place}": one_spelling(element.getAttribute(fact))
                 for fact in element.getAttributeNames()
                 if fact != "doc"
             }
     return found
+
+
+def one_spelling(text: str) -> str:
+    """A number as it is shortest, and any other text as it is."""
+    with suppress(ValueError):
+        return repr(float(text))
+    return text
 
 
 def versions(document: mx.Document, name: str) -> tuple[str, ...]:
