@@ -409,7 +409,11 @@ def path_value(case: Case) -> Iterator[Compared]:
         wi = batch.wi if glassy else batch.wi * np.stack([0.0 * sign + 1.0] * 2 + [sign], axis=1)
         wi[:8] = batch.wo[:8]
         batch = replace(batch, wi=wi)
-        local = replace(batch.altered(normal=NORMAL, tangent=TANGENT), frame=None)
+        normal = np.broadcast_to(NORMAL, wi.shape)
+        if isinstance(case.spec, SurfaceShaderSpec) and batch.frame is not None:
+            # Its graph turns tangents about a normal that may face away.
+            normal = np.einsum("nij,ni->nj", batch.frame, batch.inputs["normal"]).round()
+        local = replace(batch.altered(normal=normal, tangent=TANGENT), frame=None)
         # Light from behind is not the rasterizer's, nor is there an inside of what reflects by an index.
         inside = np.arange(len(wi)) % 2 * (not UNLIKE_INSIDE(case.spec))
         ask = partial(
