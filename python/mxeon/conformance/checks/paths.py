@@ -689,7 +689,9 @@ ROWS = (
           tolerance=ALBEDO.plus(Term(5e-3, "a sum of 32768 draws")),
           control=controls.scale("values are 10 % too large", 1.1),
           explain=always(defect("other_path_albedo")), requires=Ability.PAIRS, profile="path",
-          hosts=has_paths, methods=with_directions),
+          hosts=has_paths,
+          methods=lambda spec, methods: (
+              with_directions(spec, methods) and methods.transmission == "refraction")),
     Check(key="path_energy",
           claim="Draws at a clear solid carry all light, from outside and from inside.",
           applies=CLEAR, measure=path_energy, tolerance=PASSING.plus(DRAWN_SUM),

@@ -762,7 +762,7 @@ FILM_SPECS = tuple(
         row=row,
         inputs=INPUTS[row.category],
         errors=FILM_ERRORS,
-        engines={"film_curve": (WAVE_ERROR,)},
+        engines=dict.fromkeys(("film_curve", "film_orders"), (WAVE_ERROR,)),
     )
     for row in FILM_NODES
 )
