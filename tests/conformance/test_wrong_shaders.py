@@ -91,6 +91,7 @@ WRONG = {
          ("model", "a far exponential of 1.5 mean free paths instead of 3")),
     ),
     "conical_edf": (
+        ("genglsl/conical_edf.glsl", "mu >= inner", "mu > inner", "radiance", ("region",)),
         ("genglsl/conical_edf.glsl", "max(inner - outer, 1e-8)", "max(inner - outer, 1e-4)", "radiance", ()),
         ("genglsl/conical_edf.glsl", "w / 42.0 * tail", "w / 42.0", "radiance", ("region",)),
         ("genglsl/conical_edf.glsl", "u = angle", "u = max(angle, 6.4)", "radiance", ("value", "inner_angle", 6.4)),
@@ -128,6 +129,8 @@ WRONG = {
         (FACETS, "mirrored ? reflect(-closureData.V, N) :", "", "retroreflection", ()),
     ),
     "generalized_schlick_bsdf, scatter_mode R": (
+        (FACETS, "reflect(-closureData.V, N)", "reflect(-closureData.V, closureData.N)", "frame",
+         ("retroreflective_normal",)),
         ("genglsl/generalized_schlick_bsdf.glsl", "max(mx_fresnel_hoffman_schlick(lobe.mu_h, fd), 0.0)",
          "mx_fresnel_hoffman_schlick(lobe.mu_h, fd)", "dark", ("curve_below_0",), "differs"),
         ("mx_generalized_schlick_bsdf.glsl", "clamp(roughness, M_FLOAT_EPS, 1.0)",

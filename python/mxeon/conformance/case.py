@@ -195,7 +195,11 @@ def frames(case: Case) -> Iterator[Compared]:
     """Values in turned frames, half of them with a normal that faces away, compared with unturned ones."""
     turned = case.backend.turned
     # Each sums over the environment: use every fifth pair, which covers both sides.
-    for output, batch in ((case.direct, turned), (case.albedo, turned.where(slice(None, None, 5)))):
+    some = turned.where(slice(None, None, 5))
+    shown = [(case.direct, turned), (case.albedo, some)]
+    if "retroreflective" in case.changes:
+        shown.append((case.direct, some.altered(retroreflective=True)))
+    for output, batch in shown:
         local = replace(batch.altered(normal=(0.0, 0.0, 1.0), tangent=(1.0, 0.0, 0.0)), frame=None)
         yield Compared(batch, output(batch), output(local))
 

@@ -204,6 +204,7 @@ DEFECTS = {
     "seen_over_masking": "the mean of 1 - F over the visible normals, divided by G_1 of the view",
     "wrong_with_methods": "with {methods}",
     "other_directions": "the environment is looked up in other directions, or with other weights",
+    "retroreflective_normal": "retroreflection mirrors the view at another normal than the node's",
     "retroreflective_environment": "retroreflective is ignored or wrong in an environment",
     "reflects_light": "reflects a light",
     "reflects_light_unlike_R": "reflects a light, unlike mode R",

@@ -397,9 +397,11 @@ def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) ->
 def diagnose_frame(case: Case) -> Diagnosis:
     """Whether the normal is dropped or not turned, in the first wrong branch."""
     tolerance = case.tolerance("frame")
-    for compared, branch in zip(frames(case), ("direct", "environment"), strict=True):
+    for compared, branch in zip(frames(case), ("direct", "environment", ""), strict=False):
         if not tolerance.wrong(compared).any():
             continue
+        if not branch:
+            return defect("retroreflective_normal")
         expected = case.expected if branch == "direct" else case.expected_albedo
         dropped = compared._replace(expected=expected(normal_ignored(compared.batch)))
         if not tolerance.wrong(dropped).any():

@@ -188,6 +188,7 @@ class ConeSpec(EmissionSpec):
         """An emission's batches; views in falloffs, or slightly inside and outside the cones; and turned axes."""
         rng, count = generator(), counts.few
         inputs = self.random_inputs(rng, count)
+        inputs[INNER][0] = inputs[OUTER][0] = 0.0  # a cone of one direction, which is the view
         angle = np.where(np.arange(count) % 2, inputs[INNER], inputs[OUTER])
         step = np.where(rng.random(count) < 0.5, -2.0, 2.0) * _edge(angle)
         mu, low = cone_cosine(angle) + step, cone_cosine(inputs[OUTER])
