@@ -141,7 +141,7 @@ class Graph(Nodes):
         if category in self._operations:
             ports, operation = self._operations[category]
             sources = self._sources(path, ports)
-            return lambda *values: nodes.fitted(kind, operation(*values)), sources
+            return partial(_applied, node, operation), sources
         if kind == "surfaceshader" and self._shader is None:
             self._shader = path
         return same, (self._inside(path, node),)
@@ -345,6 +345,14 @@ class Graph(Nodes):
             )
         read = values[:, :channels]
         return _linear(file, read) if channels == 3 else read
+
+
+def _applied(node: mx.Node, operation: Callable[..., Value], *values: Value) -> Value:
+    """Value of a node whose operation is a function of its inputs; a library's graph may give it any."""
+    try:
+        return nodes.fitted(node.getType(), operation(*values))
+    except ValueError as error:
+        raise OutsideModel(f"reference: node {node.getNamePath()!r}: {error}") from None
 
 
 def _marks(node: mx.Node, names: tuple[str, ...], *values: Value) -> Array:
