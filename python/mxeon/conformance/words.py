@@ -493,12 +493,11 @@ def size(apart: Difference) -> str:
     largest = abs(apart.largest)
     if not math.isfinite(largest):
         return "not finite"
-    highlight = apart.highlight and largest >= 0.001
-    return (
-        f"highlights up to {in_words(100.0 * largest)} %"
-        if highlight
-        else f"up to {of_white(largest)}"
-    )
+    if largest < 0.001:
+        return of_white(largest)
+    if apart.highlight:
+        return f"highlights up to {in_words(100.0 * largest)} %"
+    return f"up to {of_white(largest)}"
 
 
 def appearance(apart: Difference) -> str:
