@@ -296,8 +296,9 @@ def place(inside: bool) -> str:
 
 
 def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
-    """Standard deviations by which draws leave their density, in materials at views; in three for a control.
+    """Standard deviations by which draws leave their density, in materials at views.
 
+    Three views do for a control, and for a surface shader, which has one material as a solid and one as a wall.
     A coarse quadrature takes an eighth of the time: what it finds few is few. A fine one takes 16 times as long, so it
     looks again only at what would fail, until it confirms a failure on that side.
     """
@@ -312,7 +313,8 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
         if "cuticle_angle" in batch.inputs:  # a steep one leaves a pole along the fiber
             rough["cuticle_angle"] = np.clip(batch.inputs["cuticle_angle"], 0.45, 0.55)
         batch = batch.altered(**rough)
-        for row in range(3 if case.control else MATERIALS_DRAWN):
+        few = case.control or isinstance(case.spec, SurfaceShaderSpec)
+        for row in range(3 if few else MATERIALS_DRAWN):
             one = batch.where(np.arange(row, row + 1))
             assert one.frame is not None
             view, axes = one.wo[0], one.frame[0]
