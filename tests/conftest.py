@@ -13,7 +13,6 @@ from pkgutil import walk_packages
 import pytest
 
 from mxeon import models
-from mxeon.cli import output
 from mxeon.conformance import reference as reference_host
 from mxeon.hosts import open_engine
 from mxeon.hosts.process import Worker
@@ -31,7 +30,6 @@ def pytest_configure():
     of their values.
     """
     os.environ.setdefault("GALLIVM_PERF", "nopt")
-    output.COLUMNS = 10_000  # a line of an answer is one line
     for number in ENDING:
         if signal.getsignal(number) == signal.SIG_IGN:
             default = signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL

@@ -56,7 +56,8 @@ export function verdict_on(
   if (evidence.failure) return { kind: "wrong", badge: "not drawn", text: evidence.failure };
   const [actual, meant] = [actual_model(source, side, state), meant_model(source, side, state)];
   const checked = source.kind === "shader" ? source.checked : null;
-  const text = checked && source.kind === "shader" ? told(source, state, side, checked.text) : "";
+  const changed = checked && source.kind === "shader" && is_changed(source, state, side);
+  const text = checked ? (changed ? "With its own inputs: " : "") + checked.text : "";
   if (!actual || !meant) {
     const own = has_table(source) ? by_reference(source, evidence) : null;
     if (checked) {
@@ -65,6 +66,7 @@ export function verdict_on(
       if (own && kind === "correct" && own.kind !== "unknown") {
         return own.kind === "correct" ? { ...own, text } : own;
       }
+      if (changed) return { kind: "unknown", badge: "material", text };
       return { kind, badge: BADGES[kind], text };
     }
     if (own) return own;
@@ -80,13 +82,12 @@ export function verdict_on(
   return by_model(actual, evidence);
 }
 
-/** What `mxeon check` says of a document's material, which may have other inputs now. */
-function told(source: ShaderSource, state: State, side: Side, text: string): string {
+/** Whether a document's material, which `mxeon check` judged, has other inputs now. */
+function is_changed(source: ShaderSource, state: State, side: Side): boolean {
   const drawn = values_of(source, state, side);
-  const changed = source.inputs.some(
+  return source.inputs.some(
     ({ name, value }) => value !== null && String(drawn.get(name)) !== String(value),
   );
-  return (changed ? "With its own inputs: " : "") + text;
 }
 
 /** The verdict on a shader that is said to be the model that is meant. */

@@ -12,7 +12,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.cli import main, output, parser
+from mxeon.cli import main, parser
 from mxeon.errors import FAILED, PASSED
 from mxeon.models.diffuse import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.shaders.document.policy import LIMITS
@@ -33,12 +33,10 @@ def pattern(line):
     return ".*".join(map(re.escape, re.split(rest, line)))
 
 
-def test_check_passes_writes_a_report_and_answers_as_the_pages_show(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(output, "COLUMNS", 100)
+def test_check_passes_writes_a_report_and_answers_as_the_pages_show(tmp_path, capsys):
     options = ["--report", str(tmp_path / "report"), "--workers", "0"]
     assert main(["check", PLASTER, *options]) == PASSED
     text = capsys.readouterr().out
-    assert all(len(each) <= 100 for each in text.splitlines() if len(each.split()) > 2)
     printed = [" ".join(each.split()) for each in re.split(r"\n(?!  )", text.strip())]
     for page in ("README.md", "docs/commands.md"):
         text = (Path(__file__).parents[2] / page).read_text(encoding="utf-8")

@@ -24,7 +24,7 @@ def test_a_named_node_is_judged_alone_and_with_its_draws():
 @pytest.mark.parametrize(
     "host, node, message",
     [
-        ("gl", "velvet", "^node must be one of oren_nayar_diffuse_bsdf, .*, all; got 'velvet'$"),
+        ("gl", "velvet", "^no node 'velvet'; see mxeon check --node list$"),
         ("msl", "mix", "hosts msl; got mix, judged with --library eonlib on gl, "),
         ("cycles", "sheen_bsdf", "hosts cycles; .* with --library stock on .*, cycles, "),
         *((host, node, f"hosts {host}; got {node}, judged with ") for host, node in (

@@ -33,7 +33,10 @@ def shared(factory, name, make):
 
 
 # Checks of the text for path tracers; drivers take seconds to compile a surface shader.
-DRAWN = ("pdf", "sample", "path_value", "path_inside", "path_energy", "path_leaving", "path_albedo")
+DRAWN = (
+    *("pdf", "sample", "path_value", "path_inside", "path_energy", "path_leaving", "path_albedo"),
+    *("path_emission", "path_random"),
+)
 
 
 def every_node(factory, library):

@@ -18,7 +18,7 @@ from mxeon.errors import MISUSE, DocumentError, one_line, printable
 if TYPE_CHECKING:
     from mxeon.conformance.results import Verdict
 
-COLUMNS = 100  # of an answer that goes to no terminal
+COLUMNS = 100  # width of a terminal that does not say its own
 COLORS: dict[str | None, int] = {"passed": 32, "failed": 31, "not run": 33}  # of ANSI, by verdict
 
 
@@ -100,9 +100,14 @@ class Line(str):
 
 
 def wrapped(lines: Iterable[str]) -> str:
-    """Lines as wide as the terminal, or 100 columns, and on a terminal in the color of their verdicts."""
+    """Lines as wide as the terminal, in the color of their verdicts; unchanged where no terminal shows them.
+
+    So that a command that reads them finds whole lines.
+    """
+    if not sys.stdout.isatty():
+        return "\n".join(lines)
     width = shutil.get_terminal_size((COLUMNS, 1)).columns
-    colored = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+    colored = not os.environ.get("NO_COLOR")
     shown = []
     for line in lines:
         indent = " " * (len(line) - len(line.lstrip()) + 2)
