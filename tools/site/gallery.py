@@ -51,7 +51,8 @@ HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
 
 The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX on the left,
 eonlib on the right, the largest difference first. Furnace documents show a sphere in a white environment, where
-it vanishes if no energy is lost or gained. Nothing casts a shadow, except in the [path-traced pictures](#path-traced).
+it vanishes if no energy is lost or gained. The floor has the ball's contact shadow; the ball reflects itself in the
+[path-traced pictures](#path-traced) alone.
 The number after a name is the difference that 1 % of the pixels reach, of 255 sRGB codes. To draw one yourself:
 
     mxeon render examples/roughness_wedge.mtlx --element wedge_eon_100 --output wedge_eon_100.png
