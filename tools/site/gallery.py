@@ -2,6 +2,7 @@
 """Render the materials of `examples/` with stock and with eonlib, and write the gallery page.
 
 python -m tools.site.gallery           the pictures, their differences, and gallery.md
+python -m tools.site.gallery --judge   the differences, and gallery.md
 python -m tools.site.gallery --page    gallery.md alone
 python -m tools.site.gallery --traced FOLDER    the path-traced ones, of documents in a folder
 """
@@ -18,6 +19,8 @@ import numpy as np
 import OpenImageIO as oiio
 from PIL import Image, ImageDraw, ImageFont
 
+import mxeon
+from mxeon.conformance import words
 from mxeon.conformance.reference import Reference
 from mxeon.errors import DocumentError
 from mxeon.hosts import open_host, path_tracer
@@ -31,7 +34,9 @@ from tools.site import DOCS
 PAGE = DOCS / "gallery.md"
 EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
-DIFFERENCES = PICTURES / "differences.json"  # sRGB codes by material; null without stock
+DIFFERENCES = (
+    PICTURES / "differences.json"
+)  # by material: words on stock, and its largest difference
 SIZE = 512  # pixels
 QUALITY = 85  # WebP quality
 ROWS = 96  # rows of the studio's picture
@@ -43,7 +48,6 @@ BOXES = (  # soft boxes of the studio: azimuth from the viewer and elevation, ha
 )
 SOFT = 2.5  # degrees over which the edge of a box falls off
 BACKGROUND = 30  # sRGB code
-SEEN = 3  # sRGB codes; least difference visible side by side
 TITANIUM = DOCS / "images" / "titanium.mtlx"  # material in the README
 
 HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
@@ -53,7 +57,7 @@ The materials in `examples/` on a shader ball in a studio, rendered on the `gl` 
 eonlib on the right, the largest difference first. Furnace documents show a sphere in a white environment, where
 it vanishes if no energy is lost or gained. The floor has the ball's contact shadow; the ball reflects itself in the
 [path-traced pictures](#path-traced) alone.
-The number after a name is the difference that 1 % of the pixels reach, of 255 sRGB codes. To draw one yourself:
+Below each pair stands what `mxeon check` says of stock, in its own scenes. To draw one yourself:
 
     mxeon render examples/roughness_wedge.mtlx --element wedge_eon_100 --output wedge_eon_100.png
     mxeon render examples/layered_white_furnace.mtlx --element white_dielectric --scene furnace --output white.png
@@ -133,25 +137,28 @@ def save(path, codes, labels=("stock", "eonlib")):
 
 
 def render():
-    """Write the pictures, the difference of each material, and the README's picture of two balls.
-
-    The difference is the 99th percentile over pixels, in sRGB codes.
-    """
+    """Write the pictures of each material, and the README's picture of two balls."""
     PICTURES.mkdir(parents=True, exist_ok=True)
     painted = oiio.ImageBuf(studio())
     painted.set_write_format("half")
     painted.write(str(STUDIO.environment))
-    differences = {}
 
     with open_host("gl") as host:
         for document in sorted(EXAMPLES.glob("*.mtlx")):
             for name, codes in pictures(host, document):
                 save(PICTURES / f"{name}.webp", codes)
-                apart = np.ptp(np.array(codes, int), axis=0).max(axis=-1)
-                differences[name] = float(np.percentile(apart, 99)) if len(codes) > 1 else None
         [(_, balls)] = pictures(host, TITANIUM)
     save(TITANIUM.with_suffix(".webp"), balls)
-    DIFFERENCES.write_text(json.dumps(differences, indent=1) + "\n", encoding="utf-8")
+
+
+def judge():
+    """Write what `mxeon check` says of each material with stock."""
+    found = {}
+    for each in mxeon.check(sorted(EXAMPLES.glob("*.mtlx")), ["gl"], ["stock"]).results:
+        if each.check == "picture" and (apart := each.difference):
+            said = words.difference(apart) if apart.is_visible else ""
+            found[each.subject.partition(": ")[2]] = said, abs(apart.largest)
+    DIFFERENCES.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 
 
 def trace(folder):
@@ -188,44 +195,42 @@ def trace(folder):
     NOISE.write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
 
 
-def words(difference):
-    """Caption for a difference of the pictures."""
-    if difference is None:
-        return "stock MaterialX cannot generate its nodes"
-    if difference < SEEN:
-        return "no visible difference"
-    return f"{difference:.0f} of 255"
-
-
 def page():
     """The gallery as Markdown: documents and their materials, those with the largest difference first."""
-    differences = json.loads(DIFFERENCES.read_text(encoding="utf-8"))
-    named = {
-        document: sorted(materials(document), key=lambda name: -(differences[name] or 0.0))
-        for document in sorted(EXAMPLES.glob("*.mtlx"))
-    }
-    sections = []
-    for document, names in sorted(
-        named.items(), key=lambda each: -(differences[each[1][0]] or 0.0)
-    ):
-        description = document.read_text(encoding="utf-8").splitlines()[2]
-        shown = "\n\n".join(
-            f"![{name}](images/gallery/{name}.webp)\n\n*{name}: {words(differences[name])}.*"
-            for name in names
-        )
-        sections.append(
-            f"## {document.stem}\n\n{description.removeprefix('<!-- ').removesuffix(' -->')}\n\n{shown}\n"
-        )
+    found = json.loads(DIFFERENCES.read_text(encoding="utf-8"))
+    alike = [name for name, (said, _) in found.items() if not said]
+
+    def largest(name):
+        return -found[name][1] if name in found else 0.0
+
+    sections = {}
+    for document in sorted(EXAMPLES.glob("*.mtlx")):
+        names = sorted((each for each in materials(document) if each not in alike), key=largest)
+        if names:
+            description = document.read_text(encoding="utf-8").splitlines()[2]
+            lines = [description.removeprefix("<!-- ").removesuffix(" -->")]
+            for name in names:
+                said = (
+                    f"with stock, {found[name][0]}"
+                    if name in found
+                    else "stock cannot generate its nodes"
+                )
+                lines += [f"![{name}](images/gallery/{name}.webp)", f"*{name}: {said}.*"]
+            sections["\n\n".join([f"## {document.stem}", *lines]) + "\n"] = largest(names[0])
+    same = f"No visible difference: {', '.join(f'`{each}`' for each in sorted(alike))}.\n"
     traced = "".join(
         f"![{name}](images/gallery/traced_{name}.webp)\n\n*{name}: {said}.*\n\n"
         for name, said in json.loads(NOISE.read_text(encoding="utf-8")).items()
     )
-    return HEAD + "\n".join(sections) + TRACED.format(traced, SAMPLES)
+    ordered = sorted(sections, key=sections.__getitem__)
+    return HEAD + "\n".join([*ordered, same]) + TRACED.format(traced, SAMPLES)
 
 
 if __name__ == "__main__":
     if "--traced" in sys.argv:
         trace(Path(sys.argv[-1]))
     elif "--page" not in sys.argv:
-        render()
+        if "--judge" not in sys.argv:
+            render()
+        judge()
     PAGE.write_text(page(), encoding="utf-8")
