@@ -257,11 +257,6 @@ def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
     yield paths(case.host, spec.document(own), case.library, tuple(batch.inputs)), batch
 
 
-def sides(spec: Spec) -> tuple[bool, ...]:
-    """Whether a view is inside a solid: of what transmits there are both."""
-    return (False, True) if GLASSY(spec) else (False,)
-
-
 def random(count: int, rng: np.random.Generator) -> Array:
     """Numbers in [0, 1) with the 24 bits that a shader's generator gives, (N, 3)."""
     return rng.integers(0, 1 << 24, (count, 3)).astype(np.float64) * 2.0**-24
@@ -318,7 +313,8 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
             one = batch.where(np.arange(row, row + 1))
             assert one.frame is not None
             view, axes = one.wo[0], one.frame[0]
-            for inside in sides(case.spec) if GLASSY(case.spec) else (row % 2 == 1,):
+            glassy = GLASSY(case.spec) and not {*WALLS} & {*batch.inputs}  # a wall has no inside
+            for inside in (False, True) if glassy else (row % 2 == 1,):
                 ask = partial(text.values, wo=one.world(one.wo), inside=inside, inputs=one.inputs)
 
                 def density(w: Array, ask: Callable[..., Array] = ask, axes: Array = axes) -> Array:
