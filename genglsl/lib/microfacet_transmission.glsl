@@ -19,7 +19,7 @@ vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, FresnelData f
     vec3 wo = lobe.wo;
     if (n > 4.0 && lobe.alpha <= M_FLOAT_EPS)
     {
-        wo = normalize(wo + max(2e-3 * n - lobe.mu_o, 0.0) * lobe.N);
+        wo = normalize(wo + max(0.005 + 2e-3 * n - lobe.mu_o, 0.0) * lobe.N);
     }
     else if (n >= 1.0)
     {

@@ -36,7 +36,7 @@ EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
 DIFFERENCES = (
     PICTURES / "differences.json"
-)  # by material: words on stock, and its largest difference
+)  # words on stock, and its largest difference, by material
 SIZE = 512  # pixels
 QUALITY = 85  # WebP quality
 ROWS = 96  # rows of the studio's picture

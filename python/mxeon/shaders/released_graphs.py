@@ -27,15 +27,20 @@ RELEASES: Mapping[str, tuple[str, ...]] = {
 
 
 @cache
-def installed() -> mx.Document:
-    """The data libraries of the installed MaterialX, even if a custom build hides them."""
+def hidden() -> mx.Document | None:
+    """The data libraries of the MaterialX that is installed, where a custom build hides it."""
     known = [path for each in sys.path if (path := Path(each, "MaterialX", "libraries")).is_dir()]
     if not known or known[-1].samefile(Path(mx.__file__).with_name("libraries")):
-        return load_library("stock")
+        return None
     document = mx.createDocument()
     path = mx.FileSearchPath(str(known[-1].parent))
     mx.loadLibraries(mx.getDefaultDataLibraryFolders(), path, document)
     return document
+
+
+def installed() -> mx.Document:
+    """The data libraries of the MaterialX that is installed, which a custom build only hides."""
+    return hidden() or load_library("stock")
 
 
 def said(node: mx.Node, known: Container[str]) -> dict[str, str]:

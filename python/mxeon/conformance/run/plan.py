@@ -55,7 +55,7 @@ from mxeon.shaders.library import (
 )
 from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
 from mxeon.shaders.methods import GENERATED, UNCHOSEN, UNTABLED, Methods
-from mxeon.shaders.released_graphs import installed
+from mxeon.shaders.released_graphs import hidden
 
 Source = tuple[str, str]  # a file, and the library that it is read with
 
@@ -394,7 +394,7 @@ def _on_host(
         yield Task(HOST, EVERY_NODE, host, library)
     if not ways or not row.target:
         return
-    kind, itself = kind_of(library), library == "stock" and installed() is load_library("stock")
+    kind, itself = kind_of(library), library == "stock" and hidden() is None
     if row.way == "pairs" and not itself:
         yield Task(RELEASE, EVERY_NODE, host, library)
     if row.way in functions.KINDS and has_functions(
