@@ -6,8 +6,10 @@ import pytest
 from mxeon import check
 from mxeon.cli.answer import answer
 from mxeon.conformance.run.plan import make_plan
+from mxeon.shaders.library import read_library
 from mxeon.shaders.methods import Methods
 from mxeon.shaders.nodes import EON, INVERSIONS
+from mxeon.shaders.released_graphs import installed
 from tests.support.plans import keep, keep_checks
 from tests.support.verdicts import (
     DIFFERS,
@@ -296,6 +298,16 @@ def test_what_differs_from_the_release_is_named_with_its_size(judged, tmp_path, 
     assert result.verdict == FAILED and result.control.caught
     assert has(result, "release", *wanted)
     assert all(each.values[0] > 0.005 for each in result.diagnosis.causes if each.names[0])
+
+
+def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):
+    """As after more libraries than are kept."""
+    file, old, new, *wanted = CHANGED["alpha"]
+    replace_text(copy_of_stock(tmp_path, file), old, new, file)
+    installed()
+    read_library.cache_clear()
+    result = judged("release", EVERY_NODE, library=str(tmp_path))
+    assert result.verdict == FAILED and has(result, "release", *wanted)
 
 
 def test_what_is_written_differently_and_has_the_released_values_passes(judged, tmp_path):
