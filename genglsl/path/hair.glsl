@@ -96,7 +96,7 @@ vec3 path_hair_draw(PathHair hair, vec3 wo)
     vec2 tilted = vec2(sqrt((1.0 - S) * (1.0 + S)), S);
     vec2 inclined = path_hair_untilted(tilted, hair.tilt[p]);
     vec2 folded = path_hair_untilted(tilted * vec2(-1.0, 1.0), hair.tilt[p]);
-    float folds = max(folded.x, 0.0) / (max(inclined.x, 0.0) + max(folded.x, 1e-30));
+    float folds = max(folded.x, 0.0) / (max(inclined.x, 0.0) + max(folded.x, 1e-30));  // 0 if there is neither
     bool folding = path_u.z < folds;
     inclined = folding ? folded : inclined;
     path_u.z = folding ? path_u.z / folds : (path_u.z - folds) / (1.0 - folds);

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from mxeon.report.diff import Report
 
 LINES = 10  # maximum lines printed for one document
-MANY = 20  # with more documents, group them by cause
+MANY = 20  # maximum documents before they are grouped by cause
 LOOKS = 4  # maximum lines on the materials of one document
 FEWEST = 3  # minimum of nodes and causes for several documents; maximum of reasons why checks did not run
 UNBOUNDED = 1e3  # larger errors are described in words
@@ -314,7 +314,7 @@ def _is_picture(result: Result, document: str) -> bool:
 
 
 WRONG, ELSEWHERE, RIGHT = range(3)
-Rows = dict[tuple[str, str], list[Result]]  # by node and host
+Rows = dict[tuple[str, str], list[Result]]  # keys: node and host
 
 
 def _rows(run: Run) -> Rows:

@@ -78,7 +78,7 @@ class Source:
         return f"{self.file}: {self.target}"
 
 
-ENDINGS = {"pixel": ".frag", "vertex": ".vert"}  # as in MaterialX's generateshader
+ENDINGS = {"pixel": ".frag", "vertex": ".vert"}  # the endings of MaterialX's generateshader
 
 
 def stem(file: str) -> str:

@@ -19,7 +19,11 @@ if TYPE_CHECKING:
     from mxeon.conformance.results import Verdict
 
 COLUMNS = 100  # width of a terminal that does not say its own
-COLORS: dict[str | None, int] = {"passed": 32, "failed": 31, "not run": 33}  # of ANSI, by verdict
+COLORS: dict[str | None, int] = {
+    "passed": 32,
+    "failed": 31,
+    "not run": 33,
+}  # ANSI codes, keyed by verdict
 
 
 def open_streams() -> None:
@@ -105,7 +109,7 @@ def wrapped(lines: Iterable[str]) -> str:
     So that a command that reads them finds whole lines.
     """
     if not sys.stdout.isatty():
-        return "\n".join(lines)
+        return printable("\n".join(lines))
     width = shutil.get_terminal_size((COLUMNS, 1)).columns
     colored = not os.environ.get("NO_COLOR")
     shown = []
@@ -113,7 +117,7 @@ def wrapped(lines: Iterable[str]) -> str:
         indent = " " * (len(line) - len(line.lstrip()) + 2)
         text = "\n".join(
             textwrap.wrap(
-                line,
+                printable(line),
                 width,
                 subsequent_indent=indent,
                 break_long_words=False,

@@ -78,7 +78,7 @@ from mxeon.shaders.scene import BACK, SIDE, STUDIO, Scene, sphere
 # Nodes whose shaders take an albedo from a fit.
 FITTED_NODES = {row.category for row in NODES if row.fitted or row.mirror}
 HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
-COSINES = 256  # of views, among which a sheen's albedo is largest
+COSINES = 256  # number of views tried for the largest albedo of a sheen
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
 PLAIN = sum_in(
@@ -106,7 +106,7 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tole
     nodes, lobes = list(inner_nodes(shader.document)), tuple(lobes)
     fitted = FITTED_NODES & {lobe.category for lobe in lobes}
     modes = {lobe.inputs.get("mode") for lobe in lobes if lobe.category == SHEEN}
-    zeltner = fitted == {SHEEN} and modes == {"zeltner"}  # whose albedo has a closed form
+    zeltner = fitted == {SHEEN} and modes == {"zeltner"}  # the albedo has a closed form
     if not zeltner and categories(shader.document.traverseTree()) & FITTED_NODES:
         tolerance = FITTED
     elif not zeltner and categories(nodes) & FITTED_NODES:
@@ -178,7 +178,9 @@ def _stretched(lobes: Iterable[ShownLobe]) -> bool:
 
 
 Pixels: TypeAlias = NDArray[np.floating]
-Shown: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]  # with the host's picture
+Shown: TypeAlias = tuple[
+    Scene, Pixels, ExpectedPicture
+]  # a scene, the host's picture and the reference
 Pixel: TypeAlias = tuple[float, dict[str, list[float]], Pixels]
 Note: TypeAlias = tuple[str, str]  # a warning, and what it is about
 
@@ -496,6 +498,6 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
         names = (PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)
         keys = ("document", "element", "host", "library", "scene")
         metadata = dict(zip(keys, names, strict=True)) | {"version": mxeon.__version__}
-        metadata |= {"points": case.host.name}  # which differ where a host has its model in part
+        metadata |= {"points": case.host.name}  # a host may have only a part of its model
         pictures.append(Picture(*names, image, expected, metadata))
     return tuple(pictures)

@@ -23,7 +23,7 @@ from mxeon.conformance.results.quantities import Quantity
 from mxeon.shaders.nodes import FLAG
 
 NAMED = 3  # names in a list, before the number of the others
-PARTS_SHOWN = 3  # of two graphs that differ
+PARTS_SHOWN = 3  # maximum parts shown of two graphs that differ
 AS_SPECIFIED = "looks as specified"
 
 # --- numbers and lists -----------------------------------------------------------------------------
@@ -327,7 +327,7 @@ def region(place: Region) -> str:
     elif low == high:
         ends = _short(low)
     else:
-        digits = 2 if _short(low) != _short(high) else 4  # as many as tell them apart
+        digits = 2 if _short(low) != _short(high) else 4  # enough digits to tell both apart
         ends = f"between {_short(low, digits)} and {_short(high, digits)}"
     alone = f", in {' and '.join(place.channels)} alone" * bool(place.channels)
     return f"with {PARTS[place.part].format(place.name)} {ends}{alone}"

@@ -24,7 +24,7 @@ from mxeon.shaders.functions import source
 __all__ = ["document_sources", "page", "page_data"]
 
 TEXTS, PARAGRAPH = ("pixel", "paths", "document"), "\n\n"  # fields stored in the table of texts
-MARK = "%DATA%"  # in the template, replaced by the data
+MARK = "%DATA%"  # the template's placeholder for the data
 # JSON escapes of characters with a meaning in HTML, which could end the script element.
 ESCAPES = str.maketrans({sign: f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u2029"})
 

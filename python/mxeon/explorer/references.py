@@ -66,7 +66,7 @@ def reference_of(shader: Shader) -> ReferenceTable | None:
     lobes = lobes_of(shader)
     spec = _spec(lobes)
     try:
-        if spec is HAIR:  # on a fiber, whose curve lies along x
+        if spec is HAIR:  # a fiber's curve lies along x
             lights, surroundings = _batches(HAIR, shader)
             direct, white = HAIR.value(lights), HAIR.albedo(surroundings)
         else:

@@ -253,7 +253,7 @@ def _meant(subject: str, name: str) -> str:
 
 
 SIZE = 176
-LIGHT = (0.0, 0.8, -0.6)  # from above and behind
+LIGHT = (0.0, 0.8, -0.6)  # a light above and behind
 COLOR = (0.8, 0.4, 0.1)
 STILLS = ("eon", "eon_clamped", "qon", "lambert")
 

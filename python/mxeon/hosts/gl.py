@@ -238,7 +238,7 @@ def _points(
     count = len(vertices["i_position"])
     stage = context.vertex_array(program, _buffers(context, program, vertices))
     buffer = context.buffer(reserve=count * points.stride(captured))
-    context.simple_framebuffer((1, 1)).use()  # without a frame, OpenGL draws nothing
+    context.simple_framebuffer((1, 1)).use()  # OpenGL draws nothing unless it has a frame
     stage.transform(buffer, mode=context.POINTS, vertices=count)
     texels = points.texels(buffer.read(), captured, seen)
     layers, height, width, _ = texels.shape

@@ -27,7 +27,7 @@ Uniforms: TypeAlias = dict[str, Plain]  # values by name
 Rectangle: TypeAlias = tuple[int, int, int, int]  # left, lowest row, width, height
 
 BAND = 4  # rows of a picture in one rectangle, as wide as the shape
-ALPHA_THRESHOLD = 1e-3  # below which MaterialX's text discards a pixel
+ALPHA_THRESHOLD = 1e-3  # MaterialX's text discards pixels with a smaller alpha
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
 # More than one texel, so that it has mipmaps: otherwise Mesa compiles programs again for other environments.
 WHITE_TEXELS = np.ones((2, 2, 3), dtype=np.float32)

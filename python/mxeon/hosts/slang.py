@@ -81,7 +81,7 @@ GLSL = """typealias vec3 = float3;
 """
 KINDS = {"boolean": "bool", "integer": "int"}
 
-DEVICES = ("vulkan", "cpu")  # in order of preference
+DEVICES = ("vulkan", "cpu")  # the preferred device first
 
 # On the CPU, only a kernel can fill a texture.
 FILL = f"""RWTexture2D<float4> mxeon_texture;

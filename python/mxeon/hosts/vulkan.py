@@ -51,14 +51,14 @@ STD140 |= dict.fromkeys(("float", "int", "bool"), (4, 4))  # type -> alignment a
 BLOCK_SIZE = 1 << 14
 
 FORMATS = {"uint8": "rgba8unorm", "float16": "rgba16float"}  # filterable formats
-FLOATS = {1: "r32float", 2: "rg32float", 4: "rgba32float"}  # by number of components
+FLOATS = {1: "r32float", 2: "rg32float", 4: "rgba32float"}  # keys: number of components
 WHITE_TEXEL = np.full((1, 1, 4), 255, dtype=np.uint8)
 
 PROGRAMS = 8  # cached programs: the checks of a node evaluate one shader many times
 
 Resource: TypeAlias = Any  # an object of wgpu, whose types are unknown if it is not installed
 Kind: TypeAlias = Mapping[str, object]
-Bindings: TypeAlias = dict[int, tuple[Kind, Resource]]  # by number
+Bindings: TypeAlias = dict[int, tuple[Kind, Resource]]  # keys: binding number
 
 
 class VulkanHost(FragmentHost):

@@ -231,7 +231,7 @@ def program(host: str = "webgl") -> str:
 def _write(path: Path, groups: Mapping[str, Mapping[str, Array]]) -> dict[str, Layout]:
     """Write each array once; return shapes and offsets in the file by group and name."""
     layout: dict[str, Layout] = {}
-    places: dict[int, object] = {}  # of written arrays, by identity
+    places: dict[int, object] = {}  # written arrays, keyed by identity
     offset = 0
     with path.open("wb") as file:
         for group, arrays in groups.items():

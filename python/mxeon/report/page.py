@@ -46,11 +46,11 @@ from mxeon.shaders.scene import STUDIO
 SHOWN_MATERIALS = 60
 LARGE = 512  # pixels on a side of a picture in the studio
 OPEN_MATERIALS = 8  # further materials open on a click
-OPEN_ROWS = 20  # with more failed rows, checks open on a click
+OPEN_ROWS = 20  # maximum failed rows of checks that are shown open
 WORST_FIRST = (FAILED, NOT_RUN, DIFFERS, PASSED)
 
 Place: TypeAlias = tuple[str, str]  # host and library
-Verdicts: TypeAlias = Mapping[tuple[str, str, str], Result]  # by subject, host and library
+Verdicts: TypeAlias = Mapping[tuple[str, str, str], Result]  # keys: subject, host and library
 
 
 @dataclass(frozen=True)

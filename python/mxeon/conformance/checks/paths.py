@@ -36,7 +36,7 @@ from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
 from mxeon.hosts.calls import NORMAL, TANGENT
 
-if TYPE_CHECKING:  # which loads MaterialX
+if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Input as Port
 
 POINT = "struct Point\n"
@@ -66,11 +66,16 @@ SCATTERED = """if (what < 0.5)
     return what < 2.5 ? wi : what < 3.5 ? weight : vec3(pdf);"""
 # Apart, since a driver copies the material to each call.
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
-RANDOM = "return path_random({0}4({0}3(u), 7u)).xyz;"
-FUNCTIONS = ("evaluate", "pdf", "wi", "weight", "density", "opacity", "emission", "random")
-TARGETS = ("glsl", "essl", "vulkan", "slang")  # of mxeon.shaders.path_tracing
+RANDOM = "return path_random(uvec4(uvec3(u), 7u)).xyz;"
+# By name, in the order of their numbers, the text that answers.
+FUNCTIONS = {
+    **dict.fromkeys(("evaluate", "pdf", "wi", "weight", "density"), SCATTERED),
+    **dict.fromkeys(("opacity", "emission"), PASSED),
+    "random": RANDOM,
+}
+TARGETS = ("glsl", "essl", "vulkan", "slang")  # targets of mxeon.shaders.path_tracing
 DRAWS = 1 << 15
-ANSWERS = Recent[Array](64)  # to what a check and its control ask
+ANSWERS = Recent[Array](64)  # a check and its control ask alike
 # Two views whose facets below the critical angle are many and few, and one from which a smooth solid lets no light out.
 VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
 VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
@@ -84,7 +89,7 @@ LEAST_COUNTED = 0.2  # least roughness of the lobes whose draws are counted: the
 GIVEN = {"boolean": "{} > 0.5", "integer": "int({})", "vector2": "{}.xy"}
 VECTORS = ("vector2", "vector3", "color3")
 # Of the all-lobes materials: alpha below 1, and an emission.
-MEAN_WEIGHT = 0.3333  # of a channel in the mean by which MaterialX turns a transparency into alpha
+MEAN_WEIGHT = 0.3333  # MaterialX's weight of a channel when it turns a transparency into alpha
 OPACITY, EMISSION = 0.6, 0.3
 THIN: dict[str, float | str] = {
     **dict.fromkeys(("opacity", "geometry_opacity", "alpha"), OPACITY),
@@ -100,9 +105,9 @@ GLASS: dict[str, tuple[str, Values]] = {
     "standard_surface": ("specular_IOR", {"transmission": 1.0, "specular_roughness": 0.5}),
     "open_pbr_surface": ("specular_ior", {"transmission_weight": 1.0, "specular_roughness": 0.5}),
 }
-INDEX = 2.0  # whose inverse is exact
+INDEX = 2.0  # its inverse is exact
 DRAWN = family(LobeSpec) - BELOW
-GLASSY = TRANSMITTING | MATERIALS  # which let light into a solid, and out of it
+GLASSY = TRANSMITTING | MATERIALS  # light enters a solid and leaves it
 # Lobes that reflect by an index, which light inside finds inverted.
 UNLIKE_INSIDE = (
     GLASSY
@@ -152,7 +157,9 @@ class Paths:
 
         - `inputs`: Those of the material, by name or path, and "normal" and "tangent" of the surface.
         """
-        number = FUNCTIONS.index(what)
+        number, answer = list(FUNCTIONS).index(what), FUNCTIONS[what]
+        if self.host.target == "slang":
+            answer = answer.replace("uvec", "uint")
         given: list[Array] = []
         for port in self.ports:
             own = inputs.get(port.path, inputs.get(port.path.rpartition("/")[2], port.value))
@@ -173,11 +180,7 @@ class Paths:
                 f"{port.name} = {GIVEN.get(port.type, '{}').format(f'given_{port.name}')};"
                 for port in self.ports
             ),
-            answer=SCATTERED
-            if number < 5
-            else PASSED
-            if number < 7
-            else RANDOM.format("uint" if self.host.target == "slang" else "uvec"),
+            answer=answer,
         )
         return ANSWERS.value(
             (self, *map(contents, rows)),
@@ -409,7 +412,7 @@ def path_value(case: Case) -> Iterator[Compared]:
         batch = replace(batch, wi=wi)
         normal = np.broadcast_to(NORMAL, wi.shape)
         if isinstance(case.spec, SurfaceShaderSpec) and batch.frame is not None:
-            # Its graph turns tangents about a normal that may face away.
+            # Its graph turns tangents about a normal that may face away: 1 or -1 along the frame's axis.
             normal = np.einsum("nij,ni->nj", batch.frame, batch.inputs["normal"]).round()
         local = replace(batch.altered(normal=normal, tangent=TANGENT), frame=None)
         # Light from behind is not the rasterizer's, nor is there an inside of what reflects by an index.
@@ -543,8 +546,8 @@ def path_albedo(case: Case) -> Iterator[Compared]:
 # nearly a single direction: let the pole be that direction. A density that is off by a share e everywhere
 # adds N e^2 to chi-square, whose deviation is the root of twice the cells: of 2^15 draws in these, six
 # deviations are an e of 6.5 %.
-CELLS = 16  # of the angle, and of the azimuth
-CELL_NODES = 16  # of the quadrature of a cell, on each axis
+CELLS = 16  # divisions of the angle, and of the azimuth
+CELL_NODES = 16  # quadrature nodes of a cell on each axis
 COARSE = 4  # nodes of a first look, whose own error only makes the deviation larger
 FINE = 64  # nodes of a third look
 SUSPECT = 3.0  # standard deviations, which chance reaches once in 700 times
@@ -660,9 +663,9 @@ ROWS = (
           control=controls.scale("values are 0.1 % too large", 1.001),
           explain=always(defect("other_path_value")), requires=Ability.PAIRS, profile="path",
           hosts=has_paths,
-          methods=lambda spec, methods: not methods.distributed),  # which changes sums above 1
+          methods=lambda spec, methods: not methods.distributed),  # distributed layers change sums above 1
     Check(key="path_emission",
-          claim="A path tracer's emission is the node's equation, from both sides, in any frame.",
+          claim="A path tracer's emission is the node's equation, from both sides of surfaces along each axis.",
           applies=family(EmissionSpec), measure=path_emission, tolerance="value",
           control=controls.scale("values are 0.1 % too large", 1.001),
           explain=always(defect("other_path_emission")), profile="path", hosts=has_paths),

@@ -32,15 +32,19 @@ DIFFERS: Final = "differs"
 FAILED: Final = "failed"
 NOT_RUN: Final = "not run"
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
-STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}  # of a run
+STATUSES = {
+    PASSED: errors.PASSED,
+    FAILED: errors.FAILED,
+    NOT_RUN: errors.NOT_RUN,
+}  # exit statuses of a run
 # In the place of a document: one material of each node, as every host shows it.
 PORTRAIT = "portrait"
-SOURCE = "source"  # in the place of a host, for what none has to run
-SHADER_FUNCTIONS = "shader twins"  # in the place of a node, for the functions of a library
+SOURCE = "source"  # stands for a host where none has to run
+SHADER_FUNCTIONS = "shader twins"  # stands for a node: the functions of a library
 RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
 REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # patterns of the files of a report
 DIRECT = ("value", "lobe")  # the checks of a node in direct light, of which it has one
-VISIBLE = 0.01  # of white, or of a highlight: about the least contrast that an eye notices
+VISIBLE = 0.01  # about the least contrast that an eye notices, a share of white or of a highlight
 
 
 @dataclass(frozen=True)
@@ -64,13 +68,13 @@ class Kind(Enum):
     MODEL = "model"  # a known model or defect, the nearest to the values
     FAULT = "fault"  # a fault between the inputs and the right model, which gives the values
     ACCURACY = "accuracy"  # the right model, not accurate enough
-    REGION = "region"  # where values are wrong
-    NOT_FINITE = "not finite"  # where values are not finite
+    REGION = "region"  # the inputs with wrong values
+    NOT_FINITE = "not finite"  # the inputs without finite values
     CURE = "cure"  # inputs and values with which the worst values are right
     DEFECT = "defect"  # another defect that is known
     UNKNOWN = "unknown"
     TEXT = "text"  # the words of a compiler, a renderer or a document
-    FOLLOWS = "follows"  # from another failure, which has a result of its own
+    FOLLOWS = "follows"  # a consequence of another failure, which has its own result
     INPUT = "input"  # a value of the document outside its model
     CONTROL = "control"  # the negative control passed
 

@@ -17,7 +17,7 @@ from mxeon.errors import CheckError
 from mxeon.shaders.library import data_folder
 
 STOCK = "stock"
-RENDERER_NODES = "its own nodes"  # in the place of a library
+RENDERER_NODES = "its own nodes"  # stands for a library
 Row = tuple[str, str]  # key of a check, and subject
 # A page begins with its row as TOML in a comment, then its title.
 PAGE = re.compile(r"<!--\n(?P<row>.*?)\n-->\n(?P<text># (?P<title>[^\n]*)\n.*)", re.DOTALL)
@@ -47,7 +47,7 @@ class Issue:
     # Results that pass with its patch, or fail for one of these causes.
     remains: Mapping[Row, tuple[Cause, ...]] = field(default_factory=dict, hash=False)
     needs: tuple[str, ...] = ()  # pages whose patches its own needs for that
-    kind: str = ""  # of the patch: "choice", "NaN" or "compiles"
+    kind: str = ""  # kind of the patch: "choice", "NaN" or "compiles"
     pull: int = 0  # the pull request that repairs it after the release
     cause: Cause | None = None  # the first one of the diagnosis of the first of `rows`
     patch: tuple[str, ...] = ()  # a file of MaterialX, and a text of it before and after
@@ -111,7 +111,7 @@ def read_issue(page: str, text: str, measured: Mapping[str, Any]) -> Issue:
                 for subject, size in subjects.items()
             },
         )
-    except TypeError as error:  # which names the key
+    except TypeError as error:  # the error names the key
         raise CheckError(f"row of {page}.md: {error}") from error
 
 
@@ -135,7 +135,7 @@ RENDERERS = {
     "three-gpu-pathtracer": "this three-gpu-pathtracer",
 }
 LEFT = 30.0  # smaller errors of the right model have another cause than the issue
-SPREAD = 1.5  # by which engines, drivers and versions of MaterialX may exceed an issue's size
+SPREAD = 1.5  # engines, drivers and versions of MaterialX may exceed an issue's size by this factor
 
 
 def issues_of(result: Result) -> tuple[Issue, ...]:
@@ -206,7 +206,7 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
     row = result.check, result.subject
     # Hosts that show pictures alone measure relative errors, which have no size in another unit.
     sized = result.host == issue.host or result.quantity is not Quantity.RELATIVE
-    if result.error is None and issue.sizes:  # as of a shader that does not compile
+    if result.error is None and issue.sizes:  # the shader does not compile, for example
         return False
     size = issue.sizes.get(row, math.inf)
     if sized and (result.error or 0.0) > SPREAD * size:

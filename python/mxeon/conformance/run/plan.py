@@ -153,8 +153,8 @@ class Task:
     subject: str  # title of a node, path of a document, or SHADER_FUNCTIONS
     host: str
     library: str
-    seed: int = 1  # of its samples
-    methods: Methods = UNCHOSEN  # that the client chooses
+    seed: int = 1  # seed of the samples
+    methods: Methods = UNCHOSEN  # the client's choice
 
     def __str__(self) -> str:
         return f"{self.host}, {self.check}, {self.subject}, {self.library}"
@@ -192,7 +192,7 @@ class Findings:
         )
 
 
-ALL, COMMON = "all", "common"  # in place of the nodes' names
+ALL, COMMON = "all", "common"  # words that stand for several nodes
 
 
 def assert_known_names(hosts: Iterable[str], nodes: Iterable[str]) -> None:
@@ -287,7 +287,7 @@ def make_plan(
     # What a document shows, and what libraries are compared in, is judged with each library.
     everywhere = bool(files and not nodes) or len(libraries) > 1
     for library in libraries:
-        unread = reading.refused.keys()  # with all libraries, or this one
+        unread = reading.refused.keys()  # unreadable with all libraries, or this one
         readable = [
             file for file in map(str, files) if unread.isdisjoint((file, f"{file} with {library}"))
         ]
@@ -409,7 +409,7 @@ def _on_host(
         own = row.target == "osl" and kind in ("eonlib", "diffuse")
         left = each.closure and row.way == "pictures" and own
         # Without documents a library of ours is judged by the nodes that it repairs.
-        missing = each.libraries and not defines(each.node)  # as MaterialX lacks those of eonlib
+        missing = each.libraries and not defines(each.node)  # MaterialX lacks eonlib's own nodes
         if not (left or missing) and (
             everywhere or kind in (OVERLAY, *(each.libraries or LIBRARIES))
         ):
