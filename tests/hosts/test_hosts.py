@@ -71,6 +71,15 @@ def test_the_generated_bsdf_is_the_model(host, model, node, fixed):
     np.testing.assert_allclose(albedo, expected, rtol=0.0, atol=TWIN_ALBEDO)
 
 
+def test_a_call_may_have_more_elements_than_a_texture_has_rows(host):
+    number, count = 13, 1_300_000  # the arguments share a texture: 13 layers of 1,270 rows
+    names = [f"a{index}" for index in range(number)]
+    source = f"float total({', '.join(f'float {each}' for each in names)}) {{ return {' + '.join(names)}; }}"
+    rows = np.arange(count, dtype=np.float64)[:, np.newaxis]
+    values = host.execute(source, "total", rows, *[np.ones((1, 1))] * (number - 1))
+    np.testing.assert_array_equal(values, np.broadcast_to(rows + number - 1, values.shape))
+
+
 def test_what_the_compiler_refuses_is_a_shader_error_and_the_host_works_on(host):
     good = of_eon(host)
     wrong = good.stages["pixel"].replace("eon_brdf_mu", "no_such_function", 1)

@@ -143,14 +143,11 @@ class GlHost(FragmentHost):
         program = self._program(vertex, pixel)
         _set(program, uniforms)
         own = self._textures(program, textures)
-        values = []
-        for part in fragment.parts(arguments):
-            count, size = fragment.frame(part)
-            used = {
-                n: self._argument(rows, size) for n, rows in part.items() if program.get(n, None)
-            }
-            values.append(self._draw(program, {**used, **own}, size).reshape(-1, 3)[:count])
-        return np.concatenate(values)
+        count, size = fragment.frame(arguments)
+        used = {
+            n: self._argument(rows, size) for n, rows in arguments.items() if program.get(n, None)
+        }
+        return self._draw(program, {**used, **own}, size).reshape(-1, 3)[:count]
 
     def _draw(
         self,

@@ -201,7 +201,8 @@ class FragmentHost(base.Host):
         pixel, arguments = fragment.bsdf_evaluation(query)
         textures = environment(query.irradiance) | images(query.shader) | self.table(query.shader)
         uniforms = FRAME_UNIFORMS | surroundings(query.client)
-        return self._evaluate(query.shader.stages["vertex"], pixel, arguments, textures, uniforms)
+        vertex = query.shader.stages["vertex"]
+        return self._in_parts(vertex, pixel, arguments, textures, uniforms)
 
     def _drawn_table(self, text: str) -> Array:
         pixel, dialect = fragment.table_stage(text, self.target), fragment.DIALECTS[self.target]
@@ -211,7 +212,23 @@ class FragmentHost(base.Host):
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         pixel, texels = fragment.function_evaluation(source, function, arguments, self.target)
         vertex = fragment.DIALECTS[self.target].vertex
-        return self._evaluate(vertex, pixel, texels, environment(None), FRAME_UNIFORMS)
+        return self._in_parts(vertex, pixel, texels, environment(None), FRAME_UNIFORMS)
+
+    def _in_parts(
+        self,
+        vertex: str,
+        pixel: str,
+        arguments: Mapping[str, Array],
+        textures: Mapping[str, Array],
+        uniforms: Uniforms,
+    ) -> Array:
+        """Values of a pixel stage for any number of elements; engines limit the size of a texture."""
+        return np.concatenate(
+            [
+                self._evaluate(vertex, pixel, part, textures, uniforms)
+                for part in fragment.parts(arguments)
+            ]
+        )
 
     @abstractmethod
     def _evaluate(
