@@ -94,14 +94,6 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 
-// asinh(x), which HLSL lacks. The series below 0.1 avoids the rounding of log(1 + x).
-float eonlib_asinh(float x)
-{
-    float u = abs(x);
-    float u2 = u * u;
-    return sign(x) * (u < 0.1 ? u * (1.0 - u2 * (1.0 / 6.0 - 0.075 * u2)) : log(u + sqrt(u2 + 1.0)));
-}
-
 // Light that passes to the less dense side (index below 1): the mean of 1 - F over the visible facets; reversed (1), the
 // share by reversed paths from that side. tau, the cotangent of the angle to a facet, is tau_c at the critical angle and
 // tau_m near the median:
@@ -130,7 +122,7 @@ float eonlib_dielectric_passing(float mu, float alpha, float ior, float reversed
     float median2 = (mu * mu + a_b_k0.x * alpha2) / (s2 + a_b_k0.y * alpha2);
     float k = sqrt(a_b_k0.z + k1_p_g.x * mu * mu * s2 / alpha2);
     float t = k * log((1.0 - ior * ior) / max(ior * ior * median2, 1e-30));  // k ln(tau_c^2 / tau_m^2)
-    t = 1.0 + exp(min(k1_p_g.z * eonlib_asinh(t), 60.0));
+    t = 1.0 + exp(min(k1_p_g.z * sign(t) * log(abs(t) + sqrt(t * t + 1.0)), 60.0));  // HLSL has no asinh
     float typical = sinh(log(t * exp(0.326707 / k1_p_g.y) - 1.0) / k1_p_g.z) / k;  // ln(tau^2 / tau_m^2)
     return (1.0 - eonlib_fresnel_dielectric(1.0 / sqrt(1.0 + exp(-typical) / median2), ior)) / pow(t, k1_p_g.y);
 }
