@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Surface shaders as their own specifications define them: OpenPBR, Standard Surface, glTF and UsdPreviewSurface.
+
+Each module has the table `PARAMETERS` of its text, a function `parameters` that fills in defaults, and the functions
+`surface` and `emission`, in float64:
+
+    >>> import numpy as np
+    >>> from mxeon.models.surfaces import Light, open_pbr
+    >>> view, sun = np.array([[0.6, 0.0, 0.8]]), np.array([[0.0, 0.0, 1.0]])
+    >>> p = open_pbr.parameters(base_color=(0.8, 0.4, 0.1), specular_roughness=0.5)
+    >>> open_pbr.surface(Light(view, sun), p).round(4)  # f cos(theta_i)
+    array([[0.2543, 0.1323, 0.0408]])
+    >>> open_pbr.surface(Light(view), p).round(4)  # in a white environment
+    array([[0.8084, 0.4251, 0.1376]])
+
+Parameters are not checked against their ranges. The models' own functions raise `ValueError` outside theirs.
+"""
+
+from mxeon.models.surfaces.lobes import Frame as Frame
+from mxeon.models.surfaces.lobes import Light as Light
+from mxeon.models.surfaces.lobes import Parameter as Parameter

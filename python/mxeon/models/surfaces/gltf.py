@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""glTF 2.0's metallic-roughness material with its extensions KHR_materials_*.
+
+    material = mix(dielectric, metal, metallic)
+    dielectric = f_specular + (1 - E[f_specular]) mix(f_diffuse, baseColor f_btdf, transmission)
+    f = clearcoat f_coat + (1 - clearcoat E[f_coat]) (f_sheen + (1 - max(sheenColor) E_sheen) material)
+
+Lobes are Schlick's, with alpha = roughness^2. The text permits any operator for layers; albedo scaling is
+used. Each name in `but` replaces a formula. [glTF2021], sections 3.9 and B, and the extensions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from functools import partial
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array
+from mxeon.models.microfacet.fresnel import fresnel_schlick
+from mxeon.models.shading_model import ALONG, UP
+from mxeon.models.surfaces.lobes import (
+    CONTY_KULLA,
+    DIELECTRIC,
+    EON,
+    SCHLICK,
+    WHITE,
+    Frame,
+    Light,
+    Parameter,
+    Parameters,
+    f0_from_ior,
+    filled,
+    lerp,
+    schlick_inputs,
+)
+
+INF = np.inf
+PURE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
+# By the names of MaterialX's node; the text's own are in camel case, with Factor.
+FRAME = {"normal": UP, "tangent": ALONG, "clearcoat_normal": UP}
+PARAMETERS = (
+    Parameter("base_color", PURE),
+    Parameter("metallic", 1.0),
+    Parameter("roughness", 1.0),
+    Parameter("occlusion", 1.0),
+    Parameter("transmission", 0.0),
+    Parameter("specular", 1.0),
+    Parameter("specular_color", PURE, high=INF),
+    Parameter("ior", 1.5, low=1.0, high=INF),
+    Parameter("alpha", 1.0),
+    Parameter("alpha_mode", 0, high=2),
+    Parameter("alpha_cutoff", 0.5, high=INF),
+    Parameter("iridescence", 0.0),
+    Parameter("iridescence_ior", 1.3, low=1.0, high=INF),
+    Parameter("iridescence_thickness", 400.0, high=INF),
+    Parameter("sheen_color", BLACK),
+    Parameter("sheen_roughness", 0.0),
+    Parameter("clearcoat", 0.0),
+    Parameter("clearcoat_roughness", 0.0),
+    Parameter("emissive", BLACK),
+    Parameter("emissive_strength", 1.0, high=INF),
+    Parameter("thickness", 0.0, high=INF),
+    Parameter("attenuation_distance", INF, high=INF),
+    Parameter("attenuation_color", PURE),
+    Parameter("anisotropy_strength", 0.0),
+    Parameter("anisotropy_rotation", 0.0, low=-INF, high=INF),
+    Parameter("dispersion", 0.0, high=INF),
+)
+parameters = partial(filled, PARAMETERS, FRAME)
+CLEARCOAT_F0 = 0.04
+
+
+def alphas(p: Parameters) -> Array:
+    """Roughness along the tangent, which the strength increases, and the bitangent, (N, 2)."""
+    across = np.square(p["roughness"])
+    along = lerp(across, 1.0, np.square(p["anisotropy_strength"]))
+    return np.concatenate(np.broadcast_arrays(along, across), axis=1)
+
+
+def coat(p: Parameters) -> dict[str, Array]:
+    """Inputs of the clearcoat's lobe."""
+    alpha = np.repeat(np.square(p["clearcoat_roughness"]), 2, axis=1)
+    return {"ior": np.full((1, 1), 1.5), "roughness": alpha, "tint": WHITE}
+
+
+def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
+    """Scattered light, (N, 3): f cos(theta_i), or the response to a white environment."""
+    plain = Frame(p["normal"], p["tangent"])
+    sign = -1.0 if "rotation clockwise" in but else 1.0
+    frame, alpha = plain.turned(sign * p["anisotropy_rotation"]), alphas(p)
+    film = {"thinfilm_thickness": p["iridescence_thickness"], "thinfilm_ior": p["iridescence_ior"]}
+    covered = p["iridescence"]
+
+    def reflected(f0: Array, f90: Array) -> tuple[Array, Array]:
+        """A specular lobe and its albedo, in part below a thin film."""
+        inputs = schlick_inputs(f0, f90, alpha)
+        found = []
+        for find in (light.response, light.albedo):
+            bare = find(SCHLICK, frame, **inputs)
+            wet = find(SCHLICK, frame, **inputs, **film) if np.any(covered) else bare
+            found.append(lerp(bare, wet, covered))
+        return found[0], found[1]
+
+    f_metal, _ = reflected(p["base_color"], WHITE)
+    f0 = np.minimum(f0_from_ior(p["ior"]) * p["specular_color"], 1.0) * p["specular"]
+    f_specular, E_specular = reflected(f0, p["specular"] * WHITE)
+    f_btdf = light.through(1.0)
+    if "reflection taken twice" in but:
+        glass = {"ior": p["ior"], "roughness": alpha, "tint": WHITE}
+        f_btdf = f_btdf * (1.0 - light.albedo(DIELECTRIC, frame, **glass))
+    f_diffuse = light.response(EON, plain, color=p["base_color"], roughness=0.0)
+    below = lerp(f_diffuse, p["base_color"] * f_btdf, p["transmission"])
+    material = lerp(f_specular + (1.0 - E_specular) * below, f_metal, p["metallic"])
+
+    intensity = p["sheen_color"].max(axis=1, keepdims=True)
+    if np.any(intensity):
+        fibers = {"color": WHITE, "roughness": np.square(p["sheen_roughness"])}
+        E_sheen = intensity * light.albedo(CONTY_KULLA, plain, **fibers)
+        if "tinted light below the sheen" in but:
+            E_sheen = p["sheen_color"] / np.maximum(intensity, 1e-30) * E_sheen
+        f_sheen = p["sheen_color"] * light.response(CONTY_KULLA, plain, **fibers)
+        material = f_sheen + (1.0 - E_sheen) * material
+    if not np.any(p["clearcoat"]):
+        return material
+    upper = Frame(p["clearcoat_normal"], p["tangent"])
+    f_coat, E_coat = (find(DIELECTRIC, upper, **coat(p)) for find in (light.response, light.albedo))
+    return p["clearcoat"] * f_coat + (1.0 - p["clearcoat"] * E_coat) * material
+
+
+def emission(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
+    """Emitted radiance toward the viewer, (N, 3), below the clearcoat."""
+    emitted = np.broadcast_to(p["emissive"] * p["emissive_strength"], light.wo.shape)
+    if "emission above the clearcoat" in but:
+        return emitted
+    mu = (light.wo * p["clearcoat_normal"]).sum(axis=1)
+    f0 = np.full((1, 3), CLEARCOAT_F0)
+    return (1.0 - p["clearcoat"] * fresnel_schlick(mu, f0, WHITE, WHITE, 5.0)) * emitted

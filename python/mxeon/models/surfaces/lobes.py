@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Lobes of a surface under one light, which the specifications of surface shaders combine.
+
+Parameters are a mapping by the specification's names, numbers as (N, 1) and colors as (N, 3), or with
+one row for all points. Directions are unit vectors in the frame of the geometric normal, (N, 3), above
+the horizon.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mxeon.models.core.arrays import Array
+from mxeon.models.nodes import node
+from mxeon.models.nodes.node import PbrNode
+from mxeon.models.shading_model import ALONG, UP
+from mxeon.models.table import diffuse_model
+
+Parameters: TypeAlias = Mapping[str, Array]
+Value: TypeAlias = ArrayLike | None
+Values: TypeAlias = Mapping[str, Value]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter in a specification's table; a range without a bound is infinite.
+
+    - `norm`: The range that a user interface should offer, if it differs.
+    """
+
+    name: str
+    default: float | bool | int | tuple[float, float, float] | None
+    low: float = 0.0
+    high: float = 1.0
+    norm: tuple[float, float] | None = None
+
+
+def filled(table: Iterable[Parameter], frame: Values, **inputs: Value) -> dict[str, Array]:
+    """Parameters as columns, with the defaults of a specification's table and frame.
+
+    An array has a row for each point; a number or a tuple holds for all points.
+    """
+    given = {**{each.name: each.default for each in table}, **frame, **inputs}
+    return {name: _column(value) for name, value in given.items() if value is not None}
+
+
+def _column(value: Value) -> Array:
+    array = np.asarray(value, np.float64)
+    varied = isinstance(value, np.ndarray) and array.ndim > 0
+    return array.reshape(len(array) if varied else 1, -1)
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A shading normal and tangent, (N or 1, 3), not necessarily orthogonal."""
+
+    normal: Array
+    tangent: Array
+
+    def local(self, wo: Array, directions: Array) -> Array:
+        """World directions in this frame, whose normal is turned toward the viewer, (N, 3)."""
+        facing = np.where((wo * self.normal).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
+        z = np.broadcast_to(facing * self.normal, wo.shape)
+        x = self.tangent - (self.tangent * z).sum(axis=1, keepdims=True) * z
+        x = x / np.linalg.norm(x, axis=1, keepdims=True)
+        axes = np.stack([x, np.cross(z, x), z], axis=1)
+        return np.asarray((axes @ directions[:, :, np.newaxis])[:, :, 0])
+
+    def turned(self, angle: Array) -> Frame:
+        """The frame with its tangent turned counterclockwise about the normal by an angle, (N, 1)."""
+        tangent = np.cos(angle) * self.tangent
+        tangent = tangent + np.sin(angle) * np.cross(self.normal, self.tangent)
+        return Frame(self.normal, tangent)
+
+
+PLAIN = Frame(np.array([UP]), np.array([ALONG]))
+
+
+@dataclass(frozen=True, eq=False)
+class Light:
+    """What a surface sees: a distant light of irradiance 1 if perpendicular, or a white environment.
+
+    - `wo`: directions to the viewer.
+    - `wi`: directions to the light; None in an environment of radiance 1.
+    - `behind`: whether only what refracts light of the environment counts, as in a rasterizer's lookup.
+    """
+
+    wo: Array
+    wi: Array | None = None
+    behind: bool = False
+
+    def response(self, lobe: PbrNode, frame: Frame = PLAIN, **inputs: ArrayLike) -> Array:
+        """Light that a reflecting lobe sends to the viewer, (N, 3): f cos(theta_i), or E."""
+        if self.wi is None:
+            return np.zeros(self.wo.shape) if self.behind else self.albedo(lobe, frame, **inputs)
+        wo, wi = (frame.local(self.wo, each) for each in (self.wo, self.wi))
+        lit = wi[:, 2:] > 0.0
+        value = lobe.value(wo, np.where(lit, wi, [UP]), self._columns(inputs))
+        return np.where(lit, value * wi[:, 2:], 0.0)
+
+    def albedo(self, lobe: PbrNode, frame: Frame = PLAIN, **inputs: ArrayLike) -> Array:
+        """Directional albedo E of a lobe at the viewer, (N, 3)."""
+        wo = frame.local(self.wo, self.wo)
+        return np.broadcast_to(lobe.albedo(wo, self._columns(inputs)), wo.shape)
+
+    def through(self, share: ArrayLike) -> Array:
+        """Light of the environment behind the surface that passes a share of it, (N, 3)."""
+        light = 1.0 if self.behind else 0.0
+        return np.broadcast_to(light * np.asarray(share), self.wo.shape)
+
+    def diffused(self, share: ArrayLike) -> Array:
+        """Light from the other side that a diffuse lobe scatters, (N, 3); none from a distant light above."""
+        light = 1.0 if self.wi is None and not self.behind else 0.0
+        return np.broadcast_to(light * np.asarray(share), self.wo.shape)
+
+    def _columns(self, inputs: Mapping[str, ArrayLike]) -> dict[str, Array]:
+        """Inputs of a lobe for each point, numbers as (N,)."""
+        count = len(self.wo)
+        columns = {}
+        for name, value in inputs.items():
+            each = np.asarray(value, np.float64)
+            width = each.shape[1] if each.ndim == 2 else 1
+            column = np.broadcast_to(each.reshape(-1, width), (count, width))
+            columns[name] = column[:, 0] if width == 1 else column
+        return columns
+
+
+EON, QON = diffuse_model("eon"), diffuse_model("qon")  # both are Lambertian with roughness 0
+DIELECTRIC, SCHLICK = node("dielectric"), node("schlick")
+CONDUCTOR, ZELTNER, CONTY_KULLA = node("conductor"), node("zeltner"), node("conty_kulla")
+WHITE = np.ones((1, 3))
+
+
+def lerp(first: ArrayLike, second: ArrayLike, share: ArrayLike) -> Array:
+    """(1 - share) first + share second."""
+    share = np.asarray(share, np.float64)
+    return np.asarray((1.0 - share) * np.asarray(first) + share * np.asarray(second))
+
+
+def f0_from_ior(eta: ArrayLike) -> Array:
+    """Reflectance along the normal of a dielectric of relative index `eta`."""
+    eta = np.asarray(eta, np.float64)
+    return np.asarray(np.square((eta - 1.0) / (eta + 1.0)))
+
+
+def schlick_inputs(
+    f0: ArrayLike, f90: ArrayLike, alpha: Array, f82: ArrayLike = WHITE
+) -> dict[str, ArrayLike]:
+    """Inputs of SCHLICK with exponent 5."""
+    return {
+        "color0": f0,
+        "color82": f82,
+        "color90": f90,
+        "exponent": 5.0,
+        "roughness": alpha,
+    }

@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: Apache-2.0
+"""OpenPBR Surface 1.1.1 as the linear combination of lobes in its section "Reduction to a mixture of lobes".
+
+    f_surface        = F f_fuzz + lerp(1, 1 - E[white f_fuzz], F) f_coated-base
+    f_coated-base    = C f_coat + lerp(1, T_coat (1 - E[f_coat]), C) Delta f_base
+    f_base           = lerp(f_dielectric-base, f_conductor, M)
+    f_dielectric-base = f_specular + (1 - E[f_specular]) lerp(lerp(f_diffuse, f_SSS, S), f_T, T)
+
+The coat absorbs along the refracted path, T_coat = coat_color^((1/mu_i + 1/mu_o) / 2). It darkens the base by
+Delta = (1 - K) / (1 - E_base K), K = lerp(F(mu_o), 1 - (1 - <F>) / eta^2, r_base), and widens its
+lobes to r'^4 = r^4 + 2 r_coat^4. On a plane, f_SSS is the Lambertian lobe with the specified color. A rasterizer's
+environment gives f_T the share `transmission_color` of the light.
+
+Each name in `but` replaces a formula; `mxeon.conformance.specs.surface_texts` says which of these
+the text permits. [OpenPBR2026].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from functools import partial
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array
+from mxeon.models.microfacet.fresnel import fresnel_dielectric, fresnel_dielectric_avg
+from mxeon.models.shading_model import ALONG, UP
+from mxeon.models.surfaces.lobes import (
+    DIELECTRIC,
+    EON,
+    PLAIN,
+    QON,
+    SCHLICK,
+    WHITE,
+    ZELTNER,
+    Frame,
+    Light,
+    Parameter,
+    Parameters,
+    f0_from_ior,
+    filled,
+    lerp,
+    schlick_inputs,
+)
+
+INF = np.inf
+GRAY = (0.8, 0.8, 0.8)
+# The tables of parameters; those of geometry have no default there.
+FRAME = {
+    "geometry_normal": UP,
+    "geometry_tangent": ALONG,
+    "geometry_coat_normal": UP,
+    "geometry_coat_tangent": ALONG,
+}
+PARAMETERS = (
+    Parameter("base_weight", 1.0),
+    Parameter("base_color", GRAY),
+    Parameter("base_diffuse_roughness", 0.0),
+    Parameter("base_metalness", 0.0),
+    Parameter("specular_weight", 1.0, high=INF, norm=(0.0, 1.0)),
+    Parameter("specular_color", (1.0, 1.0, 1.0)),
+    Parameter("specular_roughness", 0.3),
+    Parameter("specular_roughness_anisotropy", 0.0),
+    Parameter("specular_ior", 1.5, high=INF, norm=(1.0, 3.0)),
+    Parameter("transmission_weight", 0.0),
+    Parameter("transmission_color", (1.0, 1.0, 1.0)),
+    Parameter("transmission_depth", 0.0, high=INF, norm=(0.0, 1.0)),
+    Parameter("transmission_scatter", (0.0, 0.0, 0.0)),
+    Parameter("transmission_scatter_anisotropy", 0.0, low=-1.0),
+    Parameter("transmission_dispersion_scale", 0.0),
+    Parameter("transmission_dispersion_abbe_number", 20.0, high=INF, norm=(9.0, 91.0)),
+    Parameter("subsurface_weight", 0.0),
+    Parameter("subsurface_color", GRAY),
+    Parameter("subsurface_radius", 1.0, high=INF, norm=(0.0, 1.0)),
+    Parameter("subsurface_radius_scale", (1.0, 0.5, 0.25)),
+    Parameter("subsurface_scatter_anisotropy", 0.0, low=-1.0),
+    Parameter("coat_weight", 0.0),
+    Parameter("coat_color", (1.0, 1.0, 1.0)),
+    Parameter("coat_roughness", 0.0),
+    Parameter("coat_roughness_anisotropy", 0.0),
+    Parameter("coat_ior", 1.6, high=INF, norm=(1.0, 3.0)),
+    Parameter("coat_darkening", 1.0),
+    Parameter("fuzz_weight", 0.0),
+    Parameter("fuzz_color", (1.0, 1.0, 1.0)),
+    Parameter("fuzz_roughness", 0.5),
+    Parameter("emission_luminance", 0.0, high=INF, norm=(0.0, 1000.0)),
+    Parameter("emission_color", (1.0, 1.0, 1.0), high=INF),
+    Parameter("thin_film_weight", 0.0),
+    Parameter("thin_film_thickness", 0.5, high=INF, norm=(0.0, 1.0)),
+    Parameter("thin_film_ior", 1.4, high=INF, norm=(1.0, 3.0)),
+    Parameter("geometry_opacity", 1.0),
+    Parameter("geometry_thin_walled", False),
+)
+parameters = partial(filled, PARAMETERS, FRAME)
+
+
+def alphas(roughness: Array, anisotropy: Array) -> Array:
+    """Roughness along the tangent and the bitangent, whose squares have the mean r^4 if at most 1, (N, 2)."""
+    along = np.square(roughness) * np.sqrt(2.0 / (1.0 + np.square(1.0 - anisotropy)))
+    both = np.concatenate([along, (1.0 - anisotropy) * along], axis=-1)
+    return np.asarray(np.minimum(both, 1.0))
+
+
+def base_alphas(p: Parameters) -> Array:
+    """Roughness of the base below a rough coat: the slopes' variances add, the coat's twice."""
+    r, coat = p["specular_roughness"], p["coat_roughness"]
+    rough = np.minimum(1.0, r**4 + 2.0 * coat**4) ** 0.25
+    return alphas(lerp(r, rough, p["coat_weight"]), p["specular_roughness_anisotropy"])
+
+
+def specular_eta(p: Parameters) -> Array:
+    """Relative index of the base before `specular_weight`, inverted where the coat's index is larger."""
+    below = p["specular_ior"] / p["coat_ior"]
+    return lerp(p["specular_ior"], np.maximum(below, 1.0 / below), p["coat_weight"])
+
+
+def modulated_eta(p: Parameters) -> Array:
+    """Relative index of the base whose reflectance is scaled by `specular_weight`."""
+    eta = specular_eta(p)
+    scaled = np.minimum(p["specular_weight"] * f0_from_ior(eta), 1.0 - 1e-5)
+    epsilon = np.sign(eta - 1.0) * np.sqrt(scaled)
+    return (1.0 + epsilon) / (1.0 - epsilon)
+
+
+def darkening(light: Light, p: Parameters, but: Collection[str]) -> Array:
+    """Factor of the base due to reflections inside the coat."""
+    eta, color = p["coat_ior"], p["base_weight"] * p["base_color"]
+    metal = p["specular_weight"] * color
+    if "the base's albedo without base_weight" in but:
+        color = p["base_color"]
+        metal = p["specular_weight"] * color
+    dielectric = lerp(color, p["subsurface_color"], p["subsurface_weight"])
+    albedo = lerp(dielectric, metal, p["base_metalness"])
+    average = fresnel_dielectric_avg(eta)
+    if "the Fresnel average at the normal" in but:
+        average = f0_from_ior(eta)
+    rough = 1.0 - (1.0 - average) / np.square(eta)
+    smooth = fresnel_dielectric(light.wo[:, 2:], eta)
+    r = p["specular_roughness"]
+    scaled = np.clip(p["specular_weight"] * f0_from_ior(specular_eta(p)), 0.0, 1.0)
+    blur = lerp(lerp(1.0, r, scaled), r, p["base_metalness"])
+    K = rough if "a rough base" in but else lerp(smooth, rough, blur)
+    factor = (1.0 - K) / (1.0 - albedo * K)
+    return lerp(1.0, factor, p["coat_weight"] * p["coat_darkening"])
+
+
+def coat_transmittance(light: Light, p: Parameters, but: Collection[str]) -> Array:
+    """Share of the light that the coat's medium does not absorb, in and out."""
+
+    def path(mu: Array) -> Array:
+        return 1.0 / np.sqrt(1.0 - (1.0 - np.square(mu)) / np.square(p["coat_ior"]))
+
+    if "absorption at the normal" in but or light.wi is None:
+        return np.broadcast_to(p["coat_color"], light.wo.shape)
+    return p["coat_color"] ** (0.5 * (path(light.wo[:, 2:]) + path(light.wi[:, 2:])))
+
+
+def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
+    """Scattered light, (N, 3): f cos(theta_i), or the response to a white environment."""
+    frames = Frame(p["geometry_normal"], p["geometry_tangent"])
+    coat_frame = Frame(p["geometry_coat_normal"], p["geometry_coat_tangent"])
+    F, C, M = p["fuzz_weight"], p["coat_weight"], p["base_metalness"]
+    T, S, thin = p["transmission_weight"], p["subsurface_weight"], p["geometry_thin_walled"] != 0.0
+    film = {
+        "thinfilm_thickness": 1000.0 * p["thin_film_thickness"],
+        "thinfilm_ior": p["thin_film_ior"],
+    }
+    covered = p["thin_film_weight"]
+
+    alpha = base_alphas(p)
+    color0 = p["base_weight"] * p["base_color"]
+    metal = schlick_inputs(color0, WHITE, alpha, p["specular_color"])
+    f_conductor = p["specular_weight"] * light.response(SCHLICK, frames, **metal)
+    if np.any(covered * M):
+        wet = p["specular_weight"] * light.response(SCHLICK, frames, **metal, **film)
+        f_conductor = lerp(f_conductor, wet, covered)
+
+    glass = {"ior": modulated_eta(p), "roughness": alpha, "tint": p["specular_color"]}
+    f_specular, E_specular = light.response(DIELECTRIC, frames, **glass), np.zeros(1)
+    if np.any(M < 1.0):
+        E_specular = light.albedo(DIELECTRIC, frames, **glass)
+        if np.any(covered):
+            wet = light.albedo(DIELECTRIC, frames, **glass, **film)
+            E_specular = lerp(E_specular, wet, covered)
+            wet = light.response(DIELECTRIC, frames, **glass, **film)
+            f_specular = lerp(f_specular, wet, covered)
+        if "no tint of what specular light leaves" in but:
+            E_specular = light.albedo(DIELECTRIC, frames, **{**glass, "tint": WHITE})
+
+    f_diffuse = p["base_weight"] * light.response(
+        EON, frames, color=p["base_color"], roughness=p["base_diffuse_roughness"]
+    )
+    f_subsurface = light.response(EON, frames, color=p["subsurface_color"], roughness=0.0)
+    color, g = p["subsurface_color"], p["subsurface_scatter_anisotropy"]
+    shares = [0.5 * (1.0 - g) * np.ones(3), 0.5 * (1.0 + g) * np.ones(3)]
+    if "the color twice" in but:
+        most = 1.0 if "factors clamped to 1" in but else np.inf
+        shares = [0.5 * np.minimum(2.0 * share * color, most) for share in shares]
+    diffuse = QON if "Oren-Nayar without compensation" in but else EON
+    f_wall = light.response(diffuse, frames, color=WHITE, roughness=p["base_diffuse_roughness"])
+    sheet = color * (shares[0] * f_wall + light.diffused(shares[1]))
+    f_subsurface = np.where(thin, sheet, f_subsurface)
+    tint = np.where((p["transmission_depth"] > 0.0) & ~thin, WHITE, p["transmission_color"])
+    if "no color of a thin wall with a depth" in but:
+        tint = np.where(p["transmission_depth"] > 0.0, WHITE, p["transmission_color"])
+    f_transmitted = light.through(tint)
+    if "reflection taken twice" in but:
+        f_transmitted = f_transmitted * (
+            1.0 - light.albedo(DIELECTRIC, frames, **{**glass, "tint": WHITE})
+        )
+    f_below = lerp(lerp(f_diffuse, f_subsurface, S), f_transmitted, T)
+    f_dielectric = f_specular + (1.0 - E_specular) * f_below
+
+    f_base = lerp(f_dielectric, f_conductor, M)
+    if not np.any(C):
+        f_coated = f_base
+    else:
+        coat = {
+            "ior": p["coat_ior"],
+            "roughness": alphas(p["coat_roughness"], p["coat_roughness_anisotropy"]),
+            "tint": WHITE,
+        }
+        f_coat, E_coat = (
+            find(DIELECTRIC, coat_frame, **coat) for find in (light.response, light.albedo)
+        )
+        T_coat = coat_transmittance(light, p, but)
+        passed = lerp(1.0, T_coat * (1.0 - E_coat), C)
+        if "a partial coat as a product" in but:
+            passed = lerp(1.0, T_coat, C) * (1.0 - C * E_coat)
+        f_coated = C * f_coat + passed * darkening(light, p, but) * f_base
+
+    if not np.any(F):
+        return f_coated
+    normal = lerp(p["geometry_normal"], p["geometry_coat_normal"], C)
+    if "the fuzz along geometry_normal" in but:
+        normal = p["geometry_normal"]
+    fuzz_frame = Frame(normal / np.linalg.norm(normal, axis=1, keepdims=True), PLAIN.tangent)
+    fuzz = {"color": p["fuzz_color"], "roughness": p["fuzz_roughness"]}
+    E_fuzz = light.albedo(
+        ZELTNER,
+        fuzz_frame,
+        **(fuzz if "tinted light below the fuzz" in but else {**fuzz, "color": WHITE}),
+    )
+    f_fuzz = light.response(ZELTNER, fuzz_frame, **fuzz)
+    return F * f_fuzz + lerp(1.0, 1.0 - E_fuzz, F) * f_coated
+
+
+def emission(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
+    """Emitted radiance toward the viewer in nits, (N, 3): from below the coat and the fuzz."""
+    emitted = p["emission_luminance"] * p["emission_color"]
+    C, F = p["coat_weight"], p["fuzz_weight"]
+    T_coat = np.sqrt(p["coat_color"]) if "the transmittance of one way" in but else p["coat_color"]
+    if "a Fresnel factor of the coat" in but:
+        T_coat = T_coat * (1.0 - fresnel_dielectric(light.wo[:, 2:], p["coat_ior"]))
+    if "Schlick's factor of the coat" in but:
+        T_coat = T_coat * (1.0 - f0_from_ior(p["coat_ior"])) * (1.0 - (1.0 - light.wo[:, 2:]) ** 5)
+    glow = lerp(1.0, T_coat, C) * emitted
+    if "no fuzz above" in but or not np.any(F):
+        return np.broadcast_to(glow, light.wo.shape)
+    E_fuzz = light.albedo(ZELTNER, color=WHITE, roughness=p["fuzz_roughness"])
+    return lerp(1.0, 1.0 - E_fuzz, F) * glow

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""UsdPreviewSurface 2.5.
+
+    f = clearcoat f_coat + (1 - clearcoat E[f_coat]) (f_specular + (1 - E[f_specular]) f_below)
+    f_below = lerp(transparent, diffuse_weight f_diffuse, opacity)
+
+The specular workflow reflects `specularColor` along the normal and white at grazing; the metalness workflow interpolates both
+ends from ((1 - ior) / (1 + ior))^2 and white to `diffuseColor`. The text does not say how layers are combined; albedo
+scaling is used. Each name in `but` replaces a formula. [UsdPreviewSurface2019].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from functools import partial
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array
+from mxeon.models.microfacet.fresnel import artistic_ior
+from mxeon.models.shading_model import UP
+from mxeon.models.surfaces.lobes import (
+    CONDUCTOR,
+    DIELECTRIC,
+    EON,
+    SCHLICK,
+    WHITE,
+    Frame,
+    Light,
+    Parameter,
+    Parameters,
+    f0_from_ior,
+    filled,
+    lerp,
+    schlick_inputs,
+)
+
+INF = np.inf
+GRAY, BLACK = (0.18, 0.18, 0.18), (0.0, 0.0, 0.0)
+FRAME = {"normal": UP}
+PARAMETERS = (
+    Parameter("diffuseColor", GRAY),
+    Parameter("emissiveColor", BLACK, high=INF),
+    Parameter("useSpecularWorkflow", 0),
+    Parameter("specularColor", BLACK),
+    Parameter("metallic", 0.0),
+    Parameter("roughness", 0.5),
+    Parameter("clearcoat", 0.0),
+    Parameter("clearcoatRoughness", 0.01),
+    Parameter("opacity", 1.0),
+    Parameter("opacityThreshold", 0.0),
+    Parameter("ior", 1.5, high=INF),
+    Parameter("displacement", 0.0, low=-INF, high=INF),
+    Parameter("occlusion", 1.0),
+)
+parameters = partial(filled, PARAMETERS, FRAME)
+
+
+def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
+    """Scattered light, (N, 3): f cos(theta_i), or the response to a white environment."""
+    frame = Frame(p["normal"], np.array([[1.0, 0.0, 0.0]]))
+    alpha = np.repeat(np.square(p["roughness"]), 2, axis=1)
+    metallic, color, specular = p["metallic"], p["diffuseColor"], p["useSpecularWorkflow"] != 0.0
+    r0 = f0_from_ior(p["ior"])
+    diffuse = np.where(specular, 1.0, 1.0 - metallic)
+    shown = np.where(p["opacityThreshold"] > 0.0, 1.0, p["opacity"])
+    f_clear = light.through(1.0)
+    if "reflection taken twice" in but:
+        glass = {"ior": p["ior"], "roughness": np.zeros((1, 2)), "tint": WHITE}
+        f_clear = f_clear * (1.0 - light.albedo(DIELECTRIC, frame, **glass))
+    f_below = lerp(f_clear, diffuse * light.response(EON, frame, color=color, roughness=0.0), shown)
+
+    def over(f0: Array, f90: Array) -> Array:
+        """A specular lobe over the rest."""
+        inputs = schlick_inputs(f0, f90, alpha)
+        f, E = (find(SCHLICK, frame, **inputs) for find in (light.response, light.albedo))
+        return f + (1.0 - E) * f_below
+
+    f90 = lerp(WHITE, color, metallic)
+    if "metal by artist-friendly indices" in but:
+        n, k = artistic_ior(color, color)
+        f_metal = light.response(CONDUCTOR, frame, ior=n, extinction=k, roughness=alpha)
+        f_metalness = lerp(over(lerp(f90 * r0, f90, metallic), f90), f_metal, metallic)
+    else:
+        f_metalness = over(lerp(r0, color, metallic), f90)
+    f_base = np.where(specular, over(p["specularColor"], WHITE), f_metalness)
+    if not np.any(p["clearcoat"]):
+        return f_base
+    rough = np.repeat(np.square(p["clearcoatRoughness"]), 2, axis=1)
+    coat = schlick_inputs(r0 * WHITE, WHITE, rough)
+    f_coat, E_coat = (find(SCHLICK, frame, **coat) for find in (light.response, light.albedo))
+    return p["clearcoat"] * f_coat + (1.0 - p["clearcoat"] * E_coat) * f_base
+
+
+def emission(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
+    """Emitted radiance toward the viewer, (N, 3)."""
+    return np.broadcast_to(p["emissiveColor"], light.wo.shape)
