@@ -229,6 +229,8 @@ DEFECTS = {
     "right_without": "the layer equation holds without the {0}",
     "throughput_of_lobes": "by itself, what passes {all} is wrong",
     "no_single_lobe": "no single lobe explains it; the error is smallest without {0} and {1}",
+    "lobes_of_graph": "the graph is not the cause: see the checks of its lobes",
+    "lobes_too": "its lobes have errors of their own: see their checks",
     "sum_of_lobes": "see the checks of each lobe and of `layer`",
     "graph_of_release": "the graph of MaterialX {any}",
     "graph_of_version": "the graph of version {0} of the node, where version {1} is installed",

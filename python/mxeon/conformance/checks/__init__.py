@@ -10,6 +10,7 @@ from mxeon.conformance.checks import (
     paths,
     states,
     surface_shaders,
+    surface_texts,
 )
 
 # `mxeon.survey.checks` adds checks of renderers' own samplers.
@@ -20,5 +21,6 @@ CHECKS: list[Check] = [
     *microfacets.ROWS,
     *other_nodes.ROWS,
     *surface_shaders.ROWS,
+    *surface_texts.ROWS,
     *paths.ROWS,
 ]

@@ -36,6 +36,7 @@ from mxeon.conformance.specs import PBRLIB
 from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES, DiffuseSpec
 from mxeon.conformance.specs.emission import EmittingSurface
 from mxeon.conformance.specs.microfacets import FilmSpec
+from mxeon.conformance.specs.surface_texts import SENTENCES
 from mxeon.errors import DocumentError, InputError, MxeonError, assert_known
 from mxeon.hosts import HOSTS, host_names, host_row
 from mxeon.hosts.base import Identity
@@ -223,6 +224,7 @@ def _selected(
     """
     titles = _titles(*nodes)
     rare = {each.title for each in PBRLIB} - {each.title for each in COMMON_SPECS}
+    texts = {each.title for each in SENTENCES}
     audit = COMMON in nodes or not (nodes or files)
     by_name = {each.key for each in CHECKS if each.profile}
     if not nodes:
@@ -230,7 +232,7 @@ def _selected(
     chosen = [
         task
         for task in tasks
-        if ALL in nodes
+        if (ALL in nodes and task.subject not in texts)
         or task.subject in files
         or (task.subject in titles and (nodes or task.check not in by_name))
         or (audit and task.subject not in rare and task.check not in by_name)

@@ -12,6 +12,7 @@ from mxeon.conformance.specs.microfacets import FACET_SPECS, FILM_SPECS, TRANSMI
 from mxeon.conformance.specs.sheen import CONTY_KULLA, ZELTNER
 from mxeon.conformance.specs.subsurface import SUBSURFACE
 from mxeon.conformance.specs.surface_shaders import SURFACE_SHADERS
+from mxeon.conformance.specs.surface_texts import SENTENCES
 from mxeon.conformance.specs.utilities import INVERSION_SPECS, UTILITY_SPECS
 
 PLAIN_LOBES = (BURLEY, TRANSLUCENT, CONTY_KULLA, ZELTNER, *FACET_SPECS)
@@ -29,5 +30,6 @@ PBRLIB: tuple[Spec, ...] = (
     *FILM_SPECS,
     *UTILITY_SPECS,
     *SURFACE_SHADERS,
+    *SENTENCES,  # only if the user names their specification
 )
 ALL: tuple[Spec, ...] = (*DIFFUSE, *PBRLIB, *SURFACE_LOBES)

@@ -42,7 +42,7 @@ FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale"
 TURNED_FRAME = {"normal": (0.48, 0.36, 0.8), "tangent": (0.6, 0.8, 0.0)}
 
 
-def _ports(**names: str) -> tuple[Input, ...]:
+def ports_by_range(**names: str) -> tuple[Input, ...]:
     """Inputs with the given names for each of RANGES."""
     return tuple(
         replace(RANGES[key], name=name) for key, words in names.items() for name in words.split()
@@ -344,14 +344,14 @@ def _names(node: str) -> spec.Names:
 SURFACE_SHADERS = (
     SurfaceShaderSpec(
         **_names("standard_surface"),
-        judged=_ports(
+        judged=ports_by_range(
             share="base diffuse_roughness metalness specular specular_anisotropy specular_rotation sheen coat coat_anisotropy coat_rotation coat_affect_color coat_affect_roughness",
             color="base_color specular_color sheen_color coat_color",
             rough="specular_roughness coat_roughness",
             index="specular_IOR coat_IOR",
             sheen_rough="sheen_roughness",
         ),
-        others=_ports(
+        others=ports_by_range(
             share="transmission transmission_extra_roughness subsurface subsurface_scale",
             color="transmission_color subsurface_color subsurface_radius",
             thickness="thin_film_thickness",
@@ -372,14 +372,14 @@ SURFACE_SHADERS = (
     ),
     SurfaceShaderSpec(
         **_names("open_pbr_surface"),
-        judged=_ports(
+        judged=ports_by_range(
             share="base_weight base_diffuse_roughness base_metalness specular_weight specular_roughness_anisotropy coat_weight coat_roughness_anisotropy coat_darkening fuzz_weight",
             color="base_color specular_color coat_color fuzz_color",
             rough="specular_roughness coat_roughness",
             index="specular_ior coat_ior",
             sheen_rough="fuzz_roughness",
         ),
-        others=_ports(
+        others=ports_by_range(
             share="transmission_weight subsurface_weight subsurface_radius thin_film_weight thin_film_thickness",
             color="transmission_color subsurface_color subsurface_radius_scale",
             index="thin_film_ior",
@@ -407,14 +407,14 @@ SURFACE_SHADERS = (
     ),
     SurfaceShaderSpec(
         **_names("gltf_pbr"),
-        judged=_ports(
+        judged=ports_by_range(
             color="base_color specular_color sheen_color",
             share="metallic specular anisotropy_strength anisotropy_rotation clearcoat",
             rough="roughness clearcoat_roughness",
             index="ior",
             fuzz_rough="sheen_roughness",
         ),
-        others=_ports(
+        others=ports_by_range(
             share="transmission iridescence", index="iridescence_ior", film="iridescence_thickness"
         ),
         without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
@@ -432,13 +432,13 @@ SURFACE_SHADERS = (
     ),
     SurfaceShaderSpec(
         **_names("UsdPreviewSurface"),
-        judged=_ports(
+        judged=ports_by_range(
             color="diffuseColor specularColor",
             share="metallic clearcoat",
             rough="roughness clearcoatRoughness",
             index="ior",
         ),
-        others=_ports(share="opacity"),
+        others=ports_by_range(share="opacity"),
         without_effect=("displacement",),
         glass={"opacity": 0.0, "diffuseColor": WHITE},
         finish=("roughness", "ior"),

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The check of a sentence that a surface shader's specification says."""
+
+import numpy as np
+
+from mxeon.conformance import controls
+from mxeon.conformance.case import Case, values
+from mxeon.conformance.check import Check, family
+from mxeon.conformance.diagnosis import Comparison
+from mxeon.conformance.results import Cause, Diagnosis, Kind
+from mxeon.conformance.spec import broadcast_inputs
+from mxeon.conformance.specs.surface_texts import EMITTED, SentenceSpec
+from mxeon.errors import NotRun
+
+SENTENCE = Comparison("value", values, lambda case: case.valued.value_candidates)
+LOBES, LOBES_TOO = (Cause(Kind.DEFECT, key) for key in ("lobes_of_graph", "lobes_too"))
+
+
+def diagnose(case: Case) -> Diagnosis:
+    """The form of the text that the shader has, or that its graph has in float64 if its lobes are wrong."""
+    from mxeon.conformance.reference import Reference
+
+    spec, found = case.of(SentenceSpec), SENTENCE.diagnose(case)
+    if found.kind is Kind.MODEL or spec.evaluated == EMITTED:
+        return found
+    [batch] = case.batches
+    branch, _, factor = spec.evaluated
+    inputs = broadcast_inputs(batch.altered(**spec.fixed, **batch.inputs))
+    try:
+        shader = case.evaluating.shader
+        graph = factor * Reference().evaluate(shader, batch.wo, batch.wi, inputs, branch)
+    except NotRun:
+        return found
+    own, *others = spec.value_candidates
+    far = {each.title: float(np.abs(each.values(batch) - graph).max()) for each in (own, *others)}
+    nearest = min(far, key=far.__getitem__)
+    if far[nearest] > case.tolerance("value").value:
+        return found
+    if found.distances[nearest] < found.distances[own.title]:
+        return Diagnosis((Cause(Kind.MODEL, nearest), LOBES_TOO), found.distances)
+    return Diagnosis((LOBES,), found.distances)
+
+
+# fmt: off
+ROWS = (
+    Check(key="specification", claim="The surface shader does what this sentence of its specification says.",
+          applies=family(SentenceSpec), measure=SENTENCE, tolerance="value", control=controls.shifted,
+          explain=diagnose, open=True),
+)
+# fmt: on

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sentences of surface shaders' specifications: graphs do what they say, or what a row names."""
+
+from functools import cache
+
+import MaterialX as mx
+import numpy as np
+import pytest
+
+from mxeon.conformance.reference.graph import Graph
+from mxeon.conformance.reference.nodes import ShadingPoints
+from mxeon.conformance.samples import Counts
+from mxeon.conformance.specs.surface_texts import EMITTED, SENTENCES, THROUGH, SentenceSpec
+from mxeon.models.shading_model import ALONG, UP
+from mxeon.shaders.generation import Shader, generate
+
+pytestmark = pytest.mark.whole
+SAME = 1e-4  # rounded constants of a graph
+INPUTS = sorted({(spec.text.node, port.name) for spec in SENTENCES for port in spec.inputs})
+
+
+@cache
+def shader(node: str) -> Shader:
+    """The shader of a material with one surface shader."""
+    [spec, *_] = (each for each in SENTENCES if each.text.node == node)
+    [made] = generate(spec.document(), "glsl", library="stock")
+    return made
+
+
+def shown(spec: SentenceSpec) -> np.ndarray:
+    """Values of the graph for the samples of a sentence, in float64."""
+    [batch] = spec.batches(Counts())
+    branch, _, factor = spec.evaluated
+    count, made = len(batch.wo), shader(spec.text.node)
+    inputs = {
+        name: np.broadcast_to(value, (count, *np.shape(value)[-1:]))
+        if np.shape(value)[:1] != (count,)
+        else value
+        for name, value in {**spec.fixed, **batch.inputs}.items()
+    }
+    dark = np.broadcast_to([0.0, 0.0, -1.0], batch.wo.shape)
+    wi = {"direct": batch.wi, "emission": dark}.get(branch)
+    frame = (np.broadcast_to(axis, batch.wo.shape) for axis in (UP, ALONG))
+    behind = spec.evaluated == THROUGH
+    points = ShadingPoints(batch.wo, wi, 1.0, *frame, behind=behind)
+    graph = Graph(made.document, points, inputs, emits=spec.evaluated == EMITTED)
+    return np.broadcast_to(factor * graph.element(made.element), batch.wo.shape)
+
+
+def distances(spec: SentenceSpec, values: np.ndarray) -> list[float]:
+    """Largest difference of values from the text, then from each named form."""
+    [batch] = spec.batches(Counts())
+    forms = spec.value_candidates[:-1]  # the last is black
+    return [float(np.abs(form.values(batch) - values).max()) for form in forms]
+
+
+@pytest.mark.parametrize("spec", SENTENCES, ids=lambda spec: spec.title)
+def test_each_difference_from_a_text_has_a_name(spec):
+    own, *others = distances(spec, shown(spec))
+    if own <= SAME:
+        assert min(others, default=np.inf) > SAME  # the named forms are others
+    else:
+        assert min(others) <= SAME
+
+
+def mutants(name: str, port: mx.Input) -> list[str]:
+    """Changes of a graph's port that reads an input: dropped and applied twice."""
+    return ["dropped", "twice"] if port.getType() in ("float", "color3") else ["dropped"]
+
+
+@pytest.mark.parametrize(("node", "name"), INPUTS, ids=" ".join)
+def test_wrong_graphs_are_seen(node, name):
+    made = shader(node)
+    graph = made.document.getNode("shading").getImplementation()
+    specs = [spec for spec in SENTENCES if spec.text.node == node]
+    specs = [spec for spec in specs if name in {port.name for port in spec.inputs}]
+    default = graph.getNodeDef().getActiveInput(name)
+    readers = [port for each in graph.getNodes() for port in each.getInputs()]
+    readers = [port for port in readers if port.getInterfaceName() == name]
+    assert readers
+    for change in mutants(name, default):
+        for port in readers:
+            port.removeAttribute("interfacename")
+            if change == "dropped":
+                port.setValueString(default.getValueString())
+        if change == "twice":
+            square = graph.addNode("multiply", "squared_input", default.getType())
+            for each in ("in1", "in2"):
+                square.addInput(each, default.getType()).setInterfaceName(name)
+            for port in readers:
+                port.setNodeName(square.getName())
+        try:
+            seen = any(min(distances(spec, shown(spec))) > SAME for spec in specs)
+        finally:
+            for port in readers:
+                port.removeAttribute("nodename")
+                port.removeAttribute("value")
+                port.setInterfaceName(name)
+            if change == "twice":
+                graph.removeNode("squared_input")
+        assert seen, f"{name} {change}"
