@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Write the tables of surfaces.md: what the shaders do with each sentence of their specifications.
+
+`python -m tools.site.surface_texts` judges all sentences on HOSTS; some minutes.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from itertools import groupby
+
+import numpy as np
+
+import mxeon
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Kind, Result
+from mxeon.conformance.specs.surface_texts import NOT_JUDGED, SENTENCES, Text
+from mxeon.io.files import write_text
+from mxeon.shaders.library import load_library
+from tools.site import DOCS, with_block
+from tools.site.ledger import figure
+
+PAGE = DOCS / "surfaces.md"
+HOSTS = ("gl", "vulkan", "webgl")
+WORDS = {PASSED: "yes", DIFFERS: "left open", FAILED: "**no**", NOT_RUN: "not run"}
+DEFAULTS_HEAD = "| text | parameter | its default | the node's |\n|---|---|---|---|\n"
+HEAD = "| section | the text | on {hosts} | instead, and the largest error |\n|---|---|---|---|\n"
+
+
+def rows(text: Text, results: Mapping[str, Mapping[str, Result]]) -> Iterator[str]:
+    """Table rows of a text, from results by subject and host."""
+    for spec in (each for each in SENTENCES if each.text is text):
+        found = results[spec.title]
+        verdicts = {host: WORDS[each.verdict] for host, each in found.items()}
+        said = set(verdicts.values())
+        verdict = said.pop() if len(said) == 1 else ", ".join(map(": ".join, verdicts.items()))
+        worst = max(found.values(), key=lambda each: each.error or 0.0)
+        yield f"| {spec.section} | {spec.claim} | {verdict} | {instead(worst)} |\n"
+    for where, section, claim, reason in NOT_JUDGED:
+        if where is text:
+            yield f"| {section} | {claim} | not judged | {reason} |\n"
+
+
+def instead(result: Result) -> str:
+    """The form that a shader has instead of the text's, with the size of the error."""
+    cause = result.diagnosis.first
+    if result.verdict == PASSED:
+        return ""
+    named = cause.key if cause.kind is Kind.MODEL else "no known form"
+    return f"{named}; {figure(result)}"
+
+
+def defaults(text: Text) -> Iterator[str]:
+    """Table rows of the defaults that a node's definition does not have from the text."""
+    [definition, *_] = load_library("stock").getMatchingNodeDefs(text.node)
+    for each in text.model.PARAMETERS:
+        value = definition.getActiveInput(each.name).getValue()
+        if value is None or each.default is None:
+            continue
+        own = np.ravel(tuple(value) if hasattr(value, "asTuple") else value).astype(float)
+        if not np.allclose(own, np.ravel(each.default)):
+            shown = (
+                ", ".join(f"{number:.3g}" for number in np.ravel(one))
+                for one in (each.default, own)
+            )
+            yield f"| {text.name} | `{each.name}` | {' | '.join(shown)} |\n"
+
+
+def judged() -> dict[str, dict[str, Result]]:
+    """Results by subject and host."""
+    results: dict[str, dict[str, Result]] = defaultdict(dict)
+    names = [name for name, _ in groupby(SENTENCES, lambda spec: spec.node)]
+    for host in HOSTS:
+        run = mxeon.check(hosts=[host], libraries=["eonlib"], nodes=names)
+        for each in run.results:
+            if each.check == "specification":
+                results[each.subject][host] = each
+    return results
+
+
+if __name__ == "__main__":
+    results, page = judged(), PAGE.read_text(encoding="utf-8")
+    texts = [text for text, _ in groupby(SENTENCES, lambda spec: spec.text)]
+    for text in texts:
+        table = HEAD.format(hosts=", ".join(HOSTS)) + "".join(rows(text, results))
+        page = with_block(page, text.name, f"\n{table}")
+    table = "".join(row for text in texts for row in defaults(text))
+    write_text(PAGE, with_block(page, "defaults", f"\n{DEFAULTS_HEAD}{table}"))
