@@ -137,7 +137,8 @@ class Check:
 
     def judge(self, case: Case) -> Result:
         """The result for a case, with its control and, on failure, a diagnosis."""
-        names = self.key, self.claim, case.spec.title, case.host.name, case.library
+        spec, claim = case.spec, case.spec.claim or self.claim
+        names = self.key, claim, spec.title, case.host.name, case.library
         place = Result(*names, results.NOT_RUN, **case.backend.claims)
         tolerance = self.allowed(case)
 

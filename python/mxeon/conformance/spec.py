@@ -167,6 +167,7 @@ class Spec(ABC):
     # Errors outside the usual range of an input: by quantity, input and value.
     outside_errors: Mapping[tuple[str, str, float], Tolerance] = field(default_factory=dict)
     libraries: tuple[str, ...] = ()  # libraries that it applies to; () for all
+    claim: str = ""  # replaces that of its checks
     closure: bool = True  # whether eonlib's OSL uses a renderer's own closure for it
     counts: Counts = USUAL
     # Inputs of evaluations, unless a batch sets them.

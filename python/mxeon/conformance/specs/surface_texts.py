@@ -64,7 +64,6 @@ class SentenceSpec(ValueSpec):
 
     text: Text
     section: str
-    claim: str  # what the text says, in our words
     permitted: tuple[Forms, ...] = ()
     wrong: tuple[Forms, ...] = ()
 
