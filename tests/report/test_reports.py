@@ -21,7 +21,7 @@ from mxeon.models import table as reference
 from mxeon.report import to_json, write
 from mxeon.report.diff import BETTER, LOST, OTHER, WORSE, compare, read_results
 from mxeon.shaders.library import examples_folder
-from mxeon.survey.field import read_field
+from mxeon.survey.field import by_harm, read_field
 from tests.support.availability import package
 from tests.support.results import Control, Identity, Picture, Region, Result, Run, caused
 from tests.support.verdicts import DIFFERS, FAILED, NOT_RUN, PASSED
@@ -462,9 +462,19 @@ def test_a_row_has_the_claimed_model_the_model_that_is_there_and_the_pages(tmp_p
     }  # fmt: skip
 
 
+def test_rows_are_by_renderer_and_cause_with_the_most_harmful_first(tmp_path):
+    entry = of_node(written(tmp_path))
+    tiny = {name: replace(cell, error=0.1, verdict=FAILED) for name, cell in entry.cells.items()}
+    right = {name: replace(cell, verdict=PASSED) for name, cell in entry.cells.items()}
+    mild, other = replace(entry, host="a", cells=tiny), replace(entry, node="b", library="own")
+    good = replace(entry, cells=right)
+    assert (entry.harm, mild.harm, good.harm) == (0.4, 0.1, 0.0)
+    assert by_harm([mild, good, entry, other]) == [[entry, other], [good], [mild]]
+
+
 def test_the_command_writes_the_page_of_reports(tmp_path, capsys):
     page = tmp_path / "page.html"
     written(tmp_path / "gl")
     assert main(["report", "field", str(tmp_path), "--output", str(page)]) == 0
-    assert capsys.readouterr().out == f"field: {page}, 1 rows\n"
+    assert capsys.readouterr().out == f"field: {page}, nodes: 1\n"
     assert "docs/upstream/a.md" in page.read_text()

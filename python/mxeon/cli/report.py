@@ -68,7 +68,7 @@ def run_field(options: argparse.Namespace) -> int:
         raise InputError(f"output must not be a link; got {options.output}")
     entries = read_field(options.reports)
     page = write_field(entries, options.output)
-    show(f"field: {page}, {len(entries)} rows")
+    show(f"field: {page}, nodes: {len(entries)}")
     return PASSED
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Comparison of renderers' nodes from any number of reports."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
@@ -78,6 +79,21 @@ class Entry:
         return PASSED if PASSED in verdicts else NOT_RUN
 
     @property
+    def harm(self) -> float:
+        """Largest error of a failed check; 0 if none failed, -1 if none ran."""
+        if self.verdict == NOT_RUN:
+            return -1.0
+        failed = [cell.error for cell in self.cells.values() if cell.verdict == FAILED]
+        return max((math.inf if each is None else each for each in failed), default=0.0)
+
+    @property
+    def cause(self) -> tuple[object, ...]:
+        """What nodes of a renderer have in common that share a row of the page."""
+        verdicts = tuple((column, cell.verdict) for column, cell in self.cells.items())
+        models = self.claimed, self.form, self.found, self.found_around
+        return self.host, *models, verdicts, self.pages
+
+    @property
     def found(self) -> str:
         """The model in direct light, or the reason why none is known."""
         return model_of(self.cells["direct"], self.form or self.claimed)
@@ -87,6 +103,15 @@ class Entry:
         """The model in a white environment, or "" without that check."""
         cell = self.cells.get("surroundings")
         return model_of(cell, self.form or self.claimed) if cell else ""
+
+
+def by_harm(entries: Sequence[Entry]) -> list[list[Entry]]:
+    """Entries with the same cause together, by renderer; the most harmful renderer, row and node first."""
+    rows: dict[tuple[object, ...], list[Entry]] = {}
+    for entry in sorted(entries, key=lambda each: each.harm, reverse=True):
+        rows.setdefault(entry.cause, []).append(entry)
+    hosts = list(dict.fromkeys(row[0].host for row in rows.values()))
+    return sorted(rows.values(), key=lambda row: hosts.index(row[0].host))
 
 
 def model_of(result: Result, expected: str) -> str:

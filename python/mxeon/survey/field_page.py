@@ -17,7 +17,7 @@ from mxeon.io.images import difference, difference_scale, read_image
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report.formats import share, vector
 from mxeon.report.pieces import difference_gradient, difference_pixels, generate_page, picture_uri
-from mxeon.survey.field import CHECKS, Entry
+from mxeon.survey.field import CHECKS, Entry, by_harm
 
 # Heading and meaning of each column.
 HEADINGS = {
@@ -48,18 +48,20 @@ def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
     nothing, runs only its own script, and is complete without it. Text of the reports is escaped.
     """
     counts = Counter(entry.verdict for entry in entries)
+    rows = by_harm(entries)
     return generate_page(
         "mxeon.survey",
         "field",
         {"breakable": breakable},
         version=mxeon.__version__,
         entries=entries,
+        rows=rows,
         columns={column: HEADINGS[column] for column in CHECKS},
         claims=sorted({entry.claimed for entry in entries}),
         verdicts=tuple(counts),
         counts=counts,
         scenes=SCENES,
-        frames=lambda scene: frames(entries, scene),
+        frames=lambda scene: frames([row[0] for row in rows], scene),
         where=where,
         order=order,
         address=pages.format,
