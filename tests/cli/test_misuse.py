@@ -89,6 +89,10 @@ OSL = ("generate", "--target", "osl", "--outputPath", "out")
             ["render", PLASTER, "--output", "out.exr", "--shape", "ball", "--host", "reference"],
             "reference: shape must be sphere; got ball, which gl and webgl draw",
         ),
+        (
+            ["render", PLASTER, "--output", "out.exr", "--geometry", "teapot.fbx"],
+            "shape must be one of sphere, ball, a file .obj or .glb; got 'teapot.fbx'",
+        ),
         (["render", PLASTER, "--output", "out.exr", "--bounces", "-1"], "bounces must lie in [1, "),
         (
             ["render", PLASTER, "--output", "out.exr", "--samples", "4"],

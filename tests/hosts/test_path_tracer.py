@@ -9,7 +9,8 @@ import pytest
 from mxeon.errors import MISUSE, PASSED
 from mxeon.hosts.path_tracer import NoiseNote, PathTracerHost
 from mxeon.shaders.nodes import material_text
-from mxeon.shaders.scene import FURNACE, SIDE, Paths, sphere
+from mxeon.shaders.scene import FURNACE, SIDE, STUDIO, Paths, sphere
+from tests.support.availability import package
 from tests.support.command import PLASTER, run
 
 CLAY = material_text("eon_diffuse_bsdf", {"color": (0.8, 0.4, 0.2), "roughness": 1.0})
@@ -51,6 +52,15 @@ def test_glass_loses_little_in_a_furnace(tracer):
     image = traced(tracer, GLASS, FURNACE, Paths(16, 64))
     mask = sphere(SIZE).mask
     assert abs(image[mask].mean() - 1.0) < 0.02
+
+
+def test_a_picture_with_the_default_samples_has_no_noise(tracer):
+    package("pyoidn")
+    scene = replace(STUDIO, light=None)
+    clean, smooth, raw = (traced(tracer, CLAY, scene, Paths(n), "ball") for n in (1024, None, 64))
+    errors = [np.sqrt(np.mean((each - clean) ** 2)) for each in (smooth, raw)]
+    assert errors[0] < 0.6 * errors[1]
+    assert abs(smooth.mean() / clean.mean() - 1.0) < 0.02
 
 
 def test_the_command_prints_the_noise(hosts, tmp_path):

@@ -4,11 +4,17 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
+from mxeon.errors import InputError
+from mxeon.hosts.path_tracer import PathTracerHost
+from mxeon.hosts.points import visible
 from mxeon.hosts.still import PAPER, floor, still
 from mxeon.io.tone import pbr_neutral
 from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import FURNACE, STUDIO, Scene
+from mxeon.shaders.shader_ball import OBJECT
+from tests.support.availability import package
 
 WHITE = material_text("eon_diffuse_bsdf", {"color": (1.0, 1.0, 1.0), "roughness": 1.0})
 SIZE = 64
@@ -48,3 +54,61 @@ def test_the_tone_curve_keeps_dark_colors_but_for_the_reflectance_of_a_dielectri
     np.testing.assert_allclose(pbr_neutral(colors), colors - 0.04)
     bright = pbr_neutral(np.array([[4.0, 2.0, 1.0], [100.0, 50.0, 25.0]]))
     assert (bright <= 1.0).all() and (np.diff(bright, axis=-1) < 0.0).all()
+
+
+@pytest.fixture(params=[".obj", ".glb"])
+def wall(request, tmp_path):
+    """File of an upright square that faces the viewer, with u to the right and v up."""
+    trimesh, _ = package("trimesh"), package("embreex")
+    corners = np.array([[0, 0], [3, 0], [3, 3], [0, 3]])
+    square = trimesh.Trimesh(
+        np.column_stack([corners, np.zeros(4)]),
+        [[0, 1, 2], [0, 2, 3]],
+        visual=trimesh.visual.TextureVisuals(uv=corners / 3.0),
+        process=False,
+    )
+    square.export(tmp_path / f"wall{request.param}")
+    return str(tmp_path / f"wall{request.param}")
+
+
+def test_a_mesh_has_its_normals_texture_coordinates_and_tangents(wall):
+    seen = visible(SIZE, wall)
+    assert 0.2 < seen.mask.mean() < 0.6
+    rows, columns = np.nonzero(seen.mask)
+    for normal in seen.normal[seen.mask]:
+        np.testing.assert_allclose(OBJECT @ normal, [0, 0, 1], atol=1e-6)
+    for tangent in seen.tangent[seen.mask]:
+        np.testing.assert_allclose(OBJECT @ tangent, [1, 0, 0], atol=1e-6)
+    u, v = seen.texcoord[seen.mask].T
+    np.testing.assert_allclose([u.min(), u.max()], [0, 1], atol=1.0 / np.ptp(columns))  # a pixel
+    assert u[columns.argmin()] < u[columns.argmax()] and v[rows.argmin()] > v[rows.argmax()]
+
+
+def test_a_mesh_shades_the_floor_and_is_drawn_on_it(hosts, wall):
+    host, scene = hosts("gl"), replace(STUDIO, size=SIZE, shape=wall)
+    [shader] = host.compile(WHITE)
+    image, paper = still(host, shader, scene), floor(scene)
+    outside = ~visible(SIZE, wall, 0).mask
+    np.testing.assert_array_equal(image[0, [0, -1]], paper[0, [0, -1]])
+    assert (image[~outside] > 0.0).all()
+    rows, columns = np.nonzero(~outside)
+    below = paper[rows.max() + 1, columns[rows == rows.max()]]
+    assert below.mean() < 0.9 * paper[-1, 0].mean()
+
+
+def test_the_path_tracer_refuses_a_mesh(wall):
+    host = PathTracerHost()
+    [shader] = host.compile(WHITE)
+    with pytest.raises(
+        InputError, match="--integrator path: shape must be sphere or ball; got .*wall"
+    ):
+        host.picture(shader, replace(STUDIO, size=SIZE, shape=wall))
+    host.close()
+
+
+def test_a_mesh_without_triangles_is_refused_in_one_line(tmp_path):
+    package("trimesh"), package("embreex")
+    for name, text in (("empty.obj", ""), ("point.obj", "v 0 0 0\n"), ("bad.glb", "no glb")):
+        (tmp_path / name).write_text(text)
+        with pytest.raises(InputError, match=rf"{name}: must"):
+            visible(SIZE, str(tmp_path / name))

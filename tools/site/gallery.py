@@ -73,14 +73,14 @@ TRACED = """
 
 Three of [MaterialX's examples](https://github.com/AcademySoftwareFoundation/MaterialX/tree/main/resources/Materials/Examples).
 Each picture shows a sphere under a light and an even environment, drawn by the rasterizer, the float64 reference and
-[path tracing](path_tracing.md), and beside it the path-traced shader ball in the studio, with shadows and reflections of
-itself.
+[path tracing](path_tracing.md) with {} paths a pixel, and beside it the path-traced shader ball in the studio, with shadows
+and reflections of itself, at the default of 64 paths and denoised.
 
 {}
-    mxeon render standard_surface_glass.mtlx --integrator path --size 192 --samples {} --output glass.png
+    mxeon render standard_surface_glass.mtlx --integrator path --size 192 --output glass.png
 """
 NOISE = PICTURES / "traced.json"  # sentences of the path tracer, by document
-TRACED_SIZE, SAMPLES = 192, 400  # pixels, and paths of each
+TRACED_SIZE, SAMPLES = 192, 256  # pixels, and paths of each on the sphere
 
 
 def studio():
@@ -179,7 +179,7 @@ def trace(folder):
                     ),
                     "paths": tracer.picture(path, replace(even, paths=paths)),
                 }
-                traced = still(tracer, path, replace(ball, paths=paths))
+                traced = still(tracer, path, ball)
             mask = visible(TRACED_SIZE, "sphere").mask
             shown = [
                 np.where(mask[..., None], srgb_encoded(each), np.uint8(BACKGROUND))
@@ -188,9 +188,11 @@ def trace(folder):
             shown.append(srgb_encoded(pbr_neutral(traced)))
             save(PICTURES / f"traced_{document.stem}.webp", shown)
             means = ", ".join(f"{name} {each[mask].mean():.4f}" for name, each in spheres.items())
-            noises = [str(each.message).partition("noise of ")[2] for each in notes]
+            noises = [
+                str(each.message).partition("noise of ")[2].partition(",")[0] for each in notes
+            ]
             said[document.stem] = (
-                f"mean radiance of the sphere: {means}; noise of the sphere {noises[0]}, of the ball {noises[1]}"
+                f"mean radiance of the sphere: {means}; noise of the sphere {noises[0]}, removed from the ball {noises[1]}"
             )
     NOISE.write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
 
@@ -223,7 +225,7 @@ def page():
         for name, said in json.loads(NOISE.read_text(encoding="utf-8")).items()
     )
     ordered = sorted(sections, key=sections.__getitem__)
-    return HEAD + "\n".join([*ordered, same]) + TRACED.format(traced, SAMPLES)
+    return HEAD + "\n".join([*ordered, same]) + TRACED.format(SAMPLES, traced)
 
 
 if __name__ == "__main__":

@@ -26,6 +26,7 @@ def add_parser(commands: arguments.Commands) -> None:
         "render my.mtlx --output my.png",
         "render my.mtlx --output my.exr --scene back --shape sphere --library stock",
         "render my.mtlx --output my.png --environment sky.exr --element gold",
+        "render my.mtlx --output my.png --geometry teapot.obj",
         "render my.mtlx --output my.png --integrator path --samples 256",
     )
     command.add_argument("file", metavar="FILE", help="a MaterialX document")
@@ -50,8 +51,9 @@ def add_parser(commands: arguments.Commands) -> None:
     )
     command.add_argument(
         "--shape",
+        "--geometry",
         metavar="NAME",
-        help="ball, a shader ball (default in the studio), or sphere (default in other light)",
+        help="ball, a shader ball (default in the studio), sphere (default in other light), or an .obj or .glb file",
     )
     command.add_argument(
         "--size",
@@ -89,7 +91,7 @@ def run(options: argparse.Namespace) -> int:
     from mxeon.io.tone import pbr_neutral
     from mxeon.shaders.library import library_name
 
-    inputs = arguments.inputs(options, [options.file], options.environment)
+    inputs = arguments.inputs(options, [options.file], options.environment, options.shape)
     check_output(options.output, inputs, PICTURES)
     if not os.path.isdir(folder := os.path.dirname(os.path.abspath(options.output))):
         rule = "output must lie in a folder that exists"

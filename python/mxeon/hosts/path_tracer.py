@@ -2,17 +2,19 @@
 """Pictures by paths, on OpenGL: generated text of the profile "path" inside `path_tracer.glsl`."""
 
 import warnings
+from importlib.util import find_spec
 from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
 
+from mxeon.errors import InputError
 from mxeon.hosts import Row, gl, raster
 from mxeon.hosts.base import Array
 from mxeon.hosts.textures import read_latlong
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.methods import UNCHOSEN
-from mxeon.shaders.scene import Scene
+from mxeon.shaders.scene import SHAPES, Scene
 from mxeon.shaders.shader_ball import BELT, OBJECT
 
 SAMPLES, BOUNCES = 64, 8  # default paths per pixel and bounces per path
@@ -44,6 +46,9 @@ class PathTracerHost(gl.GlHost):
     default = UNCHOSEN
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
+        if scene.shape not in SHAPES:
+            known = " or ".join(SHAPES)
+            raise InputError(f"--integrator path: shape must be {known}; got {scene.shape}")
         samples, bounces = scene.paths.samples or SAMPLES, scene.paths.bounces or BOUNCES
         tracer = Path(__file__).with_suffix(".glsl").read_text(encoding="utf-8")
         uniforms: dict[str, object] = {
@@ -67,10 +72,16 @@ class PathTracerHost(gl.GlHost):
         variance = np.maximum(mean[..., 3] - gray**2, 0.0) / max(samples - 1, 1)
         noise = np.sqrt(variance.sum() / max((gray**2).sum(), 1e-30))
         note = f"{shader.element}: noise of {100.0 * noise:.2g} % of the light"
-        if noise > NOISY:
+        image = np.ascontiguousarray(mean[..., :3])
+        if noise > NOISY and scene.paths.samples is None and find_spec("pyoidn"):
+            import pyoidn  # the `render` extra; takes a while to load
+
+            image = pyoidn.denoise(image, hdr=True)
+            note += ", removed by Open Image Denoise; --samples N keeps it"
+        elif noise > NOISY:
             note = f"{shader.element}: still noisy ({100.0 * noise:.2g} %); try --samples {16 * samples}"
         warnings.warn(NoiseNote(note), stacklevel=2)
-        return mean[..., :3]
+        return image
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
         return ()

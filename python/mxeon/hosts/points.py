@@ -20,9 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.hosts.fragment import renamed
+from mxeon.hosts.mesh import mesh_points, mesh_points_at
 from mxeon.io.images import Floats
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.scene import VisiblePoints, sphere, sphere_at, tangents
+from mxeon.shaders.scene import SHAPES, VisiblePoints, sphere, sphere_at, tangents
 from mxeon.shaders.shader_ball import shader_ball, shader_ball_at
 
 MARGIN = 1  # points beyond each edge, for derivatives at the edges
@@ -75,13 +76,17 @@ def pixel_stage(shader: Shader) -> str:
 
 
 def visible(size: int, shape: str, margin: int = 0) -> VisiblePoints:
-    """Visible points of a shape of `mxeon.shaders.scene.SHAPES`."""
-    return shader_ball(size, margin) if shape == "ball" else sphere(size, margin)
+    """Visible points of a shape of `mxeon.shaders.scene.Scene`."""
+    if shape in SHAPES:
+        return shader_ball(size, margin) if shape == "ball" else sphere(size, margin)
+    return mesh_points(shape, size, margin)
 
 
 def visible_at(x: Floats, y: Floats, shape: str) -> VisiblePoints:
     """Visible points of a shape at places of the frame."""
-    return shader_ball_at(x, y) if shape == "ball" else sphere_at(x, y)
+    if shape in SHAPES:
+        return shader_ball_at(x, y) if shape == "ball" else sphere_at(x, y)
+    return mesh_points_at(shape, x, y)
 
 
 def vertices(points: VisiblePoints) -> dict[str, NDArray[np.float32]]:
@@ -90,7 +95,7 @@ def vertices(points: VisiblePoints) -> dict[str, NDArray[np.float32]]:
     attributes = {
         "i_position": points.position.reshape(-1, 3),
         "i_normal": flat,
-        "i_tangent": tangents(flat),
+        "i_tangent": tangents(flat) if points.tangent is None else points.tangent.reshape(-1, 3),
         "i_texcoord_0": points.texcoord.reshape(-1, 2),
     }
     return {name: values.astype("f4") for name, values in attributes.items()}

@@ -3,7 +3,7 @@
 
 A host's picture has one sample per pixel, at its center. Pixels that differ from a neighbor are redrawn with 16.
 The floor is Lambertian paper that bends up into a wall behind the ball. The ball, without its grooves, and the foot
-block the environment's light on it.
+block the environment's light on it, as a mesh does.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.hosts.base import Array, Host
+from mxeon.hosts.mesh import mesh_blocks
 from mxeon.hosts.path_tracer import PathTracerHost
 from mxeon.hosts.points import MARGIN, visible, visible_at
 from mxeon.hosts.raster import FragmentHost
@@ -23,7 +24,7 @@ from mxeon.io.images import Floats
 from mxeon.io.tone import pbr_neutral
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene, VisiblePoints, pixel_centers
-from mxeon.shaders.shader_ball import CENTER, FOOT_HEIGHT, FOOT_RADIUS, OBJECT, RADIUS
+from mxeon.shaders.shader_ball import CENTER, FOOT_HEIGHT, FOOT_RADIUS, GROUND, OBJECT, RADIUS
 
 Mask = NDArray[np.bool_]
 
@@ -36,7 +37,6 @@ DIRECTIONS = 64  # environment directions for each of the 16 samples
 GRID = 96  # rows and columns of computed floor points, interpolated in between
 DRAWN = 512  # light directions for the floor
 PAPER = 0.5  # reflectance of the floor
-GROUND = -0.6 - FOOT_HEIGHT  # height of the floor, under the foot
 EDGE = FOOT_RADIUS + 0.01
 BEND = -1.0, -4.5  # foot-frame z where the paper begins to bend up, and where it is vertical
 
@@ -54,7 +54,7 @@ def still(host: Host, shader: Shader, scene: Scene) -> Array:
             drawn, covered[rows, columns] = samples(draw, scene, rows, columns)
             if not traced:
                 image[rows, columns] = drawn
-    if scene.shape == "ball" and scene.environment is not None:
+    if scene.shape != "sphere" and scene.environment is not None:
         image += (1.0 - covered[..., None]) * floor(scene)
     return image
 
@@ -107,14 +107,14 @@ def floor(scene: Scene) -> Array:
     points = np.hstack([x, y, depth]) @ OBJECT.T
     bend = np.clip((points[:, 2] - BEND[0]) / (BEND[1] - BEND[0]), 0.0, 1.0)
     bend = 0.5 * np.pi * bend**2 * (3.0 - 2.0 * bend)
-    around = np.hypot(points[:, 0], points[:, 2])[
-        :, None
-    ]  # extend the values next to the foot below it
-    points[:, ::2] *= np.maximum(EDGE / np.maximum(around, 1e-9), 1.0)
+    if is_ball := scene.shape == "ball":  # extend the values next to the foot below it
+        around = np.hypot(points[:, 0], points[:, 2])[:, None]
+        points[:, ::2] *= np.maximum(EDGE / np.maximum(around, 1e-9), 1.0)
     normal = np.stack([0.0 * bend, np.cos(bend), np.sin(bend)], axis=-1)
     towards, power = lights(scene)
     cosine = np.maximum(normal @ towards.T, 0.0)
-    radiance = PAPER / np.pi * (cosine * ~blocked(points, towards)) @ power
+    dark = blocked(points, towards) if is_ball else mesh_blocks(scene.shape, points, towards)
+    radiance = PAPER / np.pi * (cosine * ~dark) @ power
     coarse = radiance.reshape(GRID, GRID, 3)
     centers, fine = (np.arange(GRID) + 0.5) / GRID, (np.arange(scene.size) + 0.5) / scene.size
     for axis in (0, 1):

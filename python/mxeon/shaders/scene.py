@@ -17,6 +17,7 @@ from mxeon.errors import InputError, assert_known
 from mxeon.io.images import Floats
 
 SHAPES = ("sphere", "ball")
+MESHES = (".obj", ".glb")
 LARGEST = 8192  # supported by every OpenGL 4 device; such an image takes some gigabytes
 MOST_SAMPLES = 65536  # takes a core one day for a picture of 512 x 512 pixels
 MOST_BOUNCES = 1024  # Cycles' maximum
@@ -94,15 +95,16 @@ class Scene:
     environment: float | Path | None = None
     size: int = 256  # width and height in pixels, in [1, LARGEST]
     paths: Paths = Paths()  # hosts that do not trace paths only accept the default
-    # one of SHAPES: the unit sphere, or the shader ball, which gl and webgl draw
+    # one of SHAPES, the unit sphere or the shader ball, or a mesh's file; gl and webgl draw all
     shape: str = "sphere"
     client: Client = CLIENT  # only gl and webgl support other values
 
     def __post_init__(self) -> None:
         if not 1 <= self.size <= LARGEST:
             raise InputError(f"size must lie in [1, {LARGEST}]; got {self.size}")
-        if self.shape not in SHAPES:
-            raise InputError(f"shape must be one of {', '.join(SHAPES)}; got {self.shape!r}")
+        if self.shape not in SHAPES and not self.shape.lower().endswith(MESHES):
+            names = ", ".join((*SHAPES, f"a file {' or '.join(MESHES)}"))
+            raise InputError(f"shape must be one of {names}; got {self.shape!r}")
 
 
 def _towards(azimuth: float, polar: float) -> tuple[float, float, float]:
@@ -145,10 +147,12 @@ class VisiblePoints:
     normal: Floats  # outward unit vector; outside the mask, the normal of the nearest rim point
     # latitude-longitude coordinates in [0, 1], (0.5, 0.5) facing the viewer, v upwards
     texcoord: Floats
+    tangent: Floats | None = None  # unit vector; None for the one that `tangents` computes
 
     def __post_init__(self) -> None:
         for array in vars(self).values():
-            array.flags.writeable = False  # shared by all callers
+            if array is not None:
+                array.flags.writeable = False  # shared by all callers
 
 
 def pixel_centers(size: int, margin: int = 0) -> tuple[Floats, Floats]:

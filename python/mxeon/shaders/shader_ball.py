@@ -17,6 +17,7 @@ CENTER, RADIUS = np.array([0.0, 0.2, 0.0]), 0.72
 BELT_HEIGHT = 0.13  # half the height of the belt
 GROOVE, FILLET = 0.035, 0.02  # radii of the grooves next to the belt and of rounded edges
 FOOT_HEIGHT, FOOT_RADIUS = 0.1, 0.5
+GROUND = -0.6 - FOOT_HEIGHT  # height of the floor, under the foot
 TILT, ROLL = np.radians(20.0), np.radians(-24.0)  # tilt of the view, roll of the belt
 
 NEAR, FAR = 2.0, -2.0  # z at both ends of a ray
