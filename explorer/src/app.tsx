@@ -16,6 +16,7 @@ import {
 import { model } from "./models/table";
 import { facing_point, type Point, unit_pair, worst_point } from "./probe";
 import type { Stage } from "./stage";
+import { toSide } from "./stage/scenes";
 import type { State } from "./state";
 import { Dropped } from "./ui/dropped";
 import { Inputs } from "./ui/inputs";
@@ -62,7 +63,7 @@ export function App({ data, tell }: AppProps) {
   const measured = useMeasured(stage, pair, state, dragging || rest !== state);
   useErrors(stage, sources, calm, measured, errors);
   const evidence = useEvidence(stage, sources, calm, pair, measured, errors[0]);
-  const differ = rest && stage && state.shape === "sphere" ? on_sphere(stage, worst) : null;
+  const differ = rest && stage && state.shape === "sphere" ? on_sphere(stage, rest, worst) : null;
   const view: ViewProps = { data, sources, state, change };
   // While the picture is dragged its frames have all the time: numbers follow when it rests.
   const still = dragging ? calm : state;
@@ -154,7 +155,7 @@ function useAddress(state: State, setState: (state: State) => void, data: PageDa
   }, []);
 }
 
-/** F shows the other material; D and W choose the comparison. */
+/** F shows the other material; D, S and W choose the comparison. */
 function useKeys(state: State, change: (patch: Partial<State>) => void): void {
   useEffect(() => {
     const press = (event: KeyboardEvent): void => {
@@ -164,6 +165,7 @@ function useKeys(state: State, change: (patch: Partial<State>) => void): void {
       if (event.key === "f") change({ comparison: "flicker", shown: other });
       if (event.key === "d") change({ comparison: "difference" });
       if (event.key === "w") change({ comparison: "wipe" });
+      if (event.key === "s") change({ comparison: "side" });
     };
     addEventListener("keydown", press);
     return () => removeEventListener("keydown", press);
@@ -185,8 +187,8 @@ function useWorst(state: State | null, sources: Sources): Point | null {
 }
 
 /** Where a point of the sphere is in the picture. */
-function on_sphere(stage: Stage, { normal }: Point): [number, number] {
+function on_sphere(stage: Stage, state: State, { normal }: Point): [number, number] {
   const { width, height } = stage.size();
-  const radius = stage.diameter() / 2;
-  return [0.5 + (normal[0] * radius) / width, 0.5 - (normal[1] * radius) / height];
+  const radius = stage.diameter(state) / 2;
+  return [toSide(state, 0.5 + (normal[0] * radius) / width), 0.5 - (normal[1] * radius) / height];
 }

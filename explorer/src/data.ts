@@ -109,6 +109,13 @@ export interface Still {
   readonly picture: string; // data: address of a PNG
 }
 
+/** A map of longitude and latitude as MaterialX's: RGBA, 32-bit floats, row 0 upwards, in base64. */
+export interface Sky {
+  readonly width: number;
+  readonly height: number; // a multiple of 32
+  readonly rgba: string;
+}
+
 export interface PageData {
   readonly version: string; // of mxeon
   readonly materialx: string;
@@ -121,4 +128,8 @@ export interface PageData {
   /** Address of a page on a defect, {} for its name; "" where there is none. */
   readonly pages: string;
   readonly stills: readonly Still[];
+  /** Whether `mxeon explore` serves the page, and so shows files that are dropped on it. */
+  readonly served: boolean;
+  readonly warnings: readonly string[]; // of its documents
+  readonly sky: Sky | null; // the reader's own surroundings
 }

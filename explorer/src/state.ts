@@ -4,9 +4,11 @@
 import type { Triple } from "./data";
 
 export const SHAPES = ["sphere", "plane", "cloth", "ball", "fiber"] as const; // plane: a sphere on it
-export const SURROUNDINGS = ["none", "uniform", "studio", "sky", "window"] as const;
-export const COMPARISONS = ["wipe", "difference", "flicker"] as const;
+export const SURROUNDINGS = ["none", "uniform", "studio", "sky", "window", "own"] as const;
+export const COMPARISONS = ["wipe", "side", "difference", "flicker"] as const;
 export const SAMPLERS = ["exact", "cltc", "cosine"] as const;
+
+export const ZOOMS = [0.25, 8] as const;
 
 export type Shape = (typeof SHAPES)[number];
 export type Surroundings = (typeof SURROUNDINGS)[number];
@@ -29,6 +31,10 @@ export interface State {
   readonly scale: number; // difference that has the full color, in units of the picture's radiance
   readonly shown: SideName; // by flicker
   readonly shape: Shape;
+  /** Where the viewer is, in degrees from a shape's own place: around it, and up. Not for the sphere. */
+  readonly turn: number; // [-180, 180]
+  readonly tilt: number; // [-90, 90]
+  readonly zoom: number; // size of the shape over its own, [0.25, 8]
   /** Direction to the light: degrees around the upright axis from the viewer, positive to the right. */
   readonly azimuth: number; // [-180, 180]
   readonly elevation: number; // degrees above the horizon, [-90, 90]
@@ -58,6 +64,9 @@ export const INITIAL: State = {
   scale: 0.1,
   shown: "left",
   shape: "ball",
+  turn: 0,
+  tilt: 0,
+  zoom: 1,
   azimuth: 155, // from behind and above: where implementations part
   elevation: 35,
   light: 1.5,

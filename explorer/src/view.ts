@@ -181,8 +181,9 @@ export function first_view(data: PageData): State {
   const sources = sources_of(data);
   const documents = data.sources.filter((source) => source.id.startsWith("document/"));
   const [first] = documents;
-  if (!first) return INITIAL;
+  const initial: State = { ...INITIAL, surroundings: data.sky ? "own" : INITIAL.surroundings };
+  if (!first) return initial;
   const twin = documents.find((each) => each !== first && stem_of(each.id) === stem_of(first.id));
-  const left = { ...INITIAL, ...with_source(INITIAL, sources, "left", first.id) };
+  const left = { ...initial, ...with_source(initial, sources, "left", first.id) };
   return twin ? { ...left, right: { ...left.left, source: twin.id } } : left;
 }

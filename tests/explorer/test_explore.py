@@ -2,7 +2,14 @@
 """`mxeon explore`: the page that it writes, and what it refuses."""
 
 import json
+import os
 import re
+import signal
+import subprocess
+import sys
+from base64 import b64encode
+from urllib.error import HTTPError
+from urllib.request import Request, urlopen
 
 import MaterialX as mx
 import numpy as np
@@ -20,17 +27,19 @@ from mxeon.errors import PASSED as PASSED_STATUS
 from mxeon.explorer import PARAGRAPH, TEXTS, documents, page, page_data
 from mxeon.explorer.documents import document_sources
 from mxeon.hosts.textures import read_texture
-from mxeon.io.images import write_image
+from mxeon.io.images import write_image, write_picture
 from mxeon.models.table import diffuse_model
 from mxeon.report import html, to_json, to_junit
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from mxeon.shaders.scene import sphere
 from tests.explorer.browser import judged, opened, until
+from tests.support.availability import package
 from tests.support.documents import textured
 from tests.support.results import Diagnosis, Result, kept
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 
+Error = package("playwright.sync_api").Error
 LARGEST = 2 * 2**20  # bytes of the page without documents
 CLAY = str(examples_folder() / "clay.mtlx")
 NASTY = "</script><script>globalThis.hit = 1</script><!--"
@@ -167,7 +176,7 @@ def test_a_document_is_shown_with_its_own_values_and_inputs(browser, tmp_path):
             "mxeon.stage.read('left').reduce((sum, value, k) => sum + (k % 4 < 3 ? value : 0), 0)"
         )
         before = page.evaluate(sums)
-        weight = page.get_by_label("terracotta lobe: weight, number")
+        weight = page.get_by_label("weight, number")
         assert (weight.get_attribute("min"), weight.get_attribute("max")) == ("0", "1")
         weight.fill("0.25")
         weight.blur()
@@ -252,3 +261,65 @@ def test_images_are_read_once_and_smaller_the_more_a_page_has_of_them(tmp_path, 
     )
     [source, _] = document_sources(str(tmp_path / "a.mtlx"))
     assert {port.image.width for port in source.inputs if port.image} == {8, 32} and len(reads) == 4
+
+
+# Drops files of the page's own making: names and base64.
+DROP = """files => {
+    const data = new DataTransfer();
+    for (const [name, text] of files) {
+        const bytes = Uint8Array.from(atob(text), each => each.charCodeAt(0));
+        data.items.add(new File([bytes], name));
+    }
+    dispatchEvent(new DragEvent("drop", {dataTransfer: data, cancelable: true}));
+}"""
+
+
+def drop(page, *files):
+    page.evaluate(DROP, [[each.name, b64encode(each.read_bytes()).decode()] for each in files])
+
+
+def shown(page, expression):
+    """Wait for a page that loads itself again."""
+    page.wait_for_load_state()
+    for _ in range(600):
+        try:
+            return until(page, expression)
+        except Error:  # of a page that is left meanwhile
+            page.wait_for_timeout(100)
+    raise AssertionError(expression)
+
+
+@pytest.fixture
+def server():
+    """`mxeon explore`, and the address that it prints."""
+    command = [sys.executable, "-m", "mxeon", "explore", "--workers", "0"]
+    env = os.environ | {"BROWSER": "true"}  # opens none
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=env) as process:
+        yield process.stdout.readline().split()[0]
+        process.send_signal(signal.SIGINT)
+        assert process.wait() == PASSED_STATUS
+
+
+def test_dropped_files_are_shown_by_the_command(browser, server, tmp_path):
+    write_image(tmp_path / "red.png", np.full((8, 8, 3), (200, 10, 10), np.uint8), {})
+    (tmp_path / "tiles.mtlx").write_text(textured(["red.png"]))
+    (tmp_path / "bad.mtlx").write_text("<materialx")
+    write_picture(str(tmp_path / "sky.exr"), np.ones((8, 16, 3), np.float32), {})
+    for path, host in (("files/../a.mtlx", None), ("other/a.mtlx", None), ("files/a", "evil.org")):
+        headers = {"Host": host} if host else {}
+        with pytest.raises(HTTPError, match="403"):
+            urlopen(Request(server + path, b"", headers, method="PUT"))
+    allowed = ["Failed to load resource"]
+    with opened(browser, server, allowed, drawn=False) as page:
+        drop(page, tmp_path / "tiles.mtlx", tmp_path / "red.png")
+        shown(page, "globalThis.mxeon?.state().left.source.startsWith('document/')")
+        [image] = page.evaluate(
+            """mxeon.data.sources.find(each => each.id.startsWith('document/')).inputs.flatMap(port => port.image ?? [])"""
+        )
+        assert image["width"] == 8
+        drop(page, tmp_path / "bad.mtlx")
+        shown(page, "document.querySelector('.dropped')?.innerText.startsWith('bad.mtlx: must')")
+        drop(page, tmp_path / "sky.exr")
+        shown(page, "globalThis.mxeon?.state().surroundings === 'own'")
+        assert page.get_by_label("yours").is_checked()
+        assert page.evaluate("mxeon.state().left.source.startsWith('document/')")

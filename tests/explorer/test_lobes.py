@@ -94,14 +94,16 @@ DROP = """name => {
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("wood.mtlx", "mxeon explore wood.mtlx --output page.html"),
-        ("my wood's.mtlx", "mxeon explore 'my wood'\\''s.mtlx' --output page.html"),
-        ("--all.mtlx", "mxeon explore ./--all.mtlx --output page.html"),
-        ("wood.png", "wood.png is no MaterialX document"),
+        ("wood.mtlx", "To see wood.mtlx, run mxeon explore wood.mtlx Copy"),
+        ("my wood's.mtlx", "mxeon explore 'my wood'\\''s.mtlx'"),
+        ("--all.mtlx", "mxeon explore ./--all.mtlx"),
+        ("sky.hdr", "mxeon explore --environment sky.hdr"),
+        ("wood.png", "wood.png: drop a .mtlx document with its images"),
     ],
 )
 def test_a_file_that_is_dropped_gets_its_command(page, name, said):
     page.evaluate(DROP, name)
+    until(page, "document.querySelector('.dropped') !== null")
     assert said in page.locator(".dropped").inner_text()
     page.get_by_role("button", name="Close").click()
     assert page.locator(".dropped").count() == 0

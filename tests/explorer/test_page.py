@@ -11,7 +11,7 @@ import pytest
 
 import mxeon
 from mxeon.models import eon_brdf
-from tests.explorer.browser import judged, show, shows, state, until
+from tests.explorer.browser import DRAWN, judged, show, shows, state, until
 
 # A number that depends on every pixel.
 PIXELS = "mxeon.stage.read().reduce((sum, value, k) => (31 * sum + value * (1 + k)) % 65521, 0)"
@@ -156,11 +156,59 @@ def drag(page, start, end):
 
 
 def test_the_light_is_dragged_and_moved_by_keys(page):
+    first = state(page)
+    choose(page, "Shape", "sphere")
     drag(page, (0.75, 0.7), (0.6, 0.4))
     view = state(page)
-    assert (view["azimuth"], view["elevation"]) != (180, 50) and view["probe"] is None
+    assert (view["azimuth"], view["elevation"]) != (first["azimuth"], first["elevation"])
+    assert view["probe"] is None and (view["turn"], view["tilt"]) == (0, 0)
     page.get_by_role("button", name="Light,").press("ArrowUp")
     shows(page, elevation=min(view["elevation"] + 5, 90))
+
+
+def test_the_viewer_is_dragged_around_and_scrolls_closer(page):
+    first = state(page)
+    with redrawn(page):
+        drag(page, (0.75, 0.7), (0.65, 0.7))
+    view = state(page)
+    assert view["turn"] > 10 and view["tilt"] == 0 and view["azimuth"] == first["azimuth"]
+    with redrawn(page):
+        page.mouse.wheel(0, -100)
+    until(page, "mxeon.state().zoom > 1")
+    sun = page.get_by_role("button", name="Light,").bounding_box()
+    page.mouse.move(sun["x"] + sun["width"] / 2, sun["y"] + sun["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(sun["x"] - 40, sun["y"] + 40)
+    page.mouse.up()
+    after = state(page)
+    assert after["turn"] == view["turn"] and after["azimuth"] != view["azimuth"]
+
+
+def pixels(page, **view):
+    """Radiance of the left side in a view."""
+    show(page, **view)
+    shows(page, **view)
+    until(page, DRAWN)
+    return np.array(page.evaluate("[...mxeon.stage.read('left')]"))
+
+
+def test_a_turned_viewer_sees_a_turned_light_alike(page):
+    even = {"surroundings": "uniform", "elevation": 50}
+    ahead = pixels(page, shape="ball", azimuth=40, turn=0, **even)
+    assert not np.allclose(pixels(page, azimuth=130, turn=90, **even), ahead)  # the cut turns away
+    ahead = pixels(page, shape="plane", azimuth=40, turn=0, **even)  # round, and so is the floor
+    aside = pixels(page, azimuth=130, turn=90, **even)
+    # Roundings decide at a rim, or at the edge of the shadow.
+    assert (np.abs(aside - ahead) > 1e-3).mean() < 5e-3
+
+
+def test_side_by_side_shows_the_middles_of_both_pictures(page):
+    show(page, comparison="side")
+    until(page, DRAWN)
+    picks = page.evaluate("[0.3, 0.8].map(x => mxeon.stage.pick(x, 0.5, mxeon.state())?.normal)")
+    assert picks[0] == picks[1] and picks[0] is not None
+    for name in ("left", "right"):
+        assert page.locator(f".picture .label.{name}").is_visible()
 
 
 def test_a_click_probes_a_point(page):

@@ -23,8 +23,8 @@ const FAR = 1e8;
 const FINE_SAMPLES = 1024; // of white surroundings, by glossy lobes whose values are checked
 
 /** Diameter of the sphere in pixels: even, so that its pixels are those of the gl host's picture. */
-export function diameterOf(size: Size): number {
-  return 2 * Math.round(Math.min(...size) / 2 / camera("sphere").span);
+export function diameterOf(size: Size, state: State): number {
+  return 2 * Math.round(Math.min(...size) / 2 / camera({ ...state, shape: "sphere" }).span);
 }
 
 /** Largest difference of values, and its row; of large ones it is relative, as in checks of values. */
@@ -84,7 +84,7 @@ export class Engine {
     private readonly data: PageData,
   ) {
     this.texts = new Texts(data);
-    this.textures = new Textures(gl);
+    this.textures = new Textures(gl, data.sky);
     this.sources = new Map(data.sources.map((source) => [source.id, source]));
     this.programs = new gpu.Programs(gl);
     const { float } = gpu.formats(gl);
@@ -251,7 +251,7 @@ export class Engine {
 
   /** Uniforms of all passes of a frame. */
   private uniformsOf(state: State, size: Size, index: number): gpu.Uniforms {
-    const view = camera(state.shape);
+    const view = camera(state);
     const light = lightVector(state);
     const { geometry, lit } = this.targets;
     const { white } = this.textures;
@@ -259,7 +259,11 @@ export class Engine {
       stage_camera: view.axes.flat(),
       stage_eye: view.eye,
       stage_eye_view: toView(view, view.eye),
-      stage_frame: [...size, diameterOf(size), (view.distance * Math.min(...size)) / 2 / view.span],
+      stage_frame: [
+        ...size,
+        diameterOf(size, state),
+        (view.distance * Math.min(...size)) / 2 / view.span,
+      ],
       stage_jitter: jitter(index),
       stage_light: light,
       stage_light_view: toView(view, light),
@@ -282,7 +286,7 @@ export class Engine {
   private prepare(state: State, size: Size, index: number): void {
     this.uniforms = this.uniformsOf(state, size, index);
     const { geometry, lit } = this.targets;
-    const seen = JSON.stringify([state.shape, size, index]);
+    const seen = JSON.stringify([state.shape, camera(state), size, index]);
     this.pass("geometry", seen, this.texts.geometry(state.shape), geometry, size, {});
     if (isUnshadowed(state.shape)) return;
     const light = JSON.stringify([seen, lightVector(state)]);
@@ -316,7 +320,7 @@ export class Engine {
     const inputs = state.inputs[source.id];
     const seen = [source.id, state[side].flag, color, roughness, light, surroundings, inputs];
     const place = [this.drawn.get("geometry"), lightVector(state)];
-    const view = camera(state.shape);
+    const view = camera(state);
     const eye = toView(view, view.eye);
     const { text, uniforms } = this.look(
       state,
@@ -331,7 +335,7 @@ export class Engine {
   /** Program and uniforms of a side's material, and its table of albedos; the light in the viewer's frame. */
   private look(state: State, side: SideName, source: Source, light: Vec3, eye: Vec3) {
     if (source.kind === "shader") {
-      const view = camera(state.shape);
+      const view = camera(state);
       const uniforms = shaderUniforms(this.textures, source, state[side], state, view, light, eye);
       return { text: this.texts.generated(source), uniforms };
     }
@@ -352,7 +356,7 @@ export class Engine {
       this.traced.draw(side, null, size, index, {});
       return;
     }
-    const view = camera(state.shape);
+    const view = camera(state);
     const [light, eye] = [toView(view, lightVector(state)), toView(view, view.eye)];
     const model = modelOf(source, state[side].flag);
     const program = this.programs.get(pathText(this.texts, source, state[side], state.shape));
@@ -373,6 +377,8 @@ export class Engine {
     const side = (name: SideName) =>
       layer((state.paths && this.traced?.target(name, passes)) || this.targets[name]);
     const [width] = size;
+    const flicks = state.comparison === "flicker";
+    const side_by_side = state.comparison === "side";
     const flicker = state.shown === "left" ? 2 * width : -width;
     gpu.drawPass(this.gl, program, now, size, {
       ...this.uniforms,
@@ -381,7 +387,8 @@ export class Engine {
       stage_before: layer(before),
       stage_share: 1 / (index + 1),
       stage_gain: 2 ** state.exposure,
-      stage_edge: state.comparison === "flicker" ? flicker : state.wipe * width,
+      stage_edge: flicks ? flicker : (side_by_side ? 0.5 : state.wipe) * width,
+      stage_shift: side_by_side ? Math.round(width / 4) : 0,
       stage_scale: state.comparison === "difference" ? state.scale : 0,
       stage_colors: DIFFERENCE_COLORS.flat().map(linear),
       stage_traced: state.paths,

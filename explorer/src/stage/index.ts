@@ -7,7 +7,17 @@ import type { Errors } from "../verdict";
 import { diameterOf, Engine, SIDES } from "./engine";
 import { Pace } from "./pace";
 import type { Size } from "./paths";
-import { camera, lightAt, lightMark, lightVector, localPair, toView, unit } from "./scenes";
+import {
+  camera,
+  fromSide,
+  lightAt,
+  lightMark,
+  lightVector,
+  localPair,
+  toSide,
+  toView,
+  unit,
+} from "./scenes";
 
 export interface Pick {
   readonly wo: Triple; // unit, in the local frame, normal +z, in the x-z plane
@@ -52,7 +62,7 @@ export interface Stage {
   read(side?: SideName): Float32Array;
   size(): { width: number; height: number };
   /** Of the sphere, in pixels of the canvas. */
-  diameter(): number;
+  diameter(state: State): number;
   /** Whether the picture of a state is final, so that nothing is drawn until something changes. */
   isSettled(state: State): boolean;
   /** Whether a picture of a state was drawn, final or not. */
@@ -128,12 +138,12 @@ class CanvasStage implements Stage {
 
   pick(x: number, y: number, state: State): Pick | null {
     const size = this.fit();
-    const column = Math.min(Math.floor(x * size[0]), size[0] - 1);
+    const column = Math.min(Math.floor(fromSide(state, x) * size[0]), size[0] - 1);
     const row = Math.min(Math.floor((1 - y) * size[1]), size[1] - 1);
     const point = this.engine?.point(state, size, column, row);
     if (!point || point[0][3] !== 1) return null;
     const [normal, position] = [unit(triple(point[0])), triple(point[1])];
-    const view = camera(state.shape);
+    const view = camera(state);
     const eye = toView(view, view.eye);
     const viewer = unit([eye[0] - position[0], eye[1] - position[1], eye[2] - position[2]]);
     const [wo, wi] = localPair(normal, viewer, toView(view, lightVector(state)));
@@ -158,12 +168,13 @@ class CanvasStage implements Stage {
 
   toLight(x: number, y: number, state: State): { azimuth: number; elevation: number } {
     const [width, height] = this.fit();
-    return lightAt(state.shape, x, y, width / height);
+    return lightAt(state, fromSide(state, x), y, width / height);
   }
 
   fromLight(state: State): [number, number] {
     const [width, height] = this.fit();
-    return lightMark(state, width / height);
+    const [x, y] = lightMark(state, width / height);
+    return [toSide(state, x), y];
   }
 
   read(side?: SideName): Float32Array {
@@ -175,8 +186,10 @@ class CanvasStage implements Stage {
     if (side) return pixels(side);
     if (state.comparison === "flicker") return pixels(state.shown);
     const [left, right] = [pixels("left"), pixels("right")];
-    const shown = (k: number) => ((k >> 2) % size[0]) + 0.5 < state.wipe * size[0];
-    if (state.comparison === "wipe") return left.map((v, k) => (shown(k) ? v : (right[k] ?? 0)));
+    const edge = state.comparison === "side" ? 0.5 : state.wipe;
+    const shown = (k: number) => ((k >> 2) % size[0]) + 0.5 < edge * size[0];
+    if (state.comparison !== "difference")
+      return left.map((v, k) => (shown(k) ? v : (right[k] ?? 0)));
     return left.map((v, k) => (k % 4 === 3 ? v : v - (right[k] ?? 0)));
   }
 
@@ -185,8 +198,8 @@ class CanvasStage implements Stage {
     return { width, height };
   }
 
-  diameter(): number {
-    return diameterOf(this.fit());
+  diameter(state: State): number {
+    return diameterOf(this.fit(), state);
   }
 
   isSettled(state: State): boolean {

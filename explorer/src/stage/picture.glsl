@@ -15,6 +15,7 @@ uniform vec3 stage_light_view;
 uniform float stage_intensity;
 uniform float stage_share; // Of this frame in the average.
 uniform float stage_gain; // Of the exposure.
+uniform float stage_shift; // Pixels by which each side is moved, side by side; otherwise 0.
 uniform float stage_edge; // Of the wipe, in pixels from the left; what is on its left is of `left`.
 uniform float stage_scale; // Difference that has the last color; 0 for a picture.
 uniform vec3 stage_colors[9]; // Of differences, from -scale to +scale, linear.
@@ -24,9 +25,8 @@ uniform bool stage_backdrop; // The surroundings are seen.
 out vec4 stage_picture;
 
 // The gray floor, Lambertian.
-vec3 stage_floor(vec3 normal, float ambient)
+vec3 stage_floor(vec3 normal, float ambient, float lit)
 {
-    float lit = texture(stage_lit, gl_FragCoord.xy / stage_frame.xy).x;
     vec3 light = vec3(stage_intensity * lit * max(dot(normal, stage_light_view), 0.0));
     vec3 incoming = texture(stage_irradiance, stage_latlong(stage_camera * normal)).xyz;
     return STAGE_FLOOR_RHO * (light + ambient * incoming);
@@ -43,15 +43,12 @@ vec3 stage_difference(vec3 difference)
     return mix(stage_colors[low], stage_colors[low + 1], at - float(low));
 }
 
-vec4 stage_side(ivec2 at)
-{
-    return gl_FragCoord.x + stage_jitter.x < stage_edge ? texelFetch(stage_left, at, 0)
-                                                        : texelFetch(stage_right, at, 0);
-}
 
 void main()
 {
-    ivec2 at = ivec2(gl_FragCoord.xy);
+    bool left = gl_FragCoord.x + stage_jitter.x < stage_edge;
+    float shift = left ? stage_shift : -stage_shift;
+    ivec2 at = ivec2(gl_FragCoord.xy + vec2(shift, 0.0));
     vec4 surface = texelFetch(stage_surface, at, 0);
     float opacity = texelFetch(stage_detail, at, 0).z;
     bool floor_seen = surface.w == 2.0;
@@ -61,7 +58,7 @@ void main()
             color = stage_difference(texelFetch(stage_left, at, 0).xyz - texelFetch(stage_right, at, 0).xyz);
         opacity = floor_seen ? 0.0 : opacity;
     } else {
-        vec4 side = stage_side(at);
+        vec4 side = left ? texelFetch(stage_left, at, 0) : texelFetch(stage_right, at, 0);
         // Of the paths of a pixel on the rim, some meet nothing.
         if (stage_traced) {
             color = side.xyz / max(side.w, 1.0e-6);
@@ -69,15 +66,15 @@ void main()
         } else if (surface.w == 1.0)
             color = side.xyz;
         else if (floor_seen)
-            color = stage_floor(surface.xyz, texelFetch(stage_place, at, 0).w);
+            color = stage_floor(surface.xyz, texelFetch(stage_place, at, 0).w, texelFetch(stage_lit, at, 0).x);
         color = clamp(stage_gain * color, 0.0, 1.0);
         if (stage_backdrop) {
-            vec3 ray = stage_camera * normalize(vec3(stage_from_center() / min(stage_frame.x, stage_frame.y), -1.6));
+            vec3 ray = stage_camera * normalize(vec3((stage_from_center() + vec2(2.0 * shift, 0.0)) / min(stage_frame.x, stage_frame.y), -1.6));
             vec3 behind = stage_gain * textureLod(stage_environment, stage_latlong(ray), 1.0).xyz;
             color = mix(clamp(behind, 0.0, 1.0), color, opacity);
             opacity = 1.0;
         }
     }
     vec4 now = vec4(opacity * color, opacity);
-    stage_picture = stage_share < 1.0 ? mix(texelFetch(stage_before, at, 0), now, stage_share) : now;
+    stage_picture = stage_share < 1.0 ? mix(texelFetch(stage_before, ivec2(gl_FragCoord.xy), 0), now, stage_share) : now;
 }

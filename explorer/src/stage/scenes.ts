@@ -7,6 +7,8 @@
 import type { Triple, Vec3 } from "../data";
 import type { Shape, State } from "../state";
 
+type Viewed = Pick<State, "shape" | "turn" | "tilt" | "zoom" | "comparison">;
+
 export interface Camera {
   readonly axes: readonly [Vec3, Vec3, Vec3]; // right, up and back, in the world
   readonly eye: Vec3; // in the world
@@ -21,6 +23,7 @@ interface View {
   readonly span: number;
 }
 
+const SIDE_SPAN = 1.5; // of half the width of a picture that is 4/3 as wide as high
 const FAR = 1e8; // makes normalize(eye - position) the z axis, in float32
 
 const VIEWS: Record<Shape, View> = {
@@ -52,12 +55,17 @@ export function isUnshadowed(shape: Shape): boolean {
   return shape === "sphere" || shape === "fiber";
 }
 
-export function camera(shape: Shape): Camera {
+/** The viewer of a state. Side by side, shapes are small enough for half of the width. */
+export function camera({ shape, turn, tilt, zoom, comparison }: Viewed): Camera {
   const { pitch, distance, target, span } = VIEWS[shape];
-  const [sine, cosine] = [Math.sin((pitch * Math.PI) / 180), Math.cos((pitch * Math.PI) / 180)];
-  const back: Vec3 = [0, sine, cosine];
-  const eye: Vec3 = [0, target + distance * sine, distance * cosine];
-  return { axes: [[1, 0, 0], [0, cosine, -sine], back], eye, distance, span };
+  const part = span * (comparison === "side" ? SIDE_SPAN : 1);
+  if (shape === "sphere") [turn, tilt, zoom] = [0, 0, 1]; // its pixels are those of the gl host
+  const [up, around] = [((pitch + tilt) * Math.PI) / 180, (turn * Math.PI) / 180];
+  const [sine, cosine, S, C] = [Math.sin(up), Math.cos(up), Math.sin(around), Math.cos(around)];
+  const back: Vec3 = [S * cosine, sine, C * cosine];
+  const eye: Vec3 = [distance * back[0], target + distance * back[1], distance * back[2]];
+  const axes = [[C, 0, -S], [-S * sine, cosine, -C * sine], back] as const;
+  return { axes, eye, distance, span: part / zoom };
 }
 
 /** A direction of the world in the viewer's frame. */
@@ -72,6 +80,16 @@ export function toWorld({ axes }: Camera, view: Vec3): Triple {
   return [along(0), along(1), along(2)];
 }
 
+/** Place in a side's own picture of a place in the frame, which has the middles of both side by side. */
+export function fromSide({ comparison }: Viewed, x: number): number {
+  return comparison === "side" ? x + (x < 0.5 ? 0.25 : -0.25) : x;
+}
+
+/** Place in the frame, on its left, of a place in a side's own picture. */
+export function toSide({ comparison }: Viewed, x: number): number {
+  return comparison === "side" ? x - 0.25 : x;
+}
+
 /** Unit vector towards the light, in the world. */
 export function lightVector({ azimuth, elevation }: Pick<State, "azimuth" | "elevation">): Triple {
   const [around, up] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
@@ -82,8 +100,8 @@ export function lightVector({ azimuth, elevation }: Pick<State, "azimuth" | "ele
  * The light that a point of the picture stands for, [0, 1]^2 from the left top: in the middle the
  * light comes from the viewer, at the subject's rim from the side, twice as far out from behind.
  */
-export function lightAt(shape: Shape, x: number, y: number, aspect: number) {
-  const view = camera(shape);
+export function lightAt(state: State, x: number, y: number, aspect: number) {
+  const view = camera(state);
   const [right, up] = [(2 * x - 1) * Math.max(aspect, 1), (1 - 2 * y) * Math.max(1 / aspect, 1)];
   const distance = Math.hypot(right, up);
   const polar = (Math.min(distance * view.span, 2) * Math.PI) / 2;
@@ -102,7 +120,7 @@ function tenth(degrees: number): number {
 
 /** The point of the picture that stands for the light; inverse of `lightAt`. */
 export function lightMark(state: State, aspect: number): [number, number] {
-  const view = camera(state.shape);
+  const view = camera(state);
   const [x, y, z] = toView(view, lightVector(state));
   const side = Math.hypot(x, y);
   const distance = (Math.atan2(side, z) * 2) / Math.PI / view.span;

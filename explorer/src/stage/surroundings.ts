@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Radiance that comes from everywhere: formulas, as maps of longitude and latitude like MaterialX's.
 
-import type { Triple, Vec3 } from "../data";
+import type { Sky, Triple, Vec3 } from "../data";
 import type { Surroundings } from "../state";
 import { dot, unit } from "./scenes";
 
@@ -86,7 +86,12 @@ function window(w: Vec3): Triple {
 const RADIANCE: Record<"studio" | "sky" | "window", (w: Vec3) => Triple> = { studio, sky, window };
 
 /** The radiance map of surroundings; one pixel where it is the same everywhere. */
-export function radianceMap(name: Surroundings): SkyMap {
+export function radianceMap(name: Surroundings, own: Sky | null): SkyMap {
+  if (name === "own") {
+    if (!own) return radianceMap("studio", null); // in a link from a page that has its own
+    const bytes = Uint8Array.from(atob(own.rgba), (each) => each.charCodeAt(0));
+    return { ...own, pixels: new Float32Array(bytes.buffer) };
+  }
   if (name === "none" || name === "uniform") {
     const radiance = name === "uniform" ? 1 : 0;
     return { width: 1, height: 1, pixels: new Float32Array([radiance, radiance, radiance, 1]) };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures of surroundings and of documents' images, made when they are first asked for.
 
-import type { Texels } from "../data";
+import type { Sky, Texels } from "../data";
 import type { Surroundings } from "../state";
 import * as gpu from "./gpu";
 import { irradianceMap, radianceMap } from "./surroundings";
@@ -12,7 +12,10 @@ export class Textures {
   private readonly images = new Map<Texels, WebGLTexture>();
   private readonly format: ReturnType<typeof gpu.formats>;
 
-  constructor(private readonly gl: WebGL2RenderingContext) {
+  constructor(
+    private readonly gl: WebGL2RenderingContext,
+    private readonly sky: Sky | null,
+  ) {
     this.format = gpu.formats(gl);
     this.white = gpu.makeTexture(gl, this.format.bytes, 1, 1, new Uint8Array([255, 255, 255, 255]));
   }
@@ -22,7 +25,7 @@ export class Textures {
     const known = this.maps.get(name + kind);
     if (known) return known;
     const { gl, format } = this;
-    const radiance = radianceMap(name);
+    const radiance = radianceMap(name, this.sky);
     const { width, height, pixels } = kind === "radiance" ? radiance : irradianceMap(radiance);
     const layout = gl.getExtension("OES_texture_float_linear") ? format.float : format.half;
     const wrap = [gl.REPEAT, gl.CLAMP_TO_EDGE] as const;

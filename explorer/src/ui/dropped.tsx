@@ -1,27 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of a file that is dropped on the page: it is shown if the page has it, and otherwise
-// the command that makes a page of it is said. A shader generator does not run here.
+// Files that are dropped on the page. `mxeon explore` shows them where it serves the page: it generates
+// their shaders and judges them, which no page can. Any other page gives the command.
 
 import { useEffect, useState } from "preact/hooks";
 import { copy } from "../copies";
-import { with_material, stem_of } from "../view";
+import { stem_of, with_material } from "../view";
 import type { ViewProps } from "./sides";
 
+const DOCUMENT = /\.mtlx$/i;
+const LIGHT = /\.(hdr|exr)$/i;
+
 export function Dropped({ data, sources, state, change }: ViewProps) {
-  const [name, setName] = useState("");
-  const [said, say] = useState("");
+  const [said, say] = useState(data.warnings.join(" "));
+  const [command, setCommand] = useState("");
+  const [copied, setCopied] = useState("");
   useEffect(() => {
     const over = (event: DragEvent): void => event.preventDefault(); // or the browser opens the file
     const drop = (event: DragEvent): void => {
       event.preventDefault();
-      const file = event.dataTransfer?.files[0];
-      if (!file) return;
+      void files_of(event.dataTransfer).then(shown);
+    };
+    const shown = async (files: ReadonlyMap<string, File>): Promise<void> => {
+      const names = [...files.keys()];
+      const first =
+        names.find((name) => DOCUMENT.test(name)) ?? names.find((name) => LIGHT.test(name));
+      if (names.length === 0) return;
+      setCommand("");
+      setCopied("");
+      if (!first)
+        return say(`${names[0]}: drop a .mtlx document with its images, or a .hdr or .exr map.`);
+      if (data.served) {
+        say(`${first}: making its shaders…`);
+        return say(await sent(files, DOCUMENT.test(first)));
+      }
       const own = data.sources.find(
-        ({ id, group }) => id.startsWith("document/") && group === file.name,
+        ({ id, group }) => id.startsWith("document/") && group === first,
       );
+      say(own ? "" : `To see ${first}, run`);
       if (own) change(with_material(state, sources, stem_of(own.id)));
-      setName(own ? "" : file.name);
-      say("");
+      else setCommand(command_for(first));
     };
     addEventListener("dragover", over);
     addEventListener("drop", drop);
@@ -30,35 +47,77 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
       removeEventListener("drop", drop);
     };
   }, [state]);
-  if (!name) return null;
-  const command = command_for(name);
+  if (!said) return null;
   return (
     <p class="dropped" role="status">
-      {command ? (
+      {said}{" "}
+      {command && (
         <>
-          A page of {name} is made by <code>{command}</code>{" "}
+          <code>{command}</code>{" "}
           <button
             type="button"
-            onClick={() => void copy(command).then((done) => say(done ? "Copied" : "Not copied"))}
+            onClick={() =>
+              void copy(command).then((done) => setCopied(done ? "Copied" : "Not copied"))
+            }
           >
             Copy
           </button>{" "}
-          <span class="said">{said}</span>
+          <span class="said">{copied}</span>
         </>
-      ) : (
-        `${name} is no MaterialX document: its name does not end in .mtlx.`
       )}{" "}
-      <button type="button" aria-label="Close" onClick={() => setName("")}>
+      <button type="button" aria-label="Close" onClick={() => say("")}>
         ×
       </button>
     </p>
   );
 }
 
-/** The command that makes a page of a document; "" for another file. */
+/** Dropped files by path; those of folders too, because documents name images by paths. */
+async function files_of(dropped: DataTransfer | null): Promise<Map<string, File>> {
+  const files = new Map<string, File>();
+  const add = async (entry: FileSystemEntry): Promise<void> => {
+    if (entry.isFile) {
+      const file = await new Promise<File>((...ends) =>
+        (entry as FileSystemFileEntry).file(...ends),
+      );
+      files.set(entry.fullPath.slice(1), file);
+      return;
+    }
+    const reader = (entry as FileSystemDirectoryEntry).createReader();
+    const read = () => new Promise<FileSystemEntry[]>((...ends) => reader.readEntries(...ends));
+    for (let some = await read(); some.length > 0; some = await read()) {
+      for (const each of some) await add(each);
+    }
+  };
+  // All at once: the browser forgets the items when this function first waits.
+  const items = [...(dropped?.items ?? [])].map(
+    (item) => [item.webkitGetAsEntry(), item.getAsFile()] as const,
+  );
+  for (const [entry, file] of items) {
+    if (entry) await add(entry);
+    else if (file) files.set(file.name, file);
+  }
+  return files;
+}
+
+/** Send files, documents last, and load the page that shows them; or what is wrong with one. */
+async function sent(files: ReadonlyMap<string, File>, documents: boolean): Promise<string> {
+  const last = ([name]: [string, File]): number => Number(DOCUMENT.test(name));
+  for (const [name, file] of [...files].sort((a, b) => last(a) - last(b))) {
+    const kind = !documents && LIGHT.test(name) ? "light" : "files";
+    const path = `/${kind}/${name.split("/").map(encodeURIComponent).join("/")}`;
+    const reply = await fetch(path, { method: "PUT", body: file }).catch(() => null);
+    if (!reply) return "mxeon explore has ended: start it again.";
+    if (!reply.ok) return reply.text();
+  }
+  history.replaceState(null, "", location.pathname); // the address was that of another material
+  location.reload();
+  return "";
+}
+
+/** The command that shows a document, or a map of the surroundings. */
 function command_for(name: string): string {
-  if (!name.toLowerCase().endsWith(".mtlx")) return "";
   const path = name.startsWith("-") ? `./${name}` : name; // no option
   const file = /^[\w./-]+$/.test(path) ? path : `'${path.replaceAll("'", `'\\''`)}'`;
-  return `mxeon explore ${file} --output page.html`;
+  return `mxeon explore ${DOCUMENT.test(name) ? "" : "--environment "}${file}`;
 }

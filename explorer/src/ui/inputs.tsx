@@ -46,7 +46,7 @@ function Group({ source, data, state, change }: ViewProps & { readonly source: S
         <Field
           key={port.name}
           port={port}
-          alone={source.id.startsWith("lobe/")}
+          alone={ports.every((each) => each === port || each.label !== port.label)}
           value={values.get(port.name)!}
           onChange={(value) => set(port, value)}
         />
@@ -57,7 +57,7 @@ function Group({ source, data, state, change }: ViewProps & { readonly source: S
 
 interface FieldProps {
   readonly port: Port;
-  readonly alone: boolean; // whether one node has all inputs, so that its name says nothing
+  readonly alone: boolean; // whether no other input has its label, so that its node needs no name
   readonly value: Value;
   readonly onChange: (value: Value) => void;
 }

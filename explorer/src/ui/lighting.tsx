@@ -19,9 +19,10 @@ const SURROUNDINGS_TITLES: Readonly<Record<Surroundings, string>> = {
   studio: "studio",
   sky: "sky",
   window: "window",
+  own: "yours",
 };
 
-export function Scene({ state, change }: ViewProps) {
+export function Scene({ data, state, change }: ViewProps) {
   return (
     <section>
       <h2>Light and shape</h2>
@@ -68,7 +69,9 @@ export function Scene({ state, change }: ViewProps) {
       <Choice
         label="Surroundings"
         value={state.surroundings}
-        options={SURROUNDINGS.map((word) => [word, SURROUNDINGS_TITLES[word]] as const)}
+        options={SURROUNDINGS.filter((word) => word !== "own" || data.sky).map(
+          (word) => [word, SURROUNDINGS_TITLES[word]] as const,
+        )}
         onChange={(surroundings) => change({ surroundings })}
       />
       <Check

@@ -5,7 +5,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { show, signed } from "../format";
 import { type Stage, type Status, createStage } from "../stage";
 import { DIFFERENCE_COLORS } from "../stage/colors";
-import { COMPARISONS, type Comparison, type State } from "../state";
+import { COMPARISONS, type Comparison, type State, ZOOMS } from "../state";
 import { LETTER, short_title, SIDES, source_of } from "../view";
 import { Choice, Slider } from "./fields";
 import { LightHandle, ProbeMark, WipeHandle } from "./handles";
@@ -21,10 +21,12 @@ interface StageViewProps extends ViewProps {
 
 const TITLES: Readonly<Record<Comparison, string>> = {
   wipe: "Wipe",
+  side: "Side by side",
   difference: "Difference",
   flicker: "Flicker",
 };
 const NEAR = 18; // pixels from the line within which it is taken
+const DEGREES = 0.4; // of the viewer for a pixel
 const CLICK = 4; // pixels that a click may move
 
 /** A place with as many digits as the address has. */
@@ -32,7 +34,15 @@ function short([x, y]: readonly [number, number]): [number, number] {
   return [Number(x.toFixed(4)), Number(y.toFixed(4))];
 }
 
-type Drag = { kind: "wipe" | "light" | "click"; x: number; y: number } | null;
+/** The view after the pointer has moved by some pixels: what is near follows it, as in three.js. */
+function turned({ turn, tilt }: State, x: number, y: number): Partial<State> {
+  return {
+    turn: ((turn - DEGREES * x + 540) % 360) - 180,
+    tilt: Math.min(Math.max(tilt + DEGREES * y, -90), 90),
+  };
+}
+
+type Drag = { kind: "wipe" | "light" | "viewer" | "click"; x: number; y: number } | null;
 
 export function StageView(props: StageViewProps) {
   const { data, sources, state, change, mark, onStage, onDrag } = props;
@@ -65,19 +75,31 @@ export function StageView(props: StageViewProps) {
     const { width } = canvas.current!.getBoundingClientRect();
     const [x] = place(event);
     const onLine = state.comparison === "wipe" && Math.abs(x - state.wipe) * width < NEAR;
-    drag.current = { kind: onLine ? "wipe" : "click", x: event.clientX, y: event.clientY };
+    const onLight = (event.target as Element).closest(".light");
+    const kind = onLight ? "light" : onLine ? "wipe" : "click";
+    drag.current = { kind, x: event.clientX, y: event.clientY };
     (event.currentTarget as Element).setPointerCapture(event.pointerId);
   };
   const move = (event: PointerEvent): void => {
     const now = drag.current;
     if (!now) return;
     const far = Math.hypot(event.clientX - now.x, event.clientY - now.y) > CLICK;
-    if (now.kind === "click" && far) now.kind = "light";
+    if (now.kind === "click" && far) now.kind = state.shape === "sphere" ? "light" : "viewer";
     if (now.kind === "click") return;
     setDragging(true);
     const [x, y] = place(event);
     if (now.kind === "wipe") change({ wipe: short([x, y])[0] });
-    else change(stage?.toLight(x, y, state) ?? {});
+    else if (now.kind === "light") change(stage?.toLight(x, y, state) ?? {});
+    else {
+      change(turned(state, event.clientX - now.x, event.clientY - now.y));
+      [now.x, now.y] = [event.clientX, event.clientY];
+    }
+  };
+  const wheel = (event: WheelEvent): void => {
+    if (state.shape === "sphere") return;
+    event.preventDefault();
+    const zoom = state.zoom * Math.exp(-Math.sign(event.deltaY) * 0.1);
+    change({ zoom: Math.min(Math.max(Number(zoom.toFixed(3)), ZOOMS[0]), ZOOMS[1]) });
   };
   const end = (): void => {
     drag.current = null;
@@ -99,6 +121,7 @@ export function StageView(props: StageViewProps) {
         onPointerMove={move}
         onPointerUp={up}
         onPointerCancel={end}
+        onWheel={wheel}
       >
         <canvas
           ref={canvas}
@@ -106,6 +129,7 @@ export function StageView(props: StageViewProps) {
           aria-label={`Picture of ${names.map((name, k) => `${"AB"[k]}: ${name}`).join("; ")}`}
         />
         <Labels state={state} names={names} />
+        {state.comparison === "side" && <span class="split" aria-hidden="true" />}
         {state.comparison === "wipe" && <WipeHandle {...props} />}
         {stage && <LightHandle {...props} at={stage.fromLight(state)} />}
         {mark && <ProbeMark {...props} at={mark} />}
@@ -115,7 +139,11 @@ export function StageView(props: StageViewProps) {
         <Legend {...props} />
       ) : (
         <p class="hint">
-          Drag the line to compare. Drag anywhere else to move the light. Click to probe.
+          {state.comparison === "wipe" && "Drag the line to compare. "}
+          {state.shape === "sphere"
+            ? "Drag anywhere else to move the light."
+            : "Drag to look around, scroll to zoom, drag the sun to move the light."}{" "}
+          Click to probe.
         </p>
       )}
     </section>
@@ -144,6 +172,7 @@ function Toolbar({ state, change }: ViewProps) {
 /** Which material is where. */
 function Labels({ state, names }: { readonly state: State; readonly names: readonly string[] }) {
   if (state.comparison === "difference") return null;
+  const edge = state.comparison === "side" ? 0.5 : state.wipe;
   return (
     <>
       {SIDES.map((name, k) => {
@@ -151,8 +180,8 @@ function Labels({ state, names }: { readonly state: State; readonly names: reado
           state.comparison === "flicker"
             ? state.shown === name
             : name === "left"
-              ? state.wipe > 0.1
-              : state.wipe < 0.9;
+              ? edge > 0.1
+              : edge < 0.9;
         return (
           seen && (
             <span key={name} class={`label ${name}`} aria-hidden="true">

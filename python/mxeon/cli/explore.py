@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon explore`: write a page that draws, compares and probes materials in a browser."""
+"""`mxeon explore`: a page that draws, compares and probes materials in a browser."""
 
 import argparse
+import webbrowser
+from contextlib import suppress
+from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 from mxeon.cli import arguments
 from mxeon.cli.batch import run_batch
@@ -16,15 +20,21 @@ def add_parser(commands: arguments.Commands) -> None:
     command = arguments.add_command(
         commands,
         "explore",
-        "write a web page to draw, compare and probe materials",
+        "draw, compare and probe materials in a browser",
         run,
-        "explore --output page.html  # every lobe, eonlib beside stock MaterialX",
-        "explore my.mtlx --output page.html  # your materials too",
-        "explore --report out --output page.html  # adds what `mxeon check --report out` found",
+        "explore  # every lobe, eonlib beside stock MaterialX; drop documents on the page",
+        "explore my.mtlx --environment sky.hdr",
+        "explore my.mtlx --output page.html  # a page to send to somebody",
+        "explore --report out  # adds what `mxeon check --report out` found",
     )
     command.add_argument("files", nargs="*", metavar="FILE", help="MaterialX documents to add")
     command.add_argument(
-        "--output", metavar="OUT", required=True, help="the page, one self-contained .html file"
+        "--output",
+        metavar="OUT",
+        help="write a self-contained .html file (default: show the page until Ctrl-C)",
+    )
+    command.add_argument(
+        "--environment", metavar="IMAGE", help="latitude-longitude image to light materials with"
     )
     command.add_argument(
         "--report", metavar="RUN", help="add the diagnoses of a run: its report folder"
@@ -40,25 +50,50 @@ def add_parser(commands: arguments.Commands) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the page and print its path; return the exit status."""
+    """Write the page and print its path, or serve it; return the exit status."""
     from mxeon.conformance.results import report_files
     from mxeon.conformance.run import read_run
-    from mxeon.explorer import document_sources, page, page_data
+    from mxeon.explorer import document_sources, page, page_data, sky_of
+    from mxeon.explorer.serve import Server
     from mxeon.io.files import check_output, write_text
+    from mxeon.jobs.signals import temporary_folder
 
     read = report_files(options.report) if options.report else ()
-    check_output(options.output, arguments.inputs(options, options.files, *read), [".html"])
+    if options.output:
+        inputs = arguments.inputs(options, options.files, options.environment, *read)
+        check_output(options.output, inputs, [".html"])
     results = read_run(options.report).results if options.report else ()
     work = partial(document_sources, policy=arguments.policy(options), library=options.library)
-    documents = list(run_batch(work, options.files, options.workers, options.timeout))
-    texts = (str(text) for each in documents for text in each.warnings)
-    for text in dict.fromkeys(texts):  # both libraries may warn of one input
-        warn(text)
-    errors = [each.error for each in documents if each.error]
-    if not errors:
+
+    def make(files: list[str], light: str | None) -> str:
+        documents = list(run_batch(work, files, options.workers, options.timeout))
+        texts = (str(text) for each in documents for text in each.warnings)
+        warnings = tuple(dict.fromkeys(texts))  # both libraries may warn of one input
+        for text in warnings:
+            warn(text)
+        errors = [each.error for each in documents if each.error]
+        for error in errors[:-1]:
+            fail(*status_of(error))
+        if errors:
+            raise errors[-1]
         data = page_data((each.value for each in documents), results)
         if not data.judged:
             warn("the host gl does not run here: the page leaves open which models the nodes are")
-        write_text(options.output, page(data))
+        sky = sky_of(light) if light else None
+        return page(replace(data, served=not options.output, warnings=warnings, sky=sky))
+
+    if options.output:
+        write_text(options.output, make(options.files, options.environment))
         show(options.output)
-    return min((fail(*status_of(error)) for error in errors), default=PASSED)
+        return PASSED
+    with (
+        temporary_folder("mxeon-explore-") as folder,
+        Server(make, options.files, options.environment, Path(folder)) as server,
+        suppress(KeyboardInterrupt),
+    ):
+        print(
+            f"http://{server.host}/ shows the page until Ctrl-C; drop documents on it", flush=True
+        )
+        webbrowser.open(f"http://{server.host}/")
+        server.serve_forever()
+    return PASSED

@@ -16,12 +16,12 @@ import MaterialX as mx
 import mxeon
 from mxeon.conformance.results import Result
 from mxeon.explorer.data import PageData, ShaderSource
-from mxeon.explorer.documents import MEANT, document_sources
+from mxeon.explorer.documents import MEANT, document_sources, sky_of
 from mxeon.explorer.references import pairs, views
 from mxeon.explorer.sources import measured_models, model_sources, node_sources, run_sources, stills
 from mxeon.shaders.functions import source
 
-__all__ = ["document_sources", "page", "page_data"]
+__all__ = ["document_sources", "page", "page_data", "sky_of"]
 
 TEXTS, PARAGRAPH = ("pixel", "paths", "document"), "\n\n"  # fields stored in the table of texts
 MARK = "%DATA%"  # the template's placeholder for the data

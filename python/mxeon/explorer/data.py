@@ -123,6 +123,15 @@ class Still:
 
 
 @dataclass(frozen=True)
+class Sky:
+    """A reader's own surroundings."""
+
+    width: int
+    height: int
+    rgba: str
+
+
+@dataclass(frozen=True)
 class PageData:
     version: str
     materialx: str
@@ -132,6 +141,9 @@ class PageData:
     pairs: tuple[tuple[Direction, Direction], ...] = ()
     views: tuple[Direction, ...] = ()
     pages: str = ""
+    served: bool = False
+    warnings: tuple[str, ...] = ()
+    sky: Sky | None = None
 
     @property
     def judged(self) -> bool:

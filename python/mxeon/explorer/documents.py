@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 
 import MaterialX as mx
 import numpy as np
+import OpenImageIO as oiio
 
 from mxeon.conformance import words
 from mxeon.conformance.pictures import judge_document
@@ -24,7 +25,7 @@ from mxeon.errors import InterfaceError, MxeonError, printable
 from mxeon.explorer import data
 from mxeon.explorer.references import LOBES, lobes_of, reference_of
 from mxeon.hosts import open_host
-from mxeon.hosts.textures import check_images, image_files, read_texture
+from mxeon.hosts.textures import check_images, image_files, read_latlong, read_texture
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.values import Plain, flat
 from mxeon.shaders.generation import Input, Shader, generate
@@ -86,6 +87,20 @@ def document_sources(
                 replace(source, reference=reference, checked=found, pages=pages, paths=path)
             )
     return tuple(sources)
+
+
+SKY_ROWS = 128  # twice the rows of the page's own surroundings
+
+
+def sky_of(file: str) -> data.Sky:
+    """A latitude-longitude image, turned as `mxeon render` turns it: its middle faces the viewer."""
+    pixels = read_latlong(file)
+    whole = oiio.ImageBuf(np.ascontiguousarray(np.roll(pixels, pixels.shape[1] // 2, axis=1)))
+    area = oiio.ROI(0, 2 * SKY_ROWS, 0, SKY_ROWS, 0, 1, 0, 3)
+    small = oiio.ImageBufAlgo.resize(whole, filtername="box", roi=area)
+    rgba = np.ones((SKY_ROWS, 2 * SKY_ROWS, 4), "<f4")
+    rgba[..., :3] = np.asarray(small.get_pixels(oiio.FLOAT))
+    return data.Sky(2 * SKY_ROWS, SKY_ROWS, b64encode(rgba.tobytes()).decode())
 
 
 def path_texts(document: str, policy: Policy = DEFAULT) -> dict[str, str]:

@@ -98,7 +98,13 @@ class XmlChecker:
         try:
             parser.Parse(text, True)
         except expat.ExpatError as error:
-            self._refuse(f"must be a MaterialX document; XML parse error: {error}")
+            usd = location.lower().endswith((".usd", ".usda", ".usdc", ".usdz"))
+            remedy = (
+                "; a renderer that reads USD is checked by its images: mxeon kit export"
+                if usd
+                else ""
+            )
+            self._refuse(f"must be a MaterialX document; XML parse error: {error}{remedy}")
 
     def _start(self, category: str, attributes: Mapping[str, str]) -> None:
         self._depth += 1
