@@ -29,7 +29,7 @@ def tracer(hosts):
 
 def traced(tracer, document, scene, paths, shape="sphere"):
     [shader] = tracer.compile(document)
-    with pytest.warns(NoiseNote, match="noise"):
+    with pytest.warns(NoiseNote, match="nois"):
         return tracer.picture(shader, replace(scene, size=SIZE, paths=paths, shape=shape))
 
 
