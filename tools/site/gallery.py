@@ -80,7 +80,7 @@ and reflections of itself, at the default of 64 paths and denoised.
     mxeon render standard_surface_glass.mtlx --integrator path --size 192 --output glass.png
 """
 NOISE = PICTURES / "traced.json"  # sentences of the path tracer, by document
-TRACED_SIZE, SAMPLES = 192, 256  # pixels, and paths of each on the sphere
+TRACED_SIZE, SAMPLES = 192, 400  # pixels, and paths of each on the sphere
 
 
 def studio():
