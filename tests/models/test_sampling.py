@@ -11,7 +11,6 @@ from mxeon.models.diffuse import C1, eon_albedo_dir, eon_brdf, fon_brdf
 from mxeon.models.sampling import cosine_pdf, eon_cltc_sample, eon_pdf, eon_sample
 from tests.support import tolerances
 from tests.support.hemispheres import (
-    BY_NAME,
     COSINES,
     every_sampler,
     every_scene,
@@ -19,7 +18,7 @@ from tests.support.hemispheres import (
     uniforms,
     view,
 )
-from tools.paper.samplers import SAMPLERS
+from tools.paper.samplers import BY_NAME, SAMPLERS
 
 
 @pytest.mark.parametrize(

@@ -12,17 +12,8 @@ import pytest
 from scipy import special  # scipy.stats is slow to import
 
 from mxeon.models.sampling import eon_pdf, eon_sample
-from tests.support.hemispheres import (
-    BY_NAME,
-    COSINES,
-    SCENES,
-    binned,
-    every_scene,
-    expected,
-    uniforms,
-    view,
-)
-from tools.paper.samplers import SAMPLERS, Sampler
+from tests.support.hemispheres import COSINES, SCENES, binned, every_scene, expected, uniforms, view
+from tools.paper.samplers import BY_NAME, SAMPLERS, Sampler
 
 FALSE_ALARM = 1e-4
 

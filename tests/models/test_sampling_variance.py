@@ -15,7 +15,8 @@ from mxeon.models.diffuse import C1, C2, eon_brdf, fon_quotient
 from mxeon.models.diffuse import fon_loss_mu as fon_loss
 from mxeon.models.sampling import eon_pdf
 from tests.support import tolerances
-from tests.support.hemispheres import BY_NAME, every_scene, hemisphere, view
+from tests.support.hemispheres import every_scene, hemisphere, view
+from tools.paper.samplers import BY_NAME
 
 UNBIASED = [BY_NAME[name] for name in ("uniform", "cosine", "ltc0", "eon_cltc", "eon")]
 ANGLES = (0.0, 1e-3, 0.03, 0.1, 0.3, 0.6, 0.9, 1.0)

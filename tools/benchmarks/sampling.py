@@ -26,9 +26,8 @@ from mxeon.models.core.quadrature import hemisphere_nodes
 from mxeon.models.diffuse import eon_brdf
 from mxeon.models.sampling import cosine_pdf, eon_cltc_pdf, eon_pdf, eon_sample
 from tools.benchmarks.rounds import Group, clock_of, figure, interleave
-from tools.paper.renders import CLAY, FRONT, STAGE
-from tools.paper.tracer import Trace, trace
-from tools.paper.weights import BY_NAME, moments
+from tools.benchmarks.tracer import Trace, trace
+from tools.paper.samplers import BY_NAME, moments
 
 # --- tables of variance ---------------------------------------------------------------------------
 
@@ -236,10 +235,21 @@ def variances(light, spokes):
     return {name: float(np.mean(each)) for name, each in found.items()}
 
 
+def unit(x, y, z):
+    length = float(np.linalg.norm((x, y, z)))
+    return x / length, y / length, z / length
+
+
+# A floor, and enough light from everywhere to see into the shadows.
+STAGE = {"eye": unit(0.0, 0.42, 1.0), "height": -0.1, "half_width": 1.35}
+STAGE |= {"bounces": 8, "floor": 0.35, "environment": 0.12}
+FRONT, CLAY = unit(-0.15, 0.6, 1.0), (0.8, 0.38, 0.18)
+
+
 def traced(samples, **lit):
     """EON at roughness 1 among the objects of figure 1, by the sampler's name."""
-    still = {"parameter": 1.0, "samples": samples, **STAGE, **lit}
-    return {name: Trace("eon", sampler, **still) for name, sampler in SAMPLERS.items()}
+    still = {"samples": samples, **STAGE, **lit}
+    return {name: Trace(sampler, **still) for name, sampler in SAMPLERS.items()}
 
 
 # One path per pixel of the scene of figure 1, and one reflection in a uniform environment.

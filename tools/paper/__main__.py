@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Make the figures of the EON paper and measure its claims: `python -m tools.paper out/figures`."""
+"""Measure the claims of the EON paper and write docs/paper_checked.md: `python -m tools.paper`."""
 
-import sys
+from pathlib import Path
 
-from mxeon.cli.output import Progress
-from tools.paper import figures
+from tools.paper.claims import inversion, models, page, sampling, specification
 
-if len(sys.argv) != 2:
-    sys.exit("usage: python -m tools.paper DIR")
-print(figures(sys.argv[1], Progress("figures", lambda step: "")))
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "paper_checked.md"
+SECTIONS = (models.SECTION, sampling.SECTION, inversion.SECTION, specification.SECTION)
+
+if __name__ == "__main__":
+    PAGE.write_text(page(SECTIONS), encoding="utf-8")

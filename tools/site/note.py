@@ -2,6 +2,7 @@
 """Print the numbers of the technical note, and draw its figures: `python -m tools.site.note`."""
 
 import numpy as np
+from matplotlib import style
 from matplotlib.figure import Figure
 
 from mxeon import models
@@ -17,8 +18,7 @@ from tools.fits import ggx_albedo as albedo_fit
 from tools.fits import ggx_cosine as cosine_fit
 from tools.fits.minimax import shipped
 from tools.paper.claims.models import listing_1_albedo
-from tools.paper.sheet import METADATA, styled
-from tools.paper.weights import EXACT_VARIANCE, moments
+from tools.paper.samplers import EXACT_VARIANCE, moments
 from tools.site import DOCS, with_block
 
 PAGE = DOCS / "note.md"
@@ -26,6 +26,15 @@ GLASS, DENSE = 1.5, 3.0
 SCHLICK = (0.04, 0.25, 0.6), (1.0, 0.5, 0.8), 1.0  # color0, color82, color90
 ROUGH = (1.0, 1.0)
 VIEWS = np.linspace(0.02, 1.0, 50)
+STYLE = {
+    "font.size": 9,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.alpha": 0.2,
+    "legend.frameon": False,
+    "legend.fontsize": 8,
+}
 
 
 # --- energy that FON loses, in float32 --------------------------------------------------------------
@@ -266,9 +275,9 @@ def albedo_figure():
 
 
 if __name__ == "__main__":
-    with styled():
+    with style.context(["default", STYLE]):
         for name, draw in (("note_exact", exact_figure), ("note_albedo", albedo_figure)):
             with replacing(DOCS / "figures" / f"{name}.png") as path:
-                draw().savefig(path, dpi=110, metadata=METADATA["png"])
+                draw().savefig(path, dpi=110, metadata={"Software": None})
     for name, value in (loss_figures() | largest_figures()).items():
         print(f"{name}: {value:.3g}")

@@ -12,10 +12,9 @@ COLUMNS = ("where", "claim", "measured", "required", "verdict")
 
 HEAD = """# The paper, checked
 
-Does the EON paper say what is true? `python -m tools.paper DIR` measures its claims and writes this page, in float64
+Does the EON paper say what is true? `python -m tools.paper` measures its claims and writes this page, in float64
 unless stated otherwise. Equations, figures and listings have the numbers of [Portsmouth2025], the JCGT
-2025 edition ([bibliography](bibliography.md)). The figures follow the claims; their data are in the
-folder `figures`.
+2025 edition ([bibliography](bibliography.md)).
 
 A claim *holds* if all of its measured values meet its limit, holds *in part* if some do, and *fails* if none
 does; NaN meets no limit. The tables have the claims that do not hold, with the limit in the column *required*.

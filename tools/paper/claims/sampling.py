@@ -7,7 +7,7 @@ from mxeon.models import sampling as cltc
 from mxeon.models import sampling as ltc
 from mxeon.models.core.quadrature import hemisphere_nodes
 from tools.paper.claims import ROUNDING, Measured, Section
-from tools.paper.weights import BY_NAME, moments
+from tools.paper.samplers import BY_NAME, moments
 
 DEGREES = np.append(np.arange(0.0, 90.0, 3.0), [89.0, 89.9])
 COSINES = np.linspace(0.0, 1.0, 10001)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A path tracer: one path per pixel and pass, with the value, sampling and density of the twins.
 //
-// Stands behind the twins, path_random and three macros: TRACER_BRDF(wo, wi, rho, r),
-// TRACER_SAMPLE(wo, u1, u2, r) and TRACER_PDF(wo, wi, r). World frame: x to the right, y up; the
+// Stands behind the twins, path_random and two macros: TRACER_SAMPLE(wo, u1, u2, r) and
+// TRACER_PDF(wo, wi, r). World frame: x to the right, y up; the
 // ball has radius 1 about the origin. The view is orthographic.
 
 #define TRACER_OFFSET 1.0e-4 // From a surface to the origin of the next ray, against its own hit.
@@ -23,14 +23,12 @@ uniform int tracer_pass;
 uniform int tracer_seed;
 uniform int tracer_bounces; // Reflections that a path may have.
 uniform vec3 tracer_rho;
-uniform float tracer_parameter; // sigma or roughness of the model
-uniform float tracer_roughness; // of the sampler
+uniform float tracer_roughness;
 uniform vec3 tracer_light; // Unit, towards a distant light of irradiance pi; zero for none.
 uniform float tracer_environment; // Radiance from everywhere beyond the objects.
 uniform vec3 tracer_eye; // Unit, towards the viewer.
 uniform vec3 tracer_frame; // Height of the picture's center, half of its width, its pixels.
 uniform float tracer_floor; // Reflectance of a Lambertian floor; no floor below 0.
-uniform bool tracer_opened; // A shell cut open around a core, on a foot; else the ball alone.
 
 out vec4 tracer_radiance;
 
@@ -71,11 +69,11 @@ void tracer_ball(inout Hit hit, vec3 origin, vec3 direction)
 {
     float t = tracer_sphere(origin, direction, 1.0).x;
     vec3 p = origin + t * direction;
-    if (!tracer_opened || !tracer_cut(p))
+    if (!tracer_cut(p))
         tracer_keep(hit, t, p);
     t = tracer_sphere(origin, direction, TRACER_INSIDE).y;
     p = origin + t * direction;
-    if (tracer_opened && !tracer_cut(p))
+    if (!tracer_cut(p))
         tracer_keep(hit, t, -p / TRACER_INSIDE);
 }
 
@@ -110,13 +108,11 @@ Hit tracer_nearest(vec3 origin, vec3 direction)
 {
     Hit hit = Hit(TRACER_NEVER, vec3(0.0), false);
     tracer_ball(hit, origin, direction);
-    if (tracer_opened) {
-        tracer_face(hit, origin, direction, TRACER_CUT_LEFT, TRACER_CUT_RIGHT);
-        tracer_face(hit, origin, direction, TRACER_CUT_RIGHT, TRACER_CUT_LEFT);
-        float core = tracer_sphere(origin, direction, TRACER_CORE).x;
-        tracer_keep(hit, core, (origin + core * direction) / TRACER_CORE);
-        tracer_foot(hit, origin, direction);
-    }
+    tracer_face(hit, origin, direction, TRACER_CUT_LEFT, TRACER_CUT_RIGHT);
+    tracer_face(hit, origin, direction, TRACER_CUT_RIGHT, TRACER_CUT_LEFT);
+    float core = tracer_sphere(origin, direction, TRACER_CORE).x;
+    tracer_keep(hit, core, (origin + core * direction) / TRACER_CORE);
+    tracer_foot(hit, origin, direction);
     float t = (TRACER_GROUND - origin.y) / direction.y;
     if (tracer_floor >= 0.0 && direction.y < 0.0 && t > 0.0 && t < hit.t)
         hit = Hit(t, vec3(0.0, 1.0, 0.0), true);
@@ -135,7 +131,7 @@ vec3 tracer_value(bool floor, vec3 wo, vec3 wi)
 {
     if (floor)
         return lambert_brdf(wo, wi, vec3(tracer_floor));
-    return TRACER_BRDF(wo, wi, tracer_rho, tracer_parameter);
+    return eon_brdf(wo, wi, tracer_rho, tracer_roughness);
 }
 
 // What the distant light sends towards wo.
