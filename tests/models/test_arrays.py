@@ -470,9 +470,8 @@ def test_the_examples_of_the_page_run(name):
         exec(block, {})
 
 
-def test_models_by_name_run_under_jit_and_in_a_frame():
+def test_models_by_name_run_under_jit():
     library, row = jax(), mxeon.model("eon")
-    wo, wi, normal = np.array([0.6, 0.0, 0.8]), np.array([0.0, 0.6, 0.8]), np.array([0.6, 0.0, 0.8])
-    traced = library.transforms[0](lambda rough: row.brdf(wo, wi, 0.5, rough, normal=normal))
-    value = library.numpy(traced(0.4))
-    assert value == pytest.approx(row.brdf(wo, wi, 0.5, 0.4, normal=normal))
+    wo, wi = np.array([0.6, 0.0, 0.8]), np.array([0.0, 0.6, 0.8])
+    traced = library.transforms[0](lambda rough: row.brdf(wo, wi, 0.5, rough))
+    assert library.numpy(traced(0.4)) == pytest.approx(row.brdf(wo, wi, 0.5, 0.4))

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models by their names: inputs of MaterialX, shapes, functions, messages, figures."""
+"""Models by their names: inputs of MaterialX, shapes, functions, messages."""
 
 import re
-import sys
 
 import MaterialX as mx
 import numpy as np
@@ -23,7 +22,6 @@ MANY = np.array([[0.6, 0.0, 0.8], [0.0, 0.8, 0.6], [0.0, 0.0, 1.0], [0.0, 0.6, 0
 TRANSMITTED = 3e-4  # of the albedo, whose quadrature states 2e-4; that of the values adds to it
 MODES = {"mode", "scatter_mode", "distribution", "energy_compensation"}
 FRAME = {"weight", "normal", "tangent", "curve_direction", "retroreflective"}
-TURN = np.array([[0.0, 0.6, 0.8], [0.8, -0.48, 0.36], [0.6, 0.64, -0.48]])  # rows are its axes
 LIGHT = {"front": WI, "back": WI * [1.0, 1.0, -1.0], "all sides": WI}
 SURFACE = "open_pbr_surface"
 every_model = pytest.mark.parametrize("name", MODELS)
@@ -62,17 +60,6 @@ def test_openpbrs_base_has_the_order_and_defaults_of_its_definition():
     assert names == [name for name in ports if name in names]
     for each in row.parameters:
         assert np.ravel(each.default).tolist() == [float(n) for n in ports[each.name].split(",")]
-
-
-@every_scattering
-def test_inputs_that_go_by_name_are_those_of_the_node(name):
-    row, library = MODELS[name], load_library("stock")
-    [definition] = [library.getNodeDef(f"ND_{row.node}")] if row.node != SURFACE else surfaces()
-    ports = definition.getActiveInputs()
-    own = FRAME & {port.getName() for port in ports}
-    assert own - set(row.by_name) == (
-        {"retroreflective"} if name.endswith(("_t", "_rt")) else set()
-    )
 
 
 @every_model
@@ -133,7 +120,7 @@ def test_every_drawn_direction_has_a_value_and_its_density(name):
 @every_model
 def test_what_a_model_has_is_in_dir_and_what_it_lacks_is_said(name):
     row = mxeon.model(name)
-    verbs = ("brdf", "bsdf", "albedo_dir", "albedo_avg", "sample", "pdf", "plot", "edf", "phase")
+    verbs = ("brdf", "bsdf", "albedo_dir", "albedo_avg", "sample", "pdf", "edf", "phase")
     for verb in verbs:
         assert (verb in dir(row)) == (verb in row.functions)
         if verb not in row.functions:
@@ -204,35 +191,6 @@ def test_inputs_go_to_the_functions_of_the_models():
     assert qon == models.qon_brdf(WO, WI, 0.5, 1.2)[0]
     assert mxeon.model("eon").albedo_dir(0.3, 0.5, 1.0) == models.eon_albedo_dir(0.3, 0.5, 1.0)[0]
     assert mxeon.model("eon").albedo_avg(0.5, 1.0) == models.eon_albedo_avg(0.5, 1.0)[0]
-
-
-@pytest.mark.parametrize("name", ["eon", "dielectric", "conductor_film", "hair", "schlick_t"])
-def test_a_frame_turns_directions_and_a_weight_scales(name):
-    row = mxeon.model(name)
-    light, alpha = LIGHT[row.lights], {"roughness": [0.4, 0.2]} if "schlick" in name else {}
-    plain = row.bsdf(WO, light, **alpha)
-    along = {"curve_direction" if name == "hair" else "tangent": TURN[0] + TURN[2]}
-    frame = {"normal": TURN[2]} | (along if set(along) <= set(row.by_name) else {})
-    turned = row.bsdf(WO @ TURN, light @ TURN, **alpha, **frame)
-    assert np.allclose(turned, plain, rtol=1e-9) or name == "eon"
-    if "weight" in row.by_name:
-        assert_array_equal(row.bsdf(WO, light, **alpha, weight=0.5), 0.5 * plain)
-        assert_array_equal(row.albedo_dir(0.3, weight=0.5), 0.5 * row.albedo_dir(0.3))
-    if name == "eon":  # which has no tangent to turn
-        assert np.allclose(row.bsdf(WO @ TURN, light @ TURN, normal=TURN[2]), plain, rtol=1e-9)
-        wi, pdf = row.sample(WO @ TURN, [0.3, 0.6], normal=TURN[2])
-        assert row.pdf(WO @ TURN, wi, normal=TURN[2]) == pytest.approx(pdf)
-
-
-def test_retroreflection_mirrors_the_viewer():
-    inputs = {"roughness": [0.4, 0.2], "ior": 1.5}
-    value = mxeon.model("dielectric").brdf(WO, WI, **inputs, retroreflective=True)
-    expected = models.dielectric_brdf(WO, WI, [1.0] * 3, **inputs, retroreflective=True)
-    assert np.allclose(value, expected, rtol=1e-12)
-    wi, pdf = mxeon.model("dielectric").sample(WO, [0.3, 0.6], **inputs, retroreflective=True)
-    assert wi @ WO > 0.5 and pdf == pytest.approx(
-        models.ggx_pdf(WO * [-1, -1, 1], wi, inputs["roughness"])
-    )
 
 
 @pytest.mark.parametrize("name", ["dielectric", "schlick"])
@@ -340,14 +298,9 @@ def test_a_number_for_roughness_is_isotropic(function, inputs):
         (lambda: mxeon.model("schlick_t").sample(WO, [0.1, 0.2]), ValueError, "schlick_t has no sample: no density of refracted light is implemented; it has bsdf"),
         (lambda: mxeon.model("uniform_edf").brdf(WO, WI), AttributeError, "uniform_edf, uniform emission, has no brdf; it has edf, exitance"),
         (lambda: mxeon.model("absorption_vdf").phase(0.5), ValueError, "absorption_vdf has no phase; it has trans"),
-        (lambda: mxeon.model("eon").albedo_dir(0.5, normal=WO), TypeError, "an albedo has none to turn"),
-        (lambda: mxeon.model("eon").brdf(WO, WI, normal=[0.0, 0.0, 2.0]), ValueError, "normal must be unit"),
-        (lambda: mxeon.model("conductor").brdf(WO, WI, tangent=[0.0, 0.0, 1.0]), ValueError, "tangent must not be parallel"),
         (lambda: mxeon.model("hair").albedo_dir(MANY[:4]), ValueError, "mu must be cosines; got shape (4, 3) of unit length, a direction: pass its z"),
         (lambda: mxeon.model("eon").brdf(WO[:2], WI), ValueError, "wo must have shape (..., 3); got shape (2,)"),
         (lambda: mxeon.model("eon").sample(WO, 0.5), ValueError, "u must have shape (..., 2); got shape ()"),
-        (lambda: mxeon.model("eon").brdf(WO, WI, weight=1.5), ValueError, "weight must lie in [0, 1]; got 1.5"),
-        (lambda: mxeon.model("conductor").brdf(WO, WI, retroreflective=1), ValueError, "retroreflective must be True or False"),
         (lambda: mxeon.model("hair").brdf(WO, WI), ValueError, "hair has no brdf: light passes through it, so call bsdf; it has bsdf"),
         (lambda: mxeon.model("eon").brdf(WO, WI, tint=1.0), TypeError, "inputs are color, roughness; got 'tint'"),
         (lambda: mxeon.model("eon").brdf(WO, WI, 1.0, rho=1.0), TypeError, "got 'rho' twice"),
@@ -369,31 +322,3 @@ def test_three_samples_of_one_direction_take_no_color_for_their_reflectances():
     assert len(set(each)) == 3
     _, pdf = mxeon.model("eon").sample(WO, u, color=color[:, np.newaxis], roughness=0.5)
     assert np.allclose(pdf, each)
-
-
-def test_a_plot_names_channels_and_inputs_and_multiplies_all_but_fibers_by_the_cosine():
-    axes = mxeon.model("dielectric_rt").plot(tint=[0.9, 0.5, 0.1], roughness=0.5).get_axes()
-    names = [text.get_text() for text in axes[1].get_legend().get_texts()]
-    assert names == ["red", "green", "blue"]
-    assert axes[0].get_title() == "value times cosine, mean of the channels, 1/sr"
-    figure = mxeon.model("eon").plot(color=[0.8, 0.4, 0.1], roughness=1.0)
-    assert figure.get_suptitle().endswith(", color 0.8 0.4 0.1, roughness 1")
-    fiber = mxeon.model("hair").plot().get_axes()[0]
-    assert fiber.get_title() == "value, mean of the channels, 1/sr"
-
-
-@pytest.mark.parametrize("name", ["eon", "conductor", "translucent", "hair"])
-def test_a_plot_has_a_lobe_an_albedo_and_the_density_of_samples(name, tmp_path):
-    row = mxeon.model(name)
-    figure = row.plot(str(tmp_path / "lobe.png"))
-    assert (tmp_path / "lobe.png").read_bytes().startswith(b"\x89PNG")
-    axes = figure.get_axes()
-    assert len(axes) == (3 if "pdf" in row.functions else 2)
-    _, lobe = axes[0].lines[0].get_data()
-    assert len(lobe) > 500 and np.isfinite(lobe).all() and lobe.max() > 0.0
-
-
-def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch):
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(ImportError, match=re.escape("pip install '.[report]'")):
-        mxeon.model("eon").plot()

@@ -21,15 +21,7 @@ from mxeon.models.nodes.emissions import EMISSIONS
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.media import MEDIA
 from mxeon.models.nodes.microfacets import FILM_NODES, TRANSMISSION_NODES, TRANSMISSIONS
-from mxeon.models.nodes.node import (
-    BY_NAME,
-    DEFAULTS,
-    NAMED_INPUTS,
-    Inputs,
-    Parameter,
-    PbrNode,
-    parameter,
-)
+from mxeon.models.nodes.node import DEFAULTS, Inputs, Parameter, PbrNode, parameter
 from mxeon.models.shading_model import (
     EmissionModel,
     MediumModel,
@@ -132,7 +124,7 @@ def model(name: str) -> NodeModel:
 
         >>> gold = model("conductor")
         >>> gold
-        conductor: conductor microfacets; brdf, bsdf, albedo_dir, sample, pdf, plot
+        conductor: conductor microfacets; brdf, bsdf, albedo_dir, sample, pdf
           ior = (0.183, 0.421, 1.373), in [0, 1e50]
           extinction = (3.424, 2.346, 1.77), in [0, 1e50]
           roughness = (0.05, 0.05), in [0, 1]
@@ -166,7 +158,6 @@ def _of_node(row: PbrNode) -> ShadingModel:
         row.parameters or _inputs(row.category, row.inputs),
         sampler=SAMPLERS.get(row.name, COSINE),
         lights="all sides" if row is HAIR_NODE else lights,
-        by_name=BY_NAME.get(row.category, ("weight", "normal")),
     )
 
 
@@ -196,7 +187,6 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
         replace(row, title=title, value=value, albedo=albedo, integral=None),
         _inputs(row.category, row.inputs),
         lights="back" if mode == "T" else "all sides",
-        by_name=NAMED_INPUTS[:-1],
     )
 
 

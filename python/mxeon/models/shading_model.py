@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model as one object: value, albedos, samples, density, inputs, and a plot; an emission; a medium.
+"""A model as one object: value, albedos, samples, density and inputs; an emission; a medium.
 
 Inputs of a call are bound to the model's parameters, checked, and laid out in rows of pairs.
 """
@@ -13,15 +13,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from mxeon.models import lobe_plot
 from mxeon.models.core.arguments import (
     ROUNDING,
     UNIT_TOLERANCE,
     checked,
     checked_real,
-    checked_sphere,
-    checked_switch,
-    checked_triples,
     lead_shape,
     refuse_ambiguous,
     spread_pair,
@@ -38,49 +34,9 @@ from mxeon.models.core.arrays import (
 )
 from mxeon.models.media import hg_pdf, hg_phase, hg_sample, transmittance
 from mxeon.models.nodes.emissions import Emission
-from mxeon.models.nodes.node import WEIGHT, Inputs, Node, Parameter, PbrNode
+from mxeon.models.nodes.node import Inputs, Node, Parameter, PbrNode
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-
-UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)  # MaterialX's defaults on a surface
-PARALLEL = 1e-6  # least length of a tangent after its part along the normal is removed
-
-
-@any_array
-def into_frame(w: ArrayLike, normal: ArrayLike, tangent: ArrayLike) -> Array:
-    """Components of vectors along the tangent, the bitangent and the normal.
-
-    The tangent is any vector not parallel to the normal; its part along the normal is removed.
-    """
-    vectors, axes = _floats(checked_triples("w", w)), _axes(normal, tangent)
-    xp = array_namespace(vectors)
-    return xp.stack([xp.sum(vectors * axis, axis=-1) for axis in axes], axis=-1) + 0.0
-
-
-@any_array
-def out_of_frame(w: ArrayLike, normal: ArrayLike, tangent: ArrayLike) -> Array:
-    """Vectors with these components along the tangent, the bitangent and the normal."""
-    vectors, (x, y, z) = _floats(checked_triples("w", w)), _axes(normal, tangent)
-    turned: Array = vectors[..., :1] * x + vectors[..., 1:2] * y + vectors[..., 2:] * z
-    return turned + 0.0
-
-
-def _axes(normal: ArrayLike, tangent: ArrayLike) -> tuple[Array, Array, Array]:
-    """Tangent, bitangent and normal, of length 1 and perpendicular to each other."""
-    z, along = checked_sphere("normal", normal), checked_triples("tangent", tangent)
-    xp = array_namespace(z, along)
-    x = along - xp.sum(along * z, axis=-1)[..., np.newaxis] * z
-    length = xp.sqrt(xp.sum(x * x, axis=-1))[..., np.newaxis]
-    shortest = host_values(length) if library(length) else length
-    if shortest is not None and not np.all(shortest > PARALLEL):
-        raise ValueError("tangent must not be parallel to the normal; name another one")
-    # The bitangent is the cross product, which only an extension of the array standard has.
-    x = x / length
-    turned = [(1, 2), (2, 0), (0, 1)]
-    y = xp.stack([z[..., i] * x[..., j] - z[..., j] * x[..., i] for i, j in turned], axis=-1)
-    return x, y, z
+UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)  # MaterialX's default normal and tangent
 
 
 @dataclass(frozen=True)
@@ -94,7 +50,6 @@ class Rows:
     vectors: list[Array]  # directions or random numbers
     inputs: dict[str, Array]
     colored: bool  # whether a color has an axis of channels
-    weight: Array | None = None  # the lobe's weight, if the call has one
 
     def shaped(self, values: Array, last: tuple[int, ...] = ()) -> Array:
         """Values of the rows, (N, *last) or fewer, in the shape of the pairs."""
@@ -102,9 +57,7 @@ class Rows:
         return xp.reshape(xp.broadcast_to(values, (count, *last)), (*self.lead, *last))[()]
 
     def colors(self, values: Array) -> Array:
-        """Values of the rows, (N, C), times the weight; without the channel axis if no color has one."""
-        if self.weight is not None:
-            values = values * self.weight[:, np.newaxis]
+        """Values of the rows, (N, C); without the channel axis if no color has one."""
         values = self.shaped(values, tuple(values.shape[-1:]))
         return values if self.colored or values.shape[-1] != 1 else values[..., 0]
 
@@ -151,9 +104,8 @@ def rows(
     narrow = {name: array for name, array in arrays.items() if name not in wide}
     lead = lead_shape(directions | wide, narrow)
     laid = {name: _laid(array, lead, name in wide) for name, array in arrays.items()}
-    weight = laid.pop(WEIGHT.name, None)
     found = [_laid(v, lead, True, whole=True) for v in directions.values()]
-    return Rows(lead, found, laid, colored, weight)
+    return Rows(lead, found, laid, colored)
 
 
 @any_array
@@ -191,9 +143,7 @@ def _laid(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) 
 
 # Functions of models, and the reason why a model may lack each of them.
 LACKS = {
-    **dict.fromkeys(
-        ("bsdf", "albedo_dir", "plot", "edf", "exitance", "transmittance", "phase"), ""
-    ),
+    **dict.fromkeys(("bsdf", "albedo_dir", "edf", "exitance", "transmittance", "phase"), ""),
     **dict.fromkeys(("sample", "pdf"), ": no density of refracted light is implemented"),
     "brdf": ": light passes through it, so call bsdf",
     "albedo_avg": ": no closed form is known",
@@ -288,11 +238,6 @@ class ShadingModel(NodeModel):
     results have no channels. A pair, such as the `roughness` of microfacets, may be a single number
     for both directions. Three numbers for a color are red, green and blue.
 
-    Inputs in `by_name` are keyword-only. `weight` scales values and albedos. With `normal`, and
-    `tangent` or `curve_direction`, directions are in a frame in which the node's normal is this unit
-    vector, such as the frame of the scene; the tangent defaults to +x. `retroreflective` mirrors
-    the viewer.
-
     wo lies on or above the horizon, wi anywhere: the value is 0 for a wi from which the model scatters no
     light. `pdf` is the density of `sample` on the whole sphere, over which it integrates to 1. Samples
     below the horizon for a model that reflects are wasted: their value is 0, but their density
@@ -305,11 +250,10 @@ class ShadingModel(NodeModel):
     row: PbrNode
     sampler: ModelSampler | None = None
     lights: str = "front"  # side of the light that it scatters: "front", "back" or "all sides"
-    by_name: tuple[str, ...] = ("weight", "normal")  # the other inputs of the node
 
     def __repr__(self) -> str:
         fiber = "\n  albedo_dir integrates the value without a cosine"
-        return super().__repr__() + (fiber if self.node == lobe_plot.FIBER else "")
+        return super().__repr__() + (fiber if self.node == "chiang_hair_bsdf" else "")
 
     @property
     def functions(self) -> tuple[str, ...]:
@@ -317,7 +261,7 @@ class ShadingModel(NodeModel):
         value = ("brdf", "bsdf") if self.lights == "front" else ("bsdf",)
         average = ("albedo_avg",) if self.row.average else ()
         samples = ("sample", "pdf") if self.sampler else ()
-        return (*value, "albedo_dir", *average, *samples, "plot")
+        return (*value, "albedo_dir", *average, *samples)
 
     def brdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Value of a model that reflects, in 1/sr, without the cosine.
@@ -333,7 +277,7 @@ class ShadingModel(NodeModel):
 
     def bsdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Value of any model, as `brdf`; 0 for a wi from which it scatters no light."""
-        call = self._rows({"wo": wo, "wi": wi}, inputs, named)
+        call = self._bound({"wo": wo, "wi": wi}, inputs, named)
         return call.colors(_on_side(SIDES.get(self.lights), self.row.value, call))
 
     def albedo_dir(
@@ -345,7 +289,7 @@ class ShadingModel(NodeModel):
         - `azimuth` (...): The viewer's angle from the tangent, in radian; only anisotropic models
           depend on it.
         """
-        call = self._rows({"view": views(mu, azimuth)}, inputs, named)
+        call = self._bound({"view": views(mu, azimuth)}, inputs, named)
         integral = self.row.integral or self.row.albedo
         return call.colors(integral(call.vectors[0], call.inputs))
 
@@ -353,7 +297,7 @@ class ShadingModel(NodeModel):
         """Average albedo under uniform light, if a closed form is known."""
         self._need("albedo_avg")
         assert self.row.average is not None
-        call = self._rows({}, inputs, named)
+        call = self._bound({}, inputs, named)
         return call.colors(self.row.average(call.inputs))
 
     def sample(
@@ -367,51 +311,16 @@ class ShadingModel(NodeModel):
         """
         self._need("sample")
         assert self.sampler is not None
-        call = self._rows({"wo": wo, "u": u}, inputs, named)
+        call = self._bound({"wo": wo, "u": u}, inputs, named)
         wi, pdf = self.sampler.sample(call.vectors[0], call.vectors[1], call.inputs)
-        wi = call.shaped(wi, (3,))
-        frame = _frame(named)
-        return out_of_frame(wi, *frame) if frame else wi, call.shaped(pdf)
+        return call.shaped(wi, (3,)), call.shaped(pdf)
 
     def pdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Density of `sample` at any wi, in 1/sr, shape (...); inputs as for `brdf`."""
         self._need("pdf")
         assert self.sampler is not None
-        call = self._rows({"wo": wo, "wi": wi}, inputs, named)
+        call = self._bound({"wo": wo, "wi": wi}, inputs, named)
         return call.shaped(_on_side(self.sampler.side, self.sampler.pdf, call))
-
-    def plot(self, path: str | None = None, **named: ArrayLike) -> Figure:
-        """Plot one material: polar lobe, albedo over the viewer's angle, and density of samples.
-
-        The figure is written to `path`, a .png, .svg or .pdf. Raises ImportError if matplotlib is missing.
-        """
-        return lobe_plot.draw(self, named, path)
-
-    def _rows(
-        self,
-        vectors: dict[str, ArrayLike],
-        inputs: tuple[ArrayLike, ...],
-        named: dict[str, ArrayLike],
-    ) -> Rows:
-        """Vectors and inputs of a call, in the frame of the node."""
-        own = {name: named[name] for name in self.by_name if name in named}
-        rest = {name: value for name, value in named.items() if name not in own or name == "weight"}
-        if frame := _frame(own):
-            if not {"wo", "wi"} & set(vectors):
-                raise TypeError("normal and tangent turn directions; an albedo has none to turn")
-            turned = {n: into_frame(v, *frame) for n, v in vectors.items() if n in ("wo", "wi")}
-            vectors = vectors | turned
-        if checked_switch("retroreflective", cast(bool, own.get("retroreflective", False))):
-            back = tuple(-x for x in ALONG)  # half a turn about the normal
-            vectors |= {n: out_of_frame(v, UP, back) for n, v in vectors.items() if n == "wo"}
-        return self._bound(vectors, inputs, rest, *([WEIGHT] if "weight" in own else []))
-
-
-def _frame(named: Mapping[str, ArrayLike]) -> tuple[ArrayLike, ArrayLike] | None:
-    """Normal and tangent of a call, or None if neither was given."""
-    if not {"normal", "tangent", "curve_direction"} & set(named):
-        return None
-    return named.get("normal", UP), named.get("tangent", named.get("curve_direction", ALONG))
 
 
 def _on_side(

@@ -53,7 +53,7 @@ RANGES = Ranges(
         **_each("rho color color0 color82 color90 tint tint_R tint_TT tint_TRT edge_color", _SHARE),
         **_each("roughness alpha anisotropy glossiness longitudinal azimuthal", _SHARE),
         **_each("azimuthal_roughness cuticle_angle amount opacity melanin_redness", _SHARE),
-        **_each("reflectance transmittance lobe_weight metalness", _SHARE),
+        **_each("reflectance transmittance metalness", _SHARE),
         **_each("u reflectivity melanin_concentration", (0.0, _BELOW_ONE, "[0, 1)")),
         **_each("eumelanin_color pheomelanin_color hair_color", (_ABOVE_ZERO, 1.0, "(0, 1]")),
         **_each("exponent ior extinction absorption scattering absorption_coefficient", _POSITIVE),

@@ -26,7 +26,7 @@ FACETS: dict[str, Value] = {
     "thinfilm_thickness": 0.0,
     "thinfilm_ior": 1.5,
 }
-# Defaults of a node's inputs in the order of its definition, except mode selectors and inputs in BY_NAME.
+# Defaults of a node's inputs in the order of its definition, except mode selectors, the weight and the frame.
 # A test compares them with MaterialX's definitions.
 DEFAULTS: dict[str, dict[str, Value]] = {
     "oren_nayar_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
@@ -41,12 +41,6 @@ DEFAULTS: dict[str, dict[str, Value]] = {
     "generalized_schlick_edf": {"color0": WHITE, "color90": WHITE, "exponent": 5.0, "base": BLACK},
     "absorption_vdf": {"absorption": BLACK},
     "anisotropic_vdf": {"absorption": BLACK, "scattering": BLACK, "anisotropy": 0.0},
-}
-NAMED_INPUTS = ("weight", "normal", "tangent", "retroreflective")
-# Keyword-only inputs: a lobe's weight, frame and mirror. Nodes that are not listed have ("weight", "normal").
-BY_NAME = {
-    **dict.fromkeys(CATEGORIES, NAMED_INPUTS),
-    "chiang_hair_bsdf": ("normal", "curve_direction"),
 }
 # Inputs that have another name in the functions of `mxeon.models`.
 QUANTITIES = {
@@ -103,9 +97,6 @@ def parameter(category: str, name: str, quantity: str = "") -> Parameter:
     """Input of a node, from its category and name."""
     quantity = quantity or QUANTITIES.get((category, name), name)
     return Parameter(name, DEFAULTS[category][name], quantity)
-
-
-WEIGHT = Parameter("weight", 1.0, "lobe_weight")
 
 
 Inputs: TypeAlias = Mapping[str, Array]
