@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from mxeon.models import media as emission
-from mxeon.models import media as shading
 from mxeon.models.nodes.emissions import COMBINED_EMISSIONS, EMISSIONS
 from tests.support.cases import direction as view
 
@@ -112,15 +111,3 @@ def inputs_of(row, count):
         if name.endswith("angle"):
             values[name] = np.full(count, {"inner_angle": 60.0, "outer_angle": 100.0}[name])
     return values
-
-
-def test_a_light_is_doubled_by_each_stop():
-    light = shading.light_radiance([0.5, 1.0], [1.0, 2.0], [-1.0, 3.0])
-    assert light.tolist() == [[0.25, 0.5], [8.0, 16.0]]
-
-
-def test_a_medium_neither_loses_nor_gains_over_two_halves():
-    coefficients = [0.5, 0.0, 2.0], [0.3, 0.0, 1e-9]
-    once = shading.volume_radiance([1.0], [2.0], *coefficients, 3.0)
-    first = shading.volume_radiance([1.0], [2.0], *coefficients, 1.2)
-    assert np.abs(shading.volume_radiance(first, [2.0], *coefficients, 1.8) - once).max() < ROUNDING

@@ -221,14 +221,6 @@ REVERSED = 5e-5
 # Mitsuba's values are float32: 64 roundings, the fourth power of D by alpha 0.3 among them.
 MITSUBA_BTDF = 64 * 2.0**-24 / 0.3
 
-# Subsurface scattering, each measured over the whole range of colors.
-SUBSURFACE_PEAK = 1.3e-5  # measured near the zero of d, just below color 1
-# van de Hulst's fit of a half space, against the H function: 0.00206 at color 0.18.
-SUBSURFACE_FIT = 0.0021
-# The similarity relation adds its own error: walks of 100,000 paths miss by 0.009 at most, at g = -0.5.
-SUBSURFACE_SIMILARITY = 0.009
-
-
 # EON, FON and QON in Mitsuba, in float32: value times cosine, at most 1/pi times some 15 roundings of 2^-24,
 # 1.1e-7 measured; and the weight of a sample, a quotient of two such values, 3.6e-7 measured.
 MITSUBA_EVAL = 3e-7

@@ -4,7 +4,7 @@
 A radiance is per channel, in any unit; the exitance is its integral over the hemisphere times the cosine, pi times
 that unit. Directions leave the surface, normal +z, or the position where light is scattered, so that light that goes
 straight on has wi = -wo; one below the horizon sees the back of the surface. `measured_edf` has no function here: its
-values come from a file. The albedo inversion is van de Hulst's fit for a half space.
+values come from a file.
 
 - `wo`, `wi` (..., 3): Unit vectors to 1e-6; z may be negative.
 - `radiance` (..., C): c per channel, that inside the cone for a conical emitter, in [0, 1e50].
@@ -14,9 +14,6 @@ values come from a file. The albedo inversion is van de Hulst's fit for a half s
 - `exponent` (...): q, in [0, 1e50]; with 0 the factor is `color90` everywhere.
 - `absorption`, `scattering`: Coefficients per channel in 1/m, in [0, 1e50].
 - `g`: Mean cosine of the deflection, in (-1, 1); at either end all light goes one way, and the function has no value.
-- `rho`: Diffuse reflectance, in [0, 1]: the node's color.
-- `scatter_anisotropy`: Mean cosine g of a scattering, in [-1, 1].
-- `separation`, `radius`: Distance r and mean free path l, lengths, in [1e-150, 1e150].
 - `temperature` (...): In kelvin, in [1, 1e9].
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
@@ -199,17 +196,6 @@ def _checked(
 
 
 @any_array
-def extinction(absorption: ArrayLike, scattering: ArrayLike) -> Array:
-    """Extinction coefficient, sigma_t = sigma_a + sigma_s: [MaterialX2026], section `anisotropic_vdf`, Extinction.
-
-    >>> float(extinction(0.5, 1.5))
-    2.0
-    """
-    sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
-    return (sigma_a + sigma_s)[()]
-
-
-@any_array
 def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayLike) -> Array:
     """Share T = exp(-sigma_t t) of the radiance that passes a homogeneous medium, without in-scattering.
 
@@ -225,21 +211,6 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
     sigma_a, sigma_s, t = checked_numbers(**values)
     xp = array_namespace(sigma_a, sigma_s, t)
     return xp.exp(-(sigma_a + sigma_s) * t)[()]
-
-
-@any_array
-def single_scattering_albedo(absorption: ArrayLike, scattering: ArrayLike) -> Array:
-    """Share of the extinction due to scattering, sigma_s / sigma_t; 0 without extinction.
-
-    [MaterialX2026], section `anisotropic_vdf`, Extinction.
-
-        >>> float(single_scattering_albedo(0.5, 1.5))
-        0.75
-    """
-    sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
-    sigma_t = sigma_a + sigma_s
-    xp = array_namespace(sigma_t)
-    return (sigma_s / xp.where(sigma_t > 0.0, sigma_t, 1.0))[()]
 
 
 @any_array
@@ -340,25 +311,6 @@ def _phase(less: Array, g: Array) -> Array:
 
 
 @any_array
-def light_radiance(emission: ArrayLike, intensity: ArrayLike, exposure: ArrayLike) -> Array:
-    """Radiance of a light source: the radiance of its EDF, scaled linearly and in stops.
-
-        L_e = I 2^E L_edf
-
-    - `emission` (..., C): Radiance of the EDF per channel, in [0, 1e50].
-    - `intensity`, `exposure` (...): I, in [0, 1e50], and E, in stops, in [-1000, 1000].
-
-    [MaterialX2026], section `light`, Light Emission Equation.
-
-        >>> light_radiance([0.5, 1.0], 3.0, 2.0)
-        array([ 6., 12.])
-    """
-    numbers = {"intensity": intensity, "exposure": exposure}
-    (c,), (scale, stops) = checked_colors({"emission": emission}, **numbers)
-    return c * (scale * 2.0**stops)
-
-
-@any_array
 def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLike) -> Array:
     """Radiance O (L_e + L_s) of a surface. Light from behind, of which 1 - O passes, is not included.
 
@@ -376,117 +328,23 @@ def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLi
     return covered * (emitted + light)
 
 
-@any_array
-def volume_radiance(
-    behind: ArrayLike,
-    emission: ArrayLike,
-    absorption: ArrayLike,
-    scattering: ArrayLike,
-    distance: ArrayLike,
-) -> Array:
-    """Radiance of a ray through a homogeneous medium, without in-scattering.
-
-        L = L_0 T + L_e t (1 - T) / (sigma_t t)
-
-    - `behind` (..., C): L_0, the radiance that enters the medium, per channel, in [0, 1e50].
-    - `emission` (..., C): L_e, radiance per meter that the medium emits in all directions, in [0, 1e50].
-    - `distance` (...): t in m, in [0, 1e50].
-
-    [MaterialX2026], section `volume`, and section The Equation of Transfer, whose integral is left out.
-
-        >>> volume_radiance([1.0], [3.0], [0.0], [0.0], 2.0)
-        array([7.])
-    """
-    media = {"absorption": absorption, "scattering": scattering}
-    (light, emitted, sigma_a, sigma_s), (t,) = checked_colors(
-        {"behind": behind, "emission": emission} | media, distance=distance
-    )
-    depth = (sigma_a + sigma_s) * t
-    xp = array_namespace(depth)
-    share = xp.where(depth > 0.0, -xp.expm1(-depth) / xp.where(depth > 0.0, depth, 1.0), 1.0)
-    return light * xp.exp(-depth) + emitted * t * share
-
-
-# Coefficients of the text's inversion: the quotients of van de Hulst's fit, rounded as printed.
-LINEAR = (4.09712, 4.20863)
-SQUARED = (9.59217, 41.6808, 17.7126)
 BLUR_NODES, PANELS = 50, 40  # nodes per panel; the blur's integrand has a kink
 FAR = 3.0  # length of the profile's second exponential, relative to the first
-
-
-@any_array
-def subsurface_albedo(rho: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Array:
-    """Single-scattering albedo in (0, 1] of a medium with a given diffuse reflectance.
-
-        d = 4.09712 + 4.20863 rho - sqrt(9.59217 + 41.6808 rho + 17.7126 rho^2)
-        w0 = 1 - d^2,  w = w0 / (1 - g (1 - w0))
-
-    It rises with rho except in the last 1.2e-5 of its range: the printed digits give d = -5e-6 at rho = 1, and w0 = 6e-6
-    at rho = 0. Accuracy: a half space of this albedo reflects rho within 0.0021 for g = 0, by its H function.
-    [MaterialX2026], Subsurface Scattering Model, Albedo Inversion.
-
-        >>> subsurface_albedo([0.2, 0.5, 0.8]).round(6)
-        array([0.613357, 0.911709, 0.990589])
-    """
-    return _single_scatter(*checked_numbers(rho=rho, scatter_anisotropy=scatter_anisotropy))
-
-
-def _single_scatter(color: Array, g: Array) -> Array:
-    """`subsurface_albedo` on valid arrays."""
-    polynomial = SQUARED[0] + SQUARED[1] * color + SQUARED[2] * color**2
-    d = LINEAR[0] + LINEAR[1] * color - array_namespace(color).sqrt(polynomial)
-    isotropic = 1.0 - d * d
-    return isotropic / (1.0 - g * d * d)
-
-
-@any_array
-def subsurface_coefficients(
-    rho: ArrayLike, radius: ArrayLike, scatter_anisotropy: ArrayLike = 0.0
-) -> tuple[Array, Array]:
-    """Coefficients of scattering and of absorption, per unit of length.
-
-        sigma_s = w / l,  sigma_a = (1 - w) / l
-
-    Result: per unit of length. Their sum is 1 / l. [MaterialX2026], Subsurface Scattering Model,
-    Albedo Inversion.
-
-        >>> [round(float(each), 4) for each in subsurface_coefficients(0.5, 0.1)]
-        [9.1171, 0.8829]
-    """
-    values = {"rho": rho, "radius": radius, "scatter_anisotropy": scatter_anisotropy}
-    color, length, g = checked_numbers(**values)
-    albedo = _single_scatter(color, g)
-    return albedo / length, (1.0 - albedo) / length
-
-
-@any_array
-def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
-    """Share of the light that leaves at a distance from its point of entry, per area.
-
-        R(r) = (exp(-r / l) + exp(-r / (3 l))) / (8 pi l r)
-
-    Result: per unit of area. Its integral over a plane is 1; the mean distance is 5 l / 2.
-    [MaterialX2026], Normalized Diffusion Profile; [Christensen2015], where l is divided by s(rho).
-
-        >>> diffusion_profile(1.0, 1.0).round(6).item()
-        0.043147
-    """
-    r, length = checked_numbers(separation=separation, radius=radius)
-    exp = array_namespace(r, length).exp
-    return (exp(-r / length) + exp(-r / (3.0 * length))) / (8.0 * np.pi * length * r)
 
 
 @any_array
 def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
     """Cosine of a distant light, blurred over a unit sphere by the normalized diffusion profile.
 
+        R(r) = (exp(-r / l) + exp(-r / (3 l))) / (8 pi l r)
         W(mu) = int C'(r) c(mu, r) dr / C(2),  c = mean of max(cos(theta), 0) at the distance r
 
     - `mu`: Cosine of the light with the normal, in [-1, 1].
     - `reach`: Mean free path over the radius of the sphere, in [1e-150, 1e150]; its limit 0 is max(mu, 0).
 
     Its mean over the sphere is 1/4, as for max(mu, 0). Distances are through the body, as in the text; light whose
-    distance exceeds the sphere is distributed like the rest. Accuracy: absolute error below 1e-6.
+    distance exceeds the sphere is distributed like the rest. Accuracy: absolute error below 1e-6. [MaterialX2026],
+    Normalized Diffusion Profile; [Christensen2015].
 
         >>> diffusion_blur([-0.5, 0.0, 1.0], 0.1).round(4)
         array([0.0097, 0.074 , 0.9344])

@@ -57,7 +57,7 @@ RANGES = Ranges(
         **_each("u reflectivity melanin_concentration", (0.0, _BELOW_ONE, "[0, 1)")),
         **_each("eumelanin_color pheomelanin_color hair_color", (_ABOVE_ZERO, 1.0, "(0, 1]")),
         **_each("exponent ior extinction absorption scattering absorption_coefficient", _POSITIVE),
-        **_each("radiance base emission scattered behind light intensity distance", _POSITIVE),
+        **_each("radiance base emission scattered light distance", _POSITIVE),
         **_each("scale_tt scale_trt", _POSITIVE),
         **_each("coat_alpha", (0.01, 1.0, "[0.01, 1]")),
         **_each("specular_roughness", (0.1, 1.0, "[0.1, 1]")),  # the square root of alpha's range
@@ -66,15 +66,14 @@ RANGES = Ranges(
         **_each("thinfilm_thickness thickness", (0.0, 1e9, "[0, 1e9]")),  # nm
         **_each("temperature", (1.0, 1e9, "[1, 1e9]")),
         **_each("variance scale roughness_R roughness_TT roughness_TRT", _WIDTH),
-        **_each("separation radius reach", _LENGTH),
+        **_each("radius reach", _LENGTH),
         **_each("weight x", (0.0, _LARGEST, "[0, inf)")),
         **_each("albedo phi", (-_LARGEST, _LARGEST, "(-inf, inf)")),
-        **_each("cos_theta scatter_anisotropy", (-1.0, 1.0, "[-1, 1]")),
+        **_each("cos_theta", (-1.0, 1.0, "[-1, 1]")),
         **_each("g", (-_BELOW_ONE, _BELOW_ONE, "(-1, 1)")),
         **_each("inner_angle outer_angle", (0.0, 360.0, "[0, 360]")),
         **_each("theta_i theta_o", (-0.5 * np.pi, 0.5 * np.pi, "[-pi/2, pi/2]")),
         **_each("sigma", (0.0, 0.5 * np.pi, "[0, pi/2]")),
-        **_each("exposure", (-1000.0, 1000.0, "[-1000, 1000]")),
     }
 )
 
