@@ -19,7 +19,7 @@ from tests.fuzz import arguments
 
 PAGES = Path(__file__).resolve().parents[2] / "docs" / "api"
 # Functions on the pages that take no array.
-NO_ARRAYS = {"threads", "layer", "add", "model", "model_names"}
+NO_ARRAYS = {"layer", "add", "model", "model_names"}
 
 
 @pytest.fixture(scope="module")

@@ -2,13 +2,11 @@
 """The models: limits, invariants, agreement with 50 digits, the closed domain, and evaluation."""
 
 import tracemalloc
-from threading import Thread
 
 import mpmath as mp
 import numpy as np
 import pytest
 
-from mxeon.models import threads
 from mxeon.models.diffuse import (
     eon_brdf,
     fon_albedo_avg,
@@ -229,53 +227,13 @@ def test_many_pairs_have_the_values_of_their_parts(row):
 
 
 @named([diffuse_model("oren_nayar"), diffuse_model("eon")])
-def test_memory_beyond_arguments_and_result_stays_below_64_mebibytes_on_four_threads(row):
+def test_memory_beyond_arguments_and_result_stays_below_64_mebibytes(row):
     wo, wi, rho, fraction = pairs(800_000, seed=14)
     tracemalloc.start()
-    with threads(4):
-        result = row.brdf(wo, wi, rho, *parameter(row, fraction))
+    result = row.brdf(wo, wi, rho, *parameter(row, fraction))
     beyond = tracemalloc.get_traced_memory()[1] - result.nbytes
     tracemalloc.stop()
     assert beyond < 2**26
-
-
-MANY = pairs(2**16, seed=17)  # more than are evaluated at once
-
-
-@pytest.fixture
-def started(monkeypatch):
-    """The threads that are started."""
-    threads_started, start = [], Thread.start
-    monkeypatch.setattr(Thread, "start", lambda each: threads_started.append(each) or start(each))
-    return threads_started
-
-
-def test_no_more_threads_evaluate_than_the_context_asks_for_and_none_unless_asked(started):
-    with threads(2):
-        eon_brdf(*MANY)
-    assert 1 <= len(started) <= 2  # one that has ended its block takes another
-    started.clear()
-    eon_brdf(*MANY)
-    assert not started
-
-
-def test_values_do_not_depend_on_the_number_of_threads():
-    with threads(2):
-        several = eon_brdf(*MANY)
-    assert np.array_equal(several, eon_brdf(*MANY))
-
-
-def test_a_block_that_fails_on_a_thread_of_several_is_an_error():
-    wo, wi, rho, r = (argument.copy() for argument in MANY)
-    wi[-1, 2] = -1.0
-    with threads(2), pytest.raises(ValueError, match="wi must not point below the horizon"):
-        eon_brdf(wo, wi, rho, r)
-
-
-@pytest.mark.parametrize("count", [0, -1, 1.5, "two"])
-def test_a_number_of_threads_below_one_is_refused(count):
-    with pytest.raises(ValueError, match="threads must be a positive integer; got"), threads(count):
-        pass
 
 
 def test_arguments_are_left_as_they_were():

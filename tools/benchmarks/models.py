@@ -24,7 +24,6 @@ from mxeon.models import (
     fresnel_conductor_avg,
     generalized_schlick_brdf,
     ggx_albedo_dir,
-    threads,
     zeltner_brdf,
 )
 from tools.benchmarks.rounds import (
@@ -63,7 +62,6 @@ C2 = 2.0 / 3.0 - 28.0 / (15.0 * np.pi)
 COMPARED = 1e-3
 TOLERANCE = 1e-11
 PAIRS = (10_000, 100_000, 1_000_000, 10_000_000, 30_000_000)
-FASTER = {1_000_000: 3.0, 10_000_000: 3.5}  # goals of two threads, by the number of pairs
 
 
 def arguments(count, material):
@@ -214,15 +212,9 @@ def naive_eon_brdf(wo, wi, rho, r):
     return single + tint / np.pi * lost[..., np.newaxis]
 
 
-def on_threads(count, *arguments):
-    with threads(count):
-        return eon_brdf(*arguments)
-
-
 WAYS = {
     "naive": naive_eon_brdf,
-    "blocks, 1 thread": partial(on_threads, 1),
-    "blocks, 2 threads": partial(on_threads, 2),
+    "blocks": eon_brdf,
 }
 
 
@@ -239,8 +231,7 @@ def per_pair(rounds, count, material):
     figures = [figure(f"{n}, {label}", "ns", 1e9 / count * s) for n, s in seconds.items()]
     naive = seconds.pop("naive")
     for name, times in seconds.items():
-        goal = FASTER.get(count) if name == "blocks, 2 threads" else None
-        figures.append(figure(f"naive / {name}, {label}", "x", naive / times, goal, True))
+        figures.append(figure(f"naive / {name}, {label}", "x", naive / times))
     return figures, checks
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reflection models in NumPy: values, albedos, inversion and sampling.
 
-The models only import NumPy. A call uses the caller's thread, unless `threads` sets more.
+The models only import NumPy. A call uses the caller's thread.
 """
 
 from mxeon.models.catalog import model as model
@@ -18,7 +18,6 @@ from mxeon.models.coat import varnished_albedo_dir as varnished_albedo_dir
 from mxeon.models.coat import varnished_brdf as varnished_brdf
 from mxeon.models.coat import varnished_pdf as varnished_pdf
 from mxeon.models.coat import varnished_sample as varnished_sample
-from mxeon.models.core.evaluation import threads as threads
 from mxeon.models.core.layering import Bsdf as Bsdf
 from mxeon.models.core.layering import add as add
 from mxeon.models.core.layering import layer as layer
@@ -97,8 +96,6 @@ from mxeon.models.microfacet.ggx import smith_g2 as smith_g2
 from mxeon.models.microfacet.ggx import smith_g2_anisotropic as smith_g2_anisotropic
 from mxeon.models.nodes.node import Parameter as Parameter
 from mxeon.models.sampling import *  # noqa: F403
-from mxeon.models.shading_model import EmissionModel as EmissionModel
-from mxeon.models.shading_model import MediumModel as MediumModel
 from mxeon.models.shading_model import ShadingModel as ShadingModel
 from mxeon.models.sheen import conty_kulla_albedo_dir as conty_kulla_albedo_dir
 from mxeon.models.sheen import conty_kulla_brdf as conty_kulla_brdf

@@ -6,9 +6,9 @@ Inputs have MaterialX's names, order, units and defaults, which may differ from 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Literal, TypeAlias, cast, overload
+from typing import cast
 
 import numpy as np
 
@@ -17,18 +17,10 @@ from mxeon.models.core.arguments import checked_choice, checked_directions
 from mxeon.models.core.arrays import Array, any_array, array_namespace, cosine, library
 from mxeon.models.media import hg_pdf, hg_sample
 from mxeon.models.nodes import NODES
-from mxeon.models.nodes.emissions import EMISSIONS
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
-from mxeon.models.nodes.media import MEDIA
 from mxeon.models.nodes.microfacets import FILM_NODES, TRANSMISSION_NODES, TRANSMISSIONS
-from mxeon.models.nodes.node import DEFAULTS, Inputs, Parameter, PbrNode, parameter
-from mxeon.models.shading_model import (
-    EmissionModel,
-    MediumModel,
-    ModelSampler,
-    NodeModel,
-    ShadingModel,
-)
+from mxeon.models.nodes.node import Inputs, Parameter, PbrNode, parameter
+from mxeon.models.shading_model import ModelSampler, ShadingModel
 from mxeon.models.transmission import LEAST_IOR
 
 
@@ -85,7 +77,7 @@ SAMPLERS = {
 NODES_BY_CATEGORY = {
     "oren_nayar_diffuse_bsdf": "qon",
     "eon_diffuse_bsdf": "eon",
-    "generalized_schlick": "schlick",  # rather than the EDF, whose name is as similar
+    "generalized_schlick": "schlick",
     # Reversed, so that a node's first mode wins.
     **{row.category: row.name for row in reversed((*NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }
@@ -98,27 +90,12 @@ ALSO = {
     "conty_kulla": "charlie imageworks",
 }
 
-Edf: TypeAlias = Literal["uniform_edf", "conical_edf", "generalized_schlick_edf"]
-Vdf: TypeAlias = Literal["absorption_vdf", "anisotropic_vdf"]
 
-
-@overload
-def model(name: Edf) -> EmissionModel: ...  # type: ignore[overload-overlap]
-
-
-@overload
-def model(name: Vdf) -> MediumModel: ...  # type: ignore[overload-overlap]
-
-
-@overload
-def model(name: str) -> ShadingModel: ...
-
-
-def model(name: str) -> NodeModel:
+def model(name: str) -> ShadingModel:
     """The model with this name: a rough diffuse model, a known variant of one, or a node of pbrlib.
 
     - `name`: One of `model_names()`, such as "eon", "dielectric" or "zeltner", or the category of a node, such
-      as "conductor_bsdf" or "uniform_edf", for its default mode.
+      as "conductor_bsdf", for its default mode.
 
     Raises `ValueError` if there is none, with similar names.
 
@@ -145,9 +122,8 @@ def model_names() -> tuple[str, ...]:
     return tuple(MODELS)
 
 
-def _inputs(category: str, names: Iterable[str] = ()) -> tuple[Parameter, ...]:
-    """Inputs of a node: the named ones, or all."""
-    return tuple(parameter(category, name) for name in names or DEFAULTS[category])
+def _inputs(row: PbrNode) -> tuple[Parameter, ...]:
+    return tuple(parameter(row.category, name) for name in row.inputs)
 
 
 def _of_node(row: PbrNode) -> ShadingModel:
@@ -155,7 +131,7 @@ def _of_node(row: PbrNode) -> ShadingModel:
     lights = "back" if row.transmits else "front"
     return ShadingModel(
         row,
-        row.parameters or _inputs(row.category, row.inputs),
+        row.parameters or _inputs(row),
         sampler=SAMPLERS.get(row.name, COSINE),
         lights="all sides" if row is HAIR_NODE else lights,
     )
@@ -185,7 +161,7 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
     title = f"{row.title}, scatter mode {mode}"
     return ShadingModel(
         replace(row, title=title, value=value, albedo=albedo, integral=None),
-        _inputs(row.category, row.inputs),
+        _inputs(row),
         lights="back" if mode == "T" else "all sides",
     )
 
@@ -278,7 +254,7 @@ def _pair(result: Array | tuple[Array, Array]) -> tuple[Array, Array]:
     return result if isinstance(result, tuple) else cast(tuple[Array, Array], (result,))
 
 
-MODELS: dict[str, NodeModel] = {
+MODELS = {
     each.name: each
     for each in (
         *map(_of_node, table.DIFFUSE_MODELS + table.KNOWN_DEFECTS),
@@ -288,7 +264,5 @@ MODELS: dict[str, NodeModel] = {
         _of_openpbr(),
         *map(_of_node, (*NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
         *map(_of_transmission, TRANSMISSION_NODES),
-        *(EmissionModel(replace(e, name=e.category), _inputs(e.category)) for e in EMISSIONS),
-        *(MediumModel(replace(e, name=e.category), _inputs(e.category)) for e in MEDIA),
     )
 }

@@ -2,8 +2,7 @@
 """Lambert, the Oren-Nayar family, Burley's model and diffuse transmission: BRDFs, albedos, inversion.
 
 BRDFs are in 1/sr and without the cosine. All functions broadcast, work on the closed domain, and evaluate
-in blocks on the caller's thread, so that memory beyond arguments and result does not grow; `threads` lets
-several share a large call. BRDFs are reciprocal. Where both directions graze the surface and s > 0,
+in blocks on the caller's thread, so that memory beyond arguments and result does not grow. BRDFs are reciprocal. Where both directions graze the surface and s > 0,
 s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 there for any choice.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.

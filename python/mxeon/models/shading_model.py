@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model as one object: value, albedos, samples, density and inputs; an emission; a medium.
+"""A model as one object: value, albedos, samples, density and inputs.
 
 Inputs of a call are bound to the model's parameters, checked, and laid out in rows of pairs.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from typing import cast
 
 import numpy as np
 
@@ -32,9 +31,7 @@ from mxeon.models.core.arrays import (
     library,
     root,
 )
-from mxeon.models.media import hg_pdf, hg_phase, hg_sample, transmittance
-from mxeon.models.nodes.emissions import Emission
-from mxeon.models.nodes.node import Inputs, Node, Parameter, PbrNode
+from mxeon.models.nodes.node import Inputs, Parameter, PbrNode
 
 UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)  # MaterialX's default normal and tangent
 
@@ -143,7 +140,7 @@ def _laid(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) 
 
 # Functions of models, and the reason why a model may lack each of them.
 LACKS = {
-    **dict.fromkeys(("bsdf", "albedo_dir", "edf", "exitance", "transmittance", "phase"), ""),
+    **dict.fromkeys(("bsdf", "albedo_dir"), ""),
     **dict.fromkeys(("sample", "pdf"), ": no density of refracted light is implemented"),
     "brdf": ": light passes through it, so call bsdf",
     "albedo_avg": ": no closed form is known",
@@ -164,72 +161,7 @@ class ModelSampler:
 
 
 @dataclass(frozen=True, repr=False)
-class NodeModel(ABC):
-    """Base of the models of all nodes: a row, inputs, and a list of functions."""
-
-    row: Node[Any]
-    parameters: tuple[Parameter, ...]  # its inputs: name, default, interval, unit
-
-    @property
-    def name(self) -> str:
-        """The name for `mxeon.model`."""
-        return self.row.name
-
-    @property
-    def title(self) -> str:
-        """The printed name."""
-        return self.row.title
-
-    @property
-    def node(self) -> str:
-        """Category of the node that defines its inputs."""
-        return self.row.category
-
-    @property
-    @abstractmethod
-    def functions(self) -> tuple[str, ...]:
-        """Names of the functions that it has."""
-
-    def __repr__(self) -> str:
-        inputs = "".join(f"\n  {each!r}" for each in self.parameters)
-        return f"{self.name}: {self.title}; {', '.join(self.functions)}{inputs}"
-
-    def __dir__(self) -> Iterable[str]:
-        """Names of all attributes, without unsupported functions."""
-        return [name for name in super().__dir__() if name in self.functions or name not in LACKS]
-
-    if not TYPE_CHECKING:  # type checkers would accept every name as an attribute
-
-        def __getattr__(self, name: str) -> None:
-            """Raise AttributeError with the supported functions for a function of other models."""
-            if name in LACKS:
-                raise AttributeError(
-                    f"{self.name}, {self.title}, has no {name}; it has {', '.join(self.functions)}"
-                )
-            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-
-    def _need(self, function: str) -> None:
-        """Raise ValueError with the reason and the supported functions if the model lacks this one."""
-        if function not in self.functions:
-            raise ValueError(
-                f"{self.name} has no {function}{LACKS[function]}; it has {', '.join(self.functions)}"
-            )
-
-    def _bound(
-        self,
-        vectors: dict[str, ArrayLike],
-        inputs: tuple[ArrayLike, ...],
-        named: dict[str, ArrayLike],
-        *others: Parameter,
-    ) -> Rows:
-        """Vectors and inputs of a call in rows; `others` are keyword-only parameters."""
-        own = {each.name: named.pop(each.name) for each in others}
-        values = bound_inputs(self.parameters, inputs, named) | own
-        return rows((*self.parameters, *others), tuple(vectors), **vectors, **values)
-
-
-@dataclass(frozen=True, repr=False)
-class ShadingModel(NodeModel):
+class ShadingModel:
     """A model as functions of MaterialX's inputs.
 
     Each function takes the inputs after its directions, in the order of `parameters` or by name; omitted
@@ -248,12 +180,51 @@ class ShadingModel(NodeModel):
     """
 
     row: PbrNode
+    parameters: tuple[Parameter, ...]  # its inputs: name, default, interval, unit
     sampler: ModelSampler | None = None
     lights: str = "front"  # side of the light that it scatters: "front", "back" or "all sides"
 
+    @property
+    def name(self) -> str:
+        """The name for `mxeon.model`."""
+        return self.row.name
+
+    @property
+    def title(self) -> str:
+        """The printed name."""
+        return self.row.title
+
+    @property
+    def node(self) -> str:
+        """Category of the node that defines its inputs."""
+        return self.row.category
+
     def __repr__(self) -> str:
-        fiber = "\n  albedo_dir integrates the value without a cosine"
-        return super().__repr__() + (fiber if self.node == "chiang_hair_bsdf" else "")
+        lines = [repr(each) for each in self.parameters]
+        if self.node == "chiang_hair_bsdf":
+            lines.append("albedo_dir integrates the value without a cosine")
+        return "\n  ".join([f"{self.name}: {self.title}; {', '.join(self.functions)}", *lines])
+
+    def __dir__(self) -> Iterable[str]:
+        """Names of all attributes, without unsupported functions."""
+        return [name for name in super().__dir__() if name in self.functions or name not in LACKS]
+
+    def _need(self, function: str) -> None:
+        """Raise ValueError with the reason and the supported functions if the model lacks this one."""
+        if function not in self.functions:
+            raise ValueError(
+                f"{self.name} has no {function}{LACKS[function]}; it has {', '.join(self.functions)}"
+            )
+
+    def _bound(
+        self,
+        vectors: dict[str, ArrayLike],
+        inputs: tuple[ArrayLike, ...],
+        named: dict[str, ArrayLike],
+    ) -> Rows:
+        """Vectors and inputs of a call in rows."""
+        values = bound_inputs(self.parameters, inputs, named)
+        return rows(self.parameters, tuple(vectors), **vectors, **values)
 
     @property
     def functions(self) -> tuple[str, ...]:
@@ -337,82 +308,3 @@ def _on_side(
     mirrored = xp.stack([wi[:, 0], wi[:, 1], side * xp.where(other, -z, z)], axis=-1)
     values = function(wo, mirrored, call.inputs)
     return xp.where(other[:, np.newaxis] if values.ndim > 1 else other, 0.0, values)
-
-
-DISTANCE = Parameter("distance", 1.0, "distance")
-COSINE = Parameter("cos_theta", 1.0, "cos_theta")
-
-
-@dataclass(frozen=True, repr=False)
-class EmissionModel(NodeModel):
-    """An EDF node as functions of MaterialX's inputs.
-
-    Inputs and their shapes are those of `ShadingModel`.
-
-        >>> import mxeon
-        >>> mxeon.model("conical_edf").edf([0.6, 0.0, 0.8], color=2.0, outer_angle=90.0).round(6)
-        np.float64(1.251183)
-    """
-
-    row: Emission
-
-    @property
-    def functions(self) -> tuple[str, ...]:
-        """Names of the functions that it has."""
-        return ("edf", "exitance")
-
-    def edf(self, wo: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Radiance towards `wo`, shape (..., C) or (...); below the horizon, from the back."""
-        call = self._bound({"wo": wo}, inputs, named)
-        return call.colors(self.row.value(call.vectors[0], call.inputs))
-
-    def exitance(self, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Integral of the radiance times the cosine over the hemisphere."""
-        call = self._bound({}, inputs, named)
-        return call.colors(self.row.exitance(call.inputs))
-
-
-@dataclass(frozen=True, repr=False)
-class MediumModel(NodeModel):
-    """A VDF node as functions of MaterialX's inputs.
-
-    Inputs and their shapes are those of `ShadingModel`.
-
-        >>> import mxeon
-        >>> mxeon.model("absorption_vdf").transmittance(2.0, [0.5, 1.0, 0.0]).round(6)
-        array([0.367879, 0.135335, 1.      ])
-    """
-
-    @property
-    def functions(self) -> tuple[str, ...]:
-        """Names of the functions that it has."""
-        scatters = len(self.parameters) > 1
-        return ("transmittance", *(("phase", "sample", "pdf") if scatters else ()))
-
-    def transmittance(self, distance: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Share of the radiance that passes a distance in m, shape (..., C) or (...)."""
-        call = self._bound({}, inputs, {**named, "distance": distance}, DISTANCE)
-        scattering = call.inputs.get("scattering", 0.0)
-        length = call.inputs["distance"][..., None]
-        return call.colors(transmittance(call.inputs["absorption"], scattering, length))
-
-    def phase(self, cos_theta: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Phase function at the cosine of a deflection, 1/sr, shape (...)."""
-        self._need("phase")
-        call = self._bound({}, inputs, {**named, "cos_theta": cos_theta}, COSINE)
-        return call.shaped(hg_phase(call.inputs["cos_theta"], call.inputs["anisotropy"]))
-
-    def sample(
-        self, wo: ArrayLike, u: ArrayLike, *inputs: ArrayLike, **named: ArrayLike
-    ) -> tuple[Array, Array]:
-        """Directions drawn by the phase function, shape (..., 3), and their density, shape (...)."""
-        self._need("sample")
-        call = self._bound({"wo": wo, "u": u}, inputs, named)
-        wi, pdf = hg_sample(call.vectors[0], call.vectors[1], call.inputs["anisotropy"])
-        return call.shaped(wi, (3,)), call.shaped(pdf)
-
-    def pdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Density of `sample` at wi, 1/sr, shape (...)."""
-        self._need("pdf")
-        call = self._bound({"wo": wo, "wi": wi}, inputs, named)
-        return call.shaped(hg_pdf(call.vectors[0], call.vectors[1], call.inputs["anisotropy"]))

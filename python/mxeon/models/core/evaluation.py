@@ -3,10 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -26,29 +23,6 @@ from mxeon.models.core.arguments import (
     with_axes,
 )
 from mxeon.models.core.arrays import NUMPY, Array, ArrayLike, Numbers, array_namespace
-
-_threads: ContextVar[int] = ContextVar("threads", default=1)
-
-
-@contextmanager
-def threads(count: int) -> Iterator[None]:
-    """Context in which the functions of `mxeon.models` use `count` threads; by default, only the caller's.
-
-    A thread takes a block of 32768 pairs at a time, so that calls with fewer pairs use one. Values
-    do not depend on the number. The setting belongs to the thread or task that enters the context.
-
-        >>> from mxeon.models import lambert_brdf
-        >>> with threads(2):
-        ...     lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], 0.5).round(6)
-        array([0.159155])
-    """
-    if not isinstance(count, int) or count < 1:
-        raise ValueError(f"threads must be a positive integer; got {count!r}")
-    token = _threads.set(count)
-    try:
-        yield
-    finally:
-        _threads.reset(token)
 
 
 def evaluate(
@@ -121,7 +95,7 @@ def evaluate_material(
     arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
     out = np.empty((*shape, channels))
 
-    def fill(block: tuple[slice, ...]) -> None:
+    for block in blocks(shape, size):
         parts = {name: tile(array, block) for name, array in arrays.items()}
         values = formula(
             **{name: parts[name][0] if name in numbers else parts[name] for name in parts}
@@ -129,14 +103,6 @@ def evaluate_material(
         # Copying channel by channel takes a quarter of the time of one transposed copy.
         for channel, value in enumerate(np.broadcast_to(values, (channels, *values.shape[1:]))):
             out[block][..., channel] = value
-
-    tiling = list(blocks(shape, size))
-    if (count := min(_threads.get(), len(tiling))) < 2:
-        for block in tiling:
-            fill(block)
-        return out
-    with ThreadPoolExecutor(count) as pool:  # NumPy releases the GIL
-        list(pool.map(fill, tiling))
     return out
 
 

@@ -36,24 +36,11 @@ DEFAULTS: dict[str, dict[str, Value]] = {
     "sheen_bsdf": {"color": WHITE, "roughness": 0.3},
     **{name: {**colors, **numbers, **FACETS} for name, (_, colors, numbers) in CATEGORIES.items()},
     "chiang_hair_bsdf": HAIR,
-    "uniform_edf": {"color": WHITE},
-    "conical_edf": {"color": WHITE, "inner_angle": 60.0, "outer_angle": 0.0},
-    "generalized_schlick_edf": {"color0": WHITE, "color90": WHITE, "exponent": 5.0, "base": BLACK},
-    "absorption_vdf": {"absorption": BLACK},
-    "anisotropic_vdf": {"absorption": BLACK, "scattering": BLACK, "anisotropy": 0.0},
-}
-# Inputs that have another name in the functions of `mxeon.models`.
-QUANTITIES = {
-    ("uniform_edf", "color"): "radiance",
-    ("conical_edf", "color"): "radiance",
-    ("anisotropic_vdf", "anisotropy"): "g",
 }
 UNITS = {
     "sigma": "rad",
     "thinfilm_thickness": "nm",
     "absorption_coefficient": "1/radius",
-    **dict.fromkeys(("absorption", "scattering"), "1/m"),
-    **dict.fromkeys(("inner_angle", "outer_angle"), "degree"),
     **dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), "rad^2, rad"),
 }
 
@@ -95,8 +82,7 @@ class Parameter:
 
 def parameter(category: str, name: str, quantity: str = "") -> Parameter:
     """Input of a node, from its category and name."""
-    quantity = quantity or QUANTITIES.get((category, name), name)
-    return Parameter(name, DEFAULTS[category][name], quantity)
+    return Parameter(name, DEFAULTS[category][name], quantity or name)
 
 
 Inputs: TypeAlias = Mapping[str, Array]
