@@ -23,7 +23,7 @@ from tests.support.bsdfs import (
 from tests.support.tolerances import MITSUBA_COAT, MITSUBA_DENSITY, MITSUBA_EVAL, MITSUBA_WEIGHT
 
 PAGE = Path(__file__).parents[2] / "docs" / "mitsuba.md"
-COAT, VARNISH, BASE = "dielectric_over_eon", "varnished", "openpbr_base"
+COAT, VARNISH = "dielectric_over_eon", "varnished"
 DEVIATE = 4.5  # of a mean: exceeded once in 150,000 times
 STEP = 2.0**-13  # which float32 adds without a rounding
 VIEW, LIGHT = np.array([[0.6, 0.0, 0.8]]), np.array([[-0.48, 0.6, 0.64]])
@@ -33,27 +33,18 @@ MODELS = {
     "qon": models.qon_brdf,
     COAT: models.dielectric_over_eon_brdf,
     VARNISH: models.varnished_brdf,
-    BASE: models.openpbr_base_brdf,
 }
-# Inputs of each plugin by the model's names, and the plugin's names where they are others.
 INPUTS = {
     **{name: {parameter: 0.4} for name, parameter in PARAMETERS.items()},
     **{key: {"roughness": 0.6, "alpha": 0.3, "ior": 1.5} for key in (COAT, VARNISH)},
-    BASE: {"roughness": 0.6, "specular_roughness": 0.5, "specular_ior": 1.5, "metalness": 0.25},
 }
-NAMES = {"roughness": "base_diffuse_roughness", "metalness": "base_metalness"}
-TEXTURES = ("roughness", "sigma", *NAMES.values())
-
-
-def named(name, key):
-    return NAMES.get(key, key) if name == BASE else key
+TEXTURES = ("roughness", "sigma")
 
 
 def bsdf(name, color=COLOR, **inputs):
     """Properties of a plugin with these inputs, and the others as in INPUTS."""
-    values = {named(name, key): value for key, value in (INPUTS[name] | inputs).items()}
     rgb = {"type": "rgb", "value": list(color)}
-    return {"type": name, "base_color" if name == BASE else "reflectance": rgb} | values
+    return {"type": name, "reflectance": rgb} | INPUTS[name] | inputs
 
 
 def expected(name, wo, wi, **inputs):
@@ -64,7 +55,7 @@ def expected(name, wo, wi, **inputs):
 
 def allowed(name, value):
     """Largest error of a value: relative where a lobe of facets is larger."""
-    return np.maximum(MITSUBA_EVAL, MITSUBA_COAT * value if name in (COAT, VARNISH, BASE) else 0.0)
+    return np.maximum(MITSUBA_EVAL, MITSUBA_COAT * value if name in (COAT, VARNISH) else 0.0)
 
 
 CASES = (
@@ -75,7 +66,6 @@ CASES = (
         for a in (0.015625, 0.3, 1.0)
         for n in (1.02, 1.5, 4.0)
     ),
-    *((BASE, {"metalness": each}) for each in (0.0, 0.25, 1.0)),
 )
 
 
@@ -120,10 +110,8 @@ def test_gradients_are_those_of_the_model(mi, name):
 
     made = mi.load_dict(bsdf(name))
     parameters = mi.traverse(made)
-    names = {key: named(name, key) for key in INPUTS[name]}
-    names = {key: f"{each}.value" if each in TEXTURES else each for key, each in names.items()}
-    color = "base_color.value" if name == BASE else "reflectance.value"
-    for each in (color, *names.values()):
+    names = {key: f"{key}.value" if key in TEXTURES else key for key in INPUTS[name]}
+    for each in ("reflectance.value", *names.values()):
         dr.enable_grad(parameters[each])
     parameters.update()
     dr.backward(dr.sum(made.eval(mi.BSDFContext(), surface(mi, VIEW), mi.Vector3f(LIGHT.T))))
@@ -132,7 +120,7 @@ def test_gradients_are_those_of_the_model(mi, name):
         ends = [expected(name, VIEW, LIGHT, **{key: middle + x}).sum() for x in (STEP, -STEP)]
         found = np.array(dr.grad(parameters[each])).item()
         assert found == pytest.approx((ends[0] - ends[1]) / (2.0 * STEP), rel=1e-4, abs=1e-6)
-    assert np.array(dr.grad(parameters[color])).min() > 0.0
+    assert np.array(dr.grad(parameters["reflectance.value"])).min() > 0.0
 
 
 @pytest.mark.parametrize(
@@ -157,7 +145,6 @@ def test_an_input_outside_its_range_is_refused(mi, name, inputs, message):
 SAMPLED = [  # plugin, inputs, angle of the viewer
     *(("eon", {"roughness": each}, angle) for each in (0.3, 1.0) for angle in (0.0, 0.8, 1.5)),
     *((name, {}, angle) for name in (COAT, VARNISH) for angle in (0.0, 1.4)),
-    (BASE, {}, 0.8),
 ]
 
 
@@ -176,7 +163,7 @@ def test_a_white_furnace_keeps_its_energy(mi, name, lossless):
 
 @pytest.mark.parametrize(
     "name, inputs",
-    [*((name, {"alpha": a}) for name in (COAT, VARNISH) for a in (0.05, 0.5)), (BASE, {})],
+    [(name, {"alpha": a}) for name in (COAT, VARNISH) for a in (0.05, 0.5)],
 )
 def test_a_white_furnace_keeps_the_energy_of_facets_in_the_mean(mi, name, inputs):
     picture = furnace(mi, bsdf(name, (1.0,) * 3, **inputs), 64)[..., 0]

@@ -40,8 +40,6 @@ INTERFACES = "dielectric_over_eon", "varnished"
 COATS = ("brdf", "albedo_dir", "sample", "pdf")
 LONG = (
     "chiang_hair_bcsdf",
-    "openpbr_base_brdf",
-    "openpbr_base_albedo_dir",
     *(f"{name}_{each}" for name in INTERFACES for each in COATS),
 )
 LONG += ("film_albedo_dir", "dielectric_albedo_dir", "conty_kulla_albedo_dir", "transmittance_dir")

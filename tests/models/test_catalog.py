@@ -22,7 +22,6 @@ TRANSMITTED = 3e-4  # of the albedo, whose quadrature states 2e-4; that of the v
 MODES = {"mode", "scatter_mode", "distribution", "energy_compensation"}
 FRAME = {"weight", "normal", "tangent", "curve_direction", "retroreflective"}
 LIGHT = {"front": WI, "back": WI * [1.0, 1.0, -1.0], "all sides": WI}
-SURFACE = "open_pbr_surface"
 every_model = pytest.mark.parametrize("name", MODELS)
 SAMPLED = [name for name in MODELS if "sample" in MODELS[name].functions]
 # Inputs that samples spread over, by their channels; others have their defaults.
@@ -42,21 +41,6 @@ def test_inputs_have_the_names_order_and_defaults_of_the_definition(category):
         numbers = [float(each) for each in text.split(",")]
         assert np.ravel(DEFAULTS[category][port.getName()]).tolist() == numbers
     assert mx.getVersionString() == "1.39.5"
-
-
-def surfaces():
-    """Definitions of OpenPBR's surface."""
-    return load_library("stock").getMatchingNodeDefs(SURFACE)
-
-
-def test_openpbrs_base_has_the_order_and_defaults_of_its_definition():
-    [definition] = surfaces()
-    ports = {port.getName(): port.getValueString() for port in definition.getActiveInputs()}
-    row = MODELS["openpbr_base"]
-    names = [each.name for each in row.parameters]
-    assert names == [name for name in ports if name in names]
-    for each in row.parameters:
-        assert np.ravel(each.default).tolist() == [float(n) for n in ports[each.name].split(",")]
 
 
 @every_model

@@ -12,11 +12,7 @@ from mxeon.models import (
     dielectric_over_eon_sample,
     eon_albedo_avg,
     fresnel_dielectric_avg,
-    generalized_schlick_albedo_dir,
-    generalized_schlick_brdf,
     ggx_albedo_dir,
-    openpbr_base_albedo_dir,
-    openpbr_base_brdf,
 )
 from mxeon.models.coat import constant_coat
 from mxeon.models.microfacet import slopes
@@ -45,7 +41,6 @@ def test_curves_are_those_of_a_finer_quadrature(monkeypatch, alpha, ior):
     assert np.abs(missing - expected).max() < COAT
     E = np.sum(dielectric(c, np.asarray(ior)) * weight, axis=(0, 1))
     assert coat.average == fresnel_dielectric_avg(ior)
-    assert np.abs(coat.edge_at(COSINES) - np.sum((1.0 - c) ** 5 * weight, axis=(0, 1))).max() < COAT
     assert np.abs(reflected - E * (1.0 + coat.average * expected)).max() < COAT
 
 
@@ -93,40 +88,6 @@ def test_the_model_by_name_has_a_coat_for_each_row():
         assert np.array_equal(value[k], dielectric_over_eon_brdf(wo[k], view(0.7), **own))
         one, density = dielectric_over_eon_sample(wo[k], [0.3, 0.6], **own)
         assert np.array_equal(wi[k], one) and pdf[k] == density
-
-
-def test_the_albedo_and_value_of_openpbrs_base_are_those_of_its_parts():
-    mu, rho, rough = np.array([[0.1], [0.5], [1.0]]), np.array([0.2, 0.9, 1.0]), 0.5
-    base = openpbr_base_albedo_dir(mu[:, 0], rho, 0.6, rough, 1.5, [0.0, 0.4, 1.0])
-    wo = np.stack([view(each) for each in mu[:, 0]])
-    metal = generalized_schlick_albedo_dir(wo, rho, 1.0, 1.0, [rough**2] * 2, 5.0)
-    glossy = dielectric_over_eon_albedo_dir(mu[:, 0], rho, 0.6, rough**2, 1.5)
-    share = np.array([[0.0], [0.4], [1.0]])
-    assert np.abs(base - (1.0 - share) * glossy - share * metal).max() < COAT
-    assert np.abs(base[:, 2] - 1.0).max() < COAT
-    # Mix the values in the same way.
-    pair = view(0.5), view(0.7)
-    glossy, metal, mixed = (
-        openpbr_base_brdf(*pair, rho, 0.6, rough, 1.5, m) for m in (0.0, 1.0, 0.25)
-    )
-    assert np.array_equal(glossy, dielectric_over_eon_brdf(*pair, rho, 0.6, rough**2, 1.5))
-    assert np.allclose(mixed, 0.75 * glossy + 0.25 * metal, 1e-12)
-    expected = generalized_schlick_brdf(*pair, rho, 1.0, 1.0, [rough**2] * 2, 5.0)
-    assert np.allclose(metal, expected, 0.0, COAT)
-
-
-def test_openpbrs_base_by_name_has_the_names_of_openpbr_and_of_a_fit():
-    row, rough = mxeon.model("openpbr_base"), np.array([0.5, 0.3, 0.5])
-    names = ("base_color", "base_diffuse_roughness", "base_metalness", "specular_roughness")
-    assert tuple(each.name for each in row.parameters) == (*names, "specular_ior")
-    wo = np.stack([view(0.5), view(0.9), view(0.1)])
-    value = row.brdf(wo, view(0.7), **CLAY, metalness=[0.0, 0.5, 1.0], specular_roughness=rough)
-    for k in range(3):
-        own = CLAY | {"metalness": 0.5 * k, "specular_roughness": rough[k], "specular_ior": 1.5}
-        assert np.array_equal(value[k], openpbr_base_brdf(wo[k], view(0.7), **own))
-    albedo = row.albedo_dir(0.5, *CLAY.values(), 0.25, 0.5, 1.6)
-    expected = openpbr_base_albedo_dir(0.5, *CLAY.values(), 0.5, 1.6, 0.25)
-    assert np.array_equal(albedo, expected)
 
 
 def test_a_coat_each_is_refused_for_other_arrays():

@@ -19,12 +19,7 @@ BELOW = [UP, [0.6, 0.0, -0.8]]
 SOAP = {"tint": 1.0, "ior": 1.5, "roughness": A, "thinfilm_thickness": -1.0, "thinfilm_ior": 1.3}
 CLAY = {"mu": 0.5, "rho": 0.5, "roughness": 0.5}
 COAT = CLAY | {"alpha": 0.3, "ior": 1.5}
-BASE = CLAY | {"specular_roughness": 0.3, "specular_ior": 1.5, "metalness": 0.5}
 LOBE = Bsdf(np.array(0.5), np.array(0.5))
-
-
-def openpbr(**changes):
-    return models.openpbr_base_albedo_dir(**BASE | changes)
 
 
 def coated(**changes):
@@ -66,7 +61,6 @@ RULES = {
     "weight must lie in [0, inf); got -0.5": lambda: multiply(LOBE, -0.5),
     "amount must lie in [0, 1]; got 1.5": lambda: mix(LOBE, LOBE, 1.5),
     "albedo must lie in (-inf, inf); got nan at index (1,)": lambda: throughput([0.5, np.nan]),
-    "specular_roughness must lie in [0.1, 1]; got 0.05": lambda: openpbr(specular_roughness=0.05),
     "alpha must lie in [0.01, 1]; got 0.001": lambda: coated(alpha=0.001),
     # Directions.
     "wi must be unit vectors to 1e-06; got squared length 4.0 at index (1,)": (
@@ -120,9 +114,6 @@ RULES = {
         lambda: models.fresnel_conductor_avg([1.0, 2.0], [1.0, 2.0, 3.0])
     ),
     "alpha must be one number, for all pairs; got shape (2,)": lambda: coated(alpha=[0.1, 0.2]),
-    "specular_roughness must be one number, for all pairs; got shape (2,)": (
-        lambda: openpbr(specular_roughness=[0.3, 0.5])
-    ),
     "wo, wi, rho, roughness must broadcast (last axis of wo, wi, rho apart); "
     "got shapes (2, 3), (3, 3), (1,), ()": lambda: models.eon_brdf([UP] * 2, [UP] * 3, 1.0, 1.0),
     "rho, roughness, mu must broadcast (last axis of rho apart); got shapes (4, 3), (5,), ()": (
@@ -139,9 +130,6 @@ RULES = {
     ),
     "wo, radiance, inner_angle, outer_angle must broadcast": lambda: models.conical_edf(
         [UP] * 2, [1.0], np.ones(3), 1.0
-    ),
-    "rho, mu, roughness, metalness must broadcast": lambda: openpbr(
-        metalness=[0.1] * 5, roughness=[0.5] * 4
     ),
 }
 

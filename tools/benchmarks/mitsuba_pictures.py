@@ -30,12 +30,6 @@ BSDFS = {
     "roughplastic": {"distribution": "ggx", "diffuse_reflectance": COLOR, "alpha": 0.3},
     "dielectric_over_eon": ROUGH | {"alpha": 0.3, "ior": 1.5},
     "varnished": ROUGH | {"alpha": 0.3, "ior": 1.5},
-    "openpbr_base": {
-        "base_color": COLOR,
-        "base_diffuse_roughness": 0.6,
-        "base_metalness": 0.25,
-        "specular_roughness": 0.55,
-    },
 }
 
 

@@ -15,8 +15,7 @@ import numpy as np
 
 from mxeon.errors import PackageError, assert_known, install
 from mxeon.fit.measured import MeasuredBrdf, merl_directions, read_merl
-from mxeon.models import eon_brdf, varnished_brdf
-from mxeon.models.coat import dielectric_over_eon_brdf, openpbr_base_brdf
+from mxeon.models import dielectric_over_eon_brdf, eon_brdf, varnished_brdf
 from mxeon.models.core.arrays import Array, ArrayLike
 
 LEAST_ALPHA = 0.02  # narrower lobes cannot be resolved by measurements
@@ -30,7 +29,6 @@ class FitModel:
     scalars: Mapping[
         str, tuple[float, ...]
     ]  # least and largest value, and starting values of the search
-    color: str = "color"
 
     @property
     def bounds(self) -> dict[str, tuple[float, float]]:
@@ -42,17 +40,10 @@ COAT = {
     "alpha": (LEAST_ALPHA, 1.0, 0.1, 0.4),
     "ior": (1.0, 4.0, 1.5),
 }
-BASE = {
-    "base_diffuse_roughness": (0.0, 1.0, 0.5),
-    "specular_roughness": (np.sqrt(LEAST_ALPHA), 1.0, 0.4),
-    "specular_ior": (1.0, 4.0, 1.5),
-    "base_metalness": (0.0, 1.0, 0.1, 0.9),
-}
 FIT_MODELS = {
     "eon": FitModel(eon_brdf, {"roughness": (0.0, 1.0, 0.2, 0.8)}),
     "dielectric_over_eon": FitModel(dielectric_over_eon_brdf, COAT),
     "varnished": FitModel(varnished_brdf, COAT),
-    "openpbr_base": FitModel(openpbr_base_brdf, BASE, "base_color"),
 }
 
 
@@ -123,9 +114,8 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     """Best-fit parameters of a model for a measured BRDF, by least squares.
 
     - `model`: "eon", with `color` and `roughness`; "varnished", EON below a rough dielectric
-      interface, with `alpha` and `ior` besides; "dielectric_over_eon", MaterialX's `layer` with
-      the same parameters, with a smaller `color` than that of a pigment under varnish; or
-      "openpbr_base", mixed with a metal, with `base_color` and other inputs.
+      interface, with `alpha` and `ior` besides; or "dielectric_over_eon", MaterialX's `layer` with
+      the same parameters, with a smaller `color` than that of a pigment under varnish.
 
     Returns the best one of several starts. Raises InputError if the model is unknown; PackageError if scipy, of the `fit` extra, is not
     installed.
@@ -159,7 +149,7 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     channels, scale = data.value.shape[1], 1.0 if data.error is None else data.error
 
     def parameters(x: Array) -> dict[str, Array]:
-        return {row.color: x[:channels], **dict(zip(row.bounds, x[channels:], strict=True))}
+        return {"color": x[:channels], **dict(zip(row.bounds, x[channels:], strict=True))}
 
     def residuals(x: Array) -> Array:
         difference: Array = (

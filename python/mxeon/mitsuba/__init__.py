@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EON, FON, QON, a dielectric over EON, EON under a varnish and OpenPBR's base as BSDF plugins of Mitsuba 3.
+"""EON, FON, QON, a dielectric over EON, and EON under a varnish as BSDF plugins of Mitsuba 3.
 
 Dr.Jit evaluates and differentiates the formulas of `mxeon.models`.
 """
 
 from __future__ import annotations
 
-from mxeon.mitsuba.coat import CoatPlugin, OpenPbrBasePlugin, VarnishPlugin
+from mxeon.mitsuba.coat import CoatPlugin, VarnishPlugin
 from mxeon.mitsuba.diffuse import EonPlugin, FonPlugin, QonPlugin, mitsuba, register_plugin
 
 PLUGINS = {
@@ -15,7 +15,6 @@ PLUGINS = {
     "qon": QonPlugin,
     "dielectric_over_eon": CoatPlugin,
     "varnished": VarnishPlugin,
-    "openpbr_base": OpenPbrBasePlugin,
 }
 
 
@@ -24,7 +23,7 @@ def register() -> None:
 
     `eon` and `fon` have the textures `reflectance` and `roughness`, `qon` has `reflectance` and `sigma`, in radian.
     `varnished` and `dielectric_over_eon`, MaterialX's `layer`, also have `eon`'s textures, and the numbers `alpha` and
-    `ior`; `openpbr_base` has inputs of OpenPBR's base. All are in `mitsuba.traverse` and differentiable. `eon` is sampled
+    `ior`. All are in `mitsuba.traverse` and differentiable. `eon` is sampled
     exactly for the mean of its reflectance, coated lobes with their facets, `fon` and `qon` by the cosine. Like Mitsuba's
     `diffuse`, they reflect only on the front.
     """

@@ -15,7 +15,6 @@ import numpy as np
 
 from mxeon.mitsuba.diffuse import EonPlugin, Mitsuba, RoughDiffusePlugin
 from mxeon.mitsuba.octaves import gather_cubic, octave_cells, octave_cubics
-from mxeon.models import coat as openpbr
 from mxeon.models.coat import (
     Coat,
     Varnish,
@@ -31,7 +30,7 @@ from mxeon.models.core.arrays import Array
 from mxeon.models.diffuse import eon_albedo
 from mxeon.models.diffuse import fon_loss_mu as fon_loss
 from mxeon.models.microfacet import ggx
-from mxeon.models.microfacet.fresnel import dielectric, dielectric_avg, schlick, schlick_avg
+from mxeon.models.microfacet.fresnel import dielectric, dielectric_avg
 from mxeon.models.sampling import visible_density, visible_normal
 
 ALPHAS, IORS = (RANGES[name][:2] for name in ("coat_alpha", "coat_ior"))
@@ -39,12 +38,9 @@ STEP = 1e-4  # step for finite differences of the coefficients
 
 
 class CoatPlugin(EonPlugin):
-    """EON under a dielectric, sampled by their albedos.
+    """EON under a dielectric, sampled by their albedos."""
 
-    `numbers` are the default and range of each number of the whole surface: `alpha` and `ior`, or the inputs
-    that determine them.
-    """
-
+    # Default and range of each number of the whole surface.
     numbers: ClassVar[dict[str, tuple[float, ...]]] = {
         "alpha": (0.05, *ALPHAS),
         "ior": (1.5, *IORS),
@@ -76,7 +72,7 @@ class CoatPlugin(EonPlugin):
 
     def tabulate(self) -> None:
         """Compute the coefficients, linearized about the values of numbers with gradients."""
-        numbers = self._dielectric()
+        numbers = self._inside("alpha"), self._inside("ior")
         values = [float(np.array(self.dr.detach(each)).item()) for each in numbers]
         self.coat, self.average = self.interface(*values), dielectric_avg(numbers[1])
         if not self._compiled:
@@ -94,9 +90,10 @@ class CoatPlugin(EonPlugin):
         color, number = self.reflectance.eval(si, active), self.mi.Float
         missing, reflected = self._at(si.wi.z)
         facets, c = self._facets(si.wi, wo)
-        top = self._fresnel(si, color, c, missing, active) * number(is_glossy * facets * wo.z)
+        F = dielectric(c, self._inside("ior")) * (1.0 + self.average * missing)
+        top = type(color)(number(is_glossy * F * facets * wo.z))
         amount = self._clipped(self.amount.eval_1(si, active))
-        base = self._reflected(si.wi, wo, color, amount) * self._dielectric_share(si, active)
+        base = self._reflected(si.wi, wo, color, amount)
         return self.dr.select(active, top + base * number(is_diffuse * (1.0 - reflected)), 0.0)
 
     def pdf(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
@@ -144,28 +141,14 @@ class CoatPlugin(EonPlugin):
         if not all(enabled):
             return self.mi.Float(enabled[0])
         reflected = self._at(si.wi.z)[1]
-        glossy = self.mi.Float(self._glossy(si, rho, reflected, active))
         base = (1.0 - reflected) * eon_albedo(fon_loss(si.wi.z), rho, amount)
-        total = glossy + self._dielectric_share(si, active) * self.mi.Float(base)
-        return glossy / self.dr.maximum(total, 1e-30)
-
-    def _glossy(self, si: Mitsuba, rho: Mitsuba, reflected: Mitsuba, active: Mitsuba) -> Mitsuba:
-        return reflected
-
-    def _dielectric_share(self, si: Mitsuba, active: Mitsuba) -> Mitsuba:
-        return self.mi.Float(1.0)
-
-    def _fresnel(
-        self, si: Mitsuba, color: Mitsuba, c: Mitsuba, missing: Mitsuba, active: Mitsuba
-    ) -> Mitsuba:
-        """Reflectance of the facets per channel, times the energy compensation."""
-        F = dielectric(c, self._dielectric()[1]) * (1.0 + self.average * missing)
-        return type(color)(self.mi.Float(F))
+        reflected = self.mi.Float(reflected)
+        return reflected / self.dr.maximum(reflected + self.mi.Float(base), 1e-30)
 
     def _facets(self, view: Mitsuba, light: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
         """Value of perfectly reflecting facets, and their cosine with either direction."""
         wh, c = ggx.half_vector(self._vector(view), self._vector(light))
-        visibility = ggx.visibility(view.z, light.z, self._dielectric()[0])
+        visibility = ggx.visibility(view.z, light.z, self._inside("alpha"))
         return ggx.ndf(wh, self._roughness()) * visibility, c
 
     def _at(self, mu: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
@@ -194,10 +177,7 @@ class CoatPlugin(EonPlugin):
         return (rows[0] - rows[1]) / (ends[0] - ends[1])
 
     def _roughness(self) -> Mitsuba:
-        return (self._dielectric()[0],) * 2
-
-    def _dielectric(self) -> tuple[Mitsuba, Mitsuba]:
-        return self._inside("alpha"), self._inside("ior")
+        return (self._inside("alpha"),) * 2
 
     def _inside(self, name: str) -> Mitsuba:
         """A number, clamped: an optimizer may have left the range."""
@@ -228,7 +208,7 @@ class VarnishPlugin(CoatPlugin):
         is_glossy, is_diffuse = self._enabled(context)
         color, amount = self.reflectance.eval(si, active), self.amount.eval_1(si, active)
         (facets, c), (spread, *_) = self._facets(si.wi, wo), self._means()
-        ior, s = self._dielectric()[1], si.wi.x * wo.x + si.wi.y * wo.y
+        ior, s = self._inside("ior"), si.wi.x * wo.x + si.wi.y * wo.y
         above, below = (nonnegative(self._curves(w.z)) for w in (si.wi, wo))
         passed = (1.0 - above[0] - above[1]) * (1.0 - below[0] - below[1]) / ior**2
         several = above[1] * below[1] / (np.pi * nonzero(spread))
@@ -250,7 +230,7 @@ class VarnishPlugin(CoatPlugin):
         enabled = self._enabled(context)
         if not all(enabled):
             return self.mi.Float(enabled[0])
-        curves, ior = nonnegative(self._curves(si.wi.z)), self._dielectric()[1]
+        curves, ior = nonnegative(self._curves(si.wi.z)), self._inside("ior")
         total = varnish_albedo(si.wi.z, curves, ior, self._means(), rho, amount)
         return self.mi.Float(curves[0]) / self.dr.maximum(self.mi.Float(total), 1e-30)
 
@@ -259,47 +239,3 @@ class VarnishPlugin(CoatPlugin):
             return list(self.coat.means)
         start = self.dr.width(self.table) - 4
         return [self.dr.gather(self.mi.Float, self.table, start + k) for k in range(4)]
-
-
-EDGE: Mitsuba = (*openpbr.EDGE[:2], 5)  # a whole exponent is a product, not a logarithm
-
-
-class OpenPbrBasePlugin(CoatPlugin):
-    """A metal and a dielectric over EON, mixed, with one roughness of facets."""
-
-    color = "base_color"
-    parameter = "base_diffuse_roughness"
-    numbers: ClassVar[dict[str, tuple[float, ...]]] = {
-        "specular_roughness": (0.3, *RANGES["specular_roughness"][:2]),
-        "specular_ior": (1.5, *RANGES["specular_ior"][:2]),
-    }
-
-    def configure(self, properties: Mitsuba) -> None:
-        CoatPlugin.configure(self, properties)
-        self.metalness = properties.get_texture("base_metalness", 0.0)
-
-    def traverse(self, callback: Mitsuba) -> None:
-        CoatPlugin.traverse(self, callback)
-        callback.put("base_metalness", self.metalness, self.mi.ParamFlags.Differentiable)
-
-    def _dielectric(self) -> tuple[Mitsuba, Mitsuba]:
-        return self._inside("specular_roughness") ** 2, self._inside("specular_ior")
-
-    def _dielectric_share(self, si: Mitsuba, active: Mitsuba) -> Mitsuba:
-        return 1.0 - self.dr.clip(self.metalness.eval_1(si, active), 0.0, 1.0)
-
-    def _glossy(self, si: Mitsuba, rho: Mitsuba, reflected: Mitsuba, active: Mitsuba) -> Mitsuba:
-        share = self._dielectric_share(si, active)
-        return share * reflected + (1.0 - share) * schlick(si.wi.z, rho, *EDGE)
-
-    def _fresnel(
-        self, si: Mitsuba, color: Mitsuba, c: Mitsuba, missing: Mitsuba, active: Mitsuba
-    ) -> Mitsuba:
-        share, number = self._dielectric_share(si, active), self.mi.Float
-        channels = [
-            schlick(c, rho, *EDGE) * (1.0 + schlick_avg(rho, *EDGE) * missing) for rho in color
-        ]
-        metal = type(color)(*map(number, channels))
-        return (
-            share * CoatPlugin._fresnel(self, si, color, c, missing, active) + (1.0 - share) * metal
-        )

@@ -62,7 +62,6 @@ class RoughDiffusePlugin:
 
     mi: Mitsuba
     dr: Mitsuba
-    color = "reflectance"
     parameter = "roughness"
     largest = 1.0
     brdf: Callable[..., Mitsuba]  # one channel, in 1/sr, of mu_o, mu_i, s, rho, amount
@@ -74,13 +73,13 @@ class RoughDiffusePlugin:
                 raise ValueError(
                     f"{self.parameter} must lie in [0, {self.largest:.4g}]; got {value:g}"
                 )
-        self.reflectance = properties.get_texture(self.color, 0.5)
+        self.reflectance = properties.get_texture("reflectance", 0.5)
         self.amount = properties.get_texture(self.parameter, 0.0)
         flags = self.mi.BSDFFlags.DiffuseReflection | self.mi.BSDFFlags.FrontSide
         self.m_components, self.m_flags = [flags], flags
 
     def traverse(self, callback: Mitsuba) -> None:
-        for name, texture in ((self.color, self.reflectance), (self.parameter, self.amount)):
+        for name, texture in (("reflectance", self.reflectance), (self.parameter, self.amount)):
             callback.put(name, texture, self.mi.ParamFlags.Differentiable)
 
     def eval(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:

@@ -11,8 +11,6 @@ from mxeon.models.coat import dielectric_over_eon_albedo_dir as dielectric_over_
 from mxeon.models.coat import dielectric_over_eon_brdf as dielectric_over_eon_brdf
 from mxeon.models.coat import dielectric_over_eon_pdf as dielectric_over_eon_pdf
 from mxeon.models.coat import dielectric_over_eon_sample as dielectric_over_eon_sample
-from mxeon.models.coat import openpbr_base_albedo_dir as openpbr_base_albedo_dir
-from mxeon.models.coat import openpbr_base_brdf as openpbr_base_brdf
 from mxeon.models.coat import varnished_albedo_avg as varnished_albedo_avg
 from mxeon.models.coat import varnished_albedo_dir as varnished_albedo_dir
 from mxeon.models.coat import varnished_brdf as varnished_brdf

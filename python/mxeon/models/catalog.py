@@ -195,35 +195,6 @@ def _over_eon(name: str, title: str) -> ShadingModel:
     return ShadingModel(row, inputs, sampler)
 
 
-def _of_openpbr() -> ShadingModel:
-    """The model of OpenPBR's base, by OpenPBR's names and defaults."""
-    parameters = (
-        Parameter("base_color", (0.8, 0.8, 0.8), "rho"),
-        Parameter("base_diffuse_roughness", 0.0, "roughness"),
-        Parameter("base_metalness", 0.0, "metalness"),
-        Parameter("specular_roughness", 0.3, "specular_roughness"),
-        Parameter("specular_ior", 1.5, "specular_ior"),
-    )
-    names = [each.quantity for each in parameters]
-
-    # Pass the inputs by name, since the functions take them in another order.
-    def called(function: Callable[..., Array], inputs: Inputs, **vectors: Array) -> Array:
-        def own(*values: Array) -> Array:
-            return function(**dict(zip((*vectors, *names), values, strict=True)))
-
-        return _per_coat(own, inputs, *vectors.values())[0]
-
-    row = PbrNode(
-        "openpbr_base",
-        "OpenPBR's base",
-        "open_pbr_surface",
-        tuple(each.name for each in parameters),
-        lambda wo, wi, i: called(coat.openpbr_base_brdf, i, wo=wo, wi=wi),
-        lambda wo, i: called(coat.openpbr_base_albedo_dir, i, mu=cosine(wo[:, 2])),
-    )
-    return ShadingModel(row, parameters, COSINE)
-
-
 def _per_coat(
     function: Callable[..., Array | tuple[Array, Array]], inputs: Inputs, *vectors: Array
 ) -> tuple[Array, Array]:
@@ -261,7 +232,6 @@ MODELS = {
         *map(_of_node, table.OTHERS + table.PARAMETRIZATIONS),
         _over_eon("dielectric_over_eon", "dielectric over EON"),
         _over_eon("varnished", "EON under a varnish"),
-        _of_openpbr(),
         *map(_of_node, (*NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
         *map(_of_transmission, TRANSMISSION_NODES),
     )

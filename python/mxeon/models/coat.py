@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Coats over EON: a dielectric, a varnish, and OpenPBR's base, a metal and such a dielectric with one roughness.
+"""Coats over EON: a dielectric and a varnish.
 
 The dielectric reflects E_r of the light, and EON gets the rest, as `layer` of the specification says:
 
@@ -13,12 +13,10 @@ rho 0.2: tools/fits/varnish_walk.py. `varnished_brdf` has both in closed form.
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
 - `u` (..., 2): Independent uniform random numbers, in [0, 1). The first one chooses the lobe as well.
 - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
-- `rho` (..., C): Reflectance of EON per channel, of the metal too, in [0, 1]; a number is one channel.
+- `rho` (..., C): Reflectance of EON per channel, in [0, 1]; a number is one channel.
 - `roughness` (...): That of EON, in [0, 1].
 - `alpha`, `ior`: GGX roughness of the dielectric, in [0.01, 1], and its index of refraction, in [1, 4]: one number
   each for all pairs.
-- `specular_roughness`, `specular_ior`: The same of OpenPBR, root of alpha in [0.1, 1].
-- `metalness` (...): `base_metalness`, m below, in [0, 1].
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
@@ -87,8 +85,8 @@ from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes,
 from mxeon.models.core.evaluation import evaluate
 from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.diffuse import C1, C2, eon_albedo, eon_albedo_dir, eon_brdf, fon_loss_mu
-from mxeon.models.microfacet import dielectric_brdf, generalized_schlick_brdf
-from mxeon.models.microfacet.fresnel import dielectric, dielectric_avg, fresnel_schlick_avg
+from mxeon.models.microfacet import dielectric_brdf
+from mxeon.models.microfacet.fresnel import dielectric, dielectric_avg
 from mxeon.models.microfacet.slopes import slope_nodes
 from mxeon.models.sampling import unpack_uniforms
 
@@ -104,30 +102,22 @@ class Coat:
     """A dielectric's curves over the viewer's cosine.
 
     - `alpha`, `average`: GGX roughness, which sets the scale of the cosine, and F_ss.
-    - `missing`, `reflected`, `edge`: Coefficients of (1 - E_ss) / E_ss, of E_r, and of the facets'
-      mean of (1 - c)^5, which is E of a metal with Schlick's curve that is black along the normal.
+    - `missing`, `reflected`: Coefficients of (1 - E_ss) / E_ss and of E_r.
     """
 
     alpha: float | Array
     average: float | Array
     missing: list[float] | Array
     reflected: list[float] | Array
-    edge: list[float] | Array
 
     def at(self, mu: Array) -> tuple[Array, Array]:
         """(1 - E_ss) / E_ss, and E_r, both at least 0."""
-        missing, reflected = self._sums(mu, self.missing, self.reflected)
-        return missing, arrays.at_most(reflected, 1.0)
-
-    def edge_at(self, mu: Array) -> Array:
-        """The facets' mean of (1 - c)^5."""
-        [edge] = self._sums(mu, self.edge)
-        return edge
-
-    def _sums(self, mu: Array, *curves: list[float] | Array) -> list[Array]:
-        """Curves at these cosines, at least 0."""
         x = scaled_cosine(mu, self.alpha)
-        return [arrays.at_least_0(chebyshev_sum(cast(Array, each), x)) for each in curves]
+        missing, reflected = (
+            arrays.at_least_0(chebyshev_sum(cast(Array, each), x))
+            for each in (self.missing, self.reflected)
+        )
+        return missing, arrays.at_most(reflected, 1.0)
 
 
 def scaled_cosine(mu: Array, alpha: float | Array) -> Array:
@@ -140,7 +130,7 @@ def scaled_cosine(mu: Array, alpha: float | Array) -> Array:
 
 
 def coat_curves(alpha: Array, ior: Array) -> Array:
-    """Coefficients of the curves of a `Coat`, shape (CURVE_NODES, 3).
+    """Coefficients of the curves of a `Coat`, shape (CURVE_NODES, 2).
 
     Accuracy: error of the curves below 2e-7 for alpha >= 0.01 and ior in [1, 4], 5e-8 of it that of
     the slopes at grazing.
@@ -152,8 +142,7 @@ def coat_curves(alpha: Array, ior: Array) -> Array:
     c, weight = slope_nodes(wo, xp.stack([zero + alpha, zero + alpha]), isotropic=True)
     missing = 1.0 / xp.sum(weight, axis=(0, 1)) - 1.0
     single = xp.sum(dielectric(c, zero + ior) * weight, axis=(0, 1))
-    edge = xp.sum((1.0 - c) ** 5 * weight, axis=(0, 1))
-    values = xp.stack([missing, single * (1.0 + dielectric_avg(ior) * missing), edge], axis=-1)
+    values = xp.stack([missing, single * (1.0 + dielectric_avg(ior) * missing)], axis=-1)
     matrix = like(chebyshev_coefficients(np.eye(CURVE_NODES)), mu)
     return xp.tensordot(matrix, values, axes=1)
 
@@ -174,7 +163,7 @@ def coat_of(alpha: float, ior: float) -> Coat:
     if not arrays.library(numbers[0]):
         return constant_coat(*map(float, numbers))
     rows = coat_curves(*numbers)
-    return Coat(numbers[0], dielectric_avg(numbers[1]), rows[:, 0], rows[:, 1], rows[:, 2])
+    return Coat(numbers[0], dielectric_avg(numbers[1]), rows[:, 0], rows[:, 1])
 
 
 def checked_scalar(name: str, value: ArrayLike, quantity: str = "") -> arrays.Numbers:
@@ -280,96 +269,6 @@ def dielectric_over_eon_albedo_avg(
     share = xp.sum(weight * (1.0 - reflected) * fon_loss_mu(mu)) / (passed * C1)
     grazing, upright = (eon_albedo_dir(each, rho, roughness) for each in (0.0, 1.0))
     return (1.0 - passed) + passed * (grazing + share * (upright - grazing))
-
-
-EDGE = 1.0, 1.0, 5.0  # color82, color90 and exponent of the metal's curve
-
-
-@of_one_coat
-def openpbr_base_brdf(
-    wo: ArrayLike,
-    wi: ArrayLike,
-    rho: ArrayLike,
-    roughness: ArrayLike,
-    specular_roughness: float,
-    specular_ior: float,
-    metalness: ArrayLike,
-) -> Array:
-    """BRDF of OpenPBR's base: a metal and a dielectric over EON, mixed.
-
-        f = (1 - m) f_dielectric_over_eon + m f_metal
-
-    Result (..., C): 1/sr. The weights and `specular_color` are 1, and nothing is anisotropic, transmits or
-    scatters below the surface. The metal's curve is Schlick's. [MaterialX2026], section `mix`.
-
-        >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
-        >>> openpbr_base_brdf(wo, wi, [0.7, 0.1], 0.5, 0.5, 1.5, 0.25).round(5)
-        array([0.56487, 0.13156])
-    """
-    share = _metal_share(wo, wi, rho, roughness, metalness)
-    alpha = _alpha(specular_roughness, specular_ior)
-    missing = coat_of(alpha, specular_ior).at(unpack_cosine(wo))[0][..., np.newaxis]
-    metal = generalized_schlick_brdf(wo, wi, rho, *EDGE[:2], alpha, EDGE[2], compensate=False)
-    metal = metal * (1.0 + fresnel_schlick_avg(rho, *EDGE) * missing)
-    glossy = dielectric_over_eon_brdf(wo, wi, rho, roughness, alpha, specular_ior)
-    return (1.0 - share) * glossy + share * metal
-
-
-@of_one_coat
-def openpbr_base_albedo_dir(
-    mu: ArrayLike,
-    rho: ArrayLike,
-    roughness: ArrayLike,
-    specular_roughness: float,
-    specular_ior: float,
-    metalness: ArrayLike,
-) -> Array:
-    """Directional albedo of `openpbr_base_brdf`, 1 where rho is 1, with an error below 2e-7.
-
-        E = (1 - m) E_dielectric_over_eon + m (rho E_ss + (1 - rho) W) (1 + F_ss (1 - E_ss) / E_ss)
-
-    W is the facets' mean of (1 - c)^5.
-
-        >>> openpbr_base_albedo_dir([0.1, 1.0], [0.7, 1.0], 0.5, 0.5, 1.5, 0.25).round(5)
-        array([[0.74305, 1.     ],
-               [0.68378, 1.     ]])
-    """
-    cosine, color, share = _albedo_inputs(mu, rho, roughness, metalness)
-    alpha = _alpha(specular_roughness, specular_ior)
-    glossy = dielectric_over_eon_albedo_dir(mu, rho, roughness, alpha, specular_ior)
-    coat = coat_of(alpha, specular_ior)
-    missing, edge = coat.at(cosine)[0], coat.edge_at(cosine)
-    metal = color / (1.0 + missing) + (1.0 - color) * edge
-    metal = metal * (1.0 + fresnel_schlick_avg(rho, *EDGE) * missing)
-    return (1.0 - share) * glossy + share * metal
-
-
-@any_array
-def _alpha(specular_roughness: ArrayLike, specular_ior: ArrayLike) -> float:
-    """alpha of the facets; raise ValueError unless both numbers are in their ranges."""
-    checked_scalar("specular_ior", specular_ior)
-    return cast(float, checked_scalar("specular_roughness", specular_roughness) ** 2)
-
-
-@any_array
-def _metal_share(
-    wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike, metalness: ArrayLike
-) -> Array:
-    """Weight of the metal, (..., 1); raise ValueError unless all arguments broadcast."""
-    vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
-    numbers = arguments.checked_all({"roughness": roughness, "metalness": metalness})
-    arguments.lead_shape(vectors | {"rho": checked_color("rho", rho)}, numbers)
-    return numbers["metalness"][..., np.newaxis]
-
-
-@any_array
-def _albedo_inputs(
-    mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike, metalness: ArrayLike
-) -> tuple[Array, Array, Array]:
-    """The viewer's cosine, the color and the metal's weight, checked, with a channel axis."""
-    numbers = {"mu": mu, "roughness": roughness, "metalness": metalness}
-    (color,), (height, _, share) = checked_colors({"rho": rho}, **numbers)
-    return cosine(arrays.at_least_0(height)), color, share
 
 
 @any_array

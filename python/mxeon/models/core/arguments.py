@@ -37,7 +37,7 @@ def _each(names: str, ends: tuple[float, float, str]) -> dict[str, tuple[float, 
 
 
 # Ranges that rounding may exceed.
-CLOSED = ("[0, 1]", "[0.01, 1]", "[0.1, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]", "[-pi/2, pi/2]")
+CLOSED = ("[0, 1]", "[0.01, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]", "[-pi/2, pi/2]")
 
 
 class Ranges(dict[str, tuple[float, float, str]]):
@@ -53,15 +53,14 @@ RANGES = Ranges(
         **_each("rho color color0 color82 color90 tint tint_R tint_TT tint_TRT edge_color", _SHARE),
         **_each("roughness alpha anisotropy glossiness longitudinal azimuthal", _SHARE),
         **_each("azimuthal_roughness cuticle_angle amount opacity melanin_redness", _SHARE),
-        **_each("reflectance transmittance metalness", _SHARE),
+        **_each("reflectance transmittance", _SHARE),
         **_each("u reflectivity melanin_concentration", (0.0, _BELOW_ONE, "[0, 1)")),
         **_each("eumelanin_color pheomelanin_color hair_color", (_ABOVE_ZERO, 1.0, "(0, 1]")),
         **_each("exponent ior extinction absorption scattering absorption_coefficient", _POSITIVE),
         **_each("radiance base emission scattered light distance", _POSITIVE),
         **_each("scale_tt scale_trt", _POSITIVE),
         **_each("coat_alpha", (0.01, 1.0, "[0.01, 1]")),
-        **_each("specular_roughness", (0.1, 1.0, "[0.1, 1]")),  # the square root of alpha's range
-        **_each("coat_ior specular_ior", (1.0, 4.0, "[1, 4]")),
+        **_each("coat_ior", (1.0, 4.0, "[1, 4]")),
         **_each("thinfilm_ior film_ior", (1.0, 1e50, "[1, 1e50]")),
         **_each("thinfilm_thickness thickness", (0.0, 1e9, "[0, 1e9]")),  # nm
         **_each("temperature", (1.0, 1e9, "[1, 1e9]")),
