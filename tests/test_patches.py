@@ -16,7 +16,7 @@ from tests.hosts.test_cycles_kernel import kernel
 from tests.support.availability import available
 from tests.support.wheels import MAIN, git
 from tools.site import versions
-from tools.site.ledger import ROOT, measure, measured, patches, patches_of
+from tools.site.ledger import ROOT, patches, patches_of
 
 ISSUES = issues()
 MATERIALX = patches("materialx")
@@ -110,22 +110,7 @@ def test_a_patch_applies_alone(materialx, page):
         applied(materialx, tag, page)
 
 
-@pytest.mark.parametrize("page", [each for each in FILES if measured().get(each, {}).get("rows")])
-def test_a_message_has_a_figure_of_its_page(page):
-    for file in FILES[page]:
-        message = file.read_text().split("\n---\n")[0]
-        numbers = {float(each) for each in re.findall(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?", message)}
-        figures = {float(row[2]) for row in measured()[page]["rows"]}
-        assert figures & numbers or figures == {float("inf")}
-
-
 KNOWN = json.loads(versions.RECORD.read_text())
-
-
-def test_the_record_has_every_page_and_version():
-    stock = [each for each in measure.CHECKED if each.library == "stock"]
-    assert set(KNOWN["pages"]) == {each.page for each in stock if each.host in ("gl", "source")}
-    assert all(tuple(each) == versions.VERSIONS for each in KNOWN["pages"].values())
 
 
 @pytest.mark.parametrize("page", KNOWN["pages"])

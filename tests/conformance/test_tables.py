@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables: a host is one module and one row, and says what it lacks; a model is one function and one row."""
+"""Tables: a renderer says what it lacks; a model is one function and one row."""
 
 import re
 
@@ -7,47 +7,12 @@ import numpy as np
 import pytest
 
 import mxeon
-from mxeon import check, hosts
-from mxeon.hosts import base
+from mxeon import check
 from mxeon.models import table
 from mxeon.models.diffuse import eon_brdf, lambert_brdf
 from mxeon.shaders.library import examples_folder
-from mxeon.shaders.nodes import EON
 from tests.support.plans import keep_checks
-from tests.support.verdicts import NOT_RUN, SHADER_FUNCTIONS, has
-
-
-class Toy(base.Host):
-    """A toy host: EON itself, whatever the shader."""
-
-    name, target = "toy", "glsl"
-
-    def identity(self):
-        return base.Identity(self.name, "1", "paper")
-
-    def evaluate(self, shader, wo, wi, inputs, branch, **options):
-        rho = np.broadcast_to(inputs["color"], wo.shape)
-        above = wi * np.where(wi[:, 2:] < 0.0, [1.0, 1.0, -1.0], 1.0)
-        brdf = table.diffuse_model("eon").brdf(wo, above, rho, np.minimum(inputs["roughness"], 1.0))
-        factor = np.maximum(inputs.get("weight", 1.0), 0.0) * inputs.get("occlusion", 1.0)
-        return brdf * np.clip(wi[:, 2:], 0.0, 1.0) * np.reshape(factor, (-1, 1))
-
-
-@pytest.fixture
-def toy(monkeypatch):
-    """The toy host in a row of its own."""
-    row = hosts.Row("toy", "glsl", "pairs", start=lambda name: Toy())
-    monkeypatch.setattr(hosts, "HOSTS", (*hosts.HOSTS, row))
-
-
-def test_a_new_host_is_one_module_and_one_row(toy, monkeypatch):
-    keep_checks(monkeypatch, "value", "twins")
-    run = check([examples_folder() / "clay.mtlx"], ["toy"], workers=0, nodes=["common"])
-    assert [each.device for each in run.hosts] == ["paper"]
-    results = {(each.check, each.subject): each for each in run.results if each.host == "toy"}
-    assert results["value", EON].verdict == "passed"
-    reason = results["twins", SHADER_FUNCTIONS].reason
-    assert reason == "toy: this host has no calls of a shader function; use gl"
+from tests.support.verdicts import NOT_RUN, has
 
 
 def test_a_document_is_not_run_on_a_renderer(monkeypatch):

@@ -32,14 +32,14 @@ def judged(tried):
     return trial(tried)
 
 
-def trial(tried, command=None):
+def trial(tried):
     """Exit status of a case, and what `mxeon` did wrong in one line, or ""."""
     with tempfile.TemporaryDirectory(prefix="mxeon-fuzz-") as folder:
         root = Path(folder).resolve()
         home = _prepared(root, tried)
         before = _contents(root)
         with contextlib.chdir(home):
-            status, out, err = _called(tried.arguments, tried.encoding, command)
+            status, out, err = _called(tried.arguments, tried.encoding)
         judging = set(tried.arguments[:1]) & set(JUDGING)
         named = tuple(os.path.realpath(home / each) for each in _outputs(tried.arguments))
         allowed = 0 if status == 1 and judging else status
@@ -79,11 +79,9 @@ def _prepared(root, tried):
     return home
 
 
-def _called(arguments, encoding, command=None):
+def _called(arguments, encoding):
     """Exit status, output and errors; a traceback counts as an error."""
-    from mxeon import cli
-
-    main = command or cli.main
+    from mxeon.cli import main
 
     out, err = (io.TextIOWrapper(io.BytesIO(), encoding, newline="") for _ in range(2))
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):

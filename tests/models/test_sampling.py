@@ -165,28 +165,6 @@ def test_clipped_cosine_keeps_its_digits_on_the_rim():
     np.testing.assert_allclose(z, np.sqrt(rest + 0.0 * u2), rtol=tolerances.RIM)
 
 
-def test_listing_3_keeps_the_wrong_side_where_d_is_positive():
-    d = float(ltc.ltc_md(1.0, 1.0))
-    # Whatever the sign, the listing does what `cltc_clipped` does for a negative one.
-    x, _, z = cltc.cltc_clipped(1.0 - 1e-9, 0.0, -d, 1e-9)
-    assert d > 0.0 and d * x + z < -0.9 * d
-
-
-def test_general_ltc_wastes_most_at_grazing_and_full_roughness():
-    mu, roughness = np.meshgrid(np.linspace(0.0, 1.0, 201), np.linspace(0.0, 1.0, 51))
-    waste = 1.0 - cltc.cltc_kept_fraction(ltc.ltc_md(mu, roughness))
-    assert waste.argmax() == np.ravel_multi_index((50, 0), waste.shape)
-    assert abs(waste.max() - 0.0534) < tolerances.FIGURE * 0.0534
-
-
-def test_the_matrix_never_turns_the_hemisphere_over():
-    mu, roughness = np.meshgrid(np.linspace(0.0, 1.0, 201), np.linspace(0.0, 1.0, 51))
-    a, b, c, d = (
-        entry(mu, roughness) for entry in (ltc.ltc_ma, ltc.ltc_mb, ltc.ltc_mc, ltc.ltc_md)
-    )
-    assert (c * (a - b * d)).min() > 0.9
-
-
 @every_sampler
 def test_a_density_of_one_direction_is_a_number(sampler):
     wi, pdf = sampler.sample(view(0.5), [0.25, 0.5], 0.5)

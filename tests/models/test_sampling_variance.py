@@ -115,30 +115,3 @@ def test_exact_sampling_is_never_worse_than_cosine(mu, roughness):
     relative, probability = excess(mu, roughness)
     exact = variance(1.0 / (1.0 + relative), probability)
     assert exact <= variance(*weights_of(BY_NAME["cosine"], mu, roughness))
-
-
-@pytest.mark.parametrize("roughness, figure", [(0.25, 0.0087), (0.5, 0.0156), (1.0, 0.0365)])
-def test_variance_of_the_mixture_is_that_of_the_paper(roughness, figure):
-    measured = largest("eon_cltc", variance, roughness, np.linspace(0.0, 1.0, 51))
-    assert abs(measured - figure) < tolerances.FIGURE * figure
-
-
-def test_largest_weight_of_the_mixture_is_that_of_the_paper():
-    measured = largest("eon_cltc", lambda weight, _: weight.max(), 1.0, np.linspace(0.0, 1.0, 51))
-    assert abs(measured - 1.47) < tolerances.FIGURE * 1.47
-
-
-def test_the_mixture_is_worse_than_cosine_where_the_roughness_is_low():
-    for mu in ANGLES:
-        mixture, cosine = (
-            variance(*weights_of(BY_NAME[name], mu, 0.02)) for name in ("eon_cltc", "cosine")
-        )
-        assert mixture > cosine
-
-
-def test_clipped_sampling_alone_loses_up_to_nine_thousandths():
-    lost = [
-        largest("cltc", lambda weight, p: 1.0 - weight @ p, r, np.linspace(0.0, 1.0, 51))
-        for r in (0.6, 0.7, 0.8)
-    ]
-    assert abs(max(lost) - 0.009) < tolerances.FIGURE * 0.009

@@ -67,10 +67,6 @@ EON_DENSITY = 1.3e-5
 EON_WEIGHT = 5e-5
 EON_VARIANCE = 1e-9
 
-# The two polynomials of the paper for rho, absolute.
-EQUATION_32 = 4.41e-3
-EQUATION_34 = 2.84e-3
-
 # Arc tangent below tan(pi / 8), relative: the polynomial's 1.9e-8, and half a unit of the eighth
 # decimal in each of five coefficients, which count as the powers of 0.172: 0.6e-8.
 FIT_ANGLE = 2.5e-8
@@ -138,17 +134,10 @@ LUNE = (4 + FUNCTION) * ROUNDING + RIM
 # radian: h^2 / 12 x pi = 1.6e-4.
 KINK_QUADRATURE = 1.6e-4
 
-# Largest variances and weights against the figures of two or three digits known for them: half a
-# unit of 0.0087 is 0.6 %, that of 0.009 is 6 %, and between 51 angles at most 1 % is missed.
-FIGURE = 0.02
-
 # Inverse of an albedo, relative: 11 roundings on the longest chain. There and back: 1e-14, with
 # the albedo's own 9 roundings and rho's twice, since an albedo grows at most twice as fast as rho.
 RHO = 11.0 * ROUNDING
 ROUND_TRIP = 1e-14
-
-
-# --- path tracer -------------------------------------------------------------------------------
 
 
 # --- Pictures on OpenGL ----------------------------------------------------------------------

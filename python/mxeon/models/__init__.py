@@ -31,11 +31,7 @@ from mxeon.models.diffuse import eon_albedo_dir_approx as eon_albedo_dir_approx
 from mxeon.models.diffuse import eon_brdf as eon_brdf
 from mxeon.models.diffuse import eon_brdf_approx as eon_brdf_approx
 from mxeon.models.diffuse import eon_rho_from_albedo_avg as eon_rho_from_albedo_avg
-from mxeon.models.diffuse import eon_rho_from_albedo_avg_approx as eon_rho_from_albedo_avg_approx
 from mxeon.models.diffuse import eon_rho_from_albedo_normal as eon_rho_from_albedo_normal
-from mxeon.models.diffuse import (
-    eon_rho_from_albedo_normal_approx as eon_rho_from_albedo_normal_approx,
-)
 from mxeon.models.diffuse import fon_albedo_avg as fon_albedo_avg
 from mxeon.models.diffuse import fon_albedo_dir as fon_albedo_dir
 from mxeon.models.diffuse import fon_albedo_dir_approx as fon_albedo_dir_approx

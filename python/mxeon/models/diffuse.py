@@ -559,12 +559,6 @@ def qon_albedo_avg(sigma: ArrayLike) -> Array:
     return qon_aq(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * np.pi)) * qon_bq(sigma)
 
 
-# [Portsmouth2025], Eqs. (32) and (34); color and roughness in [0, 1]; largest error of rho 4.41e-3,
-# (the paper states less than 0.3 %) and 2.84e-3.
-NORMAL = (0.258831, 0.98995)
-AVERAGE = 0.189468
-
-
 @any_array
 def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflectance rho that gives EON this directional albedo at normal incidence.
@@ -600,38 +594,6 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
     (color,), (r,) = checked_colors({"color": color}, roughness=roughness)
     scaled = color * (1.0 + C1 * r)
     return scaled / (scaled + (1.0 + C2 * r) * (1.0 - color))
-
-
-@any_array
-def eon_rho_from_albedo_normal_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
-    """`eon_rho_from_albedo_normal` by the paper's polynomial.
-
-    Accuracy: error at most 4.41e-3, at roughness 1 and color 0.69. The paper states less than
-    0.3 %, which holds up to roughness 0.89. A color of 1 gives 1 - 0.0026 r. [Portsmouth2025],
-    Eq. (32).
-
-        >>> eon_rho_from_albedo_normal_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
-        array([0.      , 0.217735, 0.839332, 0.997399])
-    """
-    return _polynomial(color, roughness, *NORMAL)
-
-
-@any_array
-def eon_rho_from_albedo_avg_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
-    """`eon_rho_from_albedo_avg` by the paper's polynomial.
-
-    Accuracy: error at most 2.84e-3; 0 at colors 0 and 1. [Portsmouth2025], Eq. (34).
-
-        >>> eon_rho_from_albedo_avg_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
-        array([0.      , 0.207965, 0.830315, 1.      ])
-    """
-    return _polynomial(color, roughness, AVERAGE, 1.0)
-
-
-def _polynomial(color: ArrayLike, roughness: ArrayLike, slope: float, zero: float) -> Array:
-    """C + slope (zero - C) C r: [Portsmouth2025], Eqs. (32) and (34)."""
-    (color,), (r,) = checked_colors({"color": color}, roughness=roughness)
-    return color + slope * (zero - color) * color * r
 
 
 # Wrong variants that renderers implement, so that they can be recognized.
