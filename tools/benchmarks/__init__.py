@@ -3,7 +3,7 @@
 
 | command | what it writes | minutes |
 |---|---|---|
-| `python -m tools.benchmarks [GROUP ...]` | figures, goals and checks of each group to `out/benchmarks` | 25 |
+| `python -m tools.benchmarks [GROUP ...]` | figures, goals and checks of each group, to the terminal | 25 |
 | `... shaders` | EON and its samplers in GLSL, per call | 0.1 |
 | `... sampling` | variance times time of the samplers under six lights, and in a scene | 0.1 |
 | `... materials` | frame, first frame and source of generated materials, eonlib / stock | 8 |

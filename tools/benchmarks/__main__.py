@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the benchmarks, prints their tables, and writes them as JSON and Markdown.
+"""Runs the benchmarks and prints their tables.
 
-    python -m tools.benchmarks [GROUP ...] [--quick] [--kind TEXT] [--output DIR]
+    python -m tools.benchmarks [GROUP ...] [--quick]
 
 Exit status: 0, or 1 if a timed value is wrong. A missed goal is reported, but is not an error.
 """
@@ -9,10 +9,7 @@ Exit status: 0, or 1 if a timed value is wrong. A missed goal is reported, but i
 import argparse
 import os
 import sys
-import time
-from functools import partial
 from importlib import import_module
-from pathlib import Path
 from unittest.mock import patch
 
 from mxeon.errors import NotRun
@@ -28,28 +25,19 @@ QUICK = {  # sizes of each group with --quick
     "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
     "check": {"rounds": 1, "whole": False},
 }
-OUTPUT = Path(__file__).resolve().parents[2] / "out" / "benchmarks"
 
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__.splitlines()[0])
     parser.add_argument("groups", nargs="*", metavar="GROUP", help=", ".join(QUICK))
     parser.add_argument("--quick", action="store_true", help="small sizes, few rounds")
-    parser.add_argument(
-        "--kind", default="", help="kind of machine; its results stand beside others"
-    )
-    parser.add_argument("--output", type=Path, default=OUTPUT, help="folder of the results")
     options = parser.parse_args(arguments)
     unknown = set(options.groups) - QUICK.keys()
     if unknown:
         parser.error(f"group must be one of {', '.join(QUICK)}; got {', '.join(unknown)}")
-    file, wrong = options.output / "performance.json", []
-    # Print and save each group when it is done, and the longest groups after each part.
+    wrong = []
     for name in options.groups or QUICK:
         sizes = dict(QUICK[name]) if options.quick else {}
-        kept = partial(rounds.write, file, kind=options.kind, start=time.monotonic())
-        if name in ("materials", "check"):
-            sizes["keep"] = kept
         try:
             with patch.dict(os.environ, {CACHE: "true"}):  # otherwise compilations come from a file
                 group = import_module(f"tools.benchmarks.{name}").measure(**sizes)
@@ -57,10 +45,7 @@ def main(arguments=None):
             print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)
             continue
         print(rounds.table(group), flush=True)
-        kept(group)
         wrong += [each.name for each in group.checks if not each.passed]
-    if file.is_file():
-        file.with_suffix(".md").write_text(rounds.page(file), encoding="utf-8")
     if wrong:
         print(f"benchmarks: wrong values: {', '.join(wrong)}", file=sys.stderr)
     return 1 if wrong else 0

@@ -9,8 +9,7 @@ import os
 import statistics
 import sys
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from subprocess import PIPE, Popen, TimeoutExpired
 from tempfile import NamedTemporaryFile, TemporaryDirectory
 
@@ -152,16 +151,12 @@ def parts(rounds, files, whole, cache):
     yield [*figures, memory("field", jobs)], []
 
 
-def measure(rounds=3, files=(), whole=True, keep: Callable[[Group], None] | None = None):
-    """The `Group` of all jobs, or only of the main one; `keep` is called after each part."""
-    group = Group("check", "`mxeon check`, bundled examples")
+def measure(rounds=3, files=(), whole=True):
+    """The `Group` of all jobs, or only of the main one."""
     with TemporaryDirectory() as cache:
-        for figures, checks in parts(rounds, files, whole, cache):
-            group = replace(
-                group,
-                figures=(*group.figures, *figures),
-                checks=(*group.checks, *checks),
-            )
-            if keep:
-                keep(group)
-    return group
+        figures, checks = map(chain, zip(*parts(rounds, files, whole, cache), strict=True))
+    return Group("check", "`mxeon check`, bundled examples", figures, checks)
+
+
+def chain(parts):
+    return tuple(each for part in parts for each in part)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Generated materials with eonlib and with stock MaterialX: source, compilation, frame time."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from multiprocessing import get_context
 
@@ -171,16 +171,13 @@ def run(node, size, libraries):
     return Run(device, lengths, compilation, frame, float(infinite), float(apart))
 
 
-def measure(
-    processes=PROCESSES, size=SIZE, nodes=tuple(NODES), keep: Callable[[Group], None] | None = None
-):
-    """The `Group` of materials, each in `PROCESSES` processes; `keep` gets the partial group after each."""
-    group = Group("materials", "Materials")
+def measure(processes=PROCESSES, size=SIZE, nodes=tuple(NODES)):
+    """The `Group` of materials, each in `PROCESSES` processes."""
+    figures, checks = [], []
     turns = [LIBRARIES[:: -1 if turn % 2 else 1] for turn in range(processes)]
     with ProcessPoolExecutor(1, get_context("spawn"), max_tasks_per_child=1) as pool:
         for node in nodes:
             runs = list(pool.map(partial(run, node, size), turns))
-            figures = list(group.figures)
             for kind, attribute, unit, factor, goal in (
                 ("frame", "frame", "ms", 1e3, TIMES[node]),
                 ("compilation and first frame", "compilation", "ms", 1e3, TIMES[node]),
@@ -199,15 +196,8 @@ def measure(
                 float(np.max([getattr(each, name) for each in runs]))
                 for name in ("infinite", "apart")
             )
-            checks = [Check(f"{node}, pixels that are not finite", infinite, 0.0)]
+            checks.append(Check(f"{node}, pixels that are not finite", infinite, 0.0))
             if node in SAME:
                 checks.append(Check(f"{node}, eonlib - stock", apart, SAME[node]))
-            group = replace(
-                group,
-                title=f"Materials on {runs[0].device}, {size} x {size}",
-                figures=tuple(figures),
-                checks=(*group.checks, *checks),
-            )
-            if keep:
-                keep(group)
-    return group
+    title = f"Materials on {runs[0].device}, {size} x {size}"
+    return Group("materials", title, tuple(figures), tuple(checks))

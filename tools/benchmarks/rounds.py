@@ -1,23 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shared code of benchmarks: interleaved rounds, figures with goals, tables, and their record.
+"""Shared code of benchmarks: interleaved rounds, figures with goals, and their tables.
 
 Rivals take turns within a round, so that other load on the machine affects all of them equally; a
 ratio is the median of the rounds' ratios. Benchmark libraries time one function after
 another, so their ratios include drift; hence these few lines.
 """
 
-import json
-import os
-import platform
 import time
-from dataclasses import asdict, dataclass
-from datetime import UTC, datetime
+from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
-import moderngl
 import numpy as np
-
-PACKAGES = ("mxeon", "MaterialX", "numpy", "moderngl", "mitsuba")
 
 
 @dataclass(frozen=True)
@@ -91,7 +84,7 @@ def figure(name, unit, values, goal=None, at_least=False):
     return Figure(name, unit, median, low, high, goal, at_least)
 
 
-# --- memory and machine ---------------------------------------------------------------------------
+# --- memory ---------------------------------------------------------------------------
 
 
 def reset_memory():
@@ -113,72 +106,6 @@ def version_of(package):
         return version(package)
     except PackageNotFoundError:
         return "not installed"
-
-
-def machine():
-    """Hardware and versions that the figures depend on, by name."""
-    with open("/proc/cpuinfo", encoding="utf-8") as file:
-        names = [line.split(":")[1].strip() for line in file if line.startswith("model name")]
-    return {
-        "processor": names[0] if names else platform.machine(),
-        "cores": os.cpu_count(),
-        "load before": round(os.getloadavg()[0], 2),
-        "system": platform.platform(terse=True),
-        "Python": platform.python_version(),
-        "date": datetime.now(UTC).date().isoformat(),
-        **{name: version_of(name) for name in PACKAGES},
-    }
-
-
-LOAD = machine()["load before"]
-
-
-# --- record ---------------------------------------------------------------------------------------
-
-
-def write(file, group, kind="", start=None):
-    """Add a group to the file; `start` is when its measurement began, by the monotonic clock."""
-    try:
-        context = moderngl.create_standalone_context(require=430, backend="egl")
-        renderer = context.info["GL_RENDERER"]  # llvmpipe includes the width of its vectors
-        context.release()
-    except Exception:  # moderngl and glcontext raise bare Exception
-        renderer = "none"
-    setting = machine() | {"OpenGL": renderer, "load before": LOAD}
-    setting["load after"] = round(os.getloadavg()[0], 2)
-    setting |= {} if start is None else {"minutes": round((time.monotonic() - start) / 60.0, 1)}
-    setting |= {"kind": kind} if kind else {}
-    suffix = f"; {kind}" if kind else ""
-    kept = json.loads(file.read_text(encoding="utf-8"))["groups"] if file.is_file() else {}
-    kept[group.name + suffix] = {
-        **asdict(group),
-        "title": group.title + suffix,
-        "machine": setting,
-    }
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps({"groups": kept}, indent=1) + "\n", encoding="utf-8")
-
-
-def page(file):
-    """Reached and missed goals and the tables of all groups, in Markdown."""
-    goals = ["## Goals", "", "| group | reached | missed |", "|---|---|---|"]
-    tables = []
-    for each in json.loads(file.read_text(encoding="utf-8"))["groups"].values():
-        figures = tuple(Figure(**figure) for figure in each["figures"])
-        checks = tuple(Check(**check) for check in each["checks"])
-        group, setting = Group(each["name"], each["title"], figures, checks), each["machine"]
-        aims = [each for each in group.figures if each.goal is not None]
-        missed = [
-            f"{each.name} ({each.median:.3g} {each.unit}, goal {each.goal:g})"
-            for each in aims
-            if not each.reached
-        ]
-        if aims:
-            count = f"{len(aims) - len(missed)} of {len(aims)}"
-            goals.append(f"| {group.title} | {count} | {'; '.join(missed)} |")
-        words = ", ".join(f"{name} {value}" for name, value in setting.items())
-        tables += [table(group), f"Measured on: {words}."]
-    return "\n\n".join(["# Benchmarks", "\n".join(goals), *tables]) + "\n"
 
 
 def table(group):
