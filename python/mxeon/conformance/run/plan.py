@@ -130,8 +130,9 @@ def _answers(
 
 @cache
 def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
-    """Every node that is judged, in the mode in which it is judged."""
-    return tuple((row, node_of(row.document(), row.node)) for row in ALL_SPECS)
+    """Every node that is judged, in the mode in which it is judged; sentences are asked for by name."""
+    rows = (row for row in ALL_SPECS if row not in SENTENCES)
+    return tuple((row, node_of(row.document(), row.node)) for row in rows)
 
 
 # --- the tasks of a run ---------------------------------------------------------------------------
