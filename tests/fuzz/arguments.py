@@ -69,6 +69,7 @@ PLUMBING = (
     "mxeon.models.microfacet.lobe_albedo",
     "mxeon.models.microfacet.node_",
     "mxeon.models.shading_model",
+    "mxeon.models.surfaces",
 )  # beginnings of names of functions that have no arguments of their own
 TAKEN = (bool, str, float, int)  # kinds of arguments, besides arrays, that are tried
 

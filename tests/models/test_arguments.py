@@ -65,6 +65,7 @@ def test_every_function_on_the_pages_is_tried():
     paths = re.findall(
         r"^::: (mxeon\.(?:models|albedo|inversion|sampling)[\w.]*\.[a-z]\w+)$", text, re.M
     )
+    paths = [each for each in paths if ".surfaces." not in each]  # those take a light and inputs
     names = {path.rpartition(".")[2] for path in paths if not ismodule(resolve_name(path))}
     tried = {name.rpartition(".")[2] for name in arguments.functions()}
     assert len(names) > 90
