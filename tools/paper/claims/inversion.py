@@ -15,7 +15,9 @@ ROUNDING = 1e-14
 STATED = 3e-3
 # The rounding of float32: a float64 formula with a larger error has failed.
 FLOAT32 = 2.0**-24
-# Our fits to the forms of Eqs. (32) and (34), tools/fits/eon_inversion.py: slope and zero.
+# Slope a and zero b of Eqs. (32) and (34), C + a (b - C) C r, and of our fits of these forms,
+# tools/fits/eon_inversion.py.
+PRINTED = {"normal": (0.258831, 0.98995), "avg": (0.189468, 1.0)}
 REFIT = {"normal": (0.2531091, 0.9883170), "avg": (0.1843278, 1.0)}
 SECTION = Section("Appendix A: inversion of the albedo")
 claim = SECTION.claim
@@ -46,14 +48,15 @@ def _listed(errors: dict[float, float]) -> str:
 
 def _polynomial(constraint: str) -> Measured:
     """Largest errors of the paper's polynomial and of ours, and the place of the first."""
-    error = np.abs(rho(f"{constraint}_approx") - rho(constraint))
-    slope, zero = REFIT[constraint]
-    refit = COLORS + slope * (zero - COLORS) * COLORS * ROUGHNESS[:, np.newaxis]
-    ours = np.abs(refit - rho(constraint)).max()
+    exact = rho(constraint)
+    error, ours = (
+        np.abs(COLORS + slope * (zero - COLORS) * COLORS * ROUGHNESS[:, np.newaxis] - exact)
+        for slope, zero in (PRINTED[constraint], REFIT[constraint])
+    )
     row, column = np.unravel_index(error.argmax(), error.shape)
     place = f"at r = {ROUGHNESS[row]:g}, C = {COLORS[column]:.2f}"
     sentence = f"{100 * error.max():.3f} % of full scale, {place}"
-    return f"{sentence}; our fit of the same form {100 * ours:.3f} %", error.max()
+    return f"{sentence}; our fit of the same form {100 * ours.max():.3f} %", error.max()
 
 
 @claim("Eqs. (30), (31)", "rho from the color at normal incidence", "error", most=ROUNDING)

@@ -2,10 +2,10 @@
 """The pbrlib specification of MaterialX: its printed formulas, evaluated as they stand."""
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.models.diffuse import qon_aq
 from tools.paper.claims import Measured, Section
-from tools.paper.curves import directions
 
 REMARK = f"""Two sentences of that text cannot be measured. It calls the printed L_r of
 `oren_nayar_diffuse_bsdf` a radiance; the formula contains neither a cosine nor an irradiance, so it is
@@ -13,6 +13,15 @@ the BRDF f, in 1/sr. It describes `roughness` as the sigma of Oren and Nayar; wi
 `energy_compensation` it is the r of EON, which is dimensionless and lies in [0, 1], where r = 0.5
 corresponds to sigma = {0.25 * np.pi:.2f}."""
 _OREN_NAYAR = "oren_nayar_diffuse_bsdf"
+
+
+def directions(theta: ArrayLike, phi: ArrayLike) -> NDArray[np.float64]:
+    """Unit vectors at polar angle `theta` and azimuth `phi`, both in degrees."""
+    theta, phi = np.radians(theta), np.radians(phi)
+    parts = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)
+    return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+
 SECTION = Section("The specification of MaterialX's pbrlib before June 2026", REMARK)
 claim = SECTION.claim
 
