@@ -488,13 +488,11 @@ def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
     assert asked - failing == WITHOUT
 
 
-# Of shader functions, frames and released texts, which `test_wrong_libraries.py` breaks; of graphs, which
-# `test_graphs.py` does; of a color space, by the test above; and that no input is dead.
+# Of shader functions, frames and released texts, which `test_wrong_libraries.py` breaks; of a color space, by the test above; and that no input is dead.
 WITHOUT = {
     "client",
     "color_space",
     "densities",
-    "graph",
     "loss",
     "parts",
     "reach",

@@ -30,8 +30,7 @@ class Verdicts:
 
     def texts(self, check, library):
         """Results of the text checks with this key, by subject."""
-        task = check if check == "definition" else SOURCE
-        results = self.all(task, EVERY_NODE, SOURCE, library)
+        results = self.all(SOURCE, EVERY_NODE, SOURCE, library)
         return {each.subject: each for each in results if each.check == check}
 
     def unjudged(self, check, library, host="gl"):

@@ -7,13 +7,13 @@ the release is an older version and is not compared. A library with additional n
 documents may be a newer version, so its differences are permitted.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import MaterialX as mx
 import numpy as np
@@ -22,7 +22,7 @@ from mxeon.conformance.check import judge
 from mxeon.conformance.reference.nodes import OPERATIONS
 from mxeon.conformance.results import NOT_RUN, Cause, Diagnosis, Kind, Result
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import Array, float32, generator
+from mxeon.conformance.samples import Array, float32, generator, sky_map
 from mxeon.conformance.spec import POWER
 from mxeon.conformance.specs import ALL
 from mxeon.conformance.specs.utilities import UtilitySpec
@@ -33,6 +33,7 @@ from mxeon.hosts.calls import GRAPH
 from mxeon.io.images import write_exr
 from mxeon.shaders import texts
 from mxeon.shaders.document.drawn_values import CLOSURES
+from mxeon.shaders.document.graphs import inner_nodes
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.generators import GENERATORS
@@ -49,28 +50,37 @@ from mxeon.shaders.released_graphs import (
     ports_of,
     said,
 )
-from mxeon.shaders.scene import FURNACE, SIDE, Client
+from mxeon.shaders.scene import CLIENT, FURNACE, SIDE, Client
 
 RELEASE, SUBJECT = "release", "definitions, units, graphs and texts"
 CLAIM = "What has no model is as MaterialX released it, or has the same values."
 ROWS = 64  # samples of the inputs
 MOST = 12  # maximum number of evaluated nodes
 SIZE, MATERIALS = 24, 3  # size and number of pictures for differently arranged lobes
-# Compared attributes of inputs and outputs; ranges only guide editors.
+# Compared attributes of inputs and outputs; ranges only guide editors and are only compared for eonlib's nodes.
 ATTRIBUTES = ("type", "defaultgeomprop", "uniform", "unit", "unittype", "colorspace", "enum")
+RANGE = ("uimin", "uimax")
 COMPONENTS = {"float": 1, "integer": 1, "boolean": 1, "vector2": 2, "color3": 3, "vector3": 3}
 # Nodes that append a fourth component to three, and the type of the three.
 JOINED = {
     "color4": ("ND_combine2_color4CF", "color3"),
     "vector4": ("ND_combine2_vector4VF", "vector3"),
 }
+NUMBERS = (*COMPONENTS, *JOINED)  # types that are compared by values
 SHADED = ("BSDF", "EDF", "surfaceshader")  # types that are compared by pictures
 SHADERS = ("surfaceshader", "volumeshader", "displacementshader")  # types that stay unconnected
 ALPHA = ("hwTransparency",)  # option that adds an alpha to shaders
+# A light, an uneven environment, and alpha.
 PICTURES = tuple(
-    replace(each, size=SIZE) for each in (SIDE, FURNACE, replace(SIDE, client=Client(alpha=True)))
+    replace(scene, size=SIZE, client=client)
+    for scene, client in (
+        (SIDE, CLIENT),
+        (FURNACE, Client(radiance=sky_map(), irradiance=sky_map())),
+        (SIDE, Client(alpha=True)),
+    )
 )
 LOBES = {"BSDF": "burley_diffuse_bsdf", "EDF": "uniform_edf"}  # sources for inputs, by type
+# Constant values of inputs by type; a tangent must not be along the normal.
 ZEROS = {
     "float": "0",
     "integer": "0",
@@ -79,16 +89,20 @@ ZEROS = {
     "color3": "0, 0, 0",
     "vector3": "0, 0, 1",
 }
+TANGENT = "1, 0, 0"
 PROBE = "mxeon_probe"
 MODELLED = {(each.node, isinstance(each, UtilitySpec)) for each in ALL}
 Place: TypeAlias = tuple[mx.GraphElement, mx.PortElement]  # a graph and one of its ports
-# A definition in a library, its output's name and type, and optionally a port in its graph instead.
-Subject: TypeAlias = (
-    "tuple[mx.NodeDef, str, tuple[str, str]] | tuple[mx.NodeDef, str, tuple[str, str], Place]"
-)
 
-# A definition, its library, and optionally a port in its graph.
-Side: TypeAlias = "tuple[mx.NodeDef, str] | tuple[mx.NodeDef, str, Place]"
+
+class Subject(NamedTuple):
+    """An output of a node in a library, or a port of a graph in its place with the node's inputs."""
+
+    definition: mx.NodeDef
+    library: str
+    kind: str  # type of the output
+    place: Place | None = None
+    output: str = ""  # name of the output, if there are several
 
 
 def released(library: str) -> mx.Document | None:
@@ -101,53 +115,86 @@ def released(library: str) -> mx.Document | None:
 
 
 def newer(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
-    """Nodes that the release lacks, in documents with the names of MaterialX's own."""
-    known = {Path(each.getActiveSourceUri()).name: None for each in release.getNodeDefs()}
-    return tuple(
-        each.getNodeString()
-        for each in document.getNodeDefs()
-        if not release.getNodeDef(each.getName()) and Path(each.getActiveSourceUri()).name in known
-    )
+    """Nodes in MaterialX's own documents that the release lacks, or has in another version."""
+    known = {Path(each.getActiveSourceUri()).name for each in release.getNodeDefs()}
+    found = []
+    for each in document.getNodeDefs():
+        right = release.getNodeDef(each.getName())
+        if (
+            right.getVersionString() != each.getVersionString()
+            if right
+            else Path(each.getActiveSourceUri()).name in known
+        ):
+            found.append(each.getNodeString())
+    return tuple(found)
+
+
+def redefined(
+    document: mx.Document, library: str, keys: Iterable[str] = ("value", "defaultgeomprop")
+) -> tuple[Cause, ...]:
+    """Defaults of a document's nodes that a library changes from MaterialX's."""
+    found: dict[Cause, None] = {}
+    for node in inner_nodes(document):
+        definition = node.getNodeDef(target="", allowRoughMatch=True) if node.isA(mx.Node) else None
+        right = definition and load_library("stock").getNodeDef(definition.getName())
+        for port in definition.getActiveInputs() if definition and right else ():
+            name, other = port.getName(), right and right.getActiveInput(port.getName())
+            if not other or node.getInput(name):
+                continue
+            for key in keys:
+                own, released = port.getAttribute(key), other.getAttribute(key)
+                if one_spelling(own) != one_spelling(released):
+                    default = f"default of {name} of {node.getCategory()}"
+                    names = default, own or "none", "MaterialX", released or "none"
+                    found[Cause(Kind.DEFECT, "definition", names)] = None
+    return tuple(found)
 
 
 def definition_facts(
-    document: mx.Document, release: mx.Document, names: list[str]
+    own: mx.NodeDef, right: mx.NodeDef, attributes: Sequence[str] = ATTRIBUTES
 ) -> dict[str, str]:
-    """A document's version of a release's definitions (some of them), units and geometric properties."""
-    found: dict[str, str] = {}
-    for name in names:
-        own, right = document.getNodeDef(name), release.getNodeDef(name)
-        found[f"category of {name}"] = own.getNodeString()
-        found[f"version of {name}"] = f"{own.getVersionString()} {own.getDefaultVersion()}"
-        for each in (*right.getActiveInputs(), *right.getActiveOutputs()):
-            port, place = own.getActiveValueElement(each.getName()), f"{each.getName()} of {name}"
-            if port is None:
-                found[place] = "missing"
-                continue
-            found[f"the default of {place}"] = port_text(port)
-            found |= {f"{fact} of {place}": port.getAttribute(fact) for fact in ATTRIBUTES}
-    for right in (*release.getUnitDefs(), *release.getGeomPropDefs()):
-        own = document.getChild(right.getName())
-        for element in (own, *own.getChildren()) if own else ():
-            place = f"{element.getCategory()} {element.getName()}"
-            found |= {
-                f"{fact} of {place}": one_spelling(element.getAttribute(fact))
-                for fact in element.getAttributeNames()
-                if fact != "doc"
-            }
+    """What a definition says of the inputs and outputs of another one."""
+    name = right.getName()
+    found = {
+        f"category of {name}": own.getNodeString(),
+        f"version of {name}": f"{own.getVersionString()} {own.getDefaultVersion()}",
+    }
+    for each in (*right.getActiveInputs(), *right.getActiveOutputs()):
+        port, place = own.getActiveValueElement(each.getName()), f"{each.getName()} of {name}"
+        if port is None:
+            found[place] = "missing"
+            continue
+        found[f"the default of {place}"] = port_text(port)
+        found |= {
+            f"{fact} of {place}": one_spelling(port.getAttribute(fact)) for fact in attributes
+        }
     return found
 
 
+def unit_facts(document: mx.Document, release: mx.Document) -> dict[str, str]:
+    """What a document says of a release's units and geometric properties."""
+    names = [each.getName() for each in (*release.getUnitDefs(), *release.getGeomPropDefs())]
+    return {
+        f"{fact} of {element.getCategory()} {element.getName()}": one_spelling(
+            element.getAttribute(fact)
+        )
+        for own in filter(None, map(document.getChild, names))
+        for element in (own, *own.getChildren())
+        for fact in element.getAttributeNames()
+        if fact != "doc"
+    }
+
+
 def one_spelling(text: str) -> str:
-    """A number as it is shortest, and any other text as it is."""
+    """Numbers as they are shortest; an omitted flag is false."""
+    words = text.replace("false", "").replace(",", " ").split()
     with suppress(ValueError):
-        return repr(float(text))
-    return text
+        words = [f"{float(word):g}" for word in words]
+    return " ".join(words)
 
 
-def versions(document: mx.Document, name: str) -> tuple[str, ...]:
+def versions(document: mx.Document, definition: mx.NodeDef) -> tuple[str, ...]:
     """The releases with the graph and the defaults of a surface shader; empty for an unknown graph."""
-    definition = document.getNodeDef(name)
     graph = definition.getImplementation()
     if definition.getType() != "surfaceshader" or not (graph and graph.isA(mx.NodeGraph)):
         return ()
@@ -201,31 +248,41 @@ def apart(terms: Terms, own: Place, right: Place) -> Iterator[tuple[Place, Place
 class Comparison:
     """Compares a library with the release, on a host that evaluates its texts."""
 
-    def __init__(self, host: Host, library: str, release: mx.Document) -> None:
-        self._host, self._library, self._release = host, library, release
+    def __init__(self, host: Host, library: str, release: mx.Document, image: str) -> None:
+        self._host, self._library, self._release, self._image = host, library, release, image
         self._document = load_library(library)
         self._target = GENERATORS[host.target].create().getTarget()
         self.unjudged: list[tuple[str, str]] = []
 
     def definitions(self, changed: bool = False) -> list[Cause]:
-        """Differences of definitions, units and properties; `changed` changes a default as a control."""
-        first, *others = self._release.getNodeDefs()
-        names = [
-            each.getName()
-            for each in others
-            if self._document.getNodeDef(each.getName()) != each
-            and not versions(self._document, each.getName())
-        ]
-        own, right = (
-            definition_facts(each, self._release, [first.getName(), *names])
-            for each in (self._document, self._release)
+        """Differences of definitions, units and properties; `changed` changes a version as a control.
+
+        The nodes that eonlib defines are also compared with its definitions.
+        """
+        ours = (
+            each
+            for each in load_library("eonlib").getNodeDefs()
+            if self._release.getNodeDef(each.getName()) != each
         )
-        if changed:
-            own[f"version of {first.getName()}"] = "1234"
-        return [
-            Cause(Kind.DEFECT, RELEASE, ("", *row))
-            for row in zip(*[iter(differences(own, right))] * 3, strict=True)
-        ]
+        rows: list[str] = []
+        for number, right in enumerate((*self._release.getNodeDefs(), *ours)):
+            name = right.getName()
+            own, released = (each.getNodeDef(name) for each in (self._document, self._release))
+            if own is None or (
+                number and (own in (right, released) or versions(self._document, own))
+            ):
+                continue
+            attributes = ATTRIBUTES if released == right else (*ATTRIBUTES, *RANGE)
+            found, expected = (definition_facts(each, right, attributes) for each in (own, right))
+            if changed and number == 0:
+                found[f"version of {name}"] = "1234"
+            omitted = [each for each in found if each.startswith(RANGE) and not found[each]]
+            rows += differences(found | {each: expected[each] for each in omitted}, expected)
+        rows += differences(
+            *(unit_facts(e, self._release) for e in (self._document, self._release))
+        )
+        apart = dict.fromkeys(zip(*[iter(rows)] * 3, strict=True))
+        return [Cause(Kind.DEFECT, RELEASE, ("", *row)) for row in apart]
 
     @cached_property
     def nodes(self) -> list[Cause]:
@@ -243,16 +300,15 @@ class Comparison:
             if not left:
                 break
             name, *others = left.pop(0)
+            cause = None
             try:
-                causes = list(self._evaluated(name))
-            except (NotRun, ShaderError, DocumentError) as error:
-                causes = []
-                if isinstance(error, NotRun):
-                    self.unjudged.append((f"{self._target} of {name}", str(error)))
-                else:
-                    causes = [Cause(Kind.TEXT, text=f"{name}: {error}")]
-            if causes:
-                found += [replace(each, of=1 + len(others)) for each in causes]
+                cause = self._evaluated(name)
+            except NotRun as error:
+                self.unjudged.append((f"{self._target} of {name}", str(error)))
+            except (ShaderError, DocumentError) as error:
+                cause = Cause(Kind.TEXT, text=f"{name}: {error}")
+            if cause:
+                found.append(replace(cause, of=1 + len(others)))
             elif others:
                 left.append(others)
         if left:
@@ -261,15 +317,19 @@ class Comparison:
             self.unjudged.append((names, reason))
         return found
 
+    def _pair(self, name: str) -> tuple[mx.NodeDef, mx.NodeDef, mx.Element, mx.Element]:
+        """Definition of a node in the library and in the release, and both implementations."""
+        own, right = (each.getNodeDef(name) for each in (self._document, self._release))
+        return own, right, *(each.getImplementation(self._target) for each in (own, right))
+
     def _change(self, name: str) -> object:
         """The difference of a node that no model judges, or None."""
-        own, right = (each.getNodeDef(name) for each in (self._document, self._release))
-        ours, theirs = (each.getImplementation(self._target) for each in (own, right))
+        own, right, ours, theirs = self._pair(name)
         if theirs is None or (ours is not None and ours == theirs and ours.isA(mx.NodeGraph)):
             return None
         graphs = [bool(each) and each.isA(mx.NodeGraph) for each in (ours, theirs)]
         if all(graphs):
-            if other := versions(self._document, name):
+            if other := versions(self._document, own):
                 reason = f"the graph of MaterialX {' and '.join(other)}"
                 self.unjudged.append((right.getNodeString(), reason))
             return None if other else name
@@ -286,164 +346,160 @@ class Comparison:
         one, two = (set(texts.said(*each)) for each in sides)
         return frozenset(one ^ two) or None
 
-    def _evaluated(self, name: str) -> Iterator[Cause]:
-        own, right = (each.getNodeDef(name) for each in (self._document, self._release))
-        ours, theirs = (each.getImplementation(self._target) for each in (own, right))
+    def _evaluated(self, name: str) -> Cause | None:
+        """The cause that the values of a node differ from the released one's."""
+        own, right, ours, theirs = self._pair(name)
+        node = right.getNodeString()
         if ours is not None and ours.isA(mx.NodeGraph) and theirs.isA(mx.NodeGraph):
-            return self._graph(own, ours, theirs)
-        return self._text(own, right)
+            rows = differences(dict(facts(ours)), dict(facts(theirs)))
+            error = self._graphs_apart(own, ours, theirs)
+        else:
+            rows = f"{self._target} of {name}", "another text", "the one that MaterialX released"
+            if ours is None:
+                return Cause(Kind.DEFECT, RELEASE, (node, rows[0], "missing", rows[2]))
+            error = self._texts_apart(own, right)
+        if error <= self.tolerance.value:
+            return None
+        return Cause(Kind.DEFECT, RELEASE, (node, *rows), (error,))
 
-    def _graph(
+    def _graphs_apart(
         self, definition: mx.NodeDef, ours: mx.NodeGraph, theirs: mx.NodeGraph
-    ) -> Iterator[Cause]:
-        """The places where the values of two graphs differ."""
-        terms, error = Terms(), 0.0
+    ) -> float:
+        """The largest difference between the values of two graphs, where their terms differ."""
+        node, terms, error = Subject(definition, self._library, definition.getType()), Terms(), 0.0
         for output in theirs.getOutputs():
             other = ours.getOutput(output.getName())
             if other is None:
-                error = np.inf
-                continue
+                return np.inf
             for one, two in apart(terms, (ours, other), (theirs, output)):
-                if two[1].getType() in CLOSURES:
+                kind = two[1].getType()
+                # The surface's own vectors are only known in a picture.
+                if kind in CLOSURES or any(
+                    p.getAttribute("defaultgeomprop") for _, p in (one, two)
+                ):
                     place = theirs, theirs.getOutputs()[0]
-                    sides = (definition, self._library), (definition, self._library, place)
-                    error = max(error, self._drawn(*sides))
+                    error = max(error, self._pictures_apart(node, node._replace(place=place)))
+                elif kind not in NUMBERS or one[1].getType() != kind:
+                    return np.inf
                 else:
-                    error = max(error, self._apart(definition, one, two))
-        if error > self.tolerance.value:
-            rows = differences(dict(facts(ours)), dict(facts(theirs)))
-            yield Cause(Kind.DEFECT, RELEASE, (definition.getNodeString(), *rows), (error,))
+                    ports = (node._replace(kind=kind, place=place) for place in (one, two))
+                    error = max(error, self._values_apart(*ports))
+        return error
 
-    def _text(self, own: mx.NodeDef, right: mx.NodeDef) -> Iterator[Cause]:
-        """Whether the values of nodes with different texts differ."""
-        name, kinds = right.getName(), {each.getType() for each in right.getActiveOutputs()}
-        rows = f"{self._target} of {name}", "another text", "the one that MaterialX released"
-        if own.getImplementation(self._target) is None:
-            yield Cause(Kind.DEFECT, RELEASE, (own.getNodeString(), rows[0], "missing", rows[2]))
-            return
-        numbers, drawn = (
-            kinds <= {*COMPONENTS, *JOINED},
-            kinds <= {*SHADED}
-            and not any(port.getType() in SHADERS for port in right.getActiveInputs()),
+    def _texts_apart(self, own: mx.NodeDef, right: mx.NodeDef) -> float:
+        """The largest difference between the values of a node with two texts; NotRun if none are known."""
+        outputs = right.getActiveOutputs()
+        kinds, inputs = (
+            {each.getType() for each in ports} for ports in (outputs, right.getActiveInputs())
         )
-        if not (numbers or drawn) or self._release is hidden():
-            self.unjudged.append((rows[0], "its text is not MaterialX's, and nothing evaluates it"))
-            return
-        error = self._drawn((own, self._library), (right, "stock")) if drawn else 0.0
-        for output in right.getActiveOutputs() if numbers else ():
-            port = (output.getName() if len(right.getActiveOutputs()) > 1 else "", output.getType())
-            sides = (own, self._library, port), (right, "stock", port)
-            error = max(error, self._distance(*sides))
-        if error > self.tolerance.value:
-            yield Cause(Kind.DEFECT, RELEASE, (right.getNodeString(), *rows), (error,))
+        sides = [
+            Subject(own, self._library, right.getType()),
+            Subject(right, "stock", right.getType()),
+        ]
+        if self._release is not hidden():
+            if kinds <= {*NUMBERS}:
+                return max(
+                    self._values_apart(
+                        *(
+                            each._replace(
+                                kind=output.getType(),
+                                output=output.getName() * (len(outputs) > 1),
+                            )
+                            for each in sides
+                        )
+                    )
+                    for output in outputs
+                )
+            if kinds <= {*SHADED} and inputs.isdisjoint(SHADERS):
+                return self._pictures_apart(*sides)
+        raise NotRun("its text is not MaterialX's, and nothing evaluates it")
 
-    def _apart(self, definition: mx.NodeDef, own: Place, right: Place) -> float:
-        """The largest difference between the values of two graph ports; infinity for text."""
-        kind = right[1].getType()
-        if kind not in (*COMPONENTS, *JOINED) or own[1].getType() != kind:
-            return np.inf
-        sides = ((definition, self._library, ("", kind), place) for place in (own, right))
-        return self._distance(*sides)
-
-    def _distance(self, own: Subject, right: Subject) -> float:
+    def _values_apart(self, own: Subject, right: Subject) -> float:
         """The largest difference between two subjects' values; NotRun if the released one does not compile."""
         try:
-            expected = self._values(*right)
+            expected = self._values(right)
         except (DocumentError, ShaderError) as error:
             raise NotRun(f"the released one cannot be evaluated: {error}") from None
-        return distance(self._values(*own), expected)
+        return distance(self._values(own), expected)
 
-    def _values(
-        self,
-        definition: mx.NodeDef,
-        library: str,
-        output: tuple[str, str],
-        place: Place | None = None,
-    ) -> Array:
-        """Values of an output of a node, or of a port in its graph, (ROWS, 3) or (ROWS, 6)."""
-        name, kind = output
-        parts = [("convert", ""), ("extract", "3")] if kind in JOINED else [("convert", "")]
+    def _values(self, subject: Subject) -> Array:
+        """Values of a subject, (ROWS, 3), or (ROWS, 6) with a fourth component."""
         found = []
-        with TemporaryDirectory() as folder:
-            for category, index in parts:
-                document = mx.createDocument()
-                node = instance(document, definition, self._image(folder), kind, place)
-                part = node
-                if index:
-                    part = document.addNode(category, "part", "float")
-                    part.setInputValue("index", int(index))
-                    part.addInput("in", kind).setNodeName(node.getName())
-                    name, kind = "", "float"
-                color = document.addNode("convert", "color", "color3")
-                port = color.addInput("in", kind)
-                port.setNodeName(part.getName())
-                if name:
-                    port.setOutputString(name)
-                if kind == "color3":
-                    color.setCategory("dot")
-                edf = document.addNode("uniform_edf", "lobe", "EDF")
-                edf.addInput("color", "color3").setNodeName("color")
-                finish(document, edf)
-                policy = Policy(outside=True)
-                [shader] = self._host.compile(document, library=library, policy=policy)
-                up = np.tile([0.0, 0.0, 1.0], (ROWS, 1))
-                inputs = samples(definition)
-                found.append(self._host.evaluate(shader, up, up, inputs, GRAPH))
+        for index in ("", "3") if subject.kind in JOINED else ("",):
+            document = mx.createDocument()
+            node, kind, output = (
+                instance(document, subject, self._image),
+                subject.kind,
+                subject.output,
+            )
+            if index:
+                part = document.addNode("extract", "part", "float")
+                part.setInputValue("index", int(index))
+                part.addInput("in", kind).setNodeName(node.getName())
+                node, kind, output = part, "float", ""
+            color = document.addNode("dot" if kind == "color3" else "convert", "color", "color3")
+            port = color.addInput("in", kind)
+            port.setNodeName(node.getName())
+            if output:
+                port.setOutputString(output)
+            edf = document.addNode("uniform_edf", "lobe", "EDF")
+            edf.addInput("color", "color3").setNodeName("color")
+            up = np.tile([0.0, 0.0, 1.0], (ROWS, 1))
+            shader = self._compiled(document, edf, subject.library)
+            found.append(self._host.evaluate(shader, up, up, samples(subject.definition), GRAPH))
         return np.concatenate(found, axis=1).astype(np.float64)
 
-    def _drawn(self, *sides: Side) -> float:
+    def _pictures_apart(self, *subjects: Subject) -> float:
         """The largest difference between pictures of a node, alpha included; infinity without pictures."""
-        kind = sides[0][0].getType()
-        if kind not in SHADED:
-            return np.inf
-        error = 0.0
-        with TemporaryDirectory() as folder, suppress(MxeonError):
-            shaders: list[Shader] = []
-            for definition, library, *place in sides:
+        shaders: list[Shader] = []
+        try:
+            for each in subjects:
                 document = mx.createDocument()
-                finish(document, instance(document, definition, self._image(folder), kind, *place))
-                policy = Policy(outside=True)
-                shaders += self._host.compile(
-                    document, library=library, policy=policy, client=ALPHA
-                )
-            rng = generator()
-            for _ in range(MATERIALS):
-                drawn = {
-                    port.path: rng.random(COMPONENTS[port.type])
-                    for port in shaders[0].inputs
-                    if port.type in ("float", "color3")
-                }
-                for scene in PICTURES:
-                    pictures = (
-                        self._host.picture(
-                            replace(
-                                shader,
-                                inputs=tuple(
-                                    replace(
-                                        port,
-                                        value=tuple(map(float, drawn[port.path]))
-                                        if port.type == "color3"
-                                        else float(drawn[port.path][0]),
-                                    )
-                                    if port.path in drawn
-                                    else port
-                                    for port in shader.inputs
-                                ),
+                node = instance(document, each, self._image)
+                shaders.append(self._compiled(document, node, each.library, client=ALPHA))
+        except MxeonError:
+            return np.inf
+        rng, error = generator(), 0.0
+        for _ in range(MATERIALS):
+            drawn = {
+                port.path: float(rng.random())
+                if port.type == "float"
+                else tuple(map(float, rng.random(3)))
+                for port in shaders[0].inputs
+                if port.type in ("float", "color3")
+            }
+            for scene in PICTURES:
+                own, right = (
+                    self._host.picture(
+                        replace(
+                            shader,
+                            inputs=tuple(
+                                replace(port, value=drawn.get(port.path, port.value))
+                                for port in shader.inputs
                             ),
-                            scene,
-                        )
-                        for shader in shaders
-                    )
-                    error = max(error, distance(*(each.reshape(-1, 3) for each in pictures)))
-            return error
-        return np.inf
+                        ),
+                        scene,
+                    ).reshape(-1, 3)
+                    for shader in shaders
+                )
+                if not np.isfinite(right).any():
+                    raise NotRun("its picture has no finite pixel")
+                error = max(error, distance(own, right))
+        return error
 
-    def _image(self, folder: str) -> str:
-        """An image file with four different channels."""
-        path = str(Path(folder, "image.exr"))
-        pixels = generator().random((8, 8, 4), np.float32)
-        write_exr(path, pixels, {})
-        return path
+    def _compiled(
+        self, document: mx.Document, node: mx.Node, library: str, client: tuple[str, ...] = ()
+    ) -> Shader:
+        """Shader of a node, completed to a material."""
+        if node.getType() != "surfaceshader":
+            surface = document.addNode("surface", "shading", "surfaceshader")
+            surface.addInput(node.getType().lower(), node.getType()).setNodeName(node.getName())
+            node = surface
+        material = document.addNode("surfacematerial", "look", "material")
+        material.addInput("surfaceshader", "surfaceshader").setNodeName(node.getName())
+        policy = Policy(outside=True)
+        [shader] = self._host.compile(document, library=library, policy=policy, client=client)
+        return shader
 
     @cached_property
     def tolerance(self) -> Tolerance:
@@ -458,28 +514,28 @@ class Comparison:
 
 
 def samples(definition: mx.NodeDef) -> dict[str, Array]:
-    """Values of the nodes that feed a definition's inputs, by path; half of them in [0, 1]."""
+    """Values of the nodes that feed a definition's inputs, by path; half of them in [0, 1].
+
+    In every third row all inputs are equal, since a graph may compare them.
+    """
     rng, found = generator(), {}
+    equal = rng.random((ROWS, 1))
     for port in definition.getActiveInputs():
         kind = JOINED.get(port.getType(), ("", port.getType()))[1]
         for name, each in ((port.getName(), kind), (f"{port.getName()}_4", "float")):
             if each in COMPONENTS:
                 values = rng.random((ROWS, COMPONENTS[each]))
                 values[ROWS // 2 :] = 4.0 * values[ROWS // 2 :] - 1.5
+                values[::3] = equal[::3]
                 if each in ("integer", "boolean"):
                     values = np.floor(values * 2.0).clip(0.0)
                 found[f"in_{name}/value"] = float32(values)
     return found
 
 
-def instance(
-    document: mx.Document,
-    definition: mx.NodeDef,
-    image: str,
-    kind: str,
-    place: Place | None = None,
-) -> mx.Node:
-    """A node of a definition, or of a port in its graph, with a separate node for each input."""
+def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
+    """A node of a subject, with a separate node for each input."""
+    definition, kind, place = subject.definition, subject.kind, subject.place
     category, name = definition.getNodeString(), definition.getName()
     left_out = ("VDF",) if kind in CLOSURES else CLOSURES
     ports = [each for each in definition.getActiveInputs() if each.getType() not in left_out]
@@ -510,7 +566,9 @@ def instance(
         joined, inner = JOINED.get(kind, ("", kind))
         if inner in COMPONENTS:
             constant = document.addNode("constant", source, inner)
-            constant.addInput("value", inner).setValueString(ZEROS[inner])
+            along = inner == "vector3" and "tangent" in port.getName()
+            value = TANGENT if along else ZEROS[inner]
+            constant.addInput("value", inner).setValueString(value)
             if joined:
                 fourth = document.addNode("constant", f"{source}_4", "float")
                 fourth.setInputValue("value", 0.0)
@@ -525,16 +583,6 @@ def instance(
             lobe = document.addNode(LOBES[kind], source, kind)
             node.addInput(port.getName(), kind).setNodeName(lobe.getName())
     return node
-
-
-def finish(document: mx.Document, node: mx.Node) -> None:
-    """Complete a node to a material."""
-    if node.getType() != "surfaceshader":
-        surface = document.addNode("surface", "shading", "surfaceshader")
-        surface.addInput(node.getType().lower(), node.getType()).setNodeName(node.getName())
-        node = surface
-    material = document.addNode("surfacematerial", "look", "material")
-    material.addInput("surfaceshader", "surfaceshader").setNodeName(node.getName())
 
 
 def distance(own: Array, right: Array) -> float:
@@ -561,19 +609,22 @@ def check_release(
     if release is None:
         why = f"the library lacks nodes of MaterialX {mx.getVersionString()}: it is an older one"
         return (), ((f"{SUBJECT} of {library}", why),)
-    comparison = Comparison(host, library, release)
     place = Result(RELEASE, CLAIM, SUBJECT, host.name, library, NOT_RUN)
+    with TemporaryDirectory() as folder:
+        image = str(Path(folder, "image.exr"))  # its four channels are different
+        write_exr(image, generator().random((8, 8, 4), np.float32), {})
+        comparison = Comparison(host, library, release, image)
 
-    def measure(wrong: bool) -> Measurement:
-        causes = [*comparison.definitions(wrong), *([] if wrong else comparison.nodes)]
-        return Measurement(float(len(causes)), {})
+        def measure(wrong: bool) -> Measurement:
+            causes = [*comparison.definitions(wrong), *([] if wrong else comparison.nodes)]
+            return Measurement(float(len(causes)), {})
 
-    def diagnose() -> Diagnosis:
-        causes = [*comparison.nodes, *comparison.definitions()]
-        if more := newer(load_library(library), release):
-            causes.append(Cause(Kind.DEFECT, "newer", more))
-        return Diagnosis(tuple(causes), permitted=bool(more))
+        def diagnose() -> Diagnosis:
+            causes = [*comparison.nodes, *comparison.definitions()]
+            if more := newer(load_library(library), release):
+                causes.append(Cause(Kind.DEFECT, "newer", more))
+            return Diagnosis(tuple(causes), permitted=bool(more))
 
-    variant = "the version of a node is 1234"
-    result = judge(place, count_of(Quantity.DIFFERENCES), measure, variant, diagnose)
+        variant = "the version of a node is 1234"
+        result = judge(place, count_of(Quantity.DIFFERENCES), measure, variant, diagnose)
     return (result,), tuple(comparison.unjudged)

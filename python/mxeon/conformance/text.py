@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of texts that are not executed: definitions of nodes, twins of functions, generated sources.
+"""Checks of texts that are not executed: twins of functions, sources of nodes, generated sources.
 
 Each check counts faults, which must be 0; its control is a text with one more fault.
 The meaning of a renderer's closure arguments comes from its documentation.
@@ -29,13 +29,12 @@ from mxeon.hosts import HOSTS
 from mxeon.models import diffuse as formulas
 from mxeon.shaders import texts
 from mxeon.shaders.closure_calls import COMMENT
-from mxeon.shaders.document.graphs import inner_nodes
 from mxeon.shaders.expressions import Array, evaluate
 from mxeon.shaders.functions import LANGUAGES, has_functions, parts, twins
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
 from mxeon.shaders.library import load_library
 from mxeon.shaders.library_tree import search_path
-from mxeon.shaders.nodes import EON, FLAG, INVERSIONS, OREN_NAYAR
+from mxeon.shaders.nodes import FLAG
 
 # --- checks --------------------------------------------------------------------------------------
 
@@ -43,11 +42,6 @@ Faults: TypeAlias = tuple[list[Cause], int]  # faults, and the control's count
 Inputs = Mapping[str, Array]
 # Check -> claim, counted quantity, and the control's mistake.
 CLAIMS = {
-    "definition": (
-        "The node's inputs and output match its specification.",
-        Quantity.DIFFERENCES,
-        "the default of roughness is 0.3",
-    ),
     "languages": (
         "The shader functions are identical in OSL and GLSL, apart from type names.",
         Quantity.FUNCTIONS,
@@ -133,113 +127,6 @@ def _judged(check: str, subject: str, library: str, faults: Callable[[], Faults]
         return Measurement(control if wrong else len(found), {})
 
     return judge(place, count_of(quantity), measure, variant, lambda: Diagnosis(tuple(found)))
-
-
-# --- definitions ----------------------------------------------------------------------------------
-
-# Ranges only guide editors, and pbrlib may omit them.
-RANGE = ("lower end of the range", "upper end of the range")
-WORDS = {"type": "type", "value": "default", "uimin": RANGE[0], "uimax": RANGE[1]}
-WORDS |= {name: name for name in ("uniform", "defaultgeomprop")}
-UNIT = 'type="float" value="{}" uimin="0.0" uimax="1.0"'
-COLORED = f"""
-  <input name="color" type="color3" value="0.18, 0.18, 0.18"
-         uimin="0.0, 0.0, 0.0" uimax="1.0, 1.0, 1.0" />
-  <input name="roughness" {UNIT.format("0.0")} />"""
-LOBE = f"""<input name="weight" {UNIT.format("1.0")} />{COLORED}
-  <input name="normal" type="vector3" defaultgeomprop="Nworld" />"""
-OUTPUT = '<output name="out" type="{}" /></nodedef>'
-# [pbrlib], table of <oren_nayar_diffuse_bsdf>; a reflectance lies in [0, 1].
-SPECIFICATIONS = f"""<materialx version="1.39">
-  <nodedef name="pbrlib" node="{OREN_NAYAR}" bsdf="R">{LOBE}
-  <input name="{FLAG}" type="boolean" value="false" uniform="true" />{OUTPUT.format("BSDF")}
-  <nodedef name="mxeon" node="{EON}" bsdf="R">{LOBE}{OUTPUT.format("BSDF")}
-  <nodedef name="mxeon1" node="{INVERSIONS[0]}">{COLORED}{OUTPUT.format("color3")}
-  <nodedef name="mxeon2" node="{INVERSIONS[1]}">{COLORED}{OUTPUT.format("color3")}
-</materialx>"""
-
-
-def check_definitions(library: str) -> tuple[Result, ...]:
-    """Results of the nodes' definitions, including a definition with the right name but another category."""
-    document, specifications = load_library(library), mx.createDocument()
-    mx.readFromXmlString(specifications, SPECIFICATIONS)
-    results = []
-    for specification in specifications.getNodeDefs():
-        node = specification.getNodeString()
-        named = document.getNodeDef(f"ND_{node}")
-        others = [named] if named and named.getNodeString() != node else []
-        for each in [*document.getMatchingNodeDefs(node), *others]:
-            title = f"{node}, definition"
-            results.append(
-                _judged(
-                    "definition", title, library, partial(_definition_faults, each, specification)
-                )
-            )
-    return tuple(results)
-
-
-def redefined(
-    document: mx.Document, library: str, keys: Iterable[str] = ("value", "defaultgeomprop")
-) -> tuple[Cause, ...]:
-    """Defaults of a document's nodes that a library changes from MaterialX's."""
-    found: dict[Cause, None] = {}
-    for node in inner_nodes(document):
-        definition = node.getNodeDef(target="", allowRoughMatch=True) if node.isA(mx.Node) else None
-        right = definition and load_library("stock").getNodeDef(definition.getName())
-        for port in definition.getActiveInputs() if definition and right else ():
-            name, other = port.getName(), right and right.getActiveInput(port.getName())
-            if not other or node.getInput(name):
-                continue
-            for key in keys:
-                own, released = port.getAttribute(key), other.getAttribute(key)
-                if _plain(own) != _plain(released):
-                    default = f"default of {name} of {node.getCategory()}"
-                    names = default, own or "none", "MaterialX", released or "none"
-                    found[Cause(Kind.DEFECT, "definition", names)] = None
-    return tuple(found)
-
-
-def _definition_faults(definition: mx.NodeDef, specification: mx.NodeDef) -> Faults:
-    author = specification.getName().rstrip("12")
-    found, expected = _facts(definition), _facts(specification)
-
-    def differences(facts: Mapping[str, str]) -> list[Cause]:
-        return [
-            Cause(
-                Kind.DEFECT, "definition", (name, facts[name] or "missing", author, right or "none")
-            )
-            for name, right in expected.items()
-            if name in facts
-            and _plain(facts[name]) != _plain(right)
-            and (facts[name] or author != "pbrlib" or not name.startswith(RANGE))
-        ]
-
-    return differences(found), len(differences(found | {"default of roughness": "0.3"}))
-
-
-def _facts(definition: mx.NodeDef) -> dict[str, str]:
-    """The properties of a definition, by description."""
-    inputs, outputs = definition.getActiveInputs(), definition.getActiveOutputs()
-    facts = {
-        "the category": definition.getNodeString(),
-        "bsdf": definition.getAttribute("bsdf"),
-        "the list of inputs": ", ".join(each.getName() for each in inputs),
-        "the output": " and ".join(each.getType() for each in outputs),
-    }
-    for each in inputs:
-        facts |= {
-            f"{word} of {each.getName()}": each.getAttribute(key) for key, word in WORDS.items()
-        }
-    return facts
-
-
-def _plain(text: str) -> tuple[object, ...]:
-    """A value for comparison: numbers are parsed, and "false" equals an omission."""
-    parts = text.replace("false", "").replace(",", " ").split()
-    try:
-        return tuple(map(float, parts))
-    except ValueError:
-        return tuple(parts)
 
 
 # --- sources of all nodes -------------------------------------------------------------------------

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from mxeon.conformance import controls, tolerance
+from mxeon.conformance import controls
 from mxeon.conformance.backends import joined
 from mxeon.conformance.case import SCATTERING, Case
 from mxeon.conformance.check import Check, always, family
@@ -19,7 +19,7 @@ from mxeon.conformance.spec import Ability
 from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.surface_shaders import STRETCHED_FIT, SurfaceShaderSpec, stretched
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
-from mxeon.conformance.tolerance import Compared, Measurement, count_named, count_of, scaled, sum_of
+from mxeon.conformance.tolerance import Compared, Measurement, count_named, count_of, scaled
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
 
@@ -116,21 +116,6 @@ def glass(case: Case) -> Iterator[Compared]:
     yield Compared(batch, measured, through)
     if methods.environment == "fis":  # else a fit, or no reflection
         yield Compared(batch, measured + case.albedo(batch), through + case.expected_albedo(batch))
-
-
-def diagnose_graph(case: Case) -> Diagnosis:
-    graphs = case.of(SurfaceShaderSpec).graphs
-    causes = [Cause(Kind.DEFECT, key, names) for key, names in graphs.difference.items()]
-    # The graph of another release, or of another version of the node, is permitted.
-    return Diagnosis(tuple(causes), permitted=len(causes) > 1)
-
-
-def graph(case: Case) -> Compared:
-    spec = case.of(SurfaceShaderSpec)
-    graphs, batch = spec.graphs, case.backend.take(spec.drawn)
-    expected = graphs.values(batch, right=True)
-    known = graphs.same and not case.control
-    return Compared(batch, expected if known else case.measured(graphs.values, batch), expected)
 
 
 def misplaced(case: Case) -> list[str]:
@@ -231,11 +216,6 @@ ROWS = (
           applies=MATERIALS, measure=glass, tolerance="glass",
           control=controls.scale("values are 5 % too large", 1.05), explain=SUM,
           requires=Ability.LIGHT),
-    Check(key="graph",
-          claim="The graph gives every lobe the inputs that it has in the graph that MaterialX released, for every default.",
-          applies=MATERIALS, measure=graph,
-          tolerance=sum_of(tolerance.roundings(16, "of the numbers in a graph"), quantity=Quantity.LOBE_INPUTS),
-          control=controls.shifted, explain=diagnose_graph, open=True),
     Check(key="reach",
           claim="Every input changes a value, except those that are known to change nothing.",
           applies=MATERIALS, measure=reach, tolerance=count_of(Quantity.INPUTS),

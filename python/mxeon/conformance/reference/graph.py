@@ -15,7 +15,6 @@ from graphlib import TopologicalSorter
 from math import prod
 from operator import itemgetter
 from typing import TypeAlias
-from zlib import crc32
 
 import MaterialX as mx
 import numpy as np
@@ -23,9 +22,8 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance.reference import nodes
 from mxeon.conformance.reference.nodes import COMBINATIONS, LOBES, ShadingPoints, Value, plain, same
-from mxeon.conformance.samples import Array, Batch
+from mxeon.conformance.samples import Array
 from mxeon.errors import NotRun, OutsideModel
-from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.hosts.textures import texels_at
 from mxeon.io.srgb import srgb_decoded
 from mxeon.models.core.layering import Bsdf
@@ -35,7 +33,6 @@ from mxeon.shaders.document.drawn_values import CLOSURES, Elements
 from mxeon.shaders.document.graphs import reachable
 from mxeon.shaders.document.values import color_spaces
 from mxeon.shaders.inner_lobes import Nodes, Path
-from mxeon.shaders.released_graphs import RELEASES, differences, digest, installed, said
 
 # Types that a generator draws as a color, and their components.
 DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
@@ -52,7 +49,6 @@ UNCONNECTED: dict[str, Value] = {
 }
 CHANNELS = {"float": 1, "color3": 3}  # channels of an image, by its type
 UTILITIES = {row.category: row for row in utilities.UTILITIES}
-SHADER = "shading"  # name of the surface shader in a document with a single one
 
 
 class Graph(Nodes):
@@ -66,11 +62,10 @@ class Graph(Nodes):
         emits: bool = True,  # whether emission and opacity count
         measure: Measure
         | None = None,  # values of nodes without a function; None: they are not run
-        marked: bool = False,  # whether lobes and volumes return marks of their inputs instead of values
     ) -> None:
         super().__init__()
         self._document, self._points, self._inputs = document, points, inputs or {}
-        self._emits, self._measure, self._marked = emits, measure, marked
+        self._emits, self._measure = emits, measure
         self.measured: dict[str, None] = {}  # inputs, each after the name of its node
         self.lobes: list[nodes.ShownLobe] = []
         self._shader: Path | None = None  # the surface shader, if it is a nodegraph
@@ -135,9 +130,6 @@ class Graph(Nodes):
         if category == "image":
             value = self._image(node)
             return lambda: value, ()
-        if self._marked and category in nodes.VOLUMES:
-            names = tuple(port.getName() for port in node.getNodeDef().getActiveInputs())
-            return partial(_marks, node, names), self._sources(path, names)
         if category in self._operations:
             ports, operation = self._operations[category]
             sources = self._sources(path, ports)
@@ -157,14 +149,11 @@ class Graph(Nodes):
             known[utility.category] = tuple(utility.inputs), partial(_utility, utility)
         emits = self._emits and not self._points.behind
 
-        def surface(
-            bsdf: Bsdf, opacity: float | Array = 1.0, edf: float | Array = 0.0, thin: bool = False
-        ) -> Array:
-            return np.asarray((bsdf.value + edf) * opacity + thin, np.float64)
+        def surface(bsdf: Bsdf, opacity: float | Array = 1.0, edf: float | Array = 0.0) -> Array:
+            return np.asarray((bsdf.value + edf) * opacity, np.float64)
 
-        # The relevant inputs of a surface: opacity, emission and thin walls.
-        ports = ("bsdf", "opacity", "edf", "thin_walled")
-        known["surface"] = ports[: 1 + self._emits + emits + self._marked], surface
+        ports = ("bsdf", "opacity", "edf")  # the last two only count where it emits
+        known["surface"] = ports[: 1 + self._emits + emits], surface
         unlit = ("emission", "emission_color", "opacity")
         known["surface_unlit"] = unlit, lambda *values: prod(values) * (not self._points.behind)
         return known
@@ -183,10 +172,6 @@ class Graph(Nodes):
 
         def lobe(*values: Array) -> Bsdf:
             inputs = dict(zip(names, values, strict=True))
-            if self._marked:  # inputs may be NaN without a weight
-                weight = np.reshape(inputs.get("weight", np.ones(1)), (-1, 1))
-                shown = weight * np.where(weight, _marks(node, names, *values), 0.0)
-                return Bsdf(shown, 1.0 - shown[..., ::-1])
             if np.any(inputs.get("weight", 1.0)):
                 self.lobes.append(nodes.ShownLobe(node.getCategory(), inputs))
             return nodes.node_lobe(node, inputs, self._points, path in self._hiding)
@@ -206,7 +191,7 @@ class Graph(Nodes):
         if category == "layer":
             self._tops.append(self._source(path, "top"))
             if node.getNodeDef().getActiveInput("base").getType() != "BSDF":
-                if not (self._points.behind or self._marked):
+                if not self._points.behind:
                     return same, self._sources(path, ("top",))
 
                 def dimmed(top: Bsdf, medium: Array | None) -> Bsdf:
@@ -355,22 +340,6 @@ def _applied(node: mx.Node, operation: Callable[..., Value], *values: Value) -> 
         raise OutsideModel(f"reference: node {node.getNamePath()!r}: {error}") from None
 
 
-def _marks(node: mx.Node, names: tuple[str, ...], *values: Value) -> Array:
-    """Numbers in [0.1, 0.9] that represent all non-default inputs of a node, (N, 3) or (3,)."""
-    phase = np.zeros(3)
-    for name, value in zip(names, values, strict=True):
-        port = node.getNodeDef().getActiveInput(name)
-        default = plain(port.getValue())
-        if isinstance(value, str):
-            name, value, default = f"{name} {value}", np.asarray(value != default), None
-        offset = np.atleast_1d(np.asarray(value, np.float64))
-        if default is not None and not port.hasDefaultGeomPropString():
-            offset = offset - np.asarray(default, np.float64)
-        rng = np.random.default_rng(crc32(f"{node.getCategory()} {name}".encode()))
-        phase = phase + offset @ rng.uniform(0.5, 1.5, (offset.shape[-1], 3))
-    return 0.5 + 0.4 * np.sin(phase)
-
-
 def _rows(names: Iterable[str], values: Iterable[Array], count: int = 1) -> dict[str, Array]:
     """Inputs of a model with at least `count` rows, one per point; numbers have one axis."""
     columns = [np.atleast_2d(np.asarray(value, np.float64)) for value in values]
@@ -410,57 +379,3 @@ def _linear(element: mx.Element, value: Array) -> Array:
     if spaces != ("srgb_texture", "lin_rec709"):
         raise NotRun(f"reference: there is no transform from color space {' to '.join(spaces)}")
     return np.concatenate([srgb_decoded(value[..., :3]), value[..., 3:]], axis=-1)
-
-
-class Graphs:
-    """A document's surface shader, and the installed release's or its own."""
-
-    def __init__(self, own: mx.Document, text: str) -> None:
-        self.own, self._said = own, self._says(own)
-        self._known = RELEASES.get(digest(self._said), ())
-        self.right = own
-        if mx.getVersionString() not in self._known:
-            self.right = mx.createDocument()
-            mx.readFromXmlString(self.right, text)
-            self.right.setDataLibrary(installed())
-
-    @staticmethod
-    def _says(document: mx.Document) -> dict[str, str]:
-        return said(document.getNode(SHADER), nodes.OPERATIONS)
-
-    @cached_property
-    def same(self) -> bool:
-        """Whether both graphs are equivalent, so that their values are equal."""
-        return self._said == self._says(self.right)
-
-    def values(self, batch: Batch, right: bool = False) -> Array:
-        """A surface shader's values from marks that represent its lobes' inputs, plus its emission, (N, 3).
-
-        NaN inputs use the definition's default.
-        """
-        document = self.right if right else self.own
-        definition, inputs = document.getNode(SHADER).getNodeDef(), {}
-        for name, given in batch.inputs.items():
-            if port := definition.getActiveInput(name):
-                frame = TANGENT if "tangent" in name else NORMAL
-                default = frame if port.hasDefaultGeomPropString() else plain(port.getValue())
-                if default is not None:
-                    rows = np.reshape(given, (len(batch.wo), -1))
-                    inputs[name] = np.where(np.isnan(rows), default, rows)
-        normal, tangent = (np.broadcast_to(axis, batch.wo.shape) for axis in (NORMAL, TANGENT))
-        points = ShadingPoints(batch.wo, batch.wi, 1.0, normal, tangent)
-        found = Graph(document, points, inputs, marked=True).element(SHADER)
-        return np.array(np.broadcast_to(found, batch.wo.shape))
-
-    @property
-    def difference(self) -> dict[str, tuple[str, ...]]:
-        """The identity of the graph, if known, and its differences, by the keys of `conformance.words.DEFECTS`."""
-        version, other = (
-            each.getNode(SHADER).getNodeDef().getVersionString() for each in (self.own, self.right)
-        )
-        found: dict[str, tuple[str, ...]] = {}
-        if self._known:
-            found["graph_of_release"] = self._known
-        elif version != other:
-            found["graph_of_version"] = version, other
-        return found | {"graph_differs": differences(self._said, self._says(self.right))}

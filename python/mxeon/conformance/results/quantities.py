@@ -38,12 +38,11 @@ class Quantity(Enum):
     IRRADIANCE = "irradiance", "irradiance", "1 is a white environment"
     RADIANCE = "radiance", "radiance"
     RADIANCE_SLOPE = "radiance_slope", "radiance and its slope"
-    # Outputs, inputs of lobes, samples, and functions.
+    # Outputs, samples, and functions.
     OUTPUT = "output", "relative above 1", "errors of values above 1 are divided by the value"
     ALPHA = "alpha", "alpha"
     INDEX = "index", "n (1 - sqrt(r))^2"
     EXTINCTION = "extinction", "k^2 (1 - r) / (n_max + 1)^2"
-    LOBE_INPUTS = "lobe_inputs", "numbers for lobes, 0 to 1"
     DENSITY = "density", "1/sr, relative above 1"
     DEVIATIONS = "deviations", "standard deviations"
     DRAWN = "drawn", "of the value, over the slope of the lobe"

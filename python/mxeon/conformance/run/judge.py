@@ -21,7 +21,7 @@ from mxeon.conformance.pictures import (
     studio_pictures,
 )
 from mxeon.conformance.reference import Reference
-from mxeon.conformance.release import CLAIM, check_release
+from mxeon.conformance.release import CLAIM, check_release, redefined
 from mxeon.conformance.results import (
     DIRECT,
     FAILED,
@@ -37,12 +37,12 @@ from mxeon.conformance.results import (
 )
 from mxeon.conformance.results.known_issues import with_pages
 from mxeon.conformance.run import plan
-from mxeon.conformance.run.plan import DEFINITION, DOCUMENT, FUNCTIONS, HOST, Findings, Task
+from mxeon.conformance.run.plan import DOCUMENT, FUNCTIONS, HOST, Findings, Task
 from mxeon.conformance.samples import SEED
 from mxeon.conformance.shader_functions import judge_functions
 from mxeon.conformance.specs import ALL
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
-from mxeon.conformance.text import check_definitions, check_texts, redefined
+from mxeon.conformance.text import check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, MxeonError, NotRun, ShaderError
 from mxeon.hosts import open_engine
 from mxeon.hosts.base import Engine, Host
@@ -53,7 +53,6 @@ from mxeon.shaders.methods import Methods
 
 CLAIMS = {
     HOST: "The host runs on this machine.",
-    DEFINITION: "The nodes are defined as specified.",
     SOURCE: "The generated text was checked.",
     DOCUMENT: DOCUMENT_CLAIM,
     FUNCTIONS: "The shader functions match NumPy's.",
@@ -119,8 +118,6 @@ class Judge:
         return host
 
     def _findings(self, task: Task) -> Findings:
-        if task.check == DEFINITION:
-            return Findings(check_definitions(task.library))
         if task.check == SOURCE:
             return Findings(check_texts(plan.diffuse_specs(task.library), task.library))
         if task.check == DOCUMENT:

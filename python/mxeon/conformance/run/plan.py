@@ -137,7 +137,7 @@ def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
 
 # --- the tasks of a run ---------------------------------------------------------------------------
 
-HOST, DEFINITION = "host", "definition"
+HOST = "host"
 PICTURE, STUDIO = "picture", "studio"
 STUDIED = 4  # documents whose materials are drawn in the studio, for a report
 FUNCTIONS, DOCUMENT = "twins", "document"
@@ -149,7 +149,7 @@ EVERY_NODE = "every node"
 class Task:
     """One independent piece of a run: a check of one subject on one host with one library."""
 
-    # Key of a row of `mxeon.conformance.checks`, or HOST, DEFINITION, SOURCE, PICTURE, STUDIO,
+    # Key of a row of `mxeon.conformance.checks`, or HOST, SOURCE, PICTURE, STUDIO,
     # FUNCTIONS, RELEASE or DOCUMENT.
     check: str
     subject: str  # title of a node, path of a document, or SHADER_FUNCTIONS
@@ -237,6 +237,8 @@ def _selected(
         or task.subject in files
         or (task.subject in titles and (nodes or task.check not in by_name))
         or (audit and task.subject not in rare and task.check not in by_name)
+        # A folder may have other graphs than the release, which no picture shows: the reference reads them, too.
+        or (task.check == RELEASE and files and not nodes and os.path.isabs(task.library))
     ]
     if chosen or not nodes:
         return sorted(chosen, key=lambda task: task.subject not in files)
@@ -296,7 +298,6 @@ def make_plan(
         ]
         paths = list(map(Path, readable)) if files else _examples(library)
         documents += map(str, paths)
-        tasks.append(Task(DEFINITION, EVERY_NODE, SOURCE, library))
         tasks.append(Task(SOURCE, EVERY_NODE, SOURCE, library))
         for host in hosts:
             if not host_row(host).scenes:

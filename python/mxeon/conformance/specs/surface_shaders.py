@@ -21,8 +21,7 @@ from mxeon.conformance.specs.microfacets import sum_over
 from mxeon.conformance.tolerance import Term, Tolerance, mean_scaled, roundings, sum_in, sum_of
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
-if TYPE_CHECKING:  # these imports load MaterialX
-    from mxeon.conformance.reference.graph import Graphs
+if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
 # Inputs by range, with values of a material in which all lobes contribute; changed values
@@ -54,10 +53,6 @@ def _whole(names: str) -> Values:
     return {name: WHITE if "color" in name.lower() else 1.0 for name in names.split()}
 
 
-GRAPHS = 64  # pairs for the comparison of two graphs
-LEAST, LARGEST = 0.05, 2.0  # input range of those pairs: transmittances above 0, moderate emission
-OFTEN, SELDOM = 0.75, 0.5  # shares of the pairs that set an input, or an input in `further`
-TIED = 3  # every third pair has equal values for inputs that the graph compares
 SPREAD = 0.3  # alpha of the lobe for half of the lights, around the mirror direction
 STRETCHED = "anisotropy"  # part of input names; environment sums are too coarse for them
 # Largest errors due to the fits of all lobes of a material, over 32 sets of a check's size, against the layer
@@ -208,12 +203,6 @@ class SurfaceShaderSpec(spec.LobeSpec):
         [shader] = generate(self.document(), "glsl", library=self.library)
         return shader
 
-    @cached_property
-    def graphs(self) -> Graphs:
-        from mxeon.conformance.reference.graph import Graphs
-
-        return Graphs(self._shader.document, self.document())
-
     def _reference(self, batch: Batch, branch: str) -> Array:
         from mxeon.conformance.reference import Reference
 
@@ -262,50 +251,6 @@ class SurfaceShaderSpec(spec.LobeSpec):
         # QON itself gains up to 1.4 % of light at grazing.
         inputs |= {name: 0.0 * inputs[name] for name in inputs if name == "diffuse_roughness"}
         return _isotropic(Batch(wo, wo, inputs))
-
-    def drawn(self, counts: Counts) -> Batch:
-        """Pairs with all inputs of the node; NaN means the default."""
-        rng, pairs = generator(), self.batches(counts)[0].first(GRAPHS)
-        count = len(pairs.wo)
-        inputs = {**pairs.inputs, **draw(rng, count, self.others)}
-        inputs = {name: np.maximum(each, LEAST) for name, each in inputs.items()}
-        for name, value in self.further.items():
-            values = np.repeat(np.minimum(np.asarray([value], float), LARGEST), count, 0)
-            if value == CHANGED_COLOR:
-                values = np.maximum(rng.random((count, 3)), LEAST)
-            elif isinstance(value, float):
-                values *= rng.choice((LEAST, 1.0), count)  # near a threshold at 0
-            inputs[name] = values
-        for name in self.unseen:
-            share = rng.random((count, 3) if name == "opacity" else count)
-            inputs[name] = np.floor(3.0 * share) if name == "alpha_mode" else share
-        for name, values in inputs.items():
-            values[rng.random(count) > (SELDOM if name in self.further else OFTEN)] = np.nan
-        for one, other in self.compared:
-            inputs[one][::TIED] = inputs[other][::TIED] = rng.random(len(inputs[one][::TIED]))
-        return replace(pairs, inputs=inputs)
-
-    @cached_property
-    def compared(self) -> set[tuple[str, str]]:
-        """Pairs of inputs that the released graph compares."""
-        from mxeon.shaders.library import load_library
-
-        names = [
-            graph.getChildren()
-            for graph in load_library("stock").getNodeGraphs()
-            if graph.getNodeDefString().startswith(f"ND_{self.node}")
-        ]
-        ends = [
-            tuple(
-                port.getInterfaceName()
-                for name in ("value1", "value2")
-                if (port := node.getInput(name))
-            )
-            for nodes in names
-            for node in nodes
-            if node.getCategory().startswith("if")
-        ]
-        return {(one, other) for one, other in ends if one and other}
 
     def films(self, counts: Counts) -> Batch:
         """Some of the pairs, with isotropic lobes under random films."""
