@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 
 from mxeon.conformance import samples, tolerance
 from mxeon.conformance.cache import EVALUATIONS, Recent, contents, parts
-from mxeon.conformance.results import Claims
-from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.results import Claims, Quantity
 from mxeon.conformance.samples import RIM, Array, Batch, Counts, Mask, Values
 from mxeon.conformance.spec import POWER, Ability, LobeSpec, Spec, ValueSpec, broadcast_inputs
 from mxeon.conformance.specs.diffuse import LOBE_VALUE, SurfaceLobe

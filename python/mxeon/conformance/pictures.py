@@ -26,11 +26,11 @@ from mxeon.conformance.results import (
     Diagnosis,
     Kind,
     Picture,
+    Quantity,
     Region,
     Result,
     quoted,
 )
-from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Batch, Values
 from mxeon.conformance.specs import microfacets
 from mxeon.conformance.specs import surface_shaders as surfaces

@@ -20,8 +20,7 @@ import numpy as np
 
 from mxeon.conformance.check import judge
 from mxeon.conformance.reference.nodes import OPERATIONS
-from mxeon.conformance.results import NOT_RUN, Cause, Diagnosis, Kind, Result
-from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.results import NOT_RUN, Cause, Diagnosis, Kind, Quantity, Result
 from mxeon.conformance.samples import Array, float32, generator, sky_map
 from mxeon.conformance.spec import POWER
 from mxeon.conformance.specs import ALL

@@ -16,8 +16,15 @@ from typing import NamedTuple
 import numpy as np
 
 from mxeon.conformance.check import judge, not_measured
-from mxeon.conformance.results import NOT_RUN, SHADER_FUNCTIONS, Cause, Diagnosis, Kind, Result
-from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.results import (
+    NOT_RUN,
+    SHADER_FUNCTIONS,
+    Cause,
+    Diagnosis,
+    Kind,
+    Quantity,
+    Result,
+)
 from mxeon.conformance.samples import GRAZING, Array, directions, float32, generator
 from mxeon.conformance.spec import TURN
 from mxeon.conformance.specs.diffuse import LOSS_FIT

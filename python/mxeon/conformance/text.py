@@ -17,8 +17,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.release import released
-from mxeon.conformance.results import NOT_RUN, SOURCE, Cause, Diagnosis, Kind, Result
-from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.results import NOT_RUN, SOURCE, Cause, Diagnosis, Kind, Quantity, Result
 from mxeon.conformance.samples import generator
 from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.diffuse import DiffuseSpec

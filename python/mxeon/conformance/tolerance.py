@@ -11,8 +11,7 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.results import Errors, Region
-from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.results import Errors, Quantity, Region
 from mxeon.conformance.samples import Array, Batch, Mask, Values
 
 Metric = Callable[[Array, Array], Array]  # measured, expected -> error of each row

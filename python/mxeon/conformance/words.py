@@ -15,11 +15,11 @@ from mxeon.conformance.results import (
     Diagnosis,
     Difference,
     Kind,
+    Quantity,
     Region,
     Result,
     Run,
 )
-from mxeon.conformance.results.quantities import Quantity
 from mxeon.shaders.nodes import FLAG
 
 NAMED = 3  # names in a list, before the number of the others

@@ -14,8 +14,7 @@ from mxeon.conformance.case import BRANCHES, Case, dead_inputs, edge_values, fra
 from mxeon.conformance.check import Check, Specs, always, family
 from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, TRANSMISSION, VALUE, Comparison, defect
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
-from mxeon.conformance.results import Cause, Diagnosis, Kind
-from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
 from mxeon.conformance.samples import Array, Batch, Candidate, Values
 from mxeon.conformance.spec import Ability, LobeSpec, Spec
 from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
@@ -518,7 +517,8 @@ ROWS = (
           applies=(LOBES | ROUGH | LAMBERT) - BELOW
           | COMBINED | family(EmissionSpec) | family(MediumSpec) | family(UtilitySpec),
           measure=lambda case: count_named(dead_inputs(case)), tolerance=count_of(Quantity.INPUTS),
-          control=controls.drop_changes, explain=diagnosis.diagnose_inputs),
+          control=controls.drop_changes,
+          explain=lambda case: defect("inputs_without_effect", *dead_inputs(case))),
     Check(key="negative",
           claim="A negative color counts as 0, or takes light away, as in MaterialX's own text.",
           applies=(VALUED | COMBINED | TRANSMITTING) & family(LobeSpec, lambda spec: bool(colored(spec))),
@@ -530,7 +530,8 @@ ROWS = (
           applies=LOBES | MODES | FILMS, measure=lambda case: count_not_finite(edge_values(case)),
           tolerance=count_of(Quantity.VALUES),
           control=controls.scale_cosine("the value is divided by cos(theta_o)", -1),
-          explain=diagnosis.diagnose_finite, requires=Ability.PAIRS, hosts=shows_exactly),
+          explain=lambda case: Diagnosis(diagnosis.not_finite([edge_values(case)])),
+          requires=Ability.PAIRS, hosts=shows_exactly),
     Check(key="layering",
           claim="The throughput of a layer of albedo E is 1 - E for light from above, for every weight.",
           applies=LAYERS | family(FilmSpec, lambda spec: spec.row.layerable), measure=THROUGHPUT,

@@ -16,8 +16,7 @@ from mxeon.conformance.checks import lobes
 from mxeon.conformance.checks.lobes import CLEAR, FILMS, TRANSMITTING
 from mxeon.conformance.checks.states import TURNING, in_turn
 from mxeon.conformance.diagnosis import ALBEDO, NEAR, UNKNOWN, UNMASKED, VALUE, defect, not_finite
-from mxeon.conformance.results import Cause, Diagnosis, Kind
-from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
 from mxeon.conformance.samples import (
     LEAST_COLOR82,
     Array,

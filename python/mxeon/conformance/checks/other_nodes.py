@@ -13,8 +13,7 @@ from mxeon.conformance.case import LIGHT, Case
 from mxeon.conformance.check import Check, family
 from mxeon.conformance.diagnosis import BACK, OUTPUT, TRANSMITTANCE, VALUE, defect
 from mxeon.conformance.diagnosis.regions import EXACT, correct_except, span, unbounded
-from mxeon.conformance.results import Diagnosis, Kind
-from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.results import Diagnosis, Kind, Quantity
 from mxeon.conformance.spec import Ability
 from mxeon.conformance.specs import emission
 from mxeon.conformance.specs.emission import OPACITY, UNIMPLEMENTED, AbsentSpec, EmissionSpec
@@ -22,9 +21,6 @@ from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import Compared, Measurement, count_not_finite, count_of
 
 EMISSIONS, MEDIA = family(EmissionSpec), family(emission.MediumSpec)
-unimplemented = controls.Control(
-    "the node is one that nothing implements", lambda case: case.another(UNIMPLEMENTED)
-)
 
 
 def implemented(case: Case) -> Measurement:
@@ -63,15 +59,13 @@ def explained_finite(case: Case) -> Diagnosis:
     return Diagnosis((replace(share, kind=Kind.NOT_FINITE),))
 
 
-def output_finite(case: Case) -> Measurement:
-    return count_not_finite(outside(case))
-
-
 # fmt: off
 ROWS = (
     Check(key="implemented", claim="The target implements the node.",
           applies=EMISSIONS | MEDIA | family(AbsentSpec), measure=implemented,
-          tolerance=count_of(Quantity.NODES), control=unimplemented,
+          tolerance=count_of(Quantity.NODES),
+          control=controls.Control(
+              "the node is one that nothing implements", lambda case: case.another(UNIMPLEMENTED)),
           explain=lambda case: defect("not_implemented", case.host.target, case.spec.title)),
     Check(key="radiance",
           claim="The radiance matches the node's equation for every view from the front.",
@@ -99,7 +93,8 @@ ROWS = (
           explain=OUTPUT.diagnose, open=True),
     Check(key="output_finite",
           claim="Every output is finite, at the ends of the ranges and beyond.",
-          applies=family(UtilitySpec, lambda spec: not spec.libraries), measure=output_finite,
+          applies=family(UtilitySpec, lambda spec: not spec.libraries),
+          measure=lambda case: count_not_finite(outside(case)),
           tolerance=count_of(Quantity.VALUES), control=controls.no_number, explain=explained_finite,
           requires=Ability.PAIRS),
 )

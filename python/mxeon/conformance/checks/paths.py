@@ -23,8 +23,7 @@ from mxeon.conformance.checks.lobes import BELOW, CLEAR, DARK, TRANSMITTING
 from mxeon.conformance.checks.microfacets import with_directions
 from mxeon.conformance.checks.surface_shaders import MATERIALS
 from mxeon.conformance.diagnosis import defect
-from mxeon.conformance.results import Cause, Diagnosis, Kind
-from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
 from mxeon.conformance.samples import Array, Batch, Values, float32, generator
 from mxeon.conformance.spec import Ability, LobeSpec, Spec, draw, materials
 from mxeon.conformance.specs.combinations import CombinedSpec

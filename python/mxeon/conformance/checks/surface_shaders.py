@@ -13,13 +13,12 @@ from mxeon.conformance.case import SCATTERING, Case
 from mxeon.conformance.check import Check, always, family
 from mxeon.conformance.checks.lobes import LAYERS, finds_albedo
 from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, defect
-from mxeon.conformance.results import Cause, Diagnosis, Kind
-from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
 from mxeon.conformance.spec import Ability
 from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.surface_shaders import STRETCHED_FIT, SurfaceShaderSpec, stretched
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
-from mxeon.conformance.tolerance import Compared, Measurement, count_named, count_of, scaled
+from mxeon.conformance.tolerance import Compared, count_named, count_of, scaled
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
 
@@ -179,10 +178,6 @@ def diagnose_reach(case: Case) -> Diagnosis:
     return Diagnosis(tuple(causes))
 
 
-def reach(case: Case) -> Measurement:
-    return count_named(misplaced(case))
-
-
 # fmt: off
 ROWS = (
     Check(key="lobes",
@@ -218,7 +213,7 @@ ROWS = (
           requires=Ability.LIGHT),
     Check(key="reach",
           claim="Every input changes a value, except those that are known to change nothing.",
-          applies=MATERIALS, measure=reach, tolerance=count_of(Quantity.INPUTS),
-          control=ignore_changes, explain=diagnose_reach),
+          applies=MATERIALS, measure=lambda case: count_named(misplaced(case)),
+          tolerance=count_of(Quantity.INPUTS), control=ignore_changes, explain=diagnose_reach),
 )
 # fmt: on

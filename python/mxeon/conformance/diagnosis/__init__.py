@@ -10,16 +10,7 @@ from typing import TypeAlias
 import numpy as np
 
 from mxeon.conformance.cache import Remembered
-from mxeon.conformance.case import (
-    LIGHT,
-    Case,
-    albedos,
-    dead_inputs,
-    edge_values,
-    frames,
-    throughputs,
-    values,
-)
+from mxeon.conformance.case import LIGHT, Case, albedos, dead_inputs, frames, throughputs, values
 from mxeon.conformance.diagnosis import regions
 from mxeon.conformance.diagnosis.faults import (
     COLOR_FAULTS,
@@ -371,14 +362,6 @@ LOOKUPS: dict[str, Callable[[Batch], Array]] = {
     "radiances": lambda batch: np.ones_like(batch.wo),
     "black": lambda batch: np.zeros_like(batch.wo),
 }
-
-
-def diagnose_inputs(case: Case) -> Diagnosis:
-    return defect("inputs_without_effect", *dead_inputs(case))
-
-
-def diagnose_finite(case: Case) -> Diagnosis:
-    return Diagnosis(not_finite([edge_values(case)]))
 
 
 def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) -> Diagnosis:

@@ -7,8 +7,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.results import Cause, Errors, Kind, Region
-from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.results import Cause, Errors, Kind, Quantity, Region
 from mxeon.conformance.samples import Array, Batch, Mask
 from mxeon.conformance.tolerance import Compared, Tolerance, checksum, count_of, errors_of, relative
 

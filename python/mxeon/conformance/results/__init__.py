@@ -177,11 +177,6 @@ class Diagnosis(BriefRepr):
         """Root-mean-square distance to the best match; infinite without one."""
         return min(self.distances.values(), default=np.inf)
 
-    @property
-    def names_a_cause(self) -> bool:
-        """Whether it names a model or a fault, or that no known model is near."""
-        return self.kind in (Kind.MODEL, Kind.FAULT) or self.first.key == "no_model"
-
 
 NO_DIAGNOSIS = Diagnosis()
 

@@ -11,8 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Cause, Kind, Region, Result
-from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Cause, Kind, Quantity, Region, Result
 from mxeon.errors import CheckError
 from mxeon.shaders.library import data_folder
 

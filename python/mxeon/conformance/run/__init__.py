@@ -198,15 +198,10 @@ def work(policy: Policy, rows: Sequence[Row], task: Task) -> Findings:
     return _judge(policy).work(task)
 
 
-def work_or_not_run(policy: Policy, rows: Sequence[Row], task: Task) -> Findings:
-    """`work`, with "not run" if the host cannot be opened here."""
-    register(*rows)
-    return _or_not_run(_judge(policy), task)
-
-
-def _or_not_run(judge: Judge, task: Task) -> Findings:
+def work_or_not_run(work: Callable[[Task], Findings], task: Task) -> Findings:
+    """Findings of a task, with "not run" if the host cannot be opened here."""
     try:
-        return judge.work(task)
+        return work(task)
     except NotRun as reason:
         return one_result(task, NOT_RUN, reason=str(reason))
 
@@ -279,7 +274,7 @@ def _executor(
             job = partial(work, policy, registered())
             yield partial(dask.run, job, workers=remote, timeout=timeout, unavailable=NotRun)
     elif workers:
-        job = partial(work_or_not_run, policy, registered())
+        job = partial(work_or_not_run, partial(work, policy, registered()))
         yield partial(pool.run, job, workers=workers, timeout=timeout, group=_subject)
     else:
         yield partial(_run_inline, policy)
@@ -296,4 +291,4 @@ def _subject(task: Task) -> tuple[str, str, str]:
 def _run_inline(policy: Policy, tasks: Sequence[Task]) -> Iterator[tuple[int, pool.Outcome]]:
     with closing(Judge(policy)) as judge:
         for position in by_group(list(map(_subject, tasks))):
-            yield position, pool.Outcome(_or_not_run(judge, tasks[position]))
+            yield position, pool.Outcome(work_or_not_run(judge.work, tasks[position]))
