@@ -58,45 +58,26 @@ class FunctionCheck(NamedTuple):
     turns: bool = False  # whether its functions rotate by the engine's sine and cosine
 
 
+# fmt: off
 FUNCTION_CHECKS = (
-    FunctionCheck(
-        "twins",
-        "The shader functions of models and albedos match the NumPy models.",
-        r"\w+(_brdf|_albedo_)\w*",
-        MODEL_VALUE,
-    ),
-    FunctionCheck(
-        "loss",
-        "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
-        "fon_loss",
-        sum_of(
-            Term(LOSS_FIT, "the fit of H"),
-            roundings(12),
-            quantity=Quantity.RELATIVE,
-            metric=relative,
-        ),
-    ),
-    FunctionCheck(
-        "samples",
-        "The sampling functions return the same directions as NumPy's.",
-        r"\w+_(sample|draw|clipped|transformed)|eon_(around|azimuth_frame|rotate_z|towards)",
-        PART,
-        turns=True,
-    ),
-    FunctionCheck(
-        "densities",
-        "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
-        r"\w+_pdf|ltc_(density|m[abcd])",
-        # An inverse fourth power takes the 8 of a matrix entry four times, plus 16.
-        sum_in(Quantity.CONDITIONED, roundings(48, "four times the 8 of a matrix entry, and 16")),
-    ),
-    FunctionCheck(
-        "parts",
-        "The functions that models and sampling are built from match NumPy's.",
-        r"\w+",
-        PART,
-    ),
+    FunctionCheck("twins", "The shader functions of models and albedos match the NumPy models.",
+                  r"\w+(_brdf|_albedo_)\w*", MODEL_VALUE),
+    FunctionCheck("loss", "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
+                  "fon_loss",
+                  sum_of(Term(LOSS_FIT, "the fit of H"), roundings(12),
+                         quantity=Quantity.RELATIVE, metric=relative)),
+    FunctionCheck("samples", "The sampling functions return the same directions as NumPy's.",
+                  r"\w+_(sample|draw|clipped|transformed)|eon_(around|azimuth_frame|rotate_z|towards)",
+                  PART, turns=True),
+    FunctionCheck("densities",
+                  "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
+                  r"\w+_pdf|ltc_(density|m[abcd])",
+                  # An inverse fourth power takes the 8 of a matrix entry four times, plus 16.
+                  sum_in(Quantity.CONDITIONED, roundings(48, "four times the 8 of a matrix entry, and 16"))),
+    FunctionCheck("parts", "The functions that models and sampling are built from match NumPy's.",
+                  r"\w+", PART),
 )
+# fmt: on
 
 
 @cache

@@ -40,33 +40,20 @@ from mxeon.shaders.nodes import FLAG
 Faults: TypeAlias = tuple[list[Cause], int]  # faults, and the control's count
 Inputs = Mapping[str, Array]
 # Check -> claim, counted quantity, and the control's mistake.
+# fmt: off
 CLAIMS = {
-    "languages": (
-        "The shader functions are identical in OSL and GLSL, apart from type names.",
-        Quantity.FUNCTIONS,
-        "the first number of the OSL text is different",
-    ),
-    "source": (
-        "The generated source passes every input of the node to the function it calls.",
-        Quantity.INPUTS,
-        "each input in turn is 0",
-    ),
-    "clash": (
-        "No two nodes define one name, so a shader can have any two of them.",
-        Quantity.FUNCTIONS,
-        "the source of one node is included by another",
-    ),
-    "arguments": (
-        "The text for MDL passes every input to the argument that it has in MaterialX's release.",
-        Quantity.INPUTS,
-        "two arguments are exchanged",
-    ),
-    "closure": (
-        "The generated source calls the node's closure, with the right arguments and value.",
-        Quantity.FAULTS,
-        "the weight of the lobe is dropped",
-    ),
+    "languages": ("The shader functions are identical in OSL and GLSL, apart from type names.",
+                  Quantity.FUNCTIONS, "the first number of the OSL text is different"),
+    "source": ("The generated source passes every input of the node to the function it calls.",
+               Quantity.INPUTS, "each input in turn is 0"),
+    "clash": ("No two nodes define one name, so a shader can have any two of them.",
+              Quantity.FUNCTIONS, "the source of one node is included by another"),
+    "arguments": ("The text for MDL passes every input to the argument that it has in MaterialX's release.",
+                  Quantity.INPUTS, "two arguments are exchanged"),
+    "closure": ("The generated source calls the node's closure, with the right arguments and value.",
+                Quantity.FAULTS, "the weight of the lobe is dropped"),
 }
+# fmt: on
 
 
 def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, ...]:

@@ -61,54 +61,40 @@ def _column(name: str) -> Callable[[Batch], Array]:
     return lambda batch: np.asarray(batch.inputs.get(name, 1.0))
 
 
+NO_WEIGHT = _input("weight", np.ones_like)
+POSITIVE_WEIGHT = _input("weight", lambda weight: np.where(weight > 0.0, 1.0, 0.0))
+NO_OCCLUSION = _input("occlusion", np.ones_like)
+# fmt: off
 COLOR_FAULTS = (
     *(
-        Fault(
-            "channels_exchanged",
-            _input("color", itemgetter((..., list(order)))),
-            names=tuple(CHANNELS[channel] for channel in order),
-        )
+        Fault("channels_exchanged", _input("color", itemgetter((..., list(order)))),
+              names=tuple(CHANNELS[channel] for channel in order))
         for order in permutations(range(3))
     ),
     *(
         Fault("one_channel", _input("color", itemgetter((..., [channel] * 3))), names=(name,))
         for channel, name in enumerate(CHANNELS)
     ),
-    Fault(
-        "mean_color", _input("color", lambda color: color.mean(axis=-1, keepdims=True) * np.ones(3))
-    ),
-    Fault(
-        "color_ignored", _input("color", partial(np.full_like, fill_value=0.18)), numbers=(0.18,)
-    ),
+    Fault("mean_color", _input("color", lambda color: color.mean(axis=-1, keepdims=True) * np.ones(3))),
+    Fault("color_ignored", _input("color", partial(np.full_like, fill_value=0.18)), numbers=(0.18,)),
     Fault("color_clamped", _input("color", lambda color: np.minimum(color, 1.0))),
     Fault("color_squared", _input("color", np.square)),
     Fault("color_square_root", _input("color", np.sqrt)),
 )
-NO_WEIGHT = _input("weight", np.ones_like)
-POSITIVE_WEIGHT = _input("weight", lambda weight: np.where(weight > 0.0, 1.0, 0.0))
-NO_OCCLUSION = _input("occlusion", np.ones_like)
 INPUT_FAULTS = (
     Fault("weight_ignored", NO_WEIGHT),
     Fault("occlusion_and_weight_ignored", lambda batch: NO_WEIGHT(NO_OCCLUSION(batch))),
     Fault("weight_ignored_above_0", POSITIVE_WEIGHT),
-    Fault(
-        "occlusion_and_weight_ignored_above_0", lambda batch: POSITIVE_WEIGHT(NO_OCCLUSION(batch))
-    ),
+    Fault("occlusion_and_weight_ignored_above_0", lambda batch: POSITIVE_WEIGHT(NO_OCCLUSION(batch))),
     Fault("weight_twice", values=_scaled(_column("weight"))),
     *COLOR_FAULTS,
     Fault("roughness_squared", _input("roughness", np.square)),
     Fault("roughness_square_root", _input("roughness", np.sqrt)),
-    Fault(
-        "tangents_exchanged",
-        _input("roughness", lambda alpha: alpha[:, ::-1] if alpha.ndim > 1 else alpha),
-    ),
+    Fault("tangents_exchanged",
+          _input("roughness", lambda alpha: alpha[:, ::-1] if alpha.ndim > 1 else alpha)),
     Fault("roughness_halved", _input("roughness", lambda roughness: 0.5 * roughness)),
     *(
-        Fault(
-            "roughness_ignored",
-            _input("roughness", partial(np.full_like, fill_value=each)),
-            numbers=(each,),
-        )
+        Fault("roughness_ignored", _input("roughness", partial(np.full_like, fill_value=each)), numbers=(each,))
         for each in CONSTANTS
     ),
 )
@@ -120,20 +106,16 @@ DIRECT_FAULTS = (
     Fault("cosine_twice", values=_scaled(lambda batch: batch.wi[:, 2])),
     Fault("directions_swapped", values=_scaled(lambda batch: batch.wo[:, 2] / batch.wi[:, 2])),
     Fault("light_mirrored", lambda batch: replace(batch, wi=batch.wi * [-1.0, -1.0, 1.0])),
-    Fault(
-        "light_from_below",
-        lambda batch: replace(batch, wi=np.where([False, False, True], abs(batch.wi), batch.wi)),
-    ),
+    Fault("light_from_below",
+          lambda batch: replace(batch, wi=np.where([False, False, True], abs(batch.wi), batch.wi))),
 )
-
 ENVIRONMENT_FAULTS = (
     *INPUT_FAULTS,
     Fault("occlusion_by_caller", values=_scaled(_column("occlusion"))),
-    Fault(
-        "normal_incidence",
-        lambda batch: replace(batch, wo=np.broadcast_to([0.0, 0.0, 1.0], batch.wo.shape)),
-    ),
+    Fault("normal_incidence",
+          lambda batch: replace(batch, wo=np.broadcast_to([0.0, 0.0, 1.0], batch.wo.shape))),
 )
+# fmt: on
 
 
 def exchanges(names: Iterable[str]) -> Iterator[Fault]:

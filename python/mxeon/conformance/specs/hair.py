@@ -25,31 +25,25 @@ FRONT = np.array([1.0, 0.0, 1.0, 0.5])  # share of R, TT, TRT and TRRT+ from the
 STEP = 1e-6  # change of an angle that measures slopes
 LEAST = 0.01  # errors of smaller values are relative to this
 
+# fmt: off
 INPUTS = (
     *(color(name, edges=()) for name in TINTS),
     Input("ior", low=1.1, high=2.5, edges=(1.0, 1.55), change=1.3),
     *(
-        Input(
-            name,
-            "vector2",
-            (LEAST_VARIANCE, LEAST_SCALE),
-            (MOST_VARIANCE, MOST_SCALE),
-            (0.0, 1e-3, 1.0, 100.0),
-            (0.3, 0.7),
-            logarithmic=True,
-        )
+        Input(name, "vector2", (LEAST_VARIANCE, LEAST_SCALE), (MOST_VARIANCE, MOST_SCALE),
+              edges=(0.0, 1e-3, 1.0, 100.0), change=(0.3, 0.7), logarithmic=True)
         for name in ROUGHNESSES
     ),
     Input("cuticle_angle", change=0.55, often=0.5),
-    Input("absorption_coefficient", "vector3", 0.0, 4.0, (0.0,), (0.9, 0.1, 0.6)),
+    Input("absorption_coefficient", "vector3", 0.0, 4.0, edges=(0.0,), change=(0.9, 0.1, 0.6)),
     NORMAL,
     # Its default variable is the surface's tangent.
     Input("curve_direction", "vector3", change=(0.6, 0.8, 0.0), variable="tangent"),
 )
+# fmt: on
 
-REACH = math.sqrt(
-    2.0 * math.log(1e5)
-)  # times sqrt(v): from the largest pi f, 1e5, a lobe falls to 1
+# Times sqrt(v): from the largest pi f, 1e5, a lobe falls to 1.
+REACH = math.sqrt(2.0 * math.log(1e5))
 ANGLE, CHAIN = 12, 48  # roundings of an angle, and of the following operations
 
 
@@ -106,31 +100,21 @@ class Region:
 
 
 NARROW = partial(Region, variances=(1e-3, 0.1), scales=(0.9, 1.0), form=BESSEL)
+# fmt: off
 # Regions by key of the check.
 REGIONS = {
-    "each_lobe": Region(
-        "Each lobe matches the equations: R, TT, and TRT with all higher orders.",
-        tints=LOBE_TINTS,
-        form=UNIFORM,
-    ),
+    "each_lobe": Region("Each lobe matches the equations: R, TT, and TRT with all higher orders.",
+                        tints=LOBE_TINTS, form=UNIFORM),
     "narrow_lobes": NARROW("R and TT match the equations where they are narrow.", tilt=0.0),
     "tilted_lobes": NARROW("R and TT match the equations for every tilt of the cuticle.", tilt=0.5),
-    "wide_lobes": Region(
-        "R and TT match the equations beyond a roughness of 1.",
-        variances=(1.0, 100.0),
-        scales=(1.0, 10.0),
-        form=CLAMPED,
-    ),
-    "straight_views": Region(
-        "R and TT match the equations for a view along the normal.",
-        azimuths=(0.0, STRAIGHT),
-        scales=(0.05, 0.2),
-    ),
-    "low_index": Region(
-        "R and TT match the equations for an index below 1, including total reflection.",
-        ior=(0.6, 0.95),
-    ),
+    "wide_lobes": Region("R and TT match the equations beyond a roughness of 1.",
+                         variances=(1.0, 100.0), scales=(1.0, 10.0), form=CLAMPED),
+    "straight_views": Region("R and TT match the equations for a view along the normal.",
+                             azimuths=(0.0, STRAIGHT), scales=(0.05, 0.2)),
+    "low_index": Region("R and TT match the equations for an index below 1, including total reflection.",
+                        ior=(0.6, 0.95)),
 }
+# fmt: on
 ERRORS = {
     **lobe_errors(MEAN, ALBEDO, ALBEDO, FRAME, quadrature=5e-6),
     **dict.fromkeys(("value", "reciprocity"), VALUE),

@@ -37,16 +37,43 @@ RIM_COLOR = 0.05  # least color90 in some channel, or |wo + wi|
 LEAST_TANGENT_ALPHA = 0.05  # least alpha with turned tangents, as roundings are divided by it
 LEAST_TANGENT_COSINE = 0.1  # least cosine with turned tangents
 
-INDEX = Input(
-    "ior",
-    low=0.5,
-    high=3.0,
-    edges=(1.0, 1.5, 3.0),
-    change=1.6,
-    materials=(1.5, 1.2),
-    beyond=(0.0, 0.2, 1.0015, 1.02, 4.0, 10.0, 100.0),
-)
+# fmt: off
+INDEX = Input("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(1.5, 1.2),
+              beyond=(0.0, 0.2, 1.0015, 1.02, 4.0, 10.0, 100.0))
 FILM: Values = {"thinfilm_thickness": 400.0}
+FACETS = (
+    Input("roughness", "vector2", LEAST_ALPHA, 1.0, edges=(1e-4, 0.01, 1.0), change=(0.3, 0.3),
+          logarithmic=True, equal=True, materials=((0.8, 0.8), (0.4, 0.4)),
+          beyond=(1e-4, 2.0), ends=(0.0, 1.0)),
+    Input("retroreflective", "boolean", change=True),
+    Input("thinfilm_thickness", high=1000.0, edges=(0.0, 1.0, 100.0), change=400.0,
+          beyond=(1500.0, 2500.0, 3000.0, 6000.0, 1e5)),
+    Input("thinfilm_ior", low=1.0, high=2.5, edges=(1.0, 1.5), change=2.0, needs=FILM,
+          beyond=(0.5, 3.0, 5.0), ends=(1.0, np.inf)),
+    lobes.NORMAL,
+    Input("tangent", "vector3", change=(0.6, 0.8, 0.0), needs={"roughness": (0.1, 0.4)}),
+)
+INPUTS = {
+    "dielectric_bsdf": (WEIGHT, color("tint", (0.2, 0.5, 0.8), (0.9, 0.6, 0.3)), INDEX, *FACETS),
+    "conductor_bsdf": (
+        WEIGHT,
+        replace(INDEX, type="color3", change=(0.9, 1.1, 1.6),
+                materials=((0.2, 0.9, 1.1), (1.5, 0.6, 2.0)), beyond=(0.0, 0.05, 0.18, 5.0, 10.0)),
+        Input("extinction", "color3", 0.5, 6.0, edges=(0.5, 3.0), change=(0.9, 2.1, 3.6),
+              materials=((3.9, 2.5, 1.8), (0.5, 1.0, 4.0)), beyond=(0.0, 0.2, 10.0, 100.0)),
+        *FACETS,
+    ),
+    "generalized_schlick_bsdf": (
+        WEIGHT,
+        color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2)),
+        color("color82", (0.5, 0.7, 0.8), (1.0, 1.0, 1.0)),
+        color("color90", (0.9, 0.8, 0.6), (1.0, 1.0, 1.0)),
+        Input("exponent", low=1.0, high=8.0, edges=(1.0, 5.0), change=2.5, materials=(5.0, 3.0),
+              beyond=(0.5, 10.0, 20.0, 100.0)),
+        *FACETS,
+    ),
+}
+# fmt: on
 # A film on nothing has the largest error of MaterialX's average; its row has no special light in `domain`.
 BUBBLE: Values = {
     "weight": 1.0,
@@ -56,81 +83,6 @@ BUBBLE: Values = {
     "thinfilm_thickness": 325.0,
 }
 BUBBLE_ROW = 3
-FACETS = (
-    Input(
-        "roughness",
-        "vector2",
-        LEAST_ALPHA,
-        1.0,
-        (1e-4, 0.01, 1.0),
-        (0.3, 0.3),
-        logarithmic=True,
-        equal=True,
-        materials=((0.8, 0.8), (0.4, 0.4)),
-        beyond=(1e-4, 2.0),
-        ends=(0.0, 1.0),
-    ),
-    Input("retroreflective", "boolean", change=True),
-    Input(
-        "thinfilm_thickness",
-        high=1000.0,
-        edges=(0.0, 1.0, 100.0),
-        change=400.0,
-        beyond=(1500.0, 2500.0, 3000.0, 6000.0, 1e5),
-    ),
-    Input(
-        "thinfilm_ior",
-        low=1.0,
-        high=2.5,
-        edges=(1.0, 1.5),
-        change=2.0,
-        needs=FILM,
-        beyond=(0.5, 3.0, 5.0),
-        ends=(1.0, np.inf),
-    ),
-    lobes.NORMAL,
-    Input("tangent", "vector3", change=(0.6, 0.8, 0.0), needs={"roughness": (0.1, 0.4)}),
-)
-INPUTS = {
-    "dielectric_bsdf": (WEIGHT, color("tint", (0.2, 0.5, 0.8), (0.9, 0.6, 0.3)), INDEX, *FACETS),
-    "conductor_bsdf": (
-        WEIGHT,
-        replace(
-            INDEX,
-            type="color3",
-            change=(0.9, 1.1, 1.6),
-            materials=((0.2, 0.9, 1.1), (1.5, 0.6, 2.0)),
-            beyond=(0.0, 0.05, 0.18, 5.0, 10.0),
-        ),
-        Input(
-            "extinction",
-            "color3",
-            0.5,
-            6.0,
-            (0.5, 3.0),
-            (0.9, 2.1, 3.6),
-            materials=((3.9, 2.5, 1.8), (0.5, 1.0, 4.0)),
-            beyond=(0.0, 0.2, 10.0, 100.0),
-        ),
-        *FACETS,
-    ),
-    "generalized_schlick_bsdf": (
-        WEIGHT,
-        color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2)),
-        color("color82", (0.5, 0.7, 0.8), (1.0, 1.0, 1.0)),
-        color("color90", (0.9, 0.8, 0.6), (1.0, 1.0, 1.0)),
-        Input(
-            "exponent",
-            low=1.0,
-            high=8.0,
-            edges=(1.0, 5.0),
-            change=2.5,
-            materials=(5.0, 3.0),
-            beyond=(0.5, 10.0, 20.0, 100.0),
-        ),
-        *FACETS,
-    ),
-}
 
 # Largest errors of the shaders' fits, each found by its script in tools/fits.
 ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss

@@ -95,41 +95,31 @@ def _around(batch: Batch) -> Array:
     return np.asarray(batch.inputs["color"] * circle_blur(mu, radius, body=1.0))
 
 
+# fmt: off
 ON_SPHERES = (
     Candidate("the diffusion profile over the sphere", spread),
-    Candidate(
-        "Lambert, whatever the radius",
-        lambda batch: np.asarray(batch.inputs["color"] * np.maximum(batch.wi[:, 2:], 0.0)),
-    ),
+    Candidate("Lambert, whatever the radius",
+              lambda batch: np.asarray(batch.inputs["color"] * np.maximum(batch.wi[:, 2:], 0.0))),
     Candidate("the profile, whatever the anisotropy", partial(spread, anisotropy=0.0)),
-    Candidate(
-        "the profile, whatever the sign of the anisotropy",
-        lambda batch: spread(batch, anisotropy=abs(batch.inputs["anisotropy"])),
-    ),
-    Candidate(
-        "the profile, whatever an anisotropy below 0",
-        lambda batch: spread(batch, anisotropy=max(batch.inputs["anisotropy"], 0.0)),
-    ),
-    Candidate(
-        "the profile, with red and blue of the radius exchanged",
-        lambda batch: spread(batch, radius=np.array(batch.inputs["radius"])[..., ::-1]),
-    ),
+    Candidate("the profile, whatever the sign of the anisotropy",
+              lambda batch: spread(batch, anisotropy=abs(batch.inputs["anisotropy"]))),
+    Candidate("the profile, whatever an anisotropy below 0",
+              lambda batch: spread(batch, anisotropy=max(batch.inputs["anisotropy"], 0.0))),
+    Candidate("the profile, with red and blue of the radius exchanged",
+              lambda batch: spread(batch, radius=np.array(batch.inputs["radius"])[..., ::-1])),
     Candidate("MaterialX's blur along a circle of radius 1", _around),
     *(
-        Candidate(
-            f"the profile of a mean free path of {each:g}, whatever the radius",
-            partial(spread, radius=(each, each, each)),
-        )
+        Candidate(f"the profile of a mean free path of {each:g}, whatever the radius",
+                  partial(spread, radius=(each, each, each)))
         for each in EVEN
     ),
     *(
-        Candidate(
-            f"a far exponential of {each:g} mean free paths instead of {FAR:g}",
-            partial(spread, far=each),
-        )
+        Candidate(f"a far exponential of {each:g} mean free paths instead of {FAR:g}",
+                  partial(spread, far=each))
         for each in FARTHER
     ),
 )
+# fmt: on
 
 
 def _points(scene: Scene, inputs: Values) -> Batch:

@@ -286,109 +286,77 @@ def _names(node: str) -> spec.Names:
     return {"title": f"{node}, every lobe", "node": node, "model": node}
 
 
+# fmt: off
 SURFACE_SHADERS = (
     SurfaceShaderSpec(
         **_names("standard_surface"),
         judged=ports_by_range(
             share="base diffuse_roughness metalness specular specular_anisotropy specular_rotation sheen coat coat_anisotropy coat_rotation coat_affect_color coat_affect_roughness",
             color="base_color specular_color sheen_color coat_color",
-            rough="specular_roughness coat_roughness",
-            index="specular_IOR coat_IOR",
-            sheen_rough="sheen_roughness",
-        ),
+            rough="specular_roughness coat_roughness", index="specular_IOR coat_IOR",
+            sheen_rough="sheen_roughness"),
         others=ports_by_range(
             share="transmission transmission_extra_roughness subsurface subsurface_scale",
             color="transmission_color subsurface_color subsurface_radius",
-            thickness="thin_film_thickness",
-            index="thin_film_IOR",
-        ),
+            thickness="thin_film_thickness", index="thin_film_IOR"),
         without_effect=(
-            "transmission_depth",
-            "transmission_scatter",
-            "transmission_scatter_anisotropy",
-            "transmission_dispersion",
-            "subsurface_anisotropy",
-        ),
+            "transmission_depth", "transmission_scatter", "transmission_scatter_anisotropy",
+            "transmission_dispersion", "subsurface_anisotropy"),
         needs={"emission_color": {"emission": 1.0}},
         unseen=("opacity",),
         glass={"transmission": 1.0, "base": 0.0},
         finish=("specular_roughness", "specular_IOR"),
-        white={**_whole("base base_color sheen coat"), "specular_roughness": 0.4},
-    ),
+        white={**_whole("base base_color sheen coat"), "specular_roughness": 0.4}),
     SurfaceShaderSpec(
         **_names("open_pbr_surface"),
         judged=ports_by_range(
             share="base_weight base_diffuse_roughness base_metalness specular_weight specular_roughness_anisotropy coat_weight coat_roughness_anisotropy coat_darkening fuzz_weight",
             color="base_color specular_color coat_color fuzz_color",
-            rough="specular_roughness coat_roughness",
-            index="specular_ior coat_ior",
-            sheen_rough="fuzz_roughness",
-        ),
+            rough="specular_roughness coat_roughness", index="specular_ior coat_ior",
+            sheen_rough="fuzz_roughness"),
         others=ports_by_range(
             share="transmission_weight subsurface_weight subsurface_radius thin_film_weight thin_film_thickness",
             color="transmission_color subsurface_color subsurface_radius_scale",
-            index="thin_film_ior",
-        ),
+            index="thin_film_ior"),
         without_effect=(
-            "transmission_scatter",
-            "transmission_scatter_anisotropy",
-            "transmission_dispersion_scale",
-            "transmission_dispersion_abbe_number",
-            "subsurface_scatter_anisotropy",
-        ),
+            "transmission_scatter", "transmission_scatter_anisotropy", "transmission_dispersion_scale",
+            "transmission_dispersion_abbe_number", "subsurface_scatter_anisotropy"),
         needs={
             "subsurface_weight": {"subsurface_color": CHANGED_COLOR},  # else it equals the base
-            "emission_color": {"emission_luminance": 1000.0},
-        },
+            "emission_color": {"emission_luminance": 1000.0}},
         unseen=("geometry_opacity",),
         glass={"transmission_weight": 1.0},
         finish=("specular_roughness", "specular_ior"),
         white={
             **_whole("base_weight base_color coat_weight fuzz_weight fuzz_color"),
-            "base_diffuse_roughness": 0.5,
-            "coat_roughness": 0.3,
-            "coat_darkening": 0.0,
-        },
-    ),
+            "base_diffuse_roughness": 0.5, "coat_roughness": 0.3, "coat_darkening": 0.0}),
     SurfaceShaderSpec(
         **_names("gltf_pbr"),
         judged=ports_by_range(
             color="base_color specular_color sheen_color",
             share="metallic specular anisotropy_strength anisotropy_rotation clearcoat",
-            rough="roughness clearcoat_roughness",
-            index="ior",
-            fuzz_rough="sheen_roughness",
-        ),
+            rough="roughness clearcoat_roughness", index="ior", fuzz_rough="sheen_roughness"),
         others=ports_by_range(
-            share="transmission iridescence", index="iridescence_ior", film="iridescence_thickness"
-        ),
+            share="transmission iridescence", index="iridescence_ior", film="iridescence_thickness"),
         without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
         needs={"emissive_strength": {"emissive": CHANGED_COLOR}},
         unseen=("occlusion", "alpha", "alpha_mode", "alpha_cutoff"),
         glass={"transmission": 1.0, "metallic": 0.0, "base_color": WHITE},
         finish=("roughness", "ior"),
         white={
-            **_whole("base_color sheen_color clearcoat"),
-            "metallic": 0.0,
-            "roughness": 0.5,
-            "sheen_roughness": 0.6,
-            "clearcoat_roughness": 0.4,
-        },
-    ),
+            **_whole("base_color sheen_color clearcoat"), "metallic": 0.0, "roughness": 0.5,
+            "sheen_roughness": 0.6, "clearcoat_roughness": 0.4}),
     SurfaceShaderSpec(
         **_names("UsdPreviewSurface"),
         judged=ports_by_range(
-            color="diffuseColor specularColor",
-            share="metallic clearcoat",
-            rough="roughness clearcoatRoughness",
-            index="ior",
-        ),
+            color="diffuseColor specularColor", share="metallic clearcoat",
+            rough="roughness clearcoatRoughness", index="ior"),
         others=ports_by_range(share="opacity"),
         without_effect=("displacement",),
         glass={"opacity": 0.0, "diffuseColor": WHITE},
         finish=("roughness", "ior"),
         white={**_whole("diffuseColor clearcoat"), "clearcoatRoughness": 0.4},
         needs={"specularColor": {"useSpecularWorkflow": 1}},
-        unseen=("occlusion",),
-    ),
+        unseen=("occlusion",)),
 )
+# fmt: on

@@ -37,24 +37,20 @@ SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # edges of most inputs
 PIGMENTS = (0.01, 0.5, 1.0)
 TEMPERATURES = (800.0, 1000.0, 1667.0, 2222.0, 4000.0, 6504.0, 25000.0)
 BEYOND = (-1.0, 0.0, 0.5, 1.0, 2.0, 1e3)  # values for inputs that may leave their range
+# fmt: off
 # Inputs with their own range or change. A change starts from a document's default.
 INPUTS = {
     each.name: each
     for each in (
-        Input(
-            "temperature",
-            "float",
-            *(TEMPERATURES[0], TEMPERATURES[-1], TEMPERATURES, 2000.0),
-            logarithmic=True,
-            default=5000.0,
-            beyond=(-1.0, 0.0, 1.0, 800.0, 25000.0, 1e9),
-        ),
+        Input("temperature", "float", *(TEMPERATURES[0], TEMPERATURES[-1], TEMPERATURES, 2000.0),
+              logarithmic=True, default=5000.0, beyond=(-1.0, 0.0, 1.0, 800.0, 25000.0, 1e9)),
         Input("scale_TT", high=3.0, edges=(0.0, 0.5, 1.0), change=0.7, default=0.5),
         Input("scale_TRT", high=3.0, edges=(0.0, 1.0, 2.0), change=1.5, default=2.0),
         Input("eumelanin_color", "color3", 0.01, 1.0, PIGMENTS, 0.25, default=0.5),
         Input("pheomelanin_color", "color3", 0.01, 1.0, PIGMENTS, 0.25, default=0.7),
     )
 }
+# fmt: on
 
 # 0.98 has half a rounding, over 2 (1 - 0.98) in the aspect; the least alpha, 1e-8, is smaller than either.
 ALPHA = sum_in(
