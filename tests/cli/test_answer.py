@@ -232,7 +232,7 @@ def test_the_verdict_is_the_worst_and_counts_what_did_not_pass(results, verdict,
 
 
 def test_a_document_alone_has_its_nodes_judged_and_no_others(monkeypatch):
-    keep_checks(monkeypatch, "value", "source", "definition", "twins", "picture")
+    keep_checks(monkeypatch, "value", "source", "twins", "picture")
     run = check([PLASTER])
     nodes = [each.subject for each in run.results if each.check != "picture"]
     assert nodes == [EON] and run.contents == {PLASTER: (EON,)}

@@ -224,7 +224,7 @@ def test_what_stock_materialx_has_right_passes(stock):
     right = {("lobe", name) for name in ("standard_surface", "UsdPreviewSurface", "gltf_pbr")}
     assert passed >= right | {("value", QON), ("black", EON), ("furnace", EON)}
     read = {each.check for each in stock.results if each.host == "source"}
-    assert read == {"definition", "closure", "source"}
+    assert read == {"closure", "source"}
 
 
 def test_every_control_is_caught(run, stock):
