@@ -391,26 +391,16 @@ class Comparison:
         kinds, inputs = (
             {each.getType() for each in ports} for ports in (outputs, right.getActiveInputs())
         )
-        sides = [
-            Subject(own, self._library, right.getType()),
-            Subject(right, "stock", right.getType()),
-        ]
-        if self._release is not hidden():
-            if kinds <= {*NUMBERS}:
-                return max(
-                    self._values_apart(
-                        *(
-                            each._replace(
-                                kind=output.getType(),
-                                output=output.getName() * (len(outputs) > 1),
-                            )
-                            for each in sides
-                        )
-                    )
-                    for output in outputs
-                )
-            if kinds <= {*SHADED} and inputs.isdisjoint(SHADERS):
-                return self._pictures_apart(*sides)
+        sides = (own, self._library), (right, "stock")
+        if kinds <= {*NUMBERS} and self._release is not hidden():
+            error = 0.0
+            for output in outputs:
+                kind, name = output.getType(), output.getName() * (len(outputs) > 1)
+                ports = (Subject(*each, kind, output=name) for each in sides)
+                error = max(error, self._values_apart(*ports))
+            return error
+        if kinds <= {*SHADED} and inputs.isdisjoint(SHADERS) and self._release is not hidden():
+            return self._pictures_apart(*(Subject(*each, right.getType()) for each in sides))
         raise NotRun("its text is not MaterialX's, and nothing evaluates it")
 
     def _values_apart(self, own: Subject, right: Subject) -> float:
@@ -426,11 +416,8 @@ class Comparison:
         found = []
         for index in ("", "3") if subject.kind in JOINED else ("",):
             document = mx.createDocument()
-            node, kind, output = (
-                instance(document, subject, self._image),
-                subject.kind,
-                subject.output,
-            )
+            node = instance(document, subject, self._image)
+            kind, output = subject.kind, subject.output
             if index:
                 part = document.addNode("extract", "part", "float")
                 part.setInputValue("index", int(index))
@@ -467,20 +454,15 @@ class Comparison:
                 for port in shaders[0].inputs
                 if port.type in ("float", "color3")
             }
+            ports = (
+                [replace(port, value=drawn.get(port.path, port.value)) for port in each.inputs]
+                for each in shaders
+            )
+            varied = [
+                replace(each, inputs=tuple(own)) for each, own in zip(shaders, ports, strict=True)
+            ]
             for scene in PICTURES:
-                own, right = (
-                    self._host.picture(
-                        replace(
-                            shader,
-                            inputs=tuple(
-                                replace(port, value=drawn.get(port.path, port.value))
-                                for port in shader.inputs
-                            ),
-                        ),
-                        scene,
-                    ).reshape(-1, 3)
-                    for shader in shaders
-                )
+                own, right = (self._host.picture(each, scene).reshape(-1, 3) for each in varied)
                 if not np.isfinite(right).any():
                     raise NotRun("its picture has no finite pixel")
                 error = max(error, distance(own, right))
