@@ -114,22 +114,23 @@ RULES = {
         lambda: models.fresnel_conductor_avg([1.0, 2.0], [1.0, 2.0, 3.0])
     ),
     "alpha must be one number, for all pairs; got shape (2,)": lambda: coated(alpha=[0.1, 0.2]),
-    "wo, wi, rho, roughness must broadcast (last axis of wo, wi, rho apart); "
-    "got shapes (2, 3), (3, 3), (1,), ()": lambda: models.eon_brdf([UP] * 2, [UP] * 3, 1.0, 1.0),
-    "rho, roughness, mu must broadcast (last axis of rho apart); got shapes (4, 3), (5,), ()": (
+    "wo has 2 rows, wi has 3 rows; give equal counts, or one": lambda: models.eon_brdf(
+        [UP] * 2, [UP] * 3, 1.0, 1.0
+    ),
+    "rho has 4 rows, roughness has 5 values; give equal counts, or one": (
         lambda: models.eon_albedo_dir(0.5, np.full((4, 3), 0.5), [0.5] * 5)
     ),
-    "rho, mu, parameter 0 must broadcast (last axis of rho apart); got shapes (1,), (4,), (5,)": (
+    "mu has 4 values, parameter 0 has 5 values; give equal counts, or one": (
         lambda: models.albedo_dir_quadrature(models.eon_brdf, [0.5] * 4, 0.5, [0.5] * 5)
     ),
-    "wo, wi, roughness, ior, extinction must broadcast": lambda: models.conductor_brdf(
-        UP, UP, [A] * 2, np.ones((3, 1)), 1.0
+    "roughness has 2 rows, ior has 3 rows; give equal counts, or one": lambda: (
+        models.conductor_brdf(UP, UP, [A] * 2, np.ones((3, 1)), 1.0)
     ),
-    "wo, u, roughness must broadcast (last axis of wo, u apart); got shapes (4, 3), (2,), (5,)": (
+    "wo has 4 rows, roughness has 5 values; give equal counts, or one": (
         lambda: models.ltc_sample([UP] * 4, A, [0.5] * 5)
     ),
-    "wo, radiance, inner_angle, outer_angle must broadcast": lambda: models.conical_edf(
-        [UP] * 2, [1.0], np.ones(3), 1.0
+    "wo has 2 rows, inner_angle has 3 values; give equal counts, or one": lambda: (
+        models.conical_edf([UP] * 2, [1.0], np.ones(3), 1.0)
     ),
 }
 

@@ -112,16 +112,17 @@ def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -
     - `vectors`: Directions, random numbers or colors by name, shapes (..., C).
     - `numbers`: Arguments without components, shapes (...).
     """
-    arrays = [*vectors.values(), *numbers.values()]
-    leads = [tuple(array.shape[:-1]) for array in vectors.values()]
-    leads += [tuple(array.shape) for array in numbers.values()]
+    leads = {name: tuple(array.shape[:-1]) for name, array in vectors.items()}
+    leads |= {name: tuple(array.shape) for name, array in numbers.items()}
     try:
-        return np.broadcast_shapes(*leads)
+        return np.broadcast_shapes(*leads.values())
     except ValueError:
-        names = ", ".join([*vectors, *numbers])
-        apart = f" (last axis of {', '.join(vectors)} apart)" if vectors else ""
-        shapes = ", ".join(str(tuple(array.shape)) for array in arrays)
-        raise ValueError(f"{names} must broadcast{apart}; got shapes {shapes}") from None
+        counts = (
+            f"{name} has {' x '.join(map(str, lead))} {'rows' if name in vectors else 'values'}"
+            for name, lead in leads.items()
+            if set(lead) - {1}
+        )
+        raise ValueError(f"{', '.join(counts)}; give equal counts, or one") from None
 
 
 def broadcastable(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> list[Array]:
