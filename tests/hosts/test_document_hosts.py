@@ -53,6 +53,13 @@ def test_textures_are_those_of_the_reference(host, reference):
     assert np.abs(difference * facing).max() <= TEXTURED + HALF
 
 
+@pytest.mark.parametrize("environment", ["fis", "prefilter"])
+@pytest.mark.parametrize("node", ["dielectric_bsdf, scatter_mode R", "conductor_bsdf"])
+def test_an_environment_of_microfacets_is_judged_on_pictures(judged, node, environment):
+    result = judged("environment", node, "materialx", methods=Methods(environment))
+    assert result.verdict == PASSED, result
+
+
 def test_materialx_binds_the_table_of_albedos_that_it_is_given(hosts, gl):
     text = material(lobe("conductor_bsdf", roughness=(0.6, 0.6)))
     pictures = []

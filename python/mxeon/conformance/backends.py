@@ -36,6 +36,7 @@ from mxeon.hosts.testrender_scene import EYE, NEAREST
 from mxeon.models.nodes.node import Scattering, Variant
 from mxeon.models.nodes.renderers import BSDL_VARIANTS, CYCLES_VARIANTS
 from mxeon.models.shading_model import ALONG, UP
+from mxeon.shaders.methods import Methods
 from mxeon.shaders.scene import (
     BACK,
     CLIENT,
@@ -728,7 +729,7 @@ class Pictures(Backend):
         return values[self.points(scene)[2]].astype(np.float64)
 
     def shader_of(self, inputs: Values) -> Shader:
-        return _compile(self.host, self.spec.document(inputs), self.library)
+        return _compile(self.host, self.spec.document(inputs), self.library, self.host.methods)
 
 
 class Spheres(Pictures):
@@ -758,16 +759,17 @@ class Spheres(Pictures):
     def views(self) -> tuple[Batch, ...]:
         """The points in a white environment."""
         scene = replace(FURNACE, size=self.size)
-        return tuple(self.batch(scene, inputs) for inputs in self.materials)
+        views = tuple(self.batch(scene, inputs) for inputs in self.materials)
+        return tuple(map(isotropic, views)) if self.prefiltered else views
 
 
 @lru_cache(maxsize=8)  # a check renders many pictures of few documents
-def _compile(host: Host, text: str, library: str) -> Shader:
+def _compile(host: Host, text: str, library: str, methods: Methods) -> Shader:
     from mxeon.shaders.generation import ApproximationWarning  # loads MaterialX
 
     with warnings.catch_warnings():  # approximations are not judged: see CyclesPictures.points
         warnings.simplefilter("ignore", ApproximationWarning)
-        return host.compile(text, library=library)[0]
+        return host.compile(text, library=library, methods=methods)[0]
 
 
 def scene_of(batch: Batch) -> Scene:

@@ -12,7 +12,16 @@ import numpy as np
 from mxeon.conformance import samples, tolerance
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, generator, rounded
-from mxeon.conformance.spec import ARGUMENTS, WAVE, Ability, EngineError, Input, ValueSpec, color
+from mxeon.conformance.spec import (
+    ARGUMENTS,
+    WAVE,
+    Ability,
+    EngineError,
+    Input,
+    ValueSpec,
+    broadcast_inputs,
+    color,
+)
 from mxeon.conformance.specs import lobes
 from mxeon.conformance.specs.lobes import BURLEY_VALUE, WEIGHT, PbrSpec, named_mode
 from mxeon.conformance.specs.sheen import FIT_COSINE
@@ -38,7 +47,8 @@ LEAST_TANGENT_ALPHA = 0.05  # least alpha with turned tangents, as roundings are
 LEAST_TANGENT_COSINE = 0.1  # least cosine with turned tangents
 
 # fmt: off
-INDEX = Input("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(1.5, 1.2),
+# The first material's index is bright enough for the controls of pictures.
+INDEX = Input("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(2.5, 1.2),
               beyond=(0.0, 0.2, 1.0015, 1.02, 4.0, 10.0, 100.0))
 FILM: Values = {"thinfilm_thickness": 400.0}
 FACETS = (
@@ -241,7 +251,7 @@ class FacetSpec(PbrSpec):
 
     def prefiltered(self, batch: Batch) -> Array:
         """Albedo in a prefiltered environment by MaterialX's fit, (N, 3)."""
-        return batch.strength * LOBES[self.node].prefiltered(batch.wo, batch.inputs)
+        return batch.strength * LOBES[self.node].prefiltered(batch.wo, broadcast_inputs(batch))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """A lobe's batches, plus lights near the mirror direction; another check covers two alphas."""
