@@ -114,7 +114,7 @@ def materials(gl):
     return lambda name: known.setdefault(name, paths(gl, DOCUMENTS[name]))
 
 
-def leaves(material, mu, count, nodes=8, **options):
+def leaves(material, mu, count, **options):
     """Standard deviations by which draws leave their density."""
     wo = view(mu)
     drawn = material.values("wi", wo, u=uniforms(count), **options)
@@ -125,20 +125,18 @@ def leaves(material, mu, count, nodes=8, **options):
         lambda w: material.values("pdf", wo, w, **options)[:, 0],
         refracted(wo, 1.0 / 1.5 if options else 1.5),
         wo * [-1.0, -1.0, 1.0],
-        nodes,
     )
 
 
 @pytest.mark.parametrize("name", SURFACES)
 def test_draws_at_a_grazing_view_have_their_density(materials, name):
-    assert leaves(materials(name), 0.1, 1 << 16, nodes=16) < DEVIATION
+    assert leaves(materials(name), 0.1, 1 << 16) < DEVIATION
 
 
 @pytest.mark.whole
 @pytest.mark.parametrize("name", SURFACES)
 def test_a_quarter_million_draws_have_their_density(materials, name):
-    """Ten million do, too, with 64 nodes a cell: they take three minutes."""
-    assert leaves(materials(name), 0.9, 1 << 18, nodes=12) < DEVIATION
+    assert leaves(materials(name), 0.9, 1 << 18) < DEVIATION
 
 
 # Error of the rasterizer's albedo, beside the noise of 2^16 draws: films 0.07, tilted fibers have none in closed form.

@@ -6,7 +6,7 @@ counted; and so is what it reflects.
 """
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from types import MappingProxyType
@@ -295,12 +295,11 @@ def place(inside: bool) -> str:
 def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
     """Standard deviations by which draws leave their density, in materials at views.
 
-    Three views do for a control, and for a surface shader, which has one material as a solid and one as a wall.
-    A coarse quadrature takes an eighth of the time: what it finds few is few. A fine one takes 16 times as long, so it
-    looks again only at what would fail, until it confirms a failure on that side.
+    Three views do for a control, which ends at the first that is wrong, and for a surface shader, which has one
+    material as a solid and one as a wall.
+    The quadrature's own error in a first look only makes the deviation larger.
     """
     u = random(DRAWS, generator())
-    confirmed: set[bool] = set()
     for text, batch in subjects(case, False, True):
         rough = {
             name: np.maximum(each, LEAST_COUNTED)
@@ -326,18 +325,13 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
                 straight = np.linalg.norm(drawn + view, axis=1, keepdims=True) < 1e-6
                 pole = refracted(view, 1.0 / 1.5 if inside else 1.5)
                 mirror = view * [-1.0, -1.0, 1.0]
-                score = deviation(drawn * ~straight, density, pole, mirror, COARSE)
-                if score > SUSPECT and not case.control:
-                    score = deviation(drawn * ~straight, density, pole, mirror)
-                if score > MOST_DEVIATIONS and not case.control and inside not in confirmed:
-                    # Facets that refract near a critical angle, or by an index near 1, send light into a region
-                    # narrower than a step. The pole of the finer steps is the mean of what is refracted.
-                    through = (drawn * (drawn[:, 2:] < 0.0) * ~straight).sum(axis=0)
-                    size = np.linalg.norm(through)
-                    pole = through / size if size > 0.0 else pole
-                    score = deviation(drawn * ~straight, density, pole, mirror, FINE)
-                    confirmed |= {inside} if score > MOST_DEVIATIONS else set()
+                for nodes in (NODES,) if case.control else (NODES[:1], NODES):
+                    score = deviation(drawn * ~straight, density, pole, mirror, nodes)
+                    if score <= SUSPECT:
+                        break
                 yield score, inside, one
+                if case.control and score > MOST_DEVIATIONS:
+                    return
 
 
 def pdf(case: Case) -> Measurement:
@@ -546,13 +540,13 @@ def path_albedo(case: Case) -> Iterator[Compared]:
 # adds N e^2 to chi-square, whose deviation is the root of twice the cells: of 2^15 draws in these, six
 # deviations are an e of 6.5 %.
 CELLS = 16  # divisions of the angle, and of the azimuth
-CELL_NODES = 16  # quadrature nodes of a cell on each axis
-COARSE = 4  # nodes of a first look, whose own error only makes the deviation larger
-FINE = 64  # nodes of a third look
+NODES = 4, 8, 16, 32  # quadrature nodes of a patch on each axis; a first look has the fewest
 SUSPECT = 3.0  # standard deviations, which chance reaches once in 700 times
+CLOSE = 0.5  # expected draws by which the nodes of a patch agree
 MOST_DEVIATIONS = 6.0  # standard deviations, the tolerance of the check
 CONE = 0.02  # radian, the first ring
 LEAST = 1e-7  # radian, below which a density is constant
+INNER = 9  # rings of patches in the first ring of cells, each wider than the one before by a factor
 RARE = 10.0  # expected draws, below which cells are put together
 
 
@@ -560,8 +554,8 @@ def deviation(
     draws: Array,
     density: Callable[[Array], Array],
     pole: Array,
-    other: Array | None = None,
-    nodes: int = CELL_NODES,
+    other: Array,
+    nodes: Sequence[int] = NODES,
 ) -> float:
     """Standard deviations by which the counts of draws leave a density, 0 for any less than chance brings.
 
@@ -573,20 +567,19 @@ def deviation(
     - `density`: Of unit vectors (M, 3), in 1/sr, (M,).
     - `pole`, `other`: Directions about which nearly all draws of a smooth lobe may lie. A cone about
       the other is one cell, if it lies apart.
+    - `nodes`: See `density_integrals`.
     """
-    w, area, cells = quadrature(tuple(pole), nodes)
     count = (CELLS + 1) * CELLS
-    if other is not None and pole @ other < np.cos(2.0 * CONE):
-        rest = w @ other < np.cos(CONE)
-        near, small, ring = quadrature(tuple(other), nodes)
-        near, small = near[ring < CELLS], small[ring < CELLS]
-        w, area = np.concatenate([w[rest], near]), np.append(area[rest], small)
-        cells = np.append(cells[rest], np.full(len(near), count))
-    shares = np.bincount(cells, density(w) * area, minlength=count + 1)
+    apart = pole @ other < np.cos(2.0 * CONE)
+    poles = [pole, other] if apart else [pole]
+    integrals = density_integrals(density, poles, CLOSE / len(draws), nodes)
+    rings = np.maximum(np.arange(INNER + CELLS) - INNER + 1, 0)
+    cells = (rings[:, np.newaxis] * CELLS + np.arange(CELLS)).ravel()
+    cells = np.append(cells, np.full(len(integrals) - len(cells), count))
+    shares = np.bincount(cells, integrals, minlength=count + 1)
     kept = np.linalg.norm(draws, axis=1) > 0.5
     found = cell(draws[kept], pole)
-    if other is not None:
-        found[(draws[kept] @ other >= np.cos(CONE)) & (found >= CELLS)] = count
+    found[(draws[kept] @ other >= np.cos(CONE)) & apart] = count
     counts = np.bincount(found, minlength=len(shares))
     mean = len(draws) * np.append(shares, 1.0 - shares.sum())
     observed = np.append(counts, len(draws) - kept.sum())
@@ -617,20 +610,55 @@ def cell(w: Array, pole: Array) -> NDArray[np.int64]:
     return number
 
 
-@lru_cache(maxsize=8)
-def quadrature(pole: tuple[float, ...], nodes: int) -> tuple[Array, Array, NDArray[np.int64]]:
-    """Directions, solid angles and cells of a midpoint rule; in the first ring its steps grow by a factor."""
-    inner = np.append(0.0, np.geomspace(LEAST, CONE, 8 * nodes))
-    edges = np.append(inner, np.linspace(CONE, np.pi, CELLS * nodes + 1)[1:])
-    angle, height = 0.5 * (edges[1:] + edges[:-1]), 0.5 * np.diff(edges)
-    turn = 2.0 * np.pi / (CELLS * nodes)
-    azimuth = turn * (np.arange(CELLS * nodes) + 0.5)
-    ring = np.stack([np.cos(azimuth), np.sin(azimuth)])
-    z = np.broadcast_to(np.cos(angle)[:, np.newaxis], (len(angle), len(azimuth)))
-    local = np.stack([*(np.sin(angle)[:, np.newaxis] * each for each in ring), z], axis=-1)
-    area = 2.0 * np.sin(angle) * np.sin(height) * turn
-    w = local.reshape(-1, 3) @ axes(np.array(pole))
-    return w, np.repeat(area, len(azimuth)), cell(w, np.array(pole))
+def density_integrals(
+    density: Callable[[Array], Array], poles: Sequence[Array], close: float, nodes: Sequence[int]
+) -> Array:
+    """Integrals of a density over patches about a pole, and over those of the cone about a second pole.
+
+    A patch gets each number of `nodes` on each axis until two of them agree up to `close`, in it and beside it: an edge
+    of a density may pass between few nodes.
+    """
+    frames = np.stack(list(map(axes, poles)))
+    whole = (INNER + CELLS) * CELLS
+    rings = INNER + CELLS + INNER * (len(poles) - 1)
+    integrals, waiting = np.zeros(rings * CELLS), np.arange(rings * CELLS)
+    for count in nodes:
+        local, area = patches(count)
+        which, about = waiting % whole, waiting // whole
+        w = local[which] @ frames[about]
+        area = area[which]
+        for other in poles[1:]:
+            area = area * ((about > 0)[:, np.newaxis] | (w @ other < np.cos(CONE)))
+        found = (density(w.reshape(-1, 3)).reshape(area.shape) * area).sum(axis=1)
+        unsure = np.zeros((rings, CELLS), bool)
+        unsure.flat[waiting] = np.abs(found - integrals[waiting]) > close
+        integrals[waiting] = found
+        for axis in (0, 1):
+            unsure |= np.roll(unsure, 1, axis) | np.roll(unsure, -1, axis)
+        if not len(waiting := np.flatnonzero(unsure)):
+            break
+    return integrals
+
+
+@lru_cache(maxsize=len(NODES))
+def patches(nodes: int) -> tuple[Array, Array]:
+    """Directions about the z-axis (P, M, 3) and solid angles (P, M) of the Gauss-Legendre nodes of each patch."""
+    x, weight = np.polynomial.legendre.leggauss(nodes)
+    edges = np.append(0.0, np.geomspace(LEAST, CONE, INNER))
+    edges = np.append(edges, np.linspace(CONE, np.pi, CELLS + 1)[1:])
+    half, turn = 0.5 * np.diff(edges)[:, np.newaxis], np.pi / CELLS
+    angle = 0.5 * (edges[1:] + edges[:-1])[:, np.newaxis] + half * x
+    azimuth = turn * (2.0 * np.arange(CELLS)[:, np.newaxis] + 1.0 + x)
+    angle, azimuth = angle[:, np.newaxis, :, np.newaxis], azimuth[:, np.newaxis]
+    w = np.stack(
+        np.broadcast_arrays(
+            np.sin(angle) * np.cos(azimuth), np.sin(angle) * np.sin(azimuth), np.cos(angle)
+        ),
+        axis=-1,
+    )
+    strips = (half * weight)[:, np.newaxis, :, np.newaxis] * turn * weight
+    area = np.broadcast_to(np.sin(angle) * strips, w.shape[:-1])
+    return w.reshape(-1, nodes**2, 3), area.reshape(-1, nodes**2)
 
 
 # fmt: off
