@@ -95,6 +95,27 @@ CHANGES = [
 ]
 
 
+FEW = {"verdict": FAILED, "error": 1e-4, "samples": "a"}
+FEW["errors"] = (Errors(7000, 5, 0, 1e-4, 5e-7),)
+MANY = FEW | {"errors": (Errors(7000, 500, 0, 1e-4, 5e-6),)}
+FAILURE = "value: passed at 1e-07 -> failed at 0.0001"
+CHANGES += [
+    (made_run(), made_run(**FEW), (WORSE, FAILURE)),
+    (
+        made_run(),
+        made_run(**FEW, device="GPU"),
+        (OTHER, "host gl: 4.5, llvmpipe -> 4.5, GPU"),
+        (OTHER, FAILURE),
+    ),
+    (
+        made_run(),
+        made_run(**MANY, device="GPU"),
+        (WORSE, FAILURE),
+        (OTHER, "host gl: 4.5, llvmpipe -> 4.5, GPU"),
+    ),
+]
+
+
 @pytest.mark.parametrize("row", CHANGES)
 def test_each_kind_of_change_is_told(row):
     before, after, *expected = row

@@ -565,6 +565,7 @@ GROWTHS = {
     "not_finite": "{0} % -> {1} % of the samples are not finite",
 }
 UNEXPLAINED = "the specification no longer allows it"
+ROUNDED = "with another driver, few samples leave the tolerance"
 
 
 def growth(key: str, before: float, after: float, place: Region | None) -> str:
