@@ -117,7 +117,7 @@ class Says:
     fixed: Values = field(default_factory=dict)
     permitted: tuple[str | Forms, ...] = ()
     wrong: tuple[str | Forms, ...] = ()
-    terms: tuple[Term, ...] = ()  # of a tolerance, besides those of `shown`
+    terms: tuple[Term, ...] = ()  # terms that its tolerance has besides those for `shown`
     inputs: tuple[Input, ...] = ()
 
     def spec(self, text: Text) -> SentenceSpec:

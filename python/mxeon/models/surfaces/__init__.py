@@ -8,9 +8,9 @@ Each module has the table `PARAMETERS` of its text, a function `parameters` that
     >>> from mxeon.models.surfaces import Light, open_pbr
     >>> view, sun = np.array([[0.6, 0.0, 0.8]]), np.array([[0.0, 0.0, 1.0]])
     >>> p = open_pbr.parameters(base_color=(0.8, 0.4, 0.1), specular_roughness=0.5)
-    >>> open_pbr.surface(Light(view, sun), p).round(4)  # f cos(theta_i)
+    >>> open_pbr.surface(Light(view, sun), p).round(4)  # f cos(theta_i), in sunlight
     array([[0.2543, 0.1323, 0.0408]])
-    >>> open_pbr.surface(Light(view), p).round(4)  # in a white environment
+    >>> open_pbr.surface(Light(view), p).round(4)  # response to a white environment
     array([[0.8084, 0.4251, 0.1376]])
 
 Parameters are not checked against their ranges. The models' own functions raise `ValueError` outside theirs.
