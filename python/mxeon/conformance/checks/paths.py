@@ -325,7 +325,7 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
                 straight = np.linalg.norm(drawn + view, axis=1, keepdims=True) < 1e-6
                 pole = refracted(view, 1.0 / 1.5 if inside else 1.5)
                 mirror = view * [-1.0, -1.0, 1.0]
-                for nodes in (NODES,) if case.control else (NODES[:1], NODES):
+                for nodes in (LOOKS[1],) if case.control else LOOKS:
                     score = deviation(drawn * ~straight, density, pole, mirror, nodes)
                     if score <= SUSPECT:
                         break
@@ -540,7 +540,8 @@ def path_albedo(case: Case) -> Iterator[Compared]:
 # adds N e^2 to chi-square, whose deviation is the root of twice the cells: of 2^15 draws in these, six
 # deviations are an e of 6.5 %.
 CELLS = 16  # divisions of the angle, and of the azimuth
-NODES = 4, 8, 16, 32  # quadrature nodes of a patch on each axis; a first look has the fewest
+NODES = 4, 8, 16, 32, 64, 128  # quadrature nodes of a patch on each axis
+LOOKS = NODES[:1], NODES[:4], NODES  # a look that leaves no suspicion is the last
 SUSPECT = 3.0  # standard deviations, which chance reaches once in 700 times
 CLOSE = 0.5  # expected draws by which the nodes of a patch agree
 MOST_DEVIATIONS = 6.0  # standard deviations, the tolerance of the check
