@@ -9,6 +9,7 @@ import importlib
 import inspect
 import math
 import pkgutil
+import re
 import warnings
 from decimal import Decimal
 from fractions import Fraction
@@ -161,6 +162,8 @@ def answer(function, values):
             result = call(function, values)
     except ValueError as error:
         first = str(error).split(" must ")[0].split(", ")
+        if str(error).endswith("; give equal counts, or one"):
+            first = re.findall(r"(\S+) has [\dx ]+ (?:rows|values)", str(error))
         names = set(parameters).union(*(each for each in values.values() if isinstance(each, dict)))
         names |= set(RANGES) if more or "inputs" in parameters else set()
         return REFUSED, "" if set(first) <= names else f"says {error}"

@@ -34,7 +34,7 @@ FUNCTIONS = [
     (name, function)
     for name in model_names()
     for function in mxeon.model(name).functions
-    if function != "brdf"  # of which bsdf is the other name
+    if function not in ("plot", "brdf")  # of which bsdf is the other name
 ]
 # JAX traces the sums of one film for seconds; the curves of the others are compiled in test_arrays.py.
 OTHER_FILMS = ("conductor_film", "schlick_film")

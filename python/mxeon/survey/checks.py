@@ -68,7 +68,7 @@ def _deviation(case: Case, mu: float) -> float:
         batch = Batch(np.broadcast_to(wo, w.shape), w, {"roughness": ROUGHNESS})
         return np.where(w[:, 2] > 0.0, _density(case, batch), 0.0)
 
-    return deviation(np.where(wi[:, 2:] > 0.0, wi, 0.0), density, pole)
+    return deviation(np.where(wi[:, 2:] > 0.0, wi, 0.0), density, pole, pole)
 
 
 # fmt: off

@@ -224,8 +224,8 @@ def _selected(
     Raise InputError if none of the nodes is judged.
     """
     titles = _titles(*nodes)
-    rare = {each.title for each in PBRLIB} - {each.title for each in COMMON_SPECS}
     texts = {each.title for each in SENTENCES}
+    rare = {each.title for each in PBRLIB} - {each.title for each in COMMON_SPECS} | texts
     audit = COMMON in nodes or not (nodes or files)
     by_name = {each.key for each in CHECKS if each.profile}
     if not nodes:
@@ -408,7 +408,7 @@ def _on_host(
     for spec in diffuse_specs(library):
         yield from _checks_of(spec, host, library, methods)
     defines = load_library(library).getMatchingNodeDefs
-    for each in PBRLIB:
+    for each in (*PBRLIB, *SENTENCES):
         # Where pictures show a renderer's own closures, they are judged with the stock library alone.
         own = row.target == "osl" and kind in ("eonlib", "diffuse")
         left = each.closure and row.way == "pictures" and own

@@ -30,6 +30,6 @@ PBRLIB: tuple[Spec, ...] = (
     *FILM_SPECS,
     *UTILITY_SPECS,
     *SURFACE_SHADERS,
-    *SENTENCES,  # only if the user names their specification
 )
-ALL: tuple[Spec, ...] = (*DIFFUSE, *PBRLIB, *SURFACE_LOBES)
+# SENTENCES are judged only if the user names their specification.
+ALL: tuple[Spec, ...] = (*DIFFUSE, *PBRLIB, *SURFACE_LOBES, *SENTENCES)
