@@ -4,6 +4,8 @@
 import numpy as np
 import pytest
 
+from mxeon.conformance.samples import Counts
+from mxeon.conformance.specs.surface_texts import SENTENCES
 from mxeon.models import dielectric_brdf, eon_brdf
 from mxeon.models.surfaces import Light, gltf, open_pbr, standard_surface, usd_preview
 
@@ -77,3 +79,12 @@ def test_emission_below_a_full_coat_has_its_color(model):
     found = model.emission(Light(VIEWS), model.parameters(**color, **lit, **weight))
     np.testing.assert_allclose(found[:, 0] / found[:, 2], 0.5)
     np.testing.assert_allclose(found[:, 1] / found[:, 2], 0.25)
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize("spec", SENTENCES, ids=lambda spec: spec.title)
+def test_named_forms_are_others_than_the_text(spec):
+    [batch] = spec.batches(Counts())
+    text, *forms, _ = (each.values(batch) for each in spec.value_candidates)
+    assert np.isfinite(text).all()
+    assert all(np.abs(form - text).max() > 1e-4 for form in forms)
