@@ -64,7 +64,10 @@ export function verdict_on(
       const { kind } = checked;
       // What this browser reads back may be wrong where `mxeon check` is right.
       if (own && kind === "correct" && own.kind !== "unknown") {
-        return own.kind === "correct" ? { ...own, text } : own;
+        if (own.kind === "correct") return { ...own, text };
+        // Of layers no form is known; what `mxeon check` accepts stays accepted.
+        if (own.kind !== "differs" || changed) return own;
+        return { kind, badge: BADGES[kind], text: `${text} ${own.text}` };
       }
       if (changed) return { kind: "unknown", badge: "material", text };
       return { kind, badge: BADGES[kind], text };
