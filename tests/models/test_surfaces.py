@@ -88,3 +88,8 @@ def test_named_forms_are_others_than_the_text(spec):
     text, *forms, _ = (each.values(batch) for each in spec.value_candidates)
     assert np.isfinite(text).all()
     assert all(np.abs(form - text).max() > 1e-4 for form in forms)
+
+
+def test_an_unknown_parameter_is_refused_by_name():
+    with pytest.raises(TypeError, match="^parameters are base_weight, .*; got base_colour$"):
+        open_pbr.parameters(base_colour=WHITE)

@@ -51,17 +51,16 @@ def instead(result: Result) -> str:
 def defaults(text: Text) -> Iterator[str]:
     """Table rows of the defaults that a node's definition does not have from the text."""
     [definition, *_] = load_library("stock").getMatchingNodeDefs(text.node)
-    for each in text.model.PARAMETERS:
-        value = definition.getActiveInput(each.name).getValue()
-        if value is None or each.default is None:
+    for name, default in text.model.DEFAULTS.items():
+        value = definition.getActiveInput(name).getValue()
+        if value is None:
             continue
         own = np.ravel(tuple(value) if hasattr(value, "asTuple") else value).astype(float)
-        if not np.allclose(own, np.ravel(each.default)):
+        if not np.allclose(own, np.ravel(default)):
             shown = (
-                ", ".join(f"{number:.3g}" for number in np.ravel(one))
-                for one in (each.default, own)
+                ", ".join(f"{number:.3g}" for number in np.ravel(one)) for one in (default, own)
             )
-            yield f"| {text.name} | `{each.name}` | {' | '.join(shown)} |\n"
+            yield f"| {text.name} | `{name}` | {' | '.join(shown)} |\n"
 
 
 def judged() -> dict[str, dict[str, Result]]:

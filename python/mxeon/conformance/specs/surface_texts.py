@@ -31,7 +31,7 @@ from mxeon.models.surfaces.lobes import Light
 from mxeon.shaders.nodes import document_text, node_text
 
 Forms = tuple[str, ...]  # formulas that replace the text's, by their names in a model
-PAIRS = 24  # a lobe's albedo takes a millisecond
+PAIRS = 24  # each albedo takes a millisecond
 GRAZING = 0.05  # least cosine of a direction
 TILTED = (0.48, 0.36, 0.8)
 DIRECT, ENVIRONMENT = ("direct", "response", np.pi), ("environment", "response", 1.0)
@@ -48,10 +48,9 @@ FILMED = FILM_ERRORS["value"].term("a film")
 
 @dataclass(frozen=True)
 class Text:
-    """A specification: its name and edition, the node that implements it, and its model."""
+    """A specification: its name, the node that implements it, and its model."""
 
     name: str
-    edition: str
     node: str
     model: ModuleType
 
@@ -117,7 +116,7 @@ class Says:
     fixed: Values = field(default_factory=dict)
     permitted: tuple[str | Forms, ...] = ()
     wrong: tuple[str | Forms, ...] = ()
-    terms: tuple[Term, ...] = ()  # terms that its tolerance has besides those for `shown`
+    terms: tuple[Term, ...] = ()  # additional terms of its tolerance
     inputs: tuple[Input, ...] = ()
 
     def spec(self, text: Text) -> SentenceSpec:
@@ -143,12 +142,12 @@ def _forms(names: str | Forms) -> Forms:
 drawn = ports_by_range
 TWICE, TINTED = "reflection taken twice", "tinted light below the {}"
 FAR = 1e6  # a depth at which the medium takes no light over the distance that shaders assume
-THROUGH_COLOR = Input("transmission_color", "color3", low=0.05)  # its logarithm is finite
+THROUGH_COLOR = Input("transmission_color", "color3", low=0.05)  # keeps the logarithm finite
 WEIGHT = Input("specular_weight", high=2.0)
-OPENPBR = Text("OpenPBR Surface", "1.1.1, 2026", "open_pbr_surface", open_pbr)
-STANDARD = Text("Standard Surface", "1.0.1", "standard_surface", standard_surface)
-GLTF = Text("glTF", "2.0 with KHR_materials extensions", "gltf_pbr", gltf)
-USD = Text("USD Preview Surface", "2.5", "UsdPreviewSurface", usd_preview)
+OPENPBR = Text("OpenPBR Surface", "open_pbr_surface", open_pbr)
+STANDARD = Text("Standard Surface", "standard_surface", standard_surface)
+GLTF = Text("glTF", "gltf_pbr", gltf)
+USD = Text("USD Preview Surface", "UsdPreviewSurface", usd_preview)
 MATTE: Values = {"specular_weight": 0.0}
 COATED: Values = {"coat_weight": 1.0, "coat_darkening": 0.0, **MATTE}
 SCHLICK_EMISSION = "Schlick's factor of the coat"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Surface shaders as their own specifications define them: OpenPBR, Standard Surface, glTF and UsdPreviewSurface.
 
-Each module has the table `PARAMETERS` of its text, a function `parameters` that fills in defaults, and the functions
+Each module has the table `DEFAULTS` of its text, a function `parameters` that fills in defaults, and the functions
 `surface` and `emission`, in float64:
 
     >>> import numpy as np
@@ -18,4 +18,3 @@ Parameters are not checked against their ranges. The models' own functions raise
 
 from mxeon.models.surfaces.lobes import Frame as Frame
 from mxeon.models.surfaces.lobes import Light as Light
-from mxeon.models.surfaces.lobes import Parameter as Parameter

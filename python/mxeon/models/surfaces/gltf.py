@@ -6,7 +6,7 @@
     f = clearcoat f_coat + (1 - clearcoat E[f_coat]) (f_sheen + (1 - max(sheenColor) E_sheen) material)
 
 Lobes are Schlick's, with alpha = roughness^2. The text permits any operator for layers; albedo scaling is
-used. Each name in `but` replaces a formula. [glTF2021], sections 3.9 and B, and the extensions.
+used. Parameters have the names of MaterialX's node; the text's are in camel case, with Factor. Each name in `but` replaces a formula. [glTF2021], sections 3.9 and B, and the extensions.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from mxeon.models.surfaces.lobes import (
     WHITE,
     Frame,
     Light,
-    Parameter,
     Parameters,
+    Values,
     f0_from_ior,
     filled,
     lerp,
@@ -37,37 +37,36 @@ from mxeon.models.surfaces.lobes import (
 
 INF = np.inf
 PURE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
-# By the names of MaterialX's node; the text's own are in camel case, with Factor.
-FRAME = {"normal": UP, "tangent": ALONG, "clearcoat_normal": UP}
-PARAMETERS = (
-    Parameter("base_color", PURE),
-    Parameter("metallic", 1.0),
-    Parameter("roughness", 1.0),
-    Parameter("occlusion", 1.0),
-    Parameter("transmission", 0.0),
-    Parameter("specular", 1.0),
-    Parameter("specular_color", PURE, high=INF),
-    Parameter("ior", 1.5, low=1.0, high=INF),
-    Parameter("alpha", 1.0),
-    Parameter("alpha_mode", 0, high=2),
-    Parameter("alpha_cutoff", 0.5, high=INF),
-    Parameter("iridescence", 0.0),
-    Parameter("iridescence_ior", 1.3, low=1.0, high=INF),
-    Parameter("iridescence_thickness", 400.0, high=INF),
-    Parameter("sheen_color", BLACK),
-    Parameter("sheen_roughness", 0.0),
-    Parameter("clearcoat", 0.0),
-    Parameter("clearcoat_roughness", 0.0),
-    Parameter("emissive", BLACK),
-    Parameter("emissive_strength", 1.0, high=INF),
-    Parameter("thickness", 0.0, high=INF),
-    Parameter("attenuation_distance", INF, high=INF),
-    Parameter("attenuation_color", PURE),
-    Parameter("anisotropy_strength", 0.0),
-    Parameter("anisotropy_rotation", 0.0, low=-INF, high=INF),
-    Parameter("dispersion", 0.0, high=INF),
-)
-parameters = partial(filled, PARAMETERS, FRAME)
+FRAME: Values = {"normal": UP, "tangent": ALONG, "clearcoat_normal": UP}
+DEFAULTS: Values = {
+    "base_color": PURE,
+    "metallic": 1.0,
+    "roughness": 1.0,
+    "occlusion": 1.0,
+    "transmission": 0.0,
+    "specular": 1.0,
+    "specular_color": PURE,
+    "ior": 1.5,
+    "alpha": 1.0,
+    "alpha_mode": 0,
+    "alpha_cutoff": 0.5,
+    "iridescence": 0.0,
+    "iridescence_ior": 1.3,
+    "iridescence_thickness": 400.0,
+    "sheen_color": BLACK,
+    "sheen_roughness": 0.0,
+    "clearcoat": 0.0,
+    "clearcoat_roughness": 0.0,
+    "emissive": BLACK,
+    "emissive_strength": 1.0,
+    "thickness": 0.0,
+    "attenuation_distance": INF,
+    "attenuation_color": PURE,
+    "anisotropy_strength": 0.0,
+    "anisotropy_rotation": 0.0,
+    "dispersion": 0.0,
+}
+parameters = partial(filled, {**DEFAULTS, **FRAME})
 CLEARCOAT_F0 = 0.04
 
 
@@ -116,9 +115,8 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     intensity = p["sheen_color"].max(axis=1, keepdims=True)
     if np.any(intensity):
         fibers = {"color": WHITE, "roughness": np.square(p["sheen_roughness"])}
-        E_sheen = intensity * light.albedo(CONTY_KULLA, plain, **fibers)
-        if "tinted light below the sheen" in but:
-            E_sheen = p["sheen_color"] / np.maximum(intensity, 1e-30) * E_sheen
+        share = p["sheen_color"] if "tinted light below the sheen" in but else intensity
+        E_sheen = share * light.albedo(CONTY_KULLA, plain, **fibers)
         f_sheen = p["sheen_color"] * light.response(CONTY_KULLA, plain, **fibers)
         material = f_sheen + (1.0 - E_sheen) * material
     if not np.any(p["clearcoat"]):

@@ -8,7 +8,7 @@ the horizon.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -22,34 +22,20 @@ from mxeon.models.shading_model import ALONG, UP
 from mxeon.models.table import diffuse_model
 
 Parameters: TypeAlias = Mapping[str, Array]
-Value: TypeAlias = ArrayLike | None
-Values: TypeAlias = Mapping[str, Value]
+Values: TypeAlias = Mapping[str, ArrayLike]
 
 
-@dataclass(frozen=True)
-class Parameter:
-    """A parameter in a specification's table; a range without a bound is infinite.
+def filled(defaults: Values, **inputs: ArrayLike) -> dict[str, Array]:
+    """Parameters as columns: the defaults, replaced by `inputs`.
 
-    - `norm`: The range that a user interface should offer, if it differs.
+    An array has a row for each point; a number or a tuple holds for all points. Raises TypeError for an unknown name.
     """
-
-    name: str
-    default: float | bool | int | tuple[float, float, float] | None
-    low: float = 0.0
-    high: float = 1.0
-    norm: tuple[float, float] | None = None
+    if unknown := sorted(inputs.keys() - defaults.keys()):
+        raise TypeError(f"parameters are {', '.join(defaults)}; got {', '.join(unknown)}")
+    return {name: _column(value) for name, value in {**defaults, **inputs}.items()}
 
 
-def filled(table: Iterable[Parameter], frame: Values, **inputs: Value) -> dict[str, Array]:
-    """Parameters as columns, with the defaults of a specification's table and frame.
-
-    An array has a row for each point; a number or a tuple holds for all points.
-    """
-    given = {**{each.name: each.default for each in table}, **frame, **inputs}
-    return {name: _column(value) for name, value in given.items() if value is not None}
-
-
-def _column(value: Value) -> Array:
+def _column(value: ArrayLike) -> Array:
     array = np.asarray(value, np.float64)
     varied = isinstance(value, np.ndarray) and array.ndim > 0
     return array.reshape(len(array) if varied else 1, -1)

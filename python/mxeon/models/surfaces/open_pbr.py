@@ -9,7 +9,8 @@
 The coat absorbs along the refracted path, T_coat = coat_color^((1/mu_i + 1/mu_o) / 2). It darkens the base by
 Delta = (1 - K) / (1 - E_base K), K = lerp(F(mu_o), 1 - (1 - <F>) / eta^2, r_base), and widens its
 lobes to r'^4 = r^4 + 2 r_coat^4. On a plane, f_SSS is the Lambertian lobe with the specified color. A rasterizer's
-environment gives f_T the share `transmission_color` of the light.
+environment gives f_T the share `transmission_color` of the light, and is seen through the coat's color at normal
+incidence.
 
 Each name in `but` replaces a formula; `mxeon.conformance.specs.surface_texts` says which of these
 the text permits. [OpenPBR2026].
@@ -35,63 +36,62 @@ from mxeon.models.surfaces.lobes import (
     ZELTNER,
     Frame,
     Light,
-    Parameter,
     Parameters,
+    Values,
     f0_from_ior,
     filled,
     lerp,
     schlick_inputs,
 )
 
-INF = np.inf
 GRAY = (0.8, 0.8, 0.8)
-# The tables of parameters; those of geometry have no default there.
-FRAME = {
+FRAME: Values = {
     "geometry_normal": UP,
     "geometry_tangent": ALONG,
     "geometry_coat_normal": UP,
     "geometry_coat_tangent": ALONG,
 }
-PARAMETERS = (
-    Parameter("base_weight", 1.0),
-    Parameter("base_color", GRAY),
-    Parameter("base_diffuse_roughness", 0.0),
-    Parameter("base_metalness", 0.0),
-    Parameter("specular_weight", 1.0, high=INF, norm=(0.0, 1.0)),
-    Parameter("specular_color", (1.0, 1.0, 1.0)),
-    Parameter("specular_roughness", 0.3),
-    Parameter("specular_roughness_anisotropy", 0.0),
-    Parameter("specular_ior", 1.5, high=INF, norm=(1.0, 3.0)),
-    Parameter("transmission_weight", 0.0),
-    Parameter("transmission_color", (1.0, 1.0, 1.0)),
-    Parameter("transmission_depth", 0.0, high=INF, norm=(0.0, 1.0)),
-    Parameter("transmission_scatter", (0.0, 0.0, 0.0)),
-    Parameter("transmission_scatter_anisotropy", 0.0, low=-1.0),
-    Parameter("transmission_dispersion_scale", 0.0),
-    Parameter("transmission_dispersion_abbe_number", 20.0, high=INF, norm=(9.0, 91.0)),
-    Parameter("subsurface_weight", 0.0),
-    Parameter("subsurface_color", GRAY),
-    Parameter("subsurface_radius", 1.0, high=INF, norm=(0.0, 1.0)),
-    Parameter("subsurface_radius_scale", (1.0, 0.5, 0.25)),
-    Parameter("subsurface_scatter_anisotropy", 0.0, low=-1.0),
-    Parameter("coat_weight", 0.0),
-    Parameter("coat_color", (1.0, 1.0, 1.0)),
-    Parameter("coat_roughness", 0.0),
-    Parameter("coat_roughness_anisotropy", 0.0),
-    Parameter("coat_ior", 1.6, high=INF, norm=(1.0, 3.0)),
-    Parameter("coat_darkening", 1.0),
-    Parameter("fuzz_weight", 0.0),
-    Parameter("fuzz_color", (1.0, 1.0, 1.0)),
-    Parameter("fuzz_roughness", 0.5),
-    Parameter("emission_luminance", 0.0, high=INF, norm=(0.0, 1000.0)),
-    Parameter("emission_color", (1.0, 1.0, 1.0), high=INF),
-    Parameter("thin_film_weight", 0.0),
-    Parameter("thin_film_thickness", 0.5, high=INF, norm=(0.0, 1.0)),
-    Parameter("thin_film_ior", 1.4, high=INF, norm=(1.0, 3.0)),
-    Parameter("geometry_opacity", 1.0),
-    Parameter("geometry_thin_walled", False),
-)
-parameters = partial(filled, PARAMETERS, FRAME)
+DEFAULTS: Values = {
+    "base_weight": 1.0,
+    "base_color": GRAY,
+    "base_diffuse_roughness": 0.0,
+    "base_metalness": 0.0,
+    "specular_weight": 1.0,
+    "specular_color": (1.0, 1.0, 1.0),
+    "specular_roughness": 0.3,
+    "specular_roughness_anisotropy": 0.0,
+    "specular_ior": 1.5,
+    "transmission_weight": 0.0,
+    "transmission_color": (1.0, 1.0, 1.0),
+    "transmission_depth": 0.0,
+    "transmission_scatter": (0.0, 0.0, 0.0),
+    "transmission_scatter_anisotropy": 0.0,
+    "transmission_dispersion_scale": 0.0,
+    "transmission_dispersion_abbe_number": 20.0,
+    "subsurface_weight": 0.0,
+    "subsurface_color": GRAY,
+    "subsurface_radius": 1.0,
+    "subsurface_radius_scale": (1.0, 0.5, 0.25),
+    "subsurface_scatter_anisotropy": 0.0,
+    "coat_weight": 0.0,
+    "coat_color": (1.0, 1.0, 1.0),
+    "coat_roughness": 0.0,
+    "coat_roughness_anisotropy": 0.0,
+    "coat_ior": 1.6,
+    "coat_darkening": 1.0,
+    "fuzz_weight": 0.0,
+    "fuzz_color": (1.0, 1.0, 1.0),
+    "fuzz_roughness": 0.5,
+    "emission_luminance": 0.0,
+    "emission_color": (1.0, 1.0, 1.0),
+    "thin_film_weight": 0.0,
+    "thin_film_thickness": 0.5,
+    "thin_film_ior": 1.4,
+    "geometry_opacity": 1.0,
+    "geometry_thin_walled": False,
+}
+MOST_REFLECTIVE = 1.0 - 1e-5  # the index is infinite at 1; MaterialX's graph has the same limit
+parameters = partial(filled, {**DEFAULTS, **FRAME})
 
 
 def alphas(roughness: Array, anisotropy: Array) -> Array:
@@ -117,18 +117,17 @@ def specular_eta(p: Parameters) -> Array:
 def modulated_eta(p: Parameters) -> Array:
     """Relative index of the base whose reflectance is scaled by `specular_weight`."""
     eta = specular_eta(p)
-    scaled = np.minimum(p["specular_weight"] * f0_from_ior(eta), 1.0 - 1e-5)
+    scaled = np.minimum(p["specular_weight"] * f0_from_ior(eta), MOST_REFLECTIVE)
     epsilon = np.sign(eta - 1.0) * np.sqrt(scaled)
     return (1.0 + epsilon) / (1.0 - epsilon)
 
 
 def darkening(light: Light, p: Parameters, but: Collection[str]) -> Array:
     """Factor of the base due to reflections inside the coat."""
-    eta, color = p["coat_ior"], p["base_weight"] * p["base_color"]
+    eta, color = p["coat_ior"], p["base_color"]
+    if "the base's albedo without base_weight" not in but:
+        color = p["base_weight"] * color
     metal = p["specular_weight"] * color
-    if "the base's albedo without base_weight" in but:
-        color = p["base_color"]
-        metal = p["specular_weight"] * color
     dielectric = lerp(color, p["subsurface_color"], p["subsurface_weight"])
     albedo = lerp(dielectric, metal, p["base_metalness"])
     average = fresnel_dielectric_avg(eta)

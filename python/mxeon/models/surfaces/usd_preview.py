@@ -27,33 +27,32 @@ from mxeon.models.surfaces.lobes import (
     WHITE,
     Frame,
     Light,
-    Parameter,
     Parameters,
+    Values,
     f0_from_ior,
     filled,
     lerp,
     schlick_inputs,
 )
 
-INF = np.inf
 GRAY, BLACK = (0.18, 0.18, 0.18), (0.0, 0.0, 0.0)
-FRAME = {"normal": UP}
-PARAMETERS = (
-    Parameter("diffuseColor", GRAY),
-    Parameter("emissiveColor", BLACK, high=INF),
-    Parameter("useSpecularWorkflow", 0),
-    Parameter("specularColor", BLACK),
-    Parameter("metallic", 0.0),
-    Parameter("roughness", 0.5),
-    Parameter("clearcoat", 0.0),
-    Parameter("clearcoatRoughness", 0.01),
-    Parameter("opacity", 1.0),
-    Parameter("opacityThreshold", 0.0),
-    Parameter("ior", 1.5, high=INF),
-    Parameter("displacement", 0.0, low=-INF, high=INF),
-    Parameter("occlusion", 1.0),
-)
-parameters = partial(filled, PARAMETERS, FRAME)
+FRAME: Values = {"normal": UP}
+DEFAULTS: Values = {
+    "diffuseColor": GRAY,
+    "emissiveColor": BLACK,
+    "useSpecularWorkflow": 0,
+    "specularColor": BLACK,
+    "metallic": 0.0,
+    "roughness": 0.5,
+    "clearcoat": 0.0,
+    "clearcoatRoughness": 0.01,
+    "opacity": 1.0,
+    "opacityThreshold": 0.0,
+    "ior": 1.5,
+    "displacement": 0.0,
+    "occlusion": 1.0,
+}
+parameters = partial(filled, {**DEFAULTS, **FRAME})
 
 
 def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
