@@ -4,6 +4,7 @@
 Embree traces the rays of the picture. The mesh stands where the shader ball does, y up, scaled to its size.
 """
 
+import os
 from functools import lru_cache
 from typing import Any
 
@@ -25,6 +26,8 @@ def mesh(file: str) -> Any:
 
     Raises InputError for a file without triangles, NotRun without the packages.
     """
+    if not os.path.isfile(file):
+        raise InputError(f"geometry must be a readable file; got {file!r}")
     try:
         import embreex  # noqa: F401, trimesh's own rays are too slow
         import trimesh
