@@ -9,6 +9,7 @@ from tools.site import DOCS, with_block
 
 PAGE = DOCS / "arrays.md"
 ARRAYS = "ArrayLike", "Mapping[str, ArrayLike]"
+NUMPY_ONLY = "mxeon.models.surfaces."
 PUBLIC = re.compile(r"^::: (mxeon\.models\.[\w.]*[a-z]\w*)$", re.M)
 
 
@@ -16,6 +17,7 @@ def public():
     """Public functions of arrays by their documented names."""
     pages = sorted((DOCS / "api").glob("*.md"))
     names = [name for page in pages for name in PUBLIC.findall(page.read_text(encoding="utf-8"))]
+    names = [name for name in names if not name.startswith(NUMPY_ONLY)]
     functions = {name: resolve_name(name) for name in names}
     return {
         name: each for name, each in functions.items() if inspect.isfunction(each) and arrays(each)
@@ -39,6 +41,7 @@ def page(text):
     others = [f"`{name.rpartition('.')[2]}`" for name, each in functions if not takes_any(each)]
     line = (
         "Every public function of arrays in `mxeon.models` takes them, and\nhas gradients with respect to every argument of the type `ArrayLike`. "
-        f"Only {' and '.join(others)} take lobes,\nwhose arrays may be of any library.\n"
+        f"Only {' and '.join(others)} take lobes,\nwhose arrays may be of any library. "
+        "The surface shaders in `mxeon.models.surfaces` take NumPy's arrays only.\n"
     )
     return with_block(text, "functions", line)
