@@ -23,7 +23,7 @@ import mxeon.models
 from mxeon.models.core.arguments import RANGES
 from mxeon.models.core.arrays import ArrayLike
 from mxeon.models.core.layering import Bsdf
-from mxeon.models.microfacet import SCHLICK, Lobe, uncompensated
+from mxeon.models.microfacet import SCHLICK_CURVE, Lobe, uncompensated
 from mxeon.models.microfacet.fresnel import schlick
 from mxeon.models.thin_film import PRINTED
 
@@ -50,7 +50,7 @@ VALID = {
     "inputs": (FILM | {"thinfilm_ior": 1.4}, {"tint_R": 0.5}),
     "lobe": (Lobe(factor=uncompensated),),
     "compensate": (False,),  # which takes less time
-    "curve": (SCHLICK,),
+    "curve": (SCHLICK_CURVE,),
     "at": (lambda cosine, ior, **colors: schlick(cosine, **colors),),
     "brdf": (lambda wo, wi, rho, *parameter: rho * wi[..., :1],),
     "nodes": (4,),

@@ -7,7 +7,12 @@ import pytest
 from mxeon.models.hair import DEFAULTS
 from mxeon.models.microfacet import dielectric_albedo_dir
 from mxeon.models.nodes.lobes import HAIR_NODE, circle_blur
-from mxeon.models.nodes.microfacets import CONDUCTOR, DIELECTRIC, FILM_NODES, TRANSMISSIONS
+from mxeon.models.nodes.microfacets import (
+    CONDUCTOR_LOBE,
+    DIELECTRIC_LOBE,
+    FILM_NODES,
+    TRANSMISSIONS,
+)
 from tests.support.hemispheres import sphere
 
 WO = np.array([[0.3, -0.4, np.sqrt(0.75)], [0.0, 0.6, 0.8]])
@@ -56,11 +61,11 @@ def test_the_environment_of_materialx_hair_is_a_dielectric():
 
 def test_a_film_of_no_thickness_leaves_the_albedo_of_a_metal():
     [row] = [each for each in FILM_NODES if each.category == "conductor_bsdf"]
-    bare = CONDUCTOR.albedo(WO, METAL)
+    bare = CONDUCTOR_LOBE.albedo(WO, METAL)
     for found in (
         row.albedo(WO, METAL | FILM),
         row.integral(WO, METAL | FILM),
-        CONDUCTOR.albedo(WO, METAL | FILM),
+        CONDUCTOR_LOBE.albedo(WO, METAL | FILM),
     ):
         assert found[0] == pytest.approx(bare[0], abs=CURVE)
         assert np.abs(found[1] - bare[1]).max() > 10.0 * CURVE
@@ -68,7 +73,7 @@ def test_a_film_of_no_thickness_leaves_the_albedo_of_a_metal():
 
 def test_a_film_of_no_thickness_leaves_the_values_of_a_metal():
     wi = np.array([0.0, 0.6, 0.8])
-    bare, filmed = CONDUCTOR.value(WO, wi, METAL), CONDUCTOR.value(WO, wi, METAL | FILM)
+    bare, filmed = CONDUCTOR_LOBE.value(WO, wi, METAL), CONDUCTOR_LOBE.value(WO, wi, METAL | FILM)
     assert filmed[0] == pytest.approx(bare[0], rel=CURVE)
     assert np.abs(filmed[1] - bare[1]).max() > 10.0 * CURVE
 
@@ -79,7 +84,7 @@ def test_what_a_dielectric_reflects_beside_its_transmission_has_no_tint():
         "ior": np.array([1.5, 1.3]),
         "roughness": np.full((2, 2), 0.4),
     }
-    white = DIELECTRIC.albedo(WO, inputs | {"tint": np.ones((2, 3))})
+    white = DIELECTRIC_LOBE.albedo(WO, inputs | {"tint": np.ones((2, 3))})
     found = TRANSMISSIONS["dielectric_bsdf"].reflected(WO, inputs)
     assert found == pytest.approx(white, rel=1e-12)
 

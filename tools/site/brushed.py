@@ -97,12 +97,12 @@ class Points:
         # (1 - E_ss) / E_ss, and the light that the base of vinyl receives, of June and exact.
         self.missing = [self._spread(microfacet.missing_of, mean) for mean in (True, False)]
         if name == "vinyl":
-            self.curve = microfacet.DIELECTRIC
+            self.curve = microfacet.DIELECTRIC_CURVE
             self.material = {"ior": np.full(1, INDEX), "tint": np.ones((1, 1))}
             self.passed = [self._spread(self._passed, mean) for mean in (True, False)]
         else:
             one = np.ones((3, 1))
-            self.curve = microfacet.SCHLICK
+            self.curve = microfacet.SCHLICK_CURVE
             self.material = {
                 "color0": self.color,
                 "color82": one,

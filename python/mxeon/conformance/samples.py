@@ -17,11 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.hosts.base import TURN
 from mxeon.hosts.textures import latlong_directions
+from mxeon.models.nodes.node import BLACK as BLACK
+from mxeon.models.nodes.node import WHITE as WHITE
 from mxeon.shaders.scene import Scene
 
 # Seed of `mxeon check`: verdicts must not depend on it, and shaders cannot know it.
 SEED: ContextVar[int] = ContextVar("seed", default=1)
-WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 GOLDEN_RATIO = 0.618  # its multiples, modulo 1, are evenly spread
 PAIRS = 1 << 16
 FEW = 1 << 14  # default number of pairs for expensive checks

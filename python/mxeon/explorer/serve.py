@@ -56,8 +56,8 @@ class _Handler(BaseHTTPRequestHandler):
     def do_PUT(self) -> None:
         path, size = PurePosixPath(unquote(self.path)), int(self.headers["Content-Length"] or 0)
         plain = not any(each == ".." or set(each) & set("\\:\0") for each in path.parts)
-        asked = plain and len(path.parts) > 2 and path.parts[1] in ("files", "light")
-        if not asked or self.headers["Host"] != self.server.host or size > LARGEST:
+        known = plain and len(path.parts) > 2 and path.parts[1] in ("files", "light")
+        if not known or self.headers["Host"] != self.server.host or size > LARGEST:
             return self._reply(403, f"{path.name}: refused")
         try:
             with self.server.lock:

@@ -88,19 +88,21 @@ HAIR: Inputs = {
     "absorption_coefficient": (0.25, 0.6, 1.4),
     **dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), (0.1, 0.3)),
 }
-SHEEN, DIELECTRIC, CONDUCTOR = "sheen_bsdf", "dielectric_bsdf", "conductor_bsdf"
-SCHLICK, FILMED = "generalized_schlick_bsdf", "thin film"
+SHEEN, DIELECTRIC_BSDF, CONDUCTOR_BSDF = "sheen_bsdf", "dielectric_bsdf", "conductor_bsdf"
+SCHLICK_BSDF, FILMED = "generalized_schlick_bsdf", "thin film"
 CONTY_KULLA, ZELTNER = ({**VELVET, "mode": mode} for mode in ("conty_kulla", "zeltner"))
 MATERIALS = (
     _lobe("shader", "Rough diffuse", OREN_NAYAR, DIFFUSE_INPUTS, f"{FLAG} true", f"{FLAG} false"),
     _lobe("lobe/sheen", "Sheen, Conty-Kulla", SHEEN, CONTY_KULLA, "mode conty_kulla"),
     _lobe("lobe/sheen_zeltner", "Sheen, Zeltner", SHEEN, ZELTNER, "mode zeltner"),
-    _lobe("lobe/dielectric", "Dielectric", DIELECTRIC, GLASS, "scatter_mode R"),
-    _lobe("lobe/conductor", "Conductor", CONDUCTOR, COPPER),
-    _lobe("lobe/schlick", "Schlick", SCHLICK, {**BRONZE, **REFLECTS}, "scatter_mode R"),
-    _lobe("lobe/film_dielectric", "Film on dielectric", DIELECTRIC, {**GLASS, **FILM}, FILMED),
-    _lobe("lobe/film_conductor", "Film on conductor", CONDUCTOR, {**COPPER, **FILM}, FILMED),
-    _lobe("lobe/film_schlick", "Film on Schlick", SCHLICK, {**BRONZE, **FILM, **REFLECTS}, FILMED),
+    _lobe("lobe/dielectric", "Dielectric", DIELECTRIC_BSDF, GLASS, "scatter_mode R"),
+    _lobe("lobe/conductor", "Conductor", CONDUCTOR_BSDF, COPPER),
+    _lobe("lobe/schlick", "Schlick", SCHLICK_BSDF, {**BRONZE, **REFLECTS}, "scatter_mode R"),
+    _lobe("lobe/film_dielectric", "Film on dielectric", DIELECTRIC_BSDF, {**GLASS, **FILM}, FILMED),
+    _lobe("lobe/film_conductor", "Film on conductor", CONDUCTOR_BSDF, {**COPPER, **FILM}, FILMED),
+    _lobe(
+        "lobe/film_schlick", "Film on Schlick", SCHLICK_BSDF, {**BRONZE, **FILM, **REFLECTS}, FILMED
+    ),
     _lobe("lobe/hair", "Hair", "chiang_hair_bsdf", HAIR),
     ComparedMaterial(
         "lobe/openpbr",

@@ -20,7 +20,16 @@ from mxeon.errors import assert_known
 from mxeon.kit.encoding import fault
 from mxeon.kit.expected import Expected, expected, judged, pixel_means
 from mxeon.kit.noise import CONFIDENCE, Tiles, ratio, tiles
-from mxeon.kit.views import BLACK, FALSE, HALF, LAMBERT, TRUE, WHITE, Material, View
+from mxeon.kit.views import (
+    BLACK_MATERIAL,
+    FALSE,
+    HALF,
+    LAMBERT,
+    TRUE,
+    WHITE_MATERIAL,
+    Material,
+    View,
+)
 from mxeon.models import table as reference
 from mxeon.shaders.nodes import FLAG
 
@@ -126,8 +135,10 @@ QUESTIONS = (
     Question("model", IS_MODEL, (TRUE,), False, DROPPED, _of("qon")),
     Question("model", IS_MODEL, (FALSE,), True, STUCK, _of("eon")),
     Question("model", IS_MODEL, (FALSE,), False, STUCK, _of("eon")),
-    Question("black", BLACK_IS, (BLACK,), True, "a white lobe is added", _of("fon_white_lobe")),
-    Question("white", WHITE_IS, (WHITE,), False, "the second lobe is dropped", _of("fon")),
+    Question(
+        "black", BLACK_IS, (BLACK_MATERIAL,), True, "a white lobe is added", _of("fon_white_lobe")
+    ),
+    Question("white", WHITE_IS, (WHITE_MATERIAL,), False, "the second lobe is dropped", _of("fon")),
 )
 
 CLAIMS = ("eon", "qon", "fon", "lambert")

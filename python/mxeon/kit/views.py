@@ -31,10 +31,10 @@ class Material:
 TRUE = Material("true", COLOR, 1.0, True)
 FALSE = Material("false", COLOR, 1.0, False)
 HALF = Material("half", COLOR, 0.5, True)
-BLACK = Material("black", (0.0, 0.0, 0.0), 1.0, True)
-WHITE = Material("white", (1.0, 1.0, 1.0), 1.0, True)
+BLACK_MATERIAL = Material("black", (0.0, 0.0, 0.0), 1.0, True)
+WHITE_MATERIAL = Material("white", (1.0, 1.0, 1.0), 1.0, True)
 LAMBERT = Material("lambert", COLOR, 0.0, True)
-MATERIALS = (LAMBERT, TRUE, HALF, FALSE, BLACK, WHITE)
+MATERIALS = (LAMBERT, TRUE, HALF, FALSE, BLACK_MATERIAL, WHITE_MATERIAL)
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,8 @@ PICTURES = (
     View(FALSE, SIDE),
     View(FALSE, BACK),
     View(FALSE, FURNACE),
-    View(BLACK, SIDE),
-    View(WHITE, FURNACE),
+    View(BLACK_MATERIAL, SIDE),
+    View(WHITE_MATERIAL, FURNACE),
 )
 
 

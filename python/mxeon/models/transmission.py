@@ -53,7 +53,7 @@ from mxeon.models.core.arguments import (
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers, any_array, array_namespace, within
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.evaluation import evaluate_material
-from mxeon.models.microfacet import DIELECTRIC, fresnel, ggx
+from mxeon.models.microfacet import DIELECTRIC_CURVE, fresnel, ggx
 from mxeon.models.microfacet.slopes import refracting_nodes
 from mxeon.models.sampling import visible_normal
 
@@ -159,7 +159,9 @@ def dielectric_btdf(
         array([10.066984])
     """
     vectors = {"tint": checked_vector("tint", tint)}
-    return evaluate_btdf(DIELECTRIC.at, wo, wi, roughness, ior, vectors, {}, radiance=radiance)
+    return evaluate_btdf(
+        DIELECTRIC_CURVE.at, wo, wi, roughness, ior, vectors, {}, radiance=radiance
+    )
 
 
 def evaluate_btdf(
@@ -237,7 +239,7 @@ def dielectric_transmittance_dir(
     vectors = {"tint": checked_vector("tint", tint)}
     numbers = {"ior": checked("ior", ior)}
 
-    return evaluate_transmittance(DIELECTRIC.at, wo, roughness, vectors, numbers, shadow)
+    return evaluate_transmittance(DIELECTRIC_CURVE.at, wo, roughness, vectors, numbers, shadow)
 
 
 def evaluate_transmittance(

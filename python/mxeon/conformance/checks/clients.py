@@ -11,8 +11,8 @@ bound.
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import lru_cache, partial
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:  # the import loads MaterialX
 SIZE = 16  # pixels on a side of a frame
 POLE = 0.999  # filtering an uneven environment lacks neighbors above this height
 EVERY = 6  # a control draws every sixth frame
-WHITE = np.ones((1, 1, 3), np.float32)
+WHITE_MAP = np.ones((1, 1, 3), np.float32)
 NAMES = {"shading/mix": "mix", "front/opacity": "front", "back/opacity": "back"}
 LEAST_VARIANCE = 1e-5  # least variance of depths in a shadow map
 TRANSPARENT = 0.3333  # weight of each channel of the transparency in alpha
@@ -68,13 +68,13 @@ def folded(frame: Frame) -> Frame:
     )
 
 
-def bound(**values: Any) -> Build:
-    """A state that sets members of `Client`."""
-    return lambda frame: frame._replace(client=replace(frame.client, **values))
+def bound(change: Callable[[Client], Client]) -> Build:
+    """A state that changes the client."""
+    return lambda frame: frame._replace(client=change(frame.client))
 
 
 def lit(*lamps: Lamp) -> Build:
-    return bound(lamps=lamps)
+    return bound(partial(replace, lamps=lamps))
 
 
 def given(**inputs: float) -> Build:
@@ -122,15 +122,17 @@ AXES: dict[str, dict[str, Build]] = {
     },
     "environment": {
         "no environment": same,
-        "an environment": bound(radiance=WHITE, irradiance=WHITE),
-        "an environment: uneven": bound(radiance=sky_map(), irradiance=sky_map()),
-        "an environment: turned": bound(radiance=sky_map(), irradiance=sky_map(), turn=_turned()),
+        "an environment": bound(partial(replace, radiance=WHITE_MAP, irradiance=WHITE_MAP)),
+        "an environment: uneven": bound(partial(replace, radiance=sky_map(), irradiance=sky_map())),
+        "an environment: turned": bound(
+            partial(replace, radiance=sky_map(), irradiance=sky_map(), turn=_turned())
+        ),
     },
     "bound": {
         "what the generator sets": same,
-        "another intensity of the environment": bound(intensity=INTENSITY),
-        "a shadow map": bound(shadow=SHADOW, moments=(0.4, 0.18)),
-        "ambient occlusion": bound(ambient=0.4, gain=0.75),
+        "another intensity of the environment": bound(partial(replace, intensity=INTENSITY)),
+        "a shadow map": bound(partial(replace, shadow=SHADOW, moments=(0.4, 0.18))),
+        "ambient occlusion": bound(partial(replace, ambient=0.4, gain=0.75)),
     },
     "opacity": {
         "opaque surfaces": same,

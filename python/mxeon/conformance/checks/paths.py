@@ -540,8 +540,8 @@ def path_albedo(case: Case) -> Iterator[Compared]:
 # adds N e^2 to chi-square, whose deviation is the root of twice the cells: of 2^15 draws in these, six
 # deviations are an e of 6.5 %.
 CELLS = 16  # divisions of the angle, and of the azimuth
-NODES = 4, 8, 16, 32, 64, 128  # quadrature nodes of a patch on each axis
-LOOKS = NODES[:1], NODES[:4], NODES  # a look that leaves no suspicion is the last
+ORDERS = 4, 8, 16, 32, 64, 128  # quadrature nodes of a patch on each axis
+LOOKS = ORDERS[:1], ORDERS[:4], ORDERS  # a look that leaves no suspicion is the last
 SUSPECT = 3.0  # standard deviations, which chance reaches once in 700 times
 CLOSE = 0.5  # expected draws by which the nodes of a patch agree
 MOST_DEVIATIONS = 6.0  # standard deviations, the tolerance of the check
@@ -556,7 +556,7 @@ def deviation(
     density: Callable[[Array], Array],
     pole: Array,
     other: Array,
-    nodes: Sequence[int] = NODES,
+    nodes: Sequence[int] = ORDERS,
 ) -> float:
     """Standard deviations by which the counts of draws leave a density, 0 for any less than chance brings.
 
@@ -641,7 +641,7 @@ def density_integrals(
     return integrals
 
 
-@lru_cache(maxsize=len(NODES))
+@lru_cache(maxsize=len(ORDERS))
 def patches(nodes: int) -> tuple[Array, Array]:
     """Directions about the z-axis (P, M, 3) and solid angles (P, M) of the Gauss-Legendre nodes of each patch."""
     x, weight = np.polynomial.legendre.leggauss(nodes)

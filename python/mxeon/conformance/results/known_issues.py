@@ -5,19 +5,22 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import Any
 
-from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Cause, Kind, Quantity, Region, Result
+import cattrs
+
+from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Cause, Kind, Quantity, Result
 from mxeon.errors import CheckError
+from mxeon.io.records import ERRORS, strict_converter
 from mxeon.shaders.library import data_folder
 
 STOCK = "stock"
 RENDERER_NODES = "its own nodes"  # stands for a library
 Row = tuple[str, str]  # key of a check, and subject
+Table = Mapping[str, Sequence[str]]  # the checks of each subject
 # A page begins with its row as TOML in a comment, then its title.
 PAGE = re.compile(r"<!--\n(?P<row>.*?)\n-->\n(?P<text># (?P<title>[^\n]*)\n.*)", re.DOTALL)
 
@@ -40,9 +43,8 @@ class Issue:
     differs: bool = False  # the specification leaves the choice
     rows: tuple[Row, ...] = ()  # results that all fail: the table of the page
     implied: tuple[Row, ...] = ()  # others that fail for it, or may, on those hosts
-    repaired: tuple[
-        Row, ...
-    ] = ()  # results that pass with its patch: by default `rows`, but for `remains`
+    # Results that pass with its patch: by default `rows`, except for `remains`.
+    repaired: tuple[Row, ...] = ()
     # Results that pass with its patch, or fail for one of these causes.
     remains: Mapping[Row, tuple[Cause, ...]] = field(default_factory=dict, hash=False)
     needs: tuple[str, ...] = ()  # pages whose patches its own needs for that
@@ -76,55 +78,58 @@ def issues() -> Mapping[str, Issue]:
     }
 
 
-def read_issue(page: str, text: str, measured: Mapping[str, Any]) -> Issue:
-    """The defect of a page, with what was measured of it.
+def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
+    """The defect of a page, with its measurements.
 
     Raises CheckError if the page has no row and title at its head, or the row an unknown key.
     """
     parts = PAGE.fullmatch(text)
     if not parts:
         raise CheckError(f"{page}.md must begin with a row in a comment, and a title")
-    row = tomllib.loads(parts["row"])
-    for name in ("rows", "implied", "repaired"):
-        row[name] = _pairs(row.get(name, {}))
-    for name in ("also", "needs"):
-        row[name] = tuple(row.get(name, ()))
-    remains: dict[Row, tuple[Cause, ...]] = {}
-    for entry in row.pop("remains", ()):
-        pairs = _pairs(entry.pop("rows"))
-        remains |= {pair: (*remains.get(pair, ()), _cause(entry)) for pair in pairs}
-    if "patch" in measured and not row["repaired"]:
-        row["repaired"] = tuple(pair for pair in row["rows"] if pair not in remains)
+    row = tomllib.loads(parts["row"]) | {
+        "page": page,
+        "title": parts["title"],
+        "text": parts["text"],
+    }
+    row |= {name: measured[name] for name in ("cause", "patch", "sizes") if name in measured}
     try:
-        return Issue(
-            page,
-            parts["title"],
-            parts["text"],
-            **row,
-            remains=remains,
-            cause=_cause(measured["cause"]) if "cause" in measured else None,
-            patch=tuple(measured.get("patch", ())),
-            sizes={
-                (check, subject): size
-                for check, subjects in measured.get("sizes", {}).items()
-                for subject, size in subjects.items()
-            },
-        )
-    except TypeError as error:  # the error names the key
-        raise CheckError(f"row of {page}.md: {error}") from error
+        issue = _converter().structure(row, Issue)
+    except ERRORS as error:
+        raise CheckError(f"row of {page}.md: {cattrs.transform_error(error)[0]}") from error
+    if issue.patch and not issue.repaired:
+        repaired = tuple(pair for pair in issue.rows if pair not in issue.remains)
+        return replace(issue, repaired=repaired)
+    return issue
 
 
-def _cause(fields: Mapping[str, Any]) -> Cause:
-    """A cause of its fields in a page or in `measured.json`."""
-    found = {"kind": Kind(fields["kind"]), "names": tuple(fields.get("names", ()))}
-    if region := fields.get("region"):
-        found["region"] = Region(**region | {"channels": tuple(region.get("channels", ()))})
-    return Cause(**dict(fields) | found)
+@cache
+def _converter() -> cattrs.Converter:
+    """Reads rows, whose tables have the checks of each subject."""
+    converter = strict_converter({})
+
+    def remains(entries: Sequence[dict[str, Table]]) -> dict[Row, tuple[Cause, ...]]:
+        found: dict[Row, tuple[Cause, ...]] = {}
+        for entry in entries:
+            pairs, cause = _pairs(entry.pop("rows")), converter.structure(entry, Cause)
+            found |= {pair: (*found.get(pair, ()), cause) for pair in pairs}
+        return found
+
+    def sizes(table: Mapping[str, Mapping[str, float]]) -> dict[Row, float]:
+        return {(check, name): size for check, each in table.items() for name, size in each.items()}
+
+    hooks: dict[object, Callable[..., object]] = {
+        tuple[Row, ...]: _pairs,
+        Mapping[Row, tuple[Cause, ...]]: remains,
+        Mapping[Row, float]: sizes,
+    }
+    converter.register_structure_hook_func(
+        hooks.__contains__, lambda value, kind: hooks[kind](value)
+    )
+    return converter
 
 
-def _pairs(checks: Mapping[str, Sequence[str]]) -> tuple[Row, ...]:
-    """The results of a table of the checks of each subject."""
-    return tuple((check, subject) for subject, each in checks.items() for check in each)
+def _pairs(table: Table) -> tuple[Row, ...]:
+    return tuple((check, subject) for subject, each in table.items() for check in each)
 
 
 RENDERERS = {

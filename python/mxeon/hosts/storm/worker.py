@@ -34,7 +34,7 @@ ANGLE = 0.1  # degrees, of the distant light: with 0 it is black
 WHITE_DOME = math.pi / 130.0 / math.tan(math.pi / 128.0)
 CARD = 2.0  # distance of a white card that emits, behind the picture
 # A white pixel in Radiance's format: a dome without a texture is black.
-WHITE = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81"
+WHITE_IMAGE = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81"
 
 # Names of EGL and OpenGL.
 DEVICE, DESKTOP = 0x313F, 0x30A2
@@ -120,7 +120,7 @@ class Stage:
         self._sun.CreateAngleAttr(ANGLE)
         self._turn = usd.UsdGeom.Xformable(self._sun).AddTransformOp()
         white = Path(os.environ["TMPDIR"], "white.hdr")
-        white.write_bytes(WHITE)
+        white.write_bytes(WHITE_IMAGE)
         self._dome = usd.UsdLux.DomeLight.Define(self._stage, "/dome")
         self._dome.CreateTextureFileAttr(str(white))
         self._card = usd.UsdGeom.Mesh.Define(self._stage, "/card")

@@ -65,13 +65,13 @@ class Curve:
 
 
 # `material` may include a tint, which F ignores.
-DIELECTRIC = Curve(
+DIELECTRIC_CURVE = Curve(
     lambda c, ior, tint: fresnel.dielectric(c, ior)[np.newaxis],
     lambda ior, tint: fresnel.dielectric_avg(ior)[np.newaxis],
     lambda ior, tint: (1.0 - ior) * (1.0 + ior),
 )
-CONDUCTOR = Curve(fresnel.conductor, fresnel.conductor_avg)
-SCHLICK = Curve(
+CONDUCTOR_CURVE = Curve(fresnel.conductor, fresnel.conductor_avg)
+SCHLICK_CURVE = Curve(
     lambda c, **material: arrays.at_least_0(fresnel.schlick(c, **material)),
     lambda **material: arrays.at_least_0(fresnel.schlick_avg(**material)),
 )
@@ -244,10 +244,10 @@ ONE: Color = (1.0, 1.0, 1.0)
 GOLD: dict[str, Color] = {"ior": (0.183, 0.421, 1.373), "extinction": (3.424, 2.346, 1.770)}
 # Fresnel curve of each node, its inputs with channels, and its inputs without, with defaults.
 CATEGORIES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
-    "dielectric_bsdf": (DIELECTRIC, {"tint": ONE}, {"ior": 1.5}),
-    "conductor_bsdf": (CONDUCTOR, GOLD, {}),
+    "dielectric_bsdf": (DIELECTRIC_CURVE, {"tint": ONE}, {"ior": 1.5}),
+    "conductor_bsdf": (CONDUCTOR_CURVE, GOLD, {}),
     "generalized_schlick_bsdf": (
-        SCHLICK,
+        SCHLICK_CURVE,
         {"color0": ONE, "color82": ONE, "color90": ONE},
         {"exponent": 5.0},
     ),

@@ -20,7 +20,7 @@ from mxeon.models.core.colorimetry import XYZ_TO_REC709
 from mxeon.models.microfacet import CATEGORIES, Lobe, defects, node_albedo, node_brdf, uncompensated
 from mxeon.models.microfacet.defects import UNCOMPENSATED, averaged_channels, layer_albedo
 from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
-from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant
+from mxeon.models.nodes.node import BLACK, WHITE, Inputs, PbrNode, Scattering, Variant
 from mxeon.models.thin_film import FILM, Form, film_albedo_dir
 
 # The text leaves the form of the energy compensation open. MaterialX's masking of anisotropic facets is mentioned in
@@ -28,7 +28,6 @@ from mxeon.models.thin_film import FILM, Form, film_albedo_dir
 OPEN = [
     f"compensation_{each}" for each in ["half", "f0", "view", "fitted", "average", "average_fitted"]
 ] + ["smith_mean", "smith_mean_fitted", "smith_mean_average"]
-WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 REFLECTION, NONE = {"scatter_mode": "R"}, dict[str, str]()
 
 
@@ -106,19 +105,19 @@ def _has_film(inputs: Inputs) -> bool:
     return bool(library(thickness) or np.any(thickness))
 
 
-DIELECTRIC = MicrofacetLobe(
+DIELECTRIC_LOBE = MicrofacetLobe(
     "dielectric_bsdf", lambda mu, i: fresnel_dielectric(mu, i["ior"])[:, np.newaxis]
 )
-CONDUCTOR = MicrofacetLobe(
+CONDUCTOR_LOBE = MicrofacetLobe(
     "conductor_bsdf", lambda mu, i: fresnel_conductor(mu, i["ior"], i["extinction"])
 )
-SCHLICK = MicrofacetLobe(
+SCHLICK_LOBE = MicrofacetLobe(
     "generalized_schlick_bsdf",
     lambda mu, i: fresnel_schlick(mu, *_schlick(i), i["exponent"]),
     edge="color90",
 )
 
-LOBES = {each.category: each for each in (DIELECTRIC, CONDUCTOR, SCHLICK)}
+LOBES = {each.category: each for each in (DIELECTRIC_LOBE, CONDUCTOR_LOBE, SCHLICK_LOBE)}
 
 
 def _row(
@@ -174,31 +173,31 @@ MICROFACET_NODES = (
     _row(
         "dielectric",
         "dielectric microfacets",
-        DIELECTRIC,
+        DIELECTRIC_LOBE,
         Variant(
             "its albedo without the tint",
-            albedo=lambda wo, inputs: DIELECTRIC.albedo(wo, white(inputs)),
+            albedo=lambda wo, inputs: DIELECTRIC_LOBE.albedo(wo, white(inputs)),
         ),
         fixed=REFLECTION,
         mirror={"ior": 0.0, "tint": WHITE},
     ),
-    _row("conductor", "conductor microfacets", CONDUCTOR, mirror={"ior": BLACK}),
+    _row("conductor", "conductor microfacets", CONDUCTOR_LOBE, mirror={"ior": BLACK}),
     _row(
         "schlick",
         "generalized Schlick microfacets",
-        SCHLICK,
+        SCHLICK_LOBE,
         Variant(
             "color82 counts as 1",
-            lambda wo, wi, inputs: SCHLICK.value(wo, wi, undipped(inputs)),
-            lambda wo, inputs: SCHLICK.albedo(wo, undipped(inputs)),
+            lambda wo, wi, inputs: SCHLICK_LOBE.value(wo, wi, undipped(inputs)),
+            lambda wo, inputs: SCHLICK_LOBE.albedo(wo, undipped(inputs)),
         ),
         Variant(
             "its albedo, averaged over the channels",
-            albedo=lambda wo, inputs: averaged_channels(SCHLICK.albedo(wo, inputs)),
+            albedo=lambda wo, inputs: averaged_channels(SCHLICK_LOBE.albedo(wo, inputs)),
         ),
         Variant(
             "MaterialX's fit of its albedo, averaged over the channels",
-            albedo=lambda wo, inputs: averaged_channels(SCHLICK.fitted(wo, inputs)),
+            albedo=lambda wo, inputs: averaged_channels(SCHLICK_LOBE.fitted(wo, inputs)),
         ),
         fixed=REFLECTION,
         mirror=dict.fromkeys(("color0", "color82", "color90"), WHITE),
@@ -280,8 +279,10 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
             permitted=True,
         ),
     ]
-    lobe = {each.category: each for each in (DIELECTRIC, CONDUCTOR, SCHLICK)}[row.category]
-    schlick = lobe is SCHLICK
+    lobe = {each.category: each for each in (DIELECTRIC_LOBE, CONDUCTOR_LOBE, SCHLICK_LOBE)}[
+        row.category
+    ]
+    schlick = lobe is SCHLICK_LOBE
     for title, form, permitted in FORMS[: 2 if schlick else 1]:
         for averaged, words in ((False, ""), (True, ", with F averaged from F0 and F90")):
             albedo = partial(_environment, row.category, form, averaged)
@@ -345,26 +346,26 @@ class Transmission:
 
 
 TRANSMISSIONS = {
-    DIELECTRIC.category: Transmission(
+    DIELECTRIC_LOBE.category: Transmission(
         lambda wo, wi, i: transmission.dielectric_btdf(wo, wi, i["tint"], i["roughness"], i["ior"]),
         lambda wo, i, shadow: transmission.dielectric_transmittance_dir(
             wo, i["tint"], i["roughness"], i["ior"], shadow
         ),
-        lambda wo, i: DIELECTRIC.albedo(wo, white(i)),
+        lambda wo, i: DIELECTRIC_LOBE.albedo(wo, white(i)),
         lambda i: i["tint"],
-        DIELECTRIC.fresnel,
+        DIELECTRIC_LOBE.fresnel,
         lambda i: i["ior"],
     ),
-    SCHLICK.category: Transmission(
+    SCHLICK_LOBE.category: Transmission(
         lambda wo, wi, i: transmission.generalized_schlick_btdf(
             wo, wi, *_schlick(i), i["roughness"], i["exponent"]
         ),
         lambda wo, i, shadow: transmission.generalized_schlick_transmittance_dir(
             wo, *_schlick(i), i["roughness"], i["exponent"], shadow=shadow
         ),
-        SCHLICK.albedo,
+        SCHLICK_LOBE.albedo,
         lambda i: 0.0 * i["color0"] + 1.0,
-        SCHLICK.fresnel,
+        SCHLICK_LOBE.fresnel,
         lambda i: transmission.schlick_ior(i["color0"])[..., 0],
     ),
 }

@@ -13,7 +13,7 @@ from mxeon.models.microfacet.defects import BSDL, SINGLE, conty_kulla_albedo
 from mxeon.models.microfacet.ggx import missing_light
 from mxeon.models.nodes import microfacets
 from mxeon.models.nodes.lobes import untinted
-from mxeon.models.nodes.microfacets import CONDUCTOR, DIELECTRIC, SCHLICK, undipped
+from mxeon.models.nodes.microfacets import CONDUCTOR_LOBE, DIELECTRIC_LOBE, SCHLICK_LOBE, undipped
 from mxeon.models.nodes.node import Inputs, Scattering, Variant
 from mxeon.models.sheen import zeltner_albedo_dir
 
@@ -29,7 +29,7 @@ def _dielectric_albedo(wo: Array, inputs: Inputs) -> Array:
     """Albedo of a dielectric without tint, at the arithmetic mean of both alphas."""
     mean = inputs["roughness"].mean(axis=-1, keepdims=True)
     alphas = np.repeat(mean, 2, axis=-1)
-    return DIELECTRIC.albedo(wo, {**microfacets.white(_indexed(inputs)), "roughness": alphas})
+    return DIELECTRIC_LOBE.albedo(wo, {**microfacets.white(_indexed(inputs)), "roughness": alphas})
 
 
 def _schlick_albedo(wo: Array, inputs: Inputs) -> Array:
@@ -50,15 +50,15 @@ BSDL_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
     "dielectric": (
         Variant(
             "BSDL's lobe, of an index from 1.001 to 5",
-            lambda wo, wi, i: DIELECTRIC.value(wo, wi, _indexed(i), BSDL.lobe),
+            lambda wo, wi, i: DIELECTRIC_LOBE.value(wo, wi, _indexed(i), BSDL.lobe),
             _dielectric_albedo,
         ),
     ),
-    "conductor": (Variant(BSDL.title, partial(CONDUCTOR.value, terms=BSDL.lobe)),),
+    "conductor": (Variant(BSDL.title, partial(CONDUCTOR_LOBE.value, terms=BSDL.lobe)),),
     "schlick": (
         Variant(
             "BSDL's lobe, and color82 counts as 1",
-            lambda wo, wi, i: SCHLICK.value(wo, wi, undipped(i), BSDL.lobe),
+            lambda wo, wi, i: SCHLICK_LOBE.value(wo, wi, undipped(i), BSDL.lobe),
         ),
         Variant(
             "the albedo of a dielectric of the mean F0, of an index up to 5",
@@ -106,8 +106,8 @@ def _lossless(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Ar
 
 def _lossless_dielectric(wo: Array, inputs: Inputs) -> Array:
     """`_lossless` for a dielectric; below index 1, the albedo of a smooth surface."""
-    smooth = DIELECTRIC.fresnel(np.minimum(wo[:, 2], 1.0), inputs) * inputs["tint"]
-    rough = _lossless(DIELECTRIC, wo, inputs)
+    smooth = DIELECTRIC_LOBE.fresnel(np.minimum(wo[:, 2], 1.0), inputs) * inputs["tint"]
+    rough = _lossless(DIELECTRIC_LOBE, wo, inputs)
     return np.where(np.reshape(inputs["ior"], (-1, 1)) > 1.0, rough, _largest(smooth))
 
 
@@ -121,24 +121,28 @@ SHEEN: Variant[Scattering] = Variant(
 CYCLES_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
     "dielectric": (
         Variant(
-            SINGLE.title, partial(DIELECTRIC.value, terms=SINGLE.lobe), partial(_single, DIELECTRIC)
+            SINGLE.title,
+            partial(DIELECTRIC_LOBE.value, terms=SINGLE.lobe),
+            partial(_single, DIELECTRIC_LOBE),
         ),
         Variant(LOSSLESS, albedo=_lossless_dielectric),
     ),
     "conductor": (
         Variant(
-            SINGLE.title, partial(CONDUCTOR.value, terms=SINGLE.lobe), partial(_single, CONDUCTOR)
+            SINGLE.title,
+            partial(CONDUCTOR_LOBE.value, terms=SINGLE.lobe),
+            partial(_single, CONDUCTOR_LOBE),
         ),
     ),
     "schlick": (
         Variant(
             f"{SINGLE.title}, and color82 counts as 1",
-            lambda wo, wi, i: SCHLICK.value(wo, wi, undipped(i), SINGLE.lobe),
-            lambda wo, i: _single(SCHLICK, wo, undipped(i)),
+            lambda wo, wi, i: SCHLICK_LOBE.value(wo, wi, undipped(i), SINGLE.lobe),
+            lambda wo, i: _single(SCHLICK_LOBE, wo, undipped(i)),
         ),
         Variant(
             f"{LOSSLESS}, and color82 counts as 1",
-            albedo=lambda wo, i: _lossless(SCHLICK, wo, undipped(i)),
+            albedo=lambda wo, i: _lossless(SCHLICK_LOBE, wo, undipped(i)),
         ),
     ),
     "conty_kulla": (SHEEN,),

@@ -18,13 +18,14 @@ import numpy as np
 
 from mxeon.models.core.arrays import Array
 from mxeon.models.microfacet.fresnel import fresnel_schlick
+from mxeon.models.nodes.node import BLACK, WHITE
 from mxeon.models.shading_model import ALONG, UP
 from mxeon.models.surfaces.lobes import (
     CONTY_KULLA,
     DIELECTRIC,
     EON,
+    ONES,
     SCHLICK,
-    WHITE,
     Frame,
     Light,
     Parameters,
@@ -36,16 +37,15 @@ from mxeon.models.surfaces.lobes import (
 )
 
 INF = np.inf
-PURE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 FRAME: Values = {"normal": UP, "tangent": ALONG, "clearcoat_normal": UP}
 DEFAULTS: Values = {
-    "base_color": PURE,
+    "base_color": WHITE,
     "metallic": 1.0,
     "roughness": 1.0,
     "occlusion": 1.0,
     "transmission": 0.0,
     "specular": 1.0,
-    "specular_color": PURE,
+    "specular_color": WHITE,
     "ior": 1.5,
     "alpha": 1.0,
     "alpha_mode": 0,
@@ -61,7 +61,7 @@ DEFAULTS: Values = {
     "emissive_strength": 1.0,
     "thickness": 0.0,
     "attenuation_distance": INF,
-    "attenuation_color": PURE,
+    "attenuation_color": WHITE,
     "anisotropy_strength": 0.0,
     "anisotropy_rotation": 0.0,
     "dispersion": 0.0,
@@ -80,7 +80,7 @@ def alphas(p: Parameters) -> Array:
 def coat(p: Parameters) -> dict[str, Array]:
     """Inputs of the clearcoat's lobe."""
     alpha = np.repeat(np.square(p["clearcoat_roughness"]), 2, axis=1)
-    return {"ior": np.full((1, 1), 1.5), "roughness": alpha, "tint": WHITE}
+    return {"ior": np.full((1, 1), 1.5), "roughness": alpha, "tint": ONES}
 
 
 def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
@@ -101,12 +101,12 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
             found.append(lerp(bare, wet, covered))
         return found[0], found[1]
 
-    f_metal, _ = reflected(p["base_color"], WHITE)
+    f_metal, _ = reflected(p["base_color"], ONES)
     f0 = np.minimum(f0_from_ior(p["ior"]) * p["specular_color"], 1.0) * p["specular"]
-    f_specular, E_specular = reflected(f0, p["specular"] * WHITE)
+    f_specular, E_specular = reflected(f0, p["specular"] * ONES)
     f_btdf = light.through(1.0)
     if "reflection taken twice" in but:
-        glass = {"ior": p["ior"], "roughness": alpha, "tint": WHITE}
+        glass = {"ior": p["ior"], "roughness": alpha, "tint": ONES}
         f_btdf = f_btdf * (1.0 - light.albedo(DIELECTRIC, frame, **glass))
     f_diffuse = light.response(EON, plain, color=p["base_color"], roughness=0.0)
     below = lerp(f_diffuse, p["base_color"] * f_btdf, p["transmission"])
@@ -114,7 +114,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
 
     intensity = p["sheen_color"].max(axis=1, keepdims=True)
     if np.any(intensity):
-        fibers = {"color": WHITE, "roughness": np.square(p["sheen_roughness"])}
+        fibers = {"color": ONES, "roughness": np.square(p["sheen_roughness"])}
         share = p["sheen_color"] if "tinted light below the sheen" in but else intensity
         E_sheen = share * light.albedo(CONTY_KULLA, plain, **fibers)
         f_sheen = p["sheen_color"] * light.response(CONTY_KULLA, plain, **fibers)
@@ -133,4 +133,4 @@ def emission(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
         return emitted
     mu = (light.wo * p["clearcoat_normal"]).sum(axis=1)
     f0 = np.full((1, 3), CLEARCOAT_F0)
-    return (1.0 - p["clearcoat"] * fresnel_schlick(mu, f0, WHITE, WHITE, 5.0)) * emitted
+    return (1.0 - p["clearcoat"] * fresnel_schlick(mu, f0, ONES, ONES, 5.0)) * emitted

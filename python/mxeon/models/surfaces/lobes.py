@@ -119,7 +119,7 @@ class Light:
 EON, QON = diffuse_model("eon"), diffuse_model("qon")  # both are Lambertian with roughness 0
 DIELECTRIC, SCHLICK = node("dielectric"), node("schlick")
 CONDUCTOR, ZELTNER, CONTY_KULLA = node("conductor"), node("zeltner"), node("conty_kulla")
-WHITE = np.ones((1, 3))
+ONES = np.ones((1, 3))
 
 
 def lerp(first: ArrayLike, second: ArrayLike, share: ArrayLike) -> Array:
@@ -135,7 +135,7 @@ def f0_from_ior(eta: ArrayLike) -> Array:
 
 
 def schlick_inputs(
-    f0: ArrayLike, f90: ArrayLike, alpha: Array, f82: ArrayLike = WHITE
+    f0: ArrayLike, f90: ArrayLike, alpha: Array, f82: ArrayLike = ONES
 ) -> dict[str, ArrayLike]:
     """Inputs of SCHLICK with exponent 5."""
     return {

@@ -29,10 +29,10 @@ from mxeon.models.shading_model import ALONG, UP
 from mxeon.models.surfaces.lobes import (
     DIELECTRIC,
     EON,
+    ONES,
     PLAIN,
     QON,
     SCHLICK,
-    WHITE,
     ZELTNER,
     Frame,
     Light,
@@ -44,7 +44,7 @@ from mxeon.models.surfaces.lobes import (
     schlick_inputs,
 )
 
-GRAY = (0.8, 0.8, 0.8)
+LIGHT_GRAY = (0.8, 0.8, 0.8)
 FRAME: Values = {
     "geometry_normal": UP,
     "geometry_tangent": ALONG,
@@ -53,7 +53,7 @@ FRAME: Values = {
 }
 DEFAULTS: Values = {
     "base_weight": 1.0,
-    "base_color": GRAY,
+    "base_color": LIGHT_GRAY,
     "base_diffuse_roughness": 0.0,
     "base_metalness": 0.0,
     "specular_weight": 1.0,
@@ -69,7 +69,7 @@ DEFAULTS: Values = {
     "transmission_dispersion_scale": 0.0,
     "transmission_dispersion_abbe_number": 20.0,
     "subsurface_weight": 0.0,
-    "subsurface_color": GRAY,
+    "subsurface_color": LIGHT_GRAY,
     "subsurface_radius": 1.0,
     "subsurface_radius_scale": (1.0, 0.5, 0.25),
     "subsurface_scatter_anisotropy": 0.0,
@@ -168,7 +168,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
 
     alpha = base_alphas(p)
     color0 = p["base_weight"] * p["base_color"]
-    metal = schlick_inputs(color0, WHITE, alpha, p["specular_color"])
+    metal = schlick_inputs(color0, ONES, alpha, p["specular_color"])
     f_conductor = p["specular_weight"] * light.response(SCHLICK, frames, **metal)
     if np.any(covered * M):
         wet = p["specular_weight"] * light.response(SCHLICK, frames, **metal, **film)
@@ -184,7 +184,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
             wet = light.response(DIELECTRIC, frames, **glass, **film)
             f_specular = lerp(f_specular, wet, covered)
         if "no tint of what specular light leaves" in but:
-            E_specular = light.albedo(DIELECTRIC, frames, **{**glass, "tint": WHITE})
+            E_specular = light.albedo(DIELECTRIC, frames, **{**glass, "tint": ONES})
 
     f_diffuse = p["base_weight"] * light.response(
         EON, frames, color=p["base_color"], roughness=p["base_diffuse_roughness"]
@@ -196,16 +196,16 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
         most = 1.0 if "factors clamped to 1" in but else np.inf
         shares = [0.5 * np.minimum(2.0 * share * color, most) for share in shares]
     diffuse = QON if "Oren-Nayar without compensation" in but else EON
-    f_wall = light.response(diffuse, frames, color=WHITE, roughness=p["base_diffuse_roughness"])
+    f_wall = light.response(diffuse, frames, color=ONES, roughness=p["base_diffuse_roughness"])
     sheet = color * (shares[0] * f_wall + light.diffused(shares[1]))
     f_subsurface = np.where(thin, sheet, f_subsurface)
-    tint = np.where((p["transmission_depth"] > 0.0) & ~thin, WHITE, p["transmission_color"])
+    tint = np.where((p["transmission_depth"] > 0.0) & ~thin, ONES, p["transmission_color"])
     if "no color of a thin wall with a depth" in but:
-        tint = np.where(p["transmission_depth"] > 0.0, WHITE, p["transmission_color"])
+        tint = np.where(p["transmission_depth"] > 0.0, ONES, p["transmission_color"])
     f_transmitted = light.through(tint)
     if "reflection taken twice" in but:
         f_transmitted = f_transmitted * (
-            1.0 - light.albedo(DIELECTRIC, frames, **{**glass, "tint": WHITE})
+            1.0 - light.albedo(DIELECTRIC, frames, **{**glass, "tint": ONES})
         )
     f_below = lerp(lerp(f_diffuse, f_subsurface, S), f_transmitted, T)
     f_dielectric = f_specular + (1.0 - E_specular) * f_below
@@ -217,7 +217,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
         coat = {
             "ior": p["coat_ior"],
             "roughness": alphas(p["coat_roughness"], p["coat_roughness_anisotropy"]),
-            "tint": WHITE,
+            "tint": ONES,
         }
         f_coat, E_coat = (
             find(DIELECTRIC, coat_frame, **coat) for find in (light.response, light.albedo)
@@ -238,7 +238,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     E_fuzz = light.albedo(
         ZELTNER,
         fuzz_frame,
-        **(fuzz if "tinted light below the fuzz" in but else {**fuzz, "color": WHITE}),
+        **(fuzz if "tinted light below the fuzz" in but else {**fuzz, "color": ONES}),
     )
     f_fuzz = light.response(ZELTNER, fuzz_frame, **fuzz)
     return F * f_fuzz + lerp(1.0, 1.0 - E_fuzz, F) * f_coated
@@ -256,5 +256,5 @@ def emission(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     glow = lerp(1.0, T_coat, C) * emitted
     if "no fuzz above" in but or not np.any(F):
         return np.broadcast_to(glow, light.wo.shape)
-    E_fuzz = light.albedo(ZELTNER, color=WHITE, roughness=p["fuzz_roughness"])
+    E_fuzz = light.albedo(ZELTNER, color=ONES, roughness=p["fuzz_roughness"])
     return lerp(1.0, 1.0 - E_fuzz, F) * glow

@@ -21,13 +21,14 @@ import numpy as np
 from mxeon.models.core.arrays import Array
 from mxeon.models.microfacet.fresnel import artistic_ior, fresnel_dielectric
 from mxeon.models.microfacet.ggx import roughness_anisotropy
+from mxeon.models.nodes.node import WHITE
 from mxeon.models.shading_model import ALONG, UP
 from mxeon.models.surfaces.lobes import (
     CONDUCTOR,
     CONTY_KULLA,
     DIELECTRIC,
+    ONES,
     QON,
-    WHITE,
     Frame,
     Light,
     Parameters,
@@ -37,36 +38,35 @@ from mxeon.models.surfaces.lobes import (
     lerp,
 )
 
-PURE = (1.0, 1.0, 1.0)
 FRAME: Values = {"normal": UP, "tangent": ALONG, "coat_normal": UP}
 DEFAULTS: Values = {
     "base": 0.8,
-    "base_color": PURE,
+    "base_color": WHITE,
     "diffuse_roughness": 0.0,
     "metalness": 0.0,  # the text's table lacks it; its reference code has 0
     "specular": 1.0,
-    "specular_color": PURE,
+    "specular_color": WHITE,
     "specular_roughness": 0.2,
     "specular_IOR": 1.5,
     "specular_anisotropy": 0.0,
     "specular_rotation": 0.0,
     "transmission": 0.0,
-    "transmission_color": PURE,
+    "transmission_color": WHITE,
     "transmission_depth": 0.0,
     "transmission_scatter": (0.0, 0.0, 0.0),
     "transmission_scatter_anisotropy": 0.0,
     "transmission_dispersion": 0.0,
     "transmission_extra_roughness": 0.0,
     "subsurface": 0.0,
-    "subsurface_color": PURE,
-    "subsurface_radius": PURE,
+    "subsurface_color": WHITE,
+    "subsurface_radius": WHITE,
     "subsurface_scale": 1.0,
     "subsurface_anisotropy": 0.0,
     "sheen": 0.8,
-    "sheen_color": PURE,
+    "sheen_color": WHITE,
     "sheen_roughness": 0.3,
     "coat": 0.0,
-    "coat_color": PURE,
+    "coat_color": WHITE,
     "coat_roughness": 0.1,
     "coat_anisotropy": 0.0,
     "coat_rotation": 0.0,
@@ -76,8 +76,8 @@ DEFAULTS: Values = {
     "thin_film_thickness": 0.0,
     "thin_film_IOR": 1.5,
     "emission": 0.0,
-    "emission_color": PURE,
-    "opacity": PURE,
+    "emission_color": WHITE,
+    "opacity": WHITE,
     "thin_walled": False,
 }
 parameters = partial(filled, {**DEFAULTS, **FRAME})
@@ -121,14 +121,14 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     )
     f_sheen_layer = lerp(f_diffuse, f_subsurface, p["subsurface"])
     if np.any(p["sheen"]):
-        fibers = {"color": WHITE, "roughness": p["sheen_roughness"]}
+        fibers = {"color": ONES, "roughness": p["sheen_roughness"]}
         E_sheen = light.albedo(CONTY_KULLA, frame, **fibers)
         if "tinted light below the sheen" in but:
             E_sheen = p["sheen_color"] * E_sheen
         f_sheen = p["sheen_color"] * light.response(CONTY_KULLA, frame, **fibers)
         f_sheen_layer = p["sheen"] * f_sheen + (1.0 - p["sheen"] * E_sheen) * f_sheen_layer
 
-    glass = {"ior": p["specular_IOR"], "roughness": alpha, "tint": WHITE}
+    glass = {"ior": p["specular_IOR"], "roughness": alpha, "tint": ONES}
     f_btdf = light.through(p["transmission_color"])
     if "reflection taken twice" in but:
         rough = np.clip(p["specular_roughness"] + p["transmission_extra_roughness"], 0.0, 1.0)
@@ -146,7 +146,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     layer = {
         "ior": p["coat_IOR"],
         "roughness": alphas(p["coat_roughness"], p["coat_anisotropy"]),
-        "tint": WHITE,
+        "tint": ONES,
     }
     f_coat, E_coat = (
         find(DIELECTRIC, coat_frame, **layer) for find in (light.response, light.albedo)
@@ -161,7 +161,7 @@ def emission(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     """Emitted radiance toward the viewer, (N, 3)."""
     frame = Frame(p["coat_normal"], p["tangent"])
     alpha = alphas(p["coat_roughness"], p["coat_anisotropy"])
-    passed = 1.0 - light.albedo(DIELECTRIC, frame, ior=p["coat_IOR"], roughness=alpha, tint=WHITE)
+    passed = 1.0 - light.albedo(DIELECTRIC, frame, ior=p["coat_IOR"], roughness=alpha, tint=ONES)
     mu = light.wo[:, 2:]
     if "Schlick's factor of the coat" in but:
         passed = (1.0 - f0_from_ior(p["coat_IOR"])) * (1.0 - (1.0 - mu) ** 5)

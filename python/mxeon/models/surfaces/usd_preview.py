@@ -18,13 +18,14 @@ import numpy as np
 
 from mxeon.models.core.arrays import Array
 from mxeon.models.microfacet.fresnel import artistic_ior
+from mxeon.models.nodes.node import BLACK, GRAY
 from mxeon.models.shading_model import UP
 from mxeon.models.surfaces.lobes import (
     CONDUCTOR,
     DIELECTRIC,
     EON,
+    ONES,
     SCHLICK,
-    WHITE,
     Frame,
     Light,
     Parameters,
@@ -35,7 +36,6 @@ from mxeon.models.surfaces.lobes import (
     schlick_inputs,
 )
 
-GRAY, BLACK = (0.18, 0.18, 0.18), (0.0, 0.0, 0.0)
 FRAME: Values = {"normal": UP}
 DEFAULTS: Values = {
     "diffuseColor": GRAY,
@@ -65,7 +65,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     shown = np.where(p["opacityThreshold"] > 0.0, 1.0, p["opacity"])
     f_clear = light.through(1.0)
     if "reflection taken twice" in but:
-        glass = {"ior": p["ior"], "roughness": np.zeros((1, 2)), "tint": WHITE}
+        glass = {"ior": p["ior"], "roughness": np.zeros((1, 2)), "tint": ONES}
         f_clear = f_clear * (1.0 - light.albedo(DIELECTRIC, frame, **glass))
     f_below = lerp(f_clear, diffuse * light.response(EON, frame, color=color, roughness=0.0), shown)
 
@@ -75,18 +75,18 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
         f, E = (find(SCHLICK, frame, **inputs) for find in (light.response, light.albedo))
         return f + (1.0 - E) * f_below
 
-    f90 = lerp(WHITE, color, metallic)
+    f90 = lerp(ONES, color, metallic)
     if "metal by artist-friendly indices" in but:
         n, k = artistic_ior(color, color)
         f_metal = light.response(CONDUCTOR, frame, ior=n, extinction=k, roughness=alpha)
         f_metalness = lerp(over(lerp(f90 * r0, f90, metallic), f90), f_metal, metallic)
     else:
         f_metalness = over(lerp(r0, color, metallic), f90)
-    f_base = np.where(specular, over(p["specularColor"], WHITE), f_metalness)
+    f_base = np.where(specular, over(p["specularColor"], ONES), f_metalness)
     if not np.any(p["clearcoat"]):
         return f_base
     rough = np.repeat(np.square(p["clearcoatRoughness"]), 2, axis=1)
-    coat = schlick_inputs(r0 * WHITE, WHITE, rough)
+    coat = schlick_inputs(r0 * ONES, ONES, rough)
     f_coat, E_coat = (find(SCHLICK, frame, **coat) for find in (light.response, light.albedo))
     return p["clearcoat"] * f_coat + (1.0 - p["clearcoat"] * E_coat) * f_base
 
