@@ -8,15 +8,7 @@ import numpy as np
 from mxeon.conformance.samples import SKY_ROWS, SLOPE, Values
 from mxeon.conformance.spec import Ability, Spec
 from mxeon.conformance.tolerance import Term, roundings, sum_of
-from mxeon.shaders.nodes import (
-    Node,
-    connection_text,
-    document_text,
-    input_text,
-    lobe_text,
-    network_text,
-    node_text,
-)
+from mxeon.shaders import nodes
 
 LOBES = {"first": (0.9, 0.3, 0.1), "second": (0.2, 0.5, 0.8), "behind": (0.3, 0.8, 0.4)}
 SHARE = 0.25  # weight of the first lobe in the mix
@@ -41,21 +33,26 @@ class FrameSpec(Spec):
     def document(self, inputs: Values | None = None) -> str:
         """The front surface has the opacity `front/opacity` and the mix weight `shading/mix`."""
         lobes = (
-            lobe_text("oren_nayar_diffuse_bsdf", {"color": each}, name)
+            nodes.lobe_text("oren_nayar_diffuse_bsdf", {"color": each}, name)
             for name, each in LOBES.items()
         )
-        mixed = Node("mix", "BSDF", ("first", "second"), input_text("mix", "float", SHARE))
-        opacity = input_text("opacity", "float", 1.0)
+        mixed = nodes.Node(
+            "mix", "BSDF", ("first", "second"), nodes.input_text("mix", "float", SHARE)
+        )
+        opacity = nodes.input_text("opacity", "float", 1.0)
         surfaces = (
-            node_text(
-                "surface", "surfaceshader", name, connection_text("bsdf", "BSDF", lobe) + opacity
+            nodes.node_text(
+                "surface",
+                "surfaceshader",
+                name,
+                nodes.connection_text("bsdf", "BSDF", lobe) + opacity,
             )
             for name, lobe in (("front", "lobe"), ("back", "behind"))
         )
-        share = input_text("mix", "float", 1.0)
-        shading = {"shading": Node("mix", "surfaceshader", ("front", "back"), share)}
-        texts = *lobes, network_text({"lobe": mixed}), *surfaces, network_text(shading)
-        return document_text("".join(texts))
+        share = nodes.input_text("mix", "float", 1.0)
+        shading = {"shading": nodes.Node("mix", "surfaceshader", ("front", "back"), share)}
+        texts = *lobes, nodes.network_text({"lobe": mixed}), *surfaces, nodes.network_text(shading)
+        return nodes.document_text("".join(texts))
 
 
 CLIENT_FRAME = FrameSpec(title="surface, a client's frame", node="surface", errors={"frame": FRAME})

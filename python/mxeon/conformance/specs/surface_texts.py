@@ -18,13 +18,7 @@ from mxeon.conformance import samples
 from mxeon.conformance.samples import WHITE, Array, Batch, Candidate, Counts, Values, generator
 from mxeon.conformance.spec import ZERO, Ability, Input, ValueSpec, draw
 from mxeon.conformance.specs.microfacets import FILM_ERRORS
-from mxeon.conformance.specs.surface_shaders import (
-    ALBEDO,
-    GLASS,
-    STRETCHED_FIT,
-    VALUE,
-    ports_by_range,
-)
+from mxeon.conformance.specs import surface_shaders
 from mxeon.conformance.tolerance import Term, roundings, sum_of
 from mxeon.models.surfaces import gltf, open_pbr, standard_surface, usd_preview
 from mxeon.models.surfaces.lobes import Light
@@ -37,12 +31,12 @@ TILTED = (0.48, 0.36, 0.8)
 DIRECT, ENVIRONMENT = ("direct", "response", np.pi), ("environment", "response", 1.0)
 THROUGH, EMITTED = ("transmission", "response", 1.0), ("emission", "radiance", 1.0)
 ERRORS = {
-    DIRECT: VALUE,
-    ENVIRONMENT: ALBEDO,
-    THROUGH: GLASS,
+    DIRECT: surface_shaders.VALUE,
+    ENVIRONMENT: surface_shaders.ALBEDO,
+    THROUGH: surface_shaders.GLASS,
     EMITTED: sum_of(roundings(64, "of a color and two factors")),
 }
-STRETCHED = Term(STRETCHED_FIT, "the fits for two alphas")
+STRETCHED = Term(surface_shaders.STRETCHED_FIT, "the fits for two alphas")
 FILMED = FILM_ERRORS["value"].term("a film")
 
 
@@ -139,7 +133,7 @@ def _forms(names: str | Forms) -> Forms:
     return (names,) if isinstance(names, str) else names
 
 
-drawn = ports_by_range
+drawn = surface_shaders.ports_by_range
 TWICE, TINTED = "reflection taken twice", "tinted light below the {}"
 FAR = 1e6  # a depth at which the medium takes no light over the distance that shaders assume
 THROUGH_COLOR = Input("transmission_color", "color3", low=0.05)  # keeps the logarithm finite

@@ -21,13 +21,7 @@ from mxeon.conformance.tolerance import Compared, Term, Tolerance, given, roundi
 from mxeon.hosts.calls import GRAPH
 from mxeon.models import diffuse
 from mxeon.models.nodes.node import Variant
-from mxeon.models.nodes.utilities import (
-    LARGEST_REFLECTIVITY,
-    UTILITIES,
-    Outputs,
-    UtilityNode,
-    utility,
-)
+from mxeon.models.nodes import utilities
 from mxeon.shaders import nodes
 from mxeon.shaders.nodes import INVERSIONS, Node, connection_text, document_text, node_text
 
@@ -126,12 +120,12 @@ ENGINE = {
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class UtilitySpec(spec.RowSpec[Outputs]):
+class UtilitySpec(spec.RowSpec[utilities.Outputs]):
     """An output of a node of `mxeon.models.nodes.utilities`."""
 
     requires = spec.Ability.OUTPUT
 
-    row: UtilityNode
+    row: utilities.UtilityNode
     output: str
 
     @property
@@ -170,7 +164,7 @@ class UtilitySpec(spec.RowSpec[Outputs]):
         )
         return _batch({each.name: values for each, values in zip(self.inputs, beyond, strict=True)})
 
-    def values(self, function: Outputs, batch: Batch) -> Array:
+    def values(self, function: utilities.Outputs, batch: Batch) -> Array:
         """The output as a color with 0 for missing channels, (N, 3)."""
         output = np.asarray(function(spec.broadcast_inputs(batch))[self.output])
         color = np.zeros((len(batch.wo), 3))
@@ -185,7 +179,7 @@ class UtilitySpec(spec.RowSpec[Outputs]):
         """
         if self.node != "artistic_ior":
             return compared
-        r = np.clip(compared.batch.inputs["reflectivity"], 0.0, LARGEST_REFLECTIVITY)
+        r = np.clip(compared.batch.inputs["reflectivity"], 0.0, utilities.LARGEST_REFLECTIVITY)
         inverse = 1.0 / np.square(1.0 - np.sqrt(r))  # (n_max + 1)^2 / 4
         if self.output == "ior":
             return compared.over(inverse)
@@ -200,10 +194,10 @@ def _batch(inputs: Mapping[str, Array]) -> Batch:
     return Batch(up, up, inputs)
 
 
-def _inversion(node: str) -> UtilityNode:
+def _inversion(node: str) -> utilities.UtilityNode:
     """A node of eonlib, with the other inversions and its unchanged input as variants."""
 
-    def output(name: str) -> Outputs:
+    def output(name: str) -> utilities.Outputs:
         function = getattr(diffuse, name)
         return lambda inputs: {"out": function(inputs["color"], inputs["roughness"])}
 
@@ -215,10 +209,10 @@ def _inversion(node: str) -> UtilityNode:
     ]
     inputs: dict[str, float | tuple[float, ...]]
     inputs = {"color": (0.18, 0.18, 0.18), "roughness": 0.0}
-    return utility(node, inputs, {"out": "color3"}, output(node), tuple(variants))
+    return utilities.utility(node, inputs, {"out": "color3"}, output(node), tuple(variants))
 
 
-def _spec(row: UtilityNode, output: str, *libraries: str) -> UtilitySpec:
+def _spec(row: utilities.UtilityNode, output: str, *libraries: str) -> UtilitySpec:
     title = row.category if len(row.outputs) == 1 else f"{row.category}, {output}"
 
     def filled(each: Input, value: ArrayLike | None) -> ArrayLike:
@@ -248,5 +242,5 @@ def _spec(row: UtilityNode, output: str, *libraries: str) -> UtilitySpec:
     )
 
 
-UTILITY_SPECS = tuple(_spec(row, output) for row in UTILITIES for output in row.outputs)
+UTILITY_SPECS = tuple(_spec(row, output) for row in utilities.UTILITIES for output in row.outputs)
 INVERSION_SPECS = tuple(_spec(_inversion(node), "out", "eonlib", "diffuse") for node in INVERSIONS)
