@@ -91,7 +91,6 @@ class Backend(ABC):
 
     @classmethod
     def supports(cls, spec: Spec) -> bool:
-        """Whether it can evaluate a node."""
         return spec.requires in cls.abilities
 
     @classmethod
@@ -145,21 +144,18 @@ class Backend(ABC):
         return cast(T, self._drawn[draw.__qualname__])
 
     @property
-    def valued(self) -> ValueSpec:
-        return cast(ValueSpec, self.spec)
-
-    @property
     def lobe(self) -> LobeSpec:
         return cast(LobeSpec, self.spec)
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        return self.valued.batches(self.counts)
+        return cast(ValueSpec, self.spec).batches(self.counts)
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
         """A subset of the samples, for expensive checks and controls."""
-        return self.batches if self.whole else self.valued.few(self.batches, self.counts)
+        few = cast(ValueSpec, self.spec).few
+        return self.batches if self.whole else few(self.batches, self.counts)
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
@@ -231,12 +227,8 @@ class Evaluating(Backend):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        own: dict[str, Tolerance | None] = {
-            **spec.errors,
-            "color_space": sum_of(
-                roundings(2 * 16, "of a color and the value it has, times the slope 2")
-            ),
-        }
+        color = roundings(2 * 16, "of a color and the value it has, times the slope 2")
+        own: dict[str, Tolerance | None] = {**spec.errors, "color_space": sum_of(color)}
         if frame := spec.errors.get("frame"):
             angle = 2.0 * spec.along * math.sqrt(2.0 * tolerance.ROUNDING)
             words = f"two slopes {spec.along:g} at the normal, times the angle of a rounded cosine"
@@ -301,7 +293,6 @@ class Evaluating(Backend):
         return self.evaluate(batch, LIT, irradiance=irradiance, shader=shader, client=client)
 
     def answer(self, query: Query) -> Array:
-        """The host's values for a query."""
         pairs, (output, irradiance, client) = query[:5], query[5:]
         return self.host.evaluate(*pairs, output=output, irradiance=irradiance, client=client)
 
@@ -339,11 +330,8 @@ FEW_CLOSURES = Counts(1 << 11, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored
 SOME = 1 << 8  # pairs of every kind except random ones
 # The models round in float64, 2^-53, and the sharpest lobe, with alpha 1e-4, amplifies that by 1e8.
 ARGUMENTS = sum_of(roundings(1, "of arguments with nine digits, evaluated in float64"), exact=True)
-GRAPH = sum_of(
-    roundings(
-        4 * 16, "from an input to an argument, 16 times 4: a distribution's log grows 4 times"
-    )
-)
+# A distribution's logarithm grows four times.
+GRAPH = sum_of(roundings(4 * 16, "16 from an input to an argument, times the slope 4"))
 
 
 def joined(batches: Sequence[Batch]) -> Batch:
@@ -456,9 +444,8 @@ FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=3
 FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # stated in its source
 POINT = 3.0 * EYE / NEAREST  # roundings of a point at the distance 40, seen from a light 1/2 away
 FLAT_SLOPE = 8.0  # largest slope of the diffuse models
-SHARP_SLOPE = (
-    2.0 / samples.LEAST_TURNED + 3.0
-)  # twice over the least alpha, and 3 for Fresnel and shadowing
+# Twice over the least alpha, and 3 for Fresnel and shadowing.
+SHARP_SLOPE = 2.0 / samples.LEAST_TURNED + 3.0
 FLAT, SHARP = (
     sum_of(roundings(each * POINT, f"of a point, times the slope {each:g}"), FAST_ARC_COSINE)
     for each in (FLAT_SLOPE, SHARP_SLOPE)
@@ -493,7 +480,6 @@ LIGHT = sum_in(Quantity.LIGHT, INTEGRAL.term("an integral of values"), PASSED.te
 
 
 def _is_shown(batch: Batch, rim: float = RIM) -> Mask:
-    """Mask of the pairs that a renderer can show."""
     least = np.minimum(batch.wo[:, 2], np.abs(batch.wi[:, 2]))
     return np.asarray(visible(batch.wo, batch.wi) & (least >= rim))
 
@@ -669,15 +655,10 @@ HALF_ALBEDO = sum_in(
     exact=True,
 )
 DRAWN_LOBE = LOBE_VALUE.plus(
-    roundings(
-        16 / samples.LOBE_RIM**2, "of a pixel's point, over the square of the least cosine, 1/4"
-    )
+    roundings(16 / samples.LOBE_RIM**2, "of a pixel's point, over the least cosine squared, 1/16")
 )
-HALF_FOUR = "half floats in four pictures, 48 times as large, half of them alike"
-HALF_LOBE = sum_in(
-    Quantity.DIFFERENCE, Term(96.0 * HALF_CUT.value, HALF_FOUR), *DRAWN_LOBE.terms, exact=True
-)
-
+FOUR = Term(96.0 * HALF_CUT.value, "half floats in four pictures, 48 times as large, half alike")
+HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR, *DRAWN_LOBE.terms, exact=True)
 
 # A point is a ray's origin plus its length, both at most 2: three roundings of 2^-23 together. A
 # grazing ray divides them by its cosine, and the relative error of cos(theta_i) is divided by the other cosine.
@@ -720,8 +701,7 @@ class Pictures(Backend):
         return diffuse_alone(self.picture, batch) if alone else self.picture(batch)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        """Values in the batch's environment."""
-        return self.picture(batch)
+        return self.picture(batch)  # has the environment
 
     def picture(self, batch: Batch) -> Array:
         scene = scene_of(batch)
@@ -853,10 +833,7 @@ class Half(Drawn):
         drawn = super().drawn(error)
         return replace(drawn, terms=(drawn.term("a drawn number"), HALF_CUT), exact=True)
 
-    @property
-    def unset(self) -> tuple[str, ...]:
-        """Inputs added after MaterialX 1.39.3, Storm's version."""
-        return ("retroreflective",)
+    unset = ("retroreflective",)  # added after MaterialX 1.39.3, Storm's version
 
 
 # A pixel's point is off by three roundings of 2^-23, over a cosine of 0.05.

@@ -82,7 +82,6 @@ class Case:
         return self.of(ValueSpec)
 
     def another(self, spec: Spec) -> Case:
-        """A case of another spec on the same engine and library."""
         return make_case(type(self.backend), self.host, spec, self.library)
 
     # Samples.
@@ -102,23 +101,18 @@ class Case:
     # Values of the engine.
 
     def direct(self, batch: Batch) -> Array:
-        """Values in direct light, (N, 3): pi f cos(theta_i), a radiance, or an output."""
         return self.measured(self.backend.direct, batch)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        """Values of the environment branch, (N, 3)."""
         return self.outputs(batch, self.backend.albedo(self.inputs(batch), irradiance))
 
     def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
-        """Light of an environment through the surface, (N, 3)."""
         return self.outputs(batch, self.evaluating.transmitted(self.inputs(batch), radiance))
 
     def throughput(self, batch: Batch, branch: str) -> Array:
-        """The share of the light from below that passes the node in a branch, (N, 3)."""
         return self.throughputs(batch, self.evaluating.throughput(self.inputs(batch), branch))
 
     def measured(self, evaluate: Callable[[Batch], Array], batch: Batch) -> Array:
-        """Values of a batch from one of the engine's functions."""
         return self.outputs(batch, evaluate(self.inputs(batch)))
 
     @property
@@ -167,7 +161,6 @@ LIGHT = ("direct", "environment")  # branches with light from above
 
 
 def values(case: Case) -> Iterator[Compared]:
-    """Values compared with the expected ones, over all samples."""
     for batch in case.batches:
         yield Compared(batch, case.direct(batch), case.expected(batch))
 

@@ -64,7 +64,6 @@ def compared_of(found: Compared | Iterable[Compared] | Measurement) -> list[Comp
 
 
 def always(diagnosis: Diagnosis) -> Explain:
-    """The same explanation of every failure."""
     return lambda case: diagnosis
 
 
@@ -131,7 +130,6 @@ class Check:
         return judged and self.requires in backend.abilities
 
     def allowed(self, case: Case) -> Tolerance:
-        """The largest error of a case that passes."""
         own = self.tolerance
         return own if isinstance(own, Tolerance) else case.tolerance(own)
 

@@ -23,7 +23,6 @@ class Control:
 
 
 def with_batch(words: str, change: Callable[[Batch], Batch]) -> Control:
-    """The engine gets a wrong batch."""
     return Control(words, lambda case: replace(case, inputs=change))
 
 
@@ -40,8 +39,6 @@ def scale(words: str, factor: float) -> Control:
 
 
 def scale_cosine(words: str, power: int) -> Control:
-    """Values have an extra power of cos(theta_o)."""
-
     def change(batch: Batch, values: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(values * batch.wo[:, 2:] ** power)

@@ -398,14 +398,12 @@ def _worst_pixel(case: Shown, metric: Metric) -> Pixel:
 
 
 def _directions(scene: Scene, mask: NDArray[np.bool_]) -> tuple[Pixels, Pixels]:
-    """Directions `wo` and `wi` of the sphere's pixels in a mask."""
     chosen = mask[sphere(scene.size).mask]
     wo, wi, _ = picture_pairs(scene)
     return wo[chosen], wi[chosen]
 
 
 def _front_lit(expected: ExpectedPicture, scene: Scene) -> ExpectedPicture:
-    """An expected picture that is judged for s >= 0 alone."""
     judged = expected.judged.copy()
     wo, wi = _directions(scene, judged)
     judged[judged] = (wo[:, :2] * wi[:, :2]).sum(axis=1) >= 0.0

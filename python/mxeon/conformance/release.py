@@ -152,7 +152,6 @@ def redefined(
 def definition_facts(
     own: mx.NodeDef, right: mx.NodeDef, attributes: Sequence[str] = ATTRIBUTES
 ) -> dict[str, str]:
-    """What a definition says of the inputs and outputs of another one."""
     name = right.getName()
     found = {
         f"category of {name}": own.getNodeString(),
@@ -172,7 +171,6 @@ def definition_facts(
 
 
 def unit_facts(document: mx.Document, release: mx.Document) -> dict[str, str]:
-    """What a document says of a release's units and geometric properties."""
     names = [each.getName() for each in (*release.getUnitDefs(), *release.getGeomPropDefs())]
     return {
         f"{fact} of {element.getCategory()} {element.getName()}": one_spelling(
@@ -321,7 +319,6 @@ class Comparison:
         return found
 
     def _pair(self, name: str) -> tuple[mx.NodeDef, mx.NodeDef, mx.Element, mx.Element]:
-        """Definition of a node in the library and in the release, and both implementations."""
         own, right = (each.getNodeDef(name) for each in (self._document, self._release))
         return own, right, *(each.getImplementation(self._target) for each in (own, right))
 

@@ -141,7 +141,6 @@ def directions(rng: np.random.Generator, count: int) -> Array:
 
 
 def float32(values: ArrayLike) -> Array:
-    """Values rounded to float32, in float64."""
     return np.asarray(values, np.float32).astype(np.float64)
 
 
@@ -230,7 +229,6 @@ def aimed(axes: Array, of: Array, to: Array) -> Array:
 
 
 def turned_directions(rng: np.random.Generator, count: int) -> Array:
-    """Directions for turned frames, (count, 3)."""
     low, high = TURNED
     return directions_at(low + (high - low) * rng.random(count), 2.0 * np.pi * rng.random(count))
 

@@ -290,7 +290,6 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
         return not_measured(place, error)
 
     def measure(wrong: bool) -> Measurement:
-        """The row's function with the largest error."""
         errors = {
             name: _error(name, each)
             for name, each in probe.values[wrong].items()

@@ -194,7 +194,6 @@ class Spec(ABC):
 
     @property
     def materials(self) -> tuple[Values, ...]:
-        """The materials that represent the node in pictures."""
         return materials(*self.inputs)
 
     @property
@@ -260,12 +259,10 @@ class LobeSpec(ValueSpec):
 
     @property
     def mode(self) -> Values:
-        """The inputs that select the mode."""
         return self.fixed
 
     @property
     def types(self) -> dict[str, str]:
-        """Types of its inputs."""
         return {**input_types(self.node), **{each.name: each.type for each in self.inputs}}
 
     def two_lobes(self) -> str:
@@ -380,7 +377,6 @@ class RowSpec(ValueSpec, Generic[F]):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """Additional candidates for the values."""
         return ()
 
     @property

@@ -99,7 +99,6 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
 
 
 def _judged(check: str, subject: str, library: str, faults: Callable[[], Faults]) -> Result:
-    """Result for the faults of a subject."""
     claim, quantity, variant = CLAIMS[check]
     place = Result(check, claim, subject, SOURCE, library, NOT_RUN)
     try:

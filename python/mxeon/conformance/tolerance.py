@@ -102,7 +102,6 @@ def worst_of(metric: Metric, compared: Iterable[Compared]) -> Measurement:
 
 
 def errors_of(rows: NDArray[np.floating], tolerance: float, region: Region | None = None) -> Errors:
-    """The errors of all samples, or of the samples in a region."""
     finite = rows[np.isfinite(rows)]
     rms = float(np.sqrt(np.mean(finite**2))) if len(finite) else 0.0
     wrong = int(np.count_nonzero(~(rows <= tolerance)))
@@ -111,7 +110,6 @@ def errors_of(rows: NDArray[np.floating], tolerance: float, region: Region | Non
 
 
 def checksum(batches: Iterable[Batch]) -> str:
-    """Checksum of samples."""
     found = 0
     for batch in batches:
         for column in (batch.wo, batch.wi, *batch.inputs.values()):
@@ -130,7 +128,6 @@ def count_not_finite(compared: Compared) -> Measurement:
 
 
 def count_named(names: Sequence[str]) -> Measurement:
-    """Number of wrong inputs, and their names."""
     return Measurement(len(names), {name: [0.0] for name in names})
 
 
@@ -180,7 +177,6 @@ class Tolerance:
         return text if self.exact or not self.value else f"{text}, rounded up"
 
     def wrong(self, compared: Compared) -> Mask:
-        """Mask of rows with a larger error."""
         return np.asarray(self.metric(compared.measured, compared.expected) > self.value)
 
     def plus(self, *terms: Term) -> "Tolerance":
@@ -214,7 +210,6 @@ def given(value: float, quantity: Quantity, words: str, metric: Metric = absolut
 
 
 def count_of(quantity: Quantity) -> Tolerance:
-    """The tolerance of a count: 0."""
     return given(0.0, quantity, "a count")
 
 

@@ -333,7 +333,6 @@ def region(place: Region) -> str:
 
 
 def diagnosis(found: Diagnosis) -> str:
-    """What explains a failure: each cause in turn."""
     return "; ".join(filter(None, (_cause(each, found.distances) for each in found.causes)))
 
 
@@ -487,7 +486,6 @@ def difference(apart: Difference) -> str:
 
 
 def size(apart: Difference) -> str:
-    """The largest difference of a picture."""
     largest = abs(apart.largest)
     if not math.isfinite(largest):
         return "not finite"

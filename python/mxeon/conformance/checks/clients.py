@@ -69,7 +69,6 @@ def folded(frame: Frame) -> Frame:
 
 
 def bound(change: Callable[[Client], Client]) -> Build:
-    """A state that changes the client."""
     return lambda frame: frame._replace(client=change(frame.client))
 
 
@@ -196,7 +195,6 @@ def environment(client: Client, normal: Array) -> Array:
 
 
 def light(client: Client, methods: Methods, normal: Array) -> Array:
-    """Light reflected by a white matte point of the unit sphere, (N, 3)."""
     total = np.zeros_like(normal)
     for number, lamp in enumerate(client.lamps):
         to, irradiance = lamp_light(lamp, normal)
@@ -209,7 +207,6 @@ def light(client: Client, methods: Methods, normal: Array) -> Array:
 
 
 def alpha_of(covered: float) -> float:
-    """Alpha of a surface that covers a share of its background."""
     return 1.0 - 3.0 * TRANSPARENT * (1.0 - covered)
 
 

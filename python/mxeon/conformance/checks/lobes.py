@@ -106,7 +106,6 @@ def finds_albedo(spec: Spec, methods: Methods) -> bool:
 
 
 def has_environment(spec: Spec, host: str) -> bool:
-    """Whether a host has the spec's model for all pairs, as environments require."""
     return not front_lit_only(host, spec.model)
 
 
@@ -161,7 +160,6 @@ def sphere(case: Case) -> Iterator[Compared]:
 
 
 def in_srgb(case: Case) -> Iterator[Compared]:
-    """Values of colors in sRGB, compared with the engine's own values of the decoded colors."""
     batch, evaluating = case.few[0].first(case.backend.counts.albedos), case.evaluating
     ask = partial(evaluating.evaluate, branch="direct", shader=evaluating.decoded)
     yield Compared(batch, np.pi * case.measured(ask, batch), of_decoded(case, batch))
@@ -222,7 +220,6 @@ ROUNDED = 1e-9  # difference between equal albedos
 
 
 def reads(name: str) -> Specs:
-    """The layers that have an input with this name."""
     return LAYERS & family(PbrSpec, lambda spec: name in spec.row.inputs)
 
 
@@ -312,7 +309,6 @@ TURN_FIBER = controls.with_inputs(
 
 
 def region_values(key: str, case: Case) -> Compared:
-    """Measured and expected values of a region."""
     batch = case.of(HairSpec).region(key, case.backend.counts.few)
     return Compared(batch, case.direct(batch), case.expected(batch))
 
@@ -322,7 +318,6 @@ def in_region(key: str, case: Case) -> Compared:
 
 
 def explain_region(key: str, case: Case) -> Diagnosis:
-    """The explanation of a region's values."""
     others = set(FORMS) - {REGIONS[key].form, TILTED}  # indistinguishable there
     candidates = [each for each in case.valued.value_candidates if each.title not in others]
     compared = region_values(key, case)
@@ -388,7 +383,6 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
 
 
 def diagnose_domain(case: Case) -> Diagnosis:
-    """The inputs and values with which a quantity is wrong."""
     wrong: dict[tuple[str, str], list[float]] = {}
     for quantity, name, value, compared in outside(case):
         if absolute(*compared[1:]).max() > TOLERANCES.value:

@@ -191,13 +191,11 @@ def searching(case: Case, *methods: Methods) -> Iterator[Methods]:
 
 
 def generated(case: Case, methods: Methods) -> "Shader":
-    """The node's shader with a client's methods."""
     [shader] = case.host.compile(case.spec.document(), library=case.library, methods=methods)
     return shader
 
 
 def stretched_values(case: Case) -> Iterator[Compared]:
-    """Values of lobes with two alphas, compared with the model's."""
     for batch in case.chosen or (case.backend.take(case.of(FacetSpec).anisotropic),):
         yield Compared(batch, case.direct(batch), case.expected(batch))
 
@@ -276,7 +274,6 @@ def transmitted(case: Case) -> Iterator[Compared]:
 
 
 def limited(spec: TransmissionSpec, batch: Batch, measured: Array, opaque: bool) -> Compared:
-    """Light through the surface, compared with the nearest value within the limits."""
     functions = spec.functions
     if opaque and not spec.reflects:
         return Compared(batch, measured, batch.strength * functions.tint(batch.inputs))
@@ -321,7 +318,6 @@ def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
 
 
 def shares(case: Case, ask: Callable[..., Array], methods: Methods) -> Iterator[Compared]:
-    """Light through the surface, compared with the nearest value within the limits."""
     opaque = methods.transmission == "opacity"
     for batch in case.views:
         found = case.outputs(batch, ask(case.inputs(batch), "transmission", client=BOUND))
@@ -625,7 +621,6 @@ def film_smooth(case: Case) -> Compared:
 
 
 def diagnose_visible(case: Case) -> Diagnosis:
-    """The explanation of a film's albedo, or the weights of the facets if the albedo is right."""
     explained = ALBEDO.diagnose(case)
     return explained if diagnosis.SINGLY_RIGHT not in explained.causes else Diagnosis((UNMASKED,))
 
@@ -682,7 +677,6 @@ def _parts(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
 
 
 def _mirror(case: Case, batch: Batch) -> Batch:
-    """The same pairs with a perfectly reflecting lobe."""
     return batch.altered(thinfilm_thickness=0.0, **case.of(FilmSpec).row.mirror)
 
 

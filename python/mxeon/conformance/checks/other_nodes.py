@@ -29,7 +29,6 @@ def implemented(case: Case) -> Measurement:
 
 
 def diagnose_opacity(case: Case) -> Diagnosis:
-    """Whether the opacity is dropped."""
     full = max(
         OPACITY.metric(each.measured, case.expected(each.batch.altered(opacity=1.0))).max()
         for each in VALUE(case)
@@ -47,7 +46,6 @@ def above(case: Case) -> Iterator[Compared]:
 
 
 def outside(case: Case) -> Compared:
-    """Outputs at and beyond the ends of the ranges, compared with 0."""
     batch = case.backend.take(case.of(UtilitySpec).outside)
     return Compared(batch, case.direct(batch), np.zeros((1, 3)))
 

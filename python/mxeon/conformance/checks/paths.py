@@ -25,7 +25,7 @@ from mxeon.conformance.checks.surface_shaders import MATERIALS
 from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
 from mxeon.conformance.samples import Array, Batch, Values, float32, generator
-from mxeon.conformance.spec import Ability, LobeSpec, Spec, draw, materials
+from mxeon.conformance.spec import NO_ABILITY, Ability, LobeSpec, draw, materials
 from mxeon.conformance.specs.combinations import CombinedSpec
 from mxeon.conformance.specs.emission import EmissionSpec
 from mxeon.conformance.specs.microfacets import PASSING, THROUGHPUT, FacetSpec, TransmissionSpec
@@ -79,9 +79,8 @@ ANSWERS = Recent[Array](64)  # a check and its control ask alike
 VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
 VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
 MATERIALS_DRAWN = 6  # materials whose draws are counted, each at a view of its own
-LEAST_LIGHT = (
-    1e-5  # value that a draw must find: a sheen's fit of its albedo may be 0 where 3e-6 is left
-)
+# Value that a draw must find: a sheen's fit of its albedo may be 0 where 3e-6 is left.
+LEAST_LIGHT = 1e-5
 LEAST_DRAWN = 1e-5  # density over a value, below which the light is never drawn in practice
 LEAST_COUNTED = 0.2  # least roughness of the lobes whose draws are counted: the cells are coarse
 # An input as a parameter gives it, a float or a vector of three numbers.
@@ -194,9 +193,8 @@ def paths(
     """The text of a document; the inputs of these names or paths are variables, and the others constants."""
     from mxeon.shaders.generation import generate
 
-    [shader] = generate(
-        document, host.target, profile="path", library=library, uniforms=bool(varied)
-    )
+    uniforms = bool(varied)
+    [shader] = generate(document, host.target, profile="path", library=library, uniforms=uniforms)
     text, ports = shader.stages["pixel"], []
     static = "static " if host.target == "slang" else ""
     for port in shader.inputs if varied else ():
@@ -274,10 +272,6 @@ def refracted(wo: Array, index: float = 1.5) -> Array:
     """Where the smooth transmission of UsdPreviewSurface goes; straight on beyond the critical angle."""
     x, y, _ = -wo / index
     return np.array([x, y, -np.sqrt(1.0 - x * x - y * y)]) if x * x + y * y < 1.0 else -wo
-
-
-def has_paths(spec: Spec, host: str) -> bool:
-    return host_row(host).target in TARGETS
 
 
 def steepness(density: Array) -> Array:
@@ -383,17 +377,12 @@ SAMPLE = sum_of(
 
 
 def _wrong_part(case: Case) -> Diagnosis:
-    """Which of them is wrong, and from where."""
     wrong = {
         Cause(Kind.DEFECT, key, (place(inside),)): None
         for key, inside, compared in parts(case)
         if SAMPLE.wrong(compared).any()
     }
     return Diagnosis(tuple(wrong))
-
-
-def sample(case: Case) -> Iterator[Compared]:
-    return (compared for _, _, compared in parts(case))
 
 
 def path_value(case: Case) -> Iterator[Compared]:
@@ -410,13 +399,8 @@ def path_value(case: Case) -> Iterator[Compared]:
         local = replace(batch.altered(normal=normal, tangent=TANGENT), frame=None)
         # Light from behind is not the rasterizer's, nor is there an inside of what reflects by an index.
         inside = np.arange(len(wi)) % 2 * (not UNLIKE_INSIDE(case.spec))
-        ask = partial(
-            text.values,
-            wo=batch.world(batch.wo),
-            wi=batch.world(wi),
-            inside=inside,
-            inputs=batch.inputs,
-        )
+        wo, own = batch.world(batch.wo), batch.world(wi)
+        ask = partial(text.values, wo=wo, wi=own, inside=inside, inputs=batch.inputs)
         thin = isinstance(case.spec, SurfaceShaderSpec) and case.spec.node != "UsdPreviewSurface"
         share = OPACITY if thin else 1.0
         opacity = 1.0 - 3.0 * MEAN_WEIGHT * (1.0 - share)
@@ -447,7 +431,6 @@ def path_emission(case: Case) -> Iterator[Compared]:
 
 
 def pcg4d(v: NDArray[np.uint32]) -> NDArray[np.uint32]:
-    """One round of the generator."""
     x, y, z, w = v
     x = x + y * w
     y = y + z * x
@@ -498,11 +481,8 @@ def clear_draws(case: Case, inside: bool) -> Iterator[tuple[Batch, Array, Array]
             text.values(what, view, u=lattice(SUMMED), inside=inside, inputs=inputs)
             for what in ("wi", "weight")
         )
-        yield (
-            Batch(view[np.newaxis], view[np.newaxis], {}),
-            wi,
-            weight / np.asarray(tint.get("tint", 1.0)),
-        )
+        one = Batch(view[np.newaxis], view[np.newaxis], {})
+        yield one, wi, weight / np.asarray(tint.get("tint", 1.0))
 
 
 def path_energy(case: Case) -> Iterator[Compared]:
@@ -602,7 +582,6 @@ def axes(pole: Array) -> Array:
 
 
 def cell(w: Array, pole: Array) -> NDArray[np.int64]:
-    """Number of the cell of each direction."""
     x, y, z = axes(pole) @ w.T
     angle, azimuth = np.arctan2(np.hypot(x, y), z), np.arctan2(y, x) / (2.0 * np.pi) % 1.0
     ring = np.floor((angle - CONE) / (np.pi - CONE) * CELLS).clip(-1, CELLS - 1) + 1
@@ -662,9 +641,17 @@ def patches(nodes: int) -> tuple[Array, Array]:
     return w.reshape(-1, nodes**2, 3), area.reshape(-1, nodes**2)
 
 
+PATHS = partial(
+    Check,
+    requires=Ability.PAIRS,
+    profile="path",
+    hosts=lambda spec, host: host_row(host).target in TARGETS,
+)
+
+
 # fmt: off
 ROWS = (
-    Check(key="pdf",
+    PATHS(key="pdf",
           claim="A path tracer draws by the density that it states, which integrates to the share of draws it keeps.",
           applies=DRAWN, measure=pdf,
           tolerance=given(
@@ -676,62 +663,54 @@ ROWS = (
           explain=lambda case: defect(
               "drawn_density",
               *dict.fromkeys(
-                  place(inside) for score, inside, _ in scores(case) if score > MOST_DEVIATIONS)),
-          requires=Ability.PAIRS, profile="path", hosts=has_paths),
-    Check(key="sample",
+                  place(inside) for score, inside, _ in scores(case) if score > MOST_DEVIATIONS))),
+    PATHS(key="sample",
           claim="A draw's weight times its density is the value in its direction, and its density that of material_pdf.",
-          applies=DRAWN, measure=sample, tolerance=SAMPLE,
-          control=controls.scale("weights are 0.01 % too large", 1.0001), explain=_wrong_part,
-          requires=Ability.PAIRS, profile="path", hosts=has_paths),
-    Check(key="path_value",
+          applies=DRAWN, measure=lambda case: (each for *_, each in parts(case)), tolerance=SAMPLE,
+          control=controls.scale("weights are 0.01 % too large", 1.0001), explain=_wrong_part),
+    PATHS(key="path_value",
           claim="A path tracer's value, opacity and emission are the rasterizer's, in any frame.",
           applies=DRAWN - DARK, measure=path_value,
           tolerance=sum_of(roundings(
               64, "of two directions and their frame, times 1 + the inverse of the lobe's own alpha")),
           control=controls.scale("values are 0.1 % too large", 1.001),
-          explain=always(defect("other_path_value")), requires=Ability.PAIRS, profile="path",
-          hosts=has_paths,
+          explain=always(defect("other_path_value")),
           methods=lambda spec, methods: not methods.distributed),  # distributed layers change sums above 1
-    Check(key="path_emission",
+    PATHS(key="path_emission",
           claim="A path tracer's emission is the node's equation, from both sides of surfaces along each axis.",
           applies=family(EmissionSpec), measure=path_emission, tolerance="value",
           control=controls.scale("values are 0.1 % too large", 1.001),
-          explain=always(defect("other_path_emission")), profile="path", hosts=has_paths),
-    Check(key="path_random",
+          explain=always(defect("other_path_emission")), requires=NO_ABILITY),
+    PATHS(key="path_random",
           claim="The random numbers of a tracer's text are those of pcg4d.",
           applies=family(LobeSpec, lambda spec: spec.node == "eon_diffuse_bsdf"), measure=path_random,
           tolerance=given(0.0, Quantity.VALUE, "the same bits"),
           control=controls.scale("numbers are half as large", 0.5),
-          explain=always(defect("other_random_numbers")), requires=Ability.PAIRS, profile="path",
-          hosts=has_paths),
-    Check(key="path_inside",
+          explain=always(defect("other_random_numbers"))),
+    PATHS(key="path_inside",
           claim="Light inside a solid is reflected and refracted as outside of one of the inverse index.",
           applies=GLASSY & Specs(lambda spec: spec.node in GLASS), measure=path_inside,
           tolerance=sum_of(roundings(
               256, "of an index that OpenPBR takes from its reflectance, near a critical angle")),
           control=controls.scale("values are 0.1 % too large", 1.001),
-          explain=always(defect("inside_is_not_outside")), requires=Ability.PAIRS, profile="path",
-          hosts=has_paths),
-    Check(key="path_albedo",
+          explain=always(defect("inside_is_not_outside"))),
+    PATHS(key="path_albedo",
           claim="Draws from outside carry the light that a rasterizer reflects and transmits.",
           applies=MATERIALS, measure=path_albedo,
           tolerance=ALBEDO.plus(Term(5e-3, "a sum of 32768 draws")),
           control=controls.scale("values are 10 % too large", 1.1),
-          explain=always(defect("other_path_albedo")), requires=Ability.PAIRS, profile="path",
-          hosts=has_paths,
+          explain=always(defect("other_path_albedo")),
           methods=lambda spec, methods: (
               with_directions(spec, methods) and methods.transmission == "refraction")),
-    Check(key="path_energy",
+    PATHS(key="path_energy",
           claim="Draws at a clear solid carry all light, from outside and from inside.",
           applies=CLEAR, measure=path_energy, tolerance=PASSING.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
-          explain=always(defect("light_from_inside")), requires=Ability.PAIRS, profile="path",
-          hosts=has_paths),
-    Check(key="path_leaving",
+          explain=always(defect("light_from_inside"))),
+    PATHS(key="path_leaving",
           claim="From inside a clear solid, draws that leave it carry what enters by the same paths.",
           applies=CLEAR, measure=path_leaving, tolerance=THROUGHPUT.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
-          explain=always(defect("light_from_inside")), requires=Ability.PAIRS, profile="path",
-          hosts=has_paths),
+          explain=always(defect("light_from_inside"))),
 )
 # fmt: on

@@ -195,7 +195,6 @@ def changed(pixels: Pixels, change: Callable[[Array], Array]) -> Pixels:
 
 
 def constant(pixels: Pixels, rng: Random) -> Pixels:
-    """One pixel's inputs for all pixels."""
     row = rng.integers(EACH)
     differ = pixels.differ and (pixels.differ[row],) * EACH
     return replace(changed(pixels, lambda values: values[row]), differ=differ)
@@ -359,7 +358,6 @@ SQUARES, TURNED, APART = ((-1, 2, 2), (1, 0, 2)), ((-1, 2, 2), (2, 0, 1)), ((-1,
 
 
 def drawn(batch: Batch, ask: Callable[[Batch], Array], layout: Layout) -> Array:
-    """Values of pixels in a layout."""
     shape, axes = layout
     order = np.arange(len(batch.wo)).reshape(shape).transpose(axes).ravel()
     found = np.empty_like(batch.wo)
@@ -404,7 +402,6 @@ def compile_imaged(
 
 
 def batch_of(pixels: Pixels) -> Batch:
-    """The batch of pixels with the inputs of all states."""
     batch, count = pixels.batch, len(pixels.batch.wo)
     inputs: Values = {
         LIGHTS: np.full(count, float(pixels.lights)),
@@ -486,7 +483,6 @@ def in_turn(batch: Batch, client: Client) -> Batch:
 
 
 def diagnose(case: Case) -> Diagnosis:
-    """The states that contain all wrong pixels."""
     tolerance, compared = case.tolerance("states"), list(states(case))
     bad = np.concatenate(list(map(tolerance.wrong, compared)))
     pixels = [words for each in pixels_of(case) for words in _words(each)]

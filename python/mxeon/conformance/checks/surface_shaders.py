@@ -168,7 +168,6 @@ ignore_changes = controls.Control(
 
 
 def diagnose_reach(case: Case) -> Diagnosis:
-    """The inputs."""
     known, wrong = expected_dead(case), misplaced(case)
     groups = {
         key: [name for name in wrong if (name in known) == effective]

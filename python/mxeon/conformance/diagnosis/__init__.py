@@ -300,7 +300,6 @@ def _rests(case: Case) -> Sequence[Candidate]:
 
 
 def _backs(case: Case) -> Iterator[Compared]:
-    """Radiance for views of the back."""
     batch = case.backend.take(case.of(EmissionSpec).backs)
     yield case.valued.alike(Compared(batch, case.direct(batch), case.expected(batch)))
 
@@ -410,7 +409,6 @@ def _beside_equal(case: Case, compared: Compared, branch: str) -> tuple[Cause, .
 
 
 def _region(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[Cause, ...]:
-    """The region that contains all wrong pairs, with its share; empty without one."""
     place = smallest(cases, tolerance)
     return (correct_except(cases, tolerance, place),) if place else ()
 
@@ -427,7 +425,6 @@ def without_effect(case: Case, name: str) -> tuple[Cause, ...]:
 
 
 def diagnose_surroundings(compared: Compared, tolerance: Tolerance) -> Diagnosis:
-    """The direction in which the environment is looked up."""
     batch, measured, expected = compared
     irradiances = {
         **{key: found(batch) for key, found in LOOKUPS.items()},

@@ -28,7 +28,6 @@ class Fault:
     numbers: tuple[float, ...] = ()
 
     def cause(self, rms: float) -> Cause:
-        """This fault as a cause, with the distance between the measured values and its own."""
         return Cause(Kind.FAULT, self.key, self.names, self.numbers, rms=rms)
 
 
@@ -137,7 +136,6 @@ def _exchanged(one: str, other: str, batch: Batch) -> Batch:
 
 
 def scaled_by(factor: float) -> Fault:
-    """The fault of an extra factor."""
     for key, known in (("pi_missing", np.pi), ("pi_twice", 1.0 / np.pi)):
         if np.isclose(factor, known, rtol=1e-5):
             return Fault(key, values=lambda batch, values: factor * values)

@@ -129,7 +129,6 @@ class Views:
 
 
 def radiance(tree: ClosureTree | None) -> Array:
-    """Emission of closures, (N or 1, 3)."""
     emitted = _coefficient(tree, "color", EMISSION)
     return np.zeros((1, 3)) if emitted is None else emitted
 
@@ -151,7 +150,6 @@ def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Array | 
 
 
 def _only_medium(tree: ClosureTree | None) -> bool:
-    """Whether closures only consist of media."""
     if tree is None or tree.name not in OPERATIONS:
         return tree is None or tree.name == MEDIUM
     return all(map(_only_medium, tree.parts))

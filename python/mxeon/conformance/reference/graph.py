@@ -273,7 +273,6 @@ class Graph(Nodes):
         return self._inside(path, node, output)
 
     def _constant(self, path: Path, name: str, value: Value) -> Path:
-        """Path of a value without parts."""
         constant = (*path, f":{name}")
         self._steps[constant] = (lambda: value), ()
         return constant
@@ -354,7 +353,6 @@ def _rows(names: Iterable[str], values: Iterable[Array], count: int = 1) -> dict
 def _radiance(
     row: Emission, ports: tuple[str, ...], points: ShadingPoints, *values: Array
 ) -> Array:
-    """Radiance of an emission towards the viewer."""
     wo, _ = points.own
     try:
         return row.value(wo, _rows(ports, values, len(wo)))

@@ -102,7 +102,6 @@ REACHES = (1e-6, 1e3)  # range of mean free paths over the sphere's radius
 
 
 def _dark(wo: Array, *_: object) -> Array:
-    """Reflection of a node in scatter mode T."""
     return np.zeros(wo.shape)
 
 
@@ -260,7 +259,6 @@ class ShadingPoints:
 
     @cached_property
     def own(self) -> tuple[Array, Array | None]:
-        """Directions to the viewer and the light in the surface's frame."""
         return self.directions(self.normal, self.tangent)
 
     @cached_property
@@ -380,7 +378,6 @@ def _outside(node: mx.Node, words: str) -> OutsideModel:
 
 
 def _row(node: mx.Node, inputs: Mapping[str, Array]) -> PbrNode:
-    """Row of the model for a node with these inputs."""
     category = node.getCategory()
     if category in DIFFUSE_NODES:
         return DIFFUSE[category == EON or bool(np.any(inputs[FLAG]))]
@@ -446,7 +443,6 @@ def fitted(kind: str, value: Value) -> Value:
 
 
 def same(value: Value) -> Value:
-    """The value of a node that passes its input through."""
     return value
 
 

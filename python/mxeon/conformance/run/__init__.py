@@ -268,7 +268,6 @@ def texts_not_run(hosts: Container[str]) -> Iterator[tuple[str, str]]:
 def _executor(
     policy: Policy, workers: int, timeout: float, scheduler: str | None, wait: float
 ) -> Iterator[Executor]:
-    """The executor: maps tasks to their outcomes."""
     if scheduler is not None:
         with dask.connect(scheduler, wait) as remote:
             job = partial(work, policy, registered())

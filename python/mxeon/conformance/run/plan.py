@@ -207,12 +207,10 @@ def assert_known_names(hosts: Iterable[str], nodes: Iterable[str]) -> None:
 
 
 def node_names() -> tuple[str, ...]:
-    """Categories of the nodes that are judged."""
     return tuple(dict.fromkeys(row.node for row in ALL_SPECS))
 
 
 def _titles(*nodes: str) -> set[str]:
-    """Titles of nodes, one for each mode, by their categories."""
     return {row.title for row in ALL_SPECS if row.node in nodes}
 
 

@@ -192,7 +192,6 @@ class SurfaceLobe(DiffuseModelSpec):
 
     @property
     def ports(self) -> dict[str, str]:
-        """The names of its inputs, by the names of a rough diffuse node's."""
         return {"color": self.color, "roughness": self.roughness}
 
     def document(self, inputs: Values | None = None) -> str:

@@ -136,7 +136,6 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
     row: Emission
 
     def document(self, inputs: Values | None = None) -> str:
-        """A material of the node and its source nodes, with a value for each input."""
         axis = turned = ""
         if "normal" in (inputs or {}):  # unconnected normals are ignored
             axis = vector_text("axis", (inputs or {})["normal"])
@@ -160,7 +159,6 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
         return (self.views(rng, directions(rng, counts.pairs)), self.views(rng, special))
 
     def backs(self, counts: Counts) -> Batch:
-        """Views from the back."""
         rng = generator()
         return self.views(rng, directions(rng, counts.few) * [1.0, 1.0, -1.0])
 
@@ -351,7 +349,6 @@ class MediumSpec(spec.RowSpec[media.Value]):
         return (Batch(wo, wo * [1.0, 1.0, -1.0], self.random_inputs(rng, count)),)
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Random coefficients, an eighth of them 0, weights and factors."""
         inputs = spec.draw(rng, count, self.inputs)
         for each in self.inputs:
             if each.type == "vector3":

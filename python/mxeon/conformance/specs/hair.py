@@ -217,7 +217,6 @@ class HairSpec(PbrSpec):
         return Batch(wo, in_lobes(rng, wo, inputs), {**inputs, **row.tints})
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """Wide, untilted lobes."""
         least = WIDE_VARIANCE, WIDE_SCALE
         wide = {name: np.maximum(inputs[name], least) for name in ROUGHNESSES}
         return {**inputs, **wide, "cuticle_angle": np.full(len(inputs["ior"]), 0.5)}
@@ -235,7 +234,6 @@ class HairSpec(PbrSpec):
 
 
 def _turned(direction: Array, inclination: float, azimuth: float) -> Array:
-    """Directions turned by two angles, (N, 3)."""
     x, y, z = direction.T
     theta, phi = np.arctan2(x, np.hypot(y, z)) + inclination, np.arctan2(y, z) + azimuth
     cosine = np.cos(theta)

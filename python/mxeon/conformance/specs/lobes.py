@@ -93,7 +93,6 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return _albedo(self.row.albedo, batch)
 
     def sky(self, batch: Batch) -> Array:
-        """Mean of the scattered uneven sky, (N, 3)."""
         return samples.sky(self.side * batch.normal)
 
     def integral(self, batch: Batch) -> Array:

@@ -377,7 +377,6 @@ def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
 
 
 def _with_one_alpha(batch: Batch) -> Batch:
-    """A batch with isotropic lobes."""
     alpha = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))
     return batch.altered(roughness=np.repeat(alpha[:, :1], 2, axis=1))
 
@@ -471,7 +470,6 @@ class TransmissionSpec(FacetSpec):
 
     @property
     def reflects(self) -> bool:
-        """Whether it also reflects."""
         return self.row.fixed["scatter_mode"] == "RT"
 
     def reversed(self, mu: Array, alpha: float, index: float, inputs: Mapping[str, Array]) -> Array:
@@ -691,7 +689,6 @@ def _some_special(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
 
 
 def film_views(spec: PbrSpec, films: Films) -> Batch:
-    """Views of films within ranges, and mirrored lights."""
     rng, (count, *ranges) = generator(), films
     alpha, mu, thickness = (low + (high - low) * rng.random(count) for low, high in ranges)
     wo = samples.directions_at(mu, 2.0 * np.pi * rng.random(count))

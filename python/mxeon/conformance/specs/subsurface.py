@@ -48,7 +48,6 @@ class SubsurfaceSpec(PbrSpec):
         return ZERO, Candidate("MaterialX's blur along a circle of radius 100", _blurred)
 
     def spheres(self, counts: Counts) -> tuple[Batch, ...]:
-        """Points of a sphere under each light, for several materials."""
         return tuple(_points(scene, inputs) for scene in SCENES for inputs in MATERIALS)
 
 

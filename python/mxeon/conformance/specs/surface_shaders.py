@@ -118,7 +118,6 @@ class SurfaceShaderSpec(spec.LobeSpec):
 
     @property
     def film(self) -> tuple[Input, ...]:
-        """The inputs of a thin film."""
         names = "thin_film", "iridescence"
         return tuple(each for each in self.others if each.name.startswith(names))
 
@@ -154,7 +153,6 @@ class SurfaceShaderSpec(spec.LobeSpec):
 
     @property
     def changes(self) -> Mapping[str, samples.Changes]:
-        """Changes of the material with all lobes."""
         seen, _ = spec.materials(*self.judged, *self.others)
         wholes = {name: {**seen, **self.needs.get(name, {})} for name in self.names}
         return {
@@ -267,18 +265,15 @@ def _views(rng: np.random.Generator, count: int) -> Array:
 
 
 def _stretching(batch: Batch) -> list[str]:
-    """The inputs that make a lobe anisotropic."""
     return [name for name in batch.inputs if STRETCHED in name and "rotation" not in name]
 
 
 def stretched(batch: Batch) -> NDArray[np.bool_]:
-    """Whether a lobe of a pair is anisotropic."""
     count = np.zeros(len(batch.wo), int)
     return np.asarray(sum((batch.inputs[name] != 0.0 for name in _stretching(batch)), count) > 0)
 
 
 def _isotropic(batch: Batch) -> Batch:
-    """The same pairs with isotropic lobes."""
     return batch.altered(**{name: np.zeros(len(batch.wo)) for name in _stretching(batch)})
 
 

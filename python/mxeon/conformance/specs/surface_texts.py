@@ -17,8 +17,8 @@ import numpy as np
 from mxeon.conformance import samples
 from mxeon.conformance.samples import WHITE, Array, Batch, Candidate, Counts, Values, generator
 from mxeon.conformance.spec import ZERO, Ability, Input, ValueSpec, draw
-from mxeon.conformance.specs.microfacets import FILM_ERRORS
 from mxeon.conformance.specs import surface_shaders
+from mxeon.conformance.specs.microfacets import FILM_ERRORS
 from mxeon.conformance.tolerance import Term, roundings, sum_of
 from mxeon.models.surfaces import gltf, open_pbr, standard_surface, usd_preview
 from mxeon.models.surfaces.lobes import Light

@@ -20,8 +20,8 @@ from mxeon.conformance.spec import EngineError, Input
 from mxeon.conformance.tolerance import Compared, Term, Tolerance, given, roundings, sum_in, sum_of
 from mxeon.hosts.calls import GRAPH
 from mxeon.models import diffuse
-from mxeon.models.nodes.node import Variant
 from mxeon.models.nodes import utilities
+from mxeon.models.nodes.node import Variant
 from mxeon.shaders import nodes
 from mxeon.shaders.nodes import INVERSIONS, Node, connection_text, document_text, node_text
 
@@ -157,7 +157,6 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
         )
 
     def outside(self, counts: Counts) -> Batch:
-        """Values at and beyond the ends of the ranges."""
         rng, count = generator(), counts.pairs
         beyond = (
             rng.choice(each.beyond, (count, *spec.COMPONENTS[each.type])) for each in self.inputs
