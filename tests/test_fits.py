@@ -79,15 +79,25 @@ def conty_kulla_error(coefficients):
 
 
 @pytest.mark.parametrize(
-    "stem, prefix, error, stated",
+    "stem, function, error, stated",
     [
-        ("ggx_albedo", "GGX_ALBEDO", ggx_albedo.largest_error, tolerances.FIT_GGX),
-        ("conty_kulla_albedo", "CONTY_KULLA_ALBEDO", conty_kulla_error, tolerances.FIT_CONTY_KULLA),
-        ("fresnel_dielectric", "FRESNEL_AVG", fresnel_average.dielectric_error, 5.35e-5),
+        ("ggx_albedo", "ggx_missing", ggx_albedo.largest_error, tolerances.FIT_GGX),
+        (
+            "conty_kulla_albedo",
+            "conty_kulla_albedo_dir",
+            conty_kulla_error,
+            tolerances.FIT_CONTY_KULLA,
+        ),
+        (
+            "fresnel_dielectric",
+            "eonlib_fresnel_dielectric_avg",
+            fresnel_average.dielectric_error,
+            5.35e-5,
+        ),
     ],
 )
-def test_a_fit_has_the_error_that_stands_beside_it(stem, prefix, error, stated):
-    first, *others = shipped_coefficients(stem, prefix)
+def test_a_fit_has_the_error_that_stands_beside_it(stem, function, error, stated):
+    first, *others = shipped_coefficients(stem, function)
     assert error((first, *others)) <= stated < error((first + 1e-2, *others))
 
 
@@ -106,14 +116,14 @@ def test_anisotropic_facets_have_the_errors_that_their_tolerances_state():
 def test_the_albedo_of_smooth_ggx_has_the_error_that_its_tolerance_states():
     mu = np.linspace(0.05, 1.0, 400)
     fitted = ggx_albedo.fitted(
-        mu, np.full_like(mu, 1e-6), shipped_coefficients("ggx_albedo", "GGX_ALBEDO")
+        mu, np.full_like(mu, 1e-6), shipped_coefficients("ggx_albedo", "ggx_missing")
     )
     error = np.abs(1.0 - fitted).max()
     assert 0.9 * microfacets.SMOOTH_ESS_FIT < error <= microfacets.SMOOTH_ESS_FIT
 
 
 def test_compensated_values_have_the_errors_that_their_tolerance_states():
-    coefficients = shipped_coefficients("ggx_albedo", "GGX_ALBEDO")
+    coefficients = shipped_coefficients("ggx_albedo", "ggx_missing")
     error, factor = ggx_albedo.value_errors(coefficients)
     assert 0.9 * microfacets.ESS_VALUE_FIT < error <= microfacets.ESS_VALUE_FIT
     assert 0.9 * microfacets.COMPENSATED < factor <= microfacets.COMPENSATED
@@ -122,8 +132,8 @@ def test_compensated_values_have_the_errors_that_their_tolerance_states():
 
 
 def test_the_average_of_a_metal_has_the_error_that_its_tolerance_states():
-    text = source_file("glsl", "fresnel_conductor").read_text(encoding="utf-8")
-    weights = [float(each) for each in re.findall(r"#define FRESNEL_AVG_W\d (\S+)", text)]
+    weights, cosines = fresnel_average.shipped_conductor()
+    assert tuple(cosines) == fresnel_average.COSINES
     metals = np.linspace(0.05, 5.0, 100), np.linspace(0.5, 10.0, 150)
     error = fresnel_average.conductor_error(weights, *metals)
     assert 0.9 * microfacets.METAL_FIT < error <= microfacets.METAL_FIT
@@ -178,7 +188,7 @@ def test_the_cosines_of_ggx_have_the_errors_that_stand_beside_them():
             [1.9e-3 if q == 5 else 3.2e-3 for q in ggx_cosine.EXPONENTS],
         ),
     ):
-        coefficients = shipped_coefficients(stem, curves.prefix)
+        coefficients = shipped_coefficients(stem, curves.function)
         errors = ggx_cosine.errors(curves, coefficients, *grid)
         assert np.all(np.array(errors) <= largest)
         wrong = (coefficients[0] * 1.1, *coefficients[1:])
@@ -212,7 +222,9 @@ def test_the_shader_has_the_nodes_of_a_film():
         ]
 
     np.testing.assert_array_equal(np.transpose(rows(r"AVERAGE_\d")), thin_film.NODES)
-    np.testing.assert_array_equal(np.transpose(rows(r"FACETS_\d\d")), thin_film.FACETS)
+    facets = re.findall(r"vec3\(([-\d., ]+)\)", text.partition("vec3 C = ")[2].partition(";")[0])
+    found = [list(map(float, each.split(","))) for each in facets]
+    np.testing.assert_array_equal(np.transpose(found), thin_film.FACETS)
     orders = [thin_film.VALUE_ORDER, thin_film.WIDTH_ORDER, thin_film.ORDER_RATIO]
     count = np.ceil(np.log(1e-6 * thin_film.VALUE_ORDER) / np.log(thin_film.ORDER_RATIO))
     assert [each for [each] in rows(r"ORDER_\w+")] == [*orders, count]

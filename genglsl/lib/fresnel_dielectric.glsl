@@ -2,53 +2,6 @@
 // Fresnel reflectance of a dielectric; F_ss, its cosine-weighted average over the hemisphere; and its average over the
 // visible facets of GGX. mu is the cosine of wo with the normal.
 
-// 1 - F_ss of a dielectric is t N / D, t = 1 / ior. Source: tools/fits/fresnel_average.py.
-// Domain: ior >= 1. Largest absolute error: 5.3e-5.
-#define FRESNEL_AVG_N0 5.2782628
-#define FRESNEL_AVG_N1 94.973875
-#define FRESNEL_AVG_N2 -107.33376
-#define FRESNEL_AVG_N3 30.075991
-#define FRESNEL_AVG_N4 -7.6046715
-#define FRESNEL_AVG_D1 24.314418
-#define FRESNEL_AVG_D2 43.891479
-#define FRESNEL_AVG_D3 -53.815382
-
-// The cosine at which the curve equals its average over the visible facets: mu + alpha^2 / (mu + alpha) N / D,
-// x = mu / (mu + alpha).
-// Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], index of refraction in [1.03, 3].
-// Largest absolute error of the albedo: 0.003, in [1.05, 2.5] 0.0017.
-#define DIELECTRIC_N000 121.31539
-#define DIELECTRIC_N001 695.29722
-#define DIELECTRIC_N002 -852.70243
-#define DIELECTRIC_N003 0.95958787
-#define DIELECTRIC_N010 -79.111812
-#define DIELECTRIC_N011 -404.20459
-#define DIELECTRIC_N012 719.38075
-#define DIELECTRIC_N020 -87.272915
-#define DIELECTRIC_N021 -153.03073
-#define DIELECTRIC_N030 79.441552
-#define DIELECTRIC_N100 -107.09138
-#define DIELECTRIC_N101 -328.78907
-#define DIELECTRIC_N102 356.88066
-#define DIELECTRIC_N110 -2.5500696
-#define DIELECTRIC_N111 -40.596539
-#define DIELECTRIC_N120 68.03638
-#define DIELECTRIC_N200 10.033399
-#define DIELECTRIC_N201 16.886608
-#define DIELECTRIC_N210 -50.014696
-#define DIELECTRIC_N300 -7.2080572
-#define DIELECTRIC_D001 57.90553
-#define DIELECTRIC_D002 -67.41115
-#define DIELECTRIC_D010 181.8611
-#define DIELECTRIC_D011 -7.478896
-#define DIELECTRIC_D020 -50.38694
-#define DIELECTRIC_D100 3.325208
-#define DIELECTRIC_D101 0.0942464
-#define DIELECTRIC_D110 -261.2011
-#define DIELECTRIC_D200 -4.144666
-#define DIELECTRIC_D120 -6.590822
-#define DIELECTRIC_D210 107.1744
-
 // [MaterialX2026], Dielectric Fresnel Equations, from the amplitudes: no quotient of 0 at ior 0.
 float eonlib_fresnel_dielectric(float mu, float ior)
 {
@@ -60,37 +13,37 @@ float eonlib_fresnel_dielectric(float mu, float ior)
     return g2 <= 0.0 ? 1.0 : 0.5 * (s * s + p * p);
 }
 
-// F_ss of a dielectric; for an index below 1 from the other side, 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)).
+// F_ss of a dielectric: 1 - F_ss is t N / D, t = 1 / ior; for an index below 1 from the other side,
+// 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)). Source: tools/fits/fresnel_average.py. Largest absolute error: 5.3e-5.
 float eonlib_fresnel_dielectric_avg(float ior)
 {
     float t = ior > 1.0 ? 1.0 / ior : ior;
-    float N = FRESNEL_AVG_N0 + t * (FRESNEL_AVG_N1 + t * (FRESNEL_AVG_N2
-              + t * (FRESNEL_AVG_N3 + t * FRESNEL_AVG_N4)));
-    float lost = t * N / (1.0 + t * (FRESNEL_AVG_D1 + t * (FRESNEL_AVG_D2 + t * FRESNEL_AVG_D3)));
+    float N = 5.2782628 + t * (94.973875 + t * (-107.33376 + t * (30.075991 + t * -7.6046715)));
+    float D = 1.0 + t * (24.314418 + t * (43.891479 + t * -53.815382));
+    float lost = t * N / D;
     return 1.0 - (ior > 1.0 ? lost : ior * ior * lost);
 }
 
-// The fitted cosine. Indices are clamped to the domain.
+// The cosine at which the curve equals its average over the visible facets: mu + alpha^2 / (mu + alpha) N / D. Indices
+// are clamped to the domain.
+// Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], index of refraction in [1.03, 3].
+// Largest absolute error of the albedo: 0.003, in [1.05, 2.5] 0.0017.
 float ggx_cosine_dielectric(float mu, float alpha, float ior)
 {
     float n = clamp(ior, 1.03, 3.0);
     float x = mu / (mu + alpha);
     float y = sqrt(sqrt(alpha));
     float s = sqrt((n - 1.0) / (n + 1.0));
-    float N = DIELECTRIC_N000
-        + s * (DIELECTRIC_N001 + s * (DIELECTRIC_N002 + s * DIELECTRIC_N003))
-        + y * (DIELECTRIC_N010 + s * (DIELECTRIC_N011 + s * DIELECTRIC_N012)
-        + y * (DIELECTRIC_N020 + s * DIELECTRIC_N021
-        + y * DIELECTRIC_N030))
-        + x * (DIELECTRIC_N100 + s * (DIELECTRIC_N101 + s * DIELECTRIC_N102)
-        + y * (DIELECTRIC_N110 + s * DIELECTRIC_N111 + y * DIELECTRIC_N120)
-        + x * (DIELECTRIC_N200 + s * DIELECTRIC_N201 + y * DIELECTRIC_N210
-        + x * DIELECTRIC_N300));
-    float D = 1.0 + s * (DIELECTRIC_D001 + s * DIELECTRIC_D002)
-        + y * (DIELECTRIC_D010 + s * DIELECTRIC_D011 + y * DIELECTRIC_D020)
-        + x * (DIELECTRIC_D100 + s * DIELECTRIC_D101
-        + y * (DIELECTRIC_D110 + y * DIELECTRIC_D120)
-        + x * (DIELECTRIC_D200 + y * DIELECTRIC_D210));
+    float N = 121.31539
+        + s * (695.29722 + s * (-852.70243 + s * 0.95958787))
+        + y * (-79.111812 + s * (-404.20459 + s * 719.38075)
+        + y * (-87.272915 + s * -153.03073 + y * 79.441552))
+        + x * (-107.09138 + s * (-328.78907 + s * 356.88066)
+        + y * (-2.5500696 + s * -40.596539 + y * 68.03638)
+        + x * (10.033399 + s * 16.886608 + y * -50.014696 + x * -7.2080572));
+    float D = 1.0 + s * (57.90553 + s * -67.41115)
+        + y * (181.8611 + s * -7.478896 + y * -50.38694)
+        + x * (3.325208 + s * 0.0942464 + y * (-261.2011 + y * -6.590822) + x * (-4.144666 + y * 107.1744));
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 

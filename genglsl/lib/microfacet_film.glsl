@@ -11,20 +11,6 @@
 #define FILM_AVERAGE_2 vec3(0.55701, 0.43737, 0.13743)
 #define FILM_AVERAGE_3 vec3(0.88292, 0.4528, 0.088681)
 
-// Visible facets: mean of the nodes' cosines, their reach and their bend, coefficients of mu^i y^j with
-// y = alpha / (alpha + 0.2). Source and films as above. Domain: mu in [0.1, 1], alpha in [0.01, 1]. Largest error:
-// 7.7e-2, at index 1.16 over a metal with a lower index, which reflects totally. Outside the domain, 0.14.
-#define FILM_FACETS_00 vec3(3.252, 0.32298, 0.14542)
-#define FILM_FACETS_01 vec3(-0.91173, 3.3428, 0.030955)
-#define FILM_FACETS_02 vec3(-4.1529, -4.255, -0.22576)
-#define FILM_FACETS_03 vec3(1.7917, 0.51298, -0.22374)
-#define FILM_FACETS_10 vec3(-0.12447, 3.6133, 1.0328)
-#define FILM_FACETS_11 vec3(2.405, -7.43, -1.4779)
-#define FILM_FACETS_12 vec3(-2.6953, 3.3391, 0.16285)
-#define FILM_FACETS_20 vec3(-7.6708, -2.597, -1.7185)
-#define FILM_FACETS_21 vec3(8.1838, 3.5172, 2.1385)
-#define FILM_FACETS_30 vec3(0.0010818, -0.34239, 0.018052)
-
 // Nodes x, 0 and -x of Gauss's rule for a semicircle over [-1, 1], with weights (1 - x^2) / 2. Each represents a third of
 // the reach on both sides.
 #define FILM_OUTER 0.70710678
@@ -52,11 +38,16 @@ void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresne
         float mu = lobe.visible.x;
         float alpha = lobe.visible.y;
         float y = alpha / (alpha + 0.2);
-        vec3 C = FILM_FACETS_00
-                 + y * (FILM_FACETS_01 + y * (FILM_FACETS_02 + y * FILM_FACETS_03))
-                 + mu * (FILM_FACETS_10 + y * (FILM_FACETS_11 + y * FILM_FACETS_12)
-                 + mu * (FILM_FACETS_20 + y * FILM_FACETS_21
-                 + mu * FILM_FACETS_30));
+        // Visible facets: mean of the nodes' cosines, their reach and their bend. Source and films as above.
+        // Domain: mu in [0.1, 1], alpha in [0.01, 1]. Largest error: 7.7e-2, at index 1.16 over a metal with a lower
+        // index, which reflects totally. Outside the domain, 0.14.
+        vec3 C = vec3(3.252, 0.32298, 0.14542)
+            + y * (vec3(-0.91173, 3.3428, 0.030955) + y * (vec3(-4.1529, -4.255, -0.22576)
+            + y * vec3(1.7917, 0.51298, -0.22374)))
+            + mu * (vec3(-0.12447, 3.6133, 1.0328)
+            + y * (vec3(2.405, -7.43, -1.4779) + y * vec3(-2.6953, 3.3391, 0.16285))
+            + mu * (vec3(-7.6708, -2.597, -1.7185) + y * vec3(8.1838, 3.5172, 2.1385)
+            + mu * vec3(0.0010818, -0.34239, 0.018052)));
         float s = alpha / sqrt(mu + alpha);
         vec3 facets = vec3(mu + s * s * C.x, s * C.y, C.z);  // mean of the cosines, reach of the nodes, their bend
         bool is_lit = lobe.closure == CLOSURE_TYPE_REFLECTION;

@@ -16,7 +16,7 @@ square roots: roughness is 4 / k with integer k, so that its powers are products
 import numpy as np
 
 from tools.fits.ggx_albedo import graded, legendre
-from tools.fits.minimax import Form, defines, extrema, mp, refined
+from tools.fits.minimax import Form, extrema, mp, printed, refined
 
 FORM = Form(
     above=((0, 0), (0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 2), (3, 0), (3, 2)),
@@ -99,5 +99,5 @@ if __name__ == "__main__":
     found = fit()
     mu, roughness, E = points(75)  # a finer grid than the fit's
     largest = np.max(np.abs(fitted(mu, roughness, found) - np.minimum(E, 1.0)))
-    print(*defines(FORM, found, "CONTY_KULLA_ALBEDO"), sep="\n")
+    print(*printed(found))
     print(f"largest absolute error {largest:.3g}")

@@ -16,11 +16,14 @@ no fit.
     python -m tools.fits.fresnel_average
 """
 
+import re
+
 import numpy as np
 
 from mxeon.models.microfacet import fresnel
+from mxeon.shaders.functions import source_file
 from tools.fits.ggx_albedo import legendre
-from tools.fits.minimax import DIGITS, Form, defines, least_largest, mp, roots
+from tools.fits.minimax import DIGITS, Form, least_largest, mp, printed, roots
 
 COUNT = 400  # points of the fit for dielectrics
 FORM = Form(above=tuple((k,) for k in range(5)), below=tuple((k,) for k in range(1, 4)))
@@ -113,15 +116,19 @@ def conductor_fit():
     return tuple(float(mp.nstr(w, DIGITS)) for w in weights)
 
 
+def shipped_conductor():
+    """Weights and cosines in the shader."""
+    text = source_file("glsl", "fresnel_conductor").read_text(encoding="utf-8")
+    pairs = re.findall(r"- ([\d.]+) \* \(1\.0 - mx_fresnel_conductor\(([\d.]+),", text)
+    return np.array(pairs, float).T
+
+
 if __name__ == "__main__":
     found = dielectric_fit()
-    print(*defines(FORM, found, "FRESNEL_AVG"), sep="\n")
+    print("dielectrics", *printed(found))
     print(f"largest absolute error, dielectrics: {dielectric_error(found):.3g}")
     shares = conductor_fit()
-    for place, (cosine, share) in enumerate(zip(COSINES, shares, strict=True)):
-        print(
-            f"#define FRESNEL_AVG_C{place} {cosine}\n#define FRESNEL_AVG_W{place} {share:.{DIGITS}g}"
-        )
+    print("metals", *printed(shares))
     for least in (0.5, 0.2):  # the domain, and beyond it
         error = conductor_error(shares, np.linspace(0.05, 5.0, 200), np.linspace(least, 10.0, 200))
         print(f"largest absolute error, metals of an extinction from {least}: {error:.3g}")

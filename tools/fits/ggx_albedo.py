@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tools.fits.minimax import Form, defines, mp, refined
+from tools.fits.minimax import Form, mp, printed, refined
 
 FORM = Form(
     above=(
@@ -151,7 +151,7 @@ def value_errors(coefficients, across=145, along=97):
 def main():
     """Print the lines for the shaders and the errors of the fit."""
     coefficients = fit()
-    print(*defines(FORM, coefficients, "GGX_ALBEDO"), sep="\n")
+    print(*printed(coefficients))
     print(f"largest absolute error {largest_error(coefficients):.3g}")
     print(
         "of a value over itself {:.3g}, times the error of F_ss {:.2g}".format(

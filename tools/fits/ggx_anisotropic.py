@@ -65,7 +65,7 @@ def terms(wo, alpha):
 
 def missed(wo, alpha):
     """1 - E_ss of the isotropic facets, by the shaders' fit."""
-    return 1.0 - fitted(*terms(wo, alpha)[0], shipped("ggx_albedo", "GGX_ALBEDO"))
+    return 1.0 - fitted(*terms(wo, alpha)[0], shipped("ggx_albedo", "ggx_missing"))
 
 
 def visible(wo, alpha):

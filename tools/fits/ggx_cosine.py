@@ -25,7 +25,7 @@ from itertools import pairwise, product
 import numpy as np
 
 from tools.fits.ggx_albedo import incident, legendre
-from tools.fits.minimax import Form, defines, mp, numerator
+from tools.fits.minimax import Form, mp, numerator, printed
 
 LEAST = 1e-4  # smallest alpha and cosine of the fits
 BLOCK = 20  # points that are integrated together
@@ -56,7 +56,7 @@ def dip(c):
 class Curves:
     """Fresnel curves of one kind, and the fit of their cosine."""
 
-    prefix: str  # prefix of the coefficients' names
+    function: str  # the shader's function of the fitted cosine
     reflectance: Callable  # F of cosine and parameter
     parameters: tuple  # parameters of the curves
     shapes: tuple  # s of each curve
@@ -71,12 +71,12 @@ def below(total, count):
     return tuple(m for m in product(range(total + 1), repeat=count) if sum(m) <= total)
 
 
-FORM = Form(above=below(3, 3), below=(*below(2, 3)[1:], (1, 2, 0), (2, 1, 0)))
+FORM = Form(above=below(3, 3), below=tuple(sorted((*below(2, 3)[1:], (1, 2, 0), (2, 1, 0)))))
 IORS = (1.03, 1.05, 1.08, 1.12, 1.2, 1.3, 1.45, 1.7, 2.0, 2.5, 3.0)
 EXPONENTS = (1, 2, 3, 4, 5, 6, 8, 10)
 
 DIELECTRIC = Curves(
-    prefix="DIELECTRIC",
+    function="ggx_cosine_dielectric",
     reflectance=dielectric,
     parameters=IORS,
     shapes=tuple(float(mp.sqrt((mp.mpf(n) - 1) / (mp.mpf(n) + 1))) for n in IORS),
@@ -85,11 +85,11 @@ DIELECTRIC = Curves(
     form=FORM,
     below=(
         *(57.90553, -67.41115, 181.8611, -7.478896, -50.38694, 3.325208),
-        *(0.0942464, -261.2011, -4.144666, -6.590822, 107.1744),
+        *(0.0942464, -261.2011, -6.590822, -4.144666, 107.1744),
     ),
 )
 SCHLICK = Curves(
-    prefix="SCHLICK",
+    function="ggx_cosine_schlick",
     reflectance=schlick,
     parameters=EXPONENTS,
     shapes=tuple(4.0 / (3.0 + q) for q in EXPONENTS),
@@ -98,7 +98,7 @@ SCHLICK = Curves(
     form=FORM,
     below=(
         *(5.765519, -1.515595, 42.67342, -0.008712644, -2.671278, -2.909114),
-        *(-3.69908, -69.11994, 1.541857, -6.01911, 28.88318),
+        *(-3.69908, -69.11994, -6.01911, 1.541857, 28.88318),
     ),
 )
 DIP_FORM = Form(above=below(4, 2), below=below(3, 2)[1:])
@@ -253,16 +253,16 @@ def main():
     """Print the lines for the shaders and the errors of the fits."""
     found = {}
     for curves in (DIELECTRIC, SCHLICK):
-        found[curves.prefix] = coefficients = fit(curves)
-        print(*defines(curves.form, coefficients, curves.prefix), sep="\n")
+        found[curves.function] = coefficients = fit(curves)
+        print(curves.function, *printed(coefficients))
         for n, error in zip(
             curves.parameters, errors(curves, coefficients, *points(49, 33)), strict=True
         ):
             print(f"largest absolute error at {n}: {error:.3g}")
-    sampled = dip_sample(*points(41, 29), found[SCHLICK.prefix])
+    sampled = dip_sample(*points(41, 29), found[SCHLICK.function])
     coefficients = numerator(DIP_FORM, *sampled, DIP_BELOW)
-    print(*defines(DIP_FORM, coefficients, "GGX_DIP"), sep="\n")
-    arguments, value, weight = dip_sample(*points(49, 33), found[SCHLICK.prefix])
+    print("ggx_dip", *printed(coefficients))
+    arguments, value, weight = dip_sample(*points(49, 33), found[SCHLICK.function])
     error = np.max(weight * np.abs(DIP_FORM.value(arguments, coefficients) - value))
     print(f"largest absolute error, for a dip to 0: {error / dip(1.0 / 7.0):.3g}")
 

@@ -144,6 +144,11 @@ def numerator(form, variables, values, weights, below):
     return (*(float(mp.nstr(x, DIGITS)) for x in found), *below)
 
 
+def printed(coefficients):
+    """Coefficients with all their digits, in the order in which they stand in the shader."""
+    return [f"{x:.{DIGITS}g}" for x in coefficients]
+
+
 def defines(form, coefficients, prefix):
     """Lines of GLSL that define the coefficients, in the order of the form."""
     names = [f"N{''.join(map(str, m))}" for m in form.above]
@@ -154,7 +159,12 @@ def defines(form, coefficients, prefix):
     ]
 
 
-def shipped(stem, prefix, kinds="ND"):
-    """Coefficients of a fit in a GLSL file, numerator first."""
+def shipped(stem, function):
+    """Coefficients of a fit in a GLSL function, numerator first, in the order of the form."""
     text = source_file("glsl", stem).read_text(encoding="utf-8")
-    return tuple(float(x) for x in re.findall(rf"#define {prefix}_[{kinds}]\d+ (\S+)", text))
+    body = text.partition(f"{function}(")[2].partition("\n}")[0]
+    parts = re.findall(r"float ([ND])\d? = (.*?);", body, re.DOTALL)
+    ordered = " ".join(part for each in "ND" for kind, part in parts if kind == each)
+    found = [float(x) for x in re.findall(r"-?\d+\.\d+", ordered)]
+    found.remove(1.0)  # the denominator's constant
+    return tuple(found)

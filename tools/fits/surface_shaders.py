@@ -26,11 +26,11 @@ SETS = 32
 LEAST = 1e-6  # smallest cosine and roughness to which shaders apply their fits
 EXACT = nodes.ShadingPoints._albedo
 
-DIELECTRIC = shipped("fresnel_dielectric", "DIELECTRIC")
-SCHLICK = shipped("fresnel_schlick", "SCHLICK")
-SHEEN = shipped("conty_kulla_albedo", "CONTY_KULLA_ALBEDO")
-AVERAGE = shipped("fresnel_dielectric", "FRESNEL_AVG")
-COSINES, WEIGHTS = (shipped("fresnel_conductor", "FRESNEL_AVG", kind) for kind in "CW")
+DIELECTRIC = shipped("fresnel_dielectric", "ggx_cosine_dielectric")
+SCHLICK = shipped("fresnel_schlick", "ggx_cosine_schlick")
+SHEEN = shipped("conty_kulla_albedo", "conty_kulla_albedo_dir")
+AVERAGE = shipped("fresnel_dielectric", "eonlib_fresnel_dielectric_avg")
+WEIGHTS, COSINES = fresnel_average.shipped_conductor()
 
 
 def facets(wo, roughness):

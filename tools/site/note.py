@@ -121,7 +121,7 @@ def variances(name, roughness, mu):
 def albedo_errors(mu, alpha):
     """Errors of E_ss: of MaterialX's fit and of that in z and alpha."""
     exact = models.ggx_albedo_dir(mu, alpha)
-    ours = albedo_fit.fitted(mu, alpha, shipped("ggx_albedo", "GGX_ALBEDO"))
+    ours = albedo_fit.fitted(mu, alpha, shipped("ggx_albedo", "ggx_missing"))
     return fitted_albedo(mu, alpha, 1.0, 1.0) - exact, ours - exact
 
 
@@ -133,7 +133,7 @@ def fresnel_errors(mu, alpha, ior=GLASS):
     curves = cosine_fit.DIELECTRIC
     shape = np.sqrt((ior - 1.0) / (ior + 1.0))
     E, (mean,) = cosine_fit.averages(mu, alpha, [lambda c: curves.reflectance(c, ior)])
-    c = cosine_fit.cosine(curves, mu, alpha, shape, shipped("fresnel_dielectric", curves.prefix))
+    c = cosine_fit.cosine(curves, mu, alpha, shape, shipped("fresnel_dielectric", curves.function))
     F0 = ((ior - 1.0) / (ior + 1.0)) ** 2
     exact = E * mean
     return {
