@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A view as the part of an address after "#", and back. Only what differs from the first view is
-// written; what cannot be read keeps its first value.
+// Converts a view to the part of an address after "#" and back. Only fields that differ from the
+// first view are written; unreadable fields keep their first value.
 
 import type { PageData, Vec3 } from "./data";
 import {
@@ -17,11 +17,11 @@ import { consistent, first_view, sources_of } from "./view";
 
 interface Codec<T> {
   readonly write: (value: T) => string;
-  /** Value of a text; undefined if there is none. */
+  /** The value of a text; undefined if there is no text. */
   readonly read: (text: string, first: T) => T | undefined;
 }
 
-const DIGITS = 5; // of a number in an address: finer than what a picture shows
+const DIGITS = 5; // precision of numbers in an address: finer than a picture shows
 
 function short(value: number): string {
   return String(Number(value.toPrecision(DIGITS)));
@@ -78,7 +78,7 @@ const probe: Codec<State["probe"]> = {
   read: (text) => numbers<[number, number]>(2, unit).read(text, [0, 0]) ?? null,
 };
 
-/** Keys of the address, short words that stay as they are: views are sent and kept. */
+/** Keys of the address: short words that must not change, because readers keep and share links. */
 const FIELDS: { readonly [K in keyof Omit<State, "inputs">]: [string, Codec<State[K]>] } = {
   left: ["a", side],
   right: ["b", side],
@@ -105,7 +105,7 @@ const FIELDS: { readonly [K in keyof Omit<State, "inputs">]: [string, Codec<Stat
   probe: ["probe", probe],
 };
 
-const INPUT = "input:"; // then the source, a colon and the uniform
+const INPUT = "input:"; // followed by the source, a colon and the uniform
 
 /** The address of a view, without "#". */
 export function to_address(state: State, data: PageData): string {
@@ -121,7 +121,7 @@ export function to_address(state: State, data: PageData): string {
       parts.set(`${INPUT}${source}:${name}`, write_value(value));
     }
   }
-  // Slashes, colons and commas may stand in a fragment as they are.
+  // Slashes, colons and commas are legal in a fragment.
   return parts.toString().replaceAll("%2F", "/").replaceAll("%2C", ",").replaceAll("%3A", ":");
 }
 
@@ -148,7 +148,7 @@ function write_value(value: Value): string {
   return typeof value === "number" ? short(value) : value.map(short).join(",");
 }
 
-/** Values of inputs that the page has, each of the type and the length of its own. */
+/** Input values that exist on the page and have the right type and length. */
 function read_inputs(parts: URLSearchParams, data: PageData): State["inputs"] {
   const inputs: Record<string, Record<string, Value>> = {};
   for (const source of data.sources) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page: a view, what changes it, and its parts.
+// The page: its view, the actions that change it, and its parts.
 
 import { useCallback, useEffect, useLayoutEffect, useMemo, useState } from "preact/hooks";
 import { from_address, to_address } from "./address";
@@ -27,11 +27,11 @@ import { Materials, Sides, type ViewProps } from "./ui/sides";
 import { StageView } from "./ui/stage_view";
 import { actual_model, consistent, meant_model, source_of, sources_of, type Sources } from "./view";
 
-const ADDRESS_DELAY = 300; // milliseconds; browsers refuse an address that changes all the time
+const ADDRESS_DELAY = 300; // milliseconds; browsers refuse frequent changes of the address
 
 interface AppProps {
   readonly data: PageData;
-  /** Told of the stage and the view, for tests. */
+  /** Receives the stage and the view, for tests. */
   readonly tell: (stage: Stage | null, state: State, show: (state: State) => void) => void;
 }
 
@@ -42,14 +42,14 @@ export function App({ data, tell }: AppProps) {
     (patch: Partial<State>) => setState((old) => consistent({ ...old, ...patch }, sources)),
     [],
   );
-  // Undefined before the browser was asked, null if it cannot draw.
+  // undefined until the browser has been tested, null if it cannot draw
   const [stage, setStage] = useState<Stage | null | undefined>(undefined);
   const [dragging, setDragging] = useState(false);
   useAddress(state, setState, data);
   useKeys(state, change);
   useLayoutEffect(() => tell(stage ?? null, state, setState), [stage, state]);
 
-  // What takes long to compute follows the view when it rests.
+  // Slow computations follow the view when it rests.
   const rest = useRest(stage, state, dragging);
   const calm = rest ?? state;
   const worst = useWorst(rest, sources) ?? facing_point(state);
@@ -65,7 +65,7 @@ export function App({ data, tell }: AppProps) {
   const evidence = useEvidence(stage, sources, calm, pair, measured, errors[0]);
   const differ = rest && stage && state.shape === "sphere" ? on_sphere(stage, rest, worst) : null;
   const view: ViewProps = { data, sources, state, change };
-  // While the picture is dragged its frames have all the time: numbers follow when it rests.
+  // During a drag the picture has priority: numbers follow at rest.
   const still = dragging ? calm : state;
   const controls = useMemo(() => {
     const own: ViewProps = { ...view, state: still };
@@ -132,7 +132,7 @@ function Header({ data }: { readonly data: PageData }) {
   );
 }
 
-/** Keep the address that of the view, and the view that of the address. */
+/** Synchronize the address with the view, in both directions. */
 function useAddress(state: State, setState: (state: State) => void, data: PageData): void {
   useEffect(() => {
     const write = (): void => {
@@ -155,7 +155,7 @@ function useAddress(state: State, setState: (state: State) => void, data: PageDa
   }, []);
 }
 
-/** F shows the other material; D, S and W choose the comparison. */
+/** Keyboard shortcuts: F switches the material, and D, S and W choose the comparison. */
 function useKeys(state: State, change: (patch: Partial<State>) => void): void {
   useEffect(() => {
     const press = (event: KeyboardEvent): void => {
@@ -172,7 +172,7 @@ function useKeys(state: State, change: (patch: Partial<State>) => void): void {
   }, [state.shown]);
 }
 
-/** The point at which the sides differ most; of one model, at which it differs from Lambert. */
+/** The point where the sides differ most; for one model, where it differs most from Lambert. */
 function useWorst(state: State | null, sources: Sources): Point | null {
   return useMemo(() => {
     if (!state) return null;
@@ -186,7 +186,7 @@ function useWorst(state: State | null, sources: Sources): Point | null {
   }, [state]);
 }
 
-/** Where a point of the sphere is in the picture. */
+/** Position of a point of the sphere in the picture. */
 function on_sphere(stage: Stage, state: State, { normal }: Point): [number, number] {
   const { width, height } = stage.size();
   const radius = stage.diameter(state) / 2;

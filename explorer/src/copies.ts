@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts that readers take along: the material as MaterialX, its shader, a value as Python.
+// Texts to copy: the material as MaterialX, its shader, and a value in Python.
 
 import type { PageData, Source } from "./data";
 import type { Model } from "./models/table";
@@ -7,7 +7,7 @@ import type { Pair } from "./probe";
 import type { Side, State, Value } from "./state";
 import { type Sources, values_of } from "./view";
 
-/** The material of a side as a MaterialX document; null for a model that no node has. */
+/** The material of a side as a MaterialX document; null if no node has this model. */
 export function material_x(
   state: State,
   sources: Sources,
@@ -22,7 +22,7 @@ export function material_x(
   return with_values(node, values_of(node, state, flagged));
 }
 
-/** A document whose inputs have other values. */
+/** A document with other input values. */
 function with_values(
   source: Extract<Source, { kind: "shader" }>,
   values: ReadonlyMap<string, Value>,
@@ -37,7 +37,7 @@ function with_values(
   return new XMLSerializer().serializeToString(document);
 }
 
-/** The element of a name path, made if its node has none; null if there is no such node. */
+/** The element of a name path, created if its node lacks it; null if there is no such node. */
 function input_of(document: Document, path: string, type: string): Element | null {
   const names = path.split("/");
   const last = names.pop()!;
@@ -60,7 +60,7 @@ function text_of(value: Value): string {
   return typeof value === "object" ? value.map(String).join(", ") : String(value);
 }
 
-/** The shader text of a side; null for a variant that is not eonlib's. */
+/** The shader text of a side; null for a variant that eonlib lacks. */
 export function shader_text(data: PageData, source: Source): string | null {
   if (source.kind === "shader") return source.pixel;
   if (source.model !== source.meant) return null;
@@ -78,7 +78,7 @@ export function python_line(of: Model, { wo, wi }: Pair, state: State): string {
   );
 }
 
-/** Copy a text; the older way works where the clipboard is not open to a page. */
+/** Copy a text, with the older method where the page may not use the clipboard. */
 export async function copy(text: string): Promise<boolean> {
   try {
     await navigator.clipboard.writeText(text);

@@ -4,7 +4,7 @@
 export type Vec3 = readonly [number, number, number];
 export type Triple = [number, number, number];
 
-/** Name of a row of the tables of models and of known defects, as in python/mxeon/models/table.py. */
+/** Name of a row in the tables of models and known defects of python/mxeon/models/table.py. */
 export type ModelName =
   | "lambert"
   | "oren_nayar"
@@ -20,38 +20,40 @@ export type ModelName =
   | "qon_fitted"
   | "qon_tinted_twice";
 
-/** The models that a node has with energy_compensation true and false; equal where it has no flag. */
+/** A node's models with energy_compensation true and false; equal if it has no such flag. */
 export interface Models {
   readonly on: ModelName;
   readonly off: ModelName;
 }
 
-/** A material that is one model, drawn with the functions of `PageData.functions` or a variant. */
+/** A material with a single model, drawn with `PageData.functions` or a variant of them. */
 export interface ModelSource {
   readonly kind: "model";
   readonly id: string; // "model/eon"
   readonly title: string; // "energy-preserving Oren-Nayar (EON)"
-  readonly group: string; // heading of the list it is chosen from
+  readonly group: string; // heading in the selection list
   readonly model: ModelName;
-  readonly meant: ModelName; // what it should be: `model` itself, but for a renderer's variant
-  readonly note: string; // one sentence: what it is, or who implements it; "" for none
-  readonly pages: readonly string[]; // names of the pages on its defects
+  // The intended model: `model` itself, unless this is a renderer's variant.
+  readonly meant: ModelName;
+  readonly note: string; // one sentence: what it is, or who implements it; may be ""
+  readonly pages: readonly string[]; // names of the pages about its defects
 }
 
 /** A public input of a generated shader. */
 export interface Port {
-  readonly name: string; // of the uniform
-  readonly type: string; // MaterialX's: float, integer, boolean, color3, vector2, filename, ...
-  readonly value: number | boolean | readonly number[] | null; // null of a filename
+  readonly name: string; // name of the uniform
+  // Type in MaterialX: float, integer, boolean, color3, vector2, filename, ...
+  readonly type: string;
+  readonly value: number | boolean | readonly number[] | null; // null for a filename
   readonly path: string; // name path of the input in the document
-  readonly label: string; // uiname, or the words of the name
-  readonly min: number | null; // uimin, or uisoftmin; per component the least
+  readonly label: string; // uiname, or the name split into words
+  readonly min: number | null; // uimin or uisoftmin; the smallest component
   readonly max: number | null;
-  readonly image: Texels | null; // of a filename
-  readonly shown: boolean; // whether readers may want to move it
+  readonly image: Texels | null; // null unless the type is filename
+  readonly shown: boolean; // whether readers may want to change it
 }
 
-/** An image: RGBA, 8 bits each, row 0 first in v (at the bottom), in base64. */
+/** An image in base64: RGBA, 8 bits per channel, from the bottom row (v = 0) up. */
 export interface Texels {
   readonly width: number;
   readonly height: number;
@@ -67,36 +69,39 @@ export interface ShaderSource {
   readonly note: string;
   readonly library: string; // "eonlib", "stock"
   readonly pixel: string;
-  readonly paths: string; // the same for a path tracer; "" where there is none
+  readonly paths: string; // its text for path tracers, or ""
   readonly inputs: readonly Port[];
-  /** Uniforms that the page's own controls set, "" where it has none. */
+  /** Uniforms that the page's own controls set; "" for missing ones. */
   readonly controls: { readonly color: string; readonly roughness: string; readonly flag: string };
-  readonly meant: Models | null; // what the node has to be; null if it is not one diffuse node
-  readonly actual: Models | null; // what this library's code is, as the diagnosis names it
-  readonly document: string; // its MaterialX text, for the copy button
-  readonly pages: readonly string[]; // as those of a ModelSource
-  readonly reference: ReferenceTable | null; // null where no model covers all of its lobes
-  readonly checked: Checked | null; // null where it did not run
+  readonly meant: Models | null; // the intended models; null unless it is one diffuse node
+  readonly actual: Models | null; // the model of this library's code, according to the diagnosis
+  readonly document: string; // MaterialX text for the copy button
+  readonly pages: readonly string[]; // as in ModelSource
+  readonly reference: ReferenceTable | null; // null if no model covers all of its lobes
+  readonly checked: Checked | null; // null if it did not run
 }
 
-/** What `mxeon check` finds of a material: its pictures on gl, against those of the reference. */
+/** Result of `mxeon check` for a material: its pictures on gl compared with the reference. */
 export interface Checked {
   readonly kind: "correct" | "wrong" | "differs" | "unknown";
   readonly text: string;
 }
 
-/** What the models make of a material with its own inputs, in float64. */
+/** Float64 values of the reference models for a material with its own inputs. */
 export interface ReferenceTable {
   readonly direct: readonly number[]; // pi f cos(theta_i) for PageData.pairs, 3 each
-  readonly white: readonly number[]; // light returned of white surroundings, for PageData.views, 3 each
-  readonly bounds: { readonly direct: number; readonly white: number }; // errors that a shader may have
-  readonly forms: readonly ShaderForm[]; // what shaders have in its place
+  // Light reflected in white surroundings, for PageData.views, 3 each.
+  readonly white: readonly number[];
+  readonly bounds: { readonly direct: number; readonly white: number }; // tolerances for shaders
+  readonly forms: readonly ShaderForm[]; // functions that shaders may have instead
 }
 
-/** Another function that a shader may have; its values as those of a ReferenceTable, or none. */
+/**
+ * Another function that a shader may have; its values have the same layout as in ReferenceTable.
+ */
 export interface ShaderForm {
   readonly title: string;
-  readonly permitted: boolean; // the specification leaves it open
+  readonly permitted: boolean; // the specification permits it
   readonly direct: readonly number[];
   readonly white: readonly number[];
 }
@@ -106,10 +111,10 @@ export type Source = ModelSource | ShaderSource;
 /** A picture for browsers without WebGL2. */
 export interface Still {
   readonly title: string;
-  readonly picture: string; // data: address of a PNG
+  readonly picture: string; // data: URL of a PNG
 }
 
-/** A map of longitude and latitude as MaterialX's: RGBA, 32-bit floats, row 0 upwards, in base64. */
+/** A latitude-longitude map like MaterialX's in base64: RGBA, 32-bit floats, top row first. */
 export interface Sky {
   readonly width: number;
   readonly height: number; // a multiple of 32
@@ -117,19 +122,22 @@ export interface Sky {
 }
 
 export interface PageData {
-  readonly version: string; // of mxeon
+  readonly version: string; // version of mxeon
   readonly materialx: string;
-  /** eonlib's GLSL functions of the whole family and its samplers, includes expanded, no #version. */
+  /**
+   * GLSL functions of eonlib's diffuse models and their samplers, with includes expanded and no
+   * #version.
+   */
   readonly functions: string;
   readonly sources: readonly Source[];
-  /** Pairs of directions, wo and wi of each, and views, in the local frame, of every reference. */
+  /** Pairs of directions (wo and wi) and views, in the local frame; all references use them. */
   readonly pairs: readonly (readonly [Vec3, Vec3])[];
   readonly views: readonly Vec3[];
-  /** Address of a page on a defect, {} for its name; "" where there is none. */
+  /** URL of the pages about defects, with {} for the name; "" if there is none. */
   readonly pages: string;
   readonly stills: readonly Still[];
-  /** Whether `mxeon explore` serves the page, and so shows files that are dropped on it. */
+  /** Whether `mxeon explore` serves the page, so that it can show dropped files. */
   readonly served: boolean;
-  readonly warnings: readonly string[]; // of its documents
-  readonly sky: Sky | null; // the reader's own surroundings
+  readonly warnings: readonly string[]; // about its documents
+  readonly sky: Sky | null; // surroundings that the reader provided
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as text for readers.
+// Formats numbers for readers.
 
 import type { Vec3 } from "./data";
 
-/** A number with some significant digits, without zeros at its end: 0.39, 2.1e-8. */
+/** A number with the given count of significant digits and no trailing zeros: 0.39, 2.1e-8. */
 export function show(value: number, digits = 3): string {
   const text = String(Number(value.toPrecision(digits)));
   return text.replace("-", "\u2212").replace("e\u2212", "e-").replace("e-", "e\u2212");
@@ -36,7 +36,7 @@ export function to_hex(color: Vec3): string {
   return `#${color.map(code).join("")}`;
 }
 
-/** A hexadecimal sRGB color as a linear color of four decimals, which is finer than its codes. */
+/** A hexadecimal sRGB color as a linear color with four decimals, finer than its codes. */
 export function from_hex(hex: string): [number, number, number] {
   const one = (start: number): number => {
     const x = parseInt(hex.slice(start, start + 2), 16) / 255;

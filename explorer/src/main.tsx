@@ -13,7 +13,7 @@ import type { State } from "./state";
 import { page_data } from "./texts";
 import "./style.css";
 
-/** What tests and consoles may use. */
+/** Access for tests and for the browser's console. */
 interface Hook {
   stage: Stage | null;
   state: () => State;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is computed and read back when a view rests, so that it holds no picture up.
+// Computes and reads back values while a view is at rest, so that pictures are never delayed.
 
 import { useEffect, useMemo, useState } from "preact/hooks";
 import type { ModelName } from "./data";
@@ -14,7 +14,7 @@ const REST = 120; // milliseconds without a change
 const MEASURE_DELAY = 60;
 const RETRY = 100;
 
-/** The latest view that rested after its picture was drawn; null before the first one. */
+/** The latest view at rest whose picture was drawn; null before the first one. */
 export function useRest(
   stage: Stage | null | undefined,
   state: State,
@@ -34,9 +34,10 @@ export function useRest(
   return rest;
 }
 
-/** Values of the shaders for a pair, asked when the picture is done; null until they are there.
- *
- * They are kept with what they are of, so that no frame shows those of another view. */
+/**
+ * Shader values for a pair, requested after the picture is done; null until they arrive. They are
+ * stored with their view, so that no frame shows the values of another one.
+ */
 export function useMeasured(
   stage: Stage | null | undefined,
   pair: Pair,
@@ -63,7 +64,7 @@ export function useMeasured(
 /** Errors of shaders against the tables of their references, by the id of their source. */
 export type ErrorsOf = ReadonlyMap<string, Errors>;
 
-/** The errors of both sides, found one after the other when the values for the probe were read. */
+/** The errors of both sides, computed one after the other once the probe's values are known. */
 export function useErrors(
   stage: Stage | null | undefined,
   sources: Sources,
@@ -85,7 +86,7 @@ export function useErrors(
   }, [stage, measured, errors]);
 }
 
-/** The row of the table at which a side is farthest off, of sides that no model in the page is. */
+/** The row of the reference table with the largest error, for sides without a model in the page. */
 export function farthest_row(sources: Sources, state: State, errors: ErrorsOf): number | null {
   const sides = SIDES.map((side) => source_of(sources, state[side]));
   const found = sides
@@ -96,7 +97,7 @@ export function farthest_row(sources: Sources, state: State, errors: ErrorsOf): 
   return found.reduce((most, each) => (each.error > most.error ? each : most)).row;
 }
 
-/** What was read back of the shaders of both sides, now or before. */
+/** All values that were read back from the shaders of both sides so far. */
 export function useEvidence(
   stage: Stage | null | undefined,
   sources: Sources,

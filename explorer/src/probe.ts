@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of directions and values of the models for them: what the probe shows, in float64.
+// Pairs of directions and the models' float64 values for them, which the probe shows.
 
 import type { Triple, Vec3 } from "./data";
 import { pi_f_cos, type Model } from "./models/table";
@@ -22,13 +22,13 @@ function unit(v: Vec3): Triple {
   return [v[0] / length, v[1] / length, v[2] / length];
 }
 
-/** Unit vector to the light: x to the right, y up, z to the viewer. */
+/** Unit vector to the light: x points right, y up, z to the viewer. */
 export function light_of({ azimuth, elevation }: Pick<State, "azimuth" | "elevation">): Triple {
   const [a, e] = [azimuth * RADIAN, elevation * RADIAN];
   return [Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)];
 }
 
-/** The pair that a normal makes of a viewer and a light, unit vectors in one frame. */
+/** The pair for a normal, a viewer and a light, all unit vectors in one frame. */
 export function pair_of(normal: Vec3, viewer: Vec3, light: Vec3): Pair {
   const mu_o = Math.min(dot(normal, viewer), 1.0);
   const mu_i = Math.min(dot(normal, light), 1.0);
@@ -50,21 +50,21 @@ export function values(of: Model, { wo, wi }: Pair, color: Vec3, roughness: numb
   return [one(color[0]), one(color[1]), one(color[2])];
 }
 
-/** The difference a - b of the channel in which it is largest. */
+/** The difference a - b of the channel with the largest difference. */
 export function apart(a: Vec3, b: Vec3): number {
   const each = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
   return each.reduce((most, one) => (Math.abs(one) > Math.abs(most) ? one : most));
 }
 
-/** Errors below it are roundings of float32, of which the shaders make some tens. */
+/** Smaller errors are float32 roundings, of which a shader's value accumulates dozens. */
 const ROUNDING = 64 * 2 ** -24;
 
-/** Whether two values differ by more than roundings. */
+/** Whether two values differ by more than rounding. */
 export function is_other(value: Vec3, other: Vec3): boolean {
   return !(Math.abs(apart(value, other)) < ROUNDING);
 }
 
-/** A point of the sphere, seen along -z. */
+/** A point on the sphere, seen along -z. */
 export interface Point extends Pair {
   readonly normal: Triple;
   readonly apart: number;
@@ -72,7 +72,7 @@ export interface Point extends Pair {
 
 const GRID = 96;
 
-/** The point of the sphere at which two models differ most in this light. */
+/** The point on the sphere where two models differ most in this light. */
 export function worst_point(first: Model, second: Model, state: State): Point {
   const light = light_of(state);
   let worst: Point | null = null;
@@ -98,7 +98,7 @@ export function worst_point(first: Model, second: Model, state: State): Point {
   return worst && Math.abs(worst.apart) > 1e-12 ? worst : facing_point(state);
 }
 
-/** A point that faces the viewer and the light alike. */
+/** A point whose normal is halfway between the viewer's and the light's directions. */
 export function facing_point(state: State): Point {
   const light = light_of(state);
   const half = unit([light[0], light[1], light[2] + 1.0 + 1e-9]);
@@ -107,7 +107,7 @@ export function facing_point(state: State): Point {
 
 const STEPS = 20;
 
-/** The largest difference of two models over all pairs of directions, signed. */
+/** The largest signed difference of two models over all pairs of directions. */
 export function largest_apart(first: Model, second: Model, color: Vec3, roughness: number): number {
   let most = 0.0;
   for (let o = 0; o <= STEPS; o++) {

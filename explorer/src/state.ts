@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The view as plain data: everything that the picture depends on, and its address.
+// The view as plain data: all inputs of the picture, which the address stores.
 
 import type { Triple } from "./data";
 
-export const SHAPES = ["sphere", "plane", "cloth", "ball", "fiber"] as const; // plane: a sphere on it
+// Plane: a sphere on a plane.
+export const SHAPES = ["sphere", "plane", "cloth", "ball", "fiber"] as const;
 export const SURROUNDINGS = ["none", "uniform", "studio", "sky", "window", "own"] as const;
 export const COMPARISONS = ["wipe", "side", "difference", "flicker"] as const;
 export const SAMPLERS = ["exact", "cltc", "cosine"] as const;
@@ -16,41 +17,48 @@ export type Comparison = (typeof COMPARISONS)[number];
 export type Sampler = (typeof SAMPLERS)[number];
 export type SideName = "left" | "right";
 
-/** One of the two materials that are compared. */
+/** One of the two materials to compare. */
 export interface Side {
   readonly source: string; // id of a Source
-  readonly flag: boolean; // energy_compensation, where the source has it
-  readonly sampler: Sampler; // of path tracing
+  readonly flag: boolean; // energy_compensation, if the source has it
+  readonly sampler: Sampler; // whether to trace paths through the generated text
 }
 
 export interface State {
   readonly left: Side;
   readonly right: Side;
   readonly comparison: Comparison;
-  readonly wipe: number; // share of the width that shows the left material, in [0, 1]
-  readonly scale: number; // difference that has the full color, in units of the picture's radiance
-  readonly shown: SideName; // by flicker
+  readonly wipe: number; // fraction of the width that shows the left material, in [0, 1]
+  readonly scale: number; // difference that has the last color, in units of the picture's radiance
+  readonly shown: SideName; // difference mode: alternate the two sides
   readonly shape: Shape;
-  /** Where the viewer is, in degrees from a shape's own place: around it, and up. Not for the sphere. */
+  /**
+   * The viewer's direction in degrees relative to the shape's default: around it, and up. Not used
+   * for the sphere.
+   */
   readonly turn: number; // [-180, 180]
   readonly tilt: number; // [-90, 90]
-  readonly zoom: number; // size of the shape over its own, [0.25, 8]
-  /** Direction to the light: degrees around the upright axis from the viewer, positive to the right. */
+  readonly zoom: number; // magnification of the shape, [0.25, 8]
+  /**
+   * Direction to the light: degrees around the vertical axis from the viewer, positive to the
+   * right.
+   */
   readonly azimuth: number; // [-180, 180]
   readonly elevation: number; // degrees above the horizon, [-90, 90]
-  readonly light: number; // irradiance over pi of a surface that faces the light; 0 switches it off
+  readonly light: number; // irradiance over pi of a surface facing the light; 0 switches it off
   readonly surroundings: Surroundings;
   readonly exposure: number; // stops
   readonly color: Readonly<Triple>; // rho, linear, each in [0, 1]
   readonly roughness: number; // r, or sigma in radian; in [0, 1]
-  readonly wanted: Readonly<Triple>; // albedo that the color is asked for
-  readonly average: boolean; // whether it is the average albedo, not that at normal incidence
+  readonly wanted: Readonly<Triple>; // requested albedo, from which the color follows
+  // Whether `wanted` is the average albedo instead of the one at normal incidence.
+  readonly average: boolean;
   readonly keep: boolean; // whether `color` follows from `wanted`
-  readonly paths: boolean; // path tracing instead of the generated shader's own lighting
-  readonly samples: number; // per pixel, at which path tracing stops
-  /** Values of a document's inputs that differ from its own, by source id and name of the uniform. */
+  readonly paths: boolean; // trace paths instead of using the generated shader's own lighting
+  readonly samples: number; // paths per pixel at which path tracing stops
+  /** Input values that differ from the document's own, by source id and uniform name. */
   readonly inputs: Readonly<Record<string, Readonly<Record<string, Value>>>>;
-  /** Where the probe is, in the picture: [0, 1]^2 from the left top; null for none. */
+  /** Position of the probe in the picture: [0, 1]^2 from the top left; null for none. */
   readonly probe: readonly [number, number] | null;
 }
 
@@ -67,7 +75,7 @@ export const INITIAL: State = {
   turn: 0,
   tilt: 0,
   zoom: 1,
-  azimuth: 155, // from behind and above: where implementations part
+  azimuth: 155, // from behind and above, where implementations differ
   elevation: 35,
   light: 1.5,
   surroundings: "studio",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts of shaders and documents, which the page holds by paragraphs, references and images, each once.
+// Texts of shaders and documents. The page stores each paragraph, reference and image once.
 
 import type { ModelSource, PageData, Port, ReferenceTable, ShaderSource, Texels } from "./data";
 
@@ -7,7 +7,7 @@ interface PackedPort extends Omit<Port, "image"> {
   readonly image: number | null;
 }
 
-/** A shader whose texts, reference and images are places in the tables. */
+/** A shader whose texts, reference and images are indices into the tables. */
 interface Packed extends Omit<
   ShaderSource,
   "pixel" | "paths" | "document" | "reference" | "inputs"
@@ -26,7 +26,7 @@ interface PackedData extends Omit<PageData, "sources"> {
   readonly images: readonly Texels[];
 }
 
-/** The data that Python embeds, with the texts in their places. */
+/** The data that Python embeds, with the indices replaced by the texts. */
 export function page_data(json: string): PageData {
   const { texts, references, images, sources, ...rest } = JSON.parse(json) as PackedData;
   const whole = (places: readonly number[]) => places.map((place) => texts[place]).join("\n\n");

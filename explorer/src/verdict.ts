@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a side is, whether it is what it should be, and by how much it is not.
+// The verdict on a side: which model it is, whether that is the intended one, and the difference.
 //
-// No side is called correct before its shader's values were read back in this browser.
+// No side is called correct before this browser has read back its shader's values.
 
 import type { ShaderForm, ShaderSource } from "./data";
 import { show } from "./format";
@@ -10,7 +10,7 @@ import { largest_apart, worst_point } from "./probe";
 import type { Side, State } from "./state";
 import { actual_model, has_table, meant_model, type Sources, source_of, values_of } from "./view";
 
-/** "differs": from the reference, as the specification leaves open. */
+/** "differs": from the reference, in a way that the specification permits. */
 export type Kind = "correct" | "wrong" | "differs" | "model" | "unknown" | "measuring";
 
 export interface Verdict {
@@ -22,22 +22,22 @@ export interface Verdict {
 /** Largest difference between a shader's values and those of its reference, for its own inputs. */
 export interface ErrorOf {
   readonly error: number;
-  readonly row: number; // of the pair or view where it is
-  readonly form: ShaderForm | null; // which explains the values where the reference does not
+  readonly row: number; // index of the pair or view with the largest difference
+  readonly form: ShaderForm | null; // permitted form that matches where the reference does not
 }
 
 export interface Errors {
   readonly direct: ErrorOf; // pi f cos of all pairs of directions
-  readonly white: ErrorOf; // what it returns of white surroundings
+  readonly white: ErrorOf; // light returned in white surroundings
 }
 
-/** What this browser read back of a side's shader. */
+/** Values that this browser read back from a side's shader. */
 export interface Evidence {
   readonly able: boolean; // whether it can draw at all
-  /** Whether the shader has the values of the model that it is said to be; null before it is known. */
+  /** Whether the shader has the values of its claimed model; null before this is known. */
   readonly confirmed: boolean | null;
-  readonly errors: Errors | null; // null before they are known, and without a reference
-  readonly failure: string; // what the compiler says of a shader that does not compile
+  readonly errors: Errors | null; // null until they are known, or if there is no reference
+  readonly failure: string; // compiler message if the shader does not compile
 }
 
 const BADGES = { correct: "correct", wrong: "wrong", differs: "allowed", unknown: "material" };
@@ -45,7 +45,7 @@ const MEASURING = "Its values are being read back.";
 const UNCHECKED = "Not judged by this page: run mxeon check on a document with these inputs.";
 const UNREAD = "Nothing is measured: this browser draws no shader.";
 
-/** The verdict on a side, for the colors, the roughness and the light of a view. */
+/** The verdict on a side for the colors, roughness and light of a view. */
 export function verdict_on(
   state: State,
   sources: Sources,
@@ -62,10 +62,10 @@ export function verdict_on(
     const own = has_table(source) ? by_reference(source, evidence) : null;
     if (checked) {
       const { kind } = checked;
-      // What this browser reads back may be wrong where `mxeon check` is right.
+      // This browser's values may be wrong where `mxeon check` is right.
       if (own && kind === "correct" && own.kind !== "unknown") {
         if (own.kind === "correct") return { ...own, text };
-        // Of layers no form is known; what `mxeon check` accepts stays accepted.
+        // The page has no permitted forms of layers, so the result of `mxeon check` stands.
         if (own.kind !== "differs" || changed) return own;
         return { kind, badge: BADGES[kind], text: `${text} ${own.text}` };
       }
@@ -85,7 +85,7 @@ export function verdict_on(
   return by_model(actual, evidence);
 }
 
-/** Whether a document's material, which `mxeon check` judged, has other inputs now. */
+/** Whether the inputs of a document's material have changed since `mxeon check` judged it. */
 function is_changed(source: ShaderSource, state: State, side: Side): boolean {
   const drawn = values_of(source, state, side);
   return source.inputs.some(
@@ -93,7 +93,7 @@ function is_changed(source: ShaderSource, state: State, side: Side): boolean {
   );
 }
 
-/** The verdict on a shader that is said to be the model that is meant. */
+/** The verdict on a shader that claims to be the intended model. */
 function by_model({ short, title }: Model, { able, confirmed }: Evidence): Verdict {
   if (!able) return { kind: "model", badge: short, text: UNREAD };
   if (confirmed === null) return { kind: "measuring", badge: "measuring", text: MEASURING };
@@ -102,7 +102,7 @@ function by_model({ short, title }: Model, { able, confirmed }: Evidence): Verdi
   return { kind: "correct", badge: short, text: `Correct: ${title}.` };
 }
 
-/** The verdict on a shader by the table of its reference. */
+/** The verdict on a shader according to the table of its reference. */
 function by_reference(source: ShaderSource, { able, errors }: Evidence): Verdict {
   const { bounds, forms } = source.reference!;
   if (!able) return { kind: "unknown", badge: "material", text: UNREAD };
@@ -121,7 +121,7 @@ function by_reference(source: ShaderSource, { able, errors }: Evidence): Verdict
   const title = places.find(({ form }) => form)?.form?.title;
   const off = `Off by up to ${parts.join(", ")}`;
   const named = title ? `: ${title}` : "";
-  // Of layers no form is known, but that of each lobe may be left open.
+  // The page has no permitted forms of layers, but each of their lobes may have one.
   if (forms.length === 0) {
     const hint = "Open each lobe to see which part is allowed.";
     return { kind: "differs", badge: "differs", text: `${off}. ${hint}` };
@@ -133,7 +133,7 @@ function by_reference(source: ShaderSource, { able, errors }: Evidence): Verdict
   return { kind: "wrong", badge: "wrong", text: `${off}${named}.` };
 }
 
-/** A sentence on a model that is not the one that is meant. */
+/** A sentence about a model that is not the intended one. */
 function wrong(actual: Model, meant: Model, state: State): string {
   const { color, roughness } = state;
   const here = Math.abs(worst_point(actual, meant, state).apart);
@@ -150,7 +150,7 @@ function wrong(actual: Model, meant: Model, state: State): string {
   return `${parts.join(": ")}. ${amount.join(" ")}`;
 }
 
-/** The largest difference of two albedos in closed form; 0 where there is none. */
+/** The largest difference of two albedos in closed form; 0 if one has none. */
 function albedo_error(actual: Model, meant: Model, { color, roughness }: State): number {
   if (!actual.albedo_dir || !meant.albedo_dir) return 0.0;
   let most = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Questions to a view and its data: which model is on which side, and what follows from what.
+// Functions of a view and its data: the model on each side, and what follows from it.
 
 import type { ModelName, PageData, ShaderSource, Source, Triple } from "./data";
 import { model, rho_from_albedo, type Model } from "./models/table";
@@ -7,46 +7,46 @@ import { INITIAL, type Side, type SideName, type State, type Value } from "./sta
 
 export const SIDES = ["left", "right"] as const;
 
-/** Letters by which readers know the sides. */
+/** Letters that name the sides for readers. */
 export const LETTER: Readonly<Record<SideName, string>> = { left: "A", right: "B" };
 
-/** What a page embeds, by id. */
+/** The embedded data, by id. */
 export type Sources = ReadonlyMap<string, Source>;
 
 export function sources_of(data: PageData): Sources {
   return new Map(data.sources.map((source) => [source.id, source]));
 }
 
-/** The source of a side. */
+/** The source shown on a side. */
 export function source_of(sources: Sources, side: Side): Source {
   return sources.get(side.source)!;
 }
 
-/** The model that a side is, or null if only its shader tells. */
+/** The model of a side; null if only its shader's values can tell. */
 export function actual_model(source: Source, side: Side, state: State): Model | null {
   if (source.kind === "model") return model(source.model);
   return source.actual && !is_changed(source, state) ? model(by_flag(source.actual, side)) : null;
 }
 
-/** The model that a side should be, or null if that is not known. */
+/** The intended model of a side; null if it is unknown. */
 export function meant_model(source: Source, side: Side, state: State): Model | null {
   if (source.kind === "model") return model(source.meant);
   return source.meant && !is_changed(source, state) ? model(by_flag(source.meant, side)) : null;
 }
 
-/** Whether a shader is judged by the table of its reference: no model in the page is known to be it. */
+/** Whether a shader is judged by its reference table, because the page has no model for it. */
 export function has_table(source: Source): source is ShaderSource {
   return source.kind === "shader" && !!source.reference && !(source.meant && source.actual);
 }
 
-/** Values of the reference of a side in a row of its table, for the inputs that it starts with. */
+/** Values of a side's reference in a row of its table, for the source's initial inputs. */
 export function tabled(source: Source, state: State, row: number | null): Triple | null {
   if (row === null || !has_table(source) || is_changed(source, state)) return null;
   const [r, g, b] = source.reference?.direct.slice(3 * row, 3 * row + 3) ?? [];
   return r === undefined ? null : [r, g!, b!];
 }
 
-/** Whether an input of a document, such as its weight, is not the document's own. */
+/** Whether an input of a document, such as its weight, was changed. */
 function is_changed(source: ShaderSource, state: State): boolean {
   const values = state.inputs[source.id] ?? {};
   return source.inputs.some(({ name, value }) => name in values && values[name] !== value);
@@ -61,21 +61,21 @@ export function has_flag(source: Source): boolean {
   return source.kind === "shader" && source.controls.flag !== "";
 }
 
-/** A name for a side where there is little room. */
+/** A short name for a side. */
 export function short_title(source: Source, side: Side): string {
   if (source.kind === "model") return source.title.split(":")[0]!.replace(/.*\((.*)\)$/, "$1");
   if (has_flag(source)) return `${source.library}, flag ${side.flag ? "on" : "off"}`;
   return source.title;
 }
 
-/** A view whose color follows from the albedo that is wanted, where it is to be kept. */
+/** A view whose color follows from the requested albedo, if there is one. */
 export function consistent(state: State, sources: Sources): State {
   if (!state.keep) return state;
   const of = inversion_model(state, sources);
   return { ...state, color: enter(of, state.wanted, state.roughness, state.average) };
 }
 
-/** The model for which colors are inverted: the one that the left side should be. */
+/** The model whose albedo is inverted: the intended one of the left side. */
 export function inversion_model(state: State, sources: Sources): Model {
   return meant_model(source_of(sources, state.left), state.left, state) ?? model("eon");
 }
@@ -92,7 +92,7 @@ export function enter(
   return [one(r), one(g), one(b)];
 }
 
-/** A view with another source on a side; a document brings its own color, roughness and flag. */
+/** A view with another source on a side; documents set color, roughness and flag. */
 export function with_source(
   state: State,
   sources: Sources,
@@ -125,7 +125,7 @@ export function own_view(source: ShaderSource): State {
   };
 }
 
-/** Values of a shader's inputs as they are drawn, by name of the uniform. */
+/** Values of a shader's inputs in the drawn picture, by uniform name. */
 export function values_of(source: ShaderSource, state: State, side: Side): Map<string, Value> {
   const values = new Map<string, Value>();
   for (const port of source.inputs) {
@@ -141,12 +141,12 @@ export function values_of(source: ShaderSource, state: State, side: Side): Map<s
   return values;
 }
 
-/** What the ids of a material have in common, whatever the library. */
+/** The common part of a material's ids, without the library. */
 export function stem_of(id: string): string {
   return id.replace(/[^/]*$/, "");
 }
 
-/** Titles of the materials that the page has as shaders, by what their ids have in common. */
+/** Titles of the materials with shaders on the page, by the common part of their ids. */
 export function materials_of(data: PageData): ReadonlyMap<string, string> {
   const shaders = data.sources.filter((source) => source.kind === "shader");
   const own = shaders.filter(({ id }) => id.startsWith("document/"));
@@ -155,7 +155,7 @@ export function materials_of(data: PageData): ReadonlyMap<string, string> {
   );
 }
 
-/** A view of a material with both libraries, or of the one that has it. */
+/** A view of a material with both libraries, or with the only one that has it. */
 export function with_material(state: State, sources: Sources, stem: string): Partial<State> {
   const ids = [...sources.keys()].filter((id) => stem_of(id) === stem);
   const [first, second = first] = ids;
@@ -165,9 +165,12 @@ export function with_material(state: State, sources: Sources, stem: string): Par
   return { ...change, right, shape, ...light_for(state, stem) };
 }
 
-const FRONT = { azimuth: 40, elevation: 45 }; // shows highlights
+const FRONT = { azimuth: 40, elevation: 45 }; // direction that shows highlights
 
-/** The light of a material, unless a reader has moved it: diffuse ones part where it is behind. */
+/**
+ * The default light of a material, unless the reader has moved it: diffuse models differ most when
+ * lit from behind.
+ */
 function light_for(state: State, stem: string): Partial<State> {
   const first = { azimuth: INITIAL.azimuth, elevation: INITIAL.elevation };
   const is_at = (light: typeof FRONT): boolean =>
@@ -176,7 +179,7 @@ function light_for(state: State, stem: string): Partial<State> {
   return stem.startsWith("lobe/") ? FRONT : first;
 }
 
-/** The first view of a page: its first document if it has one. */
+/** The first view of a page: its first document, if it has one. */
 export function first_view(data: PageData): State {
   const sources = sources_of(data);
   const documents = data.sources.filter((source) => source.id.startsWith("document/"));

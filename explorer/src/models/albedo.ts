@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional and average albedos: the twin of python/mxeon/models/diffuse.py, and of quadrature.py
-// for models without a closed form.
+// Directional and average albedos: the TypeScript version of python/mxeon/models/diffuse.py, and of
+// quadrature.py for models without a closed form.
 
 import type { Triple } from "../data";
 import type { Brdf } from "./brdf";
@@ -46,7 +46,9 @@ function eon_albedo(loss: number, rho: number, r: number): number {
   return rho * (1.0 - ((1.0 - rho) * r * loss) / eon_denominator(rho, r));
 }
 
-/** Directional albedo of any model that mirrors in the plane of incidence, by Gauss-Legendre rules. */
+/**
+ * Directional albedo of a model symmetric about the plane of incidence, by Gauss-Legendre rules.
+ */
 export function albedo_dir_quadrature(
   brdf: Brdf,
   mu: number,
@@ -58,7 +60,7 @@ export function albedo_dir_quadrature(
   const theta_o = Math.acos(mu);
   const rest = PI / 2.0 - theta_o;
   const wo: Triple = [Math.sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu];
-  // Polar angles with their weights: below theta_o, where the nodes crowd, and above it.
+  // Polar angles and weights: below theta_o, where the nodes crowd, and above it.
   const polar: [number, number][] = [
     ...x.map((u, k): [number, number] => [
       theta_o * (1.0 - u ** 5),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// BRDFs of Lambert and of the Oren-Nayar family, in 1/sr and without the cosine: the twin of
-// python/mxeon/models/diffuse.py.
+// BRDFs of Lambert and the Oren-Nayar family, in 1/sr, without the cosine: the TypeScript version
+// of python/mxeon/models/diffuse.py.
 
 import type { Vec3 } from "../data";
 import {
@@ -25,12 +25,12 @@ export type Brdf = (wo: Vec3, wi: Vec3, rho: number, parameter: number) => numbe
 /** [Portsmouth2025], section 2.1, the limit sigma -> 0. */
 export const lambert_brdf: Brdf = (_wo, _wi, rho) => rho / PI;
 
-/** Angle whose sine is y and whose cosine is x, as a fraction of a right angle. */
+/** The angle with sine y and cosine x, as a fraction of a right angle. */
 function oren_nayar_angle(y: number, x: number): number {
   return (2.0 / PI) * Math.atan2(y, x);
 }
 
-/** (sin(alpha) - (2 beta / pi)^3) / cos(beta), and its limit 6 / pi where both directions graze. */
+/** (sin(alpha) - (2 beta / pi)^3) / cos(beta); its limit is 6 / pi if both directions graze. */
 function oren_nayar_behind_slope(mu_o: number, mu_i: number, S_o: number, S_i: number): number {
   const high = Math.max(mu_o, mu_i);
   const low = Math.min(mu_o, mu_i);
@@ -58,7 +58,7 @@ export const oren_nayar_brdf: Brdf = (wo, wi, rho, sigma) => {
   const behind =
     oren_nayar_quotient(Math.min(s, 0.0), Math.max(S_o, S_i)) *
     oren_nayar_behind_slope(mu_o, mu_i, S_o, S_i);
-  // C3 and what follows it, where 1 - cos(phi)^2 is (cross / (S_o S_i))^2.
+  // C3 and its factors, where 1 - cos(phi)^2 is (cross / (S_o S_i))^2.
   const cross = wo[0] * wi[1] - wo[1] * wi[0];
   const aside =
     (oren_nayar_quotient(cross, S_o * S_i) ** 2 / (1.0 + Math.abs(cos_phi))) *
@@ -73,7 +73,7 @@ export const oren_nayar_brdf: Brdf = (wo, wi, rho, sigma) => {
 export const qon_brdf: Brdf = (wo, wi, rho, sigma) =>
   (rho / PI) * (qon_aq(sigma) + qon_bq(sigma) * qon_quotient(...cosines(wo, wi)));
 
-/** QON with 0.57 for 0.33 in A_q: [Portsmouth2025], footnote 1. */
+/** QON with 0.57 instead of 0.33 in A_q: [Portsmouth2025], footnote 1. */
 export const qon_footnote_brdf: Brdf = (wo, wi, rho, sigma) =>
   (rho / PI) * (qon_aq(sigma, 0.57) + qon_bq(sigma) * qon_quotient(...cosines(wo, wi)));
 
@@ -91,7 +91,7 @@ export const fon_brdf: Brdf = (wo, wi, rho, roughness) =>
 export const eon_brdf: Brdf = (wo, wi, rho, roughness) =>
   eon_brdf_mu(...cosines(wo, wi), rho, roughness);
 
-/** EON with the quartic for H, which is kept from falling below 0 where mu < 0.0014. */
+/** EON with the quartic for H, clamped at 0 because it is negative for mu < 0.0014. */
 export const eon_brdf_approx: Brdf = (wo, wi, rho, roughness) => {
   const [mu_o, mu_i, s] = cosines(wo, wi);
   const losses = Math.max(fon_loss_approx(mu_o), 0.0) * Math.max(fon_loss_approx(mu_i), 0.0);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formulas of the Oren-Nayar family in float64: the twin of python/mxeon/models/diffuse.py.
+// Formulas of the Oren-Nayar family in float64: the TypeScript version of
+// python/mxeon/models/diffuse.py.
 //
-// Names, arguments and order of operations are those of the NumPy version; one channel at a time.
+// Names, arguments and order of operations match the NumPy version; each function handles one
+// channel.
 
 import type { Vec3 } from "../data";
 
 const { PI } = Math;
-const TINY = 2.2250738585072014e-308; // the least normal number
+const TINY = 2.2250738585072014e-308; // the smallest normal number
 
 // [Portsmouth2025], Eqs. (10), (15), (29).
 export const C1 = 0.5 - 2.0 / (3.0 * PI);
@@ -54,18 +56,18 @@ export function qon_bq(sigma: number): number {
   return (0.45 * sigma ** 2) / (sigma ** 2 + 0.09);
 }
 
-/** D of the albedo and the value of EON. */
+/** D, the divisor in the albedo and the value of EON. */
 export function eon_denominator(rho: number, roughness: number): number {
   return 1.0 + C1 * roughness - rho * (roughness * (C1 - C2));
 }
 
-/** Weight of H(mu_o) H(mu_i) beside FON's 1 + r s / t_F: Eq. (19) over Eq. (10). */
+/** Weight of H(mu_o) H(mu_i) relative to FON's 1 + r s / t_F: Eq. (19) over Eq. (10). */
 export function eon_multiple_ratio(rho: number, roughness: number): number {
   const weight = (roughness * (1.0 + C2 * roughness)) / (C1 - C2);
   return (rho * weight) / eon_denominator(rho, roughness);
 }
 
-/** value / divisor, and 0 where a divisor >= 0 vanishes: this family has no limit there. */
+/** value / divisor, or 0 if a divisor >= 0 vanishes: this family has no limit there. */
 export function oren_nayar_quotient(value: number, divisor: number): number {
   return divisor < TINY ? 0.0 : value / divisor;
 }

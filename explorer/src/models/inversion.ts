@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Color to enter for a wanted albedo: the twin of python/mxeon/models/diffuse.py for EON, and
-// bisection for the other models.
+// Color to enter for a given albedo: the TypeScript version of python/mxeon/models/diffuse.py for
+// EON, and bisection for the other models.
 
 import { C1, C2 } from "./formulas";
 
-/** Reflectance that gives EON this directional albedo at normal incidence: Eqs. (28) to (31). */
+/** Reflectance for which EON has this directional albedo at normal incidence: Eqs. (28) to (31). */
 export function eon_rho_from_albedo_normal(color: number, roughness: number): number {
   const b = 1.0 + (C1 - C2) * roughness * color;
   const d = 1.0 + C1 * roughness;
@@ -12,13 +12,16 @@ export function eon_rho_from_albedo_normal(color: number, roughness: number): nu
   return Math.min(rho, 1.0);
 }
 
-/** Reflectance that gives EON this average albedo: [Portsmouth2025], Eqs. (29), (33). */
+/** Reflectance for which EON has this average albedo: [Portsmouth2025], Eqs. (29), (33). */
 export function eon_rho_from_albedo_avg(color: number, roughness: number): number {
   const scaled = color * (1.0 + C1 * roughness);
   return scaled / (scaled + (1.0 + C2 * roughness) * (1.0 - color));
 }
 
-/** Argument in [0, 1] at which a growing function has this value; the nearer end if none has. */
+/**
+ * Argument in [0, 1] where an increasing function has this value, or the nearer end of the
+ * interval.
+ */
 export function bisect(growing: (rho: number) => number, value: number): number {
   if (growing(1.0) <= value) return 1.0;
   if (growing(0.0) >= value) return 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wrong variants of EON and QON that renderers implement: the twin of
+// Wrong variants of EON and QON in renderers: the TypeScript version of
 // python/mxeon/models/diffuse.py.
 
 import { eon_albedo_dir, fon_albedo_dir, qon_albedo_dir, type AlbedoDir } from "./albedo";
@@ -16,14 +16,14 @@ import {
   fon_lambert,
 } from "./formulas";
 
-/** EON with dot(wo, wi) kept above 1e-8 before s is formed. */
+/** EON that clamps dot(wo, wi) to at least 1e-8 before it computes s. */
 export const eon_clamped_brdf: Brdf = (wo, wi, rho, roughness) => {
   const [mu_o, mu_i, signed] = cosines(wo, wi);
   const s = Math.max(signed + mu_o * mu_i, 1e-8) - mu_o * mu_i;
   return eon_brdf_mu(mu_o, mu_i, s, rho, roughness);
 };
 
-/** EON whose multiple-scattering lobe carries rho^3 for rho^2. */
+/** EON whose multiple-scattering lobe has rho^3 instead of rho^2. */
 export const eon_rho_cubed_brdf: Brdf = (wo, wi, rho, roughness) => {
   const [mu_o, mu_i, s] = cosines(wo, wi);
   const single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s);
@@ -40,7 +40,7 @@ export const fon_white_lobe_brdf: Brdf = (wo, wi, rho, roughness) => {
   return fon_brdf(wo, wi, rho, roughness) + white;
 };
 
-/** QON that is multiplied by its own color once more. */
+/** QON multiplied by its own color a second time. */
 export const qon_tinted_twice_brdf: Brdf = (wo, wi, rho, sigma) =>
   rho * qon_brdf(wo, wi, rho, sigma);
 
@@ -56,7 +56,9 @@ export const fon_white_lobe_albedo_dir: AlbedoDir = (mu, rho, roughness) =>
 export const qon_tinted_twice_albedo_dir: AlbedoDir = (mu, rho, sigma) =>
   rho * rho * qon_albedo_dir(mu, sigma);
 
-/** Directional albedo of QON as MaterialX 1.39.5 fits it; off by up to 0.068 at rho 1. */
+/**
+ * Directional albedo of QON according to the fit in MaterialX 1.39.5; off by up to 0.068 at rho 1.
+ */
 export const qon_fitted_albedo_dir: AlbedoDir = (mu, rho, sigma) => {
   const over = 1.0 - 0.4297 * sigma - 0.7632 * mu * sigma + 1.4385 * sigma ** 2;
   const under = 1.0 - 0.6076 * sigma - 0.4993 * mu * sigma + 2.0315 * sigma ** 2;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of models and of known defects, one row each: the twin of python/mxeon/models/table.py.
+// The table of models and known defects, one row each: the TypeScript version of
+// python/mxeon/models/table.py.
 
 import type { ModelName, Vec3 } from "../data";
 import * as albedo from "./albedo";
@@ -11,19 +12,22 @@ import * as defects from "./known_defects";
 export interface Model {
   readonly name: ModelName;
   readonly title: string;
-  readonly short: string; // where there is little room
+  readonly short: string; // short title
   readonly brdf: Brdf;
   readonly parameter: "roughness" | "sigma" | null;
-  readonly albedo_dir: albedo.AlbedoDir | null; // where a closed form is known
+  readonly albedo_dir: albedo.AlbedoDir | null; // closed form, if known
   readonly albedo_avg: albedo.AlbedoAvg | null;
-  /** Of a defect: the model that is meant, and where the defect is wrong. */
+  /** Only defects: the intended model, and where the defect differs from it. */
   readonly meant: ModelName | null;
   readonly wrong: string;
 }
 
 type White = (...of: number[]) => number;
 
-/** Albedo at unit reflectance, `white(..., parameter)`, as one that takes rho before it. */
+/**
+ * Convert `white(..., parameter)`, an albedo at unit reflectance, to a function of rho and the
+ * parameter.
+ */
 function tinted_dir(white: White): albedo.AlbedoDir {
   return (mu, rho, parameter) => rho * white(mu, parameter);
 }
@@ -173,12 +177,12 @@ export function model(name: ModelName): Model {
   return ROWS.get(name)!;
 }
 
-/** pi f cos(theta_i) of one channel, and 0 for a light below the horizon. */
+/** pi f cos(theta_i) of one channel; 0 if the light is below the horizon. */
 export function pi_f_cos(of: Model, wo: Vec3, wi: Vec3, rho: number, parameter: number): number {
   return wi[2] <= 0.0 ? 0.0 : Math.PI * of.brdf(wo, wi, rho, parameter) * wi[2];
 }
 
-/** Directional albedo, in closed form if there is one; `nodes` is the fineness otherwise. */
+/** Directional albedo, in closed form if there is one, else by quadrature with `nodes`. */
 export function albedo_dir(
   of: Model,
   mu: number,
@@ -190,7 +194,7 @@ export function albedo_dir(
   return albedo.albedo_dir_quadrature(of.brdf, mu, rho, parameter, nodes);
 }
 
-/** Average albedo, 2 times the integral of mu E(mu): closed, or by Simpson's rule. */
+/** Average albedo, 2 times the integral of mu E(mu): in closed form, or by Simpson's rule. */
 export function albedo_avg(of: Model, rho: number, parameter: number): number {
   if (of.albedo_avg) return of.albedo_avg(rho, parameter);
   const steps = 16;
@@ -203,7 +207,7 @@ export function albedo_avg(of: Model, rho: number, parameter: number): number {
   return sum;
 }
 
-/** Color to enter so that one channel has this albedo, at normal incidence or on average. */
+/** Color to enter for one channel to have this albedo, at normal incidence or on average. */
 export function rho_from_albedo(
   of: Model,
   seen: number,

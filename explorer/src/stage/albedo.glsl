@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional albedo of a model by quadrature, at 256 cosines. Stands behind STAGE_VALUE.
+// Directional albedo of a model by quadrature, at 256 cosines. This text follows the definition of
+// STAGE_VALUE.
 //
-// The integrand is smooth between the polar angle of wo, where the larger cosine changes, and the
-// azimuth at which s changes its sign: rectangles with 16 Gauss-Legendre nodes on each side. Angles
-// are the tangents of their halves, which makes cosines and sines quotients: drivers' are poor.
+// The integrand is smooth except at the polar angle of wo, where the larger cosine switches, and at
+// the azimuth where s changes sign. Each smooth rectangle has 16 by 16 Gauss-Legendre nodes. Angles
+// are represented by the tangents of their halves: cosines and sines then are quotients, which is
+// more precise than drivers' trigonometric functions.
 
 uniform vec3 stage_rho;
 uniform float stage_parameter;
@@ -16,14 +18,14 @@ const float NODES[8] = float[8](0.0950125098, 0.2816035508, 0.4580167777, 0.6178
 const float WEIGHTS[8] = float[8](0.1894506105, 0.1826034150, 0.1691565194, 0.1495959888,
                                   0.1246289713, 0.0951585117, 0.0622535239, 0.0271524594);
 
-// Node and weight in [low, high].
+// The node and its weight in [low, high].
 vec2 stage_node(int k, float low, float high)
 {
     float node = k < 8 ? -NODES[k] : NODES[k - 8];
     return 0.5 * vec2(low + high + (high - low) * node, (high - low) * WEIGHTS[k & 7]);
 }
 
-// Cosine and sine of the angle whose half has the tangent t, and how fast it grows with t.
+// Cosine and sine of the angle whose half has the tangent t, and the angle's derivative by t.
 vec3 stage_angle(float t)
 {
     return vec3(1.0 - t * t, 2.0 * t, 2.0) / (1.0 + t * t);
@@ -54,7 +56,7 @@ void main()
     vec3 wo = vec3(S, 0.0, mu);
     float tangent = S / (1.0 + mu);
     vec3 sum = vec3(0.0);
-    // A loop, so that compilers write the model out once.
+    // A loop, so that compilers inline the model only once.
     for (int zone = 0; zone < 2; ++zone) {
         float low = zone == 0 ? 0.0 : tangent;
         sum += stage_zone(wo, low, zone == 0 ? tangent : 1.0, stage_rho, stage_parameter);

@@ -3,7 +3,7 @@
 
 import type { Vec3 } from "../data";
 
-/** sRGB stops, equally spaced from -scale (the right is brighter) to +scale (the left is). */
+/** sRGB stops, equally spaced from -scale (right side brighter) to +scale (left side brighter). */
 export const DIFFERENCE_COLORS: readonly Vec3[] = [
   [0.02, 0.19, 0.38],
   [0.13, 0.4, 0.67],
@@ -16,7 +16,7 @@ export const DIFFERENCE_COLORS: readonly Vec3[] = [
   [0.45, 0.11, 0.04],
 ];
 
-/** The linear value of an sRGB one. */
+/** Decode an sRGB value to a linear one. */
 export function linear(encoded: number): number {
   return encoded <= 0.04045 ? encoded / 12.92 : ((encoded + 0.055) / 1.055) ** 2.4;
 }

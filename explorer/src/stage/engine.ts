@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The passes of a frame, in one WebGL2 context: geometry, shadow, both materials, picture, screen.
+// The passes of a frame in one WebGL2 context: geometry, shadow, both materials, picture, screen.
 //
-// What a pass reads decides whether it is drawn again: a wipe that moves draws no material anew.
+// A pass is drawn again only if its inputs change: moving the wipe redraws no material.
 
 import type { PageData, ReferenceTable, ShaderSource, Source, Triple, Vec3 } from "../data";
 import type { SideName, State } from "../state";
@@ -18,16 +18,18 @@ import { Textures } from "./textures";
 
 export const SIDES = ["left", "right"] as const satisfies readonly SideName[];
 
-const ALBEDO_ANGLES = 256; // of the table of a model without a closed form
+const ALBEDO_ANGLES = 256; // size of the albedo table of a model without a closed form
 const FAR = 1e8;
-const FINE_SAMPLES = 1024; // of white surroundings, by glossy lobes whose values are checked
+const FINE_SAMPLES = 1024; // samples of glossy lobes in white surroundings, for checks of values
 
-/** Diameter of the sphere in pixels: even, so that its pixels are those of the gl host's picture. */
+/** Diameter of the sphere in pixels: even, so that its pixels match the gl host's picture. */
 export function diameterOf(size: Size, state: State): number {
   return 2 * Math.round(Math.min(...size) / 2 / camera({ ...state, shape: "sphere" }).span);
 }
 
-/** Largest difference of values, and its row; of large ones it is relative, as in checks of values. */
+/**
+ * The largest difference and its row; large values are compared relatively, as in checks of values.
+ */
 function farthest(
   values: readonly (Triple | null)[],
   expected: readonly number[],
@@ -37,14 +39,16 @@ function farthest(
     const own = expected.slice(3 * row, 3 * row + 3);
     const scale = relative ? Math.max(1, ...own.map(Math.abs)) : 1;
     const parts = own.map((each, k) => Math.abs((value?.[k] ?? NaN) - each) / scale);
-    return Math.max(...parts); // NaN of a value that is none
+    return Math.max(...parts); // NaN if the value is missing
   });
   const none = errors.findIndex(Number.isNaN);
   const row = none >= 0 ? none : errors.indexOf(Math.max(...errors));
   return [errors[row] ?? 0, Math.max(row, 0)];
 }
 
-/** The error against the reference, and the form that explains the values if it does not. */
+/**
+ * The error against the reference, and the permitted form that matches if the reference does not.
+ */
 function nearest(
   kind: "direct" | "white",
   reference: ReferenceTable,
@@ -67,16 +71,16 @@ export class Engine {
   private readonly sources: ReadonlyMap<string, Source>;
   private readonly programs: gpu.Programs;
   private readonly tables: Record<SideName, gpu.Target>;
-  private readonly pixel: gpu.Target; // of a single value,
-  private readonly upright: WebGLTexture; // and the normal there
+  private readonly pixel: gpu.Target; // target of a single value,
+  private readonly upright: WebGLTexture; // and of the normal at its point
   private readonly one: gpu.Target; // geometry of a single pixel
-  private readonly drawn = new Map<string, string>(); // what each pass was last drawn from
+  private readonly drawn = new Map<string, string>(); // inputs of each pass when it was last drawn
   private targets: Targets;
   private traced: Paths | null = null;
   private uniforms: gpu.Uniforms = {};
-  /** What is wrong with the programs, by the source they belong to. */
+  /** Errors of the programs, by their source. */
   readonly errors = new Map<string, string>();
-  /** Source whose program is compiled now. */
+  /** The source whose program is being compiled. */
   waiting = "";
 
   constructor(
@@ -99,9 +103,8 @@ export class Engine {
   }
 
   /**
-   * Draw frame `index` of the average onto the canvas; false while programs are compiled.
-   *
-   * `size` is what is drawn, `full` what a picture at rest has, `canvas` that of the canvas.
+   * Draw frame `index` of the average onto the canvas; false while programs compile. `size` is the
+   * size drawn, `full` the size at rest, and `canvas` the size of the canvas.
    */
   frame(state: State, size: Size, full: Size, canvas: Size, index: number): boolean {
     if (!this.ready(state)) return false;
@@ -122,7 +125,10 @@ export class Engine {
     return true;
   }
 
-  /** Linear radiance of a side at the pixels' centers, alpha 1 on the subject; null while compiling. */
+  /**
+   * Linear radiance of a side at the pixel centers, with alpha 1 on the subject; null while
+   * compiling.
+   */
   read(state: State, side: SideName, size: Size, passes: number): Float32Array | null {
     if (!this.ready(state)) return null;
     const area = [0, 0, ...size] as const;
@@ -135,25 +141,27 @@ export class Engine {
     return gpu.readPixels(this.gl, this.targets[side], 0, area);
   }
 
-  /** Normal and part, and position, of a pixel, in the viewer's frame; null while compiling. */
+  /** Normal, part and position of a pixel in the viewer's frame; null while compiling. */
   point(state: State, size: Size, x: number, y: number): [Float32Array, Float32Array] | null {
     const text = this.texts.geometry(state.shape);
     const program = this.isPending("", text) ? null : this.programs.get(text);
     if (!program) return null;
-    // A frame of one pixel, moved to where that one is.
+    // Draw a frame of one pixel, shifted to the given place.
     const uniforms = { ...this.uniformsOf(state, size, 0), stage_jitter: [x, y] };
     gpu.drawPass(this.gl, program, this.one, [1, 1], uniforms);
     const read = (each: number) => gpu.readPixels(this.gl, this.one, each, [0, 0, 1, 1]);
     return [read(0), read(1)];
   }
 
-  /** pi f cos(theta_i) of a side's own shader for one pair; null while compiling or if it fails. */
+  /**
+   * pi f cos(theta_i) of a side's own shader for one pair; null while it compiles or if it fails.
+   */
   value(state: State, side: SideName, wo: Vec3, wi: Vec3): Triple | null {
     const alone: State = { ...state, shape: "sphere", light: 1, surroundings: "none" };
     return this.isValued(alone, side) ? this.single(alone, side, wo, wi, {}) : null;
   }
 
-  /** Largest errors of a shader with its own inputs; null while compiling or if it fails. */
+  /** Largest errors of a shader with its own inputs; null while it compiles or if it fails. */
   check(source: ShaderSource): Errors | null {
     const { pairs, views } = this.data;
     const view = own_view(source);
@@ -169,7 +177,7 @@ export class Engine {
     };
   }
 
-  /** Whether a side's programs are there for `single`. */
+  /** Whether a side's programs for `single` are compiled. */
   private isValued(state: State, side: SideName): boolean {
     const source = this.sources.get(state[side].source);
     if (!source) return false;
@@ -178,7 +186,7 @@ export class Engine {
     return pending.length === 0 && !this.errors.has(source.id);
   }
 
-  /** Radiance of a side's shader at one point, with some uniforms of their own. */
+  /** Radiance of a side's shader at one point, with some uniforms replaced. */
   private single(
     state: State,
     side: SideName,
@@ -203,12 +211,12 @@ export class Engine {
     return [red, green, blue];
   }
 
-  /** Standard error over the mean of a side's pixels after so many passes. */
+  /** Relative standard error of a side's pixels after the given number of passes. */
   noise(side: SideName, size: Size, passes: number): number {
     return this.traced?.noise(side, size, passes) ?? 0;
   }
 
-  /** Ask for all programs of a state, so that they are compiled side by side. */
+  /** Request all programs of a state at once, so that they compile in parallel. */
   private ready(state: State): boolean {
     this.errors.clear();
     const { texts } = this;
@@ -249,7 +257,7 @@ export class Engine {
     this.drawn.clear();
   }
 
-  /** Uniforms of all passes of a frame. */
+  /** Uniforms that all passes of a frame share. */
   private uniformsOf(state: State, size: Size, index: number): gpu.Uniforms {
     const view = camera(state);
     const light = lightVector(state);
@@ -282,7 +290,7 @@ export class Engine {
     };
   }
 
-  /** The geometry and the shadow. */
+  /** Draw the geometry and the shadow. */
   private prepare(state: State, size: Size, index: number): void {
     this.uniforms = this.uniformsOf(state, size, index);
     const { geometry, lit } = this.targets;
@@ -293,7 +301,7 @@ export class Engine {
     this.pass("lit", light, this.texts.shadow(state.shape), lit, size, {});
   }
 
-  /** Draw a pass if what it reads has changed. */
+  /** Draw a pass if its inputs have changed. */
   private pass(
     name: string,
     key: string,
@@ -308,7 +316,7 @@ export class Engine {
     if (program) gpu.drawPass(this.gl, program, target, size, { ...this.uniforms, ...uniforms });
   }
 
-  /** Draw a side's material, or nothing if it has none that works. */
+  /** Draw a side's material, if it has one that works. */
   private material(state: State, side: SideName, size: Size): void {
     const source = this.sources.get(state[side].source);
     if (!source || this.errors.has(source.id)) {
@@ -332,7 +340,10 @@ export class Engine {
     this.pass(side, JSON.stringify([seen, place]), text, this.targets[side], size, uniforms);
   }
 
-  /** Program and uniforms of a side's material, and its table of albedos; the light in the viewer's frame. */
+  /**
+   * Program and uniforms of a side's material, and its table of albedos; `light` is in the viewer's
+   * frame.
+   */
   private look(state: State, side: SideName, source: Source, light: Vec3, eye: Vec3) {
     if (source.kind === "shader") {
       const view = camera(state);
@@ -348,7 +359,7 @@ export class Engine {
     return { text: this.texts.model(source.model), uniforms: { stage_albedos: layer(table) } };
   }
 
-  /** Add a path per pixel to a side's average. */
+  /** Add one path per pixel to a side's average. */
   private path(state: State, side: SideName, size: Size, index: number): void {
     this.traced ??= new Paths(this.gl, this.targets.size);
     const source = this.sources.get(state[side].source);
@@ -368,7 +379,7 @@ export class Engine {
     });
   }
 
-  /** Compare the sides in frame `index` of the average, the sides after so many passes. */
+  /** Compare the sides in frame `index` of the average, after the given number of passes. */
   private picture(state: State, size: Size, index: number, passes: number): void {
     const { average } = this.targets;
     const [now, before] = index % 2 ? [average[1], average[0]] : average;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands behind a shader that mxeon generated: a main that gives it the point of the pixel.
+// The end of a shader that mxeon generated: a main function that provides the pixel's point.
 //
-// Its own main is renamed, and what it would read from the vertex stage are variables, set below.
+// The shader's own main is renamed, and the code below sets the variables that replace its inputs
+// from the vertex stage.
 
 uniform highp sampler2D stage_surface;
 uniform highp sampler2D stage_place;
@@ -10,7 +11,8 @@ uniform highp sampler2D stage_lit;
 uniform mat3 stage_camera;
 uniform vec4 stage_frame;
 uniform float stage_intensity;
-uniform vec2 stage_bend; // Height of the center about which fibers bend, and 1; 0 for other shapes.
+// Height of the center around which the fibers bend, and 1; both are 0 for other shapes.
+uniform vec2 stage_bend;
 
 void main()
 {

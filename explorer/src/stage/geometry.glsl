@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each pixel shows: where it is and which way it faces. Materials read this, so that every
-// one of them sees the same exact point, and a change of material draws no shape anew.
+// Geometry of each pixel: position and normal. All materials read it, so they shade exactly the
+// same point, and switching materials does not redraw the shape.
 
-layout(location = 0) out vec4 stage_surface; // Normal in the viewer's frame, and the part.
-layout(location = 1) out vec4 stage_place; // Position in the viewer's frame, share of surroundings.
+layout(location = 0) out vec4 stage_surface; // Normal in the viewer's frame, and the part's number.
+// Position in the viewer's frame, and the visible share of the surroundings.
+layout(location = 1) out vec4 stage_place;
 layout(location = 2) out vec4 stage_detail; // Texture coordinates, opacity.
 
-// Angle of (x, y) from the x axis as a share of a full turn, in [-0.5, 0.5].
+// Angle of (x, y) from the x axis as a fraction of a full turn, in [-0.5, 0.5].
 float stage_turn(float y, float x)
 {
-    float radius = max(length(vec2(x, y)), 1.0e-30); // At a pole there is no angle: 0.
+    float radius = max(length(vec2(x, y)), 1.0e-30); // The angle is undefined at a pole: return 0.
     float quarter = 0.25 * oren_nayar_angle(abs(y) / radius, abs(x) / radius);
     return (y < 0.0 ? -1.0 : 1.0) * (x < 0.0 ? 0.5 - quarter : quarter);
 }
 
-// The sphere under the pixel in units of its radius. Whole numbers below 2^24 make the difference
-// under the root exact in float32, so that the rim is as sharp as the middle.
+// The sphere under the pixel in units of its radius. With integers below 2^24 the difference under
+// the root is exact in float32, which keeps the rim sharp.
 void stage_exact_sphere()
 {
     vec2 at = stage_from_center();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs, textures and frames of one WebGL2 context.
+// Programs, textures and frames in one WebGL2 context.
 
 import { type Text, VERTEX } from "./texts";
 
@@ -23,13 +23,13 @@ interface Pending {
   program: Program | null;
 }
 
-/** A frame that passes draw into, and its textures. */
+/** A frame to draw into, and its textures. */
 export interface Target {
   readonly frame: WebGLFramebuffer;
   readonly textures: readonly WebGLTexture[];
 }
 
-/** Programs by their pixel stage, compiled when they are first asked for. */
+/** Programs by pixel stage, compiled on first use. */
 export class Programs {
   private readonly known = new Map<string, Pending>();
   private readonly vertex: WebGLShader;
@@ -40,7 +40,7 @@ export class Programs {
     this.parallel = gl.getExtension("KHR_parallel_shader_compile");
   }
 
-  /** The program, or null while it is compiled; raises the compiler's words. */
+  /** The program, or null while it compiles; throws the compiler's message. */
   get(pixel: Text): Program | null {
     let pending = this.known.get(pixel.key);
     if (!pending) this.known.set(pixel.key, (pending = this.start(pixel.make())));
@@ -74,7 +74,8 @@ export class Programs {
 }
 
 function compiled(gl: WebGL2RenderingContext, kind: number, text: string): WebGLShader {
-  const shader = gl.createShader(kind) as WebGLShader; // null of a lost context alone: gl ignores it
+  // Null only if the context is lost; gl ignores it.
+  const shader = gl.createShader(kind) as WebGLShader;
   gl.shaderSource(shader, text);
   gl.compileShader(shader);
   return shader;
@@ -91,7 +92,7 @@ function uniformsOf(gl: WebGL2RenderingContext, handle: WebGLProgram): Map<strin
   return uniforms;
 }
 
-/** Draw one triangle over `size` pixels of a target; null is the canvas. */
+/** Draw one triangle over `size` pixels of a target, or of the canvas for null. */
 export function drawPass(
   gl: WebGL2RenderingContext,
   program: Program,
@@ -131,7 +132,7 @@ function setUniform(
   else if (type === gl.FLOAT_MAT4) gl.uniformMatrix4fv(location, false, numbers);
 }
 
-/** Format of a texture: of its texels, of its channels, and of the numbers it is made of. */
+/** Format of a texture: of its texels, its channels and their numbers. */
 export interface Format {
   readonly inner: number;
   readonly outer: number;
@@ -205,7 +206,7 @@ export function clear(gl: WebGL2RenderingContext, { frame, textures }: Target): 
   textures.forEach((_, index) => gl.clearBufferfv(gl.COLOR, index, [0, 0, 0, 0]));
 }
 
-/** Pixels of one layer of a target, RGBA, row 0 at the bottom. */
+/** Pixels of one layer of a target: RGBA, bottom row first. */
 export function readPixels(
   gl: WebGL2RenderingContext,
   target: Target,

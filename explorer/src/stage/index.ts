@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stage: draws a state when it changes, sharpens the picture at rest, and then does nothing.
+// The stage: draws a state when it changes, refines the picture at rest, then stops.
 
 import type { PageData, ShaderSource, Triple, Vec3 } from "../data";
 import type { SideName, State } from "../state";
@@ -20,8 +20,8 @@ import {
 } from "./scenes";
 
 export interface Pick {
-  readonly wo: Triple; // unit, in the local frame, normal +z, in the x-z plane
-  readonly wi: Triple; // of the light; its z may be <= 0
+  readonly wo: Triple; // unit vector in the local frame, where the normal is +z, in the x-z plane
+  readonly wi: Triple; // unit vector to the light; z may be <= 0
   readonly position: Triple; // in the viewer's frame
   readonly normal: Triple;
 }
@@ -45,25 +45,30 @@ export type Status =
   | { readonly kind: "restored" };
 
 export interface Stage {
-  /** Show a state soon; `dragging` promises another one, and allows a coarser picture. */
+  /** Show a state soon. `dragging` announces another state and permits a coarser picture. */
   draw(state: State, dragging?: boolean): void;
-  /** What is at a point of the picture, [0, 1]^2 from the left top; null beside the subject. */
+  /**
+   * The surface at a point of the picture, [0, 1]^2 from the top left; null outside the subject.
+   */
   pick(x: number, y: number, state: State): Pick | null;
-  /** pi f cos(theta_i) of both shaders for a pair of directions; null while they compile or fail. */
+  /**
+   * pi f cos(theta_i) of both shaders for a pair of directions; null while they compile or if they
+   * fail.
+   */
   evaluate(pair: { wo: Vec3; wi: Vec3 }, state: State): { left: Triple; right: Triple } | null;
   /** Largest errors of a shader against its reference; null while it compiles or if it fails. */
   check(source: ShaderSource): Errors | null;
-  /** What is wrong with a source in the latest picture; "" for nothing. */
+  /** Error of a source in the latest picture, or "". */
   failure(source: string): string;
-  /** The light that a point of the picture stands for, and the point of a light. */
+  /** Convert a point of the picture to the light that it represents, and back. */
   toLight(x: number, y: number, state: State): { azimuth: number; elevation: number };
   fromLight(state: State): [number, number];
-  /** Linear RGBA radiance before exposure, row 0 at the bottom; without a side what is compared. */
+  /** Linear RGBA radiance before exposure, bottom row first; without a side, the comparison. */
   read(side?: SideName): Float32Array;
   size(): { width: number; height: number };
-  /** Of the sphere, in pixels of the canvas. */
+  /** Diameter of the sphere in pixels of the canvas. */
   diameter(state: State): number;
-  /** Whether the picture of a state is final, so that nothing is drawn until something changes. */
+  /** Whether the picture of a state is final: nothing is drawn until something changes. */
   isSettled(state: State): boolean;
   /** Whether a picture of a state was drawn, final or not. */
   isDrawn(state: State): boolean;
@@ -71,7 +76,7 @@ export interface Stage {
   dispose(): void;
 }
 
-const MOST_PIXELS = 1.6e6; // which take 150 bytes each
+const MOST_PIXELS = 1.6e6; // each takes 150 bytes
 const ATTRIBUTES: WebGLContextAttributes = {
   alpha: true,
   antialias: false,
@@ -79,7 +84,7 @@ const ATTRIBUTES: WebGLContextAttributes = {
   stencil: false,
 };
 
-/** The canvas' size in pixels of the screen: even, so that the sphere's center is a corner. */
+/** The canvas' size in screen pixels: even, so that the sphere's center is a pixel corner. */
 function fitted({ clientWidth, clientHeight }: HTMLCanvasElement): Size {
   const most = Math.sqrt(MOST_PIXELS / Math.max(clientWidth * clientHeight, 1));
   const ratio = Math.min(window.devicePixelRatio, most);
@@ -87,16 +92,16 @@ function fitted({ clientWidth, clientHeight }: HTMLCanvasElement): Size {
   return [even(clientWidth), even(clientHeight)];
 }
 
-/** A stage on a canvas; null without WebGL2 that draws into float32 frames. */
+/** A stage on a canvas; null unless WebGL2 can draw into float32 frames. */
 export function createStage(canvas: HTMLCanvasElement, data: PageData): Stage | null {
-  // A context that is resized later waits for the driver.
+  // Resizing the canvas after creating its context waits for the driver.
   [canvas.width, canvas.height] = fitted(canvas);
   const gl = canvas.getContext("webgl2", ATTRIBUTES) as WebGL2RenderingContext | null;
   if (!gl?.getExtension("EXT_color_buffer_float")) return null;
   return new CanvasStage(canvas, gl, data);
 }
 
-/** A frame that the driver draws. */
+/** A frame that the driver is drawing. */
 interface Fence {
   readonly sync: WebGLSync;
   readonly since: number;
@@ -109,12 +114,12 @@ class CanvasStage implements Stage {
   private readonly listeners: ((status: Status) => void)[] = [];
   private readonly resizing: ResizeObserver;
   private request = 0;
-  private index = 0; // of the next frame of the average, or of paths
+  private index = 0; // index of the next frame of the average, or of the next path
   private readonly pace = new Pace(() => this.restart());
   private fence: Fence | null = null;
   private noise: { left: number; right: number } | null = null;
   private said = "";
-  private readonly told = new Set<string>(); // sources whose errors were reported
+  private readonly told = new Set<string>(); // sources with reported errors
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -225,7 +230,7 @@ class CanvasStage implements Stage {
   }
 
   private makeEngine(): Engine {
-    // Extensions count per context, and a restored one is new.
+    // Extensions belong to a context, and a restored context is new.
     for (const name of ["EXT_color_buffer_float", "OES_texture_float_linear"]) {
       this.gl.getExtension(name);
     }
@@ -233,7 +238,7 @@ class CanvasStage implements Stage {
   }
 
   private readonly lose = (event: Event): void => {
-    event.preventDefault(); // or it is never restored
+    event.preventDefault(); // without this, the browser never restores it
     this.engine = null;
     this.fence = null;
     this.tell({ kind: "lost" });
@@ -249,7 +254,7 @@ class CanvasStage implements Stage {
     return fitted(this.canvas);
   }
 
-  /** The canvas' size, set if it is another one. */
+  /** Update the canvas' size if it has changed. */
   private sized([width, height]: Size): Size {
     const { canvas } = this;
     if (canvas.width !== width || canvas.height !== height) {
@@ -267,7 +272,7 @@ class CanvasStage implements Stage {
     return this.pace.size(this.fit());
   }
 
-  /** Begin the average anew. */
+  /** Restart the average. */
   private restart(): void {
     this.index = 0;
     this.told.clear();
@@ -288,7 +293,8 @@ class CanvasStage implements Stage {
     const full = this.fit();
     if (this.index === 0) this.pace.begin(full, state.paths);
     const size = this.drawnSize();
-    // What moves is enlarged by the browser: a software driver takes longer than for the material.
+    // While moving, the browser enlarges the picture: a software driver needs longer for that than
+    // for the material.
     const canvas = this.pace.moving ? size : full;
     const done = engine.frame(state, size, full, this.sized(canvas), this.index);
     this.tellErrors(engine);
@@ -304,7 +310,7 @@ class CanvasStage implements Stage {
     this.schedule();
   };
 
-  /** Whether the driver still draws the last frame. Measures it when it has just ended. */
+  /** Whether the driver is still drawing the last frame; measures the frame when it has ended. */
   private isBusy(): boolean {
     const { fence, gl } = this;
     if (!fence) return false;
@@ -318,7 +324,7 @@ class CanvasStage implements Stage {
     return false;
   }
 
-  /** Whether the average wants another frame. */
+  /** Whether the average needs another frame. */
   private goesOn(state: State, engine: Engine): boolean {
     if (this.index === 0) return true;
     if (state.paths) {
@@ -335,7 +341,7 @@ class CanvasStage implements Stage {
     return { left: left ?? 0, right: right ?? 0 };
   }
 
-  /** Report what went wrong, once for each view. */
+  /** Report an error once for each view. */
   private tellErrors(engine: Engine): void {
     for (const [source, message] of engine.errors) {
       if (this.told.has(source)) continue;
@@ -344,7 +350,7 @@ class CanvasStage implements Stage {
     }
   }
 
-  /** Report a status, but the same only once. */
+  /** Report a status unless it is the last one reported. */
   private tell(status: Status): void {
     const said = JSON.stringify(status);
     if (said !== this.said) for (const listener of this.listeners) listener(status);

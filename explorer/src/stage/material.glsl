@@ -1,24 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance of the part that has the material: a model function under the light and its albedo in
-// the surroundings. Stands behind the twins and the macros STAGE_VALUE and STAGE_ALBEDO.
+// Radiance of the part with the material: the model's value for the light, plus its albedo times
+// the surroundings. This text follows the model's functions and the definitions of STAGE_VALUE and
+// STAGE_ALBEDO.
 
 uniform highp sampler2D stage_surface;
 uniform highp sampler2D stage_place;
 uniform highp sampler2D stage_lit;
 uniform highp sampler2D stage_irradiance;
-uniform highp sampler2D stage_albedos; // By angle, of a model without a closed form.
+// Table of albedos by angle, for models without a closed form.
+uniform highp sampler2D stage_albedos;
 uniform mat3 stage_camera;
 uniform vec4 stage_frame;
-uniform vec3 stage_light_view; // Towards the light in the viewer's frame, unit.
+uniform vec3 stage_light_view; // Unit vector towards the light, in the viewer's frame.
 uniform vec3 stage_eye_view;
-uniform float stage_intensity; // Irradiance over pi of a surface that faces the light.
+uniform float stage_intensity; // Irradiance over pi of a surface facing the light.
 uniform vec3 stage_rho;
 uniform float stage_parameter; // Roughness or sigma.
 
 out vec4 stage_radiance;
 
-// Both directions in the frame of the normal, in whose x-z plane the viewer is. The sine of a view
-// almost along the normal is that of a cross product: a difference from the normal would cancel.
+// Both directions in the frame of the normal, with the viewer in the x-z plane. The sine of a view
+// almost along the normal comes from a cross product: a difference from the normal would cancel.
 void stage_local(vec3 normal, vec3 view, vec3 light, out vec3 wo, out vec3 wi)
 {
     vec3 beside = cross(normal, view);
@@ -29,7 +31,7 @@ void stage_local(vec3 normal, vec3 view, vec3 light, out vec3 wo, out vec3 wi)
     wi = vec3(dot(light, cross(y, normal)), dot(light, y), dot(light, normal));
 }
 
-// The table of albedos, linear between its angles.
+// Interpolate the table of albedos linearly between its angles.
 vec3 stage_tabulated(float mu)
 {
     float at = clamp(mu, 0.0, 1.0) * 255.0;

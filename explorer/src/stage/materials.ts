@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a side of the comparison is drawn with: texts of programs, and their uniforms.
+// Program texts and uniforms to draw a side of the comparison.
 
 import type { ModelName, ShaderSource, Source, Vec3 } from "../data";
 import type { Shape, Side, State } from "../state";
@@ -8,24 +8,27 @@ import type { Camera } from "./scenes";
 import { hasTable, type Text, type Texts } from "./texts";
 import type { Textures } from "./textures";
 
-const SPECULAR_SAMPLES = 16; // of the surroundings, by a generated shader's glossy lobes
-const MIPS = 8; // of a map of 128 columns
+// Samples of the surroundings per pixel, for a generated shader's glossy lobes.
+const SPECULAR_SAMPLES = 16;
+const MIPS = 8; // mip levels of a map with 128 columns
 
 const ATLAS = /^uniform vec2 (\w+_uv_scale);/gm;
 
-/** A program that a side needs, and the source to name if it fails. */
+/** A program that a side needs, and the source to name in an error message. */
 export interface Wanted {
   readonly source: string;
   readonly text: Text;
 }
 
-/** The model that a source is; null if it has none. */
+/** The model of a source; null if it has none. */
 export function modelOf(source: Source, flag: boolean): ModelName | null {
   if (source.kind === "model") return source.model;
   return source.actual && (flag ? source.actual.on : source.actual.off);
 }
 
-/** Paths on a source: on its generated text for path tracers, else on the model that it is. */
+/**
+ * Program that traces paths: uses the source's generated text for path tracers, or else its model.
+ */
 export function pathText(texts: Texts, source: Source, side: Side, shape: Shape): Text {
   if (source.kind === "shader" && source.paths) return texts.paths(source, shape);
   const model = modelOf(source, side.flag);
@@ -33,7 +36,7 @@ export function pathText(texts: Texts, source: Source, side: Side, shape: Shape)
   return texts.modelPaths(model, side.sampler, shape);
 }
 
-/** Programs of a side; raises an error if it cannot be drawn like that. */
+/** Programs of a side; throws an error if it cannot be drawn this way. */
 export function wanted(texts: Texts, source: Source, side: Side, state: State): Wanted[] {
   if (state.paths) return [{ source: source.id, text: pathText(texts, source, side, state.shape) }];
   if (source.kind === "shader") return [{ source: source.id, text: texts.generated(source) }];
@@ -44,8 +47,7 @@ export function wanted(texts: Texts, source: Source, side: Side, state: State): 
 
 /**
  * Uniforms of a generated shader: its inputs, and MaterialX's light, viewer and surroundings.
- *
- * `light` and `eye` are in the viewer's frame, in which these shaders work.
+ * `light` and `eye` are in the viewer's frame, which these shaders use.
  */
 export function shaderUniforms(
   textures: Textures,
@@ -57,7 +59,7 @@ export function shaderUniforms(
   eye: Vec3,
 ): Uniforms {
   const inputs: Record<string, UniformValue> = {};
-  // Every image has a place in an atlas, which none of them is in.
+  // Scales of images in an atlas: 1, because none of them is packed into one.
   for (const [, name = ""] of source.pixel.matchAll(ATLAS)) inputs[name] = [1, 1];
   for (const { name, value, image } of source.inputs) {
     if (image) inputs[name] = textures.image(image);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model as a material that paths call, like generated text. Stands behind the functions and the macros STAGE_VALUE,
-// STAGE_SAMPLE and STAGE_PDF.
+// Wraps a model in the interface that paths expect of generated text. This text follows the model's
+// functions and the definitions of STAGE_VALUE, STAGE_SAMPLE and STAGE_PDF.
 
 uniform vec3 stage_rho;
 uniform float stage_parameter; // Roughness or sigma of the model
-uniform float stage_roughness; // of the sampler
+uniform float stage_roughness; // Roughness for the sampler.
 
 #define material_is_thin_walled true
 
@@ -16,7 +16,7 @@ struct Point {
     bool inside;
 };
 
-// Directions in the frame of the normal, which is the third axis.
+// Directions in the frame whose third axis is the normal.
 mat3 stage_axes(Point p)
 {
     return mat3(p.tangent, cross(p.normal, p.tangent), p.normal);

@@ -1,34 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// How finely a picture is drawn: at full resolution at rest, as finely as time allows while it moves.
+// Chooses the resolution of a picture: full at rest, and as fine as time permits while it moves.
 
 import type { Size } from "./paths";
 
-const SMOOTHING = 8; // frames that a picture at rest is the average of,
-const LEAST_SMOOTHING = 2; // and where they take longer, as many as take so many
-const SMOOTHING_BUDGET = 1000; // milliseconds
-const MOVING_BUDGET = 24; // milliseconds of a frame while something moves: 30 frames a second
-const PATHS_BUDGET = 120; // and of a pass of paths
-const REST = 220; // milliseconds after which what changed last is at rest
-const SMALLEST = 0.15; // share of the resolution that is kept
-const FIRST_SHARE = 0.35; // that of the first picture of a material
+const SMOOTHING = 8; // maximum number of frames averaged for a picture at rest
+const LEAST_SMOOTHING = 2; // minimum number of these frames
+const SMOOTHING_BUDGET = 1000; // milliseconds for all of these frames
+const MOVING_BUDGET = 24; // milliseconds per frame while something moves: 30 frames per second
+const PATHS_BUDGET = 120; // milliseconds per pass of paths
+const REST = 220; // milliseconds without a change until the picture is at rest
+const SMALLEST = 0.15; // smallest fraction of the full resolution
+const FIRST_SHARE = 0.35; // fraction of the full resolution for the first picture of a material
 
 export class Pace {
-  moving = false; // and another state will follow soon
+  moving = false; // whether another state will follow soon
   private dragging = false;
-  private first = true; // The first picture of a material is coarse, to be there soon.
-  private changed = -Infinity; // when the state last did
+  private first = true; // The first picture of a material is coarse, so that it appears quickly.
+  private changed = -Infinity; // time of the last change of the state
   private timer = 0;
-  private share = 1; // of the resolution
-  private latest = 0; // milliseconds of the latest frame,
-  private rate = 0; // and of each of its pixels
+  private share = 1; // fraction of the full resolution
+  private latest = 0; // milliseconds of the latest frame
+  private rate = 0; // milliseconds per pixel of that frame
 
   /** `rest` is called when the picture comes to rest. */
   constructor(private readonly rest: () => void) {}
 
-  /** Take note of a new state. */
+  /** Record a new state. */
   change(dragging: boolean): void {
     const now = performance.now();
-    // A control that is moved calls often, too, without saying that it drags.
+    // A control in motion also calls often, without reporting a drag.
     const often = !this.dragging && now - this.changed < REST;
     this.moving = dragging || often;
     this.dragging = dragging;
@@ -37,14 +37,14 @@ export class Pace {
     if (often && !dragging) this.timer = window.setTimeout(this.stop, REST);
   }
 
-  /** Take note of new materials, which may take longer. */
+  /** Record new materials, which may take longer. */
   renew(): void {
     this.first = true;
   }
 
-  /** Choose the resolution of what is drawn from now on. */
+  /** Choose the resolution for the next frames. */
   begin([width, height]: Size, paths: boolean): void {
-    // What is dragged keeps one size, unless that is still too slow.
+    // Keep the size during a drag, unless it is still too slow.
     if (this.moving && this.share < 1 && this.latest < 1.5 * MOVING_BUDGET) return;
     const budget = this.moving ? MOVING_BUDGET : paths ? PATHS_BUDGET : Infinity;
     const affordable = this.rate ? Math.sqrt(budget / (this.rate * width * height)) : 1;
@@ -52,13 +52,13 @@ export class Pace {
     this.share = Math.min(Math.max(Math.floor(share * 20) / 20, SMALLEST), 1);
   }
 
-  /** Size in which a picture is drawn that fills so much: even, as that is. */
+  /** Size to draw for a picture of the given full size; even, like the full size. */
   size([width, height]: Size): Size {
     const even = (length: number) => Math.max(2 * Math.round((length * this.share) / 2), 2);
     return this.share === 1 ? [width, height] : [even(width), even(height)];
   }
 
-  /** Take note of how long a frame took. */
+  /** Record how long a frame took. */
   measure(milliseconds: number, [width, height]: Size): void {
     this.latest = milliseconds;
     this.rate = milliseconds / (width * height);
@@ -67,7 +67,7 @@ export class Pace {
     this.stop();
   }
 
-  /** Frames that a picture at rest is the average of; one while it moves. */
+  /** Number of frames averaged for a picture at rest; 1 while it moves. */
   frames([width, height]: Size): number {
     if (this.moving) return 1;
     const affordable = Math.floor(SMOOTHING_BUDGET / Math.max(this.rate * width * height, 1));

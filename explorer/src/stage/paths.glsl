@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// One path per pixel and pass, averaged with the passes before it. Stands behind the interface of a material that
-// path tracers call (docs/path_tracing.md), path_random, the shapes, the camera and the places.
+// Traces one path per pixel and pass, and averages it with the earlier passes. This text follows a
+// material with the interface for path tracers (docs/path_tracing.md), path_random, the shapes, the
+// camera and the texture coordinates.
 
 uniform highp sampler2D stage_before;
 uniform highp sampler2D stage_before_square;
 uniform highp sampler2D stage_environment;
 uniform int stage_pass;
-uniform int stage_bounces; // Times that a path may be scattered.
-uniform float stage_share; // Of this pass in the averages.
-uniform vec3 stage_light; // In the world, unit.
+uniform int stage_bounces; // Maximum number of scattering events on a path.
+uniform float stage_share; // Weight of this pass in the averages.
+uniform vec3 stage_light; // Unit vector in the world frame.
 uniform float stage_intensity;
 uniform vec2 stage_bend; // As in generated.glsl.
 
-layout(location = 0) out vec4 stage_radiance; // Mean of the paths, and the share that met an object.
-layout(location = 1) out vec4 stage_square; // Mean of the square of the mean of its three channels.
+// Mean of the paths, and the fraction of them that hit an object.
+layout(location = 0) out vec4 stage_radiance;
+// Mean square of the paths' brightness, which is the mean of three channels.
+layout(location = 1) out vec4 stage_square;
 
 const float STAGE_PI = 3.14159265358979;
 
@@ -36,7 +39,7 @@ Point stage_point(vec3 position, vec3 normal, bool inside)
     return Point(position, normal, tangent, stage_texture_place(position, normal), inside);
 }
 
-// What the light sends towards wo.
+// Direct light that is scattered towards wo.
 vec3 stage_reflected(Hit hit, Point p, vec3 wo)
 {
     float cosine = dot(hit.normal, stage_light);
@@ -48,7 +51,7 @@ vec3 stage_reflected(Hit hit, Point p, vec3 wo)
     return STAGE_PI * stage_intensity * material_evaluate(p, wo, stage_light);
 }
 
-// Whether the path goes on, along wi.
+// Sample the material: whether the path continues along wi.
 bool stage_drawn(Hit hit, Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight)
 {
     float pdf;
@@ -56,12 +59,13 @@ bool stage_drawn(Hit hit, Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight
         return material_sample(p, wo, u, wi, weight, pdf);
     float phi = 2.0 * STAGE_PI * u.x;
     float z = 2.0 * u.y - 1.0;
-    wi = normalize(hit.normal + vec3(sqrt(1.0 - z * z) * vec2(cos(phi), sin(phi)), z)); // by a cosine
+    // Cosine-distributed.
+    wi = normalize(hit.normal + vec3(sqrt(1.0 - z * z) * vec2(cos(phi), sin(phi)), z));
     weight = vec3(STAGE_FLOOR_RHO);
     return true;
 }
 
-// Radiance of one path that ends where it leaves the objects or is scattered no more.
+// Radiance of one path, which ends when it leaves the scene or has been scattered too often.
 vec4 stage_path(vec3 origin, vec3 direction)
 {
     vec3 radiance = vec3(0.0);
@@ -72,7 +76,8 @@ vec4 stage_path(vec3 origin, vec3 direction)
             vec3 sky = textureLod(stage_environment, stage_latlong(direction), 0.0).xyz;
             return bounce == 0 ? vec4(0.0) : vec4(radiance + sky * throughput, 1.0);
         }
-        bool inside = STAGE_SHAPE < 2 && dot(origin, origin) < 1.0; // Other shapes are as thin as a sheet.
+        // The other shapes are infinitely thin sheets.
+        bool inside = STAGE_SHAPE < 2 && dot(origin, origin) < 1.0;
         vec3 outward = inside ? -hit.normal : hit.normal;
         Point p = stage_point(origin + hit.t * direction, outward, inside && !(material_is_thin_walled));
         if (hit.part == STAGE_SUBJECT)

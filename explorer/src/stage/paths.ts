@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// The averages of paths of both sides, and their noise.
+// Averages of the paths of both sides, and their noise.
 
 import type { SideName } from "../state";
 import * as gpu from "./gpu";
 
 const BOUNCES = 6;
-const BLOCK = 256; // pixels on a side of what the noise is measured in
+const BLOCK = 256; // side of the square, in pixels, in which noise is measured
 
 export type Size = readonly [number, number];
 type Pair = readonly [gpu.Target, gpu.Target];
 
-/** Offset from a pixel's center: none first, then Roberts' R2 sequence over the pixel. */
+/** Offset from a pixel's center: zero first, then Roberts' R2 sequence over the pixel. */
 export function jitter(index: number): [number, number] {
   if (index === 0) return [0, 0];
   const place = (step: number) => ((0.5 + index * step) % 1) - 0.5;
   return [place(0.7548776662), place(0.569840291)];
 }
 
-/** Two targets per side: a pass reads one and draws the other. */
+/** Two targets per side: each pass reads one and draws into the other. */
 export class Paths {
   private readonly sides: Readonly<Record<SideName, Pair>>;
 
@@ -35,7 +35,7 @@ export class Paths {
       gpu.deleteTarget(this.gl, target);
   }
 
-  /** Add path `index` of each pixel to a side's average; without a program it is black. */
+  /** Add path `index` of each pixel to a side's average; without a program the result is black. */
   draw(
     side: SideName,
     program: gpu.Program | null,
@@ -59,12 +59,12 @@ export class Paths {
     } as gpu.Uniforms);
   }
 
-  /** The average of so many passes. */
+  /** The average after the given number of passes. */
   target(side: SideName, passes: number): gpu.Target {
     return this.sides[side][passes % 2 ? 1 : 0];
   }
 
-  /** Standard error of a side's pixels over their mean, in the middle of the picture. */
+  /** Relative standard error of a side's pixels, in the middle of the picture. */
   noise(side: SideName, size: Size, passes: number): number {
     const [width, height] = [Math.min(size[0], BLOCK), Math.min(size[1], BLOCK)];
     const area = [(size[0] - width) >> 1, (size[1] - height) >> 1, width, height] as const;
@@ -72,7 +72,7 @@ export class Paths {
     const squares = gpu.readPixels(this.gl, this.target(side, passes), 1, area);
     let [sum, variance, count] = [0, 0, 0];
     for (let k = 0; k < means.length; k += 4) {
-      if (means[k + 3] !== 1) continue; // on a rim coverage varies too
+      if (means[k + 3] !== 1) continue; // Coverage also varies at the rim.
       const mean = ((means[k] ?? 0) + (means[k + 1] ?? 0) + (means[k + 2] ?? 0)) / 3;
       sum += mean;
       variance += Math.max((squares[k] ?? 0) - mean * mean, 0) / (passes - 1);

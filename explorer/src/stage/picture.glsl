@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture of both materials as light that the screen shows, premultiplied by its opacity, and
-// averaged with the frames before it.
+// The picture of both materials in linear light, premultiplied by its opacity, averaged with the
+// earlier frames.
 
 uniform highp sampler2D stage_left;
 uniform highp sampler2D stage_right;
@@ -13,14 +13,15 @@ uniform highp sampler2D stage_environment;
 uniform highp sampler2D stage_irradiance;
 uniform vec3 stage_light_view;
 uniform float stage_intensity;
-uniform float stage_share; // Of this frame in the average.
-uniform float stage_gain; // Of the exposure.
-uniform float stage_shift; // Pixels by which each side is moved, side by side; otherwise 0.
-uniform float stage_edge; // Of the wipe, in pixels from the left; what is on its left is of `left`.
-uniform float stage_scale; // Difference that has the last color; 0 for a picture.
-uniform vec3 stage_colors[9]; // Of differences, from -scale to +scale, linear.
-uniform bool stage_traced; // The sides hold the floor too.
-uniform bool stage_backdrop; // The surroundings are seen.
+uniform float stage_share; // Weight of this frame in the average.
+uniform float stage_gain; // Scale factor of the exposure.
+uniform float stage_shift; // Offset of each side in pixels if they are side by side; otherwise 0.
+// Position of the wipe in pixels from the left; the left side's material is to its left.
+uniform float stage_edge;
+uniform float stage_scale; // Difference shown in the last color; 0 for a picture.
+uniform vec3 stage_colors[9]; // Colors of differences from -scale to +scale, linear.
+uniform bool stage_traced; // Whether the sides' pictures include the floor.
+uniform bool stage_backdrop; // Whether the surroundings are visible.
 
 out vec4 stage_picture;
 
@@ -32,7 +33,7 @@ vec3 stage_floor(vec3 normal, float ambient, float lit)
     return STAGE_FLOOR_RHO * (light + ambient * incoming);
 }
 
-// The component that differs most, with its sign, as a color.
+// Color of the signed difference in the channel that differs most.
 vec3 stage_difference(vec3 difference)
 {
     vec3 size = abs(difference);
@@ -59,7 +60,7 @@ void main()
         opacity = floor_seen ? 0.0 : opacity;
     } else {
         vec4 side = left ? texelFetch(stage_left, at, 0) : texelFetch(stage_right, at, 0);
-        // Of the paths of a pixel on the rim, some meet nothing.
+        // At the rim, some of a pixel's paths hit nothing.
         if (stage_traced) {
             color = side.xyz / max(side.w, 1.0e-6);
             opacity = surface.w > 0.0 ? opacity * side.w : side.w;

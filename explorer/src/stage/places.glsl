@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Texture coordinates of points.
 
-// Angle of (x, y) from the x axis as a share of a full turn, in [-0.5, 0.5].
+// Angle of (x, y) from the x axis as a fraction of a full turn, in [-0.5, 0.5].
 float stage_turn(float y, float x);
 
-// Longitude and latitude as on a globe, the middle towards the viewer.
+// Longitude and latitude as on a globe, with the middle facing the viewer.
 vec2 stage_globe(vec3 direction)
 {
     float latitude = 2.0 * stage_turn(direction.y, length(direction.xz));
     return 0.5 + vec2(stage_turn(direction.x, direction.z), latitude);
 }
 
-// Texture coordinates: of a globe, and along what is plane its own two axes at about the same scale.
+// Texture coordinates: those of a globe, or for flat shapes two axes in the plane at about the same
+// scale.
 vec2 stage_texture_place(vec3 p, vec3 normal)
 {
 #if STAGE_SHAPE == 2 || STAGE_SHAPE == 4

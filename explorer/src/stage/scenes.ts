@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer of each shape, and where the light is in the picture.
+// The viewer of each shape, and the mapping between lights and points of the picture.
 //
-// World frame: x to the right, y up, z towards the viewer. The viewer's frame is the world turned
-// about x, so that the sphere alone is seen as the gl host sees it: straight on, without perspective.
+// World frame: x to the right, y up, z towards the viewer. The viewer's frame is the world rotated
+// about x. The gl host sees a single sphere straight on and without perspective; so does this one.
 
 import type { Triple, Vec3 } from "../data";
 import type { Shape, State } from "../state";
@@ -11,20 +11,20 @@ type Viewed = Pick<State, "shape" | "turn" | "tilt" | "zoom" | "comparison">;
 
 export interface Camera {
   readonly axes: readonly [Vec3, Vec3, Vec3]; // right, up and back, in the world
-  readonly eye: Vec3; // in the world
-  readonly distance: number; // of the eye from the target
-  readonly span: number; // half of the frame's smaller side over the subject's radius
+  readonly eye: Vec3; // in the world frame
+  readonly distance: number; // distance of the eye from the target
+  readonly span: number; // half of the frame's smaller side, relative to the subject's radius
 }
 
 interface View {
-  readonly pitch: number; // degrees that the viewer looks down
-  readonly distance: number; // of the eye from the target
-  readonly target: number; // its height
+  readonly pitch: number; // degrees by which the viewer looks down
+  readonly distance: number; // distance of the eye from the target
+  readonly target: number; // height of the target
   readonly span: number;
 }
 
-const SIDE_SPAN = 1.5; // of half the width of a picture that is 4/3 as wide as high
-const FAR = 1e8; // makes normalize(eye - position) the z axis, in float32
+const SIDE_SPAN = 1.5; // leaves room for two shapes in a picture 4/3 as wide as high
+const FAR = 1e8; // far enough that normalize(eye - position) is the z axis in float32
 
 const VIEWS: Record<Shape, View> = {
   sphere: { pitch: 0, distance: FAR, target: 0, span: 1.14 },
@@ -43,23 +43,23 @@ export const SHAPE_INDEX: Record<Shape, number> = {
   fiber: 4,
 };
 
-const BEND = -1.9; // height of the center about which the fibers bend: STAGE_BEND of shapes.glsl
+const BEND = -1.9; // height of the center around which the fibers bend: STAGE_BEND of shapes.glsl
 
-/** Height of the center of the bend, and 1; 0 for shapes whose tangents are those of a globe. */
+/** Height of the bend's center, and 1; both are 0 for shapes with the tangents of a globe. */
 export function bend(shape: Shape): [number, number] {
   return shape === "fiber" ? [BEND, 1] : [0, 0];
 }
 
-/** Whether the light may reach a point from behind its surface, which then takes no shadow. */
+/** Whether the light may reach a point from behind its surface, which then is not shadowed. */
 export function isUnshadowed(shape: Shape): boolean {
   return shape === "sphere" || shape === "fiber";
 }
 
-/** The viewer of a state. Side by side, shapes are small enough for half of the width. */
+/** The viewer of a state. Side by side, shapes are reduced to fit half of the width. */
 export function camera({ shape, turn, tilt, zoom, comparison }: Viewed): Camera {
   const { pitch, distance, target, span } = VIEWS[shape];
   const part = span * (comparison === "side" ? SIDE_SPAN : 1);
-  if (shape === "sphere") [turn, tilt, zoom] = [0, 0, 1]; // its pixels are those of the gl host
+  if (shape === "sphere") [turn, tilt, zoom] = [0, 0, 1]; // its pixels match the gl host's
   const [up, around] = [((pitch + tilt) * Math.PI) / 180, (turn * Math.PI) / 180];
   const [sine, cosine, S, C] = [Math.sin(up), Math.cos(up), Math.sin(around), Math.cos(around)];
   const back: Vec3 = [S * cosine, sine, C * cosine];
@@ -68,37 +68,38 @@ export function camera({ shape, turn, tilt, zoom, comparison }: Viewed): Camera 
   return { axes, eye, distance, span: part / zoom };
 }
 
-/** A direction of the world in the viewer's frame. */
+/** Convert a direction from the world frame to the viewer's. */
 export function toView({ axes }: Camera, world: Vec3): Triple {
   return [dot(axes[0], world), dot(axes[1], world), dot(axes[2], world)];
 }
 
-/** A direction of the viewer's frame in the world. */
+/** Convert a direction from the viewer's frame to the world's. */
 export function toWorld({ axes }: Camera, view: Vec3): Triple {
   const along = (k: 0 | 1 | 2) =>
     axes[0][k] * view[0] + axes[1][k] * view[1] + axes[2][k] * view[2];
   return [along(0), along(1), along(2)];
 }
 
-/** Place in a side's own picture of a place in the frame, which has the middles of both side by side. */
+/** Convert a place in the frame to a side's own picture; side by side, the frame shows both. */
 export function fromSide({ comparison }: Viewed, x: number): number {
   return comparison === "side" ? x + (x < 0.5 ? 0.25 : -0.25) : x;
 }
 
-/** Place in the frame, on its left, of a place in a side's own picture. */
+/** Convert a place in a side's own picture to the frame, on its left if side by side. */
 export function toSide({ comparison }: Viewed, x: number): number {
   return comparison === "side" ? x - 0.25 : x;
 }
 
-/** Unit vector towards the light, in the world. */
+/** Unit vector towards the light, in the world frame. */
 export function lightVector({ azimuth, elevation }: Pick<State, "azimuth" | "elevation">): Triple {
   const [around, up] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
   return [Math.sin(around) * Math.cos(up), Math.sin(up), Math.cos(around) * Math.cos(up)];
 }
 
 /**
- * The light that a point of the picture stands for, [0, 1]^2 from the left top: in the middle the
- * light comes from the viewer, at the subject's rim from the side, twice as far out from behind.
+ * The light for a point of the picture, [0, 1]^2 from the top left. A point in the middle means a
+ * light from the viewer, one at the subject's rim a light from the side, and one at twice that
+ * distance a light from behind.
  */
 export function lightAt(state: State, x: number, y: number, aspect: number) {
   const view = camera(state);
@@ -118,7 +119,7 @@ function tenth(degrees: number): number {
   return Math.round(10 * degrees) / 10;
 }
 
-/** The point of the picture that stands for the light; inverse of `lightAt`. */
+/** The point of the picture for a light; inverse of `lightAt`. */
 export function lightMark(state: State, aspect: number): [number, number] {
   const view = camera(state);
   const [x, y, z] = toView(view, lightVector(state));
@@ -144,7 +145,7 @@ export function cross(a: Vec3, b: Vec3): Triple {
   return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }
 
-/** Viewer and light in the frame of the normal, in whose x-z plane the viewer is. */
+/** Viewer and light in the frame of the normal, with the viewer in the x-z plane. */
 export function localPair(normal: Triple, viewer: Triple, light: Triple): [Triple, Triple] {
   const mu = dot(viewer, normal);
   const [x, y, z] = viewer.map((each, k) => each - mu * (normal[k] ?? 0)) as Triple;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The averaged picture on the canvas, enlarged where it was drawn smaller, encoded as sRGB.
+// Draws the averaged picture on the canvas, enlarged if it was drawn smaller, and encoded as sRGB.
 
 uniform highp sampler2D stage_picture;
-uniform vec4 stage_canvas; // Size of the canvas, and the drawn share of the picture's texture.
+// Size of the canvas, and the part of the picture's texture that was drawn.
+uniform vec4 stage_canvas;
 
 out vec4 stage_screen;
 
@@ -12,7 +13,7 @@ vec3 stage_encoded(vec3 color)
     return mix(12.92 * color, curved, step(vec3(0.0031308), color));
 }
 
-// Noise of one step of the screen, against bands: Roberts' R2 sequence.
+// Dither by one step of the screen to avoid banding: Roberts' R2 sequence.
 float stage_dither()
 {
     return fract(dot(gl_FragCoord.xy, vec2(0.7548776662, 0.5698402910))) - 0.5;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the light reaches what a pixel shows.
+// Whether the light reaches the point of each pixel.
 
 uniform highp sampler2D stage_surface;
 uniform highp sampler2D stage_place;
 uniform mat3 stage_camera;
-uniform vec3 stage_light; // In the world, unit.
+uniform vec3 stage_light; // Unit vector in the world frame.
 
 out vec4 stage_lit;
 

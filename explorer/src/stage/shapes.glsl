@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shapes of the stage as functions that a ray is cast at.
+// The stage's shapes as functions that intersect rays.
 //
-// STAGE_SHAPE says which: 0 a sphere, 1 a sphere on a plane, 2 a hanging cloth, 3 a ball cut open
-// around a core, on a foot, 4 a lock of fibers. World frame: x to the right, y up, z towards the viewer. Distances are
-// in radii of the sphere.
+// STAGE_SHAPE selects the shape: 0 a sphere, 1 a sphere on a plane, 2 a hanging cloth, 3 a ball cut
+// open around a core, on a foot, 4 a lock of fibers. World frame: x to the right, y up, z towards
+// the viewer. The unit of length is the sphere's radius.
 
 #define STAGE_NEVER 1.0e9
-#define STAGE_OFFSET 1.0e-3 // From a surface to the origin of the next ray, against its own hit.
+// Offset of a ray's origin from the surface, so that it does not hit the same surface again.
+#define STAGE_OFFSET 1.0e-3
 #define STAGE_NOTHING 0
-#define STAGE_SUBJECT 1 // has the material
-#define STAGE_FLOOR 2 // is gray, and no part of the comparison
+#define STAGE_SUBJECT 1 // part with the material
+#define STAGE_FLOOR 2 // gray part, excluded from the comparison
 
 #define STAGE_FLOOR_RHO 0.35
 
-// The open ball: where its shell is cut away, and what it stands on.
+// The open ball: where the cut is, and the foot.
 #define STAGE_CUT_LEFT vec3(0.9205049, 0.0, 0.3907311)
 #define STAGE_CUT_RIGHT vec3(-0.4848096, 0.0, 0.8746197)
 #define STAGE_CUT_AT 0.04
@@ -21,7 +22,7 @@
 #define STAGE_INSIDE 0.86
 #define STAGE_CORE 0.52
 #define STAGE_FOOT 0.6
-#define STAGE_FOOT_TOP -0.8 // Where the shell goes through it: the foot needs no lid.
+#define STAGE_FOOT_TOP -0.8 // The shell covers the foot's top here, so the foot needs no lid.
 #define STAGE_GROUND -1.15
 
 // The cloth.
@@ -30,7 +31,7 @@
 #define STAGE_CLOTH_DEPTH 0.27
 #define STAGE_CLOTH_STEPS 32
 
-// The fibers: rings about an axis along z, of which the frame shows the tops.
+// The fibers: rings around an axis along z; the frame shows their tops.
 #define STAGE_BEND -1.9
 #define STAGE_FIRST_RING 1.25
 #define STAGE_RING_GAP 0.2
@@ -41,18 +42,18 @@
 
 struct Hit {
     float t;
-    vec3 normal; // Towards the origin of the ray.
+    vec3 normal; // Turn the normal towards the origin of the ray.
     int part;
 };
 
-// Keeps a hit if it is in front and the nearest so far.
+// Keep a hit if it is in front and the nearest so far.
 void stage_keep(inout Hit hit, float t, vec3 normal, int part)
 {
     if (t > 0.0 && t < hit.t)
         hit = Hit(t, normal, part);
 }
 
-// Where a ray meets a sphere about the origin, first and last; behind it if nowhere.
+// First and last intersections of a ray with a sphere around the origin; negative if it misses.
 vec2 stage_sphere(vec3 origin, vec3 direction, float radius)
 {
     float ahead = dot(origin, direction);
@@ -72,7 +73,7 @@ Hit stage_nearest(vec3 origin, vec3 direction)
 {
     Hit hit = Hit(STAGE_NEVER, vec3(0.0), STAGE_NOTHING);
     vec2 ends = stage_sphere(origin, direction, 1.0);
-    float t = ends.x > 0.0 ? ends.x : ends.y; // The far side from inside.
+    float t = ends.x > 0.0 ? ends.x : ends.y; // The far side, hit from inside.
     vec3 normal = normalize(origin + t * direction);
     stage_keep(hit, t, faceforward(normal, direction, normal), STAGE_SUBJECT);
 #if STAGE_SHAPE == 1
@@ -93,13 +94,13 @@ vec3 stage_cloth(vec2 p)
     return vec3(depth * wave, depth * across, depth * down - 0.06 * wave);
 }
 
-// How far in front of the cloth a point of a ray is.
+// Distance of a point on the ray in front of the cloth.
 float stage_before_cloth(vec3 p)
 {
     return p.z - stage_cloth(p.xy).x;
 }
 
-// Steps through the slab that holds the cloth, then halves the step that crosses it.
+// March through the slab that contains the cloth, then bisect the step that crosses it.
 Hit stage_nearest(vec3 origin, vec3 direction)
 {
     Hit hit = Hit(STAGE_NEVER, vec3(0.0), STAGE_NOTHING);
@@ -139,7 +140,8 @@ vec4 stage_fiber(vec3 p)
     return vec4(core, length(core) - STAGE_FIBER);
 }
 
-// Steps along the ray by the distance from the nearest fiber, from the plane in front of them.
+// Sphere tracing: step along the ray by the distance to the nearest fiber, from the plane in front
+// of them.
 Hit stage_nearest(vec3 origin, vec3 direction)
 {
     Hit hit = Hit(STAGE_NEVER, vec3(0.0), STAGE_NOTHING);
@@ -157,7 +159,7 @@ Hit stage_nearest(vec3 origin, vec3 direction)
     return hit;
 }
 #else
-// How far inside the cut a point is, across its two upright faces and its sill.
+// Distances of a point inside the cut from its two upright faces and its sill.
 vec3 stage_in_cut(vec3 p)
 {
     return vec3(dot(p, STAGE_CUT_LEFT) - STAGE_CUT_AT, dot(p, STAGE_CUT_RIGHT) - STAGE_CUT_AT,
@@ -169,7 +171,8 @@ bool stage_cut(vec3 p)
     return all(greaterThan(stage_in_cut(p), vec3(0.0)));
 }
 
-// A plane face that the cut leaves in the shell, seen from the cut; `other` leaves its own side out.
+// A plane face of the cut through the shell, seen from the cut; `other` excludes the face's own
+// side.
 void stage_face(inout Hit hit, vec3 origin, vec3 direction, vec3 normal, float height, vec3 other)
 {
     float t = (height - dot(origin, normal)) / dot(direction, normal);
@@ -180,7 +183,7 @@ void stage_face(inout Hit hit, vec3 origin, vec3 direction, vec3 normal, float h
         stage_keep(hit, t, normal, STAGE_SUBJECT);
 }
 
-// The shell from outside and, where it is open, from its hollow.
+// The shell from outside and, through the opening, from inside.
 void stage_shell(inout Hit hit, vec3 origin, vec3 direction)
 {
     float t = stage_sphere(origin, direction, 1.0).x;
@@ -220,7 +223,7 @@ Hit stage_nearest(vec3 origin, vec3 direction)
 }
 #endif
 
-// How opaque a floor is that fades out into the page, 1 elsewhere.
+// Opacity of the floor, which fades into the page; 1 for other parts.
 float stage_opacity(vec3 p)
 {
 #if STAGE_SHAPE == 1
@@ -232,8 +235,9 @@ float stage_opacity(vec3 p)
 #endif
 }
 
-// Share of the surroundings that reaches a point: rough, but for the plane and the floor, which see
-// all but the cap that the sphere hides, 1 / d^2 of it times the cosine. Path tracing is exact.
+// Visible share of the surroundings at a point. It is exact for the sphere, the plane and the
+// floor, where the sphere hides a cap, 1 / d^2 times the cosine, and rough elsewhere. Path tracing
+// is exact.
 float stage_ambient(vec3 p, vec3 normal)
 {
 #if STAGE_SHAPE == 0 || STAGE_SHAPE == 4

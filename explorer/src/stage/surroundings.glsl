@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a direction of the world lies in a map of the surroundings, as MaterialX has it.
+// Maps a direction of the world to a latitude-longitude map of the surroundings, as in MaterialX.
 vec2 stage_latlong(vec3 direction)
 {
     float longitude = atan(direction.x, -direction.z) / (2.0 * 3.14159265358979) + 0.5;

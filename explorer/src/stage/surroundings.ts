@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance that comes from everywhere: formulas, as maps of longitude and latitude like MaterialX's.
+// Radiance of the surroundings: formulas, rendered to latitude-longitude maps like MaterialX's.
 
 import type { Sky, Triple, Vec3 } from "../data";
 import type { Surroundings } from "../state";
 import { dot, unit } from "./scenes";
 
-/** RGBA of each direction; row 0 is up, the middle column looks along -z. */
+/** RGBA for each direction, top row first; the middle column looks along -z. */
 export interface SkyMap {
   readonly width: number;
   readonly height: number;
@@ -13,9 +13,9 @@ export interface SkyMap {
 }
 
 const RADIANCE_ROWS = 64;
-const IRRADIANCE_ROWS = 32; // a cosine lobe has no finer detail
-const BRIGHTNESS = 0.6; // leaves room for the light at exposure 0
-const SUMMED_ROWS = 32; // of the radiance that the irradiance is the sum of
+const IRRADIANCE_ROWS = 32; // a cosine lobe shows no finer detail
+const BRIGHTNESS = 0.6; // leaves headroom for the light at exposure 0
+const SUMMED_ROWS = 32; // rows of the radiance map that is integrated for the irradiance
 
 function mixed(a: Vec3, b: Vec3, share: number): Triple {
   const t = Math.min(Math.max(share, 0), 1);
@@ -36,7 +36,9 @@ function inside(distance: number, edge: number): number {
   return t * t * (3 - 2 * t);
 }
 
-/** A rectangular light: coverage of a direction by one about `toward`, of half sizes `wide`, `high`. */
+/**
+ * Coverage of a direction by a rectangular light around `toward` with half sizes `wide` and `high`.
+ */
 function panel(direction: Vec3, toward: Vec3, wide: number, high: number): number {
   const forward = unit(toward);
   const ahead = dot(direction, forward);
@@ -48,8 +50,8 @@ function panel(direction: Vec3, toward: Vec3, wide: number, high: number): numbe
 }
 
 /**
- * A dark room with a warm light above and in front, and a cool strip behind on either side. Left and
- * right are alike, so that what a wipe shows differs by its material alone.
+ * A dark room with a warm light above and in front, and a cool strip behind on either side. Left
+ * and right are symmetric, so that a wipe only shows differences of the materials.
  */
 function studio(w: Vec3): Triple {
   const room = mixed([0.05, 0.05, 0.055], [0.15, 0.15, 0.16], 0.5 + 0.5 * w[1]);
@@ -59,7 +61,7 @@ function studio(w: Vec3): Triple {
   return sum(room, key, strips);
 }
 
-/** A clear sky late in the day above dry ground. The glow is that around the sun. */
+/** A clear sky late in the day above dry ground, with a glow around the sun. */
 function sky(w: Vec3): Triple {
   const glow = Math.max(dot(w, unit([0.6, 0.3, 0.75])), 0);
   const above = mixed([0.95, 0.85, 0.74], [0.18, 0.36, 0.78], Math.max(w[1], 0) ** 0.42);
@@ -71,7 +73,7 @@ function sky(w: Vec3): Triple {
   return mixed(ground, sum(above, sun), inside(-w[1], 0.06));
 }
 
-/** A warm room with one window of four panes, which is cool and bright. */
+/** A warm room with one cool, bright window of four panes. */
 function window(w: Vec3): Triple {
   const walls = mixed([0.17, 0.12, 0.085], [0.3, 0.25, 0.2], 0.5 + 0.5 * w[1]);
   let panes = 0;
@@ -85,10 +87,11 @@ function window(w: Vec3): Triple {
 
 const RADIANCE: Record<"studio" | "sky" | "window", (w: Vec3) => Triple> = { studio, sky, window };
 
-/** The radiance map of surroundings; one pixel where it is the same everywhere. */
+/** The radiance map of the surroundings; a single pixel if they are uniform. */
 export function radianceMap(name: Surroundings, own: Sky | null): SkyMap {
   if (name === "own") {
-    if (!own) return radianceMap("studio", null); // in a link from a page that has its own
+    // The link comes from a page with custom surroundings.
+    if (!own) return radianceMap("studio", null);
     const bytes = Uint8Array.from(atob(own.rgba), (each) => each.charCodeAt(0));
     return { ...own, pixels: new Float32Array(bytes.buffer) };
   }
@@ -99,7 +102,9 @@ export function radianceMap(name: Surroundings, own: Sky | null): SkyMap {
   return mapOf(RADIANCE_ROWS, (direction) => scaled(RADIANCE[name](direction), BRIGHTNESS));
 }
 
-/** Irradiance over pi for every normal. Weights of a normal add up to 1, as a lobe of cosines does. */
+/**
+ * Irradiance over pi for every normal. The weights for a normal add up to 1, as in a cosine lobe.
+ */
 export function irradianceMap(radiance: SkyMap): SkyMap {
   if (radiance.height === 1) return radiance;
   const coarse = reduced(radiance, radiance.height / SUMMED_ROWS);
@@ -107,7 +112,7 @@ export function irradianceMap(radiance: SkyMap): SkyMap {
     directions(SUMMED_ROWS).flatMap(({ direction, solidAngle }) => [...direction, solidAngle]),
   );
   return mapOf(IRRADIANCE_ROWS, ([x, y, z]) => {
-    // Four million terms before the first picture: no objects in this loop.
+    // Four million terms before the first picture: allocate no objects in this loop.
     let [red, green, blue, weights] = [0, 0, 0, 0];
     for (let k = 0; k < incoming.length; k += 4) {
       const cosine = x * incoming[k]! + y * incoming[k + 1]! + z * incoming[k + 2]!;
@@ -131,7 +136,10 @@ function mapOf(rows: number, color: (direction: Vec3) => Vec3): SkyMap {
   return { width: 2 * rows, height: rows, pixels };
 }
 
-/** Directions of the pixels of a map with `rows` rows, and their solid angles but for a factor. */
+/**
+ * Directions of the pixels of a map with `rows` rows, and their solid angles up to a constant
+ * factor.
+ */
 function directions(rows: number): { direction: Triple; solidAngle: number }[] {
   return Array.from({ length: 2 * rows * rows }, (_, index) => {
     const polar = (Math.PI * (Math.floor(index / (2 * rows)) + 0.5)) / rows;
@@ -144,7 +152,7 @@ function directions(rows: number): { direction: Triple; solidAngle: number }[] {
   });
 }
 
-/** Means of square blocks. */
+/** Averages of square blocks. */
 function reduced({ width, height, pixels }: SkyMap, block: number): Float32Array {
   const columns = width / block;
   const means = new Float32Array((4 * columns * height) / block);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frames of all passes that are as large as the canvas.
+// Frames of the canvas' size, for all passes.
 
 import * as gpu from "./gpu";
 import type { Size } from "./paths";
 
-/** What is as large as the canvas. */
+/** Targets of the canvas' size. */
 export interface Targets {
   readonly size: Size;
   readonly geometry: gpu.Target;

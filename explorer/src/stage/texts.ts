@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The texts of all programs of the stage, in ESSL 3.00.
+// Builds the texts of all the stage's programs, in ESSL 3.00.
 
 import type { ModelName, PageData, ShaderSource } from "../data";
 import type { Sampler, Shape } from "../state";
@@ -26,21 +26,21 @@ precision highp int;
 precision highp sampler2D;
 `;
 
-/** A path has no neighbors, and textures no derivatives. */
+/** Paths have no neighboring pixels, and therefore textures no derivatives. */
 const NO_MIPS = "#define texture(map, at) textureLod(map, at, 0.0)\n";
 
-/** One triangle over the whole frame. */
+/** One triangle that covers the whole frame. */
 export const VERTEX = `#version 300 es
 void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
 }
 `;
 
-/** Calls of a model's value and, where a closed form is known, of its albedo. */
+/** Macros that call a model's value and, if a closed form is known, its albedo. */
 interface Calls {
   readonly value: string;
   readonly albedo: string | null;
-  readonly sigma?: boolean; // the parameter is a sigma
+  readonly sigma?: boolean; // the model's parameter is sigma
 }
 
 const MODELS: Record<ModelName, Calls> = {
@@ -79,7 +79,7 @@ const SAMPLERS: Record<Sampler, readonly [string, string]> = {
   cosine: ["cosine_sample(u.x, u.y)", "cosine_pdf(wi)"],
 };
 
-/** Roughness that samplers take for a model's parameter. */
+/** Converts a model's parameter to the roughness that samplers take. */
 export function samplerRoughness(model: ModelName, parameter: number): number {
   return MODELS[model].sigma ? Math.min((2 * parameter) / Math.PI, 1) : parameter;
 }
@@ -98,12 +98,12 @@ function shaped(shape: Shape, ...parts: string[]): string {
   return HEAD + defined({ STAGE_SHAPE: SHAPE_INDEX[shape] }) + shapes + parts.join("");
 }
 
-/** Paths through the text of a material. */
+/** Traces paths with the text of a material. */
 function traced(shape: Shape, ...material: string[]): string {
   return shaped(shape, ...material, camera, surroundings, places, paths);
 }
 
-/** A program's pixel stage: a short name, which programs are kept by, and its long text. */
+/** A program's pixel stage: a function that builds its text, and a short key for caches. */
 export interface Text {
   readonly key: string;
   readonly make: () => string;
@@ -138,7 +138,7 @@ export class Texts {
     return { key: `albedo ${model}`, make };
   }
 
-  /** Paths on what a model is. */
+  /** Traces paths with the model of a source. */
   modelPaths(model: ModelName, sampler: Sampler, shape: Shape): Text {
     const [sample, pdf] = SAMPLERS[sampler];
     const macros = { STAGE_VALUE: MODELS[model].value, STAGE_SAMPLE: sample, STAGE_PDF: pdf };
@@ -146,7 +146,7 @@ export class Texts {
     return { key: `paths ${model} ${sampler} ${shape}`, make };
   }
 
-  /** Paths on a generated shader. */
+  /** Traces paths with a generated shader. */
   paths(source: ShaderSource, shape: Shape): Text {
     return { key: `paths ${source.id} ${shape}`, make: () => traced(shape, NO_MIPS, source.paths) };
   }
@@ -164,7 +164,7 @@ export class Texts {
   }
 }
 
-/** What a shader may read from its vertex stage, from what the geometry holds. */
+/** Vertex-stage inputs that a shader may read, computed from the geometry. */
 const POINTS: Record<string, string> = {
   normalWorld: "stage_normal",
   positionWorld: "stage_position.xyz",
@@ -178,11 +178,11 @@ const POINTS: Record<string, string> = {
 };
 
 /**
- * A generated pixel stage that takes its point from the geometry instead of a vertex stage.
- *
- * Only declarations change: each `in` becomes a variable, and so do two uniforms that differ from
- * pixel to pixel here, whether the light arrives and how much of the surroundings does. A point that
- * is not in POINTS is zero, as it is for the gl host, which has no such vertex attribute either.
+ * A generated pixel stage that reads its point from the geometry instead of a vertex stage. Only
+ * declarations change: each `in` becomes a variable, and so do two uniforms that differ from pixel
+ * to pixel here: whether the light arrives, and the visible share of the surroundings. Inputs
+ * missing in POINTS are zero, as on the gl host, which does not have these vertex attributes
+ * either.
  */
 export function withPoints(pixel: string): string {
   const inputs: string[] = [];

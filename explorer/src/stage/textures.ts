@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures of surroundings and of documents' images, made when they are first asked for.
+// Textures of surroundings and of documents' images, created on first use.
 
 import type { Sky, Texels } from "../data";
 import type { Surroundings } from "../state";
@@ -20,7 +20,9 @@ export class Textures {
     this.white = gpu.makeTexture(gl, this.format.bytes, 1, 1, new Uint8Array([255, 255, 255, 255]));
   }
 
-  /** Radiance of surroundings, or its irradiance over pi, as MaterialX's shaders read them. */
+  /**
+   * Radiance of the surroundings, or its irradiance over pi, in the layout of MaterialX's shaders.
+   */
   surroundings(name: Surroundings, kind: "radiance" | "irradiance"): WebGLTexture {
     const known = this.maps.get(name + kind);
     if (known) return known;
@@ -38,7 +40,7 @@ export class Textures {
     return texture;
   }
 
-  /** An image without smaller versions of itself, as the hosts have it. */
+  /** An image without mipmaps, as on the hosts. */
   image(texels: Texels): WebGLTexture {
     const known = this.images.get(texels);
     if (known) return known;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The wrong variants of python/mxeon/models/diffuse.py, for texts behind the twins.
+// The wrong variants of python/mxeon/models/diffuse.py, for texts that include the models.
 //
-// Arguments are those of the twins: wo and wi in the local frame, a rho per channel, and the
-// roughness or the sigma of the model.
+// Arguments are the same: wo and wi in the local frame, rho per channel, and the roughness or sigma
+// of the model.
 
-// EON with dot(wo, wi) kept above 1e-8 before s is formed. The dot product is s + mu_o mu_i.
+// EON that clamps dot(wo, wi) to at least 1e-8 before it computes s. The dot product is s + mu_o
+// mu_i.
 vec3 eon_clamped_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
     float mu_o = min(wo.z, 1.0);
@@ -14,7 +15,7 @@ vec3 eon_clamped_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
     return eon_brdf_mu(mu_o, mu_i, s, rho, roughness);
 }
 
-// EON whose multiple-scattering lobe carries rho^3 for rho^2.
+// EON whose multiple-scattering lobe has rho^3 instead of rho^2.
 vec3 eon_rho_cubed_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
     float single_scatter = 1.0 + roughness * fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
@@ -31,7 +32,7 @@ vec3 fon_white_lobe_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
     return fon_brdf(wo, wi, rho, roughness) + vec3(white);
 }
 
-// QON that is multiplied by its own color once more.
+// QON multiplied by its own color a second time.
 vec3 qon_tinted_twice_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     return rho * qon_brdf(wo, wi, rho, sigma);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are dropped on the page. `mxeon explore` shows them where it serves the page: it generates
-// their shaders and judges them, which no page can. Any other page gives the command.
+// Files dropped on the page. If `mxeon explore` serves the page, it generates and judges their
+// shaders, which a page cannot do by itself. Any other page shows the command to run.
 
 import { useEffect, useState } from "preact/hooks";
 import { copy } from "../copies";
@@ -15,7 +15,8 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
   const [command, setCommand] = useState("");
   const [copied, setCopied] = useState("");
   useEffect(() => {
-    const over = (event: DragEvent): void => event.preventDefault(); // or the browser opens the file
+    // Otherwise the browser opens the file.
+    const over = (event: DragEvent): void => event.preventDefault();
     const drop = (event: DragEvent): void => {
       event.preventDefault();
       void files_of(event.dataTransfer).then(shown);
@@ -72,7 +73,7 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
   );
 }
 
-/** Dropped files by path; those of folders too, because documents name images by paths. */
+/** Dropped files by path, including those in folders, because documents name images by paths. */
 async function files_of(dropped: DataTransfer | null): Promise<Map<string, File>> {
   const files = new Map<string, File>();
   const add = async (entry: FileSystemEntry): Promise<void> => {
@@ -89,7 +90,7 @@ async function files_of(dropped: DataTransfer | null): Promise<Map<string, File>
       for (const each of some) await add(each);
     }
   };
-  // All at once: the browser forgets the items when this function first waits.
+  // Read all items before the first await, after which the browser clears the list.
   const items = [...(dropped?.items ?? [])].map(
     (item) => [item.webkitGetAsEntry(), item.getAsFile()] as const,
   );
@@ -100,7 +101,7 @@ async function files_of(dropped: DataTransfer | null): Promise<Map<string, File>
   return files;
 }
 
-/** Send files, documents last, and load the page that shows them; or what is wrong with one. */
+/** Send files, documents last, and load the page that shows them; returns the error, if any. */
 async function sent(files: ReadonlyMap<string, File>, documents: boolean): Promise<string> {
   const last = ([name]: [string, File]): number => Number(DOCUMENT.test(name));
   for (const [name, file] of [...files].sort((a, b) => last(a) - last(b))) {
@@ -110,14 +111,14 @@ async function sent(files: ReadonlyMap<string, File>, documents: boolean): Promi
     if (!reply) return "mxeon explore has ended: start it again.";
     if (!reply.ok) return reply.text();
   }
-  history.replaceState(null, "", location.pathname); // the address was that of another material
+  history.replaceState(null, "", location.pathname); // the old address belonged to another material
   location.reload();
   return "";
 }
 
-/** The command that shows a document, or a map of the surroundings. */
+/** The command that shows a document or an environment map. */
 function command_for(name: string): string {
-  const path = name.startsWith("-") ? `./${name}` : name; // no option
+  const path = name.startsWith("-") ? `./${name}` : name; // a name must not look like an option
   const file = /^[\w./-]+$/.test(path) ? path : `'${path.replaceAll("'", `'\\''`)}'`;
   return `mxeon explore ${DOCUMENT.test(name) ? "" : "--environment "}${file}`;
 }

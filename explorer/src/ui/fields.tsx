@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Form fields, each with its label.
+// Labeled form fields.
 
 import type { ComponentChildren } from "preact";
 import { useId, useRef, useState } from "preact/hooks";
@@ -15,7 +15,7 @@ interface NumberProps {
   readonly onChange: (value: number) => void;
 }
 
-/** A number to type. What is being typed stays, whatever else changes, until it is done. */
+/** A number field. Text being typed is kept until editing ends, even if other things change. */
 export function NumberField({ label, value, min, max, step = "any", onChange }: NumberProps) {
   const [draft, setDraft] = useState<string | null>(null);
   const typed = useRef(false);
@@ -55,7 +55,7 @@ interface SliderProps {
   readonly onChange: (value: number) => void;
 }
 
-/** A number as a slider and as a field beside it. */
+/** A number as a slider with a number field. */
 export function Slider({ label, value, min, max, step = 0.01, unit = "", onChange }: SliderProps) {
   const id = useId();
   return (
@@ -83,7 +83,7 @@ interface ChoiceProps<T extends string> {
   readonly onChange: (value: T) => void;
 }
 
-/** One of a few words, all of them in sight. */
+/** A choice of a few words, all of them visible. */
 export function Choice<T extends string>({ label, value, options, onChange }: ChoiceProps<T>) {
   const name = useId();
   return (
@@ -134,7 +134,7 @@ interface ColorProps {
 
 const CHANNELS = ["red", "green", "blue"] as const;
 
-/** A linear color: a picker, and a number for each channel. */
+/** A linear color: a color picker, and a number for each channel. */
 export function Color({ label, value, onChange }: ColorProps) {
   const change = (channel: number, number: number): void => {
     const next: Triple = [...value];
@@ -168,7 +168,7 @@ export function Color({ label, value, onChange }: ColorProps) {
   );
 }
 
-/** A patch of a linear color. */
+/** A swatch of a linear color. */
 export function Swatch({ color }: { readonly color: Vec3 }) {
   return (
     <svg class="swatch" viewBox="0 0 1 1" aria-hidden="true">

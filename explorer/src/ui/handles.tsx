@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The handles on the picture, each moved by the arrow keys too.
+// Handles on the picture; each can be moved with the arrow keys, too.
 
 import type { ViewProps } from "./sides";
 
-const STEP = 0.02; // of the picture, for an arrow key
+const STEP = 0.02; // fraction of the picture per arrow key
 
 const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
   ArrowLeft: [-1, 0],
@@ -12,7 +12,7 @@ const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
   ArrowDown: [0, 1],
 };
 
-/** Steps of an arrow key, if the event is one. */
+/** Step for an arrow key; null for other keys. */
 function arrow(event: KeyboardEvent): readonly [number, number] | null {
   const steps = ARROWS[event.key] ?? null;
   if (steps) event.preventDefault();
@@ -48,7 +48,7 @@ interface HandleProps extends ViewProps {
   readonly at: readonly [number, number];
 }
 
-/** A handle's place, all of it inside the picture. */
+/** A handle's position, clamped to the picture. */
 function position([x, y]: readonly [number, number]) {
   const inside = (share: number): string => `clamp(16px, ${100 * share}%, 100% - 16px)`;
   return { left: inside(x), top: inside(y) };

@@ -7,7 +7,7 @@ import { SIDES, source_of, stem_of, values_of } from "../view";
 import { Check, Color, NumberField, Slider } from "./fields";
 import type { ViewProps } from "./sides";
 
-/** The controls of the documents in sight, one group for both libraries of a material. */
+/** Controls of the visible documents, one group for both libraries of a material. */
 export function Inputs(props: ViewProps) {
   const { sources, state } = props;
   const shown = new Map<string, ShaderSource>();
@@ -57,7 +57,7 @@ function Group({ source, data, state, change }: ViewProps & { readonly source: S
 
 interface FieldProps {
   readonly port: Port;
-  readonly alone: boolean; // whether no other input has its label, so that its node needs no name
+  readonly alone: boolean; // whether its label is unique, so that its node needs no name
   readonly value: Value;
   readonly onChange: (value: Value) => void;
 }
@@ -71,7 +71,7 @@ function Field({ port, alone, value, onChange }: FieldProps) {
     const step = port.type === "integer" ? 1 : (max - min) / 200;
     return <Slider label={label} {...{ value, min, max, step, onChange }} />;
   }
-  // An index of refraction is no color: colors end at 1.
+  // An index of refraction is not a color: color ranges end at 1.
   if (port.type === "color3" && Math.max(...(port.value as Triple)) <= 1) {
     return <Color label={label} value={value as Triple} onChange={onChange} />;
   }
@@ -96,7 +96,7 @@ function Field({ port, alone, value, onChange }: FieldProps) {
   );
 }
 
-/** The range of a number's slider: what its definition recommends, or one around its own value. */
+/** The range of a number's slider: the one its definition recommends, or one around its value. */
 function range(port: Port, value: number): [number, number] {
   const own = typeof port.value === "number" ? port.value : value;
   return [port.min ?? Math.min(0, 2 * own), port.max ?? (own > 1 ? 2 * own : 1)];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Color and roughness, the albedo that comes out, and the color to enter for one that is wanted.
+// Color and roughness, the resulting albedo, and the color to enter for a given albedo.
 
 import { useMemo } from "preact/hooks";
 import type { Triple, Vec3 } from "../data";
@@ -13,7 +13,7 @@ function per_channel(color: Vec3, one: (rho: number) => number): Triple {
   return [one(color[0]), one(color[1]), one(color[2])];
 }
 
-/** Color and roughness; albedos, which take long, wait until the first picture is drawn. */
+/** Color and roughness; albedos are slow, so they wait until the first picture is drawn. */
 export function Material({
   sources,
   state,
@@ -98,7 +98,7 @@ function Albedos({ of, color, roughness }: AlbedosProps) {
   );
 }
 
-/** Which color to enter, of a material that is one rough diffuse lobe. */
+/** The color to enter for a given albedo, if the material is one rough diffuse lobe. */
 export function Wanted(props: ViewProps) {
   const { sources, state } = props;
   const of = meant_model(source_of(sources, state.left), state.left, state);

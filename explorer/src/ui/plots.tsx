@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lobe of both sides in the plane of incidence, and the curve of the directional albedo.
+// The lobes of both sides in the plane of incidence, and their directional albedos.
 
 import { scaleLinear } from "d3-scale";
 import { line, lineRadial } from "d3-shape";
@@ -24,16 +24,16 @@ interface PlotProps {
 
 const CHANNELS = ["red", "green", "blue"];
 
-/** The channel with the largest reflectance, in which differences show best. */
+/** The channel with the largest reflectance, where differences are most visible. */
 function brightest(color: Vec3): number {
   return color.indexOf(Math.max(...color));
 }
 
 const RADIUS = 120;
-const REACH = 89; // degrees on both sides of the normal
-const STEEPEST = 1.2; // radian, within which the scale holds every value
+const REACH = 89; // degrees on each side of the normal
+const STEEPEST = 1.2; // radian from the normal within which the scale contains every value
 
-/** pi f over the angle of the light, for the viewer of the probe. */
+/** pi f by the angle of the light, for the probe's viewer. */
 export function Polar({ curves, pair, color, roughness }: PlotProps) {
   const channel = brightest(color);
   const { wo } = pair;
@@ -46,7 +46,7 @@ export function Polar({ curves, pair, color, roughness }: PlotProps) {
   const lobes = curves.map(({ model }) =>
     angles.map((angle): [number, number] => [(angle * Math.PI) / 180, value(model, angle)]),
   );
-  // Values grow without bound where both directions graze: these leave the plot.
+  // Values diverge where both directions graze, so these may exceed the plot.
   const inner = lobes.flatMap((lobe) => lobe.filter(([angle]) => Math.abs(angle) < STEEPEST));
   const top = Math.max(...inner.map(([, radius]) => radius), 1e-6);
   const radius = scaleLinear([0, top], [0, RADIUS]).nice(4);
@@ -118,7 +118,7 @@ const [WIDTH, HEIGHT] = [300, 172];
 const FRAME = { left: 36, right: 290, top: 12, bottom: 142 };
 const POINTS = 31;
 
-/** The directional albedo of both sides over the angle of the viewer, with that of the probe. */
+/** The directional albedos of both sides by the angle of the viewer, with the probe's angle. */
 export function AlbedoPlot({ curves, pair, color, roughness }: PlotProps) {
   const channel = brightest(color);
   const rho = color[channel]!;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The probe: a pair of directions, the values of both sides for it, and their errors.
+// The probe: a pair of directions, both sides' values for it, and their errors.
 
 import type { ComponentChild } from "preact";
 import { useMemo, useState } from "preact/hooks";
@@ -12,19 +12,19 @@ import { actual_model, LETTER, meant_model, SIDES, source_of, tabled } from "../
 import { AlbedoPlot, type Curve, Polar } from "./plots";
 import type { ViewProps } from "./sides";
 
-/** pi f cos of each shader; null while it compiles, or if it does not. */
+/** pi f cos of each shader; null while it compiles or if it fails. */
 export interface Measured {
   readonly left: Triple | null;
   readonly right: Triple | null;
 }
 
 interface ProbeProps extends ViewProps {
-  readonly calm: State; // the view that was at rest last, of which the values are
+  readonly calm: State; // the last view at rest, to which the values belong
   readonly pair: Pair;
-  readonly row: number | null; // of the pair in the tables of references
-  readonly measured: Measured | null; // null while something moves, and where no shader runs
+  readonly row: number | null; // errors for the pairs in the reference tables
+  readonly measured: Measured | null; // null during motion, and if no shader runs
   readonly able: boolean; // whether shaders run
-  readonly drawn: boolean; // whether the first picture is there, before which nothing is plotted
+  readonly drawn: boolean; // whether the first picture is done; nothing is plotted before
 }
 
 const DECIMALS = 7;
@@ -154,7 +154,7 @@ function Values({ sources, calm: state, pair, row, measured, able }: ProbeProps)
             const should = of ? values(of, pair, color, roughness) : tabled(source, state, row);
             if (!should) return "–";
             if (!measured?.[name] && able) return <Measuring />;
-            // Where no shader runs, a model is not compared with itself.
+            // If no shader runs, do not compare a model with itself.
             const value =
               measured?.[name] ?? (is && is !== of && values(is, pair, color, roughness));
             if (!value) return "not measured";
@@ -215,7 +215,7 @@ function Numbers({ values }: { readonly values: Triple }) {
   );
 }
 
-/** Buttons that copy, for each side what it has. */
+/** Copy buttons for each side. */
 function Copies({ data, sources, state, calm, pair }: ProbeProps) {
   const [said, say] = useState("");
   const take = (what: string, text: string): void => {
@@ -231,7 +231,7 @@ function Copies({ data, sources, state, calm, pair }: ProbeProps) {
         const texts: [string, string | null][] = [
           ["MaterialX", material_x(state, sources, source, state[name])],
           ["GLSL", shader_text(data, source)],
-          ["Python", of && python_line(of, pair, calm)], // of the values in sight
+          ["Python", of && python_line(of, pair, calm)], // for the visible values
         ];
         return (
           <p key={name} role="group" aria-label={`Copy from ${LETTER[name]}`}>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two materials: what they are, and the verdict on them.
+// The two materials and the verdicts on them.
 
 import { useMemo } from "preact/hooks";
 import type { PageData } from "../data";
@@ -31,7 +31,7 @@ const SAMPLER_TITLES: Readonly<Record<Sampler, string>> = {
   cosine: "cosine sampling",
 };
 
-/** Which material of both libraries is compared. */
+/** Selects which material of both libraries is compared. */
 export function Materials({ data, sources, state, change }: ViewProps) {
   const materials = materials_of(data);
   const stem = stem_of(state.left.source);
@@ -48,7 +48,7 @@ export function Materials({ data, sources, state, change }: ViewProps) {
 }
 
 interface SidesProps extends ViewProps {
-  readonly rest: State | null; // the view that verdicts are about; null before the first picture
+  readonly rest: State | null; // the view of the verdicts; null before the first picture
   readonly evidence: Readonly<Record<SideName, Evidence>>;
 }
 
@@ -70,7 +70,7 @@ function SideCard(props: SidesProps & { readonly name: SideName }) {
   const source = source_of(sources, side);
   const groups = [...new Set(data.sources.map((each) => each.group))];
   const { able, confirmed, errors, failure } = evidence[name];
-  // A verdict on a view that moves is that on the one before, if that had the same material.
+  // During motion, keep the last verdict if the material is still the same.
   const judged = rest && rest[name] === side ? rest : null;
   const verdict = useMemo(
     () => (judged ? verdict_on(judged, sources, side, evidence[name]) : WAITING),
@@ -140,7 +140,7 @@ interface PagesProps {
   readonly pattern: string;
 }
 
-/** The pages on the defects of a material, as links where there is an address. */
+/** The pages about the defects of a material, as links if their addresses are known. */
 function Pages({ names, pattern }: PagesProps) {
   if (names.length === 0) return null;
   return (

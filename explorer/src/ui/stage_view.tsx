@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture with its handles: the wipe, the light and the probe.
+// The picture with its handles: wipe, light and probe.
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import { show, signed } from "../format";
@@ -13,7 +13,7 @@ import type { ViewProps } from "./sides";
 import { Stills } from "./stills";
 
 interface StageViewProps extends ViewProps {
-  /** Where the probe is in the picture, [0, 1]^2 from the left top; null for nowhere. */
+  /** Position of the probe in the picture, [0, 1]^2 from the top left; null for none. */
   readonly mark: readonly [number, number] | null;
   readonly onStage: (stage: Stage | null) => void;
   readonly onDrag: (dragging: boolean) => void;
@@ -25,16 +25,16 @@ const TITLES: Readonly<Record<Comparison, string>> = {
   difference: "Difference",
   flicker: "Flicker",
 };
-const NEAR = 18; // pixels from the line within which it is taken
-const DEGREES = 0.4; // of the viewer for a pixel
-const CLICK = 4; // pixels that a click may move
+const NEAR = 18; // distance in pixels within which the line can be grabbed
+const DEGREES = 0.4; // degrees that the viewer turns per pixel
+const CLICK = 4; // pixels that the pointer may move during a click
 
-/** A place with as many digits as the address has. */
+/** A position rounded to the digits that the address stores. */
 function short([x, y]: readonly [number, number]): [number, number] {
   return [Number(x.toFixed(4)), Number(y.toFixed(4))];
 }
 
-/** The view after the pointer has moved by some pixels: what is near follows it, as in three.js. */
+/** The view after the pointer moved by some pixels: the subject follows it, as in three.js. */
 function turned({ turn, tilt }: State, x: number, y: number): Partial<State> {
   return {
     turn: ((turn - DEGREES * x + 540) % 360) - 180,
@@ -62,7 +62,7 @@ export function StageView(props: StageViewProps) {
   useEffect(() => stage?.draw(state, dragging), [stage, state, dragging]);
   useEffect(() => onDrag(dragging), [dragging]);
 
-  /** A pointer's place in the picture. */
+  /** The pointer's position in the picture. */
   const place = (event: PointerEvent): [number, number] => {
     const frame = canvas.current!.getBoundingClientRect();
     return [
@@ -169,7 +169,7 @@ function Toolbar({ state, change }: ViewProps) {
   );
 }
 
-/** Which material is where. */
+/** Labels of the materials. */
 function Labels({ state, names }: { readonly state: State; readonly names: readonly string[] }) {
   if (state.comparison === "difference") return null;
   const edge = state.comparison === "side" ? 0.5 : state.wipe;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures of a browser without WebGL2.
+// Pictures for browsers without WebGL2.
 
 import type { Still } from "../data";
 
