@@ -4,6 +4,7 @@
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import compress
 from pathlib import Path
 from typing import TypeAlias
@@ -120,10 +121,8 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tole
     rings = RINGS.term("subsurface scattering in six circles")
     others = [rings] * (SUBSURFACE in inner_lobes(shader))
     others += BLACKBODY.terms * ("blackbody" in categories(nodes))
-    others += [
-        ZELTNER_VALUE.term("Zeltner's sheens"),
-        ZELTNER_ALBEDO.term("their albedos"),
-    ] * zeltner
+    sheens = [ZELTNER_VALUE.term("Zeltner's sheens"), ZELTNER_ALBEDO.term("their albedos")]
+    others += sheens * zeltner
     others += _others(lobes)
     rounding = host_row(host.name).rounding
     others += [Term(rounding, "the pixels' own rounding")] * bool(rounding)
@@ -178,9 +177,8 @@ def _stretched(lobes: Iterable[ShownLobe]) -> bool:
 
 
 Pixels: TypeAlias = NDArray[np.floating]
-Shown: TypeAlias = tuple[
-    Scene, Pixels, ExpectedPicture
-]  # a scene, the host's picture and the reference
+# A scene, the host's picture and the reference.
+Shown: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]
 Pixel: TypeAlias = tuple[float, dict[str, list[float]], Pixels]
 Note: TypeAlias = tuple[str, str]  # a warning, and what it is about
 
@@ -196,11 +194,8 @@ def _read(
         warnings.simplefilter("error", MissingFileWarning)
         shaders = make()
     messages = [record.message for record in records]
-    approximations = {
-        message.element: message.approximation
-        for message in messages
-        if isinstance(message, ApproximationWarning)
-    }
+    approximate = (each for each in messages if isinstance(each, ApproximationWarning))
+    approximations = {each.element: each.approximation for each in approximate}
     others = [each for each in messages if isinstance(each, (CodeWarning, DocumentWarning))]
     return shaders, approximations, others
 
@@ -212,9 +207,8 @@ def judge_document(
 
     Raise DocumentError if no shader can be made from the document.
     """
-    shaders, approximations, others = _read(
-        file, lambda: host.compile(file, library=library, policy=policy)
-    )
+    make = partial(host.compile, file, library=library, policy=policy)
+    shaders, approximations, others = _read(file, make)
     results: list[Result] = []
     pictures: list[Picture] = []
     for shader in shaders:
@@ -233,11 +227,8 @@ def judge_document(
     )
     # A result names the input itself.
     told_inputs = any(each.diagnosis.kind is Kind.INPUT for each in results)
-    notes += [
-        (str(each), file.name)
-        for each in others
-        if not (told_inputs and isinstance(each, RangeWarning))
-    ]
+    untold = (each for each in others if not (told_inputs and isinstance(each, RangeWarning)))
+    notes += [(str(each), file.name) for each in untold]
     return tuple(results), tuple(pictures), tuple(notes)
 
 
@@ -298,8 +289,8 @@ def _judge_material(
     lobes = [lobe for each in expected for lobe in each.lobes]
     # A prefiltered environment has one alpha.
     rough = host.active.environment == "prefilter" and _stretched(lobes)
-    asked = [not rough or scene.environment is None for scene in scenes]
-    pictures = tuple(picture(*case, judged) for case, judged in zip(cases, asked, strict=True))
+    judged = [not rough or scene.environment is None for scene in scenes]
+    pictures = tuple(picture(*case, each) for case, each in zip(cases, judged, strict=True))
 
     def diagnose() -> Diagnosis:
         if known := _known(shader):
@@ -310,10 +301,9 @@ def _judge_material(
         return Diagnosis((Cause(Kind.FOLLOWS, names=follows),))
 
     tolerance = tolerance_of(shader, lobes, host)
-    result = _judge_match(place, [*compress(cases, asked)], tolerance, diagnose)
-    worst = max(
-        filter(None, (each.difference for each in pictures)), key=lambda each: abs(each.largest)
-    )
+    result = _judge_match(place, [*compress(cases, judged)], tolerance, diagnose)
+    apart = filter(None, (each.difference for each in pictures))
+    worst = max(apart, key=lambda each: abs(each.largest))
     return replace(result, difference=worst), pictures
 
 
@@ -344,14 +334,12 @@ def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Resul
 
     def measure(wrong: bool) -> Measurement:
         shown = [np.where(np.arange(3) == 0, np.nan, images[0])] if wrong else images
-        return Measurement(
-            float(sum((~np.isfinite(each)).any(axis=-1).sum() for each in shown)), {}
-        )
+        wrong_pixels = sum((~np.isfinite(each)).any(axis=-1).sum() for each in shown)
+        return Measurement(float(wrong_pixels), {})
 
     place = replace(place, check="finite", claim="Every pixel is finite.")
-    result = judge(
-        place, count_of(Quantity.PIXELS), measure, "one channel is not a number", Diagnosis
-    )
+    none = count_of(Quantity.PIXELS)
+    result = judge(place, none, measure, "one channel is not a number", Diagnosis)
     return replace(result, diagnosis=quoted(reason))
 
 

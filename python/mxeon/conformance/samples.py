@@ -172,9 +172,7 @@ def special_directions(rng: np.random.Generator) -> tuple[Array, Array]:
     """
     mu_o, mu_i, azimuth = np.array(list(product(GRID, GRID, AZIMUTHS))).T
     free, other = directions(rng, EACH), directions(rng, EACH)
-    high = directions_at(
-        HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH)
-    )
+    high = _between(rng, EACH, HORIZON, 1.0)
     rim = directions_at(np.zeros(EACH), 2.0 * np.pi * rng.random(EACH))
     normal = np.broadcast_to([0.0, 0.0, 1.0], free.shape)
     pairs = (
@@ -195,9 +193,7 @@ def special_directions(rng: np.random.Generator) -> tuple[Array, Array]:
 def outside_directions(rng: np.random.Generator) -> tuple[Array, Array]:
     """Directions outside the models' domain: light from below the horizon, and cosines above 1."""
     below = directions(rng, EACH) * [1.0, 1.0, -1.0]
-    high = directions_at(
-        HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH)
-    )
+    high = _between(rng, EACH, HORIZON, 1.0)
     straight = np.broadcast_to([0.0, 0.0, ABOVE_ONE], below.shape)
     wo = np.concatenate([high, straight, directions(rng, EACH)])
     wi = np.concatenate([below, directions(rng, EACH), straight])
@@ -229,7 +225,10 @@ def aimed(axes: Array, of: Array, to: Array) -> Array:
 
 
 def turned_directions(rng: np.random.Generator, count: int) -> Array:
-    low, high = TURNED
+    return _between(rng, count, *TURNED)
+
+
+def _between(rng: np.random.Generator, count: int, low: float, high: float) -> Array:
     return directions_at(low + (high - low) * rng.random(count), 2.0 * np.pi * rng.random(count))
 
 

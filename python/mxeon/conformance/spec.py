@@ -96,13 +96,11 @@ def draw(
 
 def broadcast_inputs(batch: Batch) -> dict[str, Array]:
     """The inputs of a batch, with a row for each pair."""
-    count = len(batch.wo)
-    return {
-        name: np.broadcast_to(values, (count, *np.shape(values)[-1:]))
-        if np.shape(values)[:1] != (count,)
-        else values
-        for name, values in batch.inputs.items()
-    }
+    count, found = len(batch.wo), dict(batch.inputs)
+    for name, values in found.items():
+        if np.shape(values)[:1] != (count,):
+            found[name] = np.broadcast_to(values, (count, *np.shape(values)[-1:]))
+    return found
 
 
 class Ability(Flag):
@@ -423,9 +421,8 @@ class EngineFunction:
         self, arguments: Callable[[], Sequence[Array]], allowed: float = 1.0
     ) -> Callable[[Host], float]:
         """A measurement of a host's largest error on some arguments, beyond a number of roundings of 1."""
-        return lambda host: max(
-            float(self.errors(host, *arguments()).max()) - allowed * ROUNDING, 0.0
-        )
+        least = allowed * ROUNDING
+        return lambda host: max(float(self.errors(host, *arguments()).max()) - least, 0.0)
 
 
 POWER = EngineFunction("power", "pow(x, y)", np.power)

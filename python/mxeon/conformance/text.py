@@ -9,6 +9,7 @@ import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
+from itertools import product
 from typing import TypeAlias
 
 import MaterialX as mx
@@ -81,21 +82,12 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
         if release := released(library):
             faults = partial(_arguments, library, release)
             results.append(_judged("arguments", "every node, mdl", library, faults))
-    return (
-        *results,
-        *(
-            _judged(
-                "source",
-                f"{each.title}, {target}",
-                library,
-                partial(_dropped, each, target, library),
-            )
-            for each in (*subjects, *PLAIN_LOBES)
-            for target in TARGETS
-            # The check of closures compares every argument of MDL's rough diffuse nodes.
-            if target in TEXT_ONLY and (target != "mdl" or isinstance(each, PbrSpec))
-        ),
-    )
+    for each, target in product((*subjects, *PLAIN_LOBES), TARGETS):
+        # The check of closures compares every argument of MDL's rough diffuse nodes.
+        if target in TEXT_ONLY and (target != "mdl" or isinstance(each, PbrSpec)):
+            faults = partial(_dropped, each, target, library)
+            results.append(_judged("source", f"{each.title}, {target}", library, faults))
+    return tuple(results)
 
 
 def _judged(check: str, subject: str, library: str, faults: Callable[[], Faults]) -> Result:
@@ -223,9 +215,8 @@ ROUNDED = 1e-12  # 4500 float64 roundings, more than in any text
 TINT = "multiscatter_tint"
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
 UP = np.array([[0.0, 0.0, 1.0]])  # the surface's normal, which differs from the node's
-Closure: TypeAlias = dict[
-    str, ArrayLike
-]  # arguments by the names of the node's inputs, weight included
+# Arguments by the names of the node's inputs, weight included.
+Closure: TypeAlias = dict[str, ArrayLike]
 
 
 # The functions below have parameters as in MDL's documentation.

@@ -98,10 +98,8 @@ def finds_albedo(spec: Spec, methods: Methods) -> bool:
     With a prefiltered environment, films and surface shaders have the errors of MaterialX's fit, and microfacets
     the errors of its 64 samples, if these replace the fit, or of eonlib's fits of their curves.
     """
-    sampled = isinstance(spec, FacetSpec) and (
-        methods.albedo != "analytic" or bool(methods.searched)
-    )
-    fitted = sampled or isinstance(spec, (FilmSpec, SurfaceShaderSpec))
+    sampled = methods.albedo != "analytic" or bool(methods.searched)
+    fitted = (sampled and FACETS(spec)) or isinstance(spec, (FilmSpec, SurfaceShaderSpec))
     return methods.environment == "fis" or (methods.environment == "prefilter" and not fitted)
 
 
@@ -122,10 +120,6 @@ def black(case: Case) -> Iterator[Compared]:
         yield Compared(batch, case.direct(batch), np.zeros((1, 3)))
 
 
-def diagnose_surroundings(case: Case) -> Diagnosis:
-    return diagnosis.diagnose_surroundings(surroundings(case), SURROUNDINGS)
-
-
 def surroundings(case: Case) -> Compared:
     batch = case.backend.turned
     if "color" in batch.inputs:
@@ -138,15 +132,6 @@ def surroundings(case: Case) -> Compared:
         measured = case.albedo(batch, samples.sky_map()) / level
     spec = case.of(ScatteringSpec)
     return Compared(batch, measured, spec.sky(batch))
-
-
-def diagnose_sphere(case: Case) -> Diagnosis:
-    return diagnosis.explain(case, list(sphere(case)), ON_SPHERES, (), RINGS)
-
-
-ON_SPHERE = controls.with_inputs(
-    "the mean free path is 0.3 in every channel", radius=(0.3, 0.3, 0.3)
-)
 
 
 def sphere(case: Case) -> Iterator[Compared]:
@@ -224,13 +209,8 @@ def reads(name: str) -> Specs:
 
 
 def dip(case: Case) -> Iterator[Compared]:
-    dipped = (samples.LEAST_COLOR82,) * 3
-    white: Values = {
-        "color0": samples.WHITE,
-        "color90": samples.WHITE,
-        "color82": dipped,
-        "exponent": 5.0,
-    }
+    white: Values = dict.fromkeys(("color0", "color90"), samples.WHITE)
+    white = {**white, "color82": (samples.LEAST_COLOR82,) * 3, "exponent": 5.0}
     return (_passed(case, batch.altered(**white)) for batch in case.views)
 
 
@@ -353,9 +333,7 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
     row, names = np.arange(len(views.wo))[:, np.newaxis], {"weight", "occlusion"}
     wo = np.where(row == 1, NORMAL, views.wo)
     wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # peak of microfacets
-    seen = {
-        name: np.maximum(views.inputs[name], LEAST_WEIGHT) for name in names & views.inputs.keys()
-    }
+    seen = {name: np.maximum(views.inputs[name], LEAST_WEIGHT) for name in names & {*views.inputs}}
     views = replace(views, wo=wo, wi=wi).altered(**seen)
     plain = replace(case, outputs=lambda batch, values: values)
     wrong = {
@@ -375,9 +353,8 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
             )
             for name, compared in quantities(case, lit, right):
                 if name not in wrong:
-                    tolerance = spec.outside_errors.get((name, each.name, value)) or case.tolerance(
-                        name
-                    )
+                    own = spec.outside_errors.get((name, each.name, value))
+                    tolerance = own or case.tolerance(name)
                     scale = tolerance.value * tolerance.scale(compared.expected)
                     yield name, each.name, value, compared.over(scale)
 
@@ -387,12 +364,11 @@ def diagnose_domain(case: Case) -> Diagnosis:
     for quantity, name, value, compared in outside(case):
         if absolute(*compared[1:]).max() > TOLERANCES.value:
             wrong.setdefault((name, quantity), []).append(value)
-    return Diagnosis(
-        tuple(
-            Cause(Kind.DEFECT, f"{quantity}_outside", (name,), tuple(values))
-            for (name, quantity), values in wrong.items()
-        )
+    causes = (
+        Cause(Kind.DEFECT, f"{quantity}_outside", (name,), tuple(values))
+        for (name, quantity), values in wrong.items()
     )
+    return Diagnosis(tuple(causes))
 
 
 # --- negative colors, as MaterialX's own text takes them -------------------------------------------
@@ -405,15 +381,13 @@ LEAST_NEGATIVE = 0.1
 def colored(spec: LobeSpec) -> list[str]:
     """Inputs that are reflectances or factors; colors of lobes under combinations belong to the lobes."""
     words = (FACTOR,) if COMBINED(spec) else ("color", "tint")
-    return [
-        each.name for each in spec.inputs if each.type == "color3" and each.name.startswith(words)
-    ]
+    colors = (each.name for each in spec.inputs if each.type == "color3")
+    return [name for name in colors if name.startswith(words)]
 
 
 def unsigned(batch: Batch) -> Batch:
-    return batch.altered(
-        **{name: np.abs(each) for name, each in batch.inputs.items() if np.ndim(each) == 2}
-    )
+    colors = {name: each for name, each in batch.inputs.items() if np.ndim(each) == 2}
+    return batch.altered(**{name: np.abs(each) for name, each in colors.items()})
 
 
 def negative(case: Case) -> Iterator[Compared]:
@@ -475,17 +449,19 @@ ROWS = (
     Check(key="surroundings",
           claim="An uneven environment is looked up along the viewer-facing normal, or along its opposite for translucent nodes.",
           applies=(PLAIN - FACETS) | MODES | BURLEY, measure=surroundings, tolerance=SURROUNDINGS,
-          control=controls.drop_normal, explain=diagnose_surroundings,
+          control=controls.drop_normal, explain=lambda case: diagnosis.diagnose_surroundings(surroundings(case), SURROUNDINGS),
           requires=Ability.PAIRS | Ability.LIGHT,
           methods=lambda spec, methods: methods.environment != "none"),
-    Check(key="sphere_mean",
-          claim="On average, a sphere reflects the share of light that the profile predicts.",
-          applies=SUBSURFACE, measure=sphere, tolerance="sphere_mean", control=ON_SPHERE,
-          explain=diagnose_sphere, requires=Ability.LIGHT),
-    Check(key="sphere",
-          claim="On a sphere, light spreads as the diffusion profile predicts from radius and anisotropy.",
-          applies=SUBSURFACE, measure=sphere, tolerance="sphere", control=ON_SPHERE,
-          explain=diagnose_sphere, requires=Ability.LIGHT),
+    *(
+        Check(key=key, claim=claim, applies=SUBSURFACE, measure=sphere, tolerance=key,
+              control=controls.with_inputs(
+                  "the mean free path is 0.3 in every channel", radius=(0.3, 0.3, 0.3)),
+              explain=lambda case: diagnosis.explain(case, list(sphere(case)), ON_SPHERES, (), RINGS),
+              requires=Ability.LIGHT)
+        for key, claim in (
+            ("sphere_mean", "On average, a sphere reflects the share of light that the profile predicts."),
+            ("sphere", "On a sphere, light spreads as the diffusion profile predicts from radius and anisotropy."))
+    ),
     Check(key="color_space",
           claim="A color in sRGB has the value of the linear color that it stands for.",
           applies=family(ScatteringSpec, lambda spec: spec.flat), measure=COLOR_SPACE,
@@ -573,7 +549,8 @@ ROWS = (
           explain=always(replace(defect("factor_not_clamped"), permitted=True)),
           requires=Ability.PAIRS, open=True),
     *(
-        Check(key=key, claim=row.claim, applies=family(HairSpec), measure=partial(in_region, key),
+        Check(key=key, claim=row.claim, applies=family(HairSpec),
+              measure=partial(in_region, key),
               tolerance=key, control=TURN_FIBER, explain=partial(explain_region, key),
               requires=Ability.LIGHT, open=True)
         for key, row in REGIONS.items()

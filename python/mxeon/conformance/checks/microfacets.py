@@ -57,13 +57,7 @@ DIP: Values = {
     "roughness": (0.2, 0.2),
 }
 LEAST_VALUE = 1e-3  # least pi f cos of values in ratios
-
-
 FACETS = lobes.PLAIN & lobes.FACETS  # uncombined microfacet lobes
-rougher = controls.with_batch(
-    "the roughness is 10 % larger",
-    lambda batch: batch.altered(roughness=np.minimum(1.1 * batch.inputs["roughness"], 1.0)),
-)
 isotropic = controls.with_batch(
     "the roughness is the same in both directions",
     lambda batch: batch.altered(roughness=np.repeat(batch.inputs["roughness"][:, :1], 2, axis=1)),
@@ -119,12 +113,10 @@ def retroreflection(case: Case) -> Iterator[Compared]:
 
 def anisotropy(case: Case) -> Compared:
     batch = case.backend.mirrored[0].first(PAIRS)
-    batch = batch.where(
-        np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= microfacets.LEAST_TANGENT_COSINE
-    )
-    batch = batch.altered(
-        roughness=np.maximum(batch.inputs["roughness"], microfacets.LEAST_TANGENT_ALPHA)
-    )
+    height = np.minimum(batch.wo[:, 2], batch.wi[:, 2])
+    batch = batch.where(height >= microfacets.LEAST_TANGENT_COSINE)
+    alpha = np.maximum(batch.inputs["roughness"], microfacets.LEAST_TANGENT_ALPHA)
+    batch = batch.altered(roughness=alpha)
     angle = np.linspace(0.0, 2.0 * np.pi, len(batch.wo))
     x, y, zero = np.cos(angle), np.sin(angle), np.zeros(len(angle))
     axes = np.array([[x, -y, zero], [y, x, zero], [zero, zero, zero + 1.0]]).transpose(2, 0, 1)
@@ -351,19 +343,15 @@ def mirrored(case: Case, ask: Callable[..., Array]) -> Iterator[Compared]:
 
 def diagnose_methods(case: Case) -> Diagnosis:
     tolerance = case.tolerance("methods")
-    wrong = dict.fromkeys(
-        str(methods) for methods, each in with_methods(case) if tolerance.wrong(each).any()
-    )
+    found = (str(each) for each, compared in with_methods(case) if tolerance.wrong(compared).any())
+    wrong = dict.fromkeys(found)
     return defect("wrong_with_methods", *wrong) if wrong else Diagnosis((UNKNOWN,))
 
 
 def diagnose_kept(case: Case) -> Diagnosis:
     tolerance = case.tolerance("kept")
-    causes: list[Cause] = []
-    for cause, compared in modes(case):
-        if tolerance.wrong(compared).any() and cause not in causes:
-            causes.append(cause)
-    return Diagnosis(tuple(causes))
+    wrong = (cause for cause, each in modes(case) if tolerance.wrong(each).any())
+    return Diagnosis(tuple(dict.fromkeys(wrong)))
 
 
 def modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
@@ -529,20 +517,15 @@ RARE = 0.5  # index of a film that MaterialX treats as vacuum
 dropped = controls.with_inputs("the film is dropped", thinfilm_thickness=0.0)
 
 
-def brighter(batch: Batch, values: Array) -> Array:
-    return values * np.where(np.any(batch.inputs["thinfilm_thickness"]), 100.0, 1.0)
-
-
 def curves(films: microfacets.Films, case: Case) -> Compared:
     """Curves: values in mirrored lights over a mirror's.
 
     The lobes are so smooth that their compensation is 1 for any average.
     """
     batch = film_views(case.of(FilmSpec), films)
-    (measured, mirror), (expected, white) = (
-        (direct(batch), direct(_mirror(case, batch))) for direct in (case.direct, case.expected)
-    )
-    return Compared(batch, measured / mirror, expected / white)
+    mirror = _mirror(case, batch)
+    expected = case.expected(batch) / case.expected(mirror)
+    return Compared(batch, case.direct(batch) / case.direct(mirror), expected)
 
 
 def film_limit(case: Case) -> list[Compared]:
@@ -566,13 +549,10 @@ def film_limit(case: Case) -> list[Compared]:
     return cases
 
 
-def film_energy(case: Case) -> list[Compared]:
-    cases = []
+def film_energy(case: Case) -> Iterator[Compared]:
     for batch in case.few[::2]:  # a mirror of index 0 is a separate check for exact directions
-        mirror = batch.altered(thinfilm_thickness=0.0, **case.of(FilmSpec).row.mirror)
-        most = case.direct(mirror)
-        cases.append(Compared(batch, np.maximum(case.direct(batch), most), most))
-    return cases
+        most = case.direct(_mirror(case, batch))
+        yield Compared(batch, np.maximum(case.direct(batch), most), most)
 
 
 def diagnose_average(case: Case) -> Diagnosis:
@@ -601,9 +581,8 @@ def diagnose_average(case: Case) -> Diagnosis:
 def film_average(case: Case) -> Compared:
     """F_ss of films with a curve away from 0."""
     batch = film_views(case.of(FilmSpec), microfacets.FRINGED)
-    (_, measured), (F, expected) = (
-        _averages(case, each, batch) for each in (case.direct, case.expected)
-    )
+    _, measured = _averages(case, case.direct, batch)
+    F, expected = _averages(case, case.expected, batch)
     return Compared(batch, measured, expected).where(F.min(axis=1) > LEAST_F)
 
 
@@ -647,10 +626,8 @@ def film_brushed(case: Case) -> Compared:
 
     The options that the specification leaves open for films are judged by film_visible; here they would fail.
     """
-    if (
-        not case.control
-        and case.tolerance("film_visible").wrong(visible(microfacets.STEEP, case)).any()
-    ):
+    error = case.tolerance("film_visible")
+    if not case.control and error.wrong(visible(microfacets.STEEP, case)).any():
         raise Implied(f"{case.host.name}: not measured, since film_visible already differs")
     batch, expected = case.backend.take(case.of(FilmSpec).stretched)
     return Compared(batch, case.albedo(batch) / case.albedo(_mirror(case, batch)), expected)
@@ -693,7 +670,11 @@ ROWS = (
           open=True),
     Check(key="shape",
           claim="For one view, the values for two lights have the same ratio as the products D F G2.",
-          applies=FACETS, measure=shape, tolerance="shape", control=rougher, explain=STRETCHED.diagnose,
+          applies=FACETS, measure=shape, tolerance="shape",
+          control=controls.with_batch(
+              "the roughness is 10 % larger",
+              lambda batch: batch.altered(roughness=np.minimum(1.1 * batch.inputs["roughness"], 1.0))),
+          explain=STRETCHED.diagnose,
           requires=Ability.PAIRS, open=True, hosts=lobes.shows_exactly),
     Check(key="retroreflection",
           claim="The retroreflective lobe equals the mirror lobe for the mirrored view.",
@@ -788,7 +769,9 @@ ROWS = (
           explain=VALUE.diagnose, requires=Ability.LIGHT, open=True),
     Check(key="film_energy", claim="No film reflects more than a lobe that reflects everything.",
           applies=FILMS, measure=film_energy, tolerance="film_energy",
-          control=controls.with_values("values under a film are 100 times as large", brighter),
+          control=controls.with_values(
+              "values under a film are 100 times as large",
+              lambda batch, values: values * (100.0 if np.any(batch.inputs["thinfilm_thickness"]) else 1.0)),
           explain=VALUE.diagnose, requires=Ability.LIGHT),
     Check(key="film_average",
           claim="The compensation uses the film's reflectance averaged over the hemisphere.",

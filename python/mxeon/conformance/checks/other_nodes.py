@@ -23,11 +23,6 @@ from mxeon.conformance.tolerance import Compared, Measurement, count_not_finite,
 EMISSIONS, MEDIA = family(EmissionSpec), family(emission.MediumSpec)
 
 
-def implemented(case: Case) -> Measurement:
-    shader = implementation(case.host, case.spec.document(), case.library)
-    return Measurement(float(shader is None), {})
-
-
 def diagnose_opacity(case: Case) -> Diagnosis:
     full = max(
         OPACITY.metric(each.measured, case.expected(each.batch.altered(opacity=1.0))).max()
@@ -60,7 +55,9 @@ def explained_finite(case: Case) -> Diagnosis:
 # fmt: off
 ROWS = (
     Check(key="implemented", claim="The target implements the node.",
-          applies=EMISSIONS | MEDIA | family(AbsentSpec), measure=implemented,
+          applies=EMISSIONS | MEDIA | family(AbsentSpec),
+          measure=lambda case: Measurement(
+              float(implementation(case.host, case.spec.document(), case.library) is None), {}),
           tolerance=count_of(Quantity.NODES),
           control=controls.Control(
               "the node is one that nothing implements", lambda case: case.another(UNIMPLEMENTED)),

@@ -79,9 +79,7 @@ def explain(
     `candidates` are functions that may give the values, starting with the node's own model. A value is correct
     within the tolerance. `measure` compares the values of a case.
     """
-    if infinite := not_finite(
-        cases
-    ):  # NaN has no distance to anything; finite values are judged on their own
+    if infinite := not_finite(cases):  # NaN has no distance; finite values are judged on their own
         finite = [each.where(np.isfinite(each.measured.sum(axis=1))) for each in cases]
         rest = NO_DIAGNOSIS
         if any(tolerance.wrong(each).any() for each in finite):
@@ -143,9 +141,8 @@ def _distance(
         if not tolerance.quantity.of_views:
             kept &= np.abs(case.batch.wi[:, 2]) > LEAST_LIGHT
         error = ((case.measured - values) / tolerance.scale(case.expected))[kept]
-        errors.append(
-            error.mean(axis=0, keepdims=True) if tolerance.metric is mean_error else error
-        )
+        mean = tolerance.metric is mean_error
+        errors.append(error.mean(axis=0, keepdims=True) if mean else error)
     return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
 
 

@@ -21,13 +21,8 @@ ABOUT = {
     "cuticle": ("cuticle_angle",),
     "color": COLORS,
 }
-FRAME = (
-    "normal",
-    "tangent",
-    "curve_direction",
-    "position",
-    "surface_normal",
-)  # inputs whose ranges are never reported
+# Inputs whose ranges are never reported.
+FRAME = ("normal", "tangent", "curve_direction", "position", "surface_normal")
 USUAL = {"weight": 1.0, "occlusion": 1.0}  # defaults for batches without them
 CHANNELS = "red", "green", "blue"
 EXACT = count_of(Quantity.VALUES)
@@ -171,16 +166,12 @@ def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
         yield Region(f"{name}_cosine_above", low=0.99), mu > 0.99
         yield Region(f"{name}_on_horizon"), mu == 0.0
         for limit in COSINES:
-            yield (
-                Region(f"{name}_cosine_within", low=0.0, high=limit),
-                (mu >= 0.0) & (mu <= limit),
-            )
+            within = Region(f"{name}_cosine_within", low=0.0, high=limit)
+            yield within, (mu >= 0.0) & (mu <= limit)
             yield Region(f"{name}_cosine_below", high=limit), mu <= limit
     for limit in COSINES:
-        yield (
-            Region("cosines_within", low=0.0, high=limit),
-            (mu_i >= 0.0) & (np.maximum(mu_o, mu_i) <= limit),
-        )
+        both = (mu_i >= 0.0) & (np.maximum(mu_o, mu_i) <= limit)
+        yield Region("cosines_within", low=0.0, high=limit), both
     # Side of the light, and angle between view and light.
     yield Region("light_below_horizon"), mu_i < 0.0
     yield Region("light_above_horizon"), mu_i > 0.0
@@ -225,15 +216,12 @@ def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     yield Region("color_black"), (color == 0.0).all(axis=1)
     yield Region("color_gray"), (color == color[:, :1]).all(axis=1)
     yield Region("color_channel_zero"), (color == 0.0).any(axis=1)
-    yield (
-        Region("color_channel_within", low=0.0, high=0.001),
-        np.asarray((color <= 1e-3).any(axis=1)),
-    )
+    dark = np.asarray((color <= 1e-3).any(axis=1))
+    yield Region("color_channel_within", low=0.0, high=0.001), dark
     yield Region("color_channel_1"), (color == 1.0).any(axis=1)
     yield Region("color_channel_above", low=0.99), np.asarray((color > 0.99).any(axis=1))
     normal = np.broadcast_to(batch.inputs.get("normal", batch.normal), batch.wo.shape)
-    away = (normal * batch.normal).sum(axis=1) < 0.0
-    yield Region("normal_away"), away
+    yield Region("normal_away"), (normal * batch.normal).sum(axis=1) < 0.0
 
 
 HALF = 0.5  # cosine that splits views and lights into two regions

@@ -26,10 +26,8 @@ from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
 
 SCENES = 4  # cached scenes' points, as many as a run has pictures
 
-FEW, PATTERNS_DRAWN = (
-    32,
-    16,
-)  # size of pattern pictures, and how many are drawn to find a wrong pattern
+# Size of pattern pictures, and how many are drawn to find a wrong pattern.
+PATTERN_SIZE, PATTERNS_DRAWN = 32, 16
 OTHER = 0.01  # least reported difference of a pattern, above the errors of filters and powers
 ROWS = 32  # rows and columns of judged pixels if each has a different material
 MOST = 2000  # up to this many pixels are all judged then; an integral takes a millisecond
@@ -148,7 +146,7 @@ class Reference(base.Host):
 
     def other_node(self, shader: Shader, values: HostValues) -> tuple[str, ...]:
         """Category and name of the first pattern node that a host evaluates differently; empty if there is none."""
-        scene = Scene(NAME, VIEW, size=FEW)
+        scene = Scene(NAME, VIEW, size=PATTERN_SIZE)
         mask = sphere(scene.size).mask
 
         def drawn(elements: Elements, kind: str, output: str) -> NDArray[np.float64]:
@@ -176,9 +174,8 @@ class Reference(base.Host):
             or irradiance is not None
             or branch not in ("direct", "environment", "transmission", "opacity")
         ):
-            raise NotRun(
-                "reference: only the response to a light or a uniform environment is known"
-            )
+            known = "the response to a light or a uniform environment"
+            raise NotRun(f"reference: only {known} is known")
         normal, tangent = (np.broadcast_to(axis, wo.shape) for axis in ((0, 0, 1.0), (1.0, 0, 0)))
         points = ShadingPoints(wo, wi if branch == "direct" else None, 1.0, normal, tangent)
         opaque = branch == "opacity"

@@ -21,7 +21,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.reference import nodes
-from mxeon.conformance.reference.nodes import COMBINATIONS, LOBES, ShadingPoints, Value, plain, same
+from mxeon.conformance.reference.nodes import (
+    COMBINATIONS,
+    LOBES,
+    WIDTHS,
+    ShadingPoints,
+    Value,
+    plain,
+    same,
+)
 from mxeon.conformance.samples import Array
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.hosts.textures import texels_at
@@ -60,8 +68,8 @@ class Graph(Nodes):
         points: ShadingPoints,
         inputs: Mapping[str, ArrayLike] | None = None,  # replace the document's values
         emits: bool = True,  # whether emission and opacity count
-        measure: Measure
-        | None = None,  # values of nodes without a function; None: they are not run
+        # Values of nodes without a function; None: they are not run.
+        measure: Measure | None = None,
     ) -> None:
         super().__init__()
         self._document, self._points, self._inputs = document, points, inputs or {}
@@ -233,12 +241,8 @@ class Graph(Nodes):
         lobe = path in self.elements and self.elements[path].getCategory() in LOBES
         if name not in self._inputs or not (path == self._shader if self._shader else lobe):
             return None
-        value = np.asarray(self._inputs[name])
-        return (
-            value
-            if self._port(path, name).getType() in nodes.WIDTHS
-            else np.reshape(value, (-1, 1))
-        )
+        value, wide = np.asarray(self._inputs[name]), self._port(path, name).getType() in WIDTHS
+        return value if wide else np.reshape(value, (-1, 1))
 
     def _connected(self, around: Path, port: mx.PortElement, shown: str = "") -> Path:
         """Path that an input or output within another path is connected to.

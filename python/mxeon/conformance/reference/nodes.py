@@ -235,9 +235,8 @@ class ShadingPoints:
         if series is not None:
             return _interpolated(series, wo, low, turns)
         if not turns:
-            raise NotRun(
-                "reference: the albedo of so anisotropic a lobe takes too long over a picture"
-            )
+            lobe = "the albedo of so anisotropic a lobe"
+            raise NotRun(f"reference: {lobe} takes too long over a picture")
         # Cosines of symmetric points of a sphere differ by roundings.
         mu = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
         upright = _directions(mu, np.zeros(len(mu)))
@@ -350,9 +349,8 @@ def node_lobe(
     for port, value in inputs.items():
         default = node.getNodeDef().getActiveInput(port).getValue()
         if port not in known and not np.array_equal(value, np.asarray(plain(default))):
-            raise NotRun(
-                f"reference: there is no model for input {port!r} of node {node.getCategory()!r}"
-            )
+            place = f"input {port!r} of node {node.getCategory()!r}"
+            raise NotRun(f"reference: there is no model for {place}")
     film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()
     arguments = {port: _argument(node, port, inputs[port], weight) for port in (*row.inputs, *film)}
     if row.name == "qon":
@@ -511,10 +509,7 @@ OPERATIONS: dict[str, Operation] = {
     "normalmap": (("in", "scale", "normal", "tangent", "bitangent"), _normalmap),
     "combine2": (BINARY, _combine),
     "combine3": (("in1", "in2", "in3"), _combine),
-    "extract": (
-        ("in", "index"),
-        lambda value, index: np.take(value, [int(np.ravel(index)[0])], axis=-1),
-    ),
+    "extract": (("in", "index"), lambda x, index: np.take(x, [int(np.ravel(index)[0])], axis=-1)),
     "luminance": (("in", "lumacoeffs"), lambda value, weights: _dot(value[..., :3], weights)),
     "mix": (("fg", "bg", "mix"), lambda fg, bg, mix: fg * mix + bg * (1.0 - mix)),
     "ifgreater": _when(np.greater),

@@ -124,18 +124,8 @@ def check(
         check_timeout(wait, "waitForWorkers")
         reading = plan.read_documents(documents, loaded, policy, workers, timeout)
         keep = folder is not None
-        planned = make_plan(
-            documents,
-            engines,
-            loaded,
-            policy,
-            keep,
-            categories,
-            reading,
-            others,
-            seed,
-            methods or UNCHOSEN,
-        )
+        subjects = documents, engines, loaded, policy, keep, categories
+        planned = make_plan(*subjects, reading, others, seed, methods or UNCHOSEN)
         if refuse:
             for line in chain.from_iterable(to_run(planned, {}).refused.values()):
                 refuse(line)
@@ -157,9 +147,8 @@ def check(
                 for position, outcome in executor(waiting)
             )
             with closing(found) as outcomes:  # processes work until then
-                for position, findings in (
-                    progress(outcomes, len(waiting)) if progress else outcomes
-                ):
+                shown = progress(outcomes, len(waiting)) if progress else outcomes
+                for position, findings in shown:
                     if differences := [
                         f"host {before.name} ({before.version}, {before.device}, now {host.version}, {host.device})"
                         for host in findings.hosts
@@ -249,9 +238,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
             ": ".join(filter(None, (text, ", ".join(each for each in listed if each not in text))))
             for text, listed in places.items()
         ),
-        missing=tuple(
-            str(task) for number, task in enumerate(planned.tasks) if number not in findings
-        ),
+        missing=tuple(str(task) for n, task in enumerate(planned.tasks) if n not in findings),
     )
 
 

@@ -125,10 +125,8 @@ class Judge:
         host = self._host(task.host)
         host.choose(task.methods)
         if task.check == HOST:
-            requested = (
-                "" if task.subject == plan.EVERY_NODE else f": {task.subject} with {task.library}"
-            )
-            raise NotRun(f"{task.host}: this host judges nothing that was requested{requested}")
+            one = f": {task.subject} with {task.library}" * (task.subject != plan.EVERY_NODE)
+            raise NotRun(f"{task.host}: this host judges nothing that was requested{one}")
         return replace(self._on_host(task, host), hosts=(host.identity(),))
 
     def _on_host(self, task: Task, host: Engine) -> Findings:

@@ -348,9 +348,7 @@ class FacetSpec(PbrSpec):
         height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(count) + 0.5) / count)
         size = height.size
         views, alpha = (np.repeat(each, size, axis=0) for each in (wo, inputs["roughness"]))
-        wi = reflected(
-            views, alpha, np.tile(height.ravel(), len(wo)), np.tile(around.ravel(), len(wo))
-        )
+        wi = reflected(views, alpha, *(np.tile(each.ravel(), len(wo)) for each in (height, around)))
         lit = wi[:, 2] > 0.0
         wi[~lit] = (0.0, 0.0, 1.0)
         density = np.where(lit, ggx_pdf(views, wi, alpha), np.inf)
@@ -511,9 +509,8 @@ TRANSMISSION_SPECS = tuple(
 
 # Largest errors of the shader's thin film, for cosines from 0.1 and up to 1000 nm, found by
 # tools/fits/thin_film.py.
-FILM_SEEN = (
-    7.82e-2  # average over visible facets in three cosines and F_ss in three, times the lost light
-)
+# Average over visible facets in three cosines and F_ss in three, times the lost light.
+FILM_SEEN = 7.82e-2
 FILM_OILED = 6.92e-2  # the same for films with index >= 1.25
 FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
 CURVE_ROUNDINGS = 10 * 9.5 + 16  # ten in a phase, times the curve's slope in its logarithm, plus 16
