@@ -63,6 +63,7 @@ MASKED = {
     "lobe": over("layer", "both", "base"),
 }
 # Row name -> title, and the nodes that combine both lobes.
+# fmt: off
 NETWORKS: dict[str, tuple[str, dict[str, Node]]] = {
     "layer": ("layer", {"lobe": over("layer", "top", "base")}),
     "mix": ("mix", {"lobe": over("mix", "top", "base")}),
@@ -71,17 +72,14 @@ NETWORKS: dict[str, tuple[str, dict[str, Node]]] = {
     "multiply_color3": ("multiply, in2 color3", {"lobe": over("multiply", "top")}),
     "multiply_sum": ("multiply, of a sum", {**SUM, "lobe": over("multiply", "sum")}),
     "mix_sum": ("mix, of a sum", {**SUM, "lobe": over("mix", "sum", "top")}),
-    "layer_sum": (
-        "layer, under a mix of a sum",
-        {**SUM, "mixed": over("mix", "sum", "top"), "lobe": over("layer", "mixed", "base")},
-    ),
-    "mix_layer": (
-        "mix, of a layer under a sum",
-        {**SUM, "layered": over("layer", "sum", "base"), "lobe": over("mix", "layered", "top")},
-    ),
+    "layer_sum": ("layer, under a mix of a sum",
+                  {**SUM, "mixed": over("mix", "sum", "top"), "lobe": over("layer", "mixed", "base")}),
+    "mix_layer": ("mix, of a layer under a sum",
+                  {**SUM, "layered": over("layer", "sum", "base"), "lobe": over("mix", "layered", "top")}),
     "layer_masked": ("layer, under connected masks", MASKED),
     "layer_colored": ("layer, under a colored sum", {**SUM, "lobe": over("layer", "sum", "base")}),
 }
+# fmt: on
 SINGLE = ("multiply_float", "multiply_color3")  # rows that only use `top`
 COLORED = ("multiply_color3", "multiply_sum")  # rows with a color as their factor
 

@@ -87,9 +87,7 @@ INPUTS = {
 NORMAL = Input("normal", "vector3", change=(0.0, 0.6, 0.8))
 FACTORS = {
     (emissions.FACTOR, "float"): Input(emissions.FACTOR, change=0.3, materials=(0.9, 0.5)),
-    (emissions.FACTOR, "color3"): color(
-        emissions.FACTOR, (0.9, 0.6, 0.3), (0.5, 0.5, 0.5), edges=()
-    ),
+    (emissions.FACTOR, "color3"): color(emissions.FACTOR, (0.9, 0.6, 0.3), (0.5,) * 3, edges=()),
     (media.FACTOR, "float"): Input(media.FACTOR, high=3.0, change=0.3),
     (media.FACTOR, "color3"): replace(color(media.FACTOR, edges=()), high=3.0),
 }
@@ -103,17 +101,16 @@ OPACITIES = (0.0, 0.25, 1.0)
 # Ten for 1 - cos of both angles, which add up to 1 - mu for a view, and two for differences.
 CONE_ROUNDINGS = 12
 # Errors by name of the row.
+# fmt: off
 ERRORS = {
     "conical": sum_of(
         roundings(2 * CONE_ROUNDINGS, "relative to 1 and the slope, of colors up to 2"),
-        quantity=Quantity.RADIANCE_SLOPE,
-    ),
+        quantity=Quantity.RADIANCE_SLOPE),
     "schlick_emission": sum_of(
-        roundings(2 * 8),
-        roundings(2 * EXPONENTS[1], "of a color of 2 to the power of 20"),
-        quantity=Quantity.RADIANCE,
-    ),
+        roundings(2 * 8), roundings(2 * EXPONENTS[1], "of a color of 2 to the power of 20"),
+        quantity=Quantity.RADIANCE),
 }
+# fmt: on
 UNIFORM = sum_of(roundings(6, "three of each emission and its factor"), quantity=Quantity.RADIANCE)
 OPACITY = sum_of(roundings(3), quantity=Quantity.RADIANCE)
 
@@ -247,13 +244,9 @@ UNIMPLEMENTED = AbsentSpec(
     + node_text("mxeon_absent", "EDF", "emission")
     + EMITTING_TEXT,
 )
+MEASURED = node_text("measured_edf", "EDF", "emission") + EMITTING_TEXT
 ABSENT = (
-    AbsentSpec(
-        title="measured_edf",
-        node="measured_edf",
-        text=node_text("measured_edf", "EDF", "emission") + EMITTING_TEXT,
-        libraries=("stock",),
-    ),
+    AbsentSpec(title="measured_edf", node="measured_edf", text=MEASURED, libraries=("stock",)),
 )
 
 
@@ -319,12 +312,8 @@ EMISSION_SPECS = tuple(map(_spec, (*emissions.EMISSIONS, *emissions.COMBINED_EMI
 
 # Roundings of the exponential of a sum, of a product, and of the quotient of two such values.
 TRANSMITTANCE = sum_of(roundings(12), quantity=Quantity.TRANSMITTANCE)
-INTERFACE = lobe_text(
-    "dielectric_bsdf",
-    {"weight": 1.0, "scatter_mode": "T"},
-    "top",
-    {"weight": "float", "scatter_mode": "string"},
-)
+TYPES = {"weight": "float", "scatter_mode": "string"}
+INTERFACE = lobe_text("dielectric_bsdf", {"weight": 1.0, "scatter_mode": "T"}, "top", TYPES)
 PORTS = connection_text("top", "BSDF", "top") + connection_text("base", "VDF", "medium")
 
 

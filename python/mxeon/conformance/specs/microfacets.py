@@ -143,7 +143,6 @@ def compensated(average: float, words: str) -> Tolerance:
 
 
 VALUE = compensated(METAL_FIT, "the fit of F_ss")
-ANISOTROPIC_VALUE = VALUE.plus(ANISOTROPIC)
 MEAN = sum_in(
     Quantity.ALBEDO,
     ESS,
@@ -184,25 +183,22 @@ OUTSIDE_ERRORS = {
     else given(error, Quantity.ALBEDO, words)
     for quantity, name, value, error, words in BEYOND
 }
+# fmt: off
 ERRORS = {
     "picture_albedo": sum_in(Quantity.ALBEDO, *COMPENSATION, sum_over(256)),
-    "anisotropic_albedo": sum_of(
-        *COMPENSATION, ANISOTROPIC, sum_over(1024), quantity=Quantity.ALBEDO
-    ),
-    "anisotropic_value": ANISOTROPIC_VALUE,
+    "anisotropic_albedo": sum_of(*COMPENSATION, ANISOTROPIC, sum_over(1024), quantity=Quantity.ALBEDO),
+    "anisotropic_value": VALUE.plus(ANISOTROPIC),
     # Exact directions have an exact half vector.
     "shape": sum_in(Quantity.RELATIVE, roundings(2 * 64, "of two values")),
     # The same function, with numbers that only differ in their signs.
     "retroreflection": BURLEY_VALUE,
-    "anisotropy": sum_of(
-        roundings(
-            2 * 2 * 2 / (2 * LEAST_TANGENT_COSINE * LEAST_TANGENT_ALPHA),
-            "of two directions, two each, over twice the least cosine and the least alpha",
-        )
-    ),
+    "anisotropy": sum_of(roundings(
+        2 * 2 * 2 / (2 * LEAST_TANGENT_COSINE * LEAST_TANGENT_ALPHA),
+        "of two directions, two each, over twice the least cosine and the least alpha")),
     "dip": sum_in(Quantity.ALBEDO, HALF_DIP),
     "denser": sum_in(Quantity.ALBEDO, INSIDE, ESS),
 }
+# fmt: on
 QUADRATURE = 6e-4  # quadrature error for the exact equations
 
 
@@ -211,31 +207,20 @@ PREFILTERED = Term(5.06e-2, "MaterialX's fit of prefiltered light")
 
 
 def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
-    # The error of the E_ss fit that raises values lowers throughputs.
-    light = sum_in(
-        Quantity.LIGHT, *throughput.terms[1:], Term(QUADRATURE, "the quadrature on the equations")
+    quadrature = Term(QUADRATURE, "the quadrature on the equations")
+    shares = Term(
+        2.0 * QUADRATURE, "the quadrature on the equations, of a value and of its share of the sky"
     )
-    own = lobes.lobe_errors(MEAN, ENVIRONMENT, throughput, FRAME, QUADRATURE)
-    seen = sum_in(
-        Quantity.IRRADIANCE,
-        Term(
-            2.0 * QUADRATURE,
-            "the quadrature on the equations, of a value and of its share of the sky",
-        ),
-        sum_over(1024),
-        TEXEL,
-    )
+    few = Term(1.6 / 64, "a sum over 64 directions by MaterialX's points")
     return {
         **ERRORS,
-        **own,
+        **lobes.lobe_errors(MEAN, ENVIRONMENT, throughput, FRAME, QUADRATURE),
         **dict.fromkeys(("value", "reciprocity"), VALUE),
         "anisotropic_throughput": throughput.plus(ANISOTROPIC, ANISOTROPIC_LOBE),
-        "light": light,
-        "lossless": own["integral"],
-        "methods": ENVIRONMENT.plus(
-            PREFILTERED, Term(1.6 / 64, "a sum over 64 directions by MaterialX's points")
-        ),
-        "sky": seen,
+        # The error of the E_ss fit that raises values lowers throughputs.
+        "light": sum_in(Quantity.LIGHT, *throughput.terms[1:], quadrature),
+        "methods": ENVIRONMENT.plus(PREFILTERED, few),
+        "sky": sum_in(Quantity.IRRADIANCE, shares, sum_over(1024), TEXEL),
     }
 
 
@@ -435,22 +420,18 @@ FRESNEL_SLOPE = 7.3
 
 
 def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
+    reflected, lit = ENVIRONMENT.term("a reflected albedo"), passed.term("light that passes")
+    smooth = Term(SMOOTH_ESS_FIT, "the fit of E_ss of smooth lobes")
+    steep = roundings(4 * FRESNEL_SLOPE, "of a cosine, times a Fresnel curve's largest slope, 7.3")
     return {
         "methods": passed.plus(PREFILTERED),
         "value": passed,  # transmitted light
-        "light": sum_in(
-            Quantity.LIGHT, ENVIRONMENT.term("a reflected albedo"), passed.term("light that passes")
-        ),
+        "light": sum_in(Quantity.LIGHT, reflected, lit),
         "kept": BURLEY_VALUE,  # the same function of the same numbers
         "inside": PASSING.plus(sum_over(1024)),
         "rough_refraction": sum_in(Quantity.IRRADIANCE, sum_over(1024), TEXEL),
         "states": sum_of(roundings(32, "of the same parts in two programs")),
-        "critical": sum_in(
-            Quantity.ALBEDO,
-            Term(SMOOTH_ESS_FIT, "the fit of E_ss of smooth lobes"),
-            roundings(4 * FRESNEL_SLOPE, "of a cosine, times a Fresnel curve's largest slope, 7.3"),
-            roundings(16),
-        ),
+        "critical": sum_in(Quantity.ALBEDO, smooth, steep, roundings(16)),
     }
 
 
@@ -533,26 +514,22 @@ def _mean(value: float, words: str) -> Tolerance:
 FILM_VALUE = sum_of(
     *compensated(3.61e-2, "F_ss in three cosines").terms, Term(8e-4, "orders that are not summed")
 )
+# fmt: off
 FILM_ERRORS = {
     "value": FILM_VALUE,
     "anisotropic_value": FILM_VALUE.plus(ANISOTROPIC),
     "albedo": FILM_ALBEDO,
     "throughput": FILM_ALBEDO,
-    "anisotropic_throughput": _mean(
-        6e-3, "the fits of two alphas, over 24 sets of 32 films of 50 to 100 nm"
-    ),
+    "anisotropic_throughput": _mean(6e-3, "the fits of two alphas, over 24 sets of 32 films of 50 to 100 nm"),
     "film_curve": sum_in(
         Quantity.REFLECTANCE,
         Term(2.4e-6, "orders that are not summed, from 200 nm and a cosine of 0.3 on"),
         Term(0.65 * 2.8e-5, "the fit of E_ss at alpha 1e-3, times F (1 - F_ss)"),
-        roundings(CURVE_ROUNDINGS, "of phases, times the slope 9.5, and 16"),
-    ),
+        roundings(CURVE_ROUNDINGS, "of phases, times the slope 9.5, and 16")),
     "film_orders": sum_of(
         Term(8.7e-7, "orders that are not summed, rms over 1024 films of 40 to 100 nm"),
         Term(1.5e-4, "the fit of E_ss at alpha 1e-3 and cosines of 0.1 to 0.2"),
-        quantity=Quantity.REFLECTANCE_RMS,
-        metric=tolerance.root_mean_square,
-    ),
+        quantity=Quantity.REFLECTANCE_RMS, metric=tolerance.root_mean_square),
     # F_ss under a film without effect, compared with its fit without a film.
     "film_limit": sum_of(Term(4.4e-3 * COMPENSATED, "F_ss in three cosines, times 0.6")),
     # A mirror's share of the compensation differs from a film's.
@@ -562,10 +539,9 @@ FILM_ERRORS = {
     "film_smooth": _mean(1e-5, "F_ss in three cosines, times what a lobe of alpha 0.04 loses"),
     "film_visible": _mean(1.9e-3, "visible facets in three cosines, films of 50 to 100 nm"),
     "film_glossy": _mean(1.1e-3, "visible facets in three cosines, alpha 0.03 to 0.1"),
-    "frame": sum_of(
-        *FRAME.terms, roundings(2 * CURVE_ROUNDINGS, "of two values, phases times 9.5")
-    ),
+    "frame": FRAME.plus(roundings(2 * CURVE_ROUNDINGS, "of two values, phases times 9.5")),
 }
+# fmt: on
 
 
 class Films(NamedTuple):
@@ -621,9 +597,9 @@ class FilmSpec(FacetSpec):
         inputs = super().random_inputs(rng, count, edged)
         if "tint" in inputs:
             inputs["ior"] = np.maximum(inputs["ior"], 1.0)
-        if edged and "tint" in inputs:
-            same = rng.random(count) < 0.25
-            inputs["thinfilm_ior"] = np.where(same, inputs["ior"], inputs["thinfilm_ior"])
+            if edged:
+                same = rng.random(count) < 0.25
+                inputs["thinfilm_ior"] = np.where(same, inputs["ior"], inputs["thinfilm_ior"])
         return inputs
 
     def values(self, function: Scattering, batch: Batch) -> Array:

@@ -17,7 +17,7 @@ from mxeon.conformance.samples import WHITE, Array, Batch, Counts, Values, gener
 from mxeon.conformance.spec import CHANGED_COLOR, Input, draw
 from mxeon.conformance.specs import microfacets
 from mxeon.conformance.specs.lobes import LEAST_VIEW
-from mxeon.conformance.specs.microfacets import sum_over
+from mxeon.conformance.specs.microfacets import FILM_ERRORS, sum_over
 from mxeon.conformance.tolerance import Term, Tolerance, mean_scaled, roundings, sum_in, sum_of
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
@@ -43,9 +43,8 @@ TURNED_FRAME = {"normal": (0.48, 0.36, 0.8), "tangent": (0.6, 0.8, 0.0)}
 
 def ports_by_range(**names: str) -> tuple[Input, ...]:
     """Inputs with the given names for each of RANGES."""
-    return tuple(
-        replace(RANGES[key], name=name) for key, words in names.items() for name in words.split()
-    )
+    rows = ((key, name) for key, words in names.items() for name in words.split())
+    return tuple(replace(RANGES[key], name=name) for key, name in rows)
 
 
 def _whole(names: str) -> Values:
@@ -87,7 +86,7 @@ ERRORS = {
     "glass": GLASS,
     "states": sum_of(roundings(32, "of the same parts in two programs")),
     "lobes_film": sum_of(
-        VALUE.term("all lobes of a material"), microfacets.FILM_ERRORS["value"].term("a film")
+        VALUE.term("all lobes of a material"), FILM_ERRORS["value"].term("a film")
     ),
 }
 
@@ -155,10 +154,8 @@ class SurfaceShaderSpec(spec.LobeSpec):
     def changes(self) -> Mapping[str, samples.Changes]:
         seen, _ = spec.materials(*self.judged, *self.others)
         wholes = {name: {**seen, **self.needs.get(name, {})} for name in self.names}
-        return {
-            name: (whole, {**whole, name: self.changed_inputs[name]})
-            for name, whole in wholes.items()
-        }
+        changed = self.changed_inputs
+        return {name: (each, {**each, name: changed[name]}) for name, each in wholes.items()}
 
     def within(self, library: str) -> SurfaceShaderSpec:
         return replace(self, library=library)
@@ -171,9 +168,8 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return {port.getName(): port.getType() for port in definition.getActiveInputs()}
 
     def document(self, inputs: Values | None = None) -> str:
-        ports = (
-            input_text(name, self.types[name], value) for name, value in (inputs or {}).items()
-        )
+        types = self.types
+        ports = (input_text(name, types[name], value) for name, value in (inputs or {}).items())
         return document_text(node_text(self.node, "surfaceshader", "shading", "".join(ports)))
 
     # Expected values.
@@ -190,9 +186,8 @@ class SurfaceShaderSpec(spec.LobeSpec):
 
     def clear(self, batch: Batch) -> Batch:
         """The same views of glass, with the materials' roughness and index."""
-        return replace(
-            batch, inputs={**{name: batch.inputs[name] for name in self.finish}, **self.glass}
-        )
+        finish = {name: batch.inputs[name] for name in self.finish}
+        return replace(batch, inputs={**finish, **self.glass})
 
     @cached_property
     def _shader(self) -> Shader:
@@ -223,12 +218,9 @@ class SurfaceShaderSpec(spec.LobeSpec):
         kept = (np.arange(count) % 2 == 0) & (near[:, 2] > 0.0)
         wi = np.where(kept[:, np.newaxis], near, wi)
         batch = Batch(wo, wi, self.random_inputs(rng, count))
-        turned = np.arange(count) % 4 < 2
-        return (
-            batch.altered(
-                **{name: np.where(turned, 0.0, batch.inputs[name]) for name in _stretching(batch)}
-            ),
-        )
+        even, inputs = np.arange(count) % 4 < 2, batch.inputs
+        same = {name: np.where(even, 0.0, inputs[name]) for name in _stretching(batch)}
+        return (batch.altered(**same),)
 
     few = spec.ValueSpec.few
 

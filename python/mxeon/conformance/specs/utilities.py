@@ -60,35 +60,25 @@ REFLECTANCE = sum_in(
     roundings(12, "of numbers up to 1"),
 )
 # Errors of values, by title or category, and of other quantities.
+# fmt: off
 VALUES: Mapping[str, Tolerance] = {
     **dict.fromkeys(INVERSIONS, REFLECTANCE),
     **dict.fromkeys(("roughness_anisotropy", "glossiness_anisotropy"), ALPHA),
     "roughness_dual": sum_in(Quantity.ALPHA, roundings(2)),
     # n_max is at most 1 in this unit.
-    "artistic_ior, ior": sum_in(
-        Quantity.INDEX, roundings(16, "four over 1 - sqrt(r), six beside, six in the mix")
-    ),
+    "artistic_ior, ior": sum_in(Quantity.INDEX, roundings(16, "four over 1 - sqrt(r), six beside, six in the mix")),
     "artistic_ior, extinction": sum_in(
-        Quantity.EXTINCTION,
-        roundings(8 + 16 + 4, "8 of the terms of k^2, 16 of n, 4 of 1 - r and the root"),
-    ),
+        Quantity.EXTINCTION, roundings(8 + 16 + 4, "8 of the terms of k^2, 16 of n, 4 of 1 - r and the root")),
     "blackbody": BLACKBODY,
     "chiang_hair_roughness": sum_of(roundings(24), quantity=Quantity.OUTPUT),
     "deon_hair_absorption_from_melanin": sum_of(roundings(16), quantity=Quantity.OUTPUT),
-    "chiang_hair_absorption_from_color": sum_of(
-        roundings(2 * 12, "of a square"), quantity=Quantity.OUTPUT
-    ),
+    "chiang_hair_absorption_from_color": sum_of(roundings(2 * 12, "of a square"), quantity=Quantity.OUTPUT),
 }
-OTHERS: Mapping[str, dict[str, Tolerance]] = {
-    "blackbody": {
-        "osl_value": given(
-            4e-3,
-            Quantity.OUTPUT,
-            "OSL's blackbody() has an observer from 380 nm to 780 nm, its own table and primaries",
-            tolerance.scaled,
-        )
-    }
-}
+OSL_BLACKBODY = given(
+    4e-3, Quantity.OUTPUT,
+    "OSL's blackbody() has an observer from 380 nm to 780 nm, its own table and primaries", tolerance.scaled)
+OTHERS: Mapping[str, dict[str, Tolerance]] = {"blackbody": {"osl_value": OSL_BLACKBODY}}
+# fmt: on
 FEWER = 1 << 12  # arguments for an engine's functions
 LEAST_LOGARITHM = 1e-4  # smallest argument of measured logarithms
 
@@ -104,19 +94,15 @@ _logarithm_error = spec.LOGARITHM.error(
     lambda: [float32(LEAST_LOGARITHM ** (1.0 - _shares()))], 0.0
 )
 # Errors of engine functions, by node, times the other factor of a product or a slope.
+# fmt: off
 ENGINE = {
-    "chiang_hair_roughness": EngineError(
-        "the engine's pow(), times 2 x 3.7 / 5.24", _power_error, 1.5
-    ),
+    "chiang_hair_roughness": EngineError("the engine's pow(), times 2 x 3.7 / 5.24", _power_error, 1.5),
     "deon_hair_absorption_from_melanin": EngineError(
-        "the engine's log(), times 9.2 of the concentration and 4.6 of the colors",
-        _logarithm_error,
-        14.0,
-    ),
+        "the engine's log(), times 9.2 of the concentration and 4.6 of the colors", _logarithm_error, 14.0),
     "chiang_hair_absorption_from_color": EngineError(
-        "the engine's log(), times 2 x 6.9 / 3.4^2", _logarithm_error, 2.0
-    ),
+        "the engine's log(), times 2 x 6.9 / 3.4^2", _logarithm_error, 2.0),
 }
+# fmt: on
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
