@@ -63,13 +63,8 @@ from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.microfacets import LOBES as MICROFACETS
 from mxeon.models.sheen import conty_kulla_albedo_dir
+from mxeon.shaders.document import notes
 from mxeon.shaders.document.graphs import categories, inner_nodes
-from mxeon.shaders.document.notes import (
-    DocumentWarning,
-    MissingFileWarning,
-    RangeWarning,
-    same_names,
-)
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, CodeWarning, Shader, generate
 from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
@@ -187,16 +182,16 @@ MATCH = "Every pixel matches the reference."
 
 def _read(
     file: Path, make: Callable[[], tuple[Shader, ...]]
-) -> tuple[tuple[Shader, ...], dict[str, str], list[CodeWarning | DocumentWarning]]:
+) -> tuple[tuple[Shader, ...], dict[str, str], list[CodeWarning | notes.DocumentWarning]]:
     """Shaders of a document, their approximations by element, and what else a reader has to know."""
     with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
-        warnings.simplefilter("error", MissingFileWarning)
+        warnings.simplefilter("error", notes.MissingFileWarning)
         shaders = make()
     messages = [record.message for record in records]
     approximate = (each for each in messages if isinstance(each, ApproximationWarning))
     approximations = {each.element: each.approximation for each in approximate}
-    others = [each for each in messages if isinstance(each, (CodeWarning, DocumentWarning))]
+    others = [each for each in messages if isinstance(each, (CodeWarning, notes.DocumentWarning))]
     return shaders, approximations, others
 
 
@@ -217,9 +212,9 @@ def judge_document(
         result, images = _judge_material(file, shader, host, judge, values, front_lit)
         results.append(result)
         pictures += images
-    notes = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
+    told = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
     # Why pictures cannot be right, each reason once.
-    notes += dict.fromkeys(
+    told += dict.fromkeys(
         (text, f"{file.name}: {shader.element}")
         for shader in shaders
         for scene in _scenes(host)
@@ -227,9 +222,9 @@ def judge_document(
     )
     # A result names the input itself.
     told_inputs = any(each.diagnosis.kind is Kind.INPUT for each in results)
-    untold = (each for each in others if not (told_inputs and isinstance(each, RangeWarning)))
-    notes += [(str(each), file.name) for each in untold]
-    return tuple(results), tuple(pictures), tuple(notes)
+    untold = (each for each in others if not (told_inputs and isinstance(each, notes.RangeWarning)))
+    told += [(str(each), file.name) for each in untold]
+    return tuple(results), tuple(pictures), tuple(told)
 
 
 def _scenes(host: Host) -> tuple[Scene, ...]:
@@ -310,7 +305,7 @@ def _judge_material(
 def _known(shader: Shader) -> Diagnosis | None:
     """What MaterialX is known to make of a document like that of a shader; None for nothing."""
     element = shader.document.getDescendant(shader.element)
-    if names := same_names(element):
+    if names := notes.same_names(element):
         return defect("same_names", names[0])
     graph = element.getImplementation() if element.isA(mx.Node) else None
     defined = element.getType() == "material" and graph and graph.isA(mx.NodeGraph)
@@ -437,7 +432,7 @@ def generate_document(
         raise NotRun(f"{host}: this renderer only has its own materials; it reads no documents")
     if target not in TARGETS:
         raise NotRun(f"{host}: this MaterialX has no generator for {target}")
-    shaders, _, notes = _read(file, lambda: generate(file, target, library=library, policy=policy))
+    shaders, _, told = _read(file, lambda: generate(file, target, library=library, policy=policy))
     data = file.read_bytes()
     half = data[: len(data) // 2].decode(errors="replace")
     try:
@@ -453,7 +448,7 @@ def generate_document(
         "half of the document is cut off",
         Diagnosis,
     )
-    return (result,), tuple((str(each), file.name) for each in notes)
+    return (result,), tuple((str(each), file.name) for each in told)
 
 
 # --- one material of each node, for the page on which hosts stand together ------------------------

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mxeon.conformance import tolerance
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.results import (
     NOT_RUN,
@@ -29,15 +30,6 @@ from mxeon.conformance.samples import GRAZING, Array, directions, float32, gener
 from mxeon.conformance.spec import TURN
 from mxeon.conformance.specs.diffuse import LOSS_FIT
 from mxeon.conformance.specs.diffuse import VALUE as MODEL_VALUE
-from mxeon.conformance.tolerance import (
-    Measurement,
-    Term,
-    Tolerance,
-    relative,
-    roundings,
-    sum_in,
-    sum_of,
-)
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.base import Host
 from mxeon.models import diffuse, sampling
@@ -45,7 +37,7 @@ from mxeon.shaders import functions
 
 KINDS = ("pairs", "pictures", "rendered")  # ways of hosts that can evaluate functions
 STEP = 2.0**-22  # change of arguments that measures a function's condition
-PART = sum_in(Quantity.CONDITIONED, roundings(16))
+PART = tolerance.sum_in(Quantity.CONDITIONED, tolerance.roundings(16))
 
 
 class FunctionCheck(NamedTuple):
@@ -54,7 +46,7 @@ class FunctionCheck(NamedTuple):
     key: str  # single word; the claim is a sentence
     claim: str
     names: str  # regular expression; the first matching row judges a function
-    error: Tolerance
+    error: tolerance.Tolerance
     turns: bool = False  # whether its functions rotate by the engine's sine and cosine
 
 
@@ -64,8 +56,8 @@ FUNCTION_CHECKS = (
                   r"\w+(_brdf|_albedo_)\w*", MODEL_VALUE),
     FunctionCheck("loss", "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
                   "fon_loss",
-                  sum_of(Term(LOSS_FIT, "the fit of H"), roundings(12),
-                         quantity=Quantity.RELATIVE, metric=relative)),
+                  tolerance.sum_of(tolerance.Term(LOSS_FIT, "the fit of H"), tolerance.roundings(12),
+                         quantity=Quantity.RELATIVE, metric=tolerance.relative)),
     FunctionCheck("samples", "The sampling functions return the same directions as NumPy's.",
                   r"\w+_(sample|draw|clipped|transformed)|eon_(around|azimuth_frame|rotate_z|towards)",
                   PART, turns=True),
@@ -73,7 +65,7 @@ FUNCTION_CHECKS = (
                   "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
                   r"\w+_pdf|ltc_(density|m[abcd])",
                   # An inverse fourth power takes the 8 of a matrix entry four times, plus 16.
-                  sum_in(Quantity.CONDITIONED, roundings(48, "four times the 8 of a matrix entry, and 16"))),
+                  tolerance.sum_in(Quantity.CONDITIONED, tolerance.roundings(48, "four times the 8 of a matrix entry, and 16"))),
     FunctionCheck("parts", "The functions that models and sampling are built from match NumPy's.",
                   r"\w+", PART),
 )
@@ -242,12 +234,14 @@ class FunctionProbe:
         return {wrong: self._values(0.95 if wrong else 1.0) for wrong in (False, True)}
 
     @cached_property
-    def turn(self) -> Term:
+    def turn(self) -> tolerance.Term:
         """The error of the engine's own cosine and sine over a full turn, used for samples."""
         error = float(TURN.errors(self.host, random_columns()["u2"]).max())
-        return Term(4.0 * error, "the engine's sine and cosine, which turn a direction twice")
+        return tolerance.Term(
+            4.0 * error, "the engine's sine and cosine, which turn a direction twice"
+        )
 
-    def tolerance(self, row: FunctionCheck) -> Tolerance:
+    def tolerance(self, row: FunctionCheck) -> tolerance.Tolerance:
         return row.error.plus(self.turn) if row.turns else row.error
 
     def _values(self, scale: float) -> Mapping[str, Array]:
@@ -285,11 +279,11 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
     names = check.key, check.claim, SHADER_FUNCTIONS, probe.host.name, probe.library
     place = Result(*names, NOT_RUN)
     try:
-        tolerance = probe.tolerance(check)
+        limit = probe.tolerance(check)
     except (NotRun, ShaderError) as error:
         return not_measured(place, error)
 
-    def measure(wrong: bool) -> Measurement:
+    def measure(wrong: bool) -> tolerance.Measurement:
         errors = {
             name: _error(name, each)
             for name, each in probe.values[wrong].items()
@@ -297,10 +291,10 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
         }
         errors |= {name: np.inf for name in probe.missing_functions if row_of(name) is check}
         name = max(errors, key=lambda function: errors[function])
-        return Measurement(errors[name], {name: [errors[name]]})
+        return tolerance.Measurement(errors[name], {name: [errors[name]]})
 
     words = "the last argument is 5 % off"
-    return judge(place, tolerance, measure, words, lambda: Diagnosis(_causes(check, probe)))
+    return judge(place, limit, measure, words, lambda: Diagnosis(_causes(check, probe)))
 
 
 def _causes(check: FunctionCheck, probe: FunctionProbe) -> tuple[Cause, ...]:

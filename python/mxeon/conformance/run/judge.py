@@ -9,32 +9,12 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
+from mxeon.conformance import pictures, results
 from mxeon.conformance.backends import Evaluating, backend_of, own_nodes
 from mxeon.conformance.case import Case, make_case
 from mxeon.conformance.checks import CHECKS
-from mxeon.conformance.pictures import (
-    DOCUMENT_CLAIM,
-    MATCH,
-    comparison_pictures,
-    generate_document,
-    judge_document,
-    studio_pictures,
-)
 from mxeon.conformance.reference import Reference
 from mxeon.conformance.release import CLAIM, check_release, redefined
-from mxeon.conformance.results import (
-    DIRECT,
-    FAILED,
-    NO_DIAGNOSIS,
-    NOT_RUN,
-    SOURCE,
-    Cause,
-    Diagnosis,
-    Kind,
-    Picture,
-    Result,
-    Verdict,
-)
 from mxeon.conformance.results.known_issues import with_pages
 from mxeon.conformance.run import plan
 from mxeon.conformance.run.plan import DOCUMENT, FUNCTIONS, HOST, Findings, Task
@@ -53,23 +33,26 @@ from mxeon.shaders.methods import Methods
 
 CLAIMS = {
     HOST: "The host runs on this machine.",
-    SOURCE: "The generated text was checked.",
-    DOCUMENT: DOCUMENT_CLAIM,
+    results.SOURCE: "The generated text was checked.",
+    DOCUMENT: pictures.DOCUMENT_CLAIM,
     FUNCTIONS: "The shader functions match NumPy's.",
     plan.RELEASE: CLAIM,
-    plan.PICTURE: MATCH,
+    plan.PICTURE: pictures.MATCH,
 }
 
 
 def one_result(
-    task: Task, verdict: Verdict, reason: str = "", diagnosis: Diagnosis = NO_DIAGNOSIS
+    task: Task,
+    verdict: results.Verdict,
+    reason: str = "",
+    diagnosis: results.Diagnosis = results.NO_DIAGNOSIS,
 ) -> Findings:
     """Findings of a task without a measurement, from the reason or the diagnosis."""
     if not (claim := CLAIMS.get(task.check)):
         own_nodes(task.host)  # adds the checks of a renderer
         claim = next(each.claim for each in CHECKS if each.key == task.check)
     place = (task.check, claim, task.subject, task.host, task.library)
-    return Findings((Result(*place, verdict, reason=reason, diagnosis=diagnosis),))
+    return Findings((results.Result(*place, verdict, reason=reason, diagnosis=diagnosis),))
 
 
 class Judge:
@@ -92,13 +75,13 @@ class Judge:
             findings = self._findings(task)
             copy = _copy(task)
             share = round((time.monotonic() - begin) / max(1, len(findings.results)), 3)
-            results = (replace(with_pages(each, copy), seconds=share) for each in findings.results)
-            return replace(findings, results=tuple(results))
+            found = (replace(with_pages(each, copy), seconds=share) for each in findings.results)
+            return replace(findings, results=tuple(found))
         except InterfaceError as reason:
-            return one_result(task, NOT_RUN, reason=str(reason))
+            return one_result(task, results.NOT_RUN, reason=str(reason))
         except DocumentError as reason:  # one of mxeon's own documents
-            refused = Cause(Kind.DEFECT, "own_document_refused", text=str(reason))
-            return one_result(task, FAILED, diagnosis=Diagnosis((refused,)))
+            refused = results.Cause(results.Kind.DEFECT, "own_document_refused", text=str(reason))
+            return one_result(task, results.FAILED, diagnosis=results.Diagnosis((refused,)))
 
     def close(self) -> None:
         for host in self._hosts.values():
@@ -118,7 +101,7 @@ class Judge:
         return host
 
     def _findings(self, task: Task) -> Findings:
-        if task.check == SOURCE:
+        if task.check == results.SOURCE:
             return Findings(check_texts(plan.diffuse_specs(task.library), task.library))
         if task.check == DOCUMENT:
             return self._document(task)
@@ -136,11 +119,13 @@ class Judge:
             if task.check == plan.STUDIO:
                 with suppress(MxeonError):  # the picture's result says so
                     path = Path(task.subject)
-                    return Findings((), studio_pictures(path, host, task.library, self._policy))
+                    return Findings(
+                        (), pictures.studio_pictures(path, host, task.library, self._policy)
+                    )
                 return Findings(())
             if task.check == plan.RELEASE:
-                results, unjudged = check_release(host, task.library)
-                return Findings(results, unjudged=unjudged)
+                found, unjudged = check_release(host, task.library)
+                return Findings(found, unjudged=unjudged)
             if task.check == FUNCTIONS:
                 return Findings(judge_functions(host, task.library))
         case = self._case(host, task.subject, task.library, task.seed, task.methods)
@@ -148,29 +133,35 @@ class Judge:
         result = check.judge(case)
         surface = isinstance(case.spec, SurfaceShaderSpec)
         known = not surface and with_pages(result, _copy(task)).pages
-        if result.verdict == FAILED and not known and isinstance(case.backend, Evaluating):
+        if result.verdict == results.FAILED and not known and isinstance(case.backend, Evaluating):
             # Checks of a lobe set all inputs except the surface's own vectors.
             keys = ("value", "defaultgeomprop")[not surface :]
             if causes := redefined(case.evaluating.shader.document, task.library, keys):
-                told = (each for each in result.diagnosis.causes if each.kind is not Kind.UNKNOWN)
+                told = (
+                    each
+                    for each in result.diagnosis.causes
+                    if each.kind is not results.Kind.UNKNOWN
+                )
                 own = () if surface else tuple(told)
                 result = replace(result, diagnosis=replace(result.diagnosis, causes=causes + own))
-        results = (result,)
-        pictures: tuple[Picture, ...] = ()
-        if task.check in DIRECT:
+        found = (result,)
+        images: tuple[results.Picture, ...] = ()
+        if task.check in results.DIRECT:
             with suppress(NotRun, ShaderError):  # the check itself reports these
-                pictures = comparison_pictures(case)
-        return Findings(results, pictures)
+                images = pictures.comparison_pictures(case)
+        return Findings(found, images)
 
     def _document(self, task: Task, host: Host | None = None) -> Findings:
         """Findings of a document: its pictures on a host, or the generation of its shaders."""
         path = Path(task.subject)
-        pictures: tuple[Picture, ...] = ()
+        images: tuple[results.Picture, ...] = ()
         try:
             if host is None:
-                results, notes = generate_document(path, task.host, task.library, self._policy)
+                found, notes = pictures.generate_document(
+                    path, task.host, task.library, self._policy
+                )
             else:
-                results, pictures, notes = judge_document(
+                found, images, notes = pictures.judge_document(
                     path, host, self._reference, task.library, self._policy
                 )
         except (DocumentError, ImageError) as error:
@@ -178,7 +169,7 @@ class Judge:
             if ours and isinstance(error, DocumentError):
                 raise
             return Findings(errors=error.args)
-        return Findings(results, pictures, notes=notes)
+        return Findings(found, images, notes=notes)
 
 
 def _copy(task: Task) -> str:

@@ -103,8 +103,8 @@ class CombinedSpec(PbrSpec):
         )
 
     def document(self, inputs: Values | None = None) -> str:
-        nodes = LOBES | NETWORKS[self.model][1]
-        return document_text(network_text(nodes, ports(self.inputs, inputs)) + SURFACE)
+        network = LOBES | NETWORKS[self.model][1]
+        return document_text(network_text(network, ports(self.inputs, inputs)) + SURFACE)
 
 
 def _spec(row: PbrNode) -> CombinedSpec:

@@ -14,17 +14,7 @@ from mxeon.models.media import cone_cosine, cone_width, surface_radiance
 from mxeon.models.nodes import emissions, media
 from mxeon.models.nodes.emissions import Emission
 from mxeon.models.nodes.media import Medium
-from mxeon.shaders.nodes import (
-    SURFACE,
-    Node,
-    connection_text,
-    document_text,
-    input_text,
-    lobe_text,
-    network_text,
-    node_text,
-    vector_text,
-)
+from mxeon.shaders import nodes
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
 
@@ -42,17 +32,17 @@ def inputs_of(row: Emission | Medium) -> tuple[Input, ...]:
 
 def chained(
     row: Emission | Medium, kind: str, source: str, name: str, text: str = ""
-) -> dict[str, Node]:
+) -> dict[str, nodes.Node]:
     """A node with its source nodes, whose names are in the paths of its inputs."""
     paths = (each.rpartition("/")[0] for each in row.inputs)
     sources = tuple(dict.fromkeys(path for path in paths if path not in ("", name)))
-    return dict.fromkeys(sources, Node(source, kind)) | {
-        name: Node(row.category, kind, sources, text)
+    return dict.fromkeys(sources, nodes.Node(source, kind)) | {
+        name: nodes.Node(row.category, kind, sources, text)
     }
 
 
-EMITTED = connection_text("edf", "EDF", "emission")
-EMITTING_TEXT = node_text("surface", "surfaceshader", "shading", EMITTED)
+EMITTED = nodes.connection_text("edf", "EDF", "emission")
+EMITTING_TEXT = nodes.node_text("surface", "surfaceshader", "shading", EMITTED)
 SURFACE_COLOR = (0.2, 0.5, 2.0)  # radiance of a surface
 BLACK_LOBE = '  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF" />\n'
 LEAST_FALLOFF = 0.01  # degrees of full angle between the cones
@@ -135,11 +125,11 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
     def document(self, inputs: Values | None = None) -> str:
         axis = turned = ""
         if "normal" in (inputs or {}):  # unconnected normals are ignored
-            axis = vector_text("axis", (inputs or {})["normal"])
-            turned = connection_text("normal", "vector3", "axis")
-        nodes = chained(self.row, "EDF", "uniform_edf", "emission", turned)
-        text = axis + network_text(nodes, spec.ports(self.drawn, inputs)) + EMITTING_TEXT
-        return document_text(text, "look")
+            axis = nodes.vector_text("axis", (inputs or {})["normal"])
+            turned = nodes.connection_text("normal", "vector3", "axis")
+        network = chained(self.row, "EDF", "uniform_edf", "emission", turned)
+        text = axis + nodes.network_text(network, spec.ports(self.drawn, inputs)) + EMITTING_TEXT
+        return nodes.document_text(text, "look")
 
     def values(self, function: emissions.Value, batch: Batch) -> Array:
         """Radiance, (N, 3), with the cosines of views limited to 1."""
@@ -230,7 +220,7 @@ class AbsentSpec(spec.Spec):
     text: str  # XML of document nodes that use it
 
     def document(self, inputs: Values | None = None) -> str:
-        return document_text(self.text)
+        return nodes.document_text(self.text)
 
 
 # A node defined without an implementation: an unlit surface.
@@ -241,10 +231,10 @@ UNIMPLEMENTED = AbsentSpec(
     <output name="out" type="EDF" />
   </nodedef>
 """
-    + node_text("mxeon_absent", "EDF", "emission")
+    + nodes.node_text("mxeon_absent", "EDF", "emission")
     + EMITTING_TEXT,
 )
-MEASURED = node_text("measured_edf", "EDF", "emission") + EMITTING_TEXT
+MEASURED = nodes.node_text("measured_edf", "EDF", "emission") + EMITTING_TEXT
 ABSENT = (
     AbsentSpec(title="measured_edf", node="measured_edf", text=MEASURED, libraries=("stock",)),
 )
@@ -259,13 +249,13 @@ class EmittingSurface(spec.ValueSpec):
     has_bsdf: bool
 
     def document(self, inputs: Values | None = None) -> str:
-        emission = node_text(
-            "uniform_edf", "EDF", "emission", input_text("color", "color3", SURFACE_COLOR)
+        emission = nodes.node_text(
+            "uniform_edf", "EDF", "emission", nodes.input_text("color", "color3", SURFACE_COLOR)
         )
-        lobe = connection_text("bsdf", "BSDF", "lobe") if self.has_bsdf else ""
-        opacity = input_text("opacity", "float", (inputs or {}).get("opacity", 1.0))
-        surface = node_text("surface", "surfaceshader", "shading", lobe + EMITTED + opacity)
-        return document_text((BLACK_LOBE if self.has_bsdf else "") + emission + surface)
+        lobe = nodes.connection_text("bsdf", "BSDF", "lobe") if self.has_bsdf else ""
+        opacity = nodes.input_text("opacity", "float", (inputs or {}).get("opacity", 1.0))
+        surface = nodes.node_text("surface", "surfaceshader", "shading", lobe + EMITTED + opacity)
+        return nodes.document_text((BLACK_LOBE if self.has_bsdf else "") + emission + surface)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         points = sphere(SMALL.size)
@@ -313,8 +303,8 @@ EMISSION_SPECS = tuple(map(_spec, (*emissions.EMISSIONS, *emissions.COMBINED_EMI
 # Roundings of the exponential of a sum, of a product, and of the quotient of two such values.
 TRANSMITTANCE = sum_of(roundings(12), quantity=Quantity.TRANSMITTANCE)
 TYPES = {"weight": "float", "scatter_mode": "string"}
-INTERFACE = lobe_text("dielectric_bsdf", {"weight": 1.0, "scatter_mode": "T"}, "top", TYPES)
-PORTS = connection_text("top", "BSDF", "top") + connection_text("base", "VDF", "medium")
+INTERFACE = nodes.lobe_text("dielectric_bsdf", {"weight": 1.0, "scatter_mode": "T"}, "top", TYPES)
+PORTS = nodes.connection_text("top", "BSDF", "top") + nodes.connection_text("base", "VDF", "medium")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -326,10 +316,10 @@ class MediumSpec(spec.RowSpec[media.Value]):
     row: Medium
 
     def document(self, inputs: Values | None = None) -> str:
-        nodes = chained(self.row, "VDF", "anisotropic_vdf", "medium")
-        media = network_text(nodes, spec.ports(self.inputs, inputs))
-        layer = node_text("layer", "BSDF", "lobe", PORTS)
-        return document_text(INTERFACE + media + layer + SURFACE)
+        network = chained(self.row, "VDF", "anisotropic_vdf", "medium")
+        media = nodes.network_text(network, spec.ports(self.inputs, inputs))
+        layer = nodes.node_text("layer", "BSDF", "lobe", PORTS)
+        return nodes.document_text(INTERFACE + media + layer + nodes.SURFACE)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random views, except at grazing where refraction may fail, and random inputs."""

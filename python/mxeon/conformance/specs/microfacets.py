@@ -9,19 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mxeon.conformance import samples, tolerance
+from mxeon.conformance import samples, spec, tolerance
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, generator, rounded
-from mxeon.conformance.spec import (
-    ARGUMENTS,
-    WAVE,
-    Ability,
-    EngineError,
-    Input,
-    ValueSpec,
-    broadcast_inputs,
-    color,
-)
 from mxeon.conformance.specs import lobes
 from mxeon.conformance.specs.lobes import BURLEY_VALUE, WEIGHT, PbrSpec, named_mode
 from mxeon.conformance.specs.sheen import FIT_COSINE
@@ -48,37 +38,37 @@ LEAST_TANGENT_COSINE = 0.1  # least cosine with turned tangents
 
 # fmt: off
 # The first material's index is bright enough for the controls of pictures.
-INDEX = Input("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(2.5, 1.2),
+INDEX = spec.Input("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(2.5, 1.2),
               beyond=(0.0, 0.2, 1.0015, 1.02, 4.0, 10.0, 100.0))
 FILM: Values = {"thinfilm_thickness": 400.0}
 FACETS = (
-    Input("roughness", "vector2", LEAST_ALPHA, 1.0, edges=(1e-4, 0.01, 1.0), change=(0.3, 0.3),
+    spec.Input("roughness", "vector2", LEAST_ALPHA, 1.0, edges=(1e-4, 0.01, 1.0), change=(0.3, 0.3),
           logarithmic=True, equal=True, materials=((0.8, 0.8), (0.4, 0.4)),
           beyond=(1e-4, 2.0), ends=(0.0, 1.0)),
-    Input("retroreflective", "boolean", change=True),
-    Input("thinfilm_thickness", high=1000.0, edges=(0.0, 1.0, 100.0), change=400.0,
+    spec.Input("retroreflective", "boolean", change=True),
+    spec.Input("thinfilm_thickness", high=1000.0, edges=(0.0, 1.0, 100.0), change=400.0,
           beyond=(1500.0, 2500.0, 3000.0, 6000.0, 1e5)),
-    Input("thinfilm_ior", low=1.0, high=2.5, edges=(1.0, 1.5), change=2.0, needs=FILM,
+    spec.Input("thinfilm_ior", low=1.0, high=2.5, edges=(1.0, 1.5), change=2.0, needs=FILM,
           beyond=(0.5, 3.0, 5.0), ends=(1.0, np.inf)),
     lobes.NORMAL,
-    Input("tangent", "vector3", change=(0.6, 0.8, 0.0), needs={"roughness": (0.1, 0.4)}),
+    spec.Input("tangent", "vector3", change=(0.6, 0.8, 0.0), needs={"roughness": (0.1, 0.4)}),
 )
 INPUTS = {
-    "dielectric_bsdf": (WEIGHT, color("tint", (0.2, 0.5, 0.8), (0.9, 0.6, 0.3)), INDEX, *FACETS),
+    "dielectric_bsdf": (WEIGHT, spec.color("tint", (0.2, 0.5, 0.8), (0.9, 0.6, 0.3)), INDEX, *FACETS),
     "conductor_bsdf": (
         WEIGHT,
         replace(INDEX, type="color3", change=(0.9, 1.1, 1.6),
                 materials=((0.2, 0.9, 1.1), (1.5, 0.6, 2.0)), beyond=(0.0, 0.05, 0.18, 5.0, 10.0)),
-        Input("extinction", "color3", 0.5, 6.0, edges=(0.5, 3.0), change=(0.9, 2.1, 3.6),
+        spec.Input("extinction", "color3", 0.5, 6.0, edges=(0.5, 3.0), change=(0.9, 2.1, 3.6),
               materials=((3.9, 2.5, 1.8), (0.5, 1.0, 4.0)), beyond=(0.0, 0.2, 10.0, 100.0)),
         *FACETS,
     ),
     "generalized_schlick_bsdf": (
         WEIGHT,
-        color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2)),
-        color("color82", (0.5, 0.7, 0.8), (1.0, 1.0, 1.0)),
-        color("color90", (0.9, 0.8, 0.6), (1.0, 1.0, 1.0)),
-        Input("exponent", low=1.0, high=8.0, edges=(1.0, 5.0), change=2.5, materials=(5.0, 3.0),
+        spec.color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2)),
+        spec.color("color82", (0.5, 0.7, 0.8), (1.0, 1.0, 1.0)),
+        spec.color("color90", (0.9, 0.8, 0.6), (1.0, 1.0, 1.0)),
+        spec.Input("exponent", low=1.0, high=8.0, edges=(1.0, 5.0), change=2.5, materials=(5.0, 3.0),
               beyond=(0.5, 10.0, 20.0, 100.0)),
         *FACETS,
     ),
@@ -236,7 +226,7 @@ class FacetSpec(PbrSpec):
 
     def prefiltered(self, batch: Batch) -> Array:
         """Albedo in a prefiltered environment by MaterialX's fit, (N, 3)."""
-        return batch.strength * LOBES[self.node].prefiltered(batch.wo, broadcast_inputs(batch))
+        return batch.strength * LOBES[self.node].prefiltered(batch.wo, spec.broadcast_inputs(batch))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """A lobe's batches, plus lights near the mirror direction; another check covers two alphas."""
@@ -439,7 +429,7 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
 class TransmissionSpec(FacetSpec):
     """A node of `mxeon.models.nodes.microfacets`."""
 
-    requires = Ability.LOBE | Ability.TRANSMISSION
+    requires = spec.Ability.LOBE | spec.Ability.TRANSMISSION
     # In another frame, roundings decide which refracted samples are totally reflected.
     plain = ("frame", "shape")
 
@@ -577,14 +567,14 @@ THICK = (0.0, 1.0, 100.0, 1e4)  # thicknesses at the edges of the domain
 class FilmSpec(FacetSpec):
     """A microfacet node under a thin film."""
 
-    requires = Ability.LOBE | Ability.FILM
+    requires = spec.Ability.LOBE | spec.Ability.FILM
 
     counts: Counts = FILM_COUNTS
 
     least_cosine: float = LEAST_FACET
 
     @property
-    def bounded(self) -> tuple[Input, ...]:
+    def bounded(self) -> tuple[spec.Input, ...]:
         return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
     def random_inputs(
@@ -630,7 +620,7 @@ class FilmSpec(FacetSpec):
         batch = batch.altered(roughness=alpha, weight=1.0)
         return batch, self.integral(batch)
 
-    few = ValueSpec.few
+    few = spec.ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         """Views of the random pairs, and as many for which few facets are least representative."""
@@ -661,11 +651,11 @@ def _some_special(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
     return wo[picked], wi[picked]
 
 
-def film_views(spec: PbrSpec, films: Films) -> Batch:
+def film_views(owner: PbrSpec, films: Films) -> Batch:
     rng, (count, *ranges) = generator(), films
     alpha, mu, thickness = (low + (high - low) * rng.random(count) for low, high in ranges)
     wo = samples.directions_at(mu, 2.0 * np.pi * rng.random(count))
-    inputs = simple(spec.random_inputs(rng, count))
+    inputs = simple(owner.random_inputs(rng, count))
     inputs["thinfilm_ior"] = np.maximum(inputs["thinfilm_ior"], LEAST_OIL)
     inputs["roughness"] = rounded([alpha, alpha])
     inputs["thinfilm_thickness"] = rounded([thickness])[:, 0]
@@ -683,9 +673,9 @@ def _steep(batch: Batch) -> np.ndarray:
 
 
 # Error of a film's phases beyond two roundings. Curves from 200 nm have slope 2 in cosines and sines.
-WAVE_ERROR = EngineError(
+WAVE_ERROR = spec.EngineError(
     "the engine's own cosine and sine, times 2",
-    WAVE.error(lambda: [samples.float32(np.linspace(0.0, FILM_PHASE, ARGUMENTS))], 2.0),
+    spec.WAVE.error(lambda: [samples.float32(np.linspace(0.0, FILM_PHASE, spec.ARGUMENTS))], 2.0),
     2.0,
 )
 FILM_SPECS = tuple(
