@@ -13,6 +13,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
+from itertools import product
 from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -232,11 +233,8 @@ class Evaluating(Backend):
         if frame := spec.errors.get("frame"):
             angle = 2.0 * spec.along * math.sqrt(2.0 * tolerance.ROUNDING)
             words = f"two slopes {spec.along:g} at the normal, times the angle of a rounded cosine"
-            own["states"] = sum_of(
-                frame.term("a part in another frame"),
-                roundings(12, "of six parts"),
-                *((Term(angle, words),) if angle else ()),
-            )
+            terms = frame.term("a part in another frame"), roundings(12, "of six parts")
+            own["states"] = sum_of(*terms, *[Term(angle, words)] * bool(angle))
         return own
 
     def precision(self, quantity: str) -> tuple[Term, ...]:
@@ -468,14 +466,9 @@ NOISE = sum_in(
         "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms",
     ),
 )
-PASSED = given(
-    2e-3, Quantity.ALBEDO, "testrender's tables of albedos, off by 1e-3 for a white dielectric"
-)
-INTEGRAL = sum_in(
-    Quantity.ALBEDO,
-    SHARP.term("an average of values"),
-    Term(1.2e-3, "32 x 32 nodes, those next to the view moved by up to 0.08"),
-)
+PASSED = given(2e-3, Quantity.ALBEDO, "testrender's tables, off by 1e-3 for a white dielectric")
+NODES_MOVED = Term(1.2e-3, "32 x 32 nodes, those next to the view moved by up to 0.08")
+INTEGRAL = sum_in(Quantity.ALBEDO, SHARP.term("an average of values"), NODES_MOVED)
 LIGHT = sum_in(Quantity.LIGHT, INTEGRAL.term("an integral of values"), PASSED.term("a throughput"))
 
 
@@ -728,11 +721,8 @@ class Spheres(Pictures):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        batches = (
-            self.batch(replace(scene, size=self.size), inputs)
-            for scene in self.scenes
-            for inputs in self.materials
-        )
+        scenes = (replace(scene, size=self.size) for scene in self.scenes)
+        batches = (self.batch(*each) for each in product(scenes, self.materials))
         return tuple(batch for batch in batches if len(batch.wo))
 
     @cached_property

@@ -36,10 +36,8 @@ def remembered(spec: Spec, quantity: str) -> Remembered:
 @lru_cache(maxsize=KEPT_SPECS)
 def albedo_candidates(spec: LobeSpec) -> tuple[Candidate, ...]:
     """The candidates for a spec's albedo, cached for several comparisons."""
-    return tuple(
-        Candidate(each.title, Remembered(each.values), each.permitted)
-        for each in spec.albedo_candidates
-    )
+    candidates = spec.albedo_candidates
+    return tuple(replace(each, values=Remembered(each.values)) for each in candidates)
 
 
 @dataclass(frozen=True, eq=False)

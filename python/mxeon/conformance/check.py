@@ -150,13 +150,10 @@ class Check:
                 permitted = self.gives(case, diagnosis.first.key, tolerance)
             return replace(diagnosis, causes=causes, permitted=permitted)
 
-        return judge(
-            place,
-            tolerance,
-            lambda wrong: self.measured(self.control.of(case) if wrong else case, tolerance),
-            self.control.words,
-            explain,
-        )
+        def measure(wrong: bool) -> Measurement:
+            return self.measured(self.control.of(case) if wrong else case, tolerance)
+
+        return judge(place, tolerance, measure, self.control.words, explain)
 
 
 def judge(

@@ -5,7 +5,7 @@ import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import compress
+from itertools import compress, product
 from pathlib import Path
 from typing import TypeAlias
 
@@ -82,9 +82,8 @@ PLAIN = sum_in(
 )
 # The least OpenGL asks for; texels differ by 1 at most.
 TEXTURED = given(2.0**-8, Quantity.PICTURE, "a filter's weights of 8 bits")
-ENCODED = given(
-    SLOPE * TEXTURED.value, Quantity.PICTURE, f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
-)
+CODES = f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
+ENCODED = given(SLOPE * TEXTURED.value, Quantity.PICTURE, CODES)
 FITTED, SHADED = (
     Tolerance((each, microfacets.sum_over(256)), Quantity.FITTED_PICTURE, scaled, exact=True)
     for each in (
@@ -143,12 +142,8 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
     others = [film] * some("thinfilm_thickness", lambda value: value > 0.0)
     others += [trapped] * some("thinfilm_ior", lambda value: value < LEAST_FILM)
     others += [inside] * some("ior", lambda value: value < 1.0, "dielectric_bsdf")
-    hairs = [
-        np.reshape(lobe.inputs[name], (-1, 2)).min(axis=0)
-        for lobe in lobes
-        for name in ROUGHNESSES
-        if lobe.category == HAIR
-    ]
+    fibers = product((lobe.inputs for lobe in lobes if lobe.category == HAIR), ROUGHNESSES)
+    hairs = [np.reshape(inputs[name], (-1, 2)).min(axis=0) for inputs, name in fibers]
     others += [ANISOTROPIC] * _stretched(lobes)
     if hairs:
         others += lobe_terms(*np.min(hairs, axis=0))
@@ -164,11 +159,8 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
 
 def _stretched(lobes: Iterable[ShownLobe]) -> bool:
     """Whether a microfacet lobe has two different alphas."""
-    return any(
-        bool(np.ptp(np.reshape(lobe.inputs["roughness"], (-1, 2)), axis=1).any())
-        for lobe in lobes
-        if lobe.category in MICROFACETS
-    )
+    alphas = (each.inputs["roughness"] for each in lobes if each.category in MICROFACETS)
+    return any(bool(np.ptp(np.reshape(each, (-1, 2)), axis=1).any()) for each in alphas)
 
 
 Pixels: TypeAlias = NDArray[np.floating]
@@ -351,9 +343,8 @@ def _judge_match(
             scenes = zip(cases, pixels, strict=True)
             parts = [errors_of(each[2], tolerance.value, Region(c[0].name)) for c, each in scenes]
             whole = errors_of(np.concatenate([each[2] for each in pixels]), tolerance.value)
-            return Measurement(
-                error, worst, (whole, *parts) if error > tolerance.value else (), "pixels"
-            )
+            errors = (whole, *parts) if error > tolerance.value else ()
+            return Measurement(error, worst, errors, "pixels")
         brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
         return Measurement(_worst_pixel((first, brighter, expected), tolerance.metric)[0], {})
 

@@ -60,11 +60,7 @@ SIZE, MATERIALS = 24, 3  # size and number of pictures for differently arranged 
 ATTRIBUTES = ("type", "defaultgeomprop", "uniform", "unit", "unittype", "colorspace", "enum")
 RANGE = ("uimin", "uimax")
 COMPONENTS = {"float": 1, "integer": 1, "boolean": 1, "vector2": 2, "color3": 3, "vector3": 3}
-# Nodes that append a fourth component to three, and the type of the three.
-JOINED = {
-    "color4": ("ND_combine2_color4CF", "color3"),
-    "vector4": ("ND_combine2_vector4VF", "vector3"),
-}
+JOINED = {"color4": "color3", "vector4": "vector3"}  # types of four components, and of three
 NUMBERS = (*COMPONENTS, *JOINED)  # types that are compared by values
 SHADED = ("BSDF", "EDF", "surfaceshader")  # types that are compared by pictures
 SHADERS = ("surfaceshader", "volumeshader", "displacementshader")  # types that stay unconnected
@@ -80,14 +76,8 @@ PICTURES = tuple(
 )
 LOBES = {"BSDF": "burley_diffuse_bsdf", "EDF": "uniform_edf"}  # sources for inputs, by type
 # Constant values of inputs by type; a tangent must not be along the normal.
-ZEROS = {
-    "float": "0",
-    "integer": "0",
-    "boolean": "false",
-    "vector2": "0, 0",
-    "color3": "0, 0, 0",
-    "vector3": "0, 0, 1",
-}
+ZEROS = {"float": "0", "integer": "0", "boolean": "false"}
+ZEROS |= {"vector2": "0, 0", "color3": "0, 0, 0", "vector3": "0, 0, 1"}
 TANGENT = "1, 0, 0"
 PROBE = "mxeon_probe"
 MODELLED = {(each.node, isinstance(each, UtilitySpec)) for each in ALL}
@@ -164,9 +154,8 @@ def definition_facts(
             found[place] = "missing"
             continue
         found[f"the default of {place}"] = port_text(port)
-        found |= {
-            f"{fact} of {place}": one_spelling(port.getAttribute(fact)) for fact in attributes
-        }
+        for fact in attributes:
+            found[f"{fact} of {place}"] = one_spelling(port.getAttribute(fact))
     return found
 
 
@@ -257,11 +246,8 @@ class Comparison:
 
         The nodes that eonlib defines are also compared with its definitions.
         """
-        ours = (
-            each
-            for each in load_library("eonlib").getNodeDefs()
-            if self._release.getNodeDef(each.getName()) != each
-        )
+        defined, release = load_library("eonlib").getNodeDefs(), self._release
+        ours = (each for each in defined if release.getNodeDef(each.getName()) != each)
         rows: list[str] = []
         for number, right in enumerate((*self._release.getNodeDefs(), *ours)):
             name = right.getName()
@@ -276,12 +262,9 @@ class Comparison:
                 found[f"version of {name}"] = "1234"
             # The release itself omits some ranges of its nodes.
             omitted = (each for each in found if each.startswith(RANGE) and not found[each])
-            rows += differences(
-                found | ({each: expected[each] for each in omitted} if released else {}), expected
-            )
-        rows += differences(
-            *(unit_facts(e, self._release) for e in (self._document, self._release))
-        )
+            left_out = {each: expected[each] for each in omitted} if released else {}
+            rows += differences(found | left_out, expected)
+        rows += differences(*(unit_facts(each, release) for each in (self._document, release)))
         apart = dict.fromkeys(zip(*[iter(rows)] * 3, strict=True))
         return [Cause(Kind.DEFECT, RELEASE, ("", *row)) for row in apart]
 
@@ -389,9 +372,7 @@ class Comparison:
     def _texts_apart(self, own: mx.NodeDef, right: mx.NodeDef) -> float:
         """The largest difference between the values of a node with two texts; NotRun if none are known."""
         outputs = right.getActiveOutputs()
-        kinds, inputs = (
-            {each.getType() for each in ports} for ports in (outputs, right.getActiveInputs())
-        )
+        kinds, inputs = ({p.getType() for p in each} for each in (outputs, right.getActiveInputs()))
         sides = (own, self._library), (right, "stock")
         if kinds <= {*NUMBERS} and self._release is not hidden():
             error = 0.0
@@ -448,20 +429,16 @@ class Comparison:
             return np.inf
         rng, error = generator(), 0.0
         for _ in range(MATERIALS):
-            drawn = {
-                port.path: float(rng.random())
-                if port.type == "float"
-                else tuple(map(float, rng.random(3)))
-                for port in shaders[0].inputs
-                if port.type in ("float", "color3")
-            }
-            ports = (
-                [replace(port, value=drawn.get(port.path, port.value)) for port in each.inputs]
-                for each in shaders
-            )
-            varied = [
-                replace(each, inputs=tuple(own)) for each, own in zip(shaders, ports, strict=True)
-            ]
+            drawn: dict[str, float | tuple[float, ...]] = {}
+            for port in shaders[0].inputs:
+                if port.type == "float":
+                    drawn[port.path] = float(rng.random())
+                elif port.type == "color3":
+                    drawn[port.path] = tuple(map(float, rng.random(3)))
+            varied = []
+            for shader in shaders:
+                ports = (replace(p, value=drawn.get(p.path, p.value)) for p in shader.inputs)
+                varied.append(replace(shader, inputs=tuple(ports)))
             for scene in PICTURES:
                 own, right = (self._host.picture(each, scene).reshape(-1, 3) for each in varied)
                 if not np.isfinite(right).any():
@@ -503,7 +480,7 @@ def samples(definition: mx.NodeDef) -> dict[str, Array]:
     rng, found = generator(), {}
     equal = rng.random((ROWS, 1))
     for port in definition.getActiveInputs():
-        kind = JOINED.get(port.getType(), ("", port.getType()))[1]
+        kind = JOINED.get(port.getType(), port.getType())
         for name, each in ((port.getName(), kind), (f"{port.getName()}_4", "float")):
             if each in COMPONENTS:
                 values = rng.random((ROWS, COMPONENTS[each]))
@@ -545,13 +522,13 @@ def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
     node.setNodeDefString(name)
     for port in ports:
         kind, source = port.getType(), f"in_{port.getName()}"
-        joined, inner = JOINED.get(kind, ("", kind))
+        inner = JOINED.get(kind, kind)
         if inner in COMPONENTS:
             constant = document.addNode("constant", source, inner)
             along = inner == "vector3" and "tangent" in port.getName()
             value = TANGENT if along else ZEROS[inner]
             constant.addInput("value", inner).setValueString(value)
-            if joined:
+            if kind in JOINED:
                 fourth = document.addNode("constant", f"{source}_4", "float")
                 fourth.setInputValue("value", 0.0)
                 pair = document.addNode("combine2", f"{source}_both", kind)

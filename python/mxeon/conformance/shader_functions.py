@@ -168,7 +168,7 @@ def random_columns() -> Columns:
     pairs = np.array(list(product(AXES, AXES)))
     wo[: len(pairs)], wi[: len(pairs)] = pairs[:, 0], pairs[:, 1]
     unit = {
-        name: _unit(rng) for name in ("u1", "u2", "v", "q", "m", "t", "y_o", "gray", "roughness")
+        name: _unit(rng) for name in ["u1", "u2", "v", "q", "m", "t", "y_o", "gray", "roughness"]
     }
     azimuth, elevation = 2.0 * np.pi * rng.random(POINTS), 0.5 * np.pi * _unit(rng)
     mu, roughness = np.clip(wo[:, 2], GRAZING, 1.0), unit["roughness"]
@@ -284,11 +284,8 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
         return not_measured(place, error)
 
     def measure(wrong: bool) -> tolerance.Measurement:
-        errors = {
-            name: _error(name, each)
-            for name, each in probe.values[wrong].items()
-            if row_of(name) is check
-        }
+        own = {name: each for name, each in probe.values[wrong].items() if row_of(name) is check}
+        errors = {name: _error(name, each) for name, each in own.items()}
         errors |= {name: np.inf for name in probe.missing_functions if row_of(name) is check}
         name = max(errors, key=lambda function: errors[function])
         return tolerance.Measurement(errors[name], {name: [errors[name]]})

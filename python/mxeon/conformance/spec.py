@@ -381,10 +381,9 @@ class RowSpec(ValueSpec, Generic[F]):
     def value_candidates(self) -> tuple[Candidate, ...]:
         """The row's own function and its variants, followed by `others`."""
         own = Candidate(self.row.title, self.value)
+        rows = ((each, each.value) for each in self.row.variants if each.value)
         variants = (
-            Candidate(each.title, partial(self.values, each.value), each.permitted)
-            for each in self.row.variants
-            if each.value
+            Candidate(e.title, partial(self.values, value), e.permitted) for e, value in rows
         )
         return (own, *variants, *self.others)
 

@@ -122,10 +122,8 @@ def _clashes(library: str) -> Faults:
         known = found("stock", target)
         new = {each: target for each in found(library, target) if each not in known}
         own = new | own
-    causes = [
-        Cause(Kind.DEFECT, "clash", (*each.nodes, each.name, target))
-        for each, target in own.items()
-    ]
+    rows = ((*each.nodes, each.name, target) for each, target in own.items())
+    causes = [Cause(Kind.DEFECT, "clash", row) for row in rows]
     return causes, len(found(library, SOURCES[0], twice=True))
 
 
@@ -136,10 +134,8 @@ def _arguments(library: str, release: mx.Document) -> Faults:
         for definition in release.getNodeDefs():
             own = load_library(library).getNodeDef(definition.getName())
             codes = (each.getImplementation("genmdl") for each in (own, definition))
-            calls = [
-                texts.arguments(each.getAttribute("sourcecode") if each else "") for each in codes
-            ]
-            (callee, given), (other, right) = calls
+            texts_of = (each.getAttribute("sourcecode") if each else "" for each in codes)
+            (callee, given), (other, right) = map(texts.arguments, texts_of)
             if callee != other or len(right) < 2:
                 continue
             if exchanged:
@@ -255,10 +251,8 @@ def _closure_faults(subject: DiffuseSpec, library: str) -> Faults:
     """Arguments of the closure that differ from the node's inputs, and their count without the weight."""
     expression = _expression(source(subject, "mdl", library))
     rng = generator()
-    rows = {
-        name: each.reshape(MATERIALS, -1)
-        for name, each in subject.random_inputs(rng, MATERIALS).items()
-    }
+    drawn = subject.random_inputs(rng, MATERIALS)
+    rows = {name: each.reshape(MATERIALS, -1) for name, each in drawn.items()}
     rows["weight"], normal = rng.random((MATERIALS, 1)), rng.standard_normal((MATERIALS, 3))
     rows["normal"] = normal / np.linalg.norm(normal, axis=1, keepdims=True)
     # [Portsmouth2025], Eq. (19); MDL without the flag is FON.

@@ -46,9 +46,8 @@ def of_white(share: float) -> str:
     """
     if share < 0.001:
         return "less than 0.1 % of white"
-    return (
-        f"{in_words(100.0 * share)} % of white" if share < 2.0 else f"{in_words(share)} times white"
-    )
+    percent = f"{in_words(100.0 * share)} % of white"
+    return percent if share < 2.0 else f"{in_words(share)} times white"
 
 
 def listed(names: Sequence[str]) -> str:
@@ -433,11 +432,8 @@ def _filled(text: str, cause: Cause) -> str:
 def _released(cause: Cause) -> str:
     """A node, where it differs from the released one, and by how much."""
     node, *rows = cause.names or ("",)
-    size = (
-        f", off by up to {in_words(cause.values[0])}"
-        if cause.values and rows and math.isfinite(cause.values[0])
-        else ""
-    )
+    known = bool(cause.values and rows and math.isfinite(cause.values[0]))
+    size = f", off by up to {in_words(cause.values[0])}" if known else ""
     others = (cause.of or 1) - 1
     more = f", and {others} more with this text" * bool(others)
     return f"{node}: " * bool(node) + _differences(rows) + size + more
@@ -609,9 +605,8 @@ def sentence(run: Run) -> str:
     groups: dict[str, dict[str, None]] = {}  # hosts by library
     for result in results:
         groups.setdefault(result.library, {})[result.host] = None
-    hosts = " and ".join(
-        f"{enumerated(list(names))} with {library}" for library, names in groups.items()
-    )
+    named = (f"{enumerated(list(names))} with {library}" for library, names in groups.items())
+    hosts = " and ".join(named)
     differ = ""
     if counts[DIFFERS]:
         verb = "differs" if counts[DIFFERS] == 1 else "differ"

@@ -63,9 +63,8 @@ def folded(frame: Frame) -> Frame:
     """A frame with premultiplied mixes, which MaterialX supports since 1.39.5."""
     from mxeon.shaders.options import offers
 
-    return frame._replace(
-        methods=Methods("none", "opacity", premultiplied=offers("premultiplied") or None)
-    )
+    methods = Methods("none", "opacity", premultiplied=offers("premultiplied") or None)
+    return frame._replace(methods=methods)
 
 
 def bound(change: Callable[[Client], Client]) -> Build:
@@ -221,10 +220,8 @@ def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
     shaders: dict[Methods, Shader] = {}
     for words, (client, methods, inputs) in frames()[:: EVERY if case.control else 1]:
         if methods not in shaders:
-            text, library = case.spec.document(), case.library
-            [shaders[methods]] = case.host.compile(
-                text, library=library, methods=methods, client=CLIENT_OPTIONS
-            )
+            make = partial(case.host.compile, library=case.library, client=CLIENT_OPTIONS)
+            [shaders[methods]] = make(case.spec.document(), methods=methods)
         ports = (
             replace(each, value=inputs.get(NAMES.get(each.path, ""), each.value))
             for each in shaders[methods].inputs

@@ -283,9 +283,8 @@ def factor(case: Case) -> Iterator[Compared]:
 # --- hair: its lobes apart, where they are wide, narrow, or seen straight --------------------------
 
 
-TURN_FIBER = controls.with_inputs(
-    "the normal is turned about the fiber by a tenth", normal=(0.0, 0.1, 0.995)
-)
+TENTH = (0.0, 0.1, 0.995)
+TURN_FIBER = controls.with_inputs("the normal is turned about the fiber by a tenth", normal=TENTH)
 
 
 def region_values(key: str, case: Case) -> Compared:

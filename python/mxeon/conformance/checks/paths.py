@@ -237,16 +237,10 @@ def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
             yield text, replace(batch, inputs={**numbers, **axes})
         return
     own: Values = {each.name: NORMAL for each in spec.inputs if each.type == "vector3"}
-    rest = [
-        each
-        for each in spec.inputs
-        if each.type != "boolean" and each.name not in {*batch.inputs, *own}
-    ]
-    drawn: dict[str, ArrayLike] = {
-        each.name: np.arange(count) % 2
-        for each in spec.inputs
-        if each.type == "boolean" and each.name not in spec.mode
-    }
+    flags = [each.name for each in spec.inputs if each.type == "boolean"]
+    rest = [each for each in spec.inputs if each.name not in {*flags, *batch.inputs, *own}]
+    even = np.arange(count) % 2
+    drawn: dict[str, ArrayLike] = {name: even for name in flags if name not in spec.mode}
     axes = {"normal": batch.inputs["normal"], "tangent": batch.inputs["tangent"]}
     if own:
         drawn |= {
@@ -377,11 +371,8 @@ SAMPLE = sum_of(
 
 
 def _wrong_part(case: Case) -> Diagnosis:
-    wrong = {
-        Cause(Kind.DEFECT, key, (place(inside),)): None
-        for key, inside, compared in parts(case)
-        if SAMPLE.wrong(compared).any()
-    }
+    rows = ((key, inside) for key, inside, each in parts(case) if SAMPLE.wrong(each).any())
+    wrong = (Cause(Kind.DEFECT, key, (place(inside),)) for key, inside in dict.fromkeys(rows))
     return Diagnosis(tuple(wrong))
 
 

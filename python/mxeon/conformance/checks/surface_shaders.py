@@ -140,12 +140,10 @@ def without_effect(case: Case) -> list[str]:
     rows = [row for changes in spec.changes.values() for row in changes]
     names = dict.fromkeys(name for row in rows for name in row)
     if missing := [name for name in names if name not in given]:
-        raise NotRun(
-            f"{spec.node} of this MaterialX lacks an input that is varied: {', '.join(missing)}"
-        )
-    few = replace(
-        case.backend.batches[0].first(CHANGED), inputs={name: given[name] for name in names}
-    )
+        names_lost = ", ".join(missing)
+        raise NotRun(f"{spec.node} of this MaterialX lacks an input that is varied: {names_lost}")
+    inputs = {name: given[name] for name in names}
+    few = replace(case.backend.batches[0].first(CHANGED), inputs=inputs)
     batch = joined([few.altered(**row) for row in rows])
     effective = np.zeros(len(spec.names), bool)
     for branch, output in (*((each, "response") for each in SCATTERING), ("emission", "radiance")):

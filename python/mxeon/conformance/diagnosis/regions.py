@@ -137,11 +137,8 @@ def unreached(values: Mapping[str, Sequence[float]]) -> tuple[Region, ...]:
     one = np.array([[0.0, 0.0, 1.0]])
     inputs = {name: np.array([each if len(each) > 1 else each[0]]) for name, each in values.items()}
     batch = Batch(one, one, inputs)
-    return tuple(
-        region
-        for region, mask in _inputs(batch)
-        if not mask.any() and any(p in values for p in ABOUT.get(region.name.split("_")[0], ()))
-    )
+    out = (region for region, mask in _inputs(batch) if not mask.any())
+    return tuple(x for x in out if {*values} & {*ABOUT.get(x.name.split("_")[0], ())})
 
 
 def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:

@@ -80,9 +80,8 @@ class Views:
             value = surface.value * (passed if self.branch == THROUGH else 1.0)
             return Bsdf(value, surface.throughput * passed)
         if tree.name == MIX:
-            return _mixed(
-                partial(self.bsdf, first, layered), partial(self.bsdf, second, layered), factor
-            )
+            one, other = (partial(self.bsdf, each, layered) for each in (first, second))
+            return _mixed(one, other, factor)
         if tree.name == SUM:
             return layering.add(self.bsdf(first, layered), self.bsdf(second, layered))
         if not np.any(factor):
@@ -93,9 +92,8 @@ class Views:
     def _lobe(self, closure: ClosureTree, row: PbrNode, layered: bool) -> Bsdf:
         """A lobe in its frame; by stdosl.h, a layer passes the light that its top does not reflect."""
         if (facets := closure.arguments.get("distribution", GGX)) != GGX:
-            raise ShaderError(
-                f"osl: distribution of {closure.name} must be {GGX}, as that of the node; got {facets}"
-            )
+            rule = f"must be {GGX}, as that of the node; got {facets}"
+            raise ShaderError(f"osl: distribution of {closure.name} {rule}")
         names = ("normal", "curve_direction" if closure.name == HAIR else "tangent")
         normal, tangent = (
             np.broadcast_to(closure.arguments.get(name, axis), self.points.wo.shape)

@@ -49,12 +49,9 @@ Measure: TypeAlias = Callable[[Elements, str, str], Array]
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
 # Values of unconnected inputs: black, and for lobes zero, which passes all light.
-UNCONNECTED: dict[str, Value] = {
-    "BSDF": nodes.NOTHING,
-    "EDF": np.zeros(3),
-    "surfaceshader": np.zeros(3),
-    "VDF": None,
-}
+NO_LIGHT = np.zeros(3)
+UNCONNECTED: dict[str, Value] = {"BSDF": nodes.NOTHING, "VDF": None}
+UNCONNECTED |= dict.fromkeys(("EDF", "surfaceshader"), NO_LIGHT)
 CHANNELS = {"float": 1, "color3": 3}  # channels of an image, by its type
 UTILITIES = {row.category: row for row in utilities.UTILITIES}
 
@@ -347,11 +344,9 @@ def _rows(names: Iterable[str], values: Iterable[Array], count: int = 1) -> dict
     """Inputs of a model with at least `count` rows, one per point; numbers have one axis."""
     columns = [np.atleast_2d(np.asarray(value, np.float64)) for value in values]
     count = max(count, *map(len, columns))
-    rows = [np.broadcast_to(each, (count, each.shape[1])) for each in columns]
-    return {
-        name: each[:, 0] if each.shape[1] == 1 else each
-        for name, each in zip(names, rows, strict=True)
-    }
+    rows = (np.broadcast_to(each, (count, each.shape[1])) for each in columns)
+    flat = (each[:, 0] if each.shape[1] == 1 else each for each in rows)
+    return dict(zip(names, flat, strict=True))
 
 
 def _radiance(

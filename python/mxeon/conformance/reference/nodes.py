@@ -83,9 +83,8 @@ def _series(
     """Chebyshev coefficients of an albedo, (., ., 3), or None if they decay too slowly."""
     for degree, turns in degrees:
         x, y = chebyshev.chebpts1(degree + 1), chebyshev.chebpts1(turns + 1)
-        mu, phi = np.meshgrid(
-            np.square(low + (1.0 - low) * 0.5 * (1.0 + x)), 0.5 * np.arccos(y), indexing="ij"
-        )
+        cosines = np.square(low + (1.0 - low) * 0.5 * (1.0 + x))
+        mu, phi = np.meshgrid(cosines, 0.5 * np.arccos(y), indexing="ij")
         values = albedo(_directions(mu.ravel(), phi.ravel()), inputs).reshape(*mu.shape, 3)
         along, around = (
             np.linalg.inv(chebyshev.chebvander(points, len(points) - 1)) for points in (x, y)
@@ -246,12 +245,9 @@ class ShadingPoints:
 
     def geometry(self, name: str) -> Array:
         """A property of the surface by MaterialX's name; raises NotRun if it is unknown."""
-        known = {
-            "Nworld": self.normal,
-            "Tworld": self.tangent,
-            "Bworld": np.cross(self.normal, self.tangent),
-            "UV0": self.texcoord,
-        }
+        normal, tangent = self.normal, self.tangent
+        known = {"Nworld": normal, "Tworld": tangent, "Bworld": np.cross(normal, tangent)}
+        known |= {"UV0": self.texcoord} if self.texcoord is not None else {}
         if (value := known.get(name)) is None:
             raise NotRun(f"reference: the surface has no {name} here")
         return value

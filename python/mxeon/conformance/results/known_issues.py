@@ -72,10 +72,8 @@ def issues() -> Mapping[str, Issue]:
     """The defects by their pages; read when something first fails."""
     measured = json.loads((folder() / "measured.json").read_text("utf-8"))
     pages = sorted(path for path in folder().glob("*.md") if path.stem != "README")
-    return {
-        path.stem: read_issue(path.stem, path.read_text("utf-8"), measured.get(path.stem, {}))
-        for path in pages
-    }
+    names = {path.stem: path.read_text("utf-8") for path in pages}
+    return {name: read_issue(name, text, measured.get(name, {})) for name, text in names.items()}
 
 
 def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
@@ -86,11 +84,8 @@ def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
     parts = PAGE.fullmatch(text)
     if not parts:
         raise CheckError(f"{page}.md must begin with a row in a comment, and a title")
-    row = tomllib.loads(parts["row"]) | {
-        "page": page,
-        "title": parts["title"],
-        "text": parts["text"],
-    }
+    head = {"page": page, "title": parts["title"], "text": parts["text"]}
+    row = tomllib.loads(parts["row"]) | head
     row |= {name: measured[name] for name in ("cause", "patch", "sizes") if name in measured}
     try:
         issue = _converter().structure(row, Issue)

@@ -163,9 +163,8 @@ def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findin
 
 def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -> str:
     """The reason for not resuming the run in a folder, a line that lists the differences."""
-    return (
-        f"{folder}: holds another run ({listed(differences)}); use a new folder, or omit --resume"
-    )
+    remedy = "use a new folder, or omit --resume"
+    return f"{folder}: holds another run ({listed(differences)}); {remedy}"
 
 
 def _left(path: Path) -> str:
@@ -233,10 +232,7 @@ def _differences(before: Plan, after: Plan) -> tuple[str, ...]:
         }
         for plan in (before, after)
     )
-    facts = [
-        f"{name} ({old.get(name, 'none')}, now {new.get(name, 'none')})"
-        for name in old | new
-        if old.get(name) != new.get(name)
-    ]
+    values = {name: (old.get(name, "none"), new.get(name, "none")) for name in old | new}
+    facts = [f"{name} ({was}, now {now})" for name, (was, now) in values.items() if was != now]
     files = {path for path, _ in before.files.items() ^ after.files.items()}
     return (*facts, *sorted(files)) or ("the checks",)

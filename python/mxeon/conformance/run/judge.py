@@ -119,9 +119,8 @@ class Judge:
             if task.check == plan.STUDIO:
                 with suppress(MxeonError):  # the picture's result says so
                     path = Path(task.subject)
-                    return Findings(
-                        (), pictures.studio_pictures(path, host, task.library, self._policy)
-                    )
+                    stills = pictures.studio_pictures(path, host, task.library, self._policy)
+                    return Findings((), stills)
                 return Findings(())
             if task.check == plan.RELEASE:
                 found, unjudged = check_release(host, task.library)
@@ -137,11 +136,8 @@ class Judge:
             # Checks of a lobe set all inputs except the surface's own vectors.
             keys = ("value", "defaultgeomprop")[not surface :]
             if causes := redefined(case.evaluating.shader.document, task.library, keys):
-                told = (
-                    each
-                    for each in result.diagnosis.causes
-                    if each.kind is not results.Kind.UNKNOWN
-                )
+                unknown, known_causes = results.Kind.UNKNOWN, result.diagnosis.causes
+                told = (each for each in known_causes if each.kind is not unknown)
                 own = () if surface else tuple(told)
                 result = replace(result, diagnosis=replace(result.diagnosis, causes=causes + own))
         found = (result,)
@@ -157,9 +153,8 @@ class Judge:
         images: tuple[results.Picture, ...] = ()
         try:
             if host is None:
-                found, notes = pictures.generate_document(
-                    path, task.host, task.library, self._policy
-                )
+                subject = path, task.host, task.library, self._policy
+                found, notes = pictures.generate_document(*subject)
             else:
                 found, images, notes = pictures.judge_document(
                     path, host, self._reference, task.library, self._policy

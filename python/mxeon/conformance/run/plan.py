@@ -249,11 +249,8 @@ def _selected(
         ]
         for library in LIBRARIES
     }
-    words = "; ".join(
-        f"with --library {library} on {', '.join(names)}"
-        for library, names in places.items()
-        if names
-    )
+    known = ((library, ", ".join(names)) for library, names in places.items() if names)
+    words = "; ".join(f"with --library {library} on {names}" for library, names in known)
     raise InputError(
         f"node must be judged on one of the hosts {hosts}; got {', '.join(nodes)}"
         f"{words and ', judged '}{words}"
@@ -291,9 +288,8 @@ def make_plan(
     everywhere = bool(files and not nodes) or len(libraries) > 1
     for library in libraries:
         unread = reading.refused.keys()  # unreadable with all libraries, or this one
-        readable = [
-            file for file in map(str, files) if unread.isdisjoint((file, f"{file} with {library}"))
-        ]
+        names = ((str(file), f"{file} with {library}") for file in files)
+        readable = [each[0] for each in names if unread.isdisjoint(each)]
         paths = list(map(Path, readable)) if files else _examples(library)
         documents += map(str, paths)
         tasks.append(Task(SOURCE, EVERY_NODE, SOURCE, library))
@@ -368,11 +364,8 @@ def audits(task: Task) -> bool:
 
 def unjudged(library: str) -> tuple[tuple[str, str], ...]:
     """The nodes that scatter or emit light which a library adds to MaterialX's, and which have no model."""
-    added = {
-        each.getNodeString()
-        for each in load_library(library).getNodeDefs()
-        if each.getType() in LIT
-    }
+    definitions = load_library(library).getNodeDefs()
+    added = {each.getNodeString() for each in definitions if each.getType() in LIT}
     known = {each.getNodeString() for each in load_library("stock").getNodeDefs()}
     names = added - known - set(node_names())
     return tuple((name, f"no model of a node that {library} adds") for name in sorted(names))

@@ -36,9 +36,8 @@ class FrameSpec(Spec):
             nodes.lobe_text("oren_nayar_diffuse_bsdf", {"color": each}, name)
             for name, each in LOBES.items()
         )
-        mixed = nodes.Node(
-            "mix", "BSDF", ("first", "second"), nodes.input_text("mix", "float", SHARE)
-        )
+        weight = nodes.input_text("mix", "float", SHARE)
+        mixed = nodes.Node("mix", "BSDF", ("first", "second"), weight)
         opacity = nodes.input_text("opacity", "float", 1.0)
         surfaces = (
             nodes.node_text(

@@ -94,8 +94,7 @@ class DiffuseModelSpec(ScatteringSpec):
     def materials(self) -> tuple[Values, ...]:
         names = {"color", "roughness", *self.names}
         return tuple(
-            {name: value for name, value in inputs.items() if name in names}
-            for inputs in PICTURE_INPUTS
+            {name: each[name] for name in each if name in names} for each in PICTURE_INPUTS
         )
 
     def random_inputs(

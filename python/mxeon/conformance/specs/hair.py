@@ -53,9 +53,8 @@ def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Ter
     The logarithm of M changes by at most REACH / sqrt(v) in an angle, and that of N by 1 / s'.
     """
     slope = REACH / math.sqrt(variance) + 1.0 / (SCALE * scale)
-    words = (
-        f"{angle} of an angle, times the slope of the logarithm for v {variance:g} and s {scale:g}"
-    )
+    lobe = f"v {variance:g} and s {scale:g}"
+    words = f"{angle} of an angle, times the slope of the logarithm for {lobe}"
     return roundings(slope * angle, f"({words})"), roundings(CHAIN)
 
 
@@ -141,9 +140,8 @@ class HairSpec(PbrSpec):
         A = chiang_hair_attenuation(batch.wo, inputs["ior"], inputs["absorption_coefficient"])
         shares = A * np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)
         front = shares @ FRONT / shares.sum(axis=-1)
-        return np.asarray(
-            front * samples.sky(batch.normal) + (1.0 - front) * samples.sky(-batch.normal)
-        )
+        near, far = samples.sky(batch.normal), samples.sky(-batch.normal)
+        return np.asarray(front * near + (1.0 - front) * far)
 
     def alike(self, compared: Compared) -> Compared:
         """Values over themselves, or over LEAST, plus their slopes in inclination and azimuth of both directions."""
@@ -180,20 +178,16 @@ class HairSpec(PbrSpec):
         rng = generator()
         along = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
         pairs = np.repeat(along, 4, axis=0), np.tile(along, (4, 1))
-        wo, wi = (
-            np.concatenate(each)
-            for each in zip(samples.special_directions(rng), pairs, strict=True)
-        )
+        both = zip(samples.special_directions(rng), pairs, strict=True)
+        wo, wi = (np.concatenate(each) for each in both)
         wi = wi * _sides(rng, len(wi))
         return Batch(wo, wi, self.random_inputs(rng, len(wo), edged=True))
 
     def turned(self, counts: Counts) -> Batch:
         """Pairs with individual frames, without narrow lobes, whose position would be uncertain."""
         batch = super().turned(counts)
-        wide = {
-            name: np.maximum(batch.inputs[name], [LEAST_TURNED**2, LEAST_TURNED])
-            for name in ROUGHNESSES
-        }
+        least = LEAST_TURNED**2, LEAST_TURNED
+        wide = {name: np.maximum(batch.inputs[name], least) for name in ROUGHNESSES}
         sides = _sides(generator(), len(batch.wi))
         return replace(batch.altered(**wide), wi=batch.wi * sides)
 

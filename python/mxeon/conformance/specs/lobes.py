@@ -37,20 +37,16 @@ def lobe_errors(
     value: Tolerance, albedo: Tolerance, throughput: Tolerance, frame: Tolerance, quadrature: float
 ) -> dict[str, Tolerance]:
     """Errors of a lobe; `quadrature` is the error of its integrals for the exact equations."""
-    integral = sum_in(
-        Quantity.ALBEDO,
-        value.term("an average of values"),
-        Term(quadrature, "the quadrature on the equations"),
-    )
+    sums = Term(quadrature, "the quadrature on the equations")
+    integral = sum_in(Quantity.ALBEDO, value.term("an average of values"), sums)
+    light = integral.term("an albedo"), throughput.term("a throughput")
     return {
         **dict.fromkeys(("value", "reciprocity"), value),
         "albedo": albedo,
         "throughput": throughput,
         "frame": frame,
         "integral": integral,
-        "light": sum_in(
-            Quantity.LIGHT, integral.term("an albedo"), throughput.term("a throughput")
-        ),
+        "light": sum_in(Quantity.LIGHT, *light),
     }
 
 
@@ -102,11 +98,8 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
         own = Candidate(self.row.title, self.albedo)
-        variants = (
-            Candidate(each.title, partial(_albedo, each.albedo), each.permitted)
-            for each in self.row.variants
-            if each.albedo
-        )
+        rows = ((each, each.albedo) for each in self.row.variants if each.albedo)
+        variants = (Candidate(e.title, partial(_albedo, albedo), e.permitted) for e, albedo in rows)
         return (own, *variants, ZERO)
 
     # Its samples.
@@ -192,10 +185,9 @@ class PbrSpec(ScatteringSpec):
     # Its samples.
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        return tuple(
-            batch.where(batch.wo[:, 2] >= self.least_cosine).first(counts.albedos)
-            for batch in batches[:2]
-        )
+        least = self.least_cosine
+        views = (batch.where(batch.wo[:, 2] >= least) for batch in batches[:2])
+        return tuple(batch.first(counts.albedos) for batch in views)
 
     def edges(self, counts: Counts) -> Batch:
         """Exact directions, some with light opposite the view; input edges, including roughness and index 0."""

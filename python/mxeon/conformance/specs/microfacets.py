@@ -75,13 +75,8 @@ INPUTS = {
 }
 # fmt: on
 # A film on nothing has the largest error of MaterialX's average; its row has no special light in `domain`.
-BUBBLE: Values = {
-    "weight": 1.0,
-    "tint": 1.0,
-    "ior": 1.0,
-    "thinfilm_ior": 2.5,
-    "thinfilm_thickness": 325.0,
-}
+BUBBLE: Values = dict.fromkeys(("weight", "tint", "ior"), 1.0)
+BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
 
 # Largest errors of the shaders' fits, each found by its script in tools/fits.
@@ -106,10 +101,8 @@ def sum_over(directions: int) -> Term:
     return Term(3.6 / directions, f"a sum over {directions} directions of an environment")
 
 
-TEXEL = Term(
-    samples.SLOPE * math.sqrt(2.0) * math.pi / (2 * samples.SKY_ROWS),
-    "the nearest texel, half of one away",
-)
+HALF_TEXEL = math.sqrt(2.0) * math.pi / (2 * samples.SKY_ROWS)
+TEXEL = Term(samples.SLOPE * HALF_TEXEL, "the nearest texel, half of one away")
 
 # ggx_anisotropic.py: E_ss, relative, and a dielectric's albedo, where one alpha is up to LARGEST_RATIO times the other.
 ANISOTROPIC_FIT, ANISOTROPIC_LOBE_FIT = 2.5e-2, 3.4e-2
@@ -120,9 +113,8 @@ ESS = Term(ESS_FIT / LEAST_ESS, "the fit of E_ss over the least, 0.31")
 COMPENSATION = (ESS, Term(METAL_FIT * (1.0 - LEAST_ESS), "the fit of F_ss, times 1 - E_ss"))
 LOBE = Term(LOBE_FIT, "the fit of the lobe's albedo")
 INSIDE = Term(INSIDE_FIT, "the fit of the albedo of an index below 1")
-PASSING = sum_in(
-    Quantity.ALBEDO, Term(PASSING_FIT, "the fit of the share that passes from the denser side")
-)
+SHARE = Term(PASSING_FIT, "the fit of the share that passes from the denser side")
+PASSING = sum_in(Quantity.ALBEDO, SHARE)
 HALF_DIP = Term((1.0 - samples.LEAST_COLOR82) * DIP_FIT, "half of the fit of the dip at 82 degrees")
 
 
@@ -133,11 +125,9 @@ def compensated(average: float, words: str) -> Tolerance:
 
 
 VALUE = compensated(METAL_FIT, "the fit of F_ss")
-MEAN = sum_in(
-    Quantity.ALBEDO,
-    ESS,
-    Term(METAL_FIT * (1.0 - LEAST_ESS) / LEAST_ESS, "the fit of F_ss, times (1 - E_ss) / E_ss"),
-)
+LOST = (1.0 - LEAST_ESS) / LEAST_ESS
+MEAN_METAL = Term(METAL_FIT * LOST, "the fit of F_ss, times (1 - E_ss) / E_ss")
+MEAN = sum_in(Quantity.ALBEDO, ESS, MEAN_METAL)
 ENVIRONMENT = sum_in(Quantity.ALBEDO, *COMPENSATION, sum_over(1024))
 THROUGHPUT = sum_in(Quantity.ALBEDO, ESS, LOBE)
 SCHLICK_THROUGHPUT = THROUGHPUT.plus(HALF_DIP)
@@ -501,9 +491,8 @@ def _mean(value: float, words: str) -> Tolerance:
 
 
 # Few films approach it: thin metals at grazing the first, very different indices the second.
-FILM_VALUE = sum_of(
-    *compensated(3.61e-2, "F_ss in three cosines").terms, Term(8e-4, "orders that are not summed")
-)
+UNSUMMED = Term(8e-4, "orders that are not summed")
+FILM_VALUE = sum_of(*compensated(3.61e-2, "F_ss in three cosines").terms, UNSUMMED)
 # fmt: off
 FILM_ERRORS = {
     "value": FILM_VALUE,

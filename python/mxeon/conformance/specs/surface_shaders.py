@@ -59,11 +59,8 @@ STRETCHED = "anisotropy"  # part of input names; environment sums are too coarse
 # lobe's fits, since no material has all of them. The fits for two alphas change the mean of a set by up to
 # 4e-4.
 VALUE = sum_of(Term(3.5e-3, "the fits of all lobes of a material, over 32 sets of 256 pairs"))
-ALBEDO = sum_in(
-    Quantity.ALBEDO,
-    Term(2.7e-3, "the fits of all lobes of a material, over 32 sets of 64 views"),
-    sum_over(1024),
-)
+FITS = Term(2.7e-3, "the fits of all lobes of a material, over 32 sets of 64 views")
+ALBEDO = sum_in(Quantity.ALBEDO, FITS, sum_over(1024))
 STRETCHED_FIT = 0.019  # largest error of a value due to the fits for two alphas
 # The sums for 64 views have independent errors.
 MEAN = sum_of(

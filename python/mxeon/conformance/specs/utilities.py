@@ -54,11 +54,8 @@ BLACKBODY = sum_of(
     Term(1.9e-4, "the fits of X and Z: 1.2e-4 in red, 7e-5 in a clipped luminance"),
     quantity=Quantity.OUTPUT,
 )
-REFLECTANCE = sum_in(
-    Quantity.REFLECTANCE,
-    Term(3 * 5e-7, "three constants of six decimals"),
-    roundings(12, "of numbers up to 1"),
-)
+DECIMALS = Term(3 * 5e-7, "three constants of six decimals")
+REFLECTANCE = sum_in(Quantity.REFLECTANCE, DECIMALS, roundings(12, "of numbers up to 1"))
 # Errors of values, by title or category, and of other quantities.
 # fmt: off
 VALUES: Mapping[str, Tolerance] = {
@@ -138,9 +135,8 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         rng, count = generator(), counts.pairs
-        return _batch(spec.draw(rng, count, self.inputs)), _batch(
-            spec.draw(rng, count, self.inputs, edged=True)
-        )
+        drawn = (spec.draw(rng, count, self.inputs, edged) for edged in (False, True))
+        return tuple(map(_batch, drawn))
 
     def outside(self, counts: Counts) -> Batch:
         rng, count = generator(), counts.pairs
@@ -187,11 +183,8 @@ def _inversion(node: str) -> utilities.UtilityNode:
         return lambda inputs: {"out": function(inputs["color"], inputs["roughness"])}
 
     variants = [Variant("the color itself", lambda inputs: {"out": inputs["color"]})]
-    variants += [
-        Variant(name, output(name))
-        for name in dir(diffuse)
-        if name.startswith("eon_rho_from") and name != node
-    ]
+    others = (each for each in dir(diffuse) if each.startswith("eon_rho_from") and each != node)
+    variants += [Variant(name, output(name)) for name in others]
     inputs: dict[str, float | tuple[float, ...]]
     inputs = {"color": (0.18, 0.18, 0.18), "roughness": 0.0}
     return utilities.utility(node, inputs, {"out": "color3"}, output(node), tuple(variants))
