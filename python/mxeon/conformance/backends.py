@@ -136,8 +136,6 @@ class Backend(ABC):
         """The spec with the engine's alternatives to its model, or in the form nearest to the measured values."""
         return self.spec
 
-    # Samples, each drawn once.
-
     def take(self, draw: Callable[[Counts], T]) -> T:
         """The result of one of the spec's sampling methods."""
         if draw.__qualname__ not in self._drawn:
@@ -194,8 +192,6 @@ class Backend(ABC):
         """Pairs at the points of a picture, the mask of judged ones, and the pixels of the points."""
         wo, wi, judged = picture_pairs(scene)
         return samples.rounded(wo.T), samples.rounded(wi.T), judged, sphere(scene.size).mask
-
-    # Values.
 
     @abstractmethod
     def direct(self, batch: Batch) -> Array:

@@ -82,8 +82,6 @@ class Case:
     def another(self, spec: Spec) -> Case:
         return make_case(type(self.backend), self.host, spec, self.library)
 
-    # Samples.
-
     @property
     def batches(self) -> tuple[Batch, ...]:
         return self.chosen or (self.backend.few if self.control else self.backend.batches)
@@ -95,8 +93,6 @@ class Case:
     @property
     def views(self) -> tuple[Batch, ...]:
         return self.chosen or self.backend.views[: 1 if self.control else None]
-
-    # Values of the engine.
 
     def direct(self, batch: Batch) -> Array:
         return self.measured(self.backend.direct, batch)
@@ -117,8 +113,6 @@ class Case:
     def evaluating(self) -> Evaluating:
         assert isinstance(self.backend, Evaluating), f"{self.host.name} evaluates no pairs"
         return self.backend
-
-    # Expected values and tolerances.
 
     def expected(self, batch: Batch) -> Array:
         return remembered(self.valued, "value")(batch)

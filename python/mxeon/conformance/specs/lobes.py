@@ -72,8 +72,6 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
     def document(self, inputs: Values | None = None) -> str:
         return material_text(self.node, {**self.mode, **(inputs or {})}, self.node, self.types)
 
-    # Expected values.
-
     def values(self, function: Scattering, batch: Batch) -> Array:
         """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the opposite side."""
         side = np.where(batch.wi[:, 2:] < 0.0, -1.0, 1.0) * (-1.0 if self.row.transmits else 1.0)
@@ -101,8 +99,6 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         rows = ((each, each.albedo) for each in self.row.variants if each.albedo)
         variants = (Candidate(e.title, partial(_albedo, albedo), e.permitted) for e, albedo in rows)
         return (own, *variants, ZERO)
-
-    # Its samples.
 
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False
@@ -181,8 +177,6 @@ class PbrSpec(ScatteringSpec):
             return opaque.values(mirrored, batch.altered(occlusion=1.0))  # light from below
 
         return Candidate("a reflection instead", reflection), ZERO
-
-    # Its samples.
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         least = self.least_cosine

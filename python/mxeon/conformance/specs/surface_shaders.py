@@ -169,8 +169,6 @@ class SurfaceShaderSpec(spec.LobeSpec):
         ports = (input_text(name, types[name], value) for name, value in (inputs or {}).items())
         return document_text(node_text(self.node, "surfaceshader", "shading", "".join(ports)))
 
-    # Expected values.
-
     def value(self, batch: Batch) -> Array:
         return np.pi * self._reference(batch, "direct")
 
@@ -197,8 +195,6 @@ class SurfaceShaderSpec(spec.LobeSpec):
         from mxeon.conformance.reference import Reference
 
         return Reference().evaluate(self._shader, batch.wo, batch.wi, batch.inputs, branch)
-
-    # Its samples.
 
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False
