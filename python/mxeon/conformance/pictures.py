@@ -77,9 +77,8 @@ HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
 COSINES = 256  # number of views tried for the largest albedo of a sheen
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
-PLAIN = sum_in(
-    Quantity.PICTURE, roundings(16, "of a pixel's point"), roundings(32, "in the value"), exact=True
-)
+TERMS = roundings(16, "of a pixel's point"), roundings(32, "in the value")
+PLAIN = sum_in(Quantity.PICTURE, *TERMS, exact=True)
 # The least OpenGL asks for; texels differ by 1 at most.
 TEXTURED = given(2.0**-8, Quantity.PICTURE, "a filter's weights of 8 bits")
 CODES = f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
@@ -131,11 +130,8 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
 
     def some(name: str, condition: Callable[[np.ndarray], np.ndarray], category: str = "") -> bool:
         """Whether an input fulfills a condition anywhere, in lobes of a category or in all."""
-        return any(
-            bool(np.any(condition(lobe.inputs[name])))
-            for lobe in lobes
-            if name in lobe.inputs and category in ("", lobe.category)
-        )
+        own = (each.inputs for each in lobes if category in ("", each.category))
+        return any(bool(np.any(condition(each[name]))) for each in own if name in each)
 
     film, trapped = FILM_ALBEDO.term("a film"), FILM_TRAPPED.term("a film of an index below 1.25")
     inside = FACET_ERRORS["denser"].term("the throughput of an index below 1")

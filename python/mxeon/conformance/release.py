@@ -465,11 +465,9 @@ class Comparison:
         """The largest difference between the values of one graph that is written in two ways."""
         base, exponent = float32(np.linspace(0.01, 1.0, ROWS)), float32(np.full(ROWS, 2.0))
         power = float(POWER.errors(self._host, base, exponent).max())
-        return sum_of(
-            roundings(64, "of the terms of a graph"),
-            Term(8.0 * power, "the engine's pow(), eight times"),
-            quantity=Quantity.OUTPUT,
-        )
+        engine = Term(8.0 * power, "the engine's pow(), eight times")
+        terms = roundings(64, "of the terms of a graph"), engine
+        return sum_of(*terms, quantity=Quantity.OUTPUT)
 
 
 def samples(definition: mx.NodeDef) -> dict[str, Array]:

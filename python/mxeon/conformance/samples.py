@@ -32,6 +32,7 @@ LOBE_RIM = 0.25  # RIM for a lobe below other lobes
 
 Array: TypeAlias = NDArray[np.float64]
 Mask: TypeAlias = NDArray[np.bool_]
+Rng: TypeAlias = np.random.Generator
 Values: TypeAlias = Mapping[str, ArrayLike]  # values of a node's inputs, by name
 Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change of one input
 
@@ -127,12 +128,12 @@ class Candidate:
     permitted: bool = False  # whether the specification permits it
 
 
-def generator() -> np.random.Generator:
+def generator() -> Rng:
     """A random generator; each kind of samples uses its own, with the same seed."""
     return np.random.default_rng(SEED.get())
 
 
-def directions(rng: np.random.Generator, count: int) -> Array:
+def directions(rng: Rng, count: int) -> Array:
     """Random directions: cosines uniform, a quarter of them log-uniform down to GRAZING."""
     mu = rng.random(count)
     mu[: count // 4] = GRAZING ** rng.random(count // 4)
@@ -163,7 +164,7 @@ WEIGHTS = (-0.5, 0.0, 1e-4, 0.01, 0.5)
 OCCLUSIONS = (0.0, 1e-3, 0.5)
 
 
-def special_directions(rng: np.random.Generator) -> tuple[Array, Array]:
+def special_directions(rng: Rng) -> tuple[Array, Array]:
     """Exact directions `wo` and `wi`, on or above the horizon.
 
     A grid of cosines down to 1e-7 with equal, perpendicular and opposite azimuths; exact
@@ -190,7 +191,7 @@ def special_directions(rng: np.random.Generator) -> tuple[Array, Array]:
     return wo, wi
 
 
-def outside_directions(rng: np.random.Generator) -> tuple[Array, Array]:
+def outside_directions(rng: Rng) -> tuple[Array, Array]:
     """Directions outside the models' domain: light from below the horizon, and cosines above 1."""
     below = directions(rng, EACH) * [1.0, 1.0, -1.0]
     high = _between(rng, EACH, HORIZON, 1.0)
@@ -200,7 +201,7 @@ def outside_directions(rng: np.random.Generator) -> tuple[Array, Array]:
     return wo, wi
 
 
-def turned_frames(rng: np.random.Generator, count: int) -> Array:
+def turned_frames(rng: Rng, count: int) -> Array:
     """Axes of up to `count` random frames, as columns.
 
     Each normal points to the middle of a sky texel, away from the poles.
@@ -217,22 +218,21 @@ def aimed(axes: Array, of: Array, to: Array) -> Array:
     """
     for vectors in (of + to, to):
         about = vectors[:, :, np.newaxis]
-        along = np.sum(about * axes, axis=1, keepdims=True) / np.sum(
-            about**2, axis=1, keepdims=True
-        )
+        along = np.sum(about * axes, axis=1, keepdims=True)
+        along = along / np.sum(about**2, axis=1, keepdims=True)
         axes = 2.0 * along * about - axes
     return axes
 
 
-def turned_directions(rng: np.random.Generator, count: int) -> Array:
+def turned_directions(rng: Rng, count: int) -> Array:
     return _between(rng, count, *TURNED)
 
 
-def _between(rng: np.random.Generator, count: int, low: float, high: float) -> Array:
+def _between(rng: Rng, count: int, low: float, high: float) -> Array:
     return directions_at(low + (high - low) * rng.random(count), 2.0 * np.pi * rng.random(count))
 
 
-def with_edges(rng: np.random.Generator, values: Array, edges: ArrayLike) -> Array:
+def with_edges(rng: Rng, values: Array, edges: ArrayLike) -> Array:
     """Values, half of them replaced by random edges, as float32 values."""
     picked = rng.choice(np.asarray(edges, np.float64), np.shape(values))
     mixed = np.where(rng.random(np.shape(values)) < 0.5, picked, values)

@@ -113,13 +113,7 @@ POINTS = 4096  # points per function
 CORNERS = 64  # points with arguments at the ends of their ranges
 
 # Along the normal, beyond it by a rounding, at the horizon, and in between.
-AXES = (
-    (0.0, 0.0, 1.0),
-    (0.0, 0.0, 1.0 + 2.0**-23),
-    (1.0, 0.0, 0.0),
-    (-1.0, 0.0, 0.0),
-    (0.6, 0.0, 0.8),
-)
+AXES = tuple((x, 0.0, z) for x, z in ((0, 1), (0, 1 + 2.0**-23), (1, 0), (-1, 0), (0.6, 0.8)))
 
 Columns = Mapping[str, Array]
 
@@ -167,9 +161,8 @@ def random_columns() -> Columns:
     wo, wi = directions(rng, POINTS), directions(rng, POINTS)
     pairs = np.array(list(product(AXES, AXES)))
     wo[: len(pairs)], wi[: len(pairs)] = pairs[:, 0], pairs[:, 1]
-    unit = {
-        name: _unit(rng) for name in ["u1", "u2", "v", "q", "m", "t", "y_o", "gray", "roughness"]
-    }
+    names = ("u1", "u2", "v", "q", "m", "t", "y_o", "gray", "roughness")
+    unit = {name: _unit(rng) for name in names}
     azimuth, elevation = 2.0 * np.pi * rng.random(POINTS), 0.5 * np.pi * _unit(rng)
     mu, roughness = np.clip(wo[:, 2], GRAZING, 1.0), unit["roughness"]
     rho, value = np.stack([_unit(rng) for _ in range(3)], axis=-1), 2.0 * _unit(rng) - 1.0
@@ -250,10 +243,8 @@ class FunctionProbe:
         names = [name for name in functions.names(language) if name not in self.missing_functions]
         text = functions.dispatched(self.text, names, language)
         slots = functions.parameters(text, functions.EACH)
-        rows = {
-            name: np.zeros((len(names), POINTS, 1 if kind == "float" else 3))
-            for kind, name in slots
-        }
+        widths = {name: 1 if kind == "float" else 3 for kind, name in slots}
+        rows = {name: np.zeros((len(names), POINTS, width)) for name, width in widths.items()}
         for number, name in enumerate(names):
             rows["which"][number] = number
             own = functions.slot_names([kind for kind, _ in functions.signature(language, name)])
@@ -262,10 +253,8 @@ class FunctionProbe:
             *others, last = (columns[gray.get(each, each)] for each in arguments)
             for slot, values in zip(own, [*others, scale * last], strict=True):
                 rows[slot][number] = values.reshape(POINTS, -1)
-        given = [
-            rows[name].reshape(-1, 3) if kind != "float" else rows[name].ravel()
-            for kind, name in slots
-        ]
+        columns3 = (each.reshape(-1, widths[name]) for name, each in rows.items())
+        given = [each[:, 0] if each.shape[1] == 1 else each for each in columns3]
         values = self.host.execute(text, functions.EACH, *given).astype(np.float64)
         return dict(zip(names, np.split(values, len(names)), strict=True))
 

@@ -72,7 +72,7 @@ def materials(*inputs: Input) -> tuple[Values, ...]:
 
 
 def draw(
-    rng: np.random.Generator, count: int, inputs: Sequence[Input], edged: bool = False
+    rng: samples.Rng, count: int, inputs: Sequence[Input], edged: bool = False
 ) -> dict[str, Array]:
     """Random values of inputs within their ranges, by name; half of them on an edge if `edged`."""
     drawn = {}
@@ -282,9 +282,7 @@ class LobeSpec(ValueSpec):
         return ()
 
     @abstractmethod
-    def random_inputs(
-        self, rng: np.random.Generator, count: int, edged: bool = False
-    ) -> dict[str, Array]:
+    def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
         """Random values of the inputs, half of them on an edge if `edged`."""
 
     @abstractmethod
@@ -327,9 +325,7 @@ class LobeSpec(ValueSpec):
         inputs = {**self.random_inputs(rng, count), **axes}
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs, frame=frames)
 
-    def _batch(
-        self, rng: np.random.Generator, pairs: tuple[Array, Array], edged: bool = False
-    ) -> Batch:
+    def _batch(self, rng: samples.Rng, pairs: tuple[Array, Array], edged: bool = False) -> Batch:
         """Pairs with random inputs, weights and occlusions, lit from the side that the node scatters."""
         wo, wi = pairs
         inputs, count = self.random_inputs(rng, len(wo), edged), len(wo)
@@ -370,7 +366,7 @@ class RowSpec(ValueSpec, Generic[F]):
     def value(self, batch: Batch) -> Array:
         return self.values(self.row.value, batch)
 
-    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+    def random_inputs(self, rng: samples.Rng, count: int) -> dict[str, Array]:
         return draw(rng, count, self.drawn)
 
     @property

@@ -171,9 +171,8 @@ class Tolerance:
 
     @property
     def derivation(self) -> str:
-        text = " + ".join(
-            f"{words} ({value:.2g})" if value else words for value, words in self.terms
-        )
+        parts = (f"{words} ({value:.2g})" if value else words for value, words in self.terms)
+        text = " + ".join(parts)
         return text if self.exact or not self.value else f"{text}, rounded up"
 
     def wrong(self, compared: Compared) -> Mask:

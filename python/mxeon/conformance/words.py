@@ -85,12 +85,8 @@ def _short(number: float, digits: int = 2) -> str:
 
 # --- tables: names of scenes, regions, models' faults and other defects ------------------------------
 
-LIGHTS = {
-    "side": "light from the side",
-    "front": "light from the front",
-    "back": "light from behind",
-    "furnace": "a white environment",
-}
+LIGHTS = {"side": "light from the side", "front": "light from the front"}
+LIGHTS |= {"back": "light from behind", "furnace": "a white environment"}
 # Named sets of pairs and inputs, see `mxeon.conformance.diagnosis.regions`.
 REGIONS = {
     "viewer_above_1": "with dot(N, V) rounded above 1",

@@ -182,9 +182,8 @@ def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
 def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     count = len(batch.wo)
     roughness = batch.rough
-    weight, occlusion = (
-        np.broadcast_to(batch.inputs.get(name, default), count) for name, default in USUAL.items()
-    )
+    given = {**USUAL, **batch.inputs}
+    weight, occlusion = (np.broadcast_to(given[name], count) for name in USUAL)
     colors = [batch.inputs[name] for name in COLORS if name in batch.inputs]
     color = np.broadcast_to(colors[0] if colors else 0.5, (count, 3))
     # Weight and occlusion.

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import islice
 
 import MaterialX as mx
@@ -65,9 +65,8 @@ class HostValues:
             else:
                 document, path = drawn_values.value_document(document, elements, kind, output)
             try:
-                [shader] = self._host.compile(
-                    document, path, library=self.library, policy=self._policy
-                )
+                make = partial(self._host.compile, library=self.library, policy=self._policy)
+                [shader] = make(document, path)
             except DocumentError as error:
                 raise NotRun(f"reference: the value of {name!r} cannot be drawn; {error}") from None
             image = self._host.picture(shader, Scene(NAME, size=size))

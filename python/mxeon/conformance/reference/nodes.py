@@ -86,9 +86,8 @@ def _series(
         cosines = np.square(low + (1.0 - low) * 0.5 * (1.0 + x))
         mu, phi = np.meshgrid(cosines, 0.5 * np.arccos(y), indexing="ij")
         values = albedo(_directions(mu.ravel(), phi.ravel()), inputs).reshape(*mu.shape, 3)
-        along, around = (
-            np.linalg.inv(chebyshev.chebvander(points, len(points) - 1)) for points in (x, y)
-        )
+        vanders = (chebyshev.chebvander(points, len(points) - 1) for points in (x, y))
+        along, around = map(np.linalg.inv, vanders)
         series = np.einsum("ix,jy,xyc->ijc", along, around, values)
         tails = [series[-degree // 8 :], series[:, -2:] if turns else np.zeros(1)]
         if max(float(np.abs(tail).max()) for tail in tails) < TAIL:
@@ -141,10 +140,8 @@ SUMS: dict[str, Callable[[Array, Inputs], Array]] = {
     row.category: partial(node_albedo, row.category, summed=True) for row in MICROFACET_NODES
 }
 # Lobes over the full sphere, without a cosine factor.
-AROUND = (
-    replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy"), value=_spread),
-    HAIR_NODE,
-)
+SPREAD = replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy"), value=_spread)
+AROUND = SPREAD, HAIR_NODE
 INNER_NODES = (
     *(
         row

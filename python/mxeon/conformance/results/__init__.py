@@ -32,11 +32,8 @@ DIFFERS: Final = "differs"
 FAILED: Final = "failed"
 NOT_RUN: Final = "not run"
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
-STATUSES = {
-    PASSED: errors.PASSED,
-    FAILED: errors.FAILED,
-    NOT_RUN: errors.NOT_RUN,
-}  # exit statuses of a run
+# Exit statuses of a run.
+STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
 # In the place of a document: one material of each node, as every host shows it.
 PORTRAIT = "portrait"
 SOURCE = "source"  # stands for a host where none has to run
@@ -288,9 +285,8 @@ class Result(BriefRepr):
         if self.tolerance is None:
             raise InputError(f"an error must have a tolerance; got {self.error} and none")
         if min(self.error, self.tolerance) < 0:
-            raise InputError(
-                f"error and tolerance must be at least 0; got {self.error} and {self.tolerance}"
-            )
+            pair = f"{self.error} and {self.tolerance}"
+            raise InputError(f"error and tolerance must be at least 0; got {pair}")
 
     @property
     def unit(self) -> str:
@@ -498,9 +494,8 @@ class Run(Scope):
         from mxeon.conformance.results.known_issues import blamed
 
         region, groups = result.diagnosis.region, blamed(result)
-        shown = [
-            each for each in documents or self.contents if result.subject in self.contents[each]
-        ]
+        given = documents or self.contents
+        shown = [each for each in given if result.subject in self.contents[each]]
         return (
             result.verdict == FAILED
             and bool(shown)

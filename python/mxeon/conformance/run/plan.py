@@ -304,16 +304,14 @@ def make_plan(
             tasks += _checks_of(spec, host, RENDERER_NODES)
     tasks = _selected(tasks, list(map(str, files)), nodes, reading)
     # A host that measures nothing says so; the task of a document does, on a host that reads none.
-    telling = {
-        task.host for task in tasks if task.check != DOCUMENT or not host_row(task.host).target
-    }
+    told = (each for each in tasks if each.check != DOCUMENT or not host_row(each.host).target)
+    telling = {task.host for task in told}
     silent = [host for host in hosts if tasks and host not in telling]
     tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in silent]
     # So does a node that no host judges, beside others that are judged.
     subjects = {task.subject for task in tasks}
-    lost = [
-        each for each in nodes if each not in (ALL, COMMON) and subjects.isdisjoint(_titles(each))
-    ]
+    named = (each for each in nodes if each not in (ALL, COMMON))
+    lost = [each for each in named if subjects.isdisjoint(_titles(each))]
     tasks += [Task(HOST, node, hosts[0], libraries[0]) for node in lost if len(silent) < len(hosts)]
     if not files and nodes and {ALL, COMMON}.isdisjoint(nodes):
         documents = []
@@ -342,10 +340,7 @@ def make_plan(
 UNJUDGED = (
     ("displacement, volume shaders and backsurfaceshader", "no host draws them"),
     ("u_envRadianceMips above 1, shadow maps of varying depth", "no host has them"),
-    (
-        "patterns and images of stdlib",
-        "they are only compared with the MaterialX that is installed",
-    ),
+    ("patterns and images of stdlib", "they are only compared with the installed MaterialX"),
 )
 
 

@@ -32,10 +32,8 @@ class FrameSpec(Spec):
 
     def document(self, inputs: Values | None = None) -> str:
         """The front surface has the opacity `front/opacity` and the mix weight `shading/mix`."""
-        lobes = (
-            nodes.lobe_text("oren_nayar_diffuse_bsdf", {"color": each}, name)
-            for name, each in LOBES.items()
-        )
+        make, node = nodes.lobe_text, "oren_nayar_diffuse_bsdf"
+        lobes = (make(node, {"color": each}, name) for name, each in LOBES.items())
         weight = nodes.input_text("mix", "float", SHARE)
         mixed = nodes.Node("mix", "BSDF", ("first", "second"), weight)
         opacity = nodes.input_text("opacity", "float", 1.0)

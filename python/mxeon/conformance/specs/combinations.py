@@ -24,13 +24,11 @@ from mxeon.shaders.nodes import (
     network_text,
 )
 
-VALUE = sum_of(
-    ZELTNER_VALUE.term("two values", 2.0), ZELTNER_THROUGHPUT.term("a throughput between them")
-)
+PASSES = ZELTNER_THROUGHPUT.term("a throughput between them")
+VALUE = sum_of(ZELTNER_VALUE.term("two values", 2.0), PASSES)
 # Also covers a sum in a mix over a base: its albedo has slopes of at most 1 and 2 by the two.
-ALBEDO = sum_of(
-    ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0), quantity=Quantity.ALBEDO
-)
+ALBEDOS = ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0)
+ALBEDO = sum_of(ALBEDOS, quantity=Quantity.ALBEDO)
 NESTED_VALUE = sum_of(
     VALUE.term("two values and a throughput"),
     ZELTNER_VALUE.term("a third value"),

@@ -34,9 +34,8 @@ VALUE = sum_in(
     Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
 )
 # 12 in the longest chain, two in the cosine, and two for the fit of H, which has the factor 0.29.
-ENVIRONMENT = sum_in(
-    Quantity.ALBEDO, roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
-)
+FITTED = roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
+ENVIRONMENT = sum_in(Quantity.ALBEDO, FITTED)
 # Five in each of two cosines of at least 1/4, times 4 by s / t, 3 by a sine, and 2 by s and the cosine.
 FRAME = sum_in(
     Quantity.VALUE_OR_ALBEDO,
@@ -93,9 +92,8 @@ class DiffuseModelSpec(ScatteringSpec):
     @property
     def materials(self) -> tuple[Values, ...]:
         names = {"color", "roughness", *self.names}
-        return tuple(
-            {name: each[name] for name in each if name in names} for each in PICTURE_INPUTS
-        )
+        rows = PICTURE_INPUTS
+        return tuple({name: each[name] for name in each if name in names} for each in rows)
 
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False

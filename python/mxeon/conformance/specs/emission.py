@@ -36,9 +36,8 @@ def chained(
     """A node with its source nodes, whose names are in the paths of its inputs."""
     paths = (each.rpartition("/")[0] for each in row.inputs)
     sources = tuple(dict.fromkeys(path for path in paths if path not in ("", name)))
-    return dict.fromkeys(sources, nodes.Node(source, kind)) | {
-        name: nodes.Node(row.category, kind, sources, text)
-    }
+    own = {name: nodes.Node(row.category, kind, sources, text)}
+    return dict.fromkeys(sources, nodes.Node(source, kind)) | own
 
 
 EMITTED = nodes.connection_text("edf", "EDF", "emission")
@@ -149,14 +148,14 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
         rng = generator()
         return self.views(rng, directions(rng, counts.few) * [1.0, 1.0, -1.0])
 
-    def views(self, rng: np.random.Generator, wo: Array) -> Batch:
+    def views(self, rng: samples.Rng, wo: Array) -> Batch:
         return Batch(wo, wo, self.random_inputs(rng, len(wo)))
 
 
 class ConeSpec(EmissionSpec):
     """An emission inside a cone; the cone's axis is an input."""
 
-    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+    def random_inputs(self, rng: samples.Rng, count: int) -> dict[str, Array]:
         """Half of the cones have a falloff of at least LEAST_FALLOFF degrees; a quarter are narrow.
 
         Some cones without a falloff have two equal angles.
@@ -196,7 +195,7 @@ class ConeSpec(EmissionSpec):
         t = np.clip(np.clip(0.5, t - reach, t + reach), 0.0, 1.0)
         return compared.over((1.0 + 6.0 * t * (1.0 - t) / width)[:, np.newaxis])
 
-    def views(self, rng: np.random.Generator, wo: Array) -> Batch:
+    def views(self, rng: samples.Rng, wo: Array) -> Batch:
         return _away(super().views(rng, wo))
 
 
@@ -327,7 +326,7 @@ class MediumSpec(spec.RowSpec[media.Value]):
         wo = samples.turned_directions(rng, count)
         return (Batch(wo, wo * [1.0, 1.0, -1.0], self.random_inputs(rng, count)),)
 
-    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+    def random_inputs(self, rng: samples.Rng, count: int) -> dict[str, Array]:
         inputs = spec.draw(rng, count, self.inputs)
         for each in self.inputs:
             if each.type == "vector3":

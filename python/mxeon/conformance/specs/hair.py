@@ -60,9 +60,8 @@ def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Ter
 
 VALUE = sum_of(*lobe_terms(LEAST_VARIANCE, LEAST_SCALE), quantity=Quantity.FULL_SPHERE)
 # Two values; turned vectors add five roundings per product to those of an angle.
-FRAME = sum_of(
-    *lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5)), quantity=Quantity.FULL_SPHERE
-)
+TWO = lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5))
+FRAME = sum_of(*TWO, quantity=Quantity.FULL_SPHERE)
 # Mean slopes of the logarithms of a Gaussian and of a logistic density.
 MEAN_SLOPE = math.sqrt(2.0 / (math.pi * WIDE_VARIANCE)) + 0.5 / (SCALE * WIDE_SCALE)
 MEAN = sum_of(
@@ -148,12 +147,8 @@ class HairSpec(PbrSpec):
         batch = compared.batch
         total = np.maximum(self.value(batch), LEAST)
         for step in np.eye(4) * STEP:
-            up, down = (
-                self.value(
-                    replace(batch, wo=_turned(batch.wo, *turn[:2]), wi=_turned(batch.wi, *turn[2:]))
-                )
-                for turn in (step, -step)
-            )
+            pairs = ((_turned(batch.wo, *x[:2]), _turned(batch.wi, *x[2:])) for x in (step, -step))
+            up, down = (self.value(replace(batch, wo=wo, wi=wi)) for wo, wi in pairs)
             total += np.abs(up - down) / (2.0 * STEP)
         return compared.over(total)
 
@@ -234,12 +229,12 @@ def _turned(direction: Array, inclination: float, azimuth: float) -> Array:
     return np.stack([np.sin(theta), cosine * np.sin(phi), cosine * np.cos(phi)], axis=-1)
 
 
-def _sides(rng: np.random.Generator, count: int) -> Array:
+def _sides(rng: samples.Rng, count: int) -> Array:
     """Factors of directions, (count, 3), that flip half of them to the other side of the surface."""
     return np.stack([np.ones(count), np.ones(count), rng.choice([-1.0, 1.0], count)], axis=-1)
 
 
-def in_lobes(rng: np.random.Generator, wo: Array, inputs: dict[str, Array]) -> Array:
+def in_lobes(rng: samples.Rng, wo: Array, inputs: dict[str, Array]) -> Array:
     """Light directions in one of the lobes R, TT and TRT of each view, float32 values, (N, 3)."""
     count = len(wo)
     lobe, chosen = rng.integers(0, 3, count), np.arange(count)

@@ -100,9 +100,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         variants = (Candidate(e.title, partial(_albedo, albedo), e.permitted) for e, albedo in rows)
         return (own, *variants, ZERO)
 
-    def random_inputs(
-        self, rng: np.random.Generator, count: int, edged: bool = False
-    ) -> dict[str, Array]:
+    def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
         return spec.draw(rng, count, self.drawn, edged)
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:

@@ -188,9 +188,7 @@ PREFILTERED = Term(5.06e-2, "MaterialX's fit of prefiltered light")
 
 def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
     quadrature = Term(QUADRATURE, "the quadrature on the equations")
-    shares = Term(
-        2.0 * QUADRATURE, "the quadrature on the equations, of a value and of its share of the sky"
-    )
+    words = "the quadrature on the equations, of a value and of its share of the sky"
     few = Term(1.6 / 64, "a sum over 64 directions by MaterialX's points")
     return {
         **ERRORS,
@@ -200,7 +198,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
         # The error of the E_ss fit that raises values lowers throughputs.
         "light": sum_in(Quantity.LIGHT, *throughput.terms[1:], quadrature),
         "methods": ENVIRONMENT.plus(PREFILTERED, few),
-        "sky": sum_in(Quantity.IRRADIANCE, shares, sum_over(1024), TEXEL),
+        "sky": sum_in(Quantity.IRRADIANCE, Term(2.0 * QUADRATURE, words), sum_over(1024), TEXEL),
     }
 
 
@@ -255,10 +253,8 @@ class FacetSpec(PbrSpec):
         """Two lights near the mirror direction of each view, from normals that the view sees."""
         rng, count = generator(), counts.mirrored
         wo, inputs = directions(rng, count), self.random_inputs(rng, count)
-        first, second = (
-            reflected(wo, inputs["roughness"], rng.random(count), rng.random(count))
-            for _ in range(2)
-        )
+        alpha = inputs["roughness"]
+        first, second = (reflected(wo, alpha, *rng.random((2, count))) for _ in range(2))
         above = (np.minimum(first[:, 2], second[:, 2]) > 0.0) & (wo[:, 2] > 0.0)
         batches = Batch(wo, first, inputs), Batch(wo, second, inputs)
         known = above & _has_curve(batches[0]) & _has_curve(batches[1])
@@ -566,9 +562,7 @@ class FilmSpec(FacetSpec):
     def bounded(self) -> tuple[spec.Input, ...]:
         return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
-    def random_inputs(
-        self, rng: np.random.Generator, count: int, edged: bool = False
-    ) -> dict[str, Array]:
+    def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
         """Dielectrics below 1 are raised to 1, a film in air; on edges, a quarter of the films have the dielectric's index.
 
         Below 1, total reflection gives the curve a kink that short averages do not resolve.
@@ -591,12 +585,9 @@ class FilmSpec(FacetSpec):
         rng, count = generator(), counts.pairs
         special = _some_special(rng, count)
         random = directions(rng, count), directions(rng, count)
-        pairs = (
-            self._batch(rng, random),
-            self._batch(rng, special, edged=True),
-            self.mirrored(counts)[0].first(count),
-        )
-        return tuple(_with_one_alpha(batch.where(_steep(batch))) for batch in pairs)
+        pairs = self._batch(rng, random), self._batch(rng, special, edged=True)
+        batches = (*pairs, self.mirrored(counts)[0].first(count))
+        return tuple(_with_one_alpha(batch.where(_steep(batch))) for batch in batches)
 
     def anisotropic(self, counts: Counts) -> Batch:
         batch = super().anisotropic(counts).first(counts.pairs)
@@ -634,7 +625,7 @@ class FilmSpec(FacetSpec):
         return Batch(wo, wi, inputs)
 
 
-def _some_special(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
+def _some_special(rng: samples.Rng, count: int) -> tuple[Array, Array]:
     wo, wi = samples.special_directions(rng)
     picked = rng.permutation(len(wo))[:count]
     return wo[picked], wi[picked]

@@ -196,9 +196,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
 
         return Reference().evaluate(self._shader, batch.wo, batch.wi, batch.inputs, branch)
 
-    def random_inputs(
-        self, rng: np.random.Generator, count: int, edged: bool = False
-    ) -> dict[str, Array]:
+    def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
         """Random inputs of all lobes; on edges, where most light leaves."""
         return draw(rng, count, (*self.judged, *self.others) if edged else self.judged, edged)
 
@@ -241,7 +239,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return batch.altered(**draw(generator(), len(batch.wo), self.film))
 
 
-def _views(rng: np.random.Generator, count: int) -> Array:
+def _views(rng: samples.Rng, count: int) -> Array:
     """Random directions, limited to cosines at which the sheen's own equations gain no energy, and one at the limit."""
     wo = samples.directions(rng, count)
     wo = samples.float32(np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo))

@@ -9,6 +9,7 @@ roundings.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -127,9 +128,8 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
         if kind != "color3":
             text += node_text("convert", "color3", COLOR, connection_text("in", kind, NAME, port))
             source, port = COLOR, ""
-        text += node_text(
-            "uniform_edf", "EDF", "lobe", connection_text("color", "color3", source, port)
-        )
+        color = connection_text("color", "color3", source, port)
+        text += node_text("uniform_edf", "EDF", "lobe", color)
         surface = connection_text("edf", "EDF", "lobe")
         return document_text(text + node_text("surface", "surfaceshader", "shading", surface))
 
@@ -196,11 +196,9 @@ def _spec(row: utilities.UtilityNode, output: str, *libraries: str) -> UtilitySp
     def filled(each: Input, value: ArrayLike | None) -> ArrayLike:
         return np.full(spec.COMPONENTS[each.type], value)
 
-    rows = [
-        INPUTS.get(name)
-        or Input(name, TYPES[np.shape(value)], edges=SHARES, change=0.25, default=0.5)
-        for name, value in row.inputs.items()
-    ]
+    usual = partial(Input, edges=SHARES, change=0.25, default=0.5)
+    types = {name: TYPES[np.shape(value)] for name, value in row.inputs.items()}
+    rows = [INPUTS.get(name) or usual(name, kind) for name, kind in types.items()]
     whole = {each.name: filled(each, each.default) for each in rows}
     inputs = tuple(
         replace(each, change=filled(each, each.change), needs=whole, beyond=each.beyond or BEYOND)
