@@ -591,7 +591,7 @@ class LobesBelow(Shown):
         ports = cast(SurfaceLobe, self.spec).ports
 
         def lit(batch: Batch) -> Array:
-            inputs = {port: batch.inputs[name] for name, port in ports.items() if port}
+            inputs = {port: batch.inputs[name] for name, port in ports.items()}
             return self.evaluate(replace(batch, inputs=inputs), "direct")
 
         return diffuse_alone(lit, batch)

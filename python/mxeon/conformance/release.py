@@ -108,12 +108,8 @@ def newer(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
     known = {Path(each.getActiveSourceUri()).name for each in release.getNodeDefs()}
     found = []
     for each in document.getNodeDefs():
-        right = release.getNodeDef(each.getName())
-        if (
-            right.getVersionString() != each.getVersionString()
-            if right
-            else Path(each.getActiveSourceUri()).name in known
-        ):
+        right, own = release.getNodeDef(each.getName()), Path(each.getActiveSourceUri()).name
+        if right.getVersionString() != each.getVersionString() if right else own in known:
             found.append(each.getNodeString())
     return tuple(found)
 
@@ -357,9 +353,8 @@ class Comparison:
             for one, two in apart(terms, (ours, other), (theirs, output)):
                 kind = two[1].getType()
                 # The surface's own vectors are only known in a picture.
-                if kind in CLOSURES or any(
-                    p.getAttribute("defaultgeomprop") for _, p in (one, two)
-                ):
+                vectors = any(port.getAttribute("defaultgeomprop") for _, port in (one, two))
+                if kind in CLOSURES or vectors:
                     place = theirs, theirs.getOutputs()[0]
                     error = max(error, self._pictures_apart(node, node._replace(place=place)))
                 elif kind not in NUMBERS or one[1].getType() != kind:

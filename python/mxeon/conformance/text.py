@@ -230,6 +230,7 @@ def weighted_layer(
     return {**layer, "normal": normal, "weight": np.multiply(layer["weight"], weight)}
 
 
+# fmt: off
 FUNCTIONS: Mapping[str, object] = {
     "state::normal": lambda: UP,
     "material": lambda *, surface: surface,
@@ -237,14 +238,10 @@ FUNCTIONS: Mapping[str, object] = {
     "df::weighted_layer": weighted_layer,
     "df::diffuse_reflection_bsdf": diffuse_reflection_bsdf,
     # FON, plus a white lobe with the flag.
-    PBRLIB: lambda mxp_weight, mxp_color, mxp_roughness, mxp_normal, mxp_energy_compensation: (
-        weighted_layer(
-            mxp_weight,
-            diffuse_reflection_bsdf(mxp_color, mxp_roughness, mxp_energy_compensation),
-            normal=mxp_normal,
-        )
-    ),
+    PBRLIB: lambda mxp_weight, mxp_color, mxp_roughness, mxp_normal, mxp_energy_compensation: weighted_layer(
+        mxp_weight, diffuse_reflection_bsdf(mxp_color, mxp_roughness, mxp_energy_compensation), (), mxp_normal),
 }
+# fmt: on
 
 
 def _closure_faults(subject: DiffuseSpec, library: str) -> Faults:

@@ -149,6 +149,7 @@ PARTS = {
     "larger": "the larger component of {}",
     "difference": "a difference between the components of {} of",
 }
+# fmt: off
 # Faults between the inputs and a model: {0}, {1} are names, {x} is the first number.
 FAULTS = {
     "channels_exchanged": "the color channels are exchanged: they arrive as {0}, {1}, {2}",
@@ -166,16 +167,14 @@ FAULTS = {
     "weight_ignored": "the weight is ignored",
     "weight_ignored_above_0": "the weight is ignored but for 0 and below",
     "occlusion_and_weight_ignored": "the occlusion is ignored, and the weight",
-    "occlusion_and_weight_ignored_above_0": "the occlusion is ignored, and the weight but for 0 "
-    "and below",
+    "occlusion_and_weight_ignored_above_0": "the occlusion is ignored, and the weight but for 0 and below",
     "weight_twice": "the weight is applied twice",
     "occlusion_ignored": "the occlusion is ignored",
     "occlusion_twice": "the occlusion is applied once too often",
     "occlusion_by_caller": "the occlusion is applied here and again by the caller",
     "cosine_missing": "the cosine of the light is missing",
     "cosine_twice": "the cosine of the light is applied twice",
-    "directions_swapped": "the cosine is the viewer's instead of the light's: the directions are "
-    "swapped",
+    "directions_swapped": "the cosine is the viewer's instead of the light's: the directions are swapped",
     "light_mirrored": "the light is mirrored about the normal: s has the wrong sign",
     "light_from_below": "light from below the horizon is reflected as if it came from above",
     "normal_incidence": "the albedo is the one at normal incidence",
@@ -252,19 +251,15 @@ DEFECTS = {
     "lookup_from_viewer": "the environment is looked up away from the viewer",
     "lookup_light": "the environment is looked up toward the light",
     "lookup_mirror": "the environment is looked up along the mirror direction",
-    "lookup_surface_normal": "the environment is looked up along the surface's normal instead of "
-    "the node's",
-    "lookup_facing_surface_normal": "the environment is looked up along the surface's normal "
-    "turned toward the viewer, instead of the node's",
-    "lookup_not_facing": "the environment is looked up along a normal that is not turned toward "
-    "the viewer",
+    "lookup_surface_normal": "the environment is looked up along the surface's normal instead of the node's",
+    "lookup_facing_surface_normal": "the environment is looked up along the surface's normal turned toward the viewer, instead of the node's",
+    "lookup_not_facing": "the environment is looked up along a normal that is not turned toward the viewer",
     "lookup_radiances": "the environment is looked up in the map of radiances",
     "lookup_black": "the environment is looked up nowhere: it is black",
     "lookup_other_side": "the environment is looked up on the other side of the surface",
     "lookup_viewer_side": "the environment is looked up on the viewer's side alone",
     "same_names": "nodes {0} have the values of one of them; see docs/upstream/same_names.md",
-    "material_graph": "a material that a nodegraph defines is not generated; see "
-    "docs/upstream/material_graphs.md",
+    "material_graph": "a material that a nodegraph defines is not generated; see docs/upstream/material_graphs.md",
     "own_document_refused": "the library refuses a document of mxeon's own: {text}",
     "different_in_osl": "{0} is different in OSL",
     "definition": "{0} is {1}; {2} says {3}",
@@ -272,10 +267,8 @@ DEFECTS = {
     "never_passed": "{0} is never passed",
     "not_passed": "{0} is not passed",
     "float_for_vector": "{0} is a float but receives a color or vector",
-    "tint_is_not_eon": "{0} is not that of EON, rho^2 <E> / (1 - rho (1 - <E>)){instead}: off by "
-    "up to {x:.2g}",
-    "tint_is_not_qon": "{0} is not black, as without energy_compensation{instead}: off by up to "
-    "{x:.2g}",
+    "tint_is_not_eon": "{0} is not that of EON, rho^2 <E> / (1 - rho (1 - <E>)){instead}: off by up to {x:.2g}",
+    "tint_is_not_qon": "{0} is not black, as without energy_compensation{instead}: off by up to {x:.2g}",
     "is_not_the_node_s": "{0} is not the node's {0}{instead}: off by up to {x:.2g}",
     "white_lobe": "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; read, not run",
     "not_defined": "{0} is not defined as eonlib has it",
@@ -292,9 +285,9 @@ DEFECTS = {
     "picture_upside_down": "{0} is upside down{also}",
     "picture_mirrored": "{0} is mirrored left to right{also}",
     "picture_rotated": "{0} is rotated by 180 degrees{also}",
-    "picture_unknown": "{0} is not Lambert's cosine in any known encoding: tone-mapped, or lit "
-    "otherwise",
+    "picture_unknown": "{0} is not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise",
 }
+# fmt: on
 FACTORS = {"pi": math.pi, "1/pi": 1.0 / math.pi, "pi^2": math.pi**2, "2": 2.0, "1/2": 0.5}
 SAME_FACTOR = 0.005
 UNKNOWN = {

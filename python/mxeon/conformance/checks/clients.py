@@ -92,23 +92,13 @@ def _turned() -> Matrix:
 
 SUN = Lamp(direction=(0.6, 0.0, -0.8), color=(1.0, 0.5, 0.2))
 BULB = Lamp(type=2, position=(1.0, 2.0, 1.5), color=(0.5, 1.0, 0.2), intensity=20.0)
-SPOT = Lamp(
-    type=3,
-    position=(0.0, 1.0, 2.5),
-    direction=(0.0, -0.6, -0.8),
-    color=(0.2, 0.5, 1.0),
-    intensity=30.0,
-    inner_angle=0.95,
-    outer_angle=0.8,
-    decay_rate=1.5,
-)
+# fmt: off
+SPOT = Lamp(type=3, position=(0.0, 1.0, 2.5), direction=(0.0, -0.6, -0.8), color=(0.2, 0.5, 1.0),
+            intensity=30.0, inner_angle=0.95, outer_angle=0.8, decay_rate=1.5)
 # Other checks use the first state of each axis. States with the same words up to a colon are also diagnosed
 # together.
 AXES: dict[str, dict[str, Build]] = {
-    "methods": {
-        "the default methods": same,
-        "premultiplied mixes without an environment": folded,
-    },
+    "methods": {"the default methods": same, "premultiplied mixes without an environment": folded},
     "lights": {
         "no light": same,
         "a directional light": lit(SUN),
@@ -122,9 +112,7 @@ AXES: dict[str, dict[str, Build]] = {
         "no environment": same,
         "an environment": bound(partial(replace, radiance=WHITE_MAP, irradiance=WHITE_MAP)),
         "an environment: uneven": bound(partial(replace, radiance=sky_map(), irradiance=sky_map())),
-        "an environment: turned": bound(
-            partial(replace, radiance=sky_map(), irradiance=sky_map(), turn=_turned())
-        ),
+        "an environment: turned": bound(partial(replace, radiance=sky_map(), irradiance=sky_map(), turn=_turned())),
     },
     "bound": {
         "what the generator sets": same,
@@ -143,6 +131,7 @@ AXES: dict[str, dict[str, Build]] = {
         "a mix of surfaces": given(mix=0.3),
     },
 }
+# fmt: on
 
 
 @lru_cache(maxsize=1)

@@ -168,11 +168,8 @@ class Reference(base.Host):
         the response to a light or to a uniform environment, or the transmitted share of the latter.
         """
         shader, wo, wi, inputs, branch, output, irradiance, _ = query
-        if (
-            output != "response"
-            or irradiance is not None
-            or branch not in ("direct", "environment", "transmission", "opacity")
-        ):
+        branches = ("direct", "environment", "transmission", "opacity")
+        if output != "response" or irradiance is not None or branch not in branches:
             known = "the response to a light or a uniform environment"
             raise NotRun(f"reference: only {known} is known")
         normal, tangent = (np.broadcast_to(axis, wo.shape) for axis in ((0, 0, 1.0), (1.0, 0, 0)))

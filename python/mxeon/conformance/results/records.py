@@ -44,9 +44,16 @@ def make_converter(folder: Path | None = None) -> cattrs.Converter:
 
     Pictures are written as the names of their files in a folder, if there is one.
     """
-    if folder is None:
-        return _with_verdicts(strict_converter({}))
+    own = {} if folder is None else {Picture: _in_files(folder)}
+    converter = strict_converter(own)
+    # Messages for a wrong verdict list the right ones.
+    converter.register_structure_hook_func(
+        lambda kind: kind == Verdict, lambda word, _: assert_verdict(word)
+    )
+    return converter
 
+
+def _in_files(folder: Path) -> Overrides:
     def name(image: StoredImage | None) -> str | None:
         return None if image is None else image.path.name
 
@@ -57,18 +64,8 @@ def make_converter(folder: Path | None = None) -> cattrs.Converter:
         return None if name is None else stored(name)
 
     structure = dict.fromkeys(IMAGES, optional) | {"image": stored}
-    fields: Overrides = {
-        each: override(unstruct_hook=name, struct_hook=structure[each]) for each in IMAGES
-    }
-    return _with_verdicts(strict_converter({Picture: fields}))
-
-
-def _with_verdicts(converter: cattrs.Converter) -> cattrs.Converter:
-    """A converter whose message for a wrong verdict lists the right ones."""
-    converter.register_structure_hook_func(
-        lambda kind: kind == Verdict, lambda word, _: assert_verdict(word)
-    )
-    return converter
+    hooks = ((each, structure[each]) for each in IMAGES)
+    return {each: override(unstruct_hook=name, struct_hook=hook) for each, hook in hooks}
 
 
 def images_of(picture: Picture) -> dict[str, ArrayLike]:

@@ -2,7 +2,7 @@
 """The rough diffuse nodes, each mode with its expected model, and the diffuse lobes of surface shaders."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -183,58 +183,40 @@ class SurfaceLobe(DiffuseModelSpec):
     coarse = 4  # the shaders are slow
     rim = LOBE_RIM  # position errors are divided twice
 
-    color: str  # names of the lobe's inputs
-    roughness: str = ""  # "" if there is none
+    ports: Mapping[str, str]  # its inputs by the names of a rough diffuse node's
     set_inputs: tuple[tuple[str, str, str], ...] = ()  # name, type and value of additional inputs
-
-    @property
-    def ports(self) -> dict[str, str]:
-        return {"color": self.color, "roughness": self.roughness}
 
     def document(self, inputs: Values | None = None) -> str:
         types = {"color": "color3", "roughness": "float"}
-        given = {name: port for name, port in self.ports.items() if port and name in (inputs or {})}
+        given = {name: port for name, port in self.ports.items() if name in (inputs or {})}
         values = [(port, types[name], (inputs or {})[name]) for name, port in given.items()]
         ports = "".join(input_text(*each) for each in (*values, *self.set_inputs))
         return document_text(node_text(self.node, "surfaceshader", "shading", ports))
 
 
-def _lobe(
-    title: str,
-    model: str,
-    color: str,
-    roughness: str = "",
-    *set_inputs: tuple[str, str, str],
-    libraries: tuple[str, ...] = (),
-) -> SurfaceLobe:
-    node = title.split(",")[0]
-    return SurfaceLobe(
+# fmt: off
+# Title, model, names of color and roughness, and additional inputs. OpenPBR specifies EON, Standard Surface
+# Oren-Nayar, USD Preview Surface and glTF Lambert.
+ROWS: tuple[tuple[str, str, tuple[str, ...], tuple[tuple[str, str, str], ...]], ...] = (
+    ("open_pbr_surface", "eon", ("base_color", "base_diffuse_roughness"), ()),
+    ("open_pbr_surface, thin-walled", "eon", ("subsurface_color", "base_diffuse_roughness"),
+     (("geometry_thin_walled", "boolean", "true"), ("subsurface_weight", "float", "1.0"))),
+    ("standard_surface", "qon", ("base_color", "diffuse_roughness"), (("base", "float", "1.0"),)),
+    ("UsdPreviewSurface", "lambert", ("diffuseColor",), ()),
+    ("gltf_pbr", "lambert", ("base_color",), (("metallic", "float", "0.0"),)),
+)
+# fmt: on
+SURFACE_LOBES = tuple(
+    SurfaceLobe(
         title=title,
-        node=node,
+        node=(node := title.split(",")[0]),
         model=model,
         row=model_row(model, node),
-        color=color,
-        roughness=roughness,
-        set_inputs=set_inputs,
-        libraries=libraries,
+        ports=dict(zip(("color", "roughness"), ports, strict=False)),
+        set_inputs=given,
+        # The thin-walled lobe is MaterialX's own in every library, so it is judged once.
+        libraries=("stock",) if title != node else (),
         errors={"value": LOBE_VALUE},
     )
-
-
-# OpenPBR specifies EON, Standard Surface Oren-Nayar, USD Preview Surface and glTF Lambert.
-# The thin-walled lobe is MaterialX's own in every library, so it is judged once.
-SURFACE_LOBES = (
-    _lobe("open_pbr_surface", "eon", "base_color", "base_diffuse_roughness"),
-    _lobe(
-        "open_pbr_surface, thin-walled",
-        "eon",
-        "subsurface_color",
-        "base_diffuse_roughness",
-        ("geometry_thin_walled", "boolean", "true"),
-        ("subsurface_weight", "float", "1.0"),
-        libraries=("stock",),
-    ),
-    _lobe("standard_surface", "qon", "base_color", "diffuse_roughness", ("base", "float", "1.0")),
-    _lobe("UsdPreviewSurface", "lambert", "diffuseColor"),
-    _lobe("gltf_pbr", "lambert", "base_color", "", ("metallic", "float", "0.0")),
+    for title, model, ports, given in ROWS
 )

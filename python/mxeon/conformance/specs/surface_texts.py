@@ -147,6 +147,11 @@ COATED: Values = {"coat_weight": 1.0, "coat_darkening": 0.0, **MATTE}
 SCHLICK_EMISSION = "Schlick's factor of the coat"
 DARKENING = ("the Fresnel average at the normal", "a rough base")
 
+PLASTIC: Values = {"base": 1.0, "base_color": (0.8, 0.7, 0.6), "sheen": 0.0, "metalness": 0.0}
+BARE: Values = {**PLASTIC, "specular": 0.0}
+METAL: Values = {"metalness": 1.0, "sheen": 0.0, "base": 0.8, "base_color": (0.9, 0.7, 0.4)}
+CLEAR: Values = {"metallic": 0.0}
+METAL_COLOR = Input("diffuseColor", "color3", high=0.95)  # the indices of white metals are infinite
 # fmt: off
 OPENPBR_ROWS = (
     Says("diffuse", "Glossy-diffuse", "The diffuse lobe is EON, scaled by base_weight.", fixed=MATTE,
@@ -250,12 +255,7 @@ OPENPBR_ROWS = (
          wrong=("no color of a thin wall with a depth", (TWICE, "no color of a thin wall with a depth")),
          inputs=(THROUGH_COLOR,)),
 )
-# fmt: on
 
-PLASTIC: Values = {"base": 1.0, "base_color": (0.8, 0.7, 0.6), "sheen": 0.0, "metalness": 0.0}
-BARE: Values = {**PLASTIC, "specular": 0.0}
-METAL: Values = {"metalness": 1.0, "sheen": 0.0, "base": 0.8, "base_color": (0.9, 0.7, 0.4)}
-# fmt: off
 STANDARD_ROWS = (
     Says("diffuse", "Diffuse reflection", "The diffuse lobe is Oren-Nayar's, scaled by base.", fixed=BARE,
          inputs=drawn(share="base diffuse_roughness", color="base_color")),
@@ -308,10 +308,7 @@ STANDARD_ROWS = (
          "On a thin wall, subsurface is diffuse transmission.", shown=ENVIRONMENT,
          fixed={**BARE, "thin_walled": 1.0}, inputs=drawn(share="subsurface", color="subsurface_color")),
 )
-# fmt: on
 
-CLEAR: Values = {"metallic": 0.0}
-# fmt: off
 GLTF_ROWS = (
     Says("diffuse", "B.2.2", "The diffuse lobe is Lambert's.", fixed={**CLEAR, "specular": 0.0},
          inputs=drawn(color="base_color")),
@@ -355,10 +352,7 @@ GLTF_ROWS = (
          "The clearcoat takes its Fresnel factor from emitted light.", shown=EMITTED,
          wrong=("emission above the clearcoat",), fixed={"emissive": WHITE}, inputs=drawn(share="clearcoat")),
 )
-# fmt: on
 
-METAL_COLOR = Input("diffuseColor", "color3", high=0.95)  # the indices of white metals are infinite
-# fmt: off
 USD_ROWS = (
     Says("specular workflow", "Preview Surface",
          "specularColor is the reflectance along the normal, white at grazing.",
@@ -384,13 +378,5 @@ USD_ROWS = (
 )
 # fmt: on
 
-SENTENCES = tuple(
-    row.spec(text)
-    for text, rows in (
-        (OPENPBR, OPENPBR_ROWS),
-        (STANDARD, STANDARD_ROWS),
-        (GLTF, GLTF_ROWS),
-        (USD, USD_ROWS),
-    )
-    for row in rows
-)
+TEXTS = (OPENPBR, OPENPBR_ROWS), (STANDARD, STANDARD_ROWS), (GLTF, GLTF_ROWS), (USD, USD_ROWS)
+SENTENCES = tuple(row.spec(text) for text, rows in TEXTS for row in rows)
