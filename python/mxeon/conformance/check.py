@@ -187,22 +187,17 @@ def judge(
     elif diagnosis.causes:
         own = tuple(Cause(Kind.TEXT, text=each) for each in notes)
         diagnosis = replace(diagnosis, causes=diagnosis.causes + own)
+    left_open = diagnosis.permitted and math.isfinite(right.error)
+    unlike: results.Verdict = results.DIFFERS if left_open else results.FAILED
     return replace(
         place,
-        verdict=results.PASSED
-        if passed and caught
-        else results.DIFFERS
-        if diagnosis.permitted and math.isfinite(right.error)
-        else results.FAILED,
-        error=right.error,
+        verdict=results.PASSED if passed and caught else unlike,
         quantity=tolerance.quantity,
         tolerance=tolerance.value,
         derivation=tolerance.derivation,
-        worst=right.worst,
-        errors=right.errors,
-        samples=right.samples,
         diagnosis=diagnosis,
         control=results.Control(variant, wrong.error, caught),
+        **vars(right),
     )
 
 

@@ -168,32 +168,19 @@ def random_columns() -> Columns:
     rho, value = np.stack([_unit(rng) for _ in range(3)], axis=-1), 2.0 * _unit(rng) - 1.0
     divisors = _unit(rng)  # a quarter log-uniform down to 1e-36; shaders treat 1e-37 as 0
     divisors[CORNERS : POINTS // 4] = 10.0 ** (-36.0 * divisors[CORNERS : POINTS // 4])
-    return {
-        name: float32(values)
-        for name, values in {
-            **unit,
-            "wo": wo,
-            "wi": wi,
-            "wh": sampling.around(np.sqrt(1.0 - unit["u1"]), np.sqrt(unit["u1"]), unit["u2"]),
-            "u": np.stack([unit["u1"], unit["u2"]], axis=-1),
-            "rho": rho,
-            "sigma": 1.5707963 * roughness,
-            "mu": mu,
-            "mu_o": np.minimum(wo[:, 2], 1.0),
-            "mu_i": np.minimum(wi[:, 2], 1.0),
-            "s": diffuse.cosines(wo, wi)[2],
-            "S": np.sqrt((1.0 - mu) * (1.0 + mu)),
-            "S_o": np.hypot(wo[:, 0], wo[:, 1]),
-            "S_i": np.hypot(wi[:, 0], wi[:, 1]),
-            "d": sampling.ltc_md(mu, roughness),
-            "cosine": np.cos(azimuth),
-            "sine": np.sin(azimuth),
-            "x": np.cos(elevation),
-            "y": np.sin(elevation),
-            "value": value,
-            "divisor": divisors,
-        }.items()
+    u1, u2 = unit["u1"], unit["u2"]
+    # fmt: off
+    columns = {
+        **unit, "wo": wo, "wi": wi, "rho": rho, "mu": mu, "value": value, "divisor": divisors,
+        "wh": sampling.around(np.sqrt(1.0 - u1), np.sqrt(u1), u2), "u": np.stack([u1, u2], axis=-1),
+        "sigma": 1.5707963 * roughness, "d": sampling.ltc_md(mu, roughness),
+        "mu_o": np.minimum(wo[:, 2], 1.0), "mu_i": np.minimum(wi[:, 2], 1.0),
+        "s": diffuse.cosines(wo, wi)[2], "S": np.sqrt((1.0 - mu) * (1.0 + mu)),
+        "S_o": np.hypot(wo[:, 0], wo[:, 1]), "S_i": np.hypot(wi[:, 0], wi[:, 1]),
+        "cosine": np.cos(azimuth), "sine": np.sin(azimuth), "x": np.cos(elevation), "y": np.sin(elevation),
     }
+    # fmt: on
+    return {name: float32(values) for name, values in columns.items()}
 
 
 def _unit(rng: np.random.Generator) -> Array:

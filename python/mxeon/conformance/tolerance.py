@@ -132,15 +132,9 @@ def count_named(names: Sequence[str]) -> Measurement:
 
 
 def point_of(batch: Batch, row: int) -> dict[str, list[float]]:
-    columns: Values = {"wo": batch.wo, "wi": batch.wi, **batch.inputs}
-    return {
-        name: np.ravel(
-            np.asarray(values)[row] if np.shape(values)[:1] == (len(batch.wo),) else values
-        )
-        .astype(float)
-        .tolist()
-        for name, values in columns.items()
-    }
+    one = batch.where(np.array([row]))
+    columns: Values = {"wo": one.wo, "wi": one.wi, **one.inputs}
+    return {name: np.ravel(values).astype(float).tolist() for name, values in columns.items()}
 
 
 class Term(NamedTuple):

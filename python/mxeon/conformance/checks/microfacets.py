@@ -48,14 +48,8 @@ PAIRS = 1 << 12  # pairs near the mirror direction
 LEAST_DIVIDED = 1.2  # least index of dielectrics in ratios of values
 SKIES = 8  # lobes with a measured mean of an uneven sky
 # A lobe whose view sees facets that reflect, and facets with a negative printed curve; they sum to -0.035.
-DIP: Values = {
-    "weight": 1.0,
-    "color0": (0.06, 0.06, 0.06),
-    "color82": (0.0, 0.0, 0.0),
-    "color90": (1.0, 1.0, 1.0),
-    "exponent": 5.0,
-    "roughness": (0.2, 0.2),
-}
+DIP: Values = {"color0": (0.06,) * 3, "color82": (0.0,) * 3, "color90": (1.0,) * 3}
+DIP = {**DIP, "weight": 1.0, "exponent": 5.0, "roughness": (0.2, 0.2)}
 LEAST_VALUE = 1e-3  # least pi f cos of values in ratios
 FACETS = lobes.PLAIN & lobes.FACETS  # uncombined microfacet lobes
 isotropic = controls.with_batch(

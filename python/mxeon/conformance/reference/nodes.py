@@ -142,13 +142,9 @@ SUMS: dict[str, Callable[[Array, Inputs], Array]] = {
 # Lobes over the full sphere, without a cosine factor.
 SPREAD = replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy"), value=_spread)
 AROUND = SPREAD, HAIR_NODE
+_only_passes = partial(replace, value=_dark, albedo=_dark, integral=_dark)
 INNER_NODES = (
-    *(
-        row
-        if row.fixed["scatter_mode"] == "RT"
-        else replace(row, value=_dark, albedo=_dark, integral=_dark)
-        for row in TRANSMISSION_NODES
-    ),
+    *(x if x.fixed["scatter_mode"] == "RT" else _only_passes(x) for x in TRANSMISSION_NODES),
     *AROUND,
 )
 

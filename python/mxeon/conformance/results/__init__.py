@@ -496,14 +496,10 @@ class Run(Scope):
         region, groups = result.diagnosis.region, blamed(result)
         given = documents or self.contents
         shown = [each for each in given if result.subject in self.contents[each]]
-        return (
-            result.verdict == FAILED
-            and bool(shown)
-            and all(
-                region in self.unreached.get(each, {}).get(result.subject, ())
-                or (groups and all(g and g.isdisjoint(self.contents[each]) for g in groups))
-                for each in shown
-            )
+        return (result.verdict == FAILED and bool(shown)) and all(
+            region in self.unreached.get(each, {}).get(result.subject, ())
+            or (groups and all(g and g.isdisjoint(self.contents[each]) for g in groups))
+            for each in shown
         )
 
     @property

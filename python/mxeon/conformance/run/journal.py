@@ -222,10 +222,8 @@ def _line(record: dict[str, object]) -> bytes:
 def _differences(before: Plan, after: Plan) -> tuple[str, ...]:
     """The differences between two plans: old and new values, and names of files."""
     old, new = (
-        {"mxeon": plan.version}
-        | plan.software
-        | plan.options
-        | {
+        {
+            **{"mxeon": plan.version, **plan.software, **plan.options},
             "hosts": ", ".join(dict.fromkeys(task.host for task in plan.tasks)),
             "libraries": ", ".join(dict.fromkeys(task.library for task in plan.tasks)),
             "documents": listed(list(map(str, plan.documents))),

@@ -103,14 +103,12 @@ def read_documents(
             refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
         else:  # another library can read it
             refused[f"{file} with {library}"] = tuple(f"{line} (with {library})" for line in lines)
-    return Reading(
-        {file: tuple(each) for file, each in titles.items()},
-        {
-            file: {title: tuple(sorted(each, key=repr)) for title, each in found.items() if each}
-            for file, found in titles.items()
-        },
-        refused,
-    )
+    unreached_by_file = {
+        file: {title: tuple(sorted(each, key=repr)) for title, each in found.items() if each}
+        for file, found in titles.items()
+    }
+    contents = {file: tuple(each) for file, each in titles.items()}
+    return Reading(contents, unreached_by_file, refused)
 
 
 def _answers(
@@ -241,15 +239,11 @@ def _selected(
     if chosen or not nodes:
         return sorted(chosen, key=lambda task: task.subject not in files)
     hosts = ", ".join(dict.fromkeys(task.host for task in tasks if task.host != "source"))
-    places = {
-        library: [
-            row.name
-            for row in HOSTS
-            if any(task.subject in titles for task in _on_host(row.name, library, ()))
-        ]
-        for library in LIBRARIES
-    }
-    known = ((library, ", ".join(names)) for library, names in places.items() if names)
+    places: dict[str, list[str]] = {}
+    for library, row in product(LIBRARIES, HOSTS):
+        if any(task.subject in titles for task in _on_host(row.name, library, ())):
+            places.setdefault(library, []).append(row.name)
+    known = ((library, ", ".join(names)) for library, names in places.items())
     words = "; ".join(f"with --library {library} on {names}" for library, names in known)
     raise InputError(
         f"node must be judged on one of the hosts {hosts}; got {', '.join(nodes)}"

@@ -18,18 +18,11 @@ from mxeon.conformance.specs.utilities import INVERSION_SPECS, UTILITY_SPECS
 PLAIN_LOBES = (BURLEY, TRANSLUCENT, CONTY_KULLA, ZELTNER, *FACET_SPECS)
 # Every run judges the common ones, and the rest only if the user names them.
 COMMON: tuple[Spec, ...] = (*PLAIN_LOBES, *COMBINED_SPECS, *INVERSION_SPECS, CLIENT_FRAME)
+# fmt: off
 PBRLIB: tuple[Spec, ...] = (
-    *COMMON,
-    HAIR,
-    *EMISSION_SPECS,
-    *MEDIUM_SPECS,
-    *EMITTING_SURFACES,
-    *ABSENT,
-    *TRANSMISSION_SPECS,
-    SUBSURFACE,
-    *FILM_SPECS,
-    *UTILITY_SPECS,
-    *SURFACE_SHADERS,
+    *COMMON, HAIR, *EMISSION_SPECS, *MEDIUM_SPECS, *EMITTING_SURFACES, *ABSENT, *TRANSMISSION_SPECS,
+    SUBSURFACE, *FILM_SPECS, *UTILITY_SPECS, *SURFACE_SHADERS,
 )
+# fmt: on
 # SENTENCES are judged only if the user names their specification.
 ALL: tuple[Spec, ...] = (*DIFFUSE, *PBRLIB, *SURFACE_LOBES, *SENTENCES)

@@ -9,19 +9,16 @@ from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import LEAST_SHEEN, float32, generator
 from mxeon.conformance.spec import ARGUMENTS, POWER, EngineError
 from mxeon.conformance.specs import lobes
+from mxeon.conformance.specs.lobes import FLAT_FRAME
 from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.hosts.base import Host
 from mxeon.models.nodes import node
 
-INPUTS, ZELTNER_INPUTS = (
-    (
-        lobes.WEIGHT,
-        lobes.COLOR,
-        replace(lobes.ROUGHNESS, beyond=beyond, ends=(least, 1.0)),
-        lobes.NORMAL,
-    )
-    for beyond, least in (((1e-3, 1e-4, 2.0), 1e-4), ((0.0, 1e-3, 2.0), 0.01))
+ROUGHNESSES = (
+    replace(lobes.ROUGHNESS, beyond=(1e-3, 1e-4, 2.0), ends=(1e-4, 1.0)),
+    replace(lobes.ROUGHNESS, beyond=(0.0, 1e-3, 2.0), ends=(0.01, 1.0)),
 )
+INPUTS, ZELTNER_INPUTS = ((lobes.WEIGHT, lobes.COLOR, each, lobes.NORMAL) for each in ROUGHNESSES)
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
 EXPONENT = 1.0 / LEAST_SHEEN  # largest exponent of the sine
 
@@ -41,6 +38,7 @@ def conty_kulla_value(logarithm: float) -> Tolerance:
     return sum_of(roundings(32), roundings(logarithm, words))
 
 
+CONTY_KULLA_VALUE = conty_kulla_value(LOGARITHM)
 FIT = (
     Term(1.53e-3, "the fit of the albedo"),  # tools/fits/conty_kulla_albedo.py
     ZELTNER_ALBEDO.term("roundings of an albedo in closed form"),
@@ -68,9 +66,7 @@ ZELTNER = lobes.PbrSpec(
     **lobes.named_mode(node("zeltner")),
     row=node("zeltner"),
     inputs=ZELTNER_INPUTS,
-    errors=lobes.lobe_errors(
-        ZELTNER_VALUE, ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, lobes.FLAT_FRAME, quadrature=1e-8
-    ),
+    errors=lobes.lobe_errors(ZELTNER_VALUE, ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, FLAT_FRAME, 1e-8),
     along=0.03,
 )
 CONTY_KULLA = lobes.PbrSpec(
@@ -79,18 +75,12 @@ CONTY_KULLA = lobes.PbrSpec(
     inputs=INPUTS,
     errors={
         **lobes.lobe_errors(
-            conty_kulla_value(LOGARITHM),
-            CONTY_KULLA_ALBEDO,
-            CONTY_KULLA_THROUGHPUT,
-            lobes.FLAT_FRAME,
-            quadrature=2e-4,
+            CONTY_KULLA_VALUE, CONTY_KULLA_ALBEDO, CONTY_KULLA_THROUGHPUT, FLAT_FRAME, 2e-4
         ),
         # Both orders have identical half vectors and powers.
         "reciprocity": sum_of(roundings(32)),
     },
-    outside_errors={
-        ("value", "roughness", least): conty_kulla_value(2.0 / least) for least in (1e-3, 1e-4)
-    },
+    outside_errors={("value", "roughness", x): conty_kulla_value(2.0 / x) for x in (1e-3, 1e-4)},
     engines={"value": (EngineError("the engine's pow()", power_error),)},
     least_cosine=FIT_COSINE,
 )
