@@ -455,13 +455,8 @@ BELOW = sum_of(
     FAST_ARC_COSINE,
 )
 VIEWS, PIXELS = 8, 1 << 12  # views of a case, and pixels of their picture
-NOISE = sum_in(
-    Quantity.ALBEDO,
-    Term(
-        5.0 * 0.01 / math.sqrt(PIXELS / VIEWS),
-        "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms",
-    ),
-)
+MEAN_OF_PATHS = "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms"
+NOISE = sum_in(Quantity.ALBEDO, Term(5.0 * 0.01 / math.sqrt(PIXELS / VIEWS), MEAN_OF_PATHS))
 PASSED = given(2e-3, Quantity.ALBEDO, "testrender's tables, off by 1e-3 for a white dielectric")
 NODES_MOVED = Term(1.2e-3, "32 x 32 nodes, those next to the view moved by up to 0.08")
 INTEGRAL = sum_in(Quantity.ALBEDO, SHARP.term("an average of values"), NODES_MOVED)
@@ -630,24 +625,19 @@ HALF_CUT = Term(2.0**-10, "half floats, cut off")  # llvmpipe truncates
 # twice 1 / alpha of a distribution, whose alpha is at least 0.4, and 3 for Fresnel, shadowing and the cosine.
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
 # In each of two cosines of at least 0.05 five roundings, times 20 by s / t, and times 2 by s and the cosine.
-EXACT = sum_in(
-    Quantity.DIFFERENCE,
-    roundings(28, "(14, of numbers up to 2)"),
-    roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)"),
-)
+TWO_COSINES = roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)")
+EXACT = sum_in(Quantity.DIFFERENCE, roundings(28, "(14, of numbers up to 2)"), TWO_COSINES)
 EXACT_ALBEDO = sum_in(Quantity.ALBEDO, roundings(21 * 1.02, "of numbers up to 1.02"))
 HALF = Tolerance((HALF_CUT, *EXACT.terms), Quantity.RELATIVE, relative, exact=True)
-HALF_ALBEDO = sum_in(
-    Quantity.ALBEDO,
-    Term(2.0 * HALF_CUT.value, "half floats of map and picture, cut off"),
-    EXACT_ALBEDO.term("roundings"),
-    exact=True,
-)
+HALF_MAPS = Term(2.0 * HALF_CUT.value, "half floats of map and picture, cut off")
+HALF_ALBEDO = sum_in(Quantity.ALBEDO, HALF_MAPS, EXACT_ALBEDO.term("roundings"), exact=True)
 DRAWN_LOBE = LOBE_VALUE.plus(
     roundings(16 / samples.LOBE_RIM**2, "of a pixel's point, over the least cosine squared, 1/16")
 )
-FOUR = Term(96.0 * HALF_CUT.value, "half floats in four pictures, 48 times as large, half alike")
-HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR, *DRAWN_LOBE.terms, exact=True)
+FOUR_PICTURES = Term(
+    96.0 * HALF_CUT.value, "half floats in four pictures, 48 times as large, half alike"
+)
+HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR_PICTURES, *DRAWN_LOBE.terms, exact=True)
 
 # A point is a ray's origin plus its length, both at most 2: three roundings of 2^-23 together. A
 # grazing ray divides them by its cosine, and the relative error of cos(theta_i) is divided by the other cosine.
@@ -659,11 +649,9 @@ CYCLES_RAY = sum_of(
 )
 # With 256 samples each. Measured over seeds 0 to 15 at roughness 1 and reflectance 1: a pixel is off by 1.3e-3
 # rms, and the mean of 3212 has a standard deviation of 3.1e-5, 1.34 times that of independent ones.
+CYCLES_MEAN = "four standard errors of the mean of 12836 pixels, each off by 1.3e-3, times 1.4"
 CYCLES_NOISE = sum_of(
-    Term(
-        4.0 * 1.4 * 1.3e-3 / math.sqrt(12_836),
-        "four standard errors of the mean of 12836 pixels, each off by 1.3e-3, times 1.4",
-    ),
+    Term(4.0 * 1.4 * 1.3e-3 / math.sqrt(12_836), CYCLES_MEAN),
     quantity=Quantity.MEAN_ALBEDO,
     metric=tolerance.mean_error,
 )

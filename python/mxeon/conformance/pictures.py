@@ -77,8 +77,8 @@ HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
 COSINES = 256  # number of views tried for the largest albedo of a sheen
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
-TERMS = roundings(16, "of a pixel's point"), roundings(32, "in the value")
-PLAIN = sum_in(Quantity.PICTURE, *TERMS, exact=True)
+POINT_AND_VALUE = roundings(16, "of a pixel's point"), roundings(32, "in the value")
+PLAIN = sum_in(Quantity.PICTURE, *POINT_AND_VALUE, exact=True)
 # The least OpenGL asks for; texels differ by 1 at most.
 TEXTURED = given(2.0**-8, Quantity.PICTURE, "a filter's weights of 8 bits")
 CODES = f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
@@ -389,15 +389,12 @@ def studio_pictures(
 ) -> tuple[Picture, ...]:
     """Pictures for people of a document's first materials, on a shader ball in a studio; without references."""
     shaders, _, _ = _read(file, lambda: host.compile(file, library=library, policy=policy))
-    return tuple(
-        Picture(
-            *(file.name, shader.element, host.name, library, STUDIO.name),
-            still(host, shader, STUDIO_PICTURE),
-            None,
-            {"version": mxeon.__version__, "document": str(file), "scene": STUDIO.name},
-        )
-        for shader in shaders[:STUDIED]
-    )
+    metadata = {"version": mxeon.__version__, "document": str(file), "scene": STUDIO.name}
+    pictures = []
+    for shader in shaders[:STUDIED]:
+        names = file.name, shader.element, host.name, library, STUDIO.name
+        pictures.append(Picture(*names, still(host, shader, STUDIO_PICTURE), None, metadata))
+    return tuple(pictures)
 
 
 # --- documents on hosts that make no pictures: their shaders are generated, and not run -----------
@@ -428,13 +425,9 @@ def generate_document(
     except DocumentError:
         caught = True
     place = Result(DOCUMENT_KEY, DOCUMENT_CLAIM, file.name, host, library, NOT_RUN)
-    result = judge(
-        place,
-        count_of(Quantity.DOCUMENTS),
-        lambda wrong: Measurement(float(caught if wrong else not shaders), {}),
-        "half of the document is cut off",
-        Diagnosis,
-    )
+    none, words = count_of(Quantity.DOCUMENTS), "half of the document is cut off"
+    faults = {False: not shaders, True: caught}
+    result = judge(place, none, lambda x: Measurement(float(faults[x]), {}), words, Diagnosis)
     return (result,), tuple((str(each), file.name) for each in told)
 
 

@@ -67,8 +67,8 @@ SHADERS = ("surfaceshader", "volumeshader", "displacementshader")  # types that 
 ALPHA = ("hwTransparency",)  # option that adds an alpha to shaders
 # A light, an uneven environment, and alpha.
 UNEVEN = Client(radiance=sky_map(), irradiance=sky_map())
-BOUND = (SIDE, CLIENT), (FURNACE, UNEVEN), (SIDE, Client(alpha=True))
-PICTURES = tuple(replace(scene, size=SIZE, client=client) for scene, client in BOUND)
+LIT_SCENES = (SIDE, CLIENT), (FURNACE, UNEVEN), (SIDE, Client(alpha=True))
+PICTURES = tuple(replace(scene, size=SIZE, client=client) for scene, client in LIT_SCENES)
 LOBES = {"BSDF": "burley_diffuse_bsdf", "EDF": "uniform_edf"}  # sources for inputs, by type
 # Constant values of inputs by type; a tangent must not be along the normal.
 ZEROS = {"float": "0", "integer": "0", "boolean": "false"}

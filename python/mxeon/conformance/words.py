@@ -143,10 +143,7 @@ REGIONS = {
 # Of an input, those whose range is a region.
 PARTS = {
     "value": "{}",
-    "first": "the first component of {}",
-    "second": "the second component of {}",
-    "smaller": "the smaller component of {}",
-    "larger": "the larger component of {}",
+    **{each: f"the {each} component of {{}}" for each in ("first", "second", "smaller", "larger")},
     "difference": "a difference between the components of {} of",
 }
 # fmt: off

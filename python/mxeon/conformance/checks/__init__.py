@@ -14,5 +14,9 @@ from mxeon.conformance.checks import (
 )
 
 # `mxeon.survey.checks` adds checks of renderers' own samplers.
-COMMON = *lobes.ROWS, *states.ROWS, *clients.ROWS, *microfacets.ROWS, *other_nodes.ROWS
-CHECKS: list[Check] = [*COMMON, *surface_shaders.ROWS, *surface_texts.ROWS, *paths.ROWS]
+# fmt: off
+CHECKS: list[Check] = [
+    *lobes.ROWS, *states.ROWS, *clients.ROWS, *microfacets.ROWS, *other_nodes.ROWS, *surface_shaders.ROWS,
+    *surface_texts.ROWS, *paths.ROWS,
+]
+# fmt: on

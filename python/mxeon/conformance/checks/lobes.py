@@ -155,14 +155,12 @@ def of_decoded(case: Case, batch: Batch) -> Array:
     return case.backend.direct(batch.altered(color=linear))
 
 
-COLOR_SPACE = Comparison(
-    "color_space",
-    in_srgb,
-    lambda case: (
-        Candidate("the color, decoded from sRGB", partial(of_decoded, case)),
-        Candidate("the color, not decoded from sRGB", case.backend.direct),
-    ),
-)
+def color_candidates(case: Case) -> tuple[Candidate, ...]:
+    own = Candidate("the color, decoded from sRGB", partial(of_decoded, case))
+    return own, Candidate("the color, not decoded from sRGB", case.backend.direct)
+
+
+COLOR_SPACE = Comparison("color_space", in_srgb, color_candidates)
 
 
 # Outputs that are 0 for an opaque node of weight 1, and their branches.

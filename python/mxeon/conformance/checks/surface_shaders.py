@@ -167,10 +167,10 @@ ignore_changes = controls.Control(
 
 def diagnose_reach(case: Case) -> Diagnosis:
     known, wrong = expected_dead(case), misplaced(case)
-    groups = {
-        key: [name for name in wrong if (name in known) == effective]
-        for key, effective in (("changes_nothing", False), ("changes_something", True))
-    }
+    dead, effective = (
+        [x for x in wrong if (x in known) == known_dead] for known_dead in (False, True)
+    )
+    groups = {"changes_nothing": dead, "changes_something": effective}
     causes = (Cause(Kind.DEFECT, key, tuple(names)) for key, names in groups.items() if names)
     return Diagnosis(tuple(causes))
 

@@ -14,8 +14,8 @@ from mxeon.conformance.tolerance import Compared, Tolerance, checksum, count_of,
 COLORS = ("color", "tint", "color0")  # names of a node's color input
 INDICES = {"index": "ior", "extinction": "extinction"}
 # Inputs that regions depend on, by the first word of the regions' names.
-PORTS = {"weight": "weight", "roughness": "roughness", "cuticle": "cuticle_angle", **INDICES}
-ABOUT = {"color": COLORS, **{name: (port,) for name, port in PORTS.items()}}
+INPUT_OF = {"weight": "weight", "roughness": "roughness", "cuticle": "cuticle_angle", **INDICES}
+ABOUT = {"color": COLORS, **{name: (port,) for name, port in INPUT_OF.items()}}
 # Inputs whose ranges are never reported.
 FRAME = ("normal", "tangent", "curve_direction", "position", "surface_normal")
 USUAL = {"weight": 1.0, "occlusion": 1.0}  # defaults for batches without them

@@ -140,8 +140,8 @@ SUMS: dict[str, Callable[[Array, Inputs], Array]] = {
     row.category: partial(node_albedo, row.category, summed=True) for row in MICROFACET_NODES
 }
 # Lobes over the full sphere, without a cosine factor.
-SPREAD = replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy"), value=_spread)
-AROUND = SPREAD, HAIR_NODE
+SPREAD_NODE = replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy"), value=_spread)
+AROUND = SPREAD_NODE, HAIR_NODE
 _only_passes = partial(replace, value=_dark, albedo=_dark, integral=_dark)
 INNER_NODES = (
     *(x if x.fixed["scatter_mode"] == "RT" else _only_passes(x) for x in TRANSMISSION_NODES),

@@ -112,11 +112,8 @@ def _converter() -> cattrs.Converter:
     def sizes(table: Mapping[str, Mapping[str, float]]) -> dict[Row, float]:
         return {(check, name): size for check, each in table.items() for name, size in each.items()}
 
-    hooks: dict[object, Callable[..., object]] = {
-        tuple[Row, ...]: _pairs,
-        Mapping[Row, tuple[Cause, ...]]: remains,
-        Mapping[Row, float]: sizes,
-    }
+    hooks: dict[object, Callable[..., object]] = {tuple[Row, ...]: _pairs}
+    hooks |= {Mapping[Row, tuple[Cause, ...]]: remains, Mapping[Row, float]: sizes}
     converter.register_structure_hook_func(
         hooks.__contains__, lambda value, kind: hooks[kind](value)
     )
@@ -127,12 +124,8 @@ def _pairs(table: Table) -> tuple[Row, ...]:
     return tuple((check, subject) for subject, each in table.items() for check in each)
 
 
-RENDERERS = {
-    "cycles": "this Blender",
-    "three": "this three.js",
-    "babylon": "this Babylon.js",
-    "three-gpu-pathtracer": "this three-gpu-pathtracer",
-}
+RENDERERS = {"cycles": "this Blender", "three": "this three.js", "babylon": "this Babylon.js"}
+RENDERERS |= {"three-gpu-pathtracer": "this three-gpu-pathtracer"}
 LEFT = 30.0  # smaller errors of the right model have another cause than the issue
 SPREAD = 1.5  # engines, drivers and versions of MaterialX may exceed an issue's size by this factor
 

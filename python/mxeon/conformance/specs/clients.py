@@ -14,7 +14,7 @@ LOBES = {"first": (0.9, 0.3, 0.1), "second": (0.2, 0.5, 0.8), "behind": (0.3, 0.
 SHARE = 0.25  # weight of the first lobe in the mix
 FRONT = SHARE * np.array(LOBES["first"]) + (1.0 - SHARE) * np.array(LOBES["second"])
 BACK = np.array(LOBES["behind"])
-SURFACE = "surface", "surfaceshader"
+SURFACE_NODE = "surface", "surfaceshader"
 INTENSITY = 1.75  # scale of the environment
 # Uneven light is not linear between texels, and filter weights have 8 bits.
 TEXEL = np.pi / SKY_ROWS
@@ -40,7 +40,9 @@ class FrameSpec(Spec):
         opacity = nodes.input_text("opacity", "float", 1.0)
         ports = {"front": "lobe", "back": "behind"}
         surfaces = (
-            nodes.node_text(*SURFACE, name, nodes.connection_text("bsdf", "BSDF", lobe) + opacity)
+            nodes.node_text(
+                *SURFACE_NODE, name, nodes.connection_text("bsdf", "BSDF", lobe) + opacity
+            )
             for name, lobe in ports.items()
         )
         share = nodes.input_text("mix", "float", 1.0)

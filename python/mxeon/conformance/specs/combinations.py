@@ -27,14 +27,10 @@ from mxeon.shaders.nodes import (
 PASSES = ZELTNER_THROUGHPUT.term("a throughput between them")
 VALUE = sum_of(ZELTNER_VALUE.term("two values", 2.0), PASSES)
 # Also covers a sum in a mix over a base: its albedo has slopes of at most 1 and 2 by the two.
-ALBEDOS = ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0)
-ALBEDO = sum_of(ALBEDOS, quantity=Quantity.ALBEDO)
-NESTED_VALUE = sum_of(
-    VALUE.term("two values and a throughput"),
-    ZELTNER_VALUE.term("a third value"),
-    ZELTNER_THROUGHPUT.term("its throughput"),
-    exact=True,
-)
+THREE_ALBEDOS = ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0)
+ALBEDO = sum_of(THREE_ALBEDOS, quantity=Quantity.ALBEDO)
+THIRD = ZELTNER_VALUE.term("a third value"), ZELTNER_THROUGHPUT.term("its throughput")
+NESTED_VALUE = sum_of(VALUE.term("two values and a throughput"), *THIRD, exact=True)
 ERRORS = {
     "albedo": ALBEDO,
     "throughput": ALBEDO,

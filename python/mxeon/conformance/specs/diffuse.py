@@ -34,8 +34,8 @@ VALUE = sum_in(
     Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
 )
 # 12 in the longest chain, two in the cosine, and two for the fit of H, which has the factor 0.29.
-FITTED = roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
-ENVIRONMENT = sum_in(Quantity.ALBEDO, FITTED)
+LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
+ENVIRONMENT = sum_in(Quantity.ALBEDO, LARGE_NUMBERS)
 # Five in each of two cosines of at least 1/4, times 4 by s / t, 3 by a sine, and 2 by s and the cosine.
 FRAME = sum_in(
     Quantity.VALUE_OR_ALBEDO,

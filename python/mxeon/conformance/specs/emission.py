@@ -2,6 +2,7 @@
 """The EDF nodes, nodes that combine EDFs, emitting surfaces viewed from both sides, and the VDF nodes."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -248,9 +249,8 @@ class EmittingSurface(spec.ValueSpec):
     has_bsdf: bool
 
     def document(self, inputs: Values | None = None) -> str:
-        emission = nodes.node_text(
-            "uniform_edf", "EDF", "emission", nodes.input_text("color", "color3", SURFACE_COLOR)
-        )
+        color = nodes.input_text("color", "color3", SURFACE_COLOR)
+        emission = nodes.node_text("uniform_edf", "EDF", "emission", color)
         lobe = nodes.connection_text("bsdf", "BSDF", "lobe") if self.has_bsdf else ""
         opacity = nodes.input_text("opacity", "float", (inputs or {}).get("opacity", 1.0))
         surface = nodes.node_text("surface", "surfaceshader", "shading", lobe + EMITTED + opacity)
@@ -266,15 +266,12 @@ class EmittingSurface(spec.ValueSpec):
         return np.broadcast_to(radiance, batch.wo.shape)
 
 
-EMITTING_SURFACES = tuple(
-    EmittingSurface(
-        title=title,
-        node="surface",
-        has_bsdf=has_bsdf,
-        errors={"value": OPACITY},
-        libraries=("stock",),
-    )
-    for title, has_bsdf in (("surface, an EDF alone", False), ("surface, a BSDF and an EDF", True))
+_emitting = partial(
+    EmittingSurface, node="surface", errors={"value": OPACITY}, libraries=("stock",)
+)
+EMITTING_SURFACES = (
+    _emitting(title="surface, an EDF alone", has_bsdf=False),
+    _emitting(title="surface, a BSDF and an EDF", has_bsdf=True),
 )
 
 
@@ -301,8 +298,10 @@ EMISSION_SPECS = tuple(map(_spec, (*emissions.EMISSIONS, *emissions.COMBINED_EMI
 
 # Roundings of the exponential of a sum, of a product, and of the quotient of two such values.
 TRANSMITTANCE = sum_of(roundings(12), quantity=Quantity.TRANSMITTANCE)
-TYPES = {"weight": "float", "scatter_mode": "string"}
-INTERFACE = nodes.lobe_text("dielectric_bsdf", {"weight": 1.0, "scatter_mode": "T"}, "top", TYPES)
+INTERFACE_TYPES = {"weight": "float", "scatter_mode": "string"}
+INTERFACE = nodes.lobe_text(
+    "dielectric_bsdf", {"weight": 1.0, "scatter_mode": "T"}, "top", INTERFACE_TYPES
+)
 PORTS = nodes.connection_text("top", "BSDF", "top") + nodes.connection_text("base", "VDF", "medium")
 
 

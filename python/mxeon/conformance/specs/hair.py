@@ -60,8 +60,8 @@ def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Ter
 
 VALUE = sum_of(*lobe_terms(LEAST_VARIANCE, LEAST_SCALE), quantity=Quantity.FULL_SPHERE)
 # Two values; turned vectors add five roundings per product to those of an angle.
-TWO = lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5))
-FRAME = sum_of(*TWO, quantity=Quantity.FULL_SPHERE)
+TWO_LOBES = lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5))
+FRAME = sum_of(*TWO_LOBES, quantity=Quantity.FULL_SPHERE)
 # Mean slopes of the logarithms of a Gaussian and of a logistic density.
 MEAN_SLOPE = math.sqrt(2.0 / (math.pi * WIDE_VARIANCE)) + 0.5 / (SCALE * WIDE_SCALE)
 MEAN = sum_of(

@@ -212,25 +212,18 @@ def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
 
 
 # 17 in each factor of Burley's model, ten of them in the cosine of the half vector, and seven in the products.
-BURLEY_VALUE = sum_of(
-    roundings(2 * 17 + 7, "of the value or 1: 17 in each factor, 7 in the products")
-)
+BURLEY_ROUNDINGS = roundings(2 * 17 + 7, "of the value or 1: 17 in each factor, 7 in the products")
+BURLEY_VALUE = sum_of(BURLEY_ROUNDINGS)
 # Burley's albedo has a closed form; the other flat lobes reflect their color.
 FLAT_ALBEDO = sum_of(roundings(32, "of the albedo or 1"), quantity=Quantity.ALBEDO)
 FLAT_ERRORS = lobe_errors(BURLEY_VALUE, FLAT_ALBEDO, FLAT_ALBEDO, FLAT_FRAME, quadrature=1e-8)
 
 
-BURLEY = PbrSpec(
-    **named_mode(node("burley")),
-    row=node("burley"),
-    inputs=(WEIGHT, COLOR, replace(ROUGHNESS, low=0.0, edges=(0.0, 0.05, 1.0)), NORMAL),
-    errors=FLAT_ERRORS,
-    flat=True,
-)
-TRANSLUCENT = PbrSpec(
-    **named_mode(node("translucent")),
-    row=node("translucent"),
-    inputs=(WEIGHT, COLOR, NORMAL),
-    errors=FLAT_ERRORS,
-    flat=True,
+WHOLE_ROUGHNESS = replace(ROUGHNESS, low=0.0, edges=(0.0, 0.05, 1.0))
+BURLEY, TRANSLUCENT = (
+    PbrSpec(**named_mode(row), row=row, inputs=inputs, errors=FLAT_ERRORS, flat=True)
+    for row, inputs in (
+        (node("burley"), (WEIGHT, COLOR, WHOLE_ROUGHNESS, NORMAL)),
+        (node("translucent"), (WEIGHT, COLOR, NORMAL)),
+    )
 )

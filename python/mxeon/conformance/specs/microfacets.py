@@ -113,8 +113,8 @@ ESS = Term(ESS_FIT / LEAST_ESS, "the fit of E_ss over the least, 0.31")
 COMPENSATION = (ESS, Term(METAL_FIT * (1.0 - LEAST_ESS), "the fit of F_ss, times 1 - E_ss"))
 LOBE = Term(LOBE_FIT, "the fit of the lobe's albedo")
 INSIDE = Term(INSIDE_FIT, "the fit of the albedo of an index below 1")
-SHARE = Term(PASSING_FIT, "the fit of the share that passes from the denser side")
-PASSING = sum_in(Quantity.ALBEDO, SHARE)
+PASSING_SHARE = Term(PASSING_FIT, "the fit of the share that passes from the denser side")
+PASSING = sum_in(Quantity.ALBEDO, PASSING_SHARE)
 HALF_DIP = Term((1.0 - samples.LEAST_COLOR82) * DIP_FIT, "half of the fit of the dip at 82 degrees")
 
 

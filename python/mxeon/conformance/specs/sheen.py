@@ -14,11 +14,11 @@ from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, roundings, su
 from mxeon.hosts.base import Host
 from mxeon.models.nodes import node
 
-ROUGHNESSES = (
+BOUNDED = (
     replace(lobes.ROUGHNESS, beyond=(1e-3, 1e-4, 2.0), ends=(1e-4, 1.0)),
     replace(lobes.ROUGHNESS, beyond=(0.0, 1e-3, 2.0), ends=(0.01, 1.0)),
 )
-INPUTS, ZELTNER_INPUTS = ((lobes.WEIGHT, lobes.COLOR, each, lobes.NORMAL) for each in ROUGHNESSES)
+INPUTS, ZELTNER_INPUTS = ((lobes.WEIGHT, lobes.COLOR, each, lobes.NORMAL) for each in BOUNDED)
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
 EXPONENT = 1.0 / LEAST_SHEEN  # largest exponent of the sine
 

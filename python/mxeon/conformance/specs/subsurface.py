@@ -31,8 +31,8 @@ FARTHER = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 6.0, 9.0, 12.0)
 
 # Straight towards or away from the light, a whole circle becomes lit at once: 9.3e-3 at most.
 RINGS = given(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
-TWICE = "twice the mean over a sphere of the errors of six circles"
-RINGS_MEAN = given(0.003, Quantity.MEAN, TWICE, mean_error)
+MEAN_OF_CIRCLES = "twice the mean over a sphere of the errors of six circles"
+RINGS_MEAN = given(0.003, Quantity.MEAN, MEAN_OF_CIRCLES, mean_error)
 
 
 class SubsurfaceSpec(PbrSpec):
