@@ -12,7 +12,7 @@ import numpy as np
 
 import mxeon
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Kind, Result
-from mxeon.conformance.specs.surface_texts import NOT_JUDGED, SENTENCES, Text
+from mxeon.conformance.specs.surface_texts import GLTF, OPENPBR, SENTENCES, STANDARD, USD, Text
 from mxeon.io.files import write_text
 from mxeon.shaders.library import load_library
 from tools.site import DOCS, with_block
@@ -23,6 +23,30 @@ HOSTS = ("gl", "vulkan", "webgl")
 WORDS = {PASSED: "yes", DIFFERS: "left open", FAILED: "**no**", NOT_RUN: "not run"}
 DEFAULTS_HEAD = "| text | parameter | its default | the node's |\n|---|---|---|---|\n"
 HEAD = "| section | the text | on {hosts} | instead, and the largest error |\n|---|---|---|---|\n"
+
+TRANSPORT = (
+    "how light travels inside the object is the renderer's; path tracers only get the medium"
+)
+# What no row shows: text, section, what it says, and why.
+# fmt: off
+NOT_JUDGED = (
+    (OPENPBR, "Subsurface", "radius, scale, anisotropy and the inversion of the albedo", TRANSPORT),
+    (OPENPBR, "Translucent base", "extinction and scattering from color, depth and scatter", TRANSPORT),
+    (OPENPBR, "Translucent base", "dispersion by an Abbe number", "no node of the graph reads the inputs"),
+    (OPENPBR, "Opacity", "geometry_opacity blends with what is behind", "the check `alpha` of `surface` judges it"),
+    (OPENPBR, "Emission", "nits", "the conversion is the renderer's"),
+    (OPENPBR, "Thin-walled mode", "the ladder of reflections in a sheet of glass", "environment lookups have one direction of transmission"),
+    (STANDARD, "Transparency", "opacity by color", "the check `alpha` of `surface` judges its luminance"),
+    (STANDARD, "Specular transmission", "depth, scatter, dispersion", "no node of the graph reads the inputs"),
+    (STANDARD, "Specular transmission", "an index of 1 and no film on thin walls", "environment lookups do not show the index"),
+    (STANDARD, "Subsurface scattering", "radius and anisotropy", "the text stipulates no model"),
+    (GLTF, "3.9", "occlusion, normal and alpha modes", "textures and coverage are the client's; no node reads `occlusion`"),
+    (GLTF, "KHR_materials_volume", "thickness and attenuation", "no connected node of the graph reads the inputs"),
+    (GLTF, "KHR_materials_dispersion", "dispersion", "no node of the graph reads the input"),
+    (USD, "Preview Surface", "displacement, occlusion", "no node of the graph reads the inputs"),
+    (USD, "Preview Surface", "parts below opacityThreshold are not rendered", "the check `alpha` of `surface` judges it"),
+)
+# fmt: on
 
 
 def rows(text: Text, results: Mapping[str, Mapping[str, Result]]) -> Iterator[str]:
