@@ -118,7 +118,7 @@ LAYERED = {"dielectric": _dielectric, "schlick": _schlick, "conty_kulla": _sheen
 @contextmanager
 def fits():
     """The reference with the shader's fits instead of quadratures."""
-    curve = microfacets.CONDUCTOR_LOBE
+    curve = microfacets.CONDUCTOR_CURVE
     exact = curve.average
     with ExitStack() as stack:
         stack.enter_context(patch.object(nodes.ShadingPoints, "_albedo", fitted_albedo))
