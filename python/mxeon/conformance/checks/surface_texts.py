@@ -25,7 +25,7 @@ def diagnose(case: Case) -> Diagnosis:
         return found
     [batch] = case.batches
     branch, _, factor = spec.evaluated
-    inputs = broadcast_inputs(batch.altered(**spec.fixed, **batch.inputs))
+    inputs = broadcast_inputs(batch.altered(**{**spec.fixed, **batch.inputs}))
     try:
         shader = case.evaluating.shader
         graph = factor * Reference().evaluate(shader, batch.wo, batch.wi, inputs, branch)
