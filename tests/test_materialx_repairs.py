@@ -22,17 +22,17 @@ from tools.site import ledger
 
 pytestmark = pytest.mark.whole
 
-# Judges rows of stock MaterialX, and prints what it found.
+# Judges rows of libraries, and prints what it found.
 JUDGE = """
 import json, sys
 from mxeon.errors import NotRun
 from tests.support.verdicts import NOT_RUN, SOURCE, Verdicts
 judged = Verdicts()
 results = {}
-for check, subject, host in json.loads(sys.argv[1]):
+for check, subject, host, library in json.loads(sys.argv[1]):
     text, key = host == SOURCE, "|".join((check, subject, host))
     try:
-        result = judged.texts(check, "stock")[subject] if text else judged(check, subject, host, "stock")
+        result = judged.texts(check, library)[subject] if text else judged(check, subject, host, library)
         cause = result.diagnosis.first
         found = cause.kind.value, cause.key, cause.region and cause.region.name
         results[key] = result.verdict, found, result.pages
@@ -85,6 +85,8 @@ def failing(tmp_path_factory):
     ]
 
 
+# The libraries with which the rows of patched pages are judged, if not stock.
+LIBRARIES = {row: ISSUES[page].library for page in PATCHES for row in rows_of([page])}
 ROWS = {"release": rows_of(PATCHES), "main": rows_of(ON_MAIN)}
 CASES = [(version, row) for version, rows in ROWS.items() for row in sorted(rows)]
 
@@ -118,6 +120,7 @@ def verdicts(folder, package, files, rows):
     ledger.apply(ledger.linked(package, folder / "MaterialX"), *files)
     path = [str(folder), str(ledger.ROOT / "python"), str(ledger.ROOT)]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}
+    rows = [(*row, LIBRARIES.get(row, STOCK)) for row in rows]
     command = [sys.executable, "-c", JUDGE, json.dumps(rows)]
     run = subprocess.run(command, capture_output=True, text=True, env=environment)
     assert run.returncode == 0, run.stderr

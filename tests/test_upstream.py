@@ -8,6 +8,7 @@ import MaterialX as mx
 import numpy as np
 import pytest
 
+from mxeon.conformance.results.known_issues import EONLIB, STOCK
 from mxeon.errors import NotRun
 from tests.support.availability import available
 from tests.support.sharing import every_node, shared
@@ -30,21 +31,20 @@ def judged(tmp_path_factory):
     """A function of a host: results and place of its defects, judged by one process for all."""
 
     @cache
-    def outcome(host):
+    def outcome(host, library):
         """Results and place, or the reason why there are none."""
-        if host in ("gl", SOURCE):
+        if host in ("gl", SOURCE) and library == STOCK:
             run = every_node(tmp_path_factory, "stock")
             place = f"{run.hosts[0].device}, {run.hosts[0].version}, MaterialX {mx.__version__}"
             return (run.results, place), None
         try:
-            return shared(
-                tmp_path_factory, f"defects on {host}", partial(measure.judged, host)
-            ), None
+            make = partial(measure.judged, host, (), library)
+            return shared(tmp_path_factory, f"defects on {host}, {library}", make), None
         except NotRun as reason:
             return None, reason
 
-    def results(host):
-        found, reason = outcome(host)
+    def results(host, library=STOCK):
+        found, reason = outcome(host, library)
         with available(host):
             if reason:
                 raise reason
@@ -55,7 +55,7 @@ def judged(tmp_path_factory):
 
 @pytest.mark.parametrize("issue", ISSUES, ids=lambda each: each.page)
 def test_each_defect_is_still_there_and_as_its_page_says(judged, issue):
-    results, place = judged(issue.host)
+    results, place = judged(issue.host, EONLIB if issue.library == EONLIB else STOCK)
     written = MEASURED[issue.page]
     if issue.page == OF_A_DRIVER and place != written["place"]:
         pytest.skip(f"docs/upstream/{issue.page}.md is about another driver than {place}")

@@ -6,14 +6,15 @@ import sys
 from collections.abc import Collection, Sequence
 from contextlib import closing
 from dataclasses import asdict
+from itertools import product
 from typing import Any
 
 import MaterialX as mx
 
 from mxeon.conformance.results import SOURCE, Cause, Kind, Result
-from mxeon.conformance.results.known_issues import RENDERERS, STOCK, Issue, Row, issues
+from mxeon.conformance.results.known_issues import EONLIB, RENDERERS, STOCK, Issue, Row, issues
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import ALL, make_plan
+from mxeon.conformance.run.plan import make_plan, node_names
 from mxeon.errors import NotRun
 from mxeon.shaders.document.policy import DEFAULT
 from tools.site.ledger import figure, measured, write_measured
@@ -21,18 +22,20 @@ from tools.site.ledger import figure, measured, write_measured
 CHECKED = [each for each in issues().values() if each.rows]  # their pages have a table of checks
 
 
-def judged(host: str, rows: Collection[Row] = ()) -> tuple[list[Result], str]:
+def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple[list[Result], str]:
     """Results of some checks on a host or on "source", with device and versions.
 
-    Without `rows`, the checks in the tables of this host's pages.
+    Without `rows`, the checks in the tables of this host's pages on `library`; STOCK includes a
+    renderer's own nodes.
 
     Raises
     ------
     NotRun
         If the host cannot run here.
     """
-    rows = rows or {row for issue in CHECKED if issue.host == host for row in issue.rows}
-    tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,), nodes=(ALL,)).tasks
+    rows = rows or {row for e in CHECKED if shows(e, host, library) for row in e.rows}
+    hosts = () if host == SOURCE else (host,)
+    tasks = make_plan((), hosts, (library,), nodes=node_names()).tasks
     chosen = [
         each
         for each in tasks
@@ -44,6 +47,11 @@ def judged(host: str, rows: Collection[Row] = ()) -> tuple[list[Result], str]:
     own = host in RENDERERS and host != "cycles"  # its nodes need no MaterialX
     place = ", ".join([*devices, *([] if own else [f"MaterialX {mx.__version__}"])])
     return [result for each in findings for result in each.results], place
+
+
+def shows(issue: Issue, host: str, library: str) -> bool:
+    """Whether the table of a page is measured on a host with a library."""
+    return issue.host == host and (issue.library == EONLIB) == (library == EONLIB)
 
 
 def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any]:
@@ -81,10 +89,17 @@ def main(names: Sequence[str]) -> None:
     everywhere = [host for each in issues().values() for host in (each.host, *each.also) if host]
     if not names:
         found = {page: each | {"sizes": {}} for page, each in found.items()}
-    for host in names or dict.fromkeys(everywhere):
-        here = [each for each in issues().values() if host in (each.host, *each.also)]
+    for host, library in product(names or dict.fromkeys(everywhere), (STOCK, EONLIB)):
+        here = [
+            each
+            for each in issues().values()
+            if host in (each.host, *each.also) and shows(each, each.host, library)
+        ]
+        if not here:
+            continue
+        rows = {row for each in here for row in (*each.rows, *each.implied)}
         try:
-            results, place = judged(host, {row for e in here for row in (*e.rows, *e.implied)})
+            results, place = judged(host, rows, library)
         except NotRun as reason:
             print(f"not run: {reason}", file=sys.stderr)
             continue

@@ -9,7 +9,7 @@ from typing import Any
 
 from mxeon.conformance import words
 from mxeon.conformance.results import Diagnosis
-from mxeon.conformance.results.known_issues import Issue, issues
+from mxeon.conformance.results.known_issues import EONLIB, Issue, issues
 from mxeon.conformance.results.quantities import Quantity
 from tools.site import with_block
 from tools.site.ledger import FOLDER, ROOT, measured, patches, patches_of
@@ -83,13 +83,14 @@ def table(issue: Issue) -> str:
     found = measured().get(issue.page, {})
     if not issue.rows or not issue.cause:
         return ""
+    lobes = ", and the lobes of eonlib" * (issue.library == EONLIB)
     lines = [
         *(["Among other checks:", ""] if issue.implied else []),
         "| check | subject | measured | tolerance | unit |",
         "|---|---|---|---|---|",
         *(f"| {' | '.join(row)} | {Quantity(key).unit} |" for *row, key in found["rows"]),
         "",
-        f"Diagnosis{' (first row)' * bool(issue.rows[1:])}: {said(issue, found)}. Measured with {found['place']}.",
+        f"Diagnosis{' (first row)' * bool(issue.rows[1:])}: {said(issue, found)}. Measured with {found['place']}{lobes}.",
     ]
     return "\n".join(lines) + "\n\n"
 
@@ -147,7 +148,7 @@ def outcome(issue: Issue, numbers: dict[str, str]) -> str:
         + (
             f"pass{'es' * (not checks[1:])}"
             if passes
-            else f"still fail{'s' * (not checks[1:])} for another cause"
+            else f"show{'s' * (not checks[1:])} another cause"
         )
         for (subject, passes), checks in subjects.items()
     ]

@@ -17,7 +17,7 @@ from mxeon.errors import CheckError
 from mxeon.io.records import ERRORS, strict_converter
 from mxeon.shaders.library import data_folder
 
-STOCK = "stock"
+STOCK, EONLIB = "stock", "eonlib"
 RENDERER_NODES = "its own nodes"  # stands for a library
 Row = tuple[str, str]  # key of a check, and subject
 Table = Mapping[str, Sequence[str]]  # the checks of each subject
@@ -38,7 +38,8 @@ class Issue:
     group: str  # a part of the index, see tools/site/ledger/pages.py
     host: str = ""  # the host that shows it, "source" for generated text; "" where no check does
     also: tuple[str, ...] = ()  # other hosts that show it
-    library: str = STOCK  # the library that has it; RENDERER_NODES for a renderer's own nodes
+    # The library whose results show it: EONLIB for graphs, whose lobes must be right; RENDERER_NODES.
+    library: str = STOCK
     unavoidable: bool = False  # each library has it: no text can repair it, or none of ours does
     differs: bool = False  # the specification leaves the choice
     rows: tuple[Row, ...] = ()  # results that all fail: the table of the page
