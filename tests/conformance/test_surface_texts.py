@@ -2,6 +2,7 @@
 """Sentences of surface shaders' specifications: graphs do what they say, or what a row names."""
 
 from functools import cache
+from pathlib import Path
 
 import MaterialX as mx
 import numpy as np
@@ -13,6 +14,8 @@ from mxeon.conformance.samples import Counts
 from mxeon.conformance.specs.surface_texts import EMITTED, SENTENCES, THROUGH, SentenceSpec
 from mxeon.models.shading_model import ALONG, UP
 from mxeon.shaders.generation import Shader, generate
+from tests.support.verdicts import Verdicts, has
+from tools.site.ledger import apply, linked, patches
 
 pytestmark = pytest.mark.whole
 SAME = 1e-4  # rounded constants of a graph
@@ -20,18 +23,18 @@ INPUTS = sorted({(spec.text.node, port.name) for spec in SENTENCES for port in s
 
 
 @cache
-def shader(node: str) -> Shader:
+def shader(node: str, library: str = "stock") -> Shader:
     """The shader of a material with one surface shader."""
     [spec, *_] = (each for each in SENTENCES if each.text.node == node)
-    [made] = generate(spec.document(), "glsl", library="stock")
+    [made] = generate(spec.document(), "glsl", library=library)
     return made
 
 
-def shown(spec: SentenceSpec) -> np.ndarray:
+def shown(spec: SentenceSpec, library: str = "stock") -> np.ndarray:
     """Values of the graph for the samples of a sentence, in float64."""
     [batch] = spec.batches(Counts())
     branch, _, factor = spec.evaluated
-    count, made = len(batch.wo), shader(spec.text.node)
+    count, made = len(batch.wo), shader(spec.text.node, library)
     inputs = {
         name: np.broadcast_to(value, (count, *np.shape(value)[-1:]))
         if np.shape(value)[:1] != (count,)
@@ -61,6 +64,31 @@ def test_each_difference_from_a_text_has_a_name(spec):
         assert min(others, default=np.inf) > SAME  # the named forms are others
     else:
         assert min(others) <= SAME
+
+
+@pytest.fixture(scope="module")
+def repaired(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The data of MaterialX with the ledger's patches of its graphs."""
+    package = linked(Path(mx.__file__).parent, tmp_path_factory.mktemp("repaired") / "MaterialX")
+    graphs = [path for path in patches("materialx").values() if "/bxdf/" in path.read_text()]
+    return str(apply(package, *graphs) / "libraries")
+
+
+@pytest.mark.parametrize("spec", SENTENCES, ids=lambda spec: spec.title)
+def test_patched_graphs_do_what_their_texts_say(spec: SentenceSpec, repaired: str):
+    """Or what a text leaves open, or what pbrlib's layer makes of a colored sheen."""
+    [batch] = spec.batches(Counts())
+    own, *others = spec.value_candidates
+    forms = [each for each in others if each.permitted or each.title.startswith("tinted light")]
+    values = shown(spec, repaired)
+    assert min(np.abs(form.values(batch) - values).max() for form in (own, *forms)) <= SAME
+
+
+@pytest.mark.parametrize("title", ["Standard Surface, sheen", "glTF, transmission"])
+def test_a_diagnosis_tells_a_graph_from_its_lobes(judged: Verdicts, title: str):
+    """Stock's sheen is a fit, its glass is off by more than its graph; eonlib shows the graph."""
+    assert has(judged("specification", title, library="stock"), "lobes_of_graph")
+    assert not has(judged("specification", title), "lobes_of_graph")
 
 
 def mutants(name: str, port: mx.Input) -> list[str]:
