@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Write the tables of surfaces.md: what the shaders do with each sentence of their specifications.
 
-`python -m tools.site.surface_texts` judges all sentences on HOSTS; some minutes.
+`python -m tools.site.surface_texts` judges all sentences on HOSTS, and with VERSIONS of MaterialX on gl; ten
+minutes.
 """
 
+import json
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from itertools import groupby
+from typing import TypeAlias
 
 import numpy as np
 
@@ -14,15 +17,19 @@ import mxeon
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Kind, Result
 from mxeon.conformance.specs.surface_texts import GLTF, OPENPBR, SENTENCES, STANDARD, USD, Text
 from mxeon.io.files import write_text
-from mxeon.shaders.library import load_library
+from mxeon.shaders.library import TESTED, load_library
+from tests.support.wheels import run, wheel
 from tools.site import DOCS, with_block
 from tools.site.ledger import figure
 
 PAGE = DOCS / "surfaces.md"
 HOSTS = ("gl", "vulkan", "webgl")
+VERSIONS = (*TESTED[:-1], "main")  # those that are not installed
+Verdicts: TypeAlias = dict[str, dict[str, str]]
 WORDS = {PASSED: "yes", DIFFERS: "left open", FAILED: "**no**", NOT_RUN: "not run"}
 DEFAULTS_HEAD = "| text | parameter | its default | the node's |\n|---|---|---|---|\n"
-HEAD = "| section | the text | on {hosts} | instead, and the largest error |\n|---|---|---|---|\n"
+HEAD = "| section | the text | verdict | instead, and the largest error |\n|---|---|---|---|\n"
+NAMES = tuple(name for name, _ in groupby(SENTENCES, lambda spec: spec.node))
 
 TRANSPORT = (
     "how light travels inside the object is the renderer's; path tracers only get the medium"
@@ -49,13 +56,19 @@ NOT_JUDGED = (
 # fmt: on
 
 
-def rows(text: Text, results: Mapping[str, Mapping[str, Result]]) -> Iterator[str]:
-    """Table rows of a text, from results by subject and host."""
+def rows(
+    text: Text, results: Mapping[str, Mapping[str, Result]], verdicts: Verdicts
+) -> Iterator[str]:
+    """Table rows of a text, from results by subject and host; a verdict names the places that differ."""
     for spec in (each for each in SENTENCES if each.text is text):
         found = results[spec.title]
-        verdicts = {host: WORDS[each.verdict] for host, each in found.items()}
-        said = set(verdicts.values())
-        verdict = said.pop() if len(said) == 1 else ", ".join(map(": ".join, verdicts.items()))
+        said = verdicts[spec.title]
+        others: dict[str, list[str]] = defaultdict(list)
+        for place, verdict in said.items():
+            if verdict != said["gl"]:
+                others[WORDS[verdict]].append(place)
+        words = [f"{', '.join(places)}: {verdict}" for verdict, places in others.items()]
+        verdict = "; ".join([WORDS[said["gl"]], *words])
         worst = max(found.values(), key=lambda each: each.error or 0.0)
         yield f"| {spec.section} | {spec.claim} | {verdict} | {instead(worst)} |\n"
     for where, section, claim, reason in NOT_JUDGED:
@@ -87,23 +100,28 @@ def defaults(text: Text) -> Iterator[str]:
             yield f"| {text.name} | `{name}` | {' | '.join(shown)} |\n"
 
 
-def judged() -> dict[str, dict[str, Result]]:
-    """Results by subject and host."""
+def judged() -> tuple[dict[str, dict[str, Result]], Verdicts]:
+    """Results by subject and host, and verdicts by subject and by host or version of MaterialX."""
     results: dict[str, dict[str, Result]] = defaultdict(dict)
-    names = [name for name, _ in groupby(SENTENCES, lambda spec: spec.node)]
+    verdicts: Verdicts = defaultdict(dict)
     for host in HOSTS:
-        run = mxeon.check(hosts=[host], libraries=["eonlib"], nodes=names)
-        for each in run.results:
+        for each in mxeon.check(None, [host], ["eonlib"], nodes=NAMES).results:
             if each.check == "specification":
                 results[each.subject][host] = each
-    return results
+                verdicts[each.subject][host] = each.verdict
+    options = [word for name in NAMES for word in ("--node", name)]
+    for version in VERSIONS:
+        ran = run(wheel(version), "check", "--host", "gl", "--workers", "0", "--json", *options)
+        for record in json.loads(ran.stdout)["results"]:
+            if record["check"] == "specification":
+                verdicts[record["subject"]][version] = record["verdict"]
+    return results, verdicts
 
 
 if __name__ == "__main__":
-    results, page = judged(), PAGE.read_text(encoding="utf-8")
+    (results, verdicts), page = judged(), PAGE.read_text(encoding="utf-8")
     texts = [text for text, _ in groupby(SENTENCES, lambda spec: spec.text)]
     for text in texts:
-        table = HEAD.format(hosts=", ".join(HOSTS)) + "".join(rows(text, results))
-        page = with_block(page, text.name, f"\n{table}")
+        page = with_block(page, text.name, "\n" + HEAD + "".join(rows(text, results, verdicts)))
     table = "".join(row for text in texts for row in defaults(text))
     write_text(PAGE, with_block(page, "defaults", f"\n{DEFAULTS_HEAD}{table}"))
