@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Judge eonlib and stock with every version of MaterialX: `python -m tools.site.versions` writes the page.
 
-It runs `mxeon check --host gl --node all` with each version, 13 minutes of processor time in all, and keeps
-the data in `ledger/versions.json`. From it `python -m tools.site` writes the page, and the site the lines on
+It runs `mxeon check --host gl --node all` and all surface shaders' texts with each version, 14 minutes of
+processor time in all, and keeps the data in `ledger/versions.json`. From it `python -m tools.site` writes the page, and the site the lines on
 the ledger's pages.
 """
 
@@ -14,13 +14,14 @@ from mxeon.conformance.results.known_issues import issues
 from mxeon.io.files import write_text
 from mxeon.shaders.library import TESTED
 from tests.support.wheels import MAIN, run, wheel
-from tools.site import DOCS, with_block
+from tools.site import DOCS, surface_texts, with_block
 from tools.site.ledger import dumped, pages
 
 PAGE, RECORD = DOCS / "versions.md", pages.VERSIONS
 VERSIONS = (*TESTED, "main")
 LIBRARIES = ("eonlib", "stock")
-COMMAND = ("check", "--host", "gl", "--node", "all", "--workers", "0", "--json")
+TEXTS = tuple(word for name in surface_texts.NAMES for word in ("--node", name))
+COMMAND = ("check", "--host", "gl", "--node", "all", *TEXTS, "--workers", "0", "--json")
 
 
 def judged(version):
@@ -36,7 +37,8 @@ def record(versions):
     """The data of the pages, from the results of all versions by name.
 
     By version: number of results per verdict for each library's nodes, eonlib's results that do not pass, and,
-    by page of a defect of MaterialX on gl or in its texts, whether all results that show it pass.
+    by page of a defect of MaterialX on gl or in its texts, whether all results that show it pass. Sentences of
+    surface shaders' texts are not counted: surfaces.md has their verdicts.
     """
     found = {
         "commit": (MAIN.parent / "commits.txt").read_text().split(" ", 2)[:2],
@@ -46,21 +48,22 @@ def record(versions):
     }
     for name, results in versions.items():
         counts = {library: defaultdict(Counter) for library in LIBRARIES}
-        left, stock = defaultdict(list), {}
+        left, verdicts = defaultdict(list), {}
         for each in results:
             check, subject, verdict = each["check"], each["subject"], each["verdict"]
+            verdicts[each["library"], check, subject] = verdict
+            if check == "specification":
+                continue
             node = "documents" if ".mtlx" in subject else subject.split(",")[0]
             counts[each["library"]][node][verdict] += 1
-            if each["library"] == "stock":
-                stock[check, subject] = verdict
-            elif verdict != PASSED:
+            if each["library"] == "eonlib" and verdict != PASSED:
                 left[f"`{check}` {verdict}"].append(subject)
         for library in LIBRARIES:
             found["nodes"][library][name] = dict(sorted(counts[library].items()))
         found["open"][name] = {check: sorted(each) for check, each in sorted(left.items())}
         for issue in issues().values():
-            if issue.library == "stock" and issue.host in ("gl", "source") and issue.rows:
-                passed = all(stock[pair] == PASSED for pair in issue.rows)
+            if issue.library in LIBRARIES and issue.host in ("gl", "source") and issue.rows:
+                passed = all(verdicts[issue.library, *pair] == PASSED for pair in issue.rows)
                 found["pages"].setdefault(issue.page, {})[name] = {"passed": passed}
     return found
 
