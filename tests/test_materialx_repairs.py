@@ -85,8 +85,10 @@ def failing(tmp_path_factory):
     ]
 
 
-# The libraries with which the rows of patched pages are judged, if not stock.
-LIBRARIES = {row: ISSUES[page].library for page in PATCHES for row in rows_of([page])}
+# The libraries with which the tables of patched pages are judged, if not stock.
+LIBRARIES = {
+    (*row, ISSUES[page].host): ISSUES[page].library for page in PATCHES for row in ISSUES[page].rows
+}
 ROWS = {"release": rows_of(PATCHES), "main": rows_of(ON_MAIN)}
 CASES = [(version, row) for version, rows in ROWS.items() for row in sorted(rows)]
 
