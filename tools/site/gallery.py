@@ -22,12 +22,15 @@ from PIL import Image, ImageDraw, ImageFont
 import mxeon
 from mxeon.conformance import words
 from mxeon.conformance.reference import Reference
+from mxeon.conformance.results import VISIBLE
 from mxeon.errors import DocumentError
 from mxeon.hosts import open_host, path_tracer
 from mxeon.hosts.points import visible
 from mxeon.hosts.still import still
+from mxeon.io.images import difference, difference_scale
 from mxeon.io.srgb import srgb_encoded
 from mxeon.io.tone import pbr_neutral
+from mxeon.report.pieces import difference_pixels
 from mxeon.shaders.scene import FURNACE, SIDE, STUDIO, Paths, Scene
 from tools.site import DOCS
 
@@ -37,7 +40,7 @@ PICTURES = DOCS / "images" / "gallery"
 DIFFERENCES = (
     PICTURES / "differences.json"
 )  # words on stock, and its largest difference, by material
-SIZE = 512  # pixels
+SIZE, INSET = 512, 128  # pixels
 QUALITY = 85  # WebP quality
 ROWS = 96  # rows of the studio's picture
 BOXES = (  # soft boxes of the studio: azimuth from the viewer and elevation, half of both widths, in degrees; radiance
@@ -54,7 +57,8 @@ HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
 # Gallery
 
 The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX on the left,
-eonlib on the right, the largest difference first. Furnace documents show a sphere in a white environment, where
+eonlib on the right, the largest difference first. The inset shows the pictures' difference, a share of white, or of
+eonlib's picture where that is brighter. Furnace documents show a sphere in a white environment, where
 it vanishes if no energy is lost or gained. The floor has the ball's contact shadow; the ball reflects itself in the
 [path-traced pictures](#path-traced) alone.
 Below each pair stands what `mxeon check` says of stock, in its own scenes. To draw one yourself:
@@ -106,33 +110,42 @@ def materials(document):
 
 
 def pictures(host, document):
-    """A document's materials, each with its sRGB codes with stock, if stock can generate it, and with eonlib."""
+    """A document's materials, each with its sRGB codes and the pictures' differences from eonlib's.
+
+    With stock first, if stock can generate the material, then with eonlib.
+    """
     shaders, scene = [], replace(FURNACE if "furnace" in document.stem else STUDIO, size=SIZE)
     for library in ("stock", "eonlib"):
         with suppress(DocumentError):
             shaders.append(host.compile(document, library=library))
     for pair in zip(*shaders, strict=True):
         images = [still(host, each, scene) for each in pair]
+        apart = np.abs(difference(images[0], images[-1]))
         if scene.name == STUDIO.name:
-            yield pair[0].element, [srgb_encoded(pbr_neutral(each)) for each in images]
+            codes = [srgb_encoded(pbr_neutral(each)) for each in images]
         else:
             mask = visible(SIZE, scene.shape).mask[..., None]
             codes = [np.where(mask, srgb_encoded(each), np.uint8(BACKGROUND)) for each in images]
-            yield pair[0].element, codes
+        yield pair[0].element, codes, apart
 
 
-def save(path, codes, labels=("stock", "eonlib")):
-    """Write pictures side by side, each with its label if there are several."""
+def label(image, place, text, size=22, anchor="ls"):
+    """Write white, outlined text on a picture."""
+    style = {"font": ImageFont.load_default(size), "anchor": anchor, "stroke_fill": "black"}
+    ImageDraw.Draw(image).text(place, text, fill="white", stroke_width=2, **style)
+
+
+def save(path, codes, apart=None):
+    """Write pictures side by side, each with its label if there are several, and the difference as an inset."""
     image = Image.fromarray(np.hstack(codes))
-    for number, label in enumerate(labels if len(codes) == len(labels) else ()):
-        place = codes[0].shape[1] * number + 14, codes[0].shape[0] - 12
-        style = {
-            "font": ImageFont.load_default(22),
-            "anchor": "ls",
-            "stroke_width": 2,
-            "stroke_fill": "black",
-        }
-        ImageDraw.Draw(image).text(place, label, fill="white", **style)
+    for number, text in enumerate(("stock", "eonlib") if len(codes) == 2 else ()):
+        label(image, (codes[0].shape[1] * number + 14, codes[0].shape[0] - 12), text)
+    if apart is not None and apart.max() > VISIBLE:
+        scale = difference_scale(apart)
+        left, top = image.width - INSET, image.height - INSET
+        inset = Image.fromarray(difference_pixels(apart, scale))
+        image.paste(inset.resize((INSET, INSET), Image.Resampling.LANCZOS), (left, top))
+        label(image, (image.width - 6, top - 6), f"difference up to {scale:.0%}", 14, "rs")
     image.save(path, quality=QUALITY, method=6)
 
 
@@ -145,10 +158,10 @@ def render():
 
     with open_host("gl") as host:
         for document in sorted(EXAMPLES.glob("*.mtlx")):
-            for name, codes in pictures(host, document):
-                save(PICTURES / f"{name}.webp", codes)
-        [(_, balls)] = pictures(host, TITANIUM)
-    save(TITANIUM.with_suffix(".webp"), balls)
+            for name, codes, apart in pictures(host, document):
+                save(PICTURES / f"{name}.webp", codes, apart)
+        [(_, balls, apart)] = pictures(host, TITANIUM)
+    save(TITANIUM.with_suffix(".webp"), balls, apart)
 
 
 def judge():
