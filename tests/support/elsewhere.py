@@ -9,6 +9,7 @@ import os
 import signal
 import sys
 import warnings
+from functools import partial
 from importlib import import_module
 from pkgutil import walk_packages
 from types import ModuleType
@@ -68,8 +69,15 @@ def hide() -> None:
 
 
 def import_all() -> None:
-    """Import every module, except those that a renderer's Python runs, and give it another platform."""
+    """Import every module, except those that a renderer's Python runs, and give it another platform.
+
+    OpenGL stays Linux's without a display: any X server may end.
+    """
+    import glcontext
+
     import mxeon
+
+    glcontext.default_backend = partial(glcontext.get_backend_by_name, "egl")
 
     for found in walk_packages(mxeon.__path__, "mxeon."):
         if found.name.endswith(("worker", "__main__")) or found.name.startswith("mxeon.mitsuba"):
