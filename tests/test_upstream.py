@@ -53,6 +53,7 @@ def judged(tmp_path_factory):
     return results
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("issue", ISSUES, ids=lambda each: each.page)
 def test_each_defect_is_still_there_and_as_its_page_says(judged, issue):
     results, place = judged(issue.host, EONLIB if issue.library == EONLIB else STOCK)
@@ -68,6 +69,7 @@ def test_each_defect_is_still_there_and_as_its_page_says(judged, issue):
     same_record(measure.record(issue, results, place), written)
 
 
+@pytest.mark.whole
 def test_every_failure_of_stock_on_gl_has_a_page_that_explains_its_size(judged):
     results, _ = judged("gl")
     failed = [each for each in results if each.verdict == "failed" and ".mtlx" not in each.subject]

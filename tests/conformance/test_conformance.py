@@ -83,6 +83,7 @@ def test_a_target_of_which_only_the_text_can_be_checked_is_not_run(host):
     assert texts and {each.verdict for each in texts} == {PASSED}
 
 
+@pytest.mark.whole
 def test_two_libraries_are_asked_the_same(run, stock):
     """But for nodes and functions that one does not have, what neither repairs, and stock as the release itself."""
     asked = [

@@ -128,6 +128,7 @@ def leaves(material, mu, count, **options):
     )
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("name", SURFACES)
 def test_draws_at_a_grazing_view_have_their_density(materials, name):
     assert leaves(materials(name), 0.1, 1 << 16) < DEVIATION
