@@ -95,7 +95,10 @@ def surface_text(category):
 DOCUMENTS = {name: material_text(*row) for name, row in NODES.items()}
 DOCUMENTS |= {name: surface_text(name) for name in SURFACES}
 view = partial(direction, phi=0.3)
-every_document = pytest.mark.parametrize("name", DOCUMENTS)
+# Drivers take seconds to compile a surface shader's text.
+SURFACE_NAMES = [pytest.param(name, marks=pytest.mark.whole) for name in SURFACES]
+every_surface = pytest.mark.parametrize("name", SURFACE_NAMES)
+every_document = pytest.mark.parametrize("name", [*NODES, *SURFACE_NAMES])
 
 
 def uniforms(count, seed=1):
@@ -128,14 +131,12 @@ def leaves(material, mu, count, **options):
     )
 
 
-@pytest.mark.whole
-@pytest.mark.parametrize("name", SURFACES)
+@every_surface
 def test_draws_at_a_grazing_view_have_their_density(materials, name):
     assert leaves(materials(name), 0.1, 1 << 16) < DEVIATION
 
 
-@pytest.mark.whole
-@pytest.mark.parametrize("name", SURFACES)
+@every_surface
 def test_a_quarter_million_draws_have_their_density(materials, name):
     assert leaves(materials(name), 0.9, 1 << 18) < DEVIATION
 
