@@ -396,6 +396,7 @@ FRAME, STATES = ("client", "surface, a client's frame"), "states"
 CLEAR, MIRROR = "dielectric_bsdf, scatter_mode T", "generalized_schlick_bsdf, scatter_mode R"
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     "part, old, new, check, title, words",
     [
