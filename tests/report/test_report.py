@@ -251,11 +251,16 @@ def test_documents_open_with_the_worst_in_the_studio_and_libraries_with_causes(r
         )
         for each in spheres
     ]  # fmt: skip
-    shown = replace(run, results=(FAILURE, *results), pictures=(*spheres, *studio))
-    for contents, sections in (({"a/clay.mtlx": ()}, (1, 0)), ({}, (0, 1))):
+    known = [replace(FAILURE, check=key, pages=("genglsl_clamped_dot",)) for key in "ab"]
+    shown = replace(run, results=(FAILURE, *known, *results), pictures=(*spheres, *studio))
+    orders = ({"a/clay.mtlx": ()}, ["pictures", "failed"]), ({}, ["causes", "failed", "pictures"])
+    for contents, order in orders:
         page = Page(page_of(replace(shown, contents=contents)))
-        order = [each for each in page.values("id") if each in ("failed", "pictures")]
-        assert order == [("failed", "pictures")[each] for each in sections]
+        assert [each for each in page.values("id") if each in order] == order
+    title = "EON in GLSL is wrong for light from behind"
+    assert page.text.count(title) == 3  # once as a cause, and with each check
+    node = FAILURE.subject.partition(",")[0]
+    assert f"Checks {title} {node} 2 best match: QON {node} 1 " in page.text
     alts = page.values("alt")
     assert alts[:3] == [f"{title}: bad, in a studio" for title in (
         "Stock MaterialX", "With eonlib", "Difference of the two")]  # fmt: skip

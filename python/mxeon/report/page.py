@@ -31,7 +31,7 @@ from mxeon.io.images import difference, difference_scale
 from mxeon.io.srgb import srgb_encoded
 from mxeon.io.tone import pbr_neutral
 from mxeon.report import in_threads
-from mxeon.report.formats import linked, nearest, vector
+from mxeon.report.formats import causes_of, linked, nearest, vector
 from mxeon.report.pieces import (
     SHOWN_SIZE,
     difference_gradient,
@@ -121,6 +121,21 @@ def reasons(results: Iterable[Result]) -> dict[str, list[Result]]:
         if result.verdict == NOT_RUN:
             stopped.setdefault(result.reason, []).append(result)
     return stopped
+
+
+def causes(results: Iterable[Result]) -> list[tuple[Markup, list[Result]]]:
+    """Failed checks of nodes by cause, the cause of most failures first."""
+    groups: dict[Markup, list[Result]] = {}
+    for each in results:
+        if each.verdict == FAILED and each.check != "picture":
+            for cause in causes_of(each):
+                groups.setdefault(cause, []).append(each)
+    return sorted(groups.items(), key=lambda group: -len(group[1]))
+
+
+def nodes_of(results: Iterable[Result]) -> str:
+    """The nodes that results judge, each once."""
+    return ", ".join(dict.fromkeys(each.subject.partition(",")[0] for each in results))
 
 
 def materials(run: Run) -> tuple[list[list[Picture]], Verdicts]:
@@ -265,7 +280,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
     ] * bool(nodes)
     filters: dict[str, Callable[..., Any]] = {"vector": vector, "linked": linked, "tally": tally}
     filters |= {"nearest": nearest}
-    filters |= {"title": title_of, "worst": worst}
+    filters |= {"title": title_of, "worst": worst, "nodes": nodes_of}
     with in_threads(partial(material, verdicts), shown) as drawn:
         yield from generate_page(
             "mxeon.report",
@@ -282,6 +297,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
             audit=audit,
             matrix=matrix(places),
             reasons=reasons(run.results),
+            causes=[] if run.contents else causes(run.results),
             open_checks=failed_rows <= OPEN_ROWS,
             at_once=len(at_once),
             folded=len(shown) - len(at_once),
