@@ -14,6 +14,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 from scipy.interpolate import RectBivariateSpline
+from scipy.ndimage import distance_transform_edt
 
 from mxeon.conformance.reference import HostValues, Reference
 from mxeon.conformance.samples import directions_at
@@ -182,15 +183,24 @@ def difference_colors(ratio):
     return np.round(gray + np.where(t > 0, t * (red - gray), -t * (blue - gray))).astype(np.uint8)
 
 
+def with_smooth_rim(codes):
+    """Spheres (..., SIZE, SIZE, 3) on the background: each pixel of the rim by its share of the sphere."""
+    side = 8  # rows and columns of samples in a pixel
+    share = sphere(side * SIZE).mask.reshape(SIZE, side, SIZE, side).mean(axis=(1, 3))[..., None]
+    rows, columns = distance_transform_edt(
+        ~sphere(SIZE).mask, return_distances=False, return_indices=True
+    )
+    extended = codes[..., rows, columns, :]
+    return np.round(share * extended + (1.0 - share) * BACKGROUND).astype(np.uint8)
+
+
 def labeled(images):
     """Picture with labels: the spheres, and below how far each is from exact."""
     mask = sphere(SIZE).mask
     ratio = images.mean(axis=-1) / np.where(mask, images[3].mean(axis=-1), 1.0)
     scale = 0.85 / np.percentile(images[3][mask], 97)
-    top = np.where(
-        mask[..., None], srgb_encoded(np.minimum(scale * images, 1.0)), np.uint8(BACKGROUND)
-    )
-    low = np.where(mask[..., None], difference_colors(ratio), np.uint8(BACKGROUND))
+    top = with_smooth_rim(srgb_encoded(np.minimum(scale * images, 1.0)))
+    low = with_smooth_rim(difference_colors(ratio))
     strip = difference_colors(1.0 + FULL * np.linspace(-1.0, 1.0, SIZE - 88))
     low[3] = BACKGROUND
     low[3][SIZE // 2 - 12 : SIZE // 2 + 12, 44:-44] = strip
