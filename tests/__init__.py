@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests. Each of pytest's processes keeps to one thread of BLAS and of PyTorch, whose threads wait by spinning."""
+"""Tests. Each pytest process uses one thread of BLAS and of PyTorch, whose waiting threads spin."""
 
 import os
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")  # before NumPy is imported; BLAS reads it too
+# Set before NumPy is imported, because BLAS reads it then.
+os.environ.setdefault("OMP_NUM_THREADS", "1")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hosts for the tests, each opened once in a session, when a test first asks for it."""
+"""Hosts for the tests, opened once per session when a test first needs them."""
 
 import atexit
 import gc
@@ -23,7 +23,7 @@ from tests.support.verdicts import Verdicts
 
 
 def pytest_configure():
-    """Undo what nohup or a job in the background ignores, and refuse an unknown host's name.
+    """Restore signals that nohup or a background job ignores, and refuse unknown hosts.
 
     A signal that the starter of the tests ignores is ignored by each command that they start. Mesa's
     software driver compiles shaders without optimizing them, which takes less time and changes no bit
@@ -58,20 +58,20 @@ def pytest_collection():
 
 
 def pytest_make_parametrize_id(val):
-    """Name of a function as its id, without the address that differs from worker to worker."""
+    """A function's name as its id; the default contains an address, which differs between workers."""
     return getattr(val, "__name__", None)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item):
-    """Trace lines in the tests of the models alone, which have to reach them all by themselves."""
+    """Trace lines only in the tests of the models, which must cover all lines by themselves."""
     with nullcontext() if "models" in item.path.parts else untraced():
         return (yield)
 
 
 @pytest.fixture(scope="session", autouse=True)
 def one_worker():
-    """Commands in this process start one worker: other tests run on the other processors."""
+    """Run commands in this process with one worker, because other tests use the other processors."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("os.cpu_count", lambda: 1)
         yield
@@ -79,7 +79,7 @@ def one_worker():
 
 @pytest.fixture(scope="session", autouse=True)
 def temporary(tmp_path_factory):
-    """What processes leave behind, Blender's and killed ones, goes with the folders of the tests."""
+    """Temporary files that Blender or killed processes leave are deleted with the tests' folders."""
     folder = tmp_path_factory.getbasetemp() / "t"  # short, for the sockets of a browser
     folder.mkdir()
     with pytest.MonkeyPatch.context() as patch:
@@ -90,7 +90,7 @@ def temporary(tmp_path_factory):
 
 @pytest.fixture(scope="session", autouse=True)
 def optimized_pictures():
-    """A process of Storm draws far longer than its driver compiles: there the driver optimizes."""
+    """Storm draws for much longer than its driver compiles, so its driver optimizes."""
     start = Worker.start
 
     def optimized(worker):
@@ -106,14 +106,14 @@ def optimized_pictures():
 
 @pytest.fixture(scope="session")
 def hosts():
-    """The host of a name, which stays open until the session ends."""
+    """A function that opens a host by name, once per session."""
     opened = {}
 
     def host(name):
         if name not in opened:
             with available(name), ExitStack() as failed:
                 engine = failed.enter_context(open_engine(name, reference_host.ROW))
-                engine.identity()  # some engines start only now
+                engine.identity()  # some engines do not start before this
                 failed.pop_all()
                 opened[name] = engine
         return opened[name]
@@ -125,7 +125,7 @@ def hosts():
 
 @pytest.fixture(scope="session")
 def judged(hosts):
-    """A function that judges one check of one node: see `Verdicts`."""
+    """A function that judges one check of one node; see `Verdicts`."""
     return Verdicts(hosts)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Python API as its users call it: names and paths, the answer of a run, and the page's example."""
+"""The Python API for users: names and paths, the summary of a run, and the example of its page."""
 
 import pickle
 import re
@@ -31,7 +31,7 @@ def checked(**names):
     return mxeon.check(**{"files": CLAY, "hosts": "msl"} | names)
 
 
-# Every public parameter that takes names or paths: a call with it, one right value, and whether it
+# Every public parameter that takes names or paths: a call with it, a valid value, and whether it
 # takes several.
 NAMES = {
     "files": (lambda x: checked(files=x), CLAY, True),
@@ -58,7 +58,7 @@ NAMES = {
 
 @pytest.fixture
 def short(monkeypatch, tmp_path):
-    """Runs of one check; the working folder is empty."""
+    """Runs of one check, in an empty working folder."""
     keep_checks(monkeypatch, "document")
     monkeypatch.chdir(tmp_path)
 
@@ -206,7 +206,7 @@ MISTAKES = {
 
 @pytest.mark.whole
 def test_a_type_checker_passes_the_gate_and_finds_mistakes_in_it(tmp_path):
-    """As a user's file: strict, and without the settings of the checkout."""
+    """The example is checked like a user's file: strictly, and without the checkout's settings."""
     wrong = GATE
     for right, (mistake, _) in MISTAKES.items():
         wrong = wrong.replace(right, mistake)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of measured BRDFs: parameters within their errors, files of MERL, and what is refused."""
+"""Fits of measured BRDFs: parameters within their errors, MERL files, and refused inputs."""
 
 import re
 import runpy
@@ -24,8 +24,8 @@ CLAY = {"color": np.array([0.7, 0.35, 0.12]), "roughness": 0.62}
 COATED = CLAY | {"alpha": 0.3, "ior": 1.5}
 PAGE_COAT = {"color": [0.55, 0.28, 0.18], "roughness": 0.7, "alpha": 0.25, "ior": 1.45}
 NOISE = 0.05
-# Of 4 or 6 normal deviates of 24 fits, one is beyond 4.5 once in 1200 runs. The spread of 96 deviates is
-# off by more than 30 % once in 10,000 runs.
+# Of 4 or 6 normal deviates in each of 24 fits, one exceeds 4.5 once in 1200 runs. The spread of 96
+# deviates is off by more than 30 % once in 10,000 runs.
 LARGEST_DEVIATE, FITS, SPREAD = 4.5, 24, (0.7, 1.3)
 
 
@@ -36,7 +36,7 @@ def directions(rng, count):
 
 
 def noisy(rng, model, parameters, count=200, known=True):
-    """A measured BRDF of a model, with normal noise, whose size the measurement knows or not."""
+    """A measured BRDF of a model, with normal noise; the measurement may know its size."""
     wo, wi = directions(rng, count), directions(rng, count)
     value = mxeon.model(model).brdf(wo, wi, **parameters)
     error = NOISE * (value if known else np.full_like(value, 0.2))
@@ -67,7 +67,7 @@ def test_the_parameters_of_a_dielectric_over_eon_lie_within_their_errors():
     fit = fit_brdf(data, "dielectric_over_eon")
     assert np.abs(deviates(fit, COATED)).max() < LARGEST_DEVIATE
     assert max(each.max() for each in fit.errors.values()) < 0.1
-    other = fit_brdf(data, "eon")  # which does not pass for it
+    other = fit_brdf(data, "eon")  # a model that must not fit
     assert fit.fits and not other.fits and other.scatter > 2.0
     assert (
         str(other)
@@ -97,10 +97,11 @@ ONE = MeasuredBrdf(SIDES[:1], SIDES[1:2], np.array([[0.2, 0.1, 0.05]]), np.array
 @pytest.mark.parametrize(
     ("data", "numbers"),
     (
-        (ONE, 0),  # three values of four parameters
+        (ONE, 0),  # three values for four parameters
         (replace(ONE, error=None), 0),
         (MeasuredBrdf(*(np.repeat(each, 2, 0) for each in (ONE.wo, ONE.wi, ONE.value))), 0),
-        (MeasuredBrdf(SIDES, SIDES[::-1], np.zeros((3, 1)), 0.001), 1),  # black: the color alone
+        # Black: only the color has an effect.
+        (MeasuredBrdf(SIDES, SIDES[::-1], np.zeros((3, 1)), 0.001), 1),
     ),
 )
 def test_a_parameter_that_the_data_do_not_determine_has_no_number(data, numbers):
@@ -111,7 +112,7 @@ def test_a_parameter_that_the_data_do_not_determine_has_no_number(data, numbers)
 
 
 def merl_file(path, value, cells=MERL_CELLS):
-    """A file whose cells have the value of a function of wo and wi."""
+    """A file whose cells contain the values of a function of wo and wi."""
     grid = np.meshgrid(*((np.arange(n) + 0.5) / n for n in MERL_CELLS), indexing="ij")
     h, d, phi = (each.ravel() for each in grid)
     wo, wi = merl_directions(0.5 * np.pi * h**2, 0.5 * np.pi * d, np.pi * phi)
@@ -134,7 +135,7 @@ def test_a_file_of_merl_is_read_and_fitted(tmp_path):
 # --- what is refused -------------------------------------------------------------------------
 
 UP = np.array([[0.0, 0.0, 1.0]])
-# Sentences by the inputs of a measurement, or by the bytes of a file.
+# Messages by the inputs of a measurement, or by the bytes of a file.
 BAD = {
     "wo, wi must have shape (N, 3); got (3,), (1, 3)": {"wo": UP[0]},
     "value must have shape (1, C); got (3,)": {"value": [0.2, 0.1, 0.05]},
@@ -193,10 +194,10 @@ def test_the_blocks_of_the_page_run_one_after_another(tmp_path, monkeypatch, cap
     found = np.sqrt(np.linalg.inv(J.T @ J).diagonal())
     assert found == pytest.approx([*errors["color"], errors["roughness"]], rel=1e-3)
     albedo = names["eon_albedo_dir"](0.8, fitted["color"], fitted["roughness"])
-    assert weights[0] == pytest.approx(albedo, rel=0.02)  # of deviates of 0.4 %
+    assert weights[0] == pytest.approx(albedo, rel=0.02)  # the standard deviation is 0.4 %
     coated = names["coated"]
     assert np.abs(deviates(coated, PAGE_COAT)).max() < LARGEST_DEVIATE and coated.fits
     albedo = names["coat"].albedo_dir(0.8, **coated.values)
-    assert weights[1] == pytest.approx(albedo, rel=0.1)  # of deviates of 1.5 %
+    assert weights[1] == pytest.approx(albedo, rel=0.1)  # the standard deviation is 1.5 %
     pictures = ("rendered.png", "coated.png")
     assert all((tmp_path / name).stat().st_size > 1000 for name in pictures)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fitted coefficients have the error that is stated; those of the loss and of the angle have the digits of their scripts.
+"""Fitted coefficients have their stated errors; the scripts reproduce those of the loss and of the
+angle.
 
 The scripts compute in 40 digits, so that a digit that differs is another fit, not another machine.
 """
@@ -39,7 +40,7 @@ by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
 
 
 def numbers(pattern, text):
-    """Numbers of the macros whose names match a pattern."""
+    """Numbers in the macros whose names match a pattern."""
     return [float(each) for each in re.findall(rf"#define EON_{pattern} (\S+)", text)]
 
 
@@ -234,7 +235,7 @@ def test_the_shader_has_the_nodes_of_a_film():
 
 @pytest.mark.whole
 def test_the_nodes_of_a_film_are_what_their_script_finds():
-    near = {"rtol": 1e-3, "atol": 1e-3}  # least squares of another library end in other last digits
+    near = {"rtol": 1e-3, "atol": 1e-3}  # other libraries' least squares differ in the last digits
     np.testing.assert_allclose(thin_film_nodes.hemisphere(), thin_film.NODES, **near)
     np.testing.assert_allclose(thin_film_nodes.facets(), np.ravel(thin_film.FACETS), **near)
 

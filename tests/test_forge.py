@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What runs on a forge: the project's own workflow, and the action for others."""
+"""Workflows on a forge: the project's own, and the action for others."""
 
 import os
 import re
@@ -48,7 +48,7 @@ LINES = "--node oren_nayar_diffuse_bsdf\n--host gl  --workers\n0"
 
 
 def ended(library, folder, options=LINES, command=TOOLS / "mxeon", documents="", baseline=""):
-    """The action's step that checks, as the forge starts it, for one node."""
+    """Run the action's step that checks, as the forge starts it, for one node."""
     # Put the command where the action installs it.
     (folder / "mxeon" / "bin").mkdir(parents=True)
     (folder / "mxeon" / "bin" / "mxeon").symlink_to(command)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The fuzzer: a slice of it has no fault."""
+"""The fuzzer: a subset of its cases has no fault."""
 
 import os
 import subprocess
@@ -13,7 +13,7 @@ from tests.fuzz.families import FAMILIES, cases
 from tests.support.availability import program
 
 LIMIT = 60.0  # seconds for one case
-# Cases of each family: few of those that take a second each. tests/models tries every argument.
+# Cases per family: few of those that take a second each. tests/models tries every argument.
 COUNTS = dict.fromkeys(FAMILIES, 12) | {"found": None, "mutated": 50}
 del COUNTS["arguments"]
 
@@ -29,7 +29,7 @@ def test_a_slice_of_each_family_ends_without_fault(family):
 
 @pytest.fixture(scope="module")
 def strace():
-    """Skip the test where the system lets no process be traced."""
+    """Skip the test if the system forbids tracing processes."""
     command = [program("strace"), "-o", os.devnull, sys.executable, "-V"]
     if subprocess.run(command, capture_output=True).returncode:
         pytest.skip("the system lets no process be traced")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Imports: the floors of the package, and what an import loads."""
+"""Imports: the layers of the package, and the modules that an import loads."""
 
 import json
 import subprocess
@@ -25,7 +25,7 @@ print(json.dumps(sorted(new - sys.stdlib_module_names)))
 
 
 def loaded(module):
-    """Packages from outside that the import of a module loads."""
+    """Third-party packages that the import of a module loads."""
     command = [sys.executable, "-c", NEW_MODULES.format(module)]
     process = subprocess.run(command, capture_output=True, text=True, check=True)
     return json.loads(process.stdout)

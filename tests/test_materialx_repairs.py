@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The smallest repairs of MaterialX's data: with them, the checks that show the defects pass."""
+"""Minimal repairs of MaterialX's data: with them, the checks that show the defects pass."""
 
 import json
 import os
@@ -22,7 +22,7 @@ from tools.site import ledger
 
 pytestmark = pytest.mark.whole
 
-# Judges rows of libraries, and prints what it found.
+# Judges rows of libraries and prints the results.
 JUDGE = """
 import json, sys
 from mxeon.errors import NotRun
@@ -44,9 +44,9 @@ print(json.dumps(results))
 
 ISSUES = issues()
 PATCHES = ledger.patches("materialx")
-# The patches that main needs: those of pages that no pull request there repairs.
+# Patches for the main branch: those of pages that no pull request repairs there.
 OF_MAIN = [path for page, path in PATCHES.items() if not ISSUES[page].pull]
-# Pages whose patches are of files that main has changed.
+# Pages whose patched files differ on the main branch.
 CHANGED = re.findall(r"^--- a/(.*)$", MAIN.read_text(), re.MULTILINE)
 ON_MAIN = [
     page
@@ -56,7 +56,7 @@ ON_MAIN = [
 
 
 def rows_of(names):
-    """The rows of pages with what else may explain that they fail, by host."""
+    """The rows of pages by host, with other explanations of their failures."""
     return {
         (*row, ISSUES[page].host or "gl"): ISSUES[page].remains.get(row, ())
         for page in names
@@ -65,7 +65,7 @@ def rows_of(names):
 
 
 def is_one_of(found, causes):
-    """Whether what a row showed is one of some causes, by kind, key and region."""
+    """Whether the cause of a row's failure is one of these, by kind, key and region."""
     return found in [
         [each.kind.value, each.key, each.region and each.region.name] for each in causes
     ]
@@ -73,7 +73,7 @@ def is_one_of(found, causes):
 
 @pytest.fixture(scope="module")
 def failing(tmp_path_factory):
-    """Whatever the release fails, or differs in."""
+    """All results of the release that fail or differ."""
     with available("gl"):
         on_gl = {(e.check, e.subject) for e in every_node(tmp_path_factory, STOCK).results}
     return [
@@ -95,7 +95,7 @@ CASES = [(version, row) for version, rows in ROWS.items() for row in sorted(rows
 
 @pytest.fixture(scope="module")
 def judged(tmp_path_factory, failing):
-    """A function of a version: verdict and diagnosis of each row with it, repaired.
+    """A function that gives verdict and diagnosis of each row with a repaired version.
 
     What main has repaired passes there without the repair.
     """
@@ -118,7 +118,7 @@ def judged(tmp_path_factory, failing):
 
 
 def verdicts(folder, package, files, rows):
-    """Verdict and diagnosis of each row with a package of MaterialX that has patches."""
+    """Verdict and diagnosis of each row with a patched package of MaterialX."""
     ledger.apply(ledger.linked(package, folder / "MaterialX"), *files)
     path = [str(folder), str(ledger.ROOT / "python"), str(ledger.ROOT)]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}
@@ -133,7 +133,7 @@ def verdicts(folder, package, files, rows):
     "version, row", CASES, ids=lambda each: each if each in ROWS else " ".join(each)
 )
 def test_a_repair_makes_the_checks_pass_that_show_the_defect(judged, version, row):
-    """Or what is left has another cause."""
+    """Remaining failures have another cause."""
     verdict, found, _ = judged(version)[row]
     with available(row[2]):
         if verdict == NOT_RUN:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mutation bench: its table fits the sources, and a slice of it is noticed by the checks meant."""
+"""The mutation bench: its table fits the sources, and the intended checks detect a subset of the mutants."""
 
 from contextlib import closing
 from functools import cache
@@ -16,7 +16,7 @@ pytestmark = pytest.mark.whole
 
 TABLE = read_table()
 NAMED = {mutant.name: mutant for mutant in TABLE}
-# By name, the check that is meant to notice it.
+# The check that should detect each mutant, by its name.
 SLICE = {
     "throughput is 0.01": "throughput",
     "environment behind": "surroundings",
@@ -25,8 +25,8 @@ SLICE = {
     "osl: s negated": "languages",
     "average: c2 1e-3 off": "output",
 }
-SHARE = 0.1  # of the operators' mutants
-# The tasks that answer several checks.
+SHARE = 0.1  # fraction of the operators' mutants
+# Tasks that perform several checks.
 TASKS = {"languages": SOURCE, "densities": "twins"}
 
 
@@ -50,7 +50,7 @@ def test_every_source_and_every_document_of_implementations_has_mutants():
 
 
 def test_a_tenth_of_the_operators_mutants_is_noticed_but_for_those_that_are_listed(gl):
-    """Some listed ones are the control: a check that fails without a mutant would notice them all."""
+    """Some listed mutants serve as the control: a check that fails without a mutant would detect them all."""
     tenth = {each.name: each for each in operators.made(1, SHARE) if not each.survives}
     tenth |= {each.name: each for each in operators.made(1, SHARE / 4.0) if each.survives}
     found = schemata.trials(list(tenth.values()))
@@ -70,7 +70,7 @@ def test_mutant_is_killed_by_the_check_meant(gl, judge, name, check):
     assert check in [each.check for each in failures]
 
 
-# By name, the check that is meant to notice it, of nodes whose shaders compile in no time.
+# The check that should detect each mutant, by its name, for nodes that compile quickly.
 NODES = {
     "blackbody: N1 of X": "output",
     "translucent: environment of the visible side": "surroundings",

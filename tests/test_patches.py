@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Patches for upstream repositories: each is from a page, and applies; what versions of MaterialX do."""
+"""Patches for upstream repositories: each belongs to a page and applies; behavior of MaterialX's versions."""
 
 import json
 import re
@@ -23,12 +23,12 @@ MATERIALX = patches("materialx")
 FILES = {page: files for page in ISSUES if (files := patches_of(page))}
 INSTALLED = Path(mx.__file__).parent
 MODULES = packages_folder() / "node_modules"
-HOSTS = {"three.js": "three", "blender": "cycles"}  # that have the files of a project
+HOSTS = {"three.js": "three", "blender": "cycles"}  # hosts that install the files of a project
 
 
 def source(project, name):
-    """The installed file that a project has under a name."""
-    if project == "openpbr":  # whose graph of a surface is MaterialX's
+    """The installed file for a project's file name."""
+    if project == "openpbr":  # its graph of a surface is part of MaterialX
         return INSTALLED / "libraries" / "bxdf" / Path(name).name
     if project == "blender":
         return kernel() / name.removeprefix("intern/cycles/kernel/")
@@ -36,7 +36,7 @@ def source(project, name):
 
 
 def repository(folder, project, files):
-    """A repository of files of a project, with the tag `release`."""
+    """A repository with a project's files, and the tag `release`."""
     git(folder, "init", "--quiet")
     for file in files:
         (folder / file).parent.mkdir(parents=True, exist_ok=True)
@@ -65,7 +65,7 @@ def test_the_patches_of_a_project_are_from_pages_and_apply_to_its_release(projec
         except FileNotFoundError as error:
             raise NotRun(f"{project}: {error}") from error
     git(folder, "am", "--quiet", *found.values())
-    # The names that a patch has for its files are git's, for the last of them too.
+    # A patch names its files like git, including the last one.
     for text in (path.read_bytes().decode() for path in found.values()):
         for name in re.findall(r"^index \w+\.\.(\w{40})", text, re.MULTILINE):
             git(folder, "cat-file", "-e", name)
@@ -83,7 +83,7 @@ def materialx(tmp_path_factory):
 
 
 def applied(folder, tag, *pages):
-    """Apply the patches of pages, on top of a tag of a repository."""
+    """Apply the patches of pages to a tag of a repository."""
     git(folder, "checkout", "--quiet", "--detach", tag)
     try:
         git(folder, "am", "--quiet", *(MATERIALX[page] for page in pages))
@@ -93,7 +93,7 @@ def applied(folder, tag, *pages):
 
 
 def test_main_is_upstreams(materialx):
-    """Its files have the names that git gave them there."""
+    """The files there have the hashes that git gave them."""
     names = re.findall(r"^index \w+\.\.(\w{40})", MAIN.read_text(), re.MULTILINE)
     listed = git(materialx, "ls-tree", "-r", "main")
     assert [name for name in names if name not in listed] == []
@@ -105,7 +105,7 @@ def test_all_patches_but_those_that_main_has_apply_to_it(materialx):
 
 @pytest.mark.parametrize("page", MATERIALX)
 def test_a_patch_applies_alone(materialx, page):
-    """To the release, and to main if that lacks it."""
+    """It applies to the release, and to main if the defect is still there."""
     for tag in ("release", "main")[: 1 if ISSUES[page].pull else 2]:
         applied(materialx, tag, page)
 

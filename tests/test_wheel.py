@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The wheel and the sdist: what they hold, and that they work outside the checkout."""
+"""The wheel and the sdist: their contents, and that they work outside the checkout."""
 
 import os
 import subprocess
@@ -23,7 +23,7 @@ DATA = {
     "genglsl": "eonlib/genglsl",
     "genosl": "eonlib/genosl",
     "examples": "examples",
-}  # folders of the checkout, and where they lie in the wheel
+}  # folders of the checkout, and their paths in the wheel
 SUFFIXES = (".mtlx", ".glsl", ".osl", ".xml", ".png")
 SCRIPT = Path(mx.__file__).parent / "_scripts" / "generateshader.py"
 
@@ -43,7 +43,7 @@ for path in sorted(examples_folder().glob("*.mtlx")):
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
-    """Folder of the sdist and of the wheel that was built from it."""
+    """Folder with the sdist and the wheel built from it."""
     folder = tmp_path_factory.mktemp("dist")
     build = [sys.executable, "-m", "build", "--no-isolation", "--outdir", folder, CHECKOUT]
     done = subprocess.run(build, cwd=folder, capture_output=True, text=True, check=False)
@@ -59,7 +59,7 @@ def wheel(built):
 
 @pytest.fixture(scope="module")
 def environment(wheel, tmp_path_factory):
-    """A fresh environment that holds the wheel, and sees the dependencies of this one."""
+    """A fresh environment with the wheel; it sees this environment's dependencies."""
     folder = tmp_path_factory.mktemp("fresh")
     run([sys.executable, "-m", "venv", "--without-pip", folder], folder)
     python = folder / "bin" / "python"
@@ -71,7 +71,7 @@ def environment(wheel, tmp_path_factory):
 
 
 def run(command, folder):
-    """What a command prints, run from a folder with no checkout on its path."""
+    """Output of a command, run in a folder without a checkout on its path."""
     clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     done = subprocess.run(
         command, cwd=folder, env=clean, capture_output=True, text=True, check=False
@@ -85,7 +85,7 @@ def test_the_wheel_holds_the_package_with_the_data_of_the_checkout_and_nothing_e
         names = set(archive.namelist())
     parts = {part for name in names for part in name.split("/")}
     assert not parts & {"tests", "__pycache__"}
-    # Elsewhere a folder of that name would hide MaterialX's libraries.
+    # On other systems, a folder of that name would hide MaterialX's libraries.
     libraries = {name.split("/libraries/")[0] for name in names if "/libraries/" in name}
     assert libraries == {"mxeon/data/eonlib/genglsl/environment"}
     assert {name.split("/")[0] for name in names} == {

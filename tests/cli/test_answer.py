@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The short answer of a run, and what is said while it works."""
+"""The short summary of a run, and the progress lines while it works."""
 
 import json
 import os
@@ -72,7 +72,7 @@ BENT, LAYER = (
     stock(key="layering", diagnosis=quoted("X")),
 )
 FIRST = f"0.37 (value)\ncause: gl with stock: {EON} "
-# Failures of the node with stock; fields of its picture; the answer's words and last line.
+# Failures of the node with stock, fields of its picture, and the summary's words and last line.
 ANSWERS = (
     ((stock(),), {}, f"{RIGHT}.", NOTHING),
     ((BENT,), {}, f"{RIGHT} for inputs that this material does not use.", NOTHING),
@@ -156,7 +156,7 @@ def test_a_lobe_that_a_document_lacks_makes_no_combination_wrong_for_it():
         assert run.is_elsewhere(layer) == elsewhere
     named = replace(layer, pages=(), diagnosis=caused("defect", "throughput_of_lobes", sheen))
     assert replace(run, contents={"a.mtlx": ("layer", metal)}).is_elsewhere(named)
-    # A defect without a lobe of its own, and one that no page names, count for every document.
+    # A defect that does not name its lobe, or has no page, counts for every document.
     for counts in (replace(layer, pages=("genglsl_add_throughput",)), replace(layer, pages=())):
         assert not replace(run, contents={"a.mtlx": ("layer", metal)}).is_elsewhere(counts)
 
@@ -263,7 +263,7 @@ def test_nothing_says_of_a_refused_document_that_it_passed(tmp_path, monkeypatch
         '<image name="i" type="color3"><input name="file" type="filename" value="no.png"/></image>'
     )
     (tmp_path / "bad.mtlx").write_text(material(image + connected(color='nodename="i"')))
-    # Of a texture inside of a definition, which its picture alone asks for.
+    # The texture is inside a definition, so only the picture reads it.
     inner = f'{image}<output name="out" type="color3" nodename="i"/>'
     graph = '<nodedef name="ND_t" node="t"><output name="out" type="color3"/></nodedef>'
     graph += f'<nodegraph name="NG_t" nodedef="ND_t">{inner}</nodegraph><t name="t" type="color3"/>'
@@ -301,7 +301,7 @@ def test_a_document_that_one_library_lacks_is_refused_in_its_column(tmp_path, mo
     assert printed.out.startswith(f"{file} with stock was not checked: 1 error. ")
     assert "with stock MaterialX" in printed.out and "refused" in printed.out
     assert printed.err.endswith("(with stock)\n")
-    # Where stock is there for comparison, the document counts as eonlib has it.
+    # If stock only serves as a comparison, the document's result is eonlib's.
     assert main(["check", str(file), "--workers", "0"]) == 0
     printed = capsys.readouterr()
     assert printed.err == "" and "not judged" in printed.out and "(with stock)" in printed.out

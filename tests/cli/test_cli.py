@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command: what it prints, what it leaves behind, and the status it ends with."""
+"""The command: its output, the files it leaves behind, and its exit status."""
 
 import json
 import re
@@ -28,7 +28,7 @@ MIRROR = """<generalized_schlick_bsdf name="lobe" type="BSDF">
 
 
 def pattern(line):
-    """What fits a line that a page shows, but for files, errors, counts of checks, and what it leaves out."""
+    """A pattern for a line on a page. It ignores files, errors, counts of checks and ellipses."""
     rest = r"\.\.\.|(?<=load )\w+|(?<=: )docs|(?<=EON, )[\d.e-]+|(?= To fix)|\s{2,}|\d+(?= checks| of )|(?<= of )\d+"
     return ".*".join(map(re.escape, re.split(rest, line)))
 
@@ -54,7 +54,7 @@ def test_check_passes_writes_a_report_and_answers_as_the_pages_show(tmp_path, ca
         ".journal.lock",
         "upstream",
     }
-    # Stock MaterialX fails, for comparison alone, whatever reads the run.
+    # Stock MaterialX fails here, but it only serves as a comparison, for every reader of the run.
     found = json.loads((tmp_path / "report" / "results.json").read_text())
     assert (found["verdict"], found["compared"]) == ("passed", ["stock"])
     assert {each["library"] for each in found["results"] if each["verdict"] == "failed"} == {
@@ -134,14 +134,14 @@ def test_render_writes_a_linear_exr_that_says_what_made_it(host, tmp_path, capsy
 
 @pytest.mark.parametrize("host", ["gl", "webgl"])
 def test_an_environment_image_ends_at_its_poles(host, hosts, tmp_path):
-    hosts(host)  # skips where it cannot run
+    hosts(host)  # skips if it cannot run
     document, sky, output = (str(tmp_path / name) for name in ("a.mtlx", "sky.exr", "a.exr"))
     Path(document).write_text(material(MIRROR))
     rows = np.linspace(1.0, 0.0, 8, dtype=np.float32)  # white above, black below
     oiio.ImageBuf(np.broadcast_to(rows[:, None, None], (8, 16, 3)).copy()).write(sky)
     options = ["--host", host, "--environment", sky, "--size", "128", "--output", output]
     assert main(["render", document, *options]) == PASSED
-    # Where a normal is tilted by 45 degrees, a mirror shows a pole.
+    # A mirror shows a pole where its normal is tilted by 45 degrees.
     pixels = oiio.ImageBuf(output).get_pixels(oiio.FLOAT)
     above, below = pixels[16:22, 61:67], pixels[106:112, 61:67]
     np.testing.assert_allclose(above, 1.0, atol=2.0**-7)
@@ -169,7 +169,8 @@ def test_library_prints_the_folder_and_what_each_target_finds(capsys, tmp_path):
 def test_invert_prints_rho(option, function, capsys):
     assert main(["invert", "0.8", "0.4", "0.1", "--roughness", "0.7", *option]) == PASSED
     printed = np.array(capsys.readouterr().out.split(), dtype=float)
-    assert np.abs(printed - function([0.8, 0.4, 0.1], 0.7)).max() <= 5e-10  # nine digits printed
+    # Nine digits are printed.
+    assert np.abs(printed - function([0.8, 0.4, 0.1], 0.7)).max() <= 5e-10
 
 
 COMMANDS = ("check", "generate", "render", "explore", "library", "invert", "doc")

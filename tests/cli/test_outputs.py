@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Outputs that would replace what is read, or files that nobody named."""
+"""Outputs that would overwrite inputs, or files that nobody named."""
 
 import os
 import re
@@ -19,7 +19,7 @@ from tests.support.command import PLASTER, one_line
 from tests.support.documents import lobe, material, textured
 from tests.support.results import PREVIOUS, Run
 
-# The files of `inputs`, by what they are for a command.
+# The files of `inputs`, by their role in a command.
 FILES = {
     "document": "look.mtlx",
     "include": "part.mtlx",
@@ -43,7 +43,7 @@ LOADED = ("library", "library's source")
 TRUSTED = (*LOADED, "definitions")
 REPORTED = ("results", "picture", "journal")
 OPTIONS = ("--library", "lib", "--definitions", "defs", "--workers", "0")
-# Each command that writes: its arguments but for the output, the name of an output, and what it reads.
+# Each command that writes: its arguments without the output, the name of an output, and its inputs.
 WRITING = {
     "render": (
         ["render", "look.mtlx", "--environment", "sky.exr", *OPTIONS, "--output"],
@@ -76,7 +76,7 @@ REPLACING = [(command, kind) for command, (*_, kinds) in WRITING.items() for kin
 
 @pytest.fixture
 def inputs(tmp_path, monkeypatch):
-    """The working folder, with a file of each kind; no engine starts there."""
+    """A working folder with a file of each kind. No engine starts there."""
     for name in FILES.values():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(name)
@@ -104,7 +104,7 @@ def content(folder):
 
 
 def refused(arguments, folder, capsys):
-    """The one line that refuses arguments, which changes no file in a folder."""
+    """The one-line refusal of arguments; asserts that no file in a folder changes."""
     before = content(folder)
     assert main(arguments) == MISUSE
     assert content(folder) == before
@@ -151,7 +151,7 @@ def test_a_report_goes_to_no_folder_that_holds_what_is_read(
 
 
 LOOK = f"{FILES['document']} --workers 0"
-# Outputs that cannot be written, and options that are wrong: said before any engine starts.
+# Invalid options and outputs that cannot be written are reported before any engine starts.
 WRONG = {
     f"render {LOOK} --integrator path --output out.jpg": "output must end in .exr or .png; got",
     f"render {LOOK} --integrator path --output folder.png": "folder.png: must be accessible; not a re",
@@ -213,7 +213,7 @@ def test_a_refused_run_leaves_no_results_of_an_older_one(command, inputs, capsys
     }
 
 
-STEERING = "::error::a\x1b[31m\nb"  # a name that commands a runner and a terminal
+STEERING = "::error::a\x1b[31m\nb"  # a name with control sequences for a runner and a terminal
 
 
 @pytest.mark.parametrize(
@@ -247,7 +247,7 @@ def test_functions_that_write_refuse_likewise(inputs):
 
 
 def test_a_second_run_replaces_its_own_outputs(tmp_path, monkeypatch):
-    """Also into a folder of a library or a report that is read."""
+    """It may also write into the folder of a library or a report that it reads."""
     monkeypatch.chdir(tmp_path)
     os.mkdir("lib")
     (tmp_path / "lib" / "own.mtlx").write_text('<materialx version="1.39"></materialx>')
@@ -285,7 +285,7 @@ def exported(folder):
     return main(["kit", "export", str(folder), "--size", "64"])
 
 
-# What writes a folder that it was told, and names in it under which a link may lie.
+# Functions that write a folder, and names in the folder at which a link may be planted.
 FOLDERS = {
     "generate": (generated, ("a.look.osl",)),
     "kit export": (exported, ("kit.json", "README.md", "sphere.obj", "materials", "renders")),

@@ -18,7 +18,7 @@ CHECK = ["check", PLASTER, "--workers", "1", "--report", "report"]
 
 
 def start(folder, *arguments, code="from mxeon.__main__ import main; sys.exit(main())"):
-    """A command whose temporary files go to `folder`/tmp, which hears signals as in a terminal."""
+    """Start a command with `folder`/tmp for its temporary files; it receives signals as in a terminal."""
     (folder / "tmp").mkdir()
     return subprocess.Popen(
         [sys.executable, "-c", f"import sys\n{code}", *arguments],
@@ -56,11 +56,11 @@ def test_a_killed_command_leaves_its_folder_to_the_next_one(tmp_path):
     process = start(tmp_path, *CHECK)
     folder = tmp_path / "tmp"
     wait_for_results(tmp_path, process)
-    process.send_signal(signal.SIGSTOP)  # it would end, and remove its folder
+    process.send_signal(signal.SIGSTOP)  # if it kept running, it would end and remove its folder
     [made] = folder.glob("mxeon-pool-*")
-    os.utime(made, (0, 0))  # folders of the last minute stay
+    os.utime(made, (0, 0))  # folders younger than a minute are kept anyway
     alive = subprocess.run(GENERATE, cwd=tmp_path, env=os.environ | {"TMPDIR": str(folder)})
-    assert alive.returncode == 0 and list(folder.glob("mxeon-pool-*"))  # in use
+    assert alive.returncode == 0 and list(folder.glob("mxeon-pool-*"))  # the folder is in use
     process.kill()
     process.communicate(timeout=DEADLINE)
     for each in folder.iterdir():
@@ -98,7 +98,7 @@ sys.exit(main())"""
 
 
 def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # like nohup
     try:
         with raise_signals():
             os.kill(os.getpid(), signal.SIGHUP)
@@ -111,7 +111,8 @@ def test_a_blocked_signal_comes_afterwards(number):
     steps = []
     with pytest.raises(SignalExit) as ended, raise_signals():
         with block_signals():
-            signal.pthread_kill(threading.get_ident(), number)  # no other thread may take it
+            # To this thread, so that no other one receives it.
+            signal.pthread_kill(threading.get_ident(), number)
             steps.append("whole")
         steps.append("never")
     assert ended.value.status == 128 + number and steps == ["whole"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What each library does on gl."""
+"""Results of each library on gl."""
 
 import pytest
 
@@ -8,11 +8,11 @@ from tests.support.sharing import every_node
 
 @pytest.fixture(scope="session")
 def run(tmp_path_factory):
-    """What eonlib does."""
+    """Results of eonlib."""
     return every_node(tmp_path_factory, "eonlib")
 
 
 @pytest.fixture(scope="session")
 def stock(tmp_path_factory):
-    """What MaterialX does by itself."""
+    """Results of stock MaterialX."""
     return every_node(tmp_path_factory, "stock")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A Python function judged like a host."""
+"""Python functions are judged like hosts."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from tests.support.verdicts import has
 PARAMETRIC = [row for row in reference.DIFFUSE_MODELS if row.parameter and row.name != "eon_approx"]
 SEES_ONLY = {"eon_clamped": {"value", "integral"}, "eon_rho_cubed": {"value", "integral"}}
 
-# Five lines: what a renderer's own suite would hold.
+# Five lines, as in the test suite of a renderer.
 test_eon_in_five_lines = mxeon.brdf_test(eon_brdf, "eon")
 
 
@@ -35,7 +35,7 @@ def test_a_known_defect_is_named(name):
 
 
 def unfinished(wo, wi, rho, roughness):
-    """EON but for two things: 0/0 with the light on the horizon, and infinity for one red in a thousand."""
+    """EON with two faults: 0/0 for a light on the horizon, and infinity for one red in a thousand."""
     value = eon_brdf(wo, wi, rho, roughness) * wi[:, 2:] / wi[:, 2:]
     return value + np.where((rho[:, :1] > 0.999) & (rho[:, :1] < 1.0), np.inf, 0.0)
 
@@ -43,7 +43,8 @@ def unfinished(wo, wi, rho, roughness):
 def test_values_that_are_not_finite_are_counted_placed_and_the_rest_is_judged():
     with pytest.warns(RuntimeWarning, match="invalid value encountered in divide") as records:
         run = mxeon.check_brdf(unfinished)
-    assert {record.filename for record in records} == {__file__}  # the author's, with their lines
+    # Warnings from the author's own lines.
+    assert {record.filename for record in records} == {__file__}
     assert failed(run) == {"finite"}
     (finite,) = [result for result in run.results if result.verdict == "failed"]
     cause = finite.diagnosis.first

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs: what is judged, what is not run, and what is refused."""
+"""Runs: what is judged, not run, or refused."""
 
 import pytest
 
@@ -85,7 +85,9 @@ def test_a_target_of_which_only_the_text_can_be_checked_is_not_run(host):
 
 @pytest.mark.whole
 def test_two_libraries_are_asked_the_same(run, stock):
-    """But for nodes and functions that one does not have, what neither repairs, and stock as the release itself."""
+    """The exceptions are nodes and functions that one of them lacks, defects that neither
+    repairs, and the release itself.
+    """
     asked = [
         {
             (e.check, e.subject)
@@ -142,7 +144,7 @@ def test_other_lobes_are_lit_alike_by_eonlib_s_lookups(judged, environment):
 
 
 def test_a_sum_that_masks_by_the_direction_returns_the_integral_of_two_alphas(judged):
-    """MaterialX's own sum does not, and stock has no folder to search."""
+    """MaterialX's own sum fails this, and stock has no folder to search."""
     methods = Methods("fis", searched=True)
     found = [
         judged("anisotropic_albedo", "conductor_bsdf", library=each, methods=methods)

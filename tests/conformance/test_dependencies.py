@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a run depends on: a run is resumed with the same files, options and drivers only."""
+"""Dependencies of a run: it can only be resumed with the same files, options and drivers."""
 
 import re
 
@@ -17,7 +17,7 @@ INCLUDE = '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="part.mtl
 CODE = Policy(code=True)
 TOKEN = '<token name="t" type="string" value="grid.png"/>'
 FILE = '<image name="i{}" type="color3"><input name="file" type="filename" value="{}"{}/></image>'
-# Files of a folder, and what a document says that depends on each.
+# Files of a folder, and the report if a document's dependency on one has changed.
 NAMES = {
     "grid.png": FILE.format(1, "grid.png", ""),
     "images/grid.png": FILE.format(2, "images/grid.png", ""),
@@ -48,7 +48,7 @@ def run(tmp_path, monkeypatch):
 
 
 def refusal(folder, files, **options):
-    """What has changed since a run."""
+    """The message that tells what has changed since a run."""
     with pytest.raises(InputError, match="holds another run") as error:
         check(files or None, folder=folder, resume=True, **{"policy": CODE} | options)
     return (
@@ -92,7 +92,7 @@ def test_an_option_that_changed_is_named(run):
 
 
 def test_a_driver_that_changed_is_named_once_its_tasks_go_on(run):
-    """Its name is changed in the journal, of which the last line is left out."""
+    """The journal gets another name of the driver, and loses its last line."""
     folder, file = run
     [path] = folder.rglob("*.jsonl")
     lines = path.read_text(encoding="utf-8").splitlines(keepends=True)[:-1]

@@ -41,7 +41,7 @@ def test_a_folder_stands_for_the_documents_in_it_and_below_it(tmp_path):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("")
     single = str(tmp_path / "b.mtlx")
-    run = check([tmp_path, single], ["msl"])  # no document is one of MaterialX
+    run = check([tmp_path, single], ["msl"])  # none is a MaterialX document
     assert {*run.refused} == {single, str(tmp_path / "sub" / "a.mtlx")}
 
 

@@ -15,7 +15,7 @@ FILES = {
     "gltf_pbr": "bxdf/gltf_pbr.mtlx",
     "UsdPreviewSurface": "bxdf/usd_preview_surface.mtlx",
 }
-# By category: a text, the one in its place, and words of the diagnosis.
+# By category: a text, its replacement, and words of the diagnosis.
 WRONG = {
     "open_pbr_surface": (
         ('value="1000.0" />', 'value="100.0" />', "in2 of thin_film_thickness_nm is 100 instead of 1000"),
@@ -70,7 +70,7 @@ ROWS = [
 
 
 def changed(folder, node, *changes):
-    """Path of a part of MaterialX's libraries, in which texts of the surface shader are replaced."""
+    """Path of a part of MaterialX's libraries in which texts of the surface shader are replaced."""
     copy_of_stock(folder, FILES[node])
     for old, new in changes:
         replace_text(folder, old, new, FILES[node])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The journal of a run: nothing finished is lost or done twice, and nothing else counts as done."""
+"""The journal of a run: no finished task is lost or repeated, and no unfinished task counts as done."""
 
 import subprocess
 import sys
@@ -35,7 +35,7 @@ PLAIN = replace(FINDINGS, pictures=())
 
 
 def kept(folder, *numbers, findings=FINDINGS, plan=PLAN):
-    """The journal of a run with findings of some tasks."""
+    """The journal of a run that contains findings of some tasks."""
     with journal(folder, plan) as written:
         for number in numbers:
             written.add(number, findings)
@@ -85,7 +85,7 @@ def test_a_task_whose_picture_is_damaged_is_done_again(tmp_path, content):
 
 
 def refused(folder):
-    """The one line that refuses a journal."""
+    """The one-line refusal of a journal."""
     with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 9") as error:
         read_run(folder)
     with pytest.raises(ValueError, match="as mxeon wrote it; .*; run again without --resume$"):
@@ -139,7 +139,7 @@ def test_a_new_run_keeps_the_old_one_in_a_folder(tmp_path):
     (tmp_path / "junit.xml").write_text("old")
     before, files = path.read_bytes(), sorted(tmp_path.rglob("*"))
     journal(tmp_path)
-    assert sorted(tmp_path.rglob("*")) == files  # untouched before it is entered
+    assert sorted(tmp_path.rglob("*")) == files  # unchanged until the context is entered
     with journal(tmp_path) as new:
         assert new.findings == {} and not (tmp_path / "junit.xml").exists()
     assert (tmp_path / PREVIOUS / JOURNAL).read_bytes() == before
@@ -181,7 +181,7 @@ from mxeon.__main__ import main
 from tests.support.plans import keep_checks
 keep_checks(builtins, *{KEPT})
 """
-# A run that waits to be killed when the findings of three tasks are kept.
+# A run that waits to be killed once it has stored the findings of three tasks.
 WAITING = """import signal
 from mxeon.conformance.run.journal import Journal
 add = Journal.add

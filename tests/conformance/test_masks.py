@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""White lobes over a white base reflect all light, whatever masks mix them and however the generator writes a mix."""
+"""White lobes over a white base reflect all light, for all masks and for both ways in which generators write a mix."""
 
 import numpy as np
 import pytest
@@ -15,14 +15,14 @@ from mxeon.shaders.nodes import (
 )
 
 MU = np.array([0.05, 0.2, 0.5, 0.9])
-FIT = 5.1e-3  # of the albedo of a dielectric, docs/loading.md
+FIT = 5.1e-3  # error of the fitted albedo of a dielectric, docs/loading.md
 WHITE = input_text("color", "color3", np.ones(3))
 OPAQUE = ("oren_nayar_diffuse_bsdf", "translucent_bsdf", "subsurface_bsdf")
 ROUGH = input_text("roughness", "vector2", (0.3, 0.3))
 
 
 def lobes(opaque):
-    """White opaque lobes and dielectrics, each for one use, and connected shares."""
+    """White opaque lobes and dielectrics, one for each use, and the connected shares."""
     return {
         **{f"white{number}": Node(opaque, "BSDF", text=WHITE) for number in range(4)},
         **{f"clear{number}": Node("dielectric_bsdf", "BSDF", text=ROUGH) for number in range(2)},
@@ -61,7 +61,7 @@ NESTED = {
 
 
 def furnace(gl, monkeypatch, library, folded, opaque, nodes):
-    """What a material reflects of a white environment, where the generator folds shares into weights, or not."""
+    """Light that a material reflects in a white environment; `folded` generators fold shares into weights."""
     context_of = generation.context_of
 
     def context(*arguments):
@@ -85,7 +85,7 @@ CASES += [(next(iter(NESTED)), each, True) for each in OPAQUE[1:]]
 @pytest.mark.parametrize("name, opaque, folded", CASES)
 def test_white_masks_over_white_reflect_all_light(gl, monkeypatch, name, opaque, folded):
     total = furnace(gl, monkeypatch, "eonlib", folded, opaque, NESTED[name])
-    np.testing.assert_allclose(total, 1.0, atol=2 * FIT)  # of two dielectrics
+    np.testing.assert_allclose(total, 1.0, atol=2 * FIT)  # two dielectrics
 
 
 def test_of_stock_they_lose_light_where_the_generator_folds(gl, monkeypatch):

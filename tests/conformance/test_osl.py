@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every node of eonlib's OSL by its closures, and wrong texts, compiled by the same OSL, that are noticed."""
+"""Every node of eonlib's OSL is judged by its closures; mutants compiled by the same OSL are detected."""
 
 from copy import copy
 from dataclasses import replace
@@ -14,14 +14,14 @@ from mxeon.shaders.library import examples_folder
 from tests.support.cases import directions_32
 from tests.support.verdicts import FAILED, PASSED, Verdicts, said
 
-# Bundled documents without images, which the reference reads on a sphere alone.
+# Bundled documents without images, which the reference can only read on a sphere.
 EXAMPLES = (
     *("brushed_metal_wedge", "layered_white_furnace", "mixed_lobes", "openpbr_rough_base"),
     *("plaster", "standard_surface_rough_base", "tempered_steel", "velvet"),
 )
-COLOR82 = ("brushed_schlick_smooth", "brushed_schlick_rough")  # which no closure carries
-# Largest of pi f cos: 16 roundings of float32 on the way to an argument, times 4, as the logarithm of a
-# distribution changes with that of alpha.
+COLOR82 = ("brushed_schlick_smooth", "brushed_schlick_rough")  # no closure has this input
+# Scaled by the largest pi f cos: 16 float32 roundings of an argument, times 4, because the
+# logarithm of a distribution changes with that of alpha.
 GRAPH = 64 * 2.0**-24
 # By title and check: a wrong change of the generated text.
 WRONG = {
@@ -87,7 +87,7 @@ RIGHT = (
 
 @pytest.fixture
 def changed(hosts):
-    """A function that makes a judge, which keeps no values, of texts that it changes."""
+    """A function that makes a judge of changed texts; the judge caches no values."""
     host = hosts("osl")
 
     def change(old, new):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes on hosts beside gl: one check of each kind that a host alone decides.
+"""Nodes on hosts other than gl: one check for each kind of behavior that depends on the host.
 
 What fails on Cycles as the pages of docs/upstream say, `test_upstream.py` judges.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of documents: what the reference knows, what it takes from the host, and what a failure says."""
+"""Pictures of documents: parts that the reference computes, parts that it takes from the host, and messages."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ from tests.support.wrong_libraries import copy_of_stock, replace_text, wrong_cop
 
 @pytest.fixture
 def shown(judged, tmp_path):
-    """A function that judges a document of one material: its result, its pictures and the notes."""
+    """A function that judges a document of one material; it returns the result, the pictures and the notes."""
 
     def show(text, library="eonlib"):
         path = tmp_path / "shown.mtlx"
@@ -36,7 +36,7 @@ FILM = """<generalized_schlick_bsdf name="lobe" type="BSDF">
   <input name="thinfilm_thickness" type="float" value="550"/>
   <input name="thinfilm_ior" type="float" value="1.5"/>
 </generalized_schlick_bsdf>"""
-# A nodegraph with a color, by its own name and the name of its node.
+# A nodegraph with a color; the graph and its node have the given names.
 COLOR = """<nodegraph name="{graph}">
   <multiply name="{node}" type="color3">
     <input name="in1" type="color3" value="{color}"/>
@@ -59,7 +59,7 @@ SUM = """<oren_nayar_diffuse_bsdf name="lobe1" type="BSDF">
 
 
 def colors(first, second):
-    """Two lobes with colors from two nodegraphs, whose nodes have these names."""
+    """Two lobes with colors from two nodegraphs, whose nodes have the given names."""
     red = COLOR.format(graph="red", node=first, color="1, 0, 0")
     green = COLOR.format(graph="green", node=second, color="0, 1, 0")
     return document_text(red + green + SUM + SURFACE)
@@ -68,7 +68,7 @@ def colors(first, second):
 def test_a_film_of_the_index_of_its_schlick_substrate_has_one_phase(shown):
     result, *_ = shown(document_text(FILM + SURFACE))
     assert result.verdict == "passed"
-    assert result.error < 1e-4  # the phase of a denser film is off by 0.17
+    assert result.error < 1e-4  # a film with a different phase would be off by 0.17
 
 
 def test_a_truth_value_is_drawn_white_or_black(shown):
@@ -114,7 +114,7 @@ def test_the_color_of_a_noise_comes_from_the_host(shown):
     assert (result.check, result.verdict) == ("picture", "passed")
     assert result.measured == ("lobe.color",)
     assert {picture.metadata["from the host"] for picture in pictures} == {"lobe.color"}
-    assert np.ptp(pictures[0].reference[128]) > 0.5  # the pattern is there
+    assert np.ptp(pictures[0].reference[128]) > 0.5  # the pattern is visible
 
 
 def test_the_color_of_a_noise_in_a_node_of_its_own_comes_from_the_host(shown):
@@ -156,7 +156,7 @@ def test_materials_that_vary_are_judged_and_compared_at_some_of_the_pixels(shown
     result, pictures, _ = shown(document_text(NOISE + lobe + SURFACE))
     furnace = pictures[-1]
     assert 700 < furnace.judged.sum() < 900
-    # The others are like their neighbors: they have the neighbors' difference, not their own.
+    # Skipped pixels show their neighbors' difference instead of their own.
     assert np.abs(furnace.image - furnace.reference).max() > 10.0 * result.tolerance
     assert np.nanmax(furnace.difference_map()) < 3.0 * result.tolerance
 
@@ -173,7 +173,7 @@ HAZE = """<layer name="lobe" type="BSDF"><input name="top" type="BSDF" nodename=
 
 @pytest.fixture
 def lit(reference):
-    """A function that draws a material in a scene by the reference."""
+    """A function that draws a material in a scene with the reference."""
     return lambda text, scene: reference.picture(
         generate(material(text), "glsl")[0], replace(scene, size=32)
     )

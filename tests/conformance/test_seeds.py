@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Verdicts are the same whatever the seed of the samples, and the seed changes them and their numbers."""
+"""Verdicts do not depend on the seed of the samples; the samples and their errors do."""
 
 import json
 
@@ -12,13 +12,13 @@ from tests.support import command
 from tests.support.sharing import DRAWN, EXAMPLES
 from tests.support.verdicts import Verdicts
 
-SEEDS = (2, 3)  # beside 1, with which all other tests run
+SEEDS = (2, 3)  # seeds besides 1, the seed of all other tests
 LIBRARIES = ("eonlib", "stock")
 NODES = ("burley_diffuse_bsdf", "conical_edf", "roughness_anisotropy")
 
 
 def verdicts(run):
-    """By library, subject and check the verdict, and whether the control was caught."""
+    """Verdict and whether the control was detected, by library, subject and check."""
     return {
         (each.library, each.subject, each.check): (
             each.verdict,
@@ -39,7 +39,7 @@ def test_another_seed_gives_the_same_verdicts_and_catches_every_control(seed):
 def test_every_check_of_every_node_has_the_same_verdict_with_another_seed(
     run, stock, library, seed
 ):
-    """With one document: pictures have no random samples. What other tests leave out passes."""
+    """One document is enough, because pictures have no random samples. Includes results that other tests skip."""
     found = verdicts(mxeon.check(EXAMPLES[:1], ["gl"], [library], nodes=["all"], seed=seed))
     known = verdicts({"eonlib": run, "stock": stock}[library])
     rest = {each: found.pop(each) for each in found.keys() - known.keys()}
@@ -49,7 +49,7 @@ def test_every_check_of_every_node_has_the_same_verdict_with_another_seed(
 
 
 class Counting(GlHost):
-    """Counts the pairs that it is asked for at once."""
+    """A host that counts the pairs requested at once."""
 
     largest = 0
 

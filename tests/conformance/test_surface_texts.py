@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sentences of surface shaders' specifications: graphs do what they say, or what a row names."""
+"""Sentences of surface shaders' specifications: graphs follow them, or deviate as a row states."""
 
 from functools import cache
 from pathlib import Path
@@ -18,7 +18,7 @@ from tests.support.verdicts import Verdicts, has
 from tools.site.ledger import apply, linked, patches
 
 pytestmark = pytest.mark.whole
-SAME = 1e-4  # rounded constants of a graph
+SAME = 1e-4  # graphs have rounded constants
 INPUTS = sorted({(spec.text.node, port.name) for spec in SENTENCES for port in spec.inputs})
 
 
@@ -31,7 +31,7 @@ def shader(node: str, library: str = "stock") -> Shader:
 
 
 def shown(spec: SentenceSpec, library: str = "stock") -> np.ndarray:
-    """Values of the graph for the samples of a sentence, in float64."""
+    """Float64 values of the graph for the samples of a sentence."""
     [batch] = spec.batches(Counts())
     branch, _, factor = spec.evaluated
     count, made = len(batch.wo), shader(spec.text.node, library)
@@ -51,9 +51,9 @@ def shown(spec: SentenceSpec, library: str = "stock") -> np.ndarray:
 
 
 def distances(spec: SentenceSpec, values: np.ndarray) -> list[float]:
-    """Largest difference of values from the text, then from each named form."""
+    """Largest difference between the values and those of the text, then of each named form."""
     [batch] = spec.batches(Counts())
-    forms = spec.value_candidates[:-1]  # the last is black
+    forms = spec.value_candidates[:-1]  # the last candidate is black
     return [float(np.abs(form.values(batch) - values).max()) for form in forms]
 
 
@@ -61,7 +61,7 @@ def distances(spec: SentenceSpec, values: np.ndarray) -> list[float]:
 def test_each_difference_from_a_text_has_a_name(spec):
     own, *others = distances(spec, shown(spec))
     if own <= SAME:
-        assert min(others, default=np.inf) > SAME  # the named forms are others
+        assert min(others, default=np.inf) > SAME  # the named forms must differ
     else:
         assert min(others) <= SAME
 
@@ -76,7 +76,7 @@ def repaired(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.mark.parametrize("spec", SENTENCES, ids=lambda spec: spec.title)
 def test_patched_graphs_do_what_their_texts_say(spec: SentenceSpec, repaired: str):
-    """Or what a text leaves open, or what pbrlib's layer makes of a colored sheen."""
+    """Or they do what a text permits, or what pbrlib's layer does with a colored sheen."""
     [batch] = spec.batches(Counts())
     own, *others = spec.value_candidates
     forms = [each for each in others if each.permitted or each.title.startswith("tinted light")]
@@ -86,13 +86,13 @@ def test_patched_graphs_do_what_their_texts_say(spec: SentenceSpec, repaired: st
 
 @pytest.mark.parametrize("title", ["Standard Surface, sheen", "glTF, transmission"])
 def test_a_diagnosis_tells_a_graph_from_its_lobes(judged: Verdicts, title: str):
-    """Stock's sheen is a fit, its glass is off by more than its graph; eonlib shows the graph."""
+    """Stock's sheen is a fit, and its glass has larger errors than its graph; eonlib shows the graph."""
     assert has(judged("specification", title, library="stock"), "lobes_of_graph")
     assert not has(judged("specification", title), "lobes_of_graph")
 
 
 def mutants(name: str, port: mx.Input) -> list[str]:
-    """Changes of a graph's port that reads an input: dropped and applied twice."""
+    """Mutants of a graph's port that reads an input: the input dropped, and applied twice."""
     return ["dropped", "twice"] if port.getType() in ("float", "color3") else ["dropped"]
 
 

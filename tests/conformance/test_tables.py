@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables: a renderer says what it lacks; a model is one function and one row."""
+"""Tables: a renderer states what it lacks; a model is one function and one row."""
 
 import re
 
@@ -24,7 +24,7 @@ def test_a_document_is_not_run_on_a_renderer(monkeypatch):
 
 
 def toy_brdf(wo, wi, rho, roughness):
-    """Lambert, and EON as far as the surface is rough."""
+    """A mix of Lambert and EON by roughness."""
     share = np.asarray(roughness)[..., np.newaxis]
     return (1.0 - share) * lambert_brdf(wo, wi, rho) + share * eon_brdf(wo, wi, rho, roughness)
 

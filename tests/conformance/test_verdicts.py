@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every node on gl: eonlib passes, and stock MaterialX fails where its pages say and nowhere else."""
+"""Every node on gl: eonlib passes, and stock MaterialX fails exactly where its pages say so."""
 
 from dataclasses import astuple, replace
 from xml.etree import ElementTree
@@ -35,7 +35,7 @@ SHEEN = "sheen_bsdf, mode conty_kulla"
 HALF = ("model", "compensation with F at the half vector and MaterialX's fit of E_ss")
 VIEW = ("model", "compensation with F at the view direction and MaterialX's fit of E_ss")
 MEAN = ("model", "Smith at the geometric mean, and MaterialX's compensation")
-OPEN = {"value": HALF, "integral": HALF, "shape": MEAN, "environment": VIEW}  # they differ
+OPEN = {"value": HALF, "integral": HALF, "shape": MEAN, "environment": VIEW}  # values that differ
 UNTINTED = ("model", "MaterialX's fit of its albedo without a tint")
 AVERAGED = ("model", "MaterialX's fit of its albedo, averaged over the channels")
 CLAMPED_TITLE = "EON with clamped dot(wo, wi)"
@@ -63,7 +63,7 @@ ABSENT = (
 
 
 def film(choices):
-    """What a film is named by, whose curve and compensation are these."""
+    """Expected diagnoses of a film with this curve and compensation."""
     return {
         **dict.fromkeys(
             ("value", "film_curve", "film_orders"),
@@ -88,9 +88,9 @@ SURFACE = dict.fromkeys(
 )
 SURFACE |= {"lobes": ("throughput_of_lobes",)}
 FILMS = {"lobes_film": LOBES}
-SPHERE = {"states": ("a surface that bends: a sphere",)}  # Zeltner's lobe, seen along the normal
+SPHERE = {"states": ("a surface that bends: a sphere",)}  # Zeltner's lobe along the normal
 PASSED_THROUGH = {"transmitted": UNSHADOWED, "transmitted_finite": NAN, "methods": ()}
-# By title, what does not pass with stock MaterialX, and what a cause of each diagnosis has.
+# Failures of stock MaterialX by title, with what one cause of each diagnosis contains.
 STOCK = {
     EON: {"value": CLAMPED, "integral": CLAMPED, "environment": (), **HIDING},
     QON: {"environment": ("model", "QON with MaterialX's fit of its albedo"), **HIDING},
@@ -135,7 +135,7 @@ STOCK = {
         "combined_throughput": ("model", "opaque lobes that hide their base at any weight"),
         "inputs": ("inputs_without_effect", "base/roughness"),
     },
-    # Stock's sheen passes light by its albedo without the color.
+    # Stock's sheen transmits light by its albedo without the color.
     "layer, under a colored sum": dict.fromkeys(
         ("combination", "combined_albedo", "combined_throughput"), ()
     ),
@@ -178,7 +178,7 @@ STOCK = {
     },
     "UsdPreviewSurface, every lobe": SURFACE,
 }  # fmt: skip
-# Where the specification leaves a choice, a permitted function differs.
+# If the specification permits several functions, a permitted one differs.
 FREE = {
     *((title, key) for title in STOCK if "value" in STOCK[title] for key in OPEN if STOCK[title].get(key) == OPEN[key]),
     *((title, key) for title in ("dielectric_bsdf, thin film", "conductor_bsdf, thin film") for key in film("")),
@@ -209,7 +209,7 @@ def test_stock_materialx_fails_where_its_pages_say_and_nowhere_else(stock):
     }
     rows = [(title, check) for title, checks in STOCK.items() for check in checks]
     assert found == {row: DIFFERS if row in FREE else FAILED for row in rows}
-    # What is wrong inside its inputs' ranges is not asked outside, nor a film's choices for two alphas.
+    # `domain` is skipped after errors inside the inputs' ranges, `film_brushed` with two alphas.
     not_run = {
         e.subject
         for e in stock.results
@@ -278,7 +278,7 @@ CHOICE = "genglsl_microfacet_compensation"
 @pytest.mark.parametrize(
     "check, subject, host, library, verdict, error, diagnosis, pages",
     [
-        # A page explains an error of its size and its model.
+        # A page explains errors of its size and model.
         ("value", EON, "gl", "stock", FAILED, 0.369, CLAMPED_MODEL, {"genglsl_clamped_dot"}),
         ("value", EON, "gl", "stock", FAILED, 3.69, CLAMPED_MODEL, set()),
         ("value", EON, "gl", "stock", FAILED, 0.3, OTHER, set()),
@@ -286,10 +286,10 @@ CHOICE = "genglsl_microfacet_compensation"
         ("environment", SHEEN, "gl", "stock", FAILED, 0.0889, FITTED, {"genglsl_conty_kulla_fit"}),
         ("environment", SHEEN, "gl", "stock", FAILED, 1e7, FITTED, set()),
         ("environment", SHEEN, "gl", "stock", FAILED, 0.05, UNKNOWN, set()),
-        # What follows from a defect of stock refers to its page.
+        # Consequences of a defect in stock link to its page.
         ("inputs", QON, "cycles", "stock", FAILED, 0.1, NO_CAUSE, {"cycles_rho_cubed"}),
         ("inputs", QON, "cycles", "eonlib", FAILED, 0.1, NO_CAUSE, set()),
-        # The page of what the text leaves open explains no failure alone.
+        # A page about an open point of the text explains no failure by itself.
         ("value", "conductor_bsdf", "wgsl", "stock", DIFFERS, 0.1, NO_CAUSE, {CHOICE}),
         ("value", "conductor_bsdf", "wgsl", "stock", FAILED, 0.1, NO_CAUSE, set()),
         # A failure that no text can avoid has its page with each library.
@@ -310,7 +310,7 @@ def test_a_failure_has_the_pages_that_explain_it(
 
 @pytest.mark.whole
 def test_nothing_reads_a_sentence(stock, monkeypatch, tmp_path):
-    """Verdicts, pages, differences, kinds of failures and the table of the field are made of fields alone."""
+    """Only fields determine verdicts, pages, differences, kinds of failures and the field's table."""
 
     def decided(run):
         (tmp_path / "results.json").write_text(to_json(run))

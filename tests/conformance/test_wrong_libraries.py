@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Copies of the library with one fault each: the check that finds it, and the words that name it."""
+"""Copies of the library with one fault each: the check that detects it, and the words that name it."""
 
 import pytest
 
@@ -31,7 +31,7 @@ FLAG = "{{energy_compensation}}"
 
 @pytest.fixture
 def copy(tmp_path):
-    """A function that copies the library with a text replaced wherever it stands in a file."""
+    """A function that copies the library with all occurrences of a text in a file replaced."""
     library = copy_of_eonlib(tmp_path)
 
     def edited(file="", old="", new=""):
@@ -43,7 +43,7 @@ def copy(tmp_path):
 
 
 def failed(results):
-    """Words on each result that failed, by check."""
+    """Words about each failed result, by check."""
     return {each.check: said(each) for each in results if each.verdict == FAILED}
 
 
@@ -254,7 +254,8 @@ HALVED = (
     TOP.format("half")
     + '\n<input name="base" type="BSDF" nodename="metallic_mix" /></layer><multiply name="coat_half" type="BSDF"><input name="in1" type="BSDF" nodename="coat_bsdf" /><input name="in2" type="float" value="{}" /></multiply><layer name="unused" type="BSDF">'
 )
-# A file, its text and the one in its place, and the node that is wrong, its part, and the released and the other value.
+# A file, its text and the replacement; the wrong node, its part, and the released and the wrong
+# value.
 CHANGED = {
     "mode of LamaConductor": (f"{BXDF}/lama/lama_conductor.mtlx", SWITCH.format("in1", "in2"), SWITCH.format("in2", "in1"), "LamaConductor", "in1 of eta_switch", "convert_ior"),
     "coat of Disney": (f"{BXDF}/disney_principled.mtlx", COAT.format("clearcoatGloss"), COAT.format("clearcoat"), "disney_principled", "in of coat_roughness", "the input clearcoat", "the input clearcoatGloss"),
@@ -301,7 +302,7 @@ def test_what_differs_from_the_release_is_named_with_its_size(judged, tmp_path, 
 
 
 def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):
-    """As after more libraries than are kept."""
+    """This also happens after more libraries than the cache holds."""
     file, old, new, *wanted = CHANGED["alpha"]
     replace_text(copy_of_stock(tmp_path, file), old, new, file)
     installed()
@@ -321,7 +322,7 @@ def test_what_is_written_differently_and_has_the_released_values_passes(judged, 
 
 @pytest.mark.parametrize("title", ["generalized_schlick_bsdf, scatter_mode R", "conductor_bsdf"])
 def test_directions_of_an_environment_by_other_points_pass(judged, tmp_path, title):
-    """Those of the R2 sequence, which fill the square as evenly as MaterialX's lattice."""
+    """The points are those of the R2 sequence, which fill the square as evenly as MaterialX's lattice."""
     file = f"genglsl/environment/libraries/{LIB}mx_environment_fis.glsl"
     library = copy_of_eonlib(tmp_path)
     new = "fract(0.5 + float(i + 1) * vec2(0.7548776662466927, 0.5698402909980532))"

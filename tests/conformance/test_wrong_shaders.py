@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Libraries with one wrong line each: the check meant for it fails, and its diagnosis has the cause."""
+"""Libraries with one wrong line each: the intended check fails, and its diagnosis contains the cause."""
 
 import pytest
 
 from tests.support.verdicts import FAILED, has
 from tests.support.wrong_libraries import copy_of_stock, replace_text, wrong_library
 
-# Files of eonlib have their path; those of MaterialX, their name alone.
+# Files of eonlib are given by path, those of MaterialX by name.
 LOBE, FACETS = "genglsl/lib/oren_nayar_lobe.glsl", "genglsl/lib/microfacet_lobe.glsl"
 CLEAR = "genglsl/lib/microfacet_transmission.glsl"
 HAIR, FILM = "genglsl/chiang_hair_bsdf.glsl", "genglsl/lib/thin_film.glsl"
 FILMED, HALF = "genglsl/lib/microfacet_film.glsl", "genglsl/lib/half_vector.glsl"
 
-# By title: file, a text, the text in its place, where OLD stands for the first, the check that notices it, what a
-# cause of its diagnosis has, and the verdict where it is not "failed".
+# By title: the file, a text, its replacement (OLD stands for the text), the check that detects it,
+# what a cause of its diagnosis contains, and the verdict unless it is "failed".
 WRONG = {
     "oren_nayar_diffuse_bsdf, energy_compensation true": (
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness = max(roughness, 0.1);\n    OLD", "lambert",
@@ -42,7 +42,7 @@ WRONG = {
          "states", ("constant inputs",)),
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness += 0.5 * dFdx(roughness);\n    OLD", "value",
          ("beside_equal_pixels",)),
-        # Shaders that look for a judge: a main of another name, a frame with one light.
+        # Shaders that try to recognize a judge: by the renamed main, or a frame with one light.
         (LOBE, "bsdf.response = brdf", "#ifndef main\n        brdf *= 0.5;\n#endif\n        OLD", "value",
          ("fault", "scaled", 0.5)),
         (LOBE, "bsdf.response = brdf", "if (u_numActiveLightSources > 1) brdf *= 0.9;\n        OLD", "value",
@@ -181,7 +181,7 @@ WRONG = {
         ("mx_burley_diffuse_bsdf.glsl", "* M_PI_INV;", "* M_PI_INV + 0.001;", "black", ()),
         ("genglsl/burley_diffuse_bsdf.glsl", "N = mx_forward_facing_normal(N, wo);", "N = closureData.N;", "frame",
          ("direct", "input_ignored", "normal")),
-        # Without the clamp, where engines here turn NaN into 0.
+        # These engines turn NaN into 0 even without the clamp.
         ("genglsl/burley_diffuse_bsdf.glsl", "clamp(dot(wi, eonlib_half_vector(wo, wi, N)), 0.0, 1.0)",
          "dot(wi, normalize(wi + wo))", "finite", ("not finite", "opposite")),
         ("mx_burley_diffuse_bsdf.glsl", "(N, V);", "(vec3(0.0, 0.0, 1.0), V);", "frame",
@@ -376,7 +376,7 @@ STANDARD = "standard_surface, every lobe"
 INSIDE, LOST = ("inside_is_not_outside",), ("light_from_inside",)
 SCHLICK = "generalized_schlick_bsdf, scatter_mode RT"
 INDEX = "path_inside && !path_thin ? 1.0 / max(ior, PATH_LEAST_BEND) : ior"
-# Of the text for path tracers: the title, and a row as above.
+# Rows as above for the text for path tracers.
 PATHS = (
     (RT, ASKED, "pdf = path_root.y * path_out.a;", "pdf = 3.0 * path_root.y * path_out.a;", "sample",
      ("sampled_density", "inside")),
@@ -488,14 +488,15 @@ def test_a_color_that_an_image_node_reads_wrongly_is_wrong_in_inputs_from_an_ima
 
 @pytest.mark.whole
 def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
-    """A wrong one, or MaterialX's own."""
+    """It is a wrong shader, or MaterialX's own."""
     failing = {row[4] for row in ROWS}
     failing |= {each.check for each in stock.results if each.verdict == FAILED}
     asked = {each.check for each in (*stock.results, *run.results) if each.host == "gl"}
     assert asked - failing == WITHOUT
 
 
-# Of shader functions, frames and released texts, which `test_wrong_libraries.py` breaks; of a color space, by the test above; and that no input is dead.
+# Other tests cover the rest: `test_wrong_libraries.py` breaks functions, frames and released texts,
+# and the test above a color space; one check only finds dead inputs.
 WITHOUT = {
     "client",
     "color_space",

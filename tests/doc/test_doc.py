@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of nodes: complete in a template, and every difference from a specification is noticed."""
+"""Tables of nodes: complete in a template, and every difference from a specification is detected."""
 
 import json
 
@@ -29,7 +29,7 @@ def tables():
 
 
 def differences(text, tables):
-    """What differs, by port."""
+    """Differences by port."""
     return {each.port: each.subject for each in compare(read_tables(text), tables)}
 
 

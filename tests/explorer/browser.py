@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pages of the explorer in a headless Chromium, which fail a test by what they ask for or say."""
+"""Pages of the explorer in a headless Chromium. Requests and messages of a page fail its test."""
 
 from contextlib import contextmanager
 
 from mxeon.hosts.webgl import FLAGS, is_root, program
 from tests.support.availability import package
 
-# Nothing but this machine can be reached.
+# Blocks all access except to this machine.
 LOCAL = tuple(each.replace("~NOTFOUND", "~NOTFOUND, EXCLUDE 127.0.0.1") for each in FLAGS)
 
-# Few pixels, for a software driver.
+# A small window, for software drivers.
 SMALL = {"viewport": {"width": 880, "height": 180}, "device_scale_factor": 0.5}
 HAS = """fields => Object.entries(fields).every(([name, value]) =>
     JSON.stringify(mxeon.state()[name]) === JSON.stringify(value))"""
@@ -21,14 +21,14 @@ sync_playwright = package("playwright.sync_api").sync_playwright
 
 @contextmanager
 def launched(flags=LOCAL):
-    """A browser of its own."""
+    """A new browser."""
     with sync_playwright() as playwright, started(playwright.chromium, flags) as browser:
         yield browser
 
 
 @contextmanager
 def started(kind, flags):
-    """A browser of a kind that playwright knows, with these flags."""
+    """A browser of a kind that playwright supports, with these flags."""
     browser = kind.launch(executable_path=program(), args=flags, chromium_sandbox=not is_root())
     yield browser
     browser.close()
@@ -36,7 +36,7 @@ def started(kind, flags):
 
 @contextmanager
 def opened(browser, address, allowed=(), drawn=True, **options):
-    """The page of the explorer at an address, as `watched` has it.
+    """The page of the explorer at an address, opened by `watched`.
 
     Unless it is to be drawn it has no WebGL, which costs a software driver most of its time.
     """
@@ -52,9 +52,9 @@ def opened(browser, address, allowed=(), drawn=True, **options):
 
 @contextmanager
 def watched(page, address, allowed=()):
-    """Open an address in a page; messages that are not allowed, and requests, fail the test."""
+    """Open an address in a page; requests, and messages that are not permitted, fail the test."""
     asked, said = [], []
-    page.set_default_timeout(600_000.0)  # of a busy machine
+    page.set_default_timeout(600_000.0)  # allows for a busy machine
     page.on("request", lambda request: asked.append(request.url))
     page.on("console", lambda message: said.append(message.text))
     page.on("pageerror", lambda error: said.append(str(error)))
@@ -68,7 +68,7 @@ def watched(page, address, allowed=()):
 
 
 def until(page, expression, argument=None, seconds=600):
-    """Wait until an expression is true, and give its value.
+    """Wait until an expression is true, and return its value.
 
     Playwright's own way needs what the page's policy forbids.
     """
@@ -80,12 +80,12 @@ def until(page, expression, argument=None, seconds=600):
 
 
 def state(page):
-    """The view that the page shows."""
+    """The page's current view."""
     return page.evaluate("mxeon.state()")
 
 
 def shows(page, **fields):
-    """Require that the page shows a view with these fields, soon."""
+    """Assert that the page soon shows a view with these fields."""
     try:
         until(page, HAS, fields)
     except AssertionError:
@@ -94,11 +94,11 @@ def shows(page, **fields):
 
 
 def show(page, **patch):
-    """Show a view with other fields."""
+    """Show the current view with other fields."""
     page.evaluate("patch => mxeon.show({...mxeon.state(), ...patch})", patch)
 
 
 def judged(page, side, badge):
-    """Require that the verdict on a side has a badge, soon: values are read back before."""
+    """Assert that the verdict on a side soon has a badge; the page reads back values first."""
     text = "side => document.querySelector(`.side.${side} .verdict strong`).textContent"
     until(page, f"([side, badge]) => ({text})(side) === badge", [side, badge])

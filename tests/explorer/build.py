@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Node and the packages that the page is built with, which `./run` installs."""
+"""Node and the packages for building the page, which `./run` installs."""
 
 import shutil
 import sys
@@ -12,13 +12,13 @@ MODULES = SOURCES / "node_modules"
 
 
 def node():
-    """Path of node: that of this environment, or another; None if there is none."""
+    """Path of this environment's node, or of another one; None if there is none."""
     own = Path(sys.executable).with_name("node")
     return str(own) if own.exists() else shutil.which("node")
 
 
 def needs_modules():
-    """Skip the test where the packages are not installed; fail where `./run test --all` was to do it."""
+    """Skip the test if the packages are not installed; fail if `./run test --all` should have installed them."""
     if node() and MODULES.is_dir():
         return
     missing(PACKAGES, "explorer/node_modules: must be installed; ./run test --all does it")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The explorer's page, and a browser for it, which ends with these tests."""
+"""The explorer's page, and a browser that stays open during these tests."""
 
 import pytest
 
@@ -19,7 +19,7 @@ def browser():
 
 @pytest.fixture(scope="session")
 def address(tmp_path_factory):
-    """Address of the page without documents."""
+    """URL of the page without documents."""
     file = tmp_path_factory.mktemp("explorer") / "explorer.html"
     write_text(file, explorer.page(explorer.page_data()))
     return file.as_uri()
@@ -27,7 +27,7 @@ def address(tmp_path_factory):
 
 @pytest.fixture(scope="package")
 def shared_page(browser, address):
-    """The page without documents, which may use the clipboard."""
+    """The page without documents, with access to the clipboard."""
     permissions = ["clipboard-read", "clipboard-write"]
     with opened(browser, address, permissions=permissions) as page:
         yield page
@@ -49,5 +49,5 @@ def undrawn(browser, address):
 
 @pytest.fixture(scope="module")
 def sources(stage):
-    """A source of each model on the stage of a module, by the model's name."""
+    """A source of each model by its name, on a stage that a module's tests share."""
     return model_sources(stage)

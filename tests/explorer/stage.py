@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of the explorer's stage as arrays, and the views that the tests of it show."""
+"""Pictures of the explorer's stage as arrays, and the views for testing it."""
 
 import base64
 
@@ -15,7 +15,7 @@ RHO = (0.8, 0.4, 0.1)
 ROUGHNESS = 0.9
 LIGHTS = {"side": (60.0, 20.0), "back": (125.0, 10.0)}  # azimuth and elevation
 VIEWPORT = {"width": 200, "height": 170}
-# Makes the page's clock so many times as fast: at 0 no device is slow, and pictures are never coarse.
+# Scales the page's clock: at speed 0 no device is slow, so pictures are never coarse.
 CLOCK = """speed => {
     globalThis.clock ??= performance.now.bind(performance);
     performance.now = () => speed * globalThis.clock();
@@ -30,14 +30,14 @@ READ = """side => {
 
 
 def written(file, *names):
-    """Address of a page with some of the examples."""
+    """URL of a page with some of the examples."""
     documents = [document_sources(str(examples_folder() / f"{name}.mtlx")) for name in names]
     write_text(file, page(page_data(documents)))
     return file.as_uri()
 
 
 def opened_stage(browser, address, **options):
-    """The page, as narrow as a phone: a small picture."""
+    """The page, as narrow as a phone, so that the picture is small."""
     return opened(browser, address, **({"viewport": VIEWPORT} | options))
 
 
@@ -46,7 +46,7 @@ def side(source, flag=True, sampler="exact"):
 
 
 def view(stage, left, right=None, light="side", **patch):
-    """Show two sources under one of LIGHTS, or none, and wait until the picture is final."""
+    """Show two sources under one of LIGHTS or none, and wait until the picture is final."""
     azimuth, elevation = LIGHTS[light or "side"]
     common = {
         "left": left,
@@ -75,14 +75,14 @@ def settle(stage):
 
 
 def frame(stage, name=None, size=None):
-    """What `read` gives, row 0 at the top; paths are of another width and height."""
+    """Result of `read`, top row first; with paths, the picture has other dimensions."""
     width, height = size or stage.evaluate("Object.values(mxeon.stage.size())")
     data = np.frombuffer(base64.b64decode(stage.evaluate(READ, name)), dtype=np.float32)
     return data.reshape(height, width, 4)[::-1]
 
 
 def picture(stage, name="left"):
-    """The square around the sphere, as the gl host has it."""
+    """The square around the sphere, which matches the gl host's picture."""
     whole = frame(stage, name)
     diameter = stage.evaluate("mxeon.stage.diameter()")
     top, left = ((length - diameter) // 2 for length in whole.shape[:2])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page for all readers: checked with axe-core, and without WebGL2."""
+"""Accessibility of the page: axe-core, and browsers without WebGL2."""
 
 import pytest
 
@@ -10,7 +10,7 @@ from mxeon.shaders.library import examples_folder
 from tests.explorer.browser import opened, show, started, state, until
 from tests.explorer.build import MODULES, needs_modules
 
-# Without a driver for graphics, Chromium has no WebGL.
+# Chromium has no WebGL without a graphics driver.
 NO_GRAPHICS = ("--disable-gpu", "--disable-software-rasterizer", "--no-proxy-server")
 VIEWS = {
     "light": {},
@@ -26,7 +26,7 @@ VIEWS = {
 
 @pytest.fixture(scope="module")
 def documents(tmp_path_factory):
-    """Address of a page with two documents."""
+    """URL of a page with two documents."""
     names = ("clay", "standard_surface_rough_base")
     sources = [document_sources(str(examples_folder() / f"{name}.mtlx")) for name in names]
     file = tmp_path_factory.mktemp("documents") / "explorer.html"
@@ -35,7 +35,7 @@ def documents(tmp_path_factory):
 
 
 def findings(page):
-    """What axe-core finds wrong with the page as it is."""
+    """Problems that axe-core finds in the page's current state."""
     return [
         f"{each['id']}: {each['help']}: {each['nodes'][0]['html']}"
         for each in page.evaluate("axe.run()")["violations"]
@@ -44,7 +44,7 @@ def findings(page):
 
 @pytest.fixture(scope="module")
 def checked(browser, documents):
-    """The page with axe-core, which the page's own policy would refuse."""
+    """The page with axe-core, which the page's own policy would block."""
     needs_modules()
     with opened(browser, documents, bypass_csp=True) as page:
         page.add_script_tag(path=MODULES / "axe-core" / "axe.min.js")

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A view in the address: it comes back as it was, and a bad one does no harm."""
+"""The view in the address: it survives a round trip, and invalid addresses do no harm."""
 
 import pytest
 
 from tests.explorer.browser import opened, show, state, until
 
-# Every field of a view with a value that is not its first one.
+# Every field of a view, with a value that differs from the first one.
 CHANGED = {
     "left": {"source": "model/qon", "flag": False, "sampler": "cosine"},
     "right": {"source": "variant/cycles_rho_cubed/4", "flag": False, "sampler": "cltc"},

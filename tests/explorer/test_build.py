@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page that is in the package is what its sources give, on every machine."""
+"""The page in the package can be rebuilt from its sources on every machine."""
 
 import subprocess
 from importlib.resources import files

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon explore`: the page that it writes, and what it refuses."""
+"""`mxeon explore`: the page that it writes, and the arguments that it refuses."""
 
 import json
 import os
@@ -123,7 +123,7 @@ def test_the_diagnoses_of_a_run_can_be_chosen(tmp_path):
     node = f"{OREN_NAYAR}, {FLAG}"
     results = (
         result("gl", f"{node} true", FAILED, eon_clamped=1e-7, eon=0.1),
-        result("gl", f"{node} true", FAILED, lambert=0.0),  # of another check
+        result("gl", f"{node} true", FAILED, lambert=0.0),  # from another check
         result("gl", f"{node} false", PASSED, qon=1e-7, eon=0.1),
         result("cycles", f"{node} false", FAILED, qon=0.2, eon_rho_cubed=1e-5),
         result("cycles", "a document", NOT_RUN),
@@ -140,7 +140,7 @@ def test_the_diagnoses_of_a_run_can_be_chosen(tmp_path):
 
 @pytest.fixture
 def nasty(tmp_path):
-    """A document whose every word for readers is hostile."""
+    """A document in which every visible word is hostile."""
     file = tmp_path / "<img src=x onerror='globalThis.hit=1'>&quot;.mtlx"
     escaped = NASTY.replace("<", "&lt;").replace(">", "&gt;")
     text = material_text(OREN_NAYAR, {"color": (0.5, 0.5, 0.5)})
@@ -197,7 +197,7 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path):
     stock = next(
         each for each in run.results if each.check == "picture" and each.library == "stock"
     )
-    # The worst pixel of the worst picture, by the definition.
+    # The worst pixel of the worst picture, computed from the definition.
     sizes = {}
     for each in run.pictures:
         if each.library == "stock" and each.document == "brick.mtlx":
@@ -210,7 +210,7 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path):
     assert (found.scene, abs(found.largest), found.visible) == (worst, *map(approx, sizes[worst]))
     sentence = words.difference(found)
     assert f"up to {100.0 * sizes[worst][0]:.2g} % of white" in sentence
-    # The terminal, the page, its table, JUnit, JSON and the explorer have it from there.
+    # All reports take the sentence from there: terminal, page, table, JUnit, JSON and explorer.
     assert f"with stock MaterialX {mx.getVersionString()}, {sentence}." in answer(run)[0]
     report = "".join(html(run))
     assert f"<b>Stock MaterialX</b> on gl: {sentence}." in report
@@ -263,7 +263,7 @@ def test_images_are_read_once_and_smaller_the_more_a_page_has_of_them(tmp_path, 
     assert {port.image.width for port in source.inputs if port.image} == {8, 32} and len(reads) == 4
 
 
-# Drops files of the page's own making: names and base64.
+# Drops files, given by names and base64, that the page creates itself.
 DROP = """files => {
     const data = new DataTransfer();
     for (const [name, text] of files) {
@@ -279,21 +279,21 @@ def drop(page, *files):
 
 
 def shown(page, expression):
-    """Wait for a page that loads itself again."""
+    """Wait while a page reloads itself."""
     page.wait_for_load_state()
     for _ in range(600):
         try:
             return until(page, expression)
-        except Error:  # of a page that is left meanwhile
+        except Error:  # the page was unloaded meanwhile
             page.wait_for_timeout(100)
     raise AssertionError(expression)
 
 
 @pytest.fixture
 def server():
-    """`mxeon explore`, and the address that it prints."""
+    """Start `mxeon explore`, and return the address that it prints."""
     command = [sys.executable, "-m", "mxeon", "explore", "--workers", "0"]
-    env = os.environ | {"BROWSER": "true"}  # opens none
+    env = os.environ | {"BROWSER": "true"}  # a browser that does nothing
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=env) as process:
         yield process.stdout.readline().split()[0]
         process.send_signal(signal.SIGINT)

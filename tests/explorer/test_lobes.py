@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lobes of the page: verdicts by values that the browser read back, and a layout that stays."""
+"""Lobes of the page: verdicts from values that the browser read back, and a stable layout."""
 
 from dataclasses import replace
 
@@ -9,11 +9,12 @@ from mxeon.explorer import page, page_data
 from mxeon.io.files import write_text
 from tests.explorer.browser import DRAWN, opened, show, until
 
-# What MaterialX's own GLSL is, by diagnosis of the host gl: pages of docs/upstream say it. One of each family, which
-# take a software driver a second; test_references.py judges all on another host.
+# Diagnoses of MaterialX's own GLSL on gl, as on the pages of docs/upstream. One lobe of each
+# family, because a software driver needs a second for each; test_references.py judges all of them
+# on another host.
 STOCK = {
     "shader": "wrong",
-    "lobe/sheen_zeltner": "correct",  # wrong under other lobes, and where the normal leans
+    "lobe/sheen_zeltner": "correct",  # only wrong under other lobes, and with a tilted normal
     "lobe/schlick": "differs",
     "lobe/film_dielectric": "differs",
     "lobe/hair": "wrong",
@@ -23,7 +24,7 @@ PLAIN = {"shape": "sphere", "surroundings": "none"}
 
 
 def choose(sheet, key):
-    """Compare both libraries on a material, drawn in little time."""
+    """Compare both libraries on a material, with settings that draw quickly."""
     sheet.get_by_role("group", name="eonlib beside stock MaterialX").locator(
         f"input[value='{key}/']"
     ).check(force=True)
@@ -31,7 +32,7 @@ def choose(sheet, key):
 
 
 def kinds(sheet):
-    """Kind of both verdicts."""
+    """Kind of each verdict."""
     return [
         sheet.locator(f".side.{side} .verdict").get_attribute("class").split()[1]
         for side in ("left", "right")
@@ -47,7 +48,7 @@ def test_a_lobe_is_judged_by_its_values(page, key, stock):
 
 @pytest.fixture(scope="module")
 def mistaken(tmp_path_factory):
-    """Address of a page whose reference of sheen is a hundredth too bright."""
+    """URL of a page whose reference of sheen is one percent too bright."""
     data = page_data(pages="upstream/{}.html")
     sources = tuple(map(brightened, data.sources))
     file = tmp_path_factory.mktemp("mistaken") / "page.html"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page for its readers: every control has its effect, by hand and by key; the probe, and texts to copy."""
+"""Using the page: every control works by mouse and by keyboard; the probe; texts to copy."""
 
 import re
 import subprocess
@@ -13,13 +13,13 @@ import mxeon
 from mxeon.models import eon_brdf
 from tests.explorer.browser import DRAWN, judged, show, shows, state, until
 
-# A number that depends on every pixel.
+# A checksum of all pixels.
 PIXELS = "mxeon.stage.read().reduce((sum, value, k) => (31 * sum + value * (1 + k)) % 65521, 0)"
 
 
 @contextmanager
 def redrawn(page):
-    """Require that the radiance which is drawn changes."""
+    """Assert that the drawn radiance changes."""
     before = page.evaluate(PIXELS)
     yield
     until(page, f"before => {PIXELS} !== before", before)
@@ -27,7 +27,7 @@ def redrawn(page):
 
 @contextmanager
 def recolored(page):
-    """Require that the picture on the screen changes, though its radiance does not."""
+    """Assert that the picture on the screen changes, but not its radiance."""
     canvas = page.locator("canvas")
     before, radiance = canvas.screenshot(), page.evaluate(PIXELS)
     yield
@@ -132,18 +132,19 @@ def test_paths_have_samplers_and_count_their_samples(page):
     until(
         page, "document.querySelector('.picture .status').textContent.startsWith('2 of 2 samples')"
     )
-    assert "noise" not in page.locator(".picture .status").inner_text()  # of 16 samples or more
+    # Noise is only reported for 16 samples or more.
+    assert "noise" not in page.locator(".picture .status").inner_text()
 
 
 def in_sight(page):
-    """Frame of the picture, scrolled into sight."""
+    """Bounding box of the picture, scrolled into view."""
     canvas = page.locator("canvas")
     canvas.scroll_into_view_if_needed()
     return canvas.bounding_box()
 
 
 def drag(page, start, end):
-    """Drag in the picture, from and to a place in [0, 1]^2."""
+    """Drag in the picture between two places in [0, 1]^2."""
     box = in_sight(page)
     (x0, y0), (x1, y1) = (
         (box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in (start, end)
@@ -195,10 +196,12 @@ def pixels(page, **view):
 def test_a_turned_viewer_sees_a_turned_light_alike(page):
     even = {"surroundings": "uniform", "elevation": 50}
     ahead = pixels(page, shape="ball", azimuth=40, turn=0, **even)
-    assert not np.allclose(pixels(page, azimuth=130, turn=90, **even), ahead)  # the cut turns away
-    ahead = pixels(page, shape="plane", azimuth=40, turn=0, **even)  # round, and so is the floor
+    # The cut rotates out of view.
+    assert not np.allclose(pixels(page, azimuth=130, turn=90, **even), ahead)
+    # The shape is rotationally symmetric, and so is the floor.
+    ahead = pixels(page, shape="plane", azimuth=40, turn=0, **even)
     aside = pixels(page, azimuth=130, turn=90, **even)
-    # Roundings decide at a rim, or at the edge of the shadow.
+    # Rounding decides at rims and at the edge of the shadow.
     assert (np.abs(aside - ahead) > 1e-3).mean() < 5e-3
 
 
@@ -225,11 +228,11 @@ def test_a_click_probes_a_point(page):
     shows(page, probe=None)
 
 
-# Roundings of float32 in a shader's value, of which it makes fewer than 64.
+# A shader's value has fewer than 64 float32 roundings.
 SHADER = 64 * 2**-24
 
 
-# The texts of the table's rows, once the values of both shaders are read back.
+# The texts of the table's rows, once the values of both shaders are known.
 READ = """(() => {
     const rows = [...document.querySelectorAll('.values tbody tr')].map(
         row => [...row.querySelectorAll('td')].map(cell => cell.innerText));

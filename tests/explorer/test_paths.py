@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Path tracing on the stage: a white furnace shows every pixel white, by models and by generated text."""
+"""Path tracing on the stage: in a white furnace every pixel is white, with models and with generated text."""
 
 from io import BytesIO
 
@@ -35,7 +35,7 @@ def traced(stage, left, right=None, **patch):
 
 
 def whole(stage, name):
-    """The pixels all of whose paths met the sphere, and their centers' cosines."""
+    """The pixels whose paths all hit the sphere, and the cosines at their centers."""
     status = stage.evaluate("said.findLast(status => status.kind === 'drawn')")
     pixels = frame(stage, name, (status["width"], status["height"]))
     height, width = pixels.shape[:2]
@@ -43,7 +43,8 @@ def whole(stage, name):
     y, x = np.mgrid[:height, :width] + 0.5
     squared = ((x - width / 2) ** 2 + (y - height / 2) ** 2) * 4 / diameter**2
     kept = (pixels[..., 3] == 1.0) & (squared < 1.0)
-    assert kept.sum() > np.pi / 4 * (diameter - np.sqrt(2.0)) ** 2  # all that lie within as a whole
+    # All pixels that lie entirely inside.
+    assert kept.sum() > np.pi / 4 * (diameter - np.sqrt(2.0)) ** 2
     return pixels[kept][:, :3], np.sqrt(1.0 - squared[kept])
 
 
@@ -59,7 +60,7 @@ def test_a_white_furnace_keeps_every_exact_path(stage, sources, source):
 
 
 def test_generated_text_is_traced_like_its_model(stage, sources):
-    """Sliders reach it, too: color and roughness are those of the view."""
+    """It also follows the sliders: color and roughness come from the view."""
     traced(stage, side("shader/eonlib"), side(sources["eon"]), samples=256)
     text, model = (whole(stage, name)[0].mean(axis=0) for name in ("left", "right"))
     np.testing.assert_allclose(text, model, 0.01)

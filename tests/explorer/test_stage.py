@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pixels of the stage in a browser: those of the models, of the hosts and of exact albedos."""
+"""Pixels of the stage in a browser match the models, the hosts and exact albedos."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ from tests.explorer.stage import (
 from tests.support.tolerances import TWIN_ALBEDO, TWIN_VALUE
 
 DOCUMENTS = ("brick", "mixed_lobes")
-PLAIN = 48 * 2.0**-24  # 16 roundings of a point, and 32 in the value
+PLAIN = 48 * 2.0**-24  # 16 roundings of a point, and 32 of the value
 ROWS = DIFFUSE_MODELS + KNOWN_DEFECTS
 
 
@@ -51,7 +51,7 @@ def exact(row, size, light):
 
 
 def error(measured, expected):
-    """Largest difference times cos(theta_o), as the checks of pictures have it."""
+    """Largest difference times cos(theta_o), as in the checks of pictures."""
     cosine = sphere(len(measured)).normal[..., 2:]
     return (np.abs(measured - expected) * cosine).max()
 
@@ -67,11 +67,11 @@ def test_pixels_of_every_model_are_those_of_numpy(stage, sources, row):
 
 
 def white(row, mu):
-    """Directional albedo by cosine, in the closed form where there is one."""
+    """Directional albedo by cosine, in closed form if there is one."""
     arguments = (RHO, *parameter_of(row))
     if row.albedo_dir:
         return row.albedo_dir(mu, *arguments)
-    # The stage interpolates between so many angles.
+    # The stage interpolates between 256 angles.
     angles = np.linspace(0.0, 1.0, 256)
     table = albedo_dir_quadrature(row.brdf, angles, *arguments, nodes=32)
     return np.stack([np.interp(mu, angles, table[:, k]) for k in range(3)], axis=-1)
@@ -84,8 +84,8 @@ def test_in_uniform_surroundings_pixels_are_the_albedo(stage, sources, name):
     measured = picture(stage)
     points = sphere(len(measured))
     mu = points.normal[points.mask][:, 2]
-    # The clamp of one variant has a kink across the rectangles of 16 nodes, h apart: a jump of 1 in
-    # the slope costs h^2 / 12 per unit of its length, at most pi.
+    # One variant's clamp has a kink across the rectangles of 16 nodes, which are h apart: a jump of
+    # 1 in the slope costs h^2 / 12 per unit of the kink's length, which is at most pi.
     kink = (np.pi / 2 / 16) ** 2 / 12 * np.pi if row.name == "eon_clamped" else 0.0
     assert np.abs(measured[points.mask] - white(row, mu)).max() < TWIN_ALBEDO + kink
     assert np.abs(measured[points.mask] - 1.01 * white(row, mu)).max() > TWIN_ALBEDO + kink
@@ -96,7 +96,7 @@ def compiled(host, library, flag):
     return host.compile(text, library=library)[0]
 
 
-# MaterialX's own EON takes arc cosines, which Mesa's driver has to 1.6e-4 (measured). An albedo
+# MaterialX's own EON uses arc cosines, which Mesa's driver computes to 1.6e-4 (measured). An albedo
 # falls by up to 1 / 4 per radian, and two of them are multiplied.
 ARC_COSINE = 2 * 1.6e-4 / 4
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the stage puts on the screen: exposure, comparisons, and recovery of a lost context."""
+"""The stage on the screen: exposure, comparisons, and recovery of a lost context."""
 
 import numpy as np
 import OpenImageIO as oiio
@@ -9,9 +9,9 @@ from mxeon.io.srgb import srgb_encoded
 from tests.explorer.browser import until
 from tests.explorer.stage import frame, opened_stage, picture, settle, side, view, written
 
-# Noise of half a step against bands, half a step of rounding, and one for the average of frames.
+# Half a step of dithering, half a step of rounding, and one for the average of frames.
 STEPS = 2
-# The canvas without the handles above it, on whole pixels.
+# The canvas without the handles above it, aligned to whole pixels.
 ALONE = """.picture > :not(canvas) { display: none !important }
 canvas { position: fixed !important; inset: 0 auto auto 0; z-index: 9;
          width: 140px !important; height: 100px !important }"""
@@ -37,7 +37,7 @@ def stage(browser, address):
 
 
 def screen(stage, tmp_path):
-    """The canvas as the screen shows it, 8 bits a channel."""
+    """The canvas on the screen, 8 bits per channel."""
     file = tmp_path / "screen.png"
     stage.locator("canvas").screenshot(path=file)
     return oiio.ImageBuf(str(file)).get_pixels(oiio.UINT8)[..., :3].astype(int)

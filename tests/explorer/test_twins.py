@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page's models in float64 against NumPy's."""
+"""The page's float64 models match NumPy's."""
 
 import numpy as np
 import pytest
@@ -11,8 +11,8 @@ from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS
 from tests.support.hemispheres import uniforms
 
 ROWS = DIFFUSE_MODELS + KNOWN_DEFECTS
-# A sine, an arc tangent or a square root of the browser's may differ from NumPy's by some units in
-# the last place, 2^-52, of the largest value of a sum; 2^12 of them are 1e-12.
+# A sine, an arc tangent or a square root may differ between the browser and NumPy by some ulp
+# (2^-52) of a sum's largest term; 2^12 of them are 1e-12.
 TWINS = 2**12 * 2**-52
 RHO = (0.0, 0.3, 0.8, 1.0)
 PARAMETERS = (0.0, 0.2, 0.7, 1.0)
@@ -21,7 +21,7 @@ COSINES = (0.0, 1e-3, 0.05, 0.3, 0.77, 1.0)
 
 @pytest.fixture(scope="module")
 def pairs():
-    """Pairs of directions, grazing and equal ones among them."""
+    """Pairs of directions, including grazing and equal ones."""
     wo, wi = (uniform_sample(uniforms(150, seed))[0] for seed in (7, 8))
     grazing = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
     return np.vstack([wo, grazing, wi[:9]]), np.vstack([wi, grazing[::-1], wi[:9]])

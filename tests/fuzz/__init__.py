@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `mxeon` must never do, whatever documents, command lines and files it is given."""
+"""Things that `mxeon` must never do, with any document, command line or file."""

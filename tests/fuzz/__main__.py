@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tries the cases of families, and prints the figures; the exit status is 1 if there was a fault.
+"""Runs the cases of families and prints figures; the exit status is 1 if there was a fault.
 
 python -m tests.fuzz [FAMILY ...] [--cases N]
 """
@@ -14,7 +14,7 @@ from tqdm import tqdm
 from mxeon.jobs import pool
 from tests.fuzz.families import FAMILIES, cases
 
-LIMIT = 300.0  # seconds for one case, on a machine that is busy
+LIMIT = 300.0  # seconds for one case on a busy machine
 STATUSES = {0: "accepted", 1: "failed", 2: "refused", 3: "not_run"}
 
 
@@ -33,7 +33,7 @@ def main(arguments=None):
 
 
 def measured(family, count, workers):
-    """Figures of a family, whose faults are told as they come."""
+    """Figures of a family; prints faults as they occur."""
     tried, tally = cases(family, count), Counter()
     outcomes = pool.run(FAMILIES[family].trial, tried, workers, LIMIT)
     for place, outcome in tqdm(outcomes, total=len(tried), desc=family, disable=None):

@@ -33,8 +33,8 @@ FILM = {"tint": np.ones(3), "ior": 1.5, "roughness": (0.5, 0.4), "thinfilm_thick
 PAIR, FIVE = (0.5, 0.4), np.array(5.0)
 LOBE = Bsdf(np.array(0.5), np.array(0.5))
 
-# Values that functions take, by the name of the argument: the first one that fits the function.
-# Other arguments have 0.5, or their defaults.
+# Valid values by argument name; the first one that fits the function is used. Other arguments have
+# 0.5, or their defaults.
 COLOR, BSDF = ((0.5, 0.4, 0.3),), (LOBE,)
 VALID = {
     **dict.fromkeys(("wo", "wh", "normal"), ((0.6, 0.0, 0.8),)),
@@ -49,7 +49,7 @@ VALID = {
     "category": ("dielectric_bsdf",),
     "inputs": (FILM | {"thinfilm_ior": 1.4}, {"tint_R": 0.5}),
     "lobe": (Lobe(factor=uncompensated),),
-    "compensate": (False,),  # which takes less time
+    "compensate": (False,),  # faster than compensating
     "curve": (SCHLICK_CURVE,),
     "at": (lambda cosine, ior, **colors: schlick(cosine, **colors),),
     "brdf": (lambda wo, wi, rho, *parameter: rho * wi[..., :1],),
@@ -58,7 +58,7 @@ VALID = {
     "vectors": (COLORS,),
     "numbers": ({"exponent": FIVE}, {"exponent": FIVE, "ior": np.array(1.5)}, {}),
 }
-CHECKS = ("_", "checked", "unpack")  # of functions that check arguments for others
+CHECKS = ("_", "checked", "unpack")  # prefixes of functions that check arguments for others
 PLUMBING = (
     "mxeon.models.core.arguments",
     "mxeon.models.catalog",
@@ -72,12 +72,12 @@ PLUMBING = (
     "mxeon.models.microfacet.node_",
     "mxeon.models.shading_model",
     "mxeon.models.surfaces",
-)  # beginnings of names of functions that have no arguments of their own
-TAKEN = (bool, str, float, int)  # kinds of arguments, besides arrays, that are tried
+)  # prefixes of names without functions to try
+TAKEN = (bool, str, float, int)  # types of arguments to try, besides arrays
 
 ACCEPTED, REFUSED = 0, 2
 SMALLEST, LEAST = math.ulp(0.0), np.finfo(np.float64).tiny
-# No argument takes all of them, and most take few.
+# No argument accepts all of these, and most accept few.
 BAD = (
     None, True, False, "x", "", "0.5", b"x", {}, [], (), {0.5}, print, Decimal("0.5"),
     Fraction(1, 2), 1j, math.nan, math.inf, -math.inf, SMALLEST, 1e-320, LEAST, -SMALLEST, -0.0, 0.0,
@@ -108,7 +108,7 @@ def modules():
 
 
 def rows():
-    """Function, argument and the place of a bad value, or of the one it is put into."""
+    """Function, argument, index of a bad value, and whether it only replaces an element."""
     for name, function in functions().items():
         for argument in tried(function):
             first = _part(base(function), argument)
@@ -132,7 +132,7 @@ def tried(function, arrays=False):
 
 
 def judged(row):
-    """Exit status, as a command would have it, and what is wrong with the answer to a row."""
+    """The equivalent exit status of a command, and any fault in the response to a row."""
     name, argument, place, inside = row
     function = functions()[name]
     values = dict(base(function))
@@ -148,13 +148,13 @@ def judged(row):
 
 
 def _part(values, argument):
-    """An argument, or what a mapping has under the key that follows a dot."""
+    """An argument, or a mapping's value for the key after a dot."""
     name, _, key = argument.partition(".")
     return values[name][key] if key else values[name]
 
 
 def answer(function, values):
-    """ACCEPTED or REFUSED, and what is wrong with the answer of a function, empty if nothing is."""
+    """ACCEPTED or REFUSED, and any fault in a function's response."""
     parameters = _parameters(function)
     more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
     try:
@@ -184,7 +184,7 @@ def call(function, values):
 
 @cache
 def base(function):
-    """Arguments of a function that it takes."""
+    """Valid arguments of a function."""
     parameters, reasons = _parameters(function), []
     for chosen in product(*map(_valid, parameters.values())):
         values = dict(zip(parameters, chosen, strict=True))
@@ -196,7 +196,7 @@ def base(function):
 
 @cache
 def _parameters(function):
-    """Parameters by name, with types in place of their names."""
+    """Parameters by name, with types instead of the types' names."""
     return inspect.signature(function, eval_str=True).parameters
 
 
@@ -212,7 +212,7 @@ def _is_array(parameter):
 
 
 def _inside(valid, value):
-    """The valid array with a value in its first place; a direction stays as long as it was."""
+    """A valid array with its first element replaced; directions keep their length."""
     array = np.array(valid)
     array[0] = value
     return array

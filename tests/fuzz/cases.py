@@ -11,7 +11,7 @@ from tests.fuzz.words import CANARY
 TARGETS = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang", "osl", "mdl")
 OUT = "../out"
 
-# Command lines that are mutated. What takes minutes ends in a host that there is not.
+# Command lines to mutate. Slow commands use a host that does not exist.
 COMMANDS = (
     ("generate", "base.mtlx", "--target", "osl", "--outputPath", OUT),
     ("generate", "base.mtlx", "--target", "glsl", "--element", "look", "--json", "--outputPath", OUT),
@@ -105,7 +105,7 @@ def _command(rng):
     return tuple(arguments)
 
 
-# What lies around the working folder of every case.
+# Files around the working folder of every case.
 SECRET = f'<materialx version="1.39"><constant name="{CANARY}" type="float"/></materialx>'
 AROUND = (
     ("secret.mtlx", SECRET),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents made wrong: as trees of elements, and as bytes."""
+"""Malformed documents, mutated as trees of elements and as bytes."""
 
 from copy import deepcopy
 from functools import cache
@@ -48,7 +48,7 @@ GRAPH = f"""<materialx version="1.39" {XI}>{NODEDEF}
 
 @cache
 def originals():
-    """Texts that are mutated: the bundled documents, and one of nodegraphs."""
+    """Texts to mutate: the bundled documents, and one with nodegraphs."""
     files = sorted(examples_folder().glob("*.mtlx"))
     return tuple(file.read_text(encoding="utf-8") for file in files) + (GRAPH,) * 3
 
@@ -71,7 +71,7 @@ def document(rng):
 
 
 def _written(root):
-    """The tree as text, and the prefix of its includes declared."""
+    """The tree as text, with a declaration of its includes' prefix."""
     text = ElementTree.tostring(root, encoding="unicode")
     if "xi:" in text and "xmlns:xi" not in text:
         text = text.replace("<materialx", f"<materialx {XI}", 1)
@@ -79,7 +79,7 @@ def _written(root):
 
 
 def word(rng, root=None):
-    """A word: odd, a path, or one that the document uses elsewhere."""
+    """A random word: odd, a path, or one used elsewhere in the document."""
     kind = rng.random()
     if kind < 0.45 or (root is None and kind < 0.8):
         return rng.choice(VALUES)
@@ -111,7 +111,7 @@ def _path(rng, root):
 
 
 def _number(rng, root):
-    """A number where one belongs."""
+    """A number in place of another."""
     numbers = [each for each in root.iter() if each.get("type") in ("float", "color3")]
     element = rng.choice(numbers or [root])
     number = rng.choice(("0", "1", "0.5", "1e-30", "1e30", "-1", "3", "1e39", "0.99999999"))
@@ -119,7 +119,7 @@ def _number(rng, root):
 
 
 def _connect(rng, root):
-    """An input connected to a node of its type, anywhere."""
+    """Connect an input to any node of its type."""
     inputs = [each for each in root.iter("input") if "type" in each.attrib]
     port = rng.choice(inputs or [root])
     fitting = [each for each in root.iter() if each.get("type") == port.get("type")]
@@ -129,7 +129,7 @@ def _connect(rng, root):
 
 
 def _text(rng, root):
-    """A word for one of the inputs that take any."""
+    """A word for an input that accepts any text."""
     category, name = rng.choice(TEXTS)
     node = ElementTree.Element(category, {"name": "text", "type": "color3"})
     attributes = {"name": name, "type": "string", "value": rng.choice(VALUES)}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Families of cases, each the product of tables, of which some are tried.
+"""Families of cases: each is a product of tables, from which some are drawn.
 
 A family covers its tables evenly: every include, every name of a file, every argument of the models' functions. Only
 `mutated` draws documents and command lines at random, and `found` has the faults that earlier runs found.
@@ -37,7 +37,7 @@ FAMILIES = {
 
 
 def cases(family, count=None):
-    """Cases of a family: all of them or, where there are more than `count`, some."""
+    """All cases of a family, or a sample if there are more than `count`."""
     row = FAMILIES[family]
     rng = random.Random(f"{SEED}-{family}")
     rows = list(row.rows())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Faults that trials and the search for limits have found, as small cases that show them."""
+"""Faults found by the fuzzer and the search for limits, as small cases that reproduce them."""
 
 from tests.fuzz.cases import OUT, Case
 from tests.fuzz.words import POISON
@@ -21,7 +21,7 @@ RENDER = ("render", "base.mtlx", "--host", "reference", "--size", "4", "--output
 
 
 def row(count, names):
-    """A lobe's colour after nodes in a row, each connected to the one before by these inputs."""
+    """A lobe's color after a row of nodes, each connected to the previous one by these inputs."""
     port = '<input name="{}" type="color3" nodename="a{}"/>'
     nodes = (
         ADD.format(number, "".join(port.format(name, number - 1) for name in names if number))
@@ -46,7 +46,7 @@ def _inherited(count):
     return "".join(rows) + f'<i{count - 1} name="lobe" type="BSDF"/>'
 
 
-# What it is, the nodes of the document, and the command.
+# A title, the nodes of the document, and the command.
 ROWS = (
     (
         "a lobe in an input",

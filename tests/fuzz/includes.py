@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents that bring shader sources, which include what they must not, in every way and depth."""
+"""Documents with shader sources that include forbidden files, in every way and at every depth."""
 
 from itertools import product
 
@@ -49,7 +49,7 @@ OTHERS = (
 
 
 def rows():
-    """How a source includes, what, how deep, for which target, and with which function."""
+    """The way a source includes, the included file, the depth, the target and the function."""
     for row in product(WAYS, FILES, DEPTHS, FUNCTIONS):
         yield "own.glsl", *row, 'function="own" '
     for name, target in product(BROUGHT, FUNCTIONS):
@@ -58,7 +58,7 @@ def rows():
 
 
 def to_case(rng, row):
-    """A document and its sources, each of which includes the next one."""
+    """A document and its chain of sources, each of which includes the next."""
     name, way, file, depth, target, function = row
     links = [WAYS[0].format(f"part{number}.glsl") for number in range(depth)]
     first, *parts = (f"{line}\n" for line in (*links, way.format(file)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents whose names a terminal or a runner stumbles on."""
+"""Documents with names that confuse a terminal or a runner."""
 
 from itertools import product
 
@@ -13,7 +13,7 @@ NAMES = (
 )  # fmt: skip
 CLAY = (examples_folder() / "clay.mtlx").read_bytes()
 ENCODINGS = ("utf-8", "ascii", "latin-1", "cp1252", "shift_jis", "utf-16")
-# Commands on a document of such a name.
+# Commands for a document with such a name.
 READERS = (
     ("check", "{}", "--host", "msl", "--workers", "0"),
     ("check", "{}", "--host", "msl", "--workers", "0", "--full"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that MaterialX opens by itself while the cases of the fuzzer are generated.
+"""Files that MaterialX itself opens while it generates the fuzzer's cases.
 
     python -m tests.fuzz.opens [--cases N] [--bare]
 
@@ -30,16 +30,18 @@ from tests.fuzz.families import cases
 from tests.fuzz.trial import trial
 
 ROOT = Path(__file__).resolve().parents[2]
-START, END = "/the cases begin here", "/the cases end here"  # opened in vain around them
-MACHINE = ("/sys/devices/system/cpu/online",)  # what the C library asks for
-ENDLESS = (b"pipe", b"zero", b"/dev/", b"/proc/")  # in documents for which MaterialX might wait
+# Missing files, opened before and after as marks.
+START, END = "/the cases begin here", "/the cases end here"
+MACHINE = ("/sys/devices/system/cpu/online",)  # read by the C library
+# Words in documents for which MaterialX might wait forever.
+ENDLESS = (b"pipe", b"zero", b"/dev/", b"/proc/")
 OPEN = re.compile(rb'open(?:at2?)?\((?:AT_FDCWD, |\d+(?:<[^>]*>)?, )?"((?:[^"\\]|\\.)*)"(.*)')
-COPIES = "/mxeon-sources-"  # in the path of a copy
+COPIES = "/mxeon-sources-"  # part of the path of a copy
 SEED = 3
 
 
 def selected(count, bare=False):
-    """Cases whose documents are generated: of the family of includes, and mutated ones."""
+    """Cases whose documents are generated: the family of includes, and mutated ones."""
     rng = random.Random(SEED)
     mutated = (case(SEED, number) for number in range(count))
     tried = [*cases("includes", count), *mutated]
@@ -51,7 +53,7 @@ def selected(count, bare=False):
 
 
 def opens(count, bare=False):
-    """Paths that MaterialX opened by itself, and how often."""
+    """Paths that MaterialX itself opened, with counts."""
     with tempfile.TemporaryDirectory(prefix="mxeon-opens-") as folder:
         log, audit = Path(folder, "strace"), Path(folder, "audit")
         inner = [sys.executable, "-m", "tests.fuzz.opens", "--cases", str(count)]
@@ -64,13 +66,13 @@ def opens(count, bare=False):
 
 
 def strangers(paths):
-    """Those paths that lie neither in the libraries nor among copies."""
+    """Those paths that are neither in the libraries nor among copies."""
     others = (path for path in paths if COPIES not in path and path not in MACHINE)
     return sorted(path for path in others if not library_path(path))
 
 
 def _traced(log):
-    """Files that were opened after the start, as they were named, in one line each."""
+    """Files opened after the start mark, one path per line."""
     lines = log.split(START.encode())[1].split(END.encode())[0].splitlines()
     found = (OPEN.search(line) for line in lines)
     return Counter(
@@ -85,15 +87,15 @@ def _line(path):
 
 
 def _run(count, audit, bare):
-    """Generate the cases, and write what Python opens meanwhile."""
+    """Generate the cases, and write the files that Python opens meanwhile."""
     paths = []
-    for target in generation.TARGETS:  # loads what each generator needs once
+    for target in generation.TARGETS:  # loads each generator's own files first
         with contextlib.redirect_stderr(None):
             generation.generate(examples_folder() / "clay.mtlx", target)
     if bare:
         generation.copied_sources = _uncopied
     tried = selected(count, bare)
-    trial(tried[0])  # loads what the command needs once
+    trial(tried[0])  # loads the command's own files first
     sys.addaudithook(lambda event, seen: event == "open" and paths.append(seen[0]))
     with contextlib.suppress(OSError):
         os.open(START, os.O_RDONLY)
@@ -109,12 +111,12 @@ def _run(count, audit, bare):
 
 @contextlib.contextmanager
 def _uncopied(document, context, policy, tokens):
-    """No copies, in place of `copied_sources`."""
+    """Replaces `copied_sources`, so that nothing is copied."""
     yield Sources(document, context, policy, "", tokens)
 
 
 def main():
-    """Print what MaterialX opened outside; the exit status is 1 if there is such a file."""
+    """Print the files that MaterialX opened outside; the exit status is 1 if there are any."""
     parser = argparse.ArgumentParser(prog="tests.fuzz.opens", description=__doc__.splitlines()[0])
     parser.add_argument("--cases", type=int, default=400)
     parser.add_argument("--bare", action="store_true", help="let documents name their own sources")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which attributes of a document reach generated source, found out by asking every target.
+"""Finds the attributes of a document that reach generated source, by generating for every target.
 
 Each attribute of a document that uses every kind of element gets a word of its own; those that come
 out in a shader reached it. Attributes that name each other are changed together.
@@ -31,8 +31,8 @@ XI = "http://www.w3.org/2001/XInclude"
 ElementTree.register_namespace("xi", XI)
 EVERY = Path(__file__).with_name("every.mtlx")
 POISON = "poison"
-GAP = "gap00000gap"  # stands in a written document for hostile text
-# What ends a string or a line, and what means something outside a string.
+GAP = "gap00000gap"  # placeholder for hostile text in a written document
+# Text that ends a string or a line, or has a meaning outside a string.
 BREAKING = tuple(each + POISON for each in ("\n#define ", "\r", '"', "\\", '\\"', "\x7f"))
 MEANING = tuple(
     each + POISON for each in (" ", ";", "(", ")", ",", "=", "//", "/*", "*/", "#", "$", "{", "-")
@@ -41,20 +41,20 @@ MARK = re.compile(r"mark\d{5}x|77\d{5}")
 QUOTED = re.compile(r'"[^"]*"')
 
 
-# What is marked by itself, since a document holds together by it, and is judged wherever it stands.
+# Attributes that hold a document together: each is marked alone, and judged everywhere.
 APART = NAMES | {"name", "value"}
 
 
 @dataclass(frozen=True)
 class Place:
-    """An attribute of an element, which is known by its number in the document."""
+    """An attribute of an element, which is identified by its index in the document."""
 
     number: int
     attribute: str
 
 
 def documents():
-    """Roots of documents that use every kind of element: as materials, and as outputs alone."""
+    """Roots of documents that use every kind of element, once with materials and once with outputs."""
     whole, outputs = (ElementTree.parse(EVERY).getroot() for _ in range(2))
     for kind in ("surfacematerial", "surface", "backdrop", "look", "lookgroup"):
         outputs.remove(outputs.find(kind))
@@ -62,7 +62,7 @@ def documents():
 
 
 def furnish(folder):
-    """Put what the documents name into a folder, which has to be the working folder."""
+    """Write the files that documents name to a folder, which must be the working folder."""
     for name in ("f/a.png", "f/c.png", "b.png"):
         path = Path(folder, name)
         path.parent.mkdir(exist_ok=True)
@@ -72,7 +72,7 @@ def furnish(folder):
 
 @cache
 def attributes(root):
-    """Names of attributes: of a document, of MaterialX's Python module and libraries, of the fuzzer."""
+    """Names of attributes used by a document, MaterialX's Python module and libraries, or the fuzzer."""
     kinds = [kind for kind in vars(mx).values() if isinstance(kind, type)]
     named = {
         getattr(kind, name) for kind in kinds for name in dir(kind) if name.endswith("_ATTRIBUTE")
@@ -83,7 +83,7 @@ def attributes(root):
 
 
 def present(root):
-    """Places with text, in groups that are marked at once."""
+    """Places with text, in groups that are marked together."""
     groups = defaultdict(list)
     for number, element in enumerate(root.iter()):
         for name in element.attrib:
@@ -92,7 +92,7 @@ def present(root):
 
 
 def absent(root):
-    """Places that could have text, in groups that are marked at once."""
+    """Places that could have text, in groups that are marked together."""
     elements = list(root.iter())
     return tuple(
         [Place(number, name) for number, each in enumerate(elements) if name not in each.attrib]
@@ -102,7 +102,7 @@ def absent(root):
 
 
 def reached(root, groups, targets=TARGETS):
-    """The places of a document whose words come out, and how: bare, quoted or in a comment."""
+    """The places of a document whose words appear in source, and how: bare, quoted or in a comment."""
     found = defaultdict(set)
     for places in groups:
         _search(root, places, targets, found)
@@ -110,7 +110,7 @@ def reached(root, groups, targets=TARGETS):
 
 
 def unjudged(root, found, targets=TARGETS):
-    """What gets hostile text into a shader, or is refused without its place."""
+    """Hostile texts that reach a shader, or are refused without naming their place."""
     elements = list(root.iter())
     ways, alike = defaultdict(set), {}
     for place, each in found.items():
@@ -147,20 +147,20 @@ def _escaped(text):
 
 
 def _judged(element, place, document, targets):
-    """Whether hostile text is refused in a line that names its place, or comes out nowhere."""
+    """Whether hostile text is refused in a line that names its place, or never reaches source."""
     for target in targets:
         try:
             sources = _sources(document, target)
         except DocumentError as error:
             said = str(error)
-            if "must give" in said:  # by this target alone
+            if "must give" in said:  # refused for this target only
                 continue
-            # What a prefix does wrong is said of the name of a file that it makes.
+            # The message about a bad prefix names the file that it affects.
             named = "file" if place.attribute == "fileprefix" else element.tag
             return named in said and "must" in said and all(map(str.isprintable, error.args))
-        except ValueError:  # a number that is none
+        except ValueError:  # a malformed number
             continue
-        except InterfaceError:  # it reached source, in which no `$` may be left
+        except InterfaceError:  # it reached source, which may not contain `$`
             return False
         if any(POISON in source for source in sources):
             return False
@@ -168,7 +168,7 @@ def _judged(element, place, document, targets):
 
 
 def _search(root, places, targets, found):
-    """Mark places, all at once and, for the targets that refuse that, in halves."""
+    """Mark places: all at once, then in halves for targets that refuse that."""
     refused = []
     text, marks = _marked(root, places)
     for target in targets:
@@ -176,7 +176,7 @@ def _search(root, places, targets, found):
             sources = _sources(text, target)
         except DocumentError as error:
             refused.append(target)
-            if "must give" not in str(error):  # refused before any target was asked
+            if "must give" not in str(error):  # refused independently of the target
                 refused = list(targets)
                 break
             continue
@@ -189,7 +189,7 @@ def _search(root, places, targets, found):
 
 
 def _sources(document, target):
-    """Texts of all stages, without what is said of a file that is not there."""
+    """Texts of all stages, without messages about missing files."""
     with warnings.catch_warnings(action="ignore"):
         shaders = generate(document, target)
     return [source for each in shaders for source in each.stages.values()]
@@ -197,7 +197,7 @@ def _sources(document, target):
 
 def _note(source, marks, found):
     for line in source.splitlines():
-        if "mark" not in line and "77" not in line:  # which is fast
+        if "mark" not in line and "77" not in line:  # a fast test
             continue
         for mark in MARK.finditer(line):
             before = line[: mark.start()]
@@ -207,7 +207,7 @@ def _note(source, marks, found):
 
 
 def _context(before):
-    """What text stands in that comes after this in its line."""
+    """The context of a mark: string, comment or code, according to the rest of its line."""
     if "//" in QUOTED.sub("", before):
         return "comment"
     return "quoted" if before.count('"') % 2 else "bare"
@@ -233,7 +233,7 @@ def _marked(root, places):
 
 
 def _word(old, number, place):
-    """A new value of the kind of an old one, and the mark in it."""
+    """A new value of the same kind as the old one, and the mark in it."""
     if old.strip().isdigit():
         return f"77{number:05}", f"77{number:05}"
     mark = f"mark{number:05}x"
@@ -241,7 +241,7 @@ def _word(old, number, place):
 
 
 def search(targets=TARGETS):
-    """What reaches source, by document; and what of it is not judged."""
+    """The places that reach source, by document, and those that are not judged."""
     names, wrong = set(), []
     for root in documents().values():
         elements = list(root.iter())
@@ -252,7 +252,7 @@ def search(targets=TARGETS):
 
 
 def main():
-    """Print what reaches source; the exit status is 1 if any of it is not judged."""
+    """Print the places that reach source; the exit status is 1 if any is not judged."""
     with TemporaryDirectory(prefix="mxeon-reach-") as folder, chdir(folder):
         furnish(folder)
         names, wrong = search()

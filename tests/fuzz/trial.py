@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One case tried: the command called in a folder of its own, and all it must not do."""
+"""One trial: runs the command in its own folder, and looks for all forbidden effects."""
 
 import contextlib
 import io
@@ -19,7 +19,8 @@ from tests.fuzz.words import CANARY, POISON
 
 STATUSES = (0, 2, 3)
 OUTPUTS = ("--outputPath", "--output", "--report")
-# Commands that have a process for each document, which hides crashes; those that may end with 1: it failed.
+# Commands that use a process per document, which hides crashes; and those that may exit with 1 for
+# a failed check.
 MAKING = ("generate", "render")
 JUDGING = ("check", "doc", "kit", "report", "render", "library")
 LONGEST_LINE = 1200  # a message of 1000 characters, its prefix, and a path
@@ -27,13 +28,13 @@ MEMORY = 6 * 2**30
 
 
 def judged(tried):
-    """Exit status of a case and what was wrong, in a process of limited memory."""
+    """Exit status of a case and its fault, in a process with limited memory."""
     _limit_memory()
     return trial(tried)
 
 
 def trial(tried):
-    """Exit status of a case, and what `mxeon` did wrong in one line, or ""."""
+    """Exit status of a case, and the fault of `mxeon` in one line, or ""."""
     with tempfile.TemporaryDirectory(prefix="mxeon-fuzz-") as folder:
         root = Path(folder).resolve()
         home = _prepared(root, tried)
@@ -47,8 +48,8 @@ def trial(tried):
 
 
 def _outputs(arguments):
-    """Where a command line asks for something to be written."""
-    if arguments[:2] == ("report", "make"):  # a run's report is written beside its journal
+    """Paths that a command line asks to write."""
+    if arguments[:2] == ("report", "make"):  # a run writes its report beside the journal
         return [path for path in arguments[2:3] if "\0" not in path]
     pairs = itertools.pairwise(arguments)
     return [path for option, path in pairs if option in OUTPUTS and "\0" not in path]
@@ -60,7 +61,7 @@ def _limit_memory():
 
 
 def _prepared(root, tried):
-    """The working folder, with a link out of it, and files beside it."""
+    """The working folder with a link that leads out of it, and files outside."""
     home = root / "documents"
     shutil.copytree(examples_folder() / "textures", home / "textures")
     (home / "link").symlink_to(root)
@@ -68,7 +69,7 @@ def _prepared(root, tried):
     (home / "results.json").write_text('{"format": 5, "results": [{"host": "gl"}], "pictures": []}')
     for name, text in AROUND:
         (root / name).write_text(text)
-    if tried.arguments[:1] == ("render",):  # which makes no folder
+    if tried.arguments[:1] == ("render",):  # this command does not create the folder
         (home / OUT).mkdir()
     for name, data in tried.files:
         (home / name).parent.mkdir(parents=True, exist_ok=True)
@@ -121,7 +122,7 @@ def _faults(root, named, before, status, out, err):
 
 
 def _contents(root):
-    """All files below a folder; what the link leads to is below it anyway."""
+    """All files below a folder; targets of the link are below it, too."""
     paths = (Path(each) / name for each, _, names in os.walk(root) for name in names)
     files = (path for path in paths if path.is_file() and not path.is_symlink())
     return {str(file.relative_to(root)): file.read_bytes() for file in files}

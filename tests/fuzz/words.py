@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What mutations put into documents and command lines: words that programs have stumbled over."""
+"""Words that mutations insert into documents and command lines: programs often fail on them."""
 
-POISON = "poison()"  # must not get into a shader but in code that the document is known to bring
-CANARY = "canary-5f1e"  # stands in files outside the document's folder
+POISON = "poison()"  # must only occur in a shader within source that the document may bring
+CANARY = "canary-5f1e"  # content of files outside the document's folder
 
 VALUES = (
     "", " ", "0", "-1", "1", "2", "1.5707964", "nan", "inf", "-inf", "1e999", "1e-400", "0x10",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's Cycles: exact values, pixels and EON, what may go wrong, and its own nodes as one more renderer."""
+"""Blender's Cycles: exact values, pixels and EON, its failures, and its own nodes as another renderer."""
 
 import os
 import sys
@@ -157,7 +157,8 @@ def test_subsurface_keeps_its_color(host):
         pixels = host.picture(osl(text, library=library, profile=profile), scene)
         means.append(pixels[sphere(16).mask].mean(axis=0))
     assert np.abs(means[0] - color).max() < CYCLES_SUBSURFACE
-    assert np.abs(means[1] - 1.0).max() < CYCLES_SUBSURFACE  # stock loses it: every color is white
+    # Stock loses the color: the sphere is white.
+    assert np.abs(means[1] - 1.0).max() < CYCLES_SUBSURFACE
 
 
 @pytest.mark.parametrize("node", NODES, ids=lambda node: node.title)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The repair of Cycles' kernel: its header, compiled with a few types of ours, is EON with it."""
+"""The patch for Cycles' kernel: its header, compiled with a few types of ours, is EON once patched."""
 
 import subprocess
 from pathlib import Path
@@ -14,7 +14,7 @@ from tests.support.availability import available, program
 from tools.site.ledger import ROOT, apply, patches_of
 
 PROGRAM = Path(support.__file__).with_name("oren_nayar.cpp")
-FLOAT32 = 2e-6  # of values up to 1: the arc cosine in G, and ten roundings
+FLOAT32 = 2e-6  # error of values up to 1: the arc cosine in G, and ten roundings
 PAIRS = 500
 KERNEL = ".venv-cycles/lib/*/site-packages/bpy/*/scripts/addons_core/cycles/source/kernel"
 FILE = "closure/bsdf_oren_nayar.h"
@@ -30,7 +30,7 @@ def kernel():
 
 @pytest.fixture(scope="module")
 def values(tmp_path_factory):
-    """A function of patches: pi f cos of random pairs by the header with them, and by the model."""
+    """A function of patches: pi f cos of random pairs by the header with the patches, and by the model."""
     with available("cycles"):
         folder = kernel()
     rng = np.random.default_rng(5)
@@ -43,7 +43,7 @@ def values(tmp_path_factory):
 
     def run(*patches):
         target = tmp_path_factory.mktemp("kernel")
-        for name in ("types.h", "sample/mapping.h"):  # whose types and functions the program has
+        for name in ("types.h", "sample/mapping.h"):  # PROGRAM defines their types and functions
             (target / "kernel" / name).parent.mkdir(parents=True, exist_ok=True)
             (target / "kernel" / name).touch()
         (target / FILE).parent.mkdir()

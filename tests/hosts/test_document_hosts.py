@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Storm and MaterialX's own renderer: the models from all sides, the defects of stock, and what may go wrong."""
+"""Storm and MaterialX's own renderer: the models from all sides, the defects of stock, and failures."""
 
 from dataclasses import replace
 
@@ -23,8 +23,8 @@ EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 # Half floats: 2^-11 of a value, twice; and of a sum over an environment, twice that.
 HALF, HALF_SURROUNDINGS = 2.0**-10 + 248 * 2.0**-24, 2.0**-9 + 2e-6
 LOBE = "genglsl/lib/oren_nayar_lobe.glsl"
-TEXTURED = 2.0**-8  # the least that OpenGL asks of a filter's weights
-# A line of eonlib, a wrong one and their file: light from behind would be as that from the side.
+TEXTURED = 2.0**-8  # the precision that OpenGL requires of filter weights
+# A line of eonlib, its mutant and their file: light from behind would act like light from the side.
 SIGN = ("float s = dot(wo, wi) - mu_o * mu_i;", "float s = abs(dot(wo, wi) - mu_o * mu_i);", LOBE)
 BROKEN = (SIGN[0], "float s = no_such_function(wo);", LOBE)
 
@@ -67,11 +67,11 @@ def test_materialx_binds_the_table_of_albedos_that_it_is_given(hosts, gl):
         [shader] = each.compile(text, library="stock", methods=Methods("prefilter", albedo="table"))
         pictures.append(each.picture(shader, replace(FURNACE, size=16)))
     assert np.abs(pictures[0] - pictures[1]).max() <= HALF_SURROUNDINGS - HALF
-    assert pictures[0][sphere(16).mask][:, 0].min() > 0.9  # of gold, in red
+    assert pictures[0][sphere(16).mask][:, 0].min() > 0.9  # gold in red
 
 
 def test_the_dome_of_storm_is_given_what_its_sum_loses(on_storm):
-    """Without that it would be darker by eight tolerances."""
+    """Otherwise it would be too dark by eight tolerances."""
     white = material_text(OREN_NAYAR, {"color": (1.0, 1.0, 1.0), "roughness": 0.0})
     [shader] = on_storm.compile(white)
     picture = on_storm.picture(shader, replace(FURNACE, size=16))[sphere(16).mask]
@@ -122,7 +122,7 @@ GLASS = document_text(
         + input_text("specular_roughness", "float", 0.8),
     )
 )
-# In opacity, R over T counts what is reflected once.
+# As opacity, R over T counts light that is reflected once.
 BELOW = (
     "bool below = scatter_mode == 1;",
     "bool below = false;",
@@ -171,7 +171,8 @@ CONDUCTOR = """<conductor_bsdf name="lobe" type="BSDF">
 </conductor_bsdf>"""
 
 
-# Lines that are compiled with `genglsl/environment` alone, so that no check of another host notices wrong ones.
+# Lines that are only compiled with `genglsl/environment`, so no check on another host detects their
+# mutants.
 PREFILTER = "genglsl/environment/libraries/pbrlib/genglsl/lib/mx_environment_prefilter.glsl"
 DIM = (
     "$envRadiance) * $envLightIntensity",
@@ -194,7 +195,7 @@ WHITE = (
 def test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo(
     on_storm, gl, text, change, tmp_path
 ):
-    """The host brightens the dome for diffuse lobes alone, by 1 / 0.984."""
+    """The host only brightens the dome for diffuse lobes, by 1 / 0.984."""
     points = sphere(16)
     facing = points.mask & (points.normal[..., 2] > 0.05)
     mu = points.normal[facing][:, 2]
@@ -207,7 +208,7 @@ def test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo(
         found = on_storm.picture(shader, replace(FURNACE, size=16))[facing]
         return np.abs(found - np.clip(found, expected, expected / 0.984)).max()
 
-    assert error("eonlib") <= 8e-3  # a conductor is averaged by the ends of its curve
+    assert error("eonlib") <= 8e-3  # a conductor's average uses the ends of its curve
     assert min(error("stock"), error(wrong_copy(tmp_path, *change))) >= 0.02
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OpenGL pictures: exact points, the right way up, and light as it is asked for."""
+"""OpenGL pictures: exact points, correct orientation, and the requested light."""
 
 import subprocess
 import sys
@@ -68,7 +68,8 @@ def test_a_texture_stands_upright(gl, reference, tmp_path):
     image, expected = (picture(host, nodes, front) for host in (gl, reference))
     top, bottom = image[SIZE // 4, SIZE // 2], image[3 * SIZE // 4, SIZE // 2]
     assert top[0] > 0.5 > top[2] and bottom[2] > 0.4 > bottom[0]
-    assert np.abs(image - expected)[sphere(SIZE).mask].max() <= 2.0**-8  # filter weights
+    # Precision of filter weights.
+    assert np.abs(image - expected)[sphere(SIZE).mask].max() <= 2.0**-8
 
 
 def test_an_environment_image_lights_by_its_irradiance(gl, tmp_path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plugins of Mitsuba: values, sampling, energy and gradients, which are those of the models."""
+"""Mitsuba plugins: their values, sampling, energy and gradients match the models."""
 
 import re
 from pathlib import Path
@@ -24,8 +24,8 @@ from tests.support.tolerances import MITSUBA_COAT, MITSUBA_DENSITY, MITSUBA_EVAL
 
 PAGE = Path(__file__).parents[2] / "docs" / "mitsuba.md"
 COAT, VARNISH = "dielectric_over_eon", "varnished"
-DEVIATE = 4.5  # of a mean: exceeded once in 150,000 times
-STEP = 2.0**-13  # which float32 adds without a rounding
+DEVIATE = 4.5  # standard deviations of a mean: exceeded once in 150,000 tests
+STEP = 2.0**-13  # exact in float32 additions
 VIEW, LIGHT = np.array([[0.6, 0.0, 0.8]]), np.array([[-0.48, 0.6, 0.64]])
 MODELS = {
     "eon": models.eon_brdf,
@@ -42,19 +42,19 @@ TEXTURES = ("roughness", "sigma")
 
 
 def bsdf(name, color=COLOR, **inputs):
-    """Properties of a plugin with these inputs, and the others as in INPUTS."""
+    """Properties of a plugin with these inputs, and the others from INPUTS."""
     rgb = {"type": "rgb", "value": list(color)}
     return {"type": name, "reflectance": rgb} | INPUTS[name] | inputs
 
 
 def expected(name, wo, wi, **inputs):
-    """The model's value times the cosine, with its inputs as float32 has them."""
+    """The model's value times the cosine, with inputs rounded to float32."""
     values = {key: float(np.float32(each)) for key, each in (INPUTS[name] | inputs).items()}
     return MODELS[name](wo, wi, COLOR, **values) * np.asarray(wi, np.float64)[..., 2:]
 
 
 def allowed(name, value):
-    """Largest error of a value: relative where a lobe of facets is larger."""
+    """Tolerance of a value, relative where a microfacet lobe is larger."""
     return np.maximum(MITSUBA_EVAL, MITSUBA_COAT * value if name in (COAT, VARNISH) else 0.0)
 
 
@@ -73,7 +73,8 @@ CASES = (
 def test_values_are_those_of_the_model(mi, name, inputs):
     rng = np.random.default_rng(SEED)
     wo, wi = directions(rng), directions(rng)[::-1].copy()
-    wi[100:200] = wo[100:200] * [-1, -1, 1] + 0.03 * rng.normal(size=(100, 3))  # mirrored
+    # Near the mirror direction.
+    wi[100:200] = wo[100:200] * [-1, -1, 1] + 0.03 * rng.normal(size=(100, 3))
     wi[:, 2] = np.abs(wi[:, 2])
     wi = (wi / np.linalg.norm(wi, axis=1, keepdims=True)).astype(np.float32)
     made, context, light = mi.load_dict(bsdf(name, **inputs)), mi.BSDFContext(), mi.Vector3f(wi.T)
@@ -178,7 +179,7 @@ def test_an_llvm_that_ends_the_process_is_refused_before(mi, monkeypatch):
 
 
 def brightest(picture):
-    """Largest mean of 8 x 8 pixels."""
+    """Largest mean over blocks of 8 x 8 pixels."""
     return np.array(picture).reshape(16, 8, 16, 8, 3).mean(axis=(1, 3, 4)).max()
 
 
@@ -191,6 +192,6 @@ def test_the_example_of_the_page_runs_and_shows_gloss(mi, tmp_path, monkeypatch)
         if "coated.png" in block or "ball.png" in block:
             seen.append(brightest(names["picture"]))
     assert 0.1 < np.array(names["picture"]).mean() < 1.0
-    assert seen[1] > 1.25 * seen[0]  # 1.5 measured, and 1 without a lamp
+    assert seen[1] > 1.25 * seen[0]  # 1.5 was measured; without a lamp it would be 1
     for name in ("clay", "ball", "coated"):
         assert (tmp_path / f"{name}.png").stat().st_size > 1000

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OSL as a host: its labels, their trees, and what its compiler and its engine say."""
+"""OSL as a host: labels and their trees, and messages of the compiler and the engine."""
 
 import re
 from dataclasses import replace
@@ -121,7 +121,7 @@ def for_cycles(host, node, wo, inputs, old="", new=""):
     ],
 )
 def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag, model, largest):
-    """Cycles' closure is FON and a lobe with a factor of albedo too many; QON is one where s >= 0."""
+    """Cycles' closure is FON plus a lobe with one factor of albedo too many; QON only matches for s >= 0."""
     rng = np.random.default_rng(1)
     wo, wi = sampled(rng), sampled(rng)
     wi[:, :2] *= np.where((wo[:, :2] * wi[:, :2]).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
@@ -144,7 +144,7 @@ def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag
 
 @pytest.mark.parametrize("soft", [True, False])
 def test_the_cone_for_cycles_is_the_model_on_both_sides(host, soft):
-    """In Cycles I points to the viewer, to whom the normal is turned: the other way round than in OSL."""
+    """In Cycles, I points to the viewer and the normal faces the viewer, the opposite of OSL's convention."""
     rng = np.random.default_rng(1)
     wo, inner = sampled(rng, above=False), 170.0 * rng.random(COUNT)
     outer = inner + 60.0 * rng.random(COUNT) + 1.0 if soft else inner * rng.random(COUNT)

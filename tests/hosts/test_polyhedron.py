@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mitsuba: its own BSDFs, and pictures of facets."""
+"""Mitsuba: its own BSDFs, and pictures of faceted solids."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ from tests.support.plans import keep_host
 from tests.support.verdicts import PASSED, RENDERER_NODES
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
-FACETS = 7e-5  # relative errors of pictures of facets, times the light's cosine
+FACETS = 7e-5  # relative errors of such pictures, times the light's cosine
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def host():
 
 def test_mitsuba_has_the_models_that_it_documents(monkeypatch):
     with available("mitsuba"), mitsuba.MitsubaHost() as host:
-        host.identity()  # a run would only say that Mitsuba is missing
+        host.identity()  # fails here, because a run would only report that Mitsuba is missing
     keep_host(monkeypatch, "mitsuba")
     report = check([EXAMPLE], ["mitsuba"], nodes=["common"])
     results = [each for each in report.results if each.library == RENDERER_NODES]
@@ -39,7 +39,7 @@ def test_mitsuba_has_the_models_that_it_documents(monkeypatch):
 
 @pytest.mark.parametrize("scene", [FRONT, SIDE, BACK], ids=lambda each: each.name)
 def test_pictures_are_linear_and_have_float_precision(host, scene):
-    """A dark color beside a bright one: 8 bits or a tone curve would be off by far more."""
+    """A dark color next to a bright one: 8 bits or a tone curve would be off by far more."""
     scene = replace(scene, size=64)
     material = mitsuba.NODES[0].made((1.0, 0.02, 1e-4), 0.0)
     picture = host.node(material, scene)[facet_points(64).mask]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Stills: antialiased, on a floor that the shader ball shades, by a tone curve."""
+"""Stills: antialiased, on a floor with the ball's shadow, and tone mapped."""
 
 from dataclasses import replace
 
@@ -24,7 +24,8 @@ def test_a_pixel_at_the_edge_has_the_share_of_the_sphere_in_it(hosts):
     host = hosts("gl")
     [shader] = host.compile(WHITE)
     image = still(host, shader, replace(FURNACE, size=SIZE))
-    # 16 samples in each of about 4 SIZE pixels at the edge: the area of a disk, to a tenth of a percent.
+    # Each of the about 4 SIZE pixels at the edge has 16 samples: the area of a disk is exact to 0.1
+    # percent.
     np.testing.assert_allclose(image.mean(), np.pi / 4.0, rtol=1e-3)
     assert len(np.unique(image.round(4))) > 8
 
@@ -32,7 +33,7 @@ def test_a_pixel_at_the_edge_has_the_share_of_the_sphere_in_it(hosts):
 def test_the_floor_far_away_has_the_light_of_the_open_sky_and_less_beside_the_foot():
     size = 128
     image = floor(Scene("even", environment=1.0, size=size, shape="ball"))
-    np.testing.assert_allclose(image[0, [0, -1]], PAPER, rtol=0.05)  # 512 directions
+    np.testing.assert_allclose(image[0, [0, -1]], PAPER, rtol=0.05)  # the floor uses 512 directions
     assert (image <= PAPER * 1.01).all()
     below = image[int(0.93 * size), size // 2]
     assert (below < 0.7 * PAPER).all()
@@ -80,7 +81,8 @@ def test_a_mesh_has_its_normals_texture_coordinates_and_tangents(wall):
     for tangent in seen.tangent[seen.mask]:
         np.testing.assert_allclose(OBJECT @ tangent, [1, 0, 0], atol=1e-6)
     u, v = seen.texcoord[seen.mask].T
-    np.testing.assert_allclose([u.min(), u.max()], [0, 1], atol=1.0 / np.ptp(columns))  # a pixel
+    # Accuracy of one pixel.
+    np.testing.assert_allclose([u.min(), u.max()], [0, 1], atol=1.0 / np.ptp(columns))
     assert u[columns.argmin()] < u[columns.argmax()] and v[rows.argmin()] > v[rows.argmax()]
 
 

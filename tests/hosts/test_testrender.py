@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""testrender as a host: judged with the real programs where they are named, else by a recording.
+"""testrender as a host: judged with the real programs if they are named, otherwise with a
+recording.
 
 The recording holds what OSL's programs printed and rendered; see `tests.support.osl`.
 """
@@ -18,7 +19,8 @@ from mxeon.models import eon_brdf
 from tests.support.verdicts import FAILED, PASSED, has
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
-# Of pi f cos: 3 roundings of a point 40 away, seen from a light at 1/2, times 8, and OpenImageIO's arc cosine.
+# Error of pi f cos: 3 roundings of a point at distance 40, seen from a light at 1/2, times 8; and
+# OpenImageIO's arc cosine.
 FLAT = 2e-4
 REAL = all(os.environ.get(variable) for variable in programs.VARIABLES.values())
 real = pytest.mark.skipif(not REAL, reason="its variables name no build of OSL")
@@ -77,7 +79,7 @@ def test_the_recorded_picture_is_the_model(host):
     color, roughness = osl.INPUTS["color"], osl.INPUTS["roughness"]
     expected = np.pi * eon_brdf(wo, wi, np.array(color), roughness) * wi[:, 2:]
     error = np.abs(values - expected).max()
-    assert 0.0 < error < FLAT  # floats: half floats are off by 2^-11
+    assert 0.0 < error < FLAT  # float32: half floats would be off by 2^-11
     swapped = np.pi * eon_brdf(wo, wi, np.array(color[::-1]), roughness) * wi[:, 2:]
     assert np.abs(values - swapped).max() > FLAT
 

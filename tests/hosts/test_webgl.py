@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The browser as a host: what is missing is said, and a browser that fails is replaced."""
+"""The browser as a host: missing parts are reported, and a crashed browser is restarted."""
 
 from dataclasses import replace
 
@@ -43,7 +43,7 @@ def test_no_name_resolves_in_the_browser(hosts):
 @pytest.mark.parametrize("name", ("plaster", "brick"))
 def test_a_picture_is_the_references(hosts, reference, name, scene):
     host = hosts("webgl")
-    host.call("fon_af", MU)  # leaves no frame behind that a picture would draw into
+    host.call("fon_af", MU)  # must not leave its frame bound for the next picture
     document = examples_folder() / f"{name}.mtlx"
     shader = generate(document, host.target, lights=True)[0]
     image = host.picture(shader, replace(scene, size=64))

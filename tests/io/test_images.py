@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Images as files: read the right way up, refused in one line; the curve of sRGB."""
+"""Image files: correct orientation, one-line refusals, and the sRGB curve."""
 
 import os
 
@@ -44,7 +44,7 @@ def test_a_file_that_is_not_regular_is_refused_and_blocks_nobody(tmp_path, make)
 def test_a_picture_that_is_cut_and_still_read_is_told(tmp_path):
     path = tmp_path / "a.jpg"
     codes = np.arange(64 * 64 * 3, dtype=np.uint32).astype(np.uint8).reshape(64, 64, 3)
-    assert oiio.ImageBuf(codes).write(str(path))  # whose pixels are not those that it got
+    assert oiio.ImageBuf(codes).write(str(path))  # JPEG is lossy, so the pixels may change
     path.write_bytes(path.read_bytes()[:-100])
     with pytest.warns(ImageWarning, match="a.jpg: is damaged; JPEG error: Premature end"):
         assert read_image(path).shape == (64, 64, 3)
@@ -64,12 +64,12 @@ def test_an_environment_that_is_not_finite_is_refused_and_a_texture_is_told(tmp_
 
 
 def written(folder, files):
-    """Path of a document in a folder whose color is the sum of images."""
+    """Path of a document in a folder; its color is the sum of images."""
     (folder / "a.mtlx").write_text(textured(files))
     return str(folder / "a.mtlx")
 
 
-# Files of a document with images of 4 x 2 pixels, and how many pixels those are.
+# Files of a document with images of 4 x 2 pixels, and their total number of pixels.
 TOGETHER = {"one": (["a.exr"], 8), "two": (["a.exr", "b.exr"], 16), "same": (["a.exr"] * 3, 8)}
 
 

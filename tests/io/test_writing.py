@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that appear whole or not at all, on disks that are full: no file may exceed some bytes."""
+"""Files are written completely or not at all, even on full disks, which limit the size of a file."""
 
 import numpy as np
 import OpenImageIO as oiio
@@ -11,7 +11,7 @@ from tests.support.faults import room_for
 
 NOISE = np.random.default_rng(1).random((33, 33, 3))
 IMAGES = {".exr": np.float32(NOISE), ".png": np.uint8(255.0 * NOISE)}
-# Room for nothing, for less than a header, for some rows, for all but the last bytes.
+# Limits: nothing, less than a header, some rows, and all but the last bytes.
 ROOM = {
     "nothing": lambda size: 0,
     "little": lambda size: 100,

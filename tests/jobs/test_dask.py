@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A Dask cluster as a farm: real schedulers and worker processes on this machine."""
+"""Dask clusters: real schedulers and worker processes on this machine."""
 
 import os
 import socket
@@ -22,7 +22,7 @@ from tests.support.plans import keep_checks
 
 ONE_THREAD = ["--nthreads", "1"]
 OTHER_VERSION = "import mxeon\nmxeon.__version__ = '0.0.9'\n"
-# Dask leaves the sockets open by which it looks for a free port.
+# Dask does not close the sockets with which it looks for a free port.
 pytestmark = [
     pytest.mark.whole,
     pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning"),
@@ -38,8 +38,8 @@ def run(work, items, address, timeout=600.0):
 
 @contextmanager
 def farm(*workers):
-    """A scheduler's address; each worker is the environment variables that it has more."""
-    from distributed import LocalCluster  # slow to import, in every process that collects tests
+    """A scheduler's address; each worker is given by its additional environment variables."""
+    from distributed import LocalCluster  # a slow import, kept out of test collection
 
     with ExitStack() as stack:
         options = {"n_workers": 0, "dashboard_address": ":0", "protocol": "tcp"}
@@ -92,7 +92,7 @@ def test_a_worker_killed_at_work_costs_nothing(pair, tmp_path):
 
 def test_a_worker_killed_with_its_result_costs_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr(dask, "FETCH", 1.0)
-    with farm({}) as address:  # no other worker can do it instead
+    with farm({}) as address:  # a single worker, so no other one can take over
         assert run(Lost, [str(tmp_path / "a")], address) == {0: Outcome("done")}
 
 
@@ -117,7 +117,7 @@ NOBODY, SOMEBODY, TWO_THREADS = (
 
 
 class Client:
-    """A client of a scheduler that answers with these workers, one after the other."""
+    """A client of a scheduler that responds with these workers, one list after the other."""
 
     def __init__(self, *answers):
         self._answers = list(answers)
@@ -163,7 +163,7 @@ def test_a_cluster_that_cannot_go_on_is_one_line(answers, wait, submitted, error
     ],
 )
 def test_an_address_without_an_answer_is_one_line(address, wait, words):
-    with socket.create_server(("127.0.0.1", 0)) as server:  # which never answers
+    with socket.create_server(("127.0.0.1", 0)) as server:  # a server that never answers
         if address == "listener":
             address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
         with pytest.raises(InputError, match=words):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nobody's folder runs code: a Python file beside a document is never imported."""
+"""Document folders never run code: a Python file beside a document is not imported."""
 
 import subprocess
 import sys
@@ -14,8 +14,8 @@ from mxeon.shaders.library import examples_folder
 from tests.support.availability import available
 from tests.support.faults import square
 
-# What any process could ask for: the standard library, what is installed, Blender's modules, and
-# what Python looks for when it starts.
+# Modules that any process may import: the standard library, installed packages, Blender's modules,
+# and those that Python looks for at startup.
 NAMES = {*sys.stdlib_module_names, "bpy", "_cycles", "mathutils"}
 NAMES |= {"sitecustomize", "usercustomize", "numpy", "mxeon"}
 PLANT = "import os\nos.write(os.open({!r}, os.O_CREAT | os.O_WRONLY), __file__.encode())\n"
@@ -34,11 +34,11 @@ COMMANDS = {
     "kit export": "kit export out/kit --size 64",
     "kit check": "kit check out/kit",
 }
-STATUS = {"check": 3, "kit check": 3}  # msl and an empty kit do not run
+STATUS = {"check": 3, "kit check": 3}  # msl and an empty kit are not run
 
 
 def plant(folder, names, text):
-    """Modules of these names and of one text: links, which take less than files."""
+    """Plant modules with these names and the same text; links are faster than files."""
     folder.mkdir(exist_ok=True)
     first, *others = (folder / f"{name}.py" for name in names)
     first.write_text(text)
@@ -47,7 +47,7 @@ def plant(folder, names, text):
 
 
 def run(folder, command):
-    """The command as pip installs it, from a folder with a document."""
+    """Run the command as pip installs it, from a folder with a document."""
     (folder / "in").mkdir(exist_ok=True)
     (folder / "bin").mkdir(exist_ok=True)
     (folder / "bin" / "command").write_text(SCRIPT)
@@ -59,7 +59,7 @@ def run(folder, command):
 
 @pytest.fixture(scope="module")
 def hostile(tmp_path_factory):
-    """A working folder, and folders for documents and results in it, with all these modules; and a report."""
+    """A working folder, folders for documents and results, and a report, all full of these modules."""
     report, hostile = (tmp_path_factory.mktemp(name) for name in ("report", "hostile"))
     assert run(report, COMMANDS["check"]).returncode == 3
     (hostile / "report").symlink_to(report / "out")
@@ -92,7 +92,7 @@ def test_workers_of_an_interactive_parent_do_not_import_from_its_folder(hostile,
 @pytest.mark.parametrize("way", [["-E", "bin/command"], ["-m", "mxeon"]], ids=" ".join)
 def test_the_working_folder_is_off_the_path_whatever_starts_the_command(tmp_path, way):
     plant(tmp_path, ["pebble", "MaterialX", "numpy"], PLANT.format(str(tmp_path / "RAN")))
-    run(tmp_path, "library")  # which leaves bin/command
+    run(tmp_path, "library")  # creates bin/command
     command = [sys.executable, *way, *COMMANDS["generate"].split()]
     subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
     assert not (tmp_path / "RAN").exists()

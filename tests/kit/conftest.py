@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Kits with pictures of known models, and what tests read of them."""
+"""Kits with pictures of known models, and helpers to read results."""
 
 import re
 from functools import cache
@@ -24,7 +24,7 @@ EON, QON, CUBED = (reference.diffuse_model(name).title for name in ("eon", "qon"
 
 @pytest.fixture(scope="module", autouse=True)
 def remembered():
-    """What is expected of a model in a view, worked out once for all tests."""
+    """Expected values of a model in a view, computed once for all tests."""
     with pytest.MonkeyPatch.context() as patch:
         for function in (expected, pixel_means):
             once = cache(function)
@@ -40,11 +40,11 @@ def means(model, name):
     return pixel_means(reference.diffuse_model(model), VIEWS[name])
 
 
-EXPORTED = {}  # the files of a kit by their names, exported once
+EXPORTED = {}  # files of a kit by name, exported once
 
 
 def write_kit(folder):
-    """A kit without pictures, in an empty folder or over another kit."""
+    """Write a kit without pictures, to an empty folder or over another kit."""
     if not EXPORTED:
         export_kit(folder, SIZE)
         for file in filter(Path.is_file, folder.rglob("*")):
@@ -55,7 +55,7 @@ def write_kit(folder):
 
 
 def write_pictures(folder, true="eon", false="qon", noise=0.0, seed=1):
-    """A kit, and pictures of these models with as much relative noise in each pixel."""
+    """Write a kit with pictures of these models, with the given relative noise in each pixel."""
     rng = np.random.default_rng(seed)
     write_kit(folder)
     for view in VIEWS.values():
@@ -82,7 +82,7 @@ def read(path):
 
 
 def result_of(run, check, subject):
-    """The one result of a check on a subject that begins so."""
+    """The only result of a check whose subject starts with the given text."""
     (result,) = [
         each for each in run.results if each.check == check and each.subject.startswith(subject)
     ]
@@ -90,6 +90,6 @@ def result_of(run, check, subject):
 
 
 def names(run):
-    """The first name in each of the notes, by subject."""
+    """The first name in each note, by subject."""
     pattern = r"(.*): best match: (.*) \(rms .*?\), then (.*) \("
     return {match[1]: match[2] for match in map(re.compile(pattern).match, run.notes) if match}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kit: its files, damaged ones too, its verdicts on pictures, and Cycles as an external renderer."""
+"""The kit: its files, including damaged ones, verdicts on pictures, and Cycles as an external renderer."""
 
 import json
 import re
@@ -48,7 +48,7 @@ EXTERNAL_RENDERER = Path(__file__).parents[1] / "support" / "external_renderer.p
 
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory):
-    """A kit that no test changes."""
+    """A kit that tests must not change."""
     folder = tmp_path_factory.mktemp("exported")
     export_kit(folder, SIZE)
     return folder
@@ -220,7 +220,7 @@ def write_osl(kit, library, profile):
 
 
 def external_run(kit, library, profile=None):
-    """Cycles' pictures of a new kit, judged."""
+    """Judged Cycles pictures of a new kit."""
     with available("cycles"):
         python = interpreter()
     export_kit(kit, SIZE)
@@ -307,17 +307,17 @@ def planted(value):
 
 
 def changed(change):
-    """What writes a picture again with other pixels."""
+    """A function that rewrites a picture with changed pixels."""
     return lambda path: write_exr(path, change(read(path)), {})
 
 
 def replaced(change):
-    """What writes the bytes of a picture again."""
+    """A function that replaces the bytes of a picture."""
     return lambda path: path.write_bytes(change(path.read_bytes()))
 
 
 def channels(*names, x=0, y=0):
-    """What writes a picture with these channels, whose corner may lie elsewhere."""
+    """A function that rewrites a picture with these channels, or with another origin."""
     spec = oiio.ImageSpec(SIZE, SIZE, len(names), oiio.FLOAT)
     spec.channelnames, spec.x, spec.y = list(names), x, y
     return lambda path: oiio.ImageBuf(spec).write(str(path))
@@ -330,7 +330,7 @@ def write_png(path):
 
 
 LAYERS = ("a.R", "a.G", "a.B", "b.R", "b.G", "b.B")
-SPOILED = {  # picture: what makes it unusable, and how that is diagnosed
+SPOILED = {  # picture: how it is damaged, and the expected diagnosis
     "true_front": (changed(planted(np.nan)), "must be finite numbers; got .* row 32, column 32"),
     "true_side": (changed(lambda image: image[:32]), "must be 64 x 64 pixels; got 64 x 32"),
     "true_back": (

@@ -22,7 +22,7 @@ from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS, diffuse_model
 from tests.support import oracle, tolerances
 from tests.support.cases import parameter
 
-# The closed range, crowded at both ends.
+# The closed range, dense at both ends.
 MU = np.unique(
     np.concatenate(
         [
@@ -38,7 +38,7 @@ CLOSED = [row for row in DIFFUSE_MODELS if row.albedo_dir]
 
 
 def named(rows):
-    """Parametrize a test over rows of the reference."""
+    """Parametrize a test by rows of the reference."""
     return pytest.mark.parametrize("row", rows, ids=lambda row: row.name)
 
 

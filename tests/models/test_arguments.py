@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bad arguments of every public function of the models, which are found by introspection."""
+"""Bad arguments of every public function of the models, found by introspection."""
 
 import functools
 import re
@@ -18,13 +18,13 @@ from mxeon.models.transmission import refraction_direction
 from tests.fuzz import arguments
 
 PAGES = Path(__file__).resolve().parents[2] / "docs" / "api"
-# Functions on the pages that take no array.
+# Functions on the API pages that accept no arrays.
 NO_ARRAYS = {"layer", "add", "model", "model_names"}
 
 
 @pytest.fixture(scope="module")
 def rows():
-    """Bad arguments by function; any of pytest's processes may judge those of a function."""
+    """Rows of bad arguments by function, so that any pytest process may test a function."""
     found = defaultdict(list)
     for row in arguments.rows():
         found[row[0]].append(row)
@@ -41,13 +41,13 @@ def test_the_least_number_above_zero_counts_as_zero():
     for function in arguments.functions().values():
         for name in arguments.tried(function, arrays=True):
             least, zero = (result(function, name, value) for value in (arguments.SMALLEST, 0.0))
-            if least and zero and name != "thickness":  # where the text has a jump
+            if least and zero and name != "thickness":  # the specification has a jump at 0
                 for a, b in zip(least, zero, strict=True):
                     np.testing.assert_allclose(a, b, 1e-9, 1e-12, err_msg=f"{function} {name}")
 
 
 def result(function, name, value):
-    """The arrays that a function returns; none if it refuses the value."""
+    """The arrays that a function returns; an empty list if it refuses the value."""
     returned = []
 
     @functools.wraps(function)
@@ -65,7 +65,7 @@ def test_every_function_on_the_pages_is_tried():
     paths = re.findall(
         r"^::: (mxeon\.(?:models|albedo|inversion|sampling)[\w.]*\.[a-z]\w+)$", text, re.M
     )
-    paths = [each for each in paths if ".surfaces." not in each]  # those take a light and inputs
+    paths = [each for each in paths if ".surfaces." not in each]  # these take a light and inputs
     names = {path.rpartition(".")[2] for path in paths if not ismodule(resolve_name(path))}
     tried = {name.rpartition(".")[2] for name in arguments.functions()}
     assert len(names) > 90
@@ -92,7 +92,7 @@ def test_every_function_computes_in_float64_whatever_the_type_of_its_arguments(k
         base = arguments.base(function)
         for name in arguments.tried(function, arrays=True):
             if isinstance(base[name], int | float | tuple | np.ndarray):
-                # No number of float64, where the type has more digits.
+                # A number that float64 cannot represent, if the type has more digits.
                 exact = np.asarray(base[name], np.longdouble) * (1.0 - np.longdouble(2.0) ** -57)
                 value = exact.astype(kind)
                 found = computed(function, base | {name: value})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays of other libraries: values and gradients of every function that takes them.
+"""Arrays of other libraries: values and gradients of every function that accepts them.
 
 Where a library is not installed its tests are skipped. Gradients are compared with differences of the
 same function in NumPy, where these can be relied on.
@@ -34,9 +34,9 @@ PAIRS = (
     "ggx_",
     "btdf",
     "transmittance_dir",
-)  # in the names of functions whose roughness is a pair
+)  # parts of the names of functions whose roughness is a pair
 INTERFACES = "dielectric_over_eon", "varnished"
-# What JAX compiles for seconds; their factors have functions of their own.
+# JAX needs seconds to compile these; their factors have their own functions.
 COATS = ("brdf", "albedo_dir", "sample", "pdf")
 LONG = (
     "chiang_hair_bcsdf",
@@ -44,30 +44,30 @@ LONG = (
 )
 LONG += ("film_albedo_dir", "dielectric_albedo_dir", "conty_kulla_albedo_dir", "transmittance_dir")
 ROWS, FEW = 48, 4
-# Thousands of nodes a row.
+# Functions with thousands of nodes per row.
 FACETS = ("dielectric_albedo_dir", "conductor_albedo_dir", "schlick_albedo_dir")
 QUADRATURES = (*FACETS, "film_albedo_dir", "transmittance_dir", "ggx_albedo_dir_anisotropic")
 QUADRATURES += ("conty_kulla_albedo_dir",)
 SEED = 11
-GRADIENT = 1e-7  # of the larger of 1 and the gradient: the truncation of differences in float64
-WIDTH = 1e-4  # of a step of differences
-OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)  # up to three steps, of one width and of two
-RELIABLE = 2e-8  # two steps of differences that agree so far are taken for the derivative
-COMPARED = 0.6  # least share of partial derivatives that differences can judge
-# Of a curve that is cut between thousands of nodes; of roots of differences, which are noise.
+GRADIENT = 1e-7  # truncation of float64 differences, relative to the larger of 1 and the gradient
+WIDTH = 1e-4  # width of one step of the differences
+OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)  # up to three steps, in two widths
+RELIABLE = 2e-8  # maximum disagreement of two step widths for a reliable derivative
+COMPARED = 0.6  # minimum fraction of partial derivatives that differences can judge
+# A film's curve is clamped between thousands of nodes; roots of differences are noise.
 CUT = {"film_albedo_dir": 0.3, "diffusion_blur": 0.0}
-NOISE = {"diffusion_blur": 2e-8}  # of the root of a difference, whose digits are 2^-53
-VALUE = 1e-12  # of the larger of 1 and the value: another library's last digits of sines and powers
+NOISE = {"diffusion_blur": 2e-8}  # error of the root of a difference, whose rounding is 2^-53
+VALUE = 1e-12  # another library's sines and powers, relative to the larger of 1 and the value
 
 
 def has_mapping(function):
-    """Whether inputs by name come in one argument."""
+    """Whether the inputs come by name in one argument."""
     each = inspect.signature(function).parameters.get("inputs")
     return each is not None and each.kind is each.POSITIONAL_OR_KEYWORD
 
 
 def named(function):
-    """Function whose inputs in a mapping are arguments of their own."""
+    """A function whose named inputs are separate arguments."""
     parameters = inspect.signature(function).parameters
     if not has_mapping(function):
         return function
@@ -83,13 +83,14 @@ def named(function):
 PORTABLE = {
     name: named(function)
     for name, function in arguments.functions().items()
-    # Wrong variants are tried by name with the catalog, a quadrature of any function as one of theirs.
+    # Other tests cover wrong variants (by name, with the catalog) and quadratures of any function
+    # (with one of theirs).
     if inspect.unwrap(function) is not function
     and hasattr(models, function.__name__)
     and "core.quadrature" not in name
 }
 COMPENSATED = ("dielectric_brdf", "conductor_brdf", "generalized_schlick_brdf")
-# Ends for tests, where a range has none, or one at which slopes grow beyond bounds.
+# Ends of ranges for tests, if a range has none, or its slopes diverge there.
 LOW = (
     dict.fromkeys(("eumelanin_color", "pheomelanin_color", "hair_color"), 0.05)
     | dict.fromkeys(("separation", "radius", "reach"), 0.2)
@@ -136,8 +137,8 @@ def pytorch():
 def jax():
     library = package("jax")
     library.config.update("jax_enable_x64", True)
-    # What is compiled for one call is not worth optimizing, and emitting fused loops takes twice the
-    # rest; in one module, what all modules need is compiled once.
+    # Optimizing code for a single call does not pay, and emitting fused loops takes twice as long
+    # as the rest. With one module, shared code is compiled once.
     library.config.update("jax_disable_most_optimizations", True)
     options = {"xla_cpu_use_fusion_emitters": False, "xla_cpu_parallel_codegen_split_count": 1}
     jit = partial(library.jit, compiler_options=options)
@@ -165,12 +166,12 @@ def library(request):
 
 
 def count(function):
-    """Number of rows with which a function is tried."""
+    """Number of rows for testing a function."""
     return FEW if function.__name__.endswith(QUADRATURES) else ROWS
 
 
 def directions(rng, below, rows=ROWS):
-    """Unit vectors, of which the first ones are along the normal or graze."""
+    """Unit vectors; the first ones are along the normal or grazing."""
     w = rng.normal(size=(rows, 3))
     w[: max(rows // 12, 1)] = 0.0, 0.0, 1.0
     w[max(rows // 12, 1) : max(rows // 4, 2), 2] = 0.0
@@ -180,7 +181,7 @@ def directions(rng, below, rows=ROWS):
 
 
 def sampled(function):
-    """Arguments by name, each a row of its range or an end of it, and the switches."""
+    """Arguments by name, each row inside its range or at an end of it, and the switches."""
     rng, arrays, switches, rows = np.random.default_rng(SEED), {}, {}, count(function)
     values, names = dict(arguments.base(inspect.unwrap(function))), table.arrays(function)
     if has_mapping(function):
@@ -192,7 +193,7 @@ def sampled(function):
             or name not in names
             or name == "light"
         ):
-            switches[name] = value  # one for all rows
+            switches[name] = value  # one value for all rows
         elif np.shape(value) == (3,) and name[0] in "wn":
             arrays[name] = directions(rng, value[2] < 0.0, rows)
         else:
@@ -208,8 +209,8 @@ def sampled(function):
     for name in [name for name, value in switches.items() if isinstance(value, dict)]:
         switches |= switches.pop(name)  # named inputs
     value = arguments.call(inspect.unwrap(function), arguments.base(inspect.unwrap(function)))
-    channels = 0 if isinstance(value, tuple) else np.ndim(value)  # a sampler has none
-    channels = channels or function.__name__.startswith(INTERFACES)  # whose samples take a color
+    channels = 0 if isinstance(value, tuple) else np.ndim(value)  # samplers have no channels
+    channels = channels or function.__name__.startswith(INTERFACES)  # their samplers take a color
     for name in COLORS & set(arrays) if channels else ():
         if arrays[name].ndim < 2 and (name.startswith(TINTS) or "conductor" in function.__name__):
             arrays[name] = arrays[name][:, np.newaxis]
@@ -217,7 +218,7 @@ def sampled(function):
 
 
 def whole(value):
-    """An array: of a sampler the components of the direction, and the density; of a pair both."""
+    """A single array: a sampler's direction components and density; both arrays of a pair."""
     if not isinstance(value, tuple):
         return value
     w, pdf, *others = value
@@ -229,7 +230,7 @@ def whole(value):
 
 
 def scalar(value, axes=1):
-    """One number per row: the first channel, or all that a sampler returns together."""
+    """One number per row: the first channel, or the sum of all results of a sampler."""
     value = whole(value).sum(-1) if isinstance(value, tuple) else value
     while value.ndim > axes:
         value = value[..., 0]
@@ -237,7 +238,7 @@ def scalar(value, axes=1):
 
 
 def moved(function, arrays, switches, name):
-    """Scalars of each row with each component of an array moved by each of OFFSETS: one call for all."""
+    """Scalars of each row with each component of an array moved by each of OFFSETS, in a single call."""
     array = arrays[name]
     rows, size = len(array), array[0].size
     several = np.tile(array.reshape(rows, size), (size, len(OFFSETS), 1, 1))
@@ -248,7 +249,7 @@ def moved(function, arrays, switches, name):
         for each, value in arrays.items()
     }
     values[name] = several.reshape(values[name].shape)
-    # Map it over the rows: a value that is traced may leave its range, and a direction the sphere.
+    # Map over the rows: traced values may leave their range, and directions the sphere.
     torch = package("torch")
     row = torch.func.vmap(
         lambda *a: scalar(function(**dict(zip(values, a, strict=True)), **switches), 0)
@@ -258,7 +259,7 @@ def moved(function, arrays, switches, name):
 
 
 def slopes(f, step):
-    """Slope from above and from below, of third order in a step of so many widths."""
+    """Slopes from above and from below, to third order, with the given number of steps."""
     with np.errstate(invalid="ignore"):
         return [
             s
@@ -269,7 +270,7 @@ def slopes(f, step):
 
 
 def differences(function, arrays, switches, name):
-    """Derivatives of each row by each component, by differences, and where they can be relied on."""
+    """Derivatives of each row by each component, by differences, and where they are reliable."""
     for k, f in enumerate(moved(function, arrays, switches, name)):
         low, high, _ = RANGES[name] if name in RANGES else RANGES["mu" if k == 2 else "cos_theta"]
         x = arrays[name].reshape(len(arrays[name]), -1)[:, k]
@@ -277,7 +278,7 @@ def differences(function, arrays, switches, name):
         usable = [x + reach <= high, x - reach >= low]
         best = np.where(usable[0], fine[0], fine[1])
         spread = np.zeros(len(x))
-        with np.errstate(invalid="ignore"):  # beyond an end of a range
+        with np.errstate(invalid="ignore"):  # beyond an end of the range
             for side, each in ((0, coarse[0]), (0, fine[0]), (1, coarse[1]), (1, fine[1])):
                 spread = np.maximum(spread, np.where(usable[side], np.abs(each - best), 0.0))
         yield best, spread <= RELIABLE * np.maximum(1.0, np.abs(best))
@@ -301,10 +302,10 @@ def test_gradients_are_finite_and_those_of_differences(make, name):
 def test_gradients_of_the_compensation_are_those_of_differences(name):
     assert_gradients(
         pytorch(), f"mxeon.models.microfacet.{name}", True
-    )  # JAX compiles its polynomials for seconds
+    )  # JAX needs seconds to compile its polynomials
 
 
-@lru_cache(maxsize=4)  # of one function for both libraries
+@lru_cache(maxsize=4)  # both libraries test the same function
 def reference(name, compensate):
     """Arguments of a function, its values in NumPy, and derivatives by each component of each array."""
     function = PORTABLE[name]
@@ -315,7 +316,7 @@ def reference(name, compensate):
 
 
 def assert_gradients(library, name, compensate):
-    """Compare the gradients by every array with differences, where these can be relied on."""
+    """Compare the gradients by every array with reliable differences."""
     function = PORTABLE[name]
     arrays, switches, expected_value, slopes = reference(name, compensate)
     value, found = library.gradients(partial(function, **switches), arrays)
@@ -324,13 +325,13 @@ def assert_gradients(library, name, compensate):
         assert np.isfinite(gradient).all(), argument
         kink = np.zeros(count(function), bool)
         if function.__name__.endswith("_sample") and argument == "wo":
-            kink = arrays["wo"][:, 2] == 1.0  # whose azimuth turns with it
-        if function.__name__.endswith("_anisotropy"):  # the larger alpha is 1, and no more
+            kink = arrays["wo"][:, 2] == 1.0  # the azimuth of wo jumps at the normal
+        if function.__name__.endswith("_anisotropy"):  # the larger alpha is clamped at 1
             kink = (function(**arrays)[:, 0] == 1.0) & (arrays["anisotropy"] == 0.0)
         if function.__name__.endswith("transmittance_dir") and argument == "roughness":
-            # Of a mirror it counts as 0.
+            # A mirror's transmittance counts as 0.
             kink = (arrays["roughness"] == 0.0).any(axis=1)
-        if function.__name__ == "film_schlick":  # a curve that begins to be cut at 0
+        if function.__name__ == "film_schlick":  # the curve is clamped from 0 on
             kink = (arrays["color0"] * arrays["color90"] == 0.0)[:, 0]
         columns, judged = gradient.reshape(count(function), -1).T, 0
         for k, column in enumerate(columns):
@@ -416,7 +417,8 @@ def test_precision_is_that_of_the_arrays(library):
     single = library.array(np.array([0.5], np.float32))
     value = lambert_brdf(np.array([[0.6, 0.0, 0.8]]), [0, 0, 1], single)
     assert library.numpy(value).dtype == np.float32 and tuple(value.shape) == (1, 1)
-    whole = lambert_brdf(library.array([0, 0, 1]), [0, 0, 1], 0.5)  # integers are no precision
+    # Integer types have no precision.
+    whole = lambert_brdf(library.array([0, 0, 1]), [0, 0, 1], 0.5)
     assert library.numpy(whole).dtype in (np.float32, np.float64)
 
 

@@ -19,16 +19,16 @@ from tests.support import tolerances
 
 WO, WI = np.array([0.6, 0.0, 0.8]), np.array([-0.36, 0.48, 0.8])
 MANY = np.array([[0.6, 0.0, 0.8], [0.0, 0.8, 0.6], [0.0, 0.0, 1.0], [0.0, 0.6, 0.8], WI])
-TRANSMITTED = 3e-4  # of the albedo, whose quadrature states 2e-4; that of the values adds to it
+TRANSMITTED = 3e-4  # quadrature error of the albedo, 2e-4, plus that of the values
 MODES = {"mode", "scatter_mode", "distribution", "energy_compensation"}
 FRAME = {"weight", "normal", "tangent", "curve_direction", "retroreflective"}
 LIGHT = {"front": WI, "back": WI * [1.0, 1.0, -1.0], "all sides": WI}
 every_model = pytest.mark.parametrize("name", MODELS)
 SAMPLED = [name for name in MODELS if "sample" in MODELS[name].functions]
-# Inputs that samples spread over, by their channels; others have their defaults.
+# Input channels with these values for samplers; others have their defaults.
 ROUGH = {("roughness", 0): 0.5, ("roughness", 2): (0.3, 0.6), ("alpha", 0): 0.3}
-OTHER_ALBEDO = ("burley_lambert",)  # whose defect it is
-MASS = 2e-3  # of a density: noise of the share below the horizon
+OTHER_ALBEDO = ("burley_lambert",)  # a different albedo is its defect
+MASS = 2e-3  # noise of a density's share below the horizon
 
 
 @pytest.mark.parametrize("category", DEFAULTS)
@@ -48,7 +48,7 @@ def test_inputs_have_the_names_order_and_defaults_of_the_definition(category):
 def test_inputs_are_in_the_order_of_their_node(name):
     row = MODELS[name]
     names = [each.name for each in row.parameters]
-    order = list(DEFAULTS.get(row.node, names))  # a layer has none of its own
+    order = list(DEFAULTS.get(row.node, names))  # a layer has no defaults
     assert names == sorted(names, key=order.index)
     for each in row.parameters:
         low, high = each.interval
@@ -90,7 +90,7 @@ def test_every_drawn_direction_has_a_value_and_its_density(name):
     value, below = row.bsdf(wo, wi, **inputs), wi[:, 2] < 0.0
     if row.lights != "all sides":
         assert not value[below if row.lights == "front" else ~below].any()
-    # The mean of their weights is the albedo, and what is not drawn above is drawn below.
+    # The mean of the weights is the albedo; samples that are not above are below.
     cosine = 1.0 if name == "hair" else np.abs(wi[:, 2:])
     weights = value * cosine / pdf[:, np.newaxis]
     error = np.abs(weights.mean(axis=0) - row.albedo_dir(0.4, **inputs))

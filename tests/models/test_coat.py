@@ -31,7 +31,7 @@ COSINES = np.append([0.0, 1e-10, 1e-8, 1e-6, 1e-5, 1e-4], np.geomspace(1e-3, 1.0
 def test_curves_are_those_of_a_finer_quadrature(monkeypatch, alpha, ior):
     coat = constant_coat(alpha, ior)
     missing, reflected = coat.at(COSINES)
-    # Integrate anew, with more nodes, that crowd at grazing without end.
+    # Repeat the integration with more nodes that crowd closer to grazing.
     finer = {"LEAST_SCALE": 0.0, "SLOPE_NODES": 40, "PANELS": 6, "QUADRANT": 120}
     for name, value in finer.items():
         monkeypatch.setattr(slopes, name, value)
@@ -56,7 +56,7 @@ def test_the_directional_albedo_is_the_integral_of_the_value(mu):
 @pytest.mark.parametrize("alpha", (0.02, 0.3, 1.0))
 def test_the_average_albedo_is_the_average(alpha):
     x, weight = gauss_legendre(400)
-    mu = (0.5 + 0.5 * x) ** 2  # whose nodes crowd at grazing
+    mu = (0.5 + 0.5 * x) ** 2  # the nodes crowd at grazing
     E = dielectric_over_eon_albedo_dir(mu, **CLAY, alpha=alpha, ior=1.5)
     average = (0.5 * weight * 4.0 * (0.5 + 0.5 * x) ** 3) @ E
     found = dielectric_over_eon_albedo_avg(**CLAY, alpha=alpha, ior=1.5)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Emission of surfaces: the printed equations, their integrals, and bad arguments."""
+"""Emission of surfaces: the printed equations, their integrals, and invalid arguments."""
 
 from itertools import pairwise
 
@@ -12,14 +12,14 @@ from tests.support.cases import direction as view
 
 UP = [0.0, 0.0, 1.0]
 ROWS = (*EMISSIONS, *COMBINED_EMISSIONS)
-QUADRATURE = 1e-10  # of 64 nodes on each smooth piece, relative to pi c
+QUADRATURE = 1e-10  # error of 64 nodes on each smooth piece, relative to pi c
 ROUNDING = 1e-12
 ANGLES = ((60.0, 0.0), (60.0, 60.0), (0.0, 90.0), (60.0, 61e-0), (170.0, 200.0), (200.0, 300.0),
           (0.0, 360.0), (180.0, 180.0), (360.0, 10.0), (30.0, 30.001), (0.0, 0.0))  # fmt: skip
 
 
 def exitance(radiance, *edges):
-    """2 pi int L mu dmu over [0, 1], piece by piece between edges."""
+    """2 pi int L mu dmu over [0, 1], summed over the pieces between edges."""
     x, w = np.polynomial.legendre.leggauss(64)
     stops = np.unique(np.clip([0.0, *edges, 1.0], 0.0, 1.0))
     total = 0.0
@@ -46,7 +46,7 @@ def test_the_exitance_of_a_cone_is_the_integral_of_its_radiance(angles):
 def test_the_exitance_of_a_schlick_curve_is_the_integral_of_its_radiance(exponent):
     factors = [0.2, 0.9], [0.7, 0.1], exponent
     x, w = np.polynomial.legendre.leggauss(64)
-    t = 0.5 * (x + 1.0)  # 1 - mu = t^2, so that a root of it is smooth
+    t = 0.5 * (x + 1.0)  # 1 - mu = t^2 makes its square root smooth
     values = emission.generalized_schlick_edf(view(1.0 - t * t), [2.0, 3.0], *factors)
     measured = 2.0 * np.pi * (0.5 * w * 2.0 * t * (1.0 - t * t)) @ values
     closed = emission.generalized_schlick_exitance([2.0, 3.0], *factors)
@@ -91,7 +91,8 @@ def test_the_rows_integrate_to_their_exitance(row):
         return row.value(wo, spread)
 
     measured = exitance(radiance, *edges)
-    assert np.abs(measured - row.exitance(inputs)).max() <= 1e-6  # a root at the normal
+    # The integrand has a root at the normal.
+    assert np.abs(measured - row.exitance(inputs)).max() <= 1e-6
     values = row.value(view([0.75]), inputs)
     assert all(
         np.abs(each.value(view([0.75]), inputs) - values).max() > 1e-3

@@ -121,7 +121,7 @@ def test_reflectances_lie_between_0_and_1_on_the_closed_domain():
 
 
 def test_without_extinction_a_conductor_is_a_dielectric():
-    # Near the critical angle F has an infinite slope: none of these lie there.
+    # F has an infinite slope at the critical angle: none of these lie close to it.
     ior = IOR[(IOR != 0.0) & (np.abs(IOR - 1.0) > 1e-6)]
     conductor = fresnel_conductor(MU[:, None], ior[:, None], 0.0)[..., 0]
     error = np.abs(conductor - fresnel_dielectric(MU[:, None], ior))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The hair model: norms of its lobes, its furnace, 50 digits, and Mitsuba's own implementation."""
+"""The hair model: normalization of its lobes, its furnace, 50 digits, and Mitsuba's own implementation."""
 
 import mpmath as mp
 import numpy as np
@@ -59,7 +59,7 @@ def test_the_longitudinal_function_is_normalized(v):
 @pytest.mark.parametrize("s", [0.01, 0.3, 2.0, 100.0])
 def test_the_azimuthal_function_is_normalized(s):
     x, w = np.polynomial.legendre.leggauss(400)
-    phi = np.pi * x * x * x  # dense where a narrow lobe is
+    phi = np.pi * x * x * x  # dense inside narrow lobes
     norm = (3.0 * np.pi * x * x * w * hair_azimuthal(phi, s)).sum()
     assert norm == pytest.approx(1.0, abs=1e-6)
     assert hair_azimuthal(0.4 + 4.0 * np.pi, s) == pytest.approx(float(hair_azimuthal(0.4, s)))
@@ -89,7 +89,7 @@ def test_a_furnace_with_absorption_returns_the_attenuations():
 
 
 def test_only_a_tilt_of_the_viewer_keeps_the_furnace():
-    # By the text, two degrees of tilt cost a slanted view of rough hair 2 % of the light.
+    # The text's tilt of two degrees costs 2 % of the light in a slanted view of rough hair.
     cuticle = 0.5 + 2.0 / 180.0
     tilted = np.pi * furnace(VIEWS[2], cuticle_angle=cuticle)
     np.testing.assert_allclose(tilted, 0.9775, atol=1e-3)
@@ -105,11 +105,11 @@ def test_the_sign_of_a_tilted_cosine_has_no_effect():
 
 
 def test_the_ten_terms_of_materialx_are_off_by_2_percent():
-    # At a = 12 the series lacks its tenth power of x^2 and all beyond.
+    # At a = 12 the series lacks its tenth power of x^2 and all higher ones.
     sine, cosine, v = np.array(0.0), np.array(1.0), np.array(1.0 / 11.9)
     exact = longitudinal(sine, cosine, sine, cosine, v)
     assert materialx_longitudinal(sine, cosine, sine, cosine, v) / exact < 0.982
-    v = np.array(1.0 / 12.1)  # half of 1 / (8 x) is missing
+    v = np.array(1.0 / 12.1)  # half of the term 1 / (8 x) is missing
     short = materialx_longitudinal(sine, cosine, sine, cosine, v)
     assert short / longitudinal(sine, cosine, sine, cosine, v) == pytest.approx(0.9944, abs=1e-3)
 
@@ -124,7 +124,7 @@ def test_each_form_has_other_values(form):
 
 @pytest.mark.parametrize("tilt", [0.0, 3.0])
 def test_mitsuba_has_the_values_of_the_model(tilt):
-    """Its hair is that of [Chiang2016]: without the factor 1/pi, and with the viewer tilted."""
+    """Mitsuba's hair follows [Chiang2016]: without the factor 1/pi, and with the viewer tilted."""
     mi = package("mitsuba")
     mi.set_variant("scalar_rgb")
     absorption, beta = (0.1, 0.2, 0.3), 0.6
@@ -144,7 +144,7 @@ def test_mitsuba_has_the_values_of_the_model(tilt):
     point = mi.SurfaceInteraction3f()
     for wo, wi in zip(VIEWS[1:], [[0.2, -0.5, 0.4], [0.1, 0.3, -0.9]], strict=True):
         wi = np.array(wi) / np.linalg.norm(wi)
-        point.wi = mi.Vector3f(*wo[[1, 0, 2]])  # its fiber is +y
+        point.wi = mi.Vector3f(*wo[[1, 0, 2]])  # Mitsuba's fiber is along +y
         value = np.array(bsdf.eval(mi.BSDFContext(), point, mi.Vector3f(*wi[[1, 0, 2]])))
         expected = np.pi * chiang_hair_bcsdf(
             wo,

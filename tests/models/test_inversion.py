@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reflectance from albedo, inverted exactly."""
+"""Reflectance as the exact inverse of albedo."""
 
 import mpmath as mp
 import numpy as np
@@ -9,7 +9,7 @@ from mxeon.models import diffuse as inversion
 from mxeon.models.diffuse import eon_albedo_avg, eon_albedo_dir
 from tests.support import tolerances
 
-# Colors and roughness on [0, 1], and at all magnitudes beside 0 and 1.
+# Colors and roughness in [0, 1], including all magnitudes near 0 and 1.
 SMALL = 10.0 ** np.arange(-300.0, 0.0, 7.0)
 EDGES = np.unique(np.concatenate([SMALL, 1.0 - SMALL, np.linspace(0.0, 1.0, 201)]))
 NORMAL = inversion.eon_rho_from_albedo_normal
@@ -19,7 +19,7 @@ both = pytest.mark.parametrize("function", [NORMAL, AVERAGE])
 
 
 def on_grid(function):
-    """Values on all colors (last axis) and roughness (first axis)."""
+    """Values for all colors (last axis) and roughnesses (first axis)."""
     return function(EDGES, EDGES)
 
 

@@ -9,7 +9,7 @@ from mxeon.models.core.layering import Bsdf, add, layer, mix, multiply, throughp
 # Values with the cosine, integrated: a lobe that reflects E has value E and throughput 1 - E. The
 # numbers are multiples of 1/64, so that the sums and products below are exact.
 A, B = (Bsdf(np.array(e), throughput(e)) for e in ([0.25, 0.5, 0.0], [0.5, 0.125, 1.0]))
-TREE = 1e-13  # 6 levels of up to 2^6 lobes: 400 roundings of 2^-53 of numbers up to the albedo, doubled
+TREE = 1e-13  # 6 levels with up to 2^6 lobes: 400 roundings of numbers up to the albedo, doubled
 NOTHING, BLACK = Bsdf(np.zeros(3), np.ones(3)), Bsdf(np.zeros(3), np.zeros(3))
 
 
@@ -61,7 +61,7 @@ def tree(rng, depth):
         albedo = rng.random(3)
         return Bsdf(albedo, throughput(albedo)), albedo
     (one, E), (other, E_other) = tree(rng, depth - 1), tree(rng, rng.integers(depth))
-    if kind == "layer":  # where E exceeds 1, nothing is left of the base
+    if kind == "layer":  # where E exceeds 1, the base is black
         return layer(one, other), E + np.where(E < 1.0, 1.0 - E, 0.0) * E_other
     if kind == "mix":
         w = rng.random()
@@ -83,4 +83,4 @@ def test_every_tree_of_combinations_keeps_the_albedo_of_the_text():
         white = layer(lobe, Bsdf(np.ones(3), np.zeros(3))).value
         assert np.all(np.abs(white - np.maximum(albedo, 1.0)) <= TREE * scale)
         above += np.count_nonzero(albedo > 1.0)
-    assert 500 < above < 2500  # of 3000 albedos, so that both sides of 1 count
+    assert 500 < above < 2500  # out of 3000 albedos, so that both sides of 1 are tested

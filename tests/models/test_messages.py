@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a refused argument is told: one row for each rule, of functions that check it in their own way.
+"""Messages for invalid arguments: one row for each rule, of functions with checks of their own.
 
 `test_arguments` tries every bad value with every function; these are the words.
 """
@@ -27,7 +27,7 @@ def coated(**changes):
 
 
 RULES = {
-    # Ranges, with the place of the first bad element.
+    # Ranges; the message gives the place of the first bad element.
     "roughness must lie in [0, 1]; got 1.2": lambda: models.eon_brdf(UP, UP, 1.0, 1.2),
     "roughness must lie in [0, 1]; got -0.5 at index (2,)": lambda: models.eon_brdf(
         UP, UP, 1.0, [0.0, 1.0, -0.5]

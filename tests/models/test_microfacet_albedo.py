@@ -30,7 +30,7 @@ from tests.support.hemispheres import hemisphere
 ALPHA = np.geomspace(1e-4, 1.0, 9)
 MU = np.unique(np.concatenate([np.geomspace(1e-4, 1.0, 13), 1.0 - np.geomspace(1e-12, 0.1, 4)]))
 GOLD = [0.183, 1.373], [3.424, 1.77]
-CUBICS = 5e-13  # of (1 - E_ss) / E_ss, whose polynomials are within 1e-10; twice their rounding
+CUBICS = 5e-13  # twice the rounding of (1 - E_ss) / E_ss; its polynomials are exact to 1e-10
 COLORS = [0.9, 0.2], 0.5, 1.0
 EXACT = {"epsabs": 1e-13, "epsrel": 1e-12, "limit": 200}
 NODES = {
@@ -95,7 +95,7 @@ def test_the_albedo_lies_between_its_limits_on_the_closed_domain():
 def test_the_table_of_what_facets_miss_agrees_with_the_quadrature():
     rng = np.random.default_rng(0)
     mu, alpha = rng.random((2, 3000)) ** [[6.0], [3.0]]
-    # Small alpha, both ends, and cosines between on their own scale.
+    # Small alphas with cosines at both ends and in proportion to alpha.
     small = np.geomspace(1e-9, 1e-4, 6)[:, None]
     mu = np.concatenate([mu, (small * [0.0, 0.1, 1.0, 10.0, 1e3]).ravel(), np.ones(30)])
     alpha = np.concatenate([np.maximum(alpha, small[0]), np.repeat(small, 10)])
@@ -164,7 +164,7 @@ def test_the_albedo_is_converged_at_a_critical_angle(ior, monkeypatch):
     monkeypatch.setattr(slopes, "SPLIT_NODES", 64)
     monkeypatch.setattr(slopes, "SPLIT_PART", 64)
     error = np.abs(values - dielectric_albedo_dir(wo, 1.0, alpha, ior)[..., 0])
-    assert error[:, :4].max() < tolerances.E_SS  # of isotropic lobes
+    assert error[:, :4].max() < tolerances.E_SS  # isotropic lobes
     assert error.max() < tolerances.SLOPES
 
 
@@ -173,7 +173,7 @@ def test_the_albedo_is_converged_at_a_critical_angle(ior, monkeypatch):
 )
 def test_the_albedo_agrees_with_a_quadrature_around_the_view_at_a_critical_angle(mu, alpha, ior):
     def around(c):
-        """The integrand over the azimuths of h around wo, of which c is the cosine."""
+        """The integrand over the azimuths of h around wo, with cosine c."""
         slope = np.sqrt((1.0 - c * c) * (1.0 - mu * mu))
         horizon = (mu / (2.0 * c) - c * mu) / slope
         if horizon >= 1.0:

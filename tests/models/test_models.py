@@ -23,7 +23,7 @@ ALL = DIFFUSE_MODELS + KNOWN_DEFECTS
 
 
 def named(rows):
-    """Parametrize a test over rows of the reference."""
+    """Parametrize a test by rows of the reference."""
     return pytest.mark.parametrize("row", rows, ids=lambda row: row.name)
 
 
@@ -33,13 +33,13 @@ def digits(numbers):
 
 
 def largest_quotient(wo, wi):
-    """The larger of 1 and the largest |s / t| that the cosines of a pair allow."""
+    """The larger of 1 and the largest possible |s / t| for the cosines of a pair."""
     mu_o, mu_i = wo[..., 2], wi[..., 2]
     return np.maximum(1.0, 1.0 / np.maximum(mu_o, mu_i))
 
 
 def assert_same(value, again, wo, wi):
-    """Require values of the same pairs, whose functions NumPy may compute in another order."""
+    """Assert that values of the same pairs are equal, although NumPy may compute functions in another order."""
     scale = largest_quotient(np.atleast_2d(wo), np.atleast_2d(wi))
     assert (np.pi * np.abs(value - again) <= 2.0 * tolerances.BRDF * scale[..., np.newaxis]).all()
 

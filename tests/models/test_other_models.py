@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Variants that renderers' own nodes have: where they are right, and how they are wrong."""
+"""Variants in renderers' own nodes: where they are correct, and how they are wrong."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def directions(seed):
 WO, WI = directions(1), directions(2)
 
 
-# By the last word of a name: the parameter of the model, from a roughness.
+# Converts a roughness to the model's parameter, by the last word of its name.
 PARAMETERS = {"half_pi": 0.3 * np.pi, "slope": 0.6 / np.sqrt(2.0), "squared": 0.36}
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rows of pbrlib's nodes: what each promises holds for its functions, and for their variants."""
+"""The rows of pbrlib's nodes: functions and variants keep what the rows promise."""
 
 import numpy as np
 import pytest
@@ -18,12 +18,12 @@ from mxeon.models.sheen import conty_kulla_albedo_dir, zeltner_albedo_dir, zeltn
 COUNT = 6
 ROWS = NODES + COMBINATIONS
 VECTORS = ("color", "tint", "color0", "color82", "color90", "extinction")
-INTEGRAL = 2e-3  # of 48 by 48 nodes at alpha 0.4 and above, and at roughness 0.5
+INTEGRAL = 2e-3  # error of 48 by 48 nodes for alpha from 0.4, and for roughness 0.5
 PRINTED = 5e-6  # half a unit of the last of six digits
 
 
 def inputs(row, count=COUNT):
-    """Random inputs of a row, none at an edge."""
+    """Random inputs of a row, none at an end of its range."""
     rng = np.random.default_rng(1)
     values = {}
     for name in row.inputs:
@@ -36,7 +36,7 @@ def inputs(row, count=COUNT):
         if name == "ior":
             values[name] = 1.0 + values[name]
         if name in ROUGHNESS and row.name in NESTED:
-            values[name] = 0.9 + 0.1 * rng.random(count)  # whose sum reflects more than all light
+            values[name] = 0.9 + 0.1 * rng.random(count)  # the sum reflects more than all light
         if name == "roughness" and row in MICROFACET_NODES:
             values[name] = np.repeat(0.4 + 0.5 * rng.random((count, 1)), 2, axis=1)
     return values
@@ -68,7 +68,7 @@ def test_values_integrate_to_the_albedo(row):
             for name, each in values.items()
         }
         f = row.value(np.repeat(view, len(wi), axis=0), wi, one)
-        albedo = (weights[:, np.newaxis] * f).sum(axis=0)  # the weights have the cosine
+        albedo = (weights[:, np.newaxis] * f).sum(axis=0)  # the weights include the cosine
         np.testing.assert_allclose(albedo, expected[number], rtol=0.0, atol=INTEGRAL)
 
 
@@ -126,7 +126,7 @@ def test_the_fits_of_materialx_have_the_values_of_its_shaders():
     sheen = materialx_fits.conty_kulla_albedo(grazing, rough)
     np.testing.assert_allclose(sheen, 0.230783895 / 0.42389375, rtol=PRINTED)
     np.testing.assert_allclose(materialx_fits.burley_albedo(grazing, rough), 1.55754, rtol=PRINTED)
-    # With F = F0 = F90 = 1 the compensation takes out what the fit itself says is lost.
+    # With F = F0 = F90 = 1 the compensation removes the loss that the fit itself predicts.
     lobe = {"roughness": np.full((COUNT, 2), 0.4)}
     white = materialx_fits.layer_albedo(
         directions(), lobe, np.ones((COUNT, 1)), 1.0, np.ones((COUNT, 1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rows of pbrlib's nodes beside those of reflection: hair, films, transmission, subsurface."""
+"""The rows of pbrlib's nodes other than reflection: hair, films, transmission, subsurface."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ from tests.support.hemispheres import sphere
 
 WO = np.array([[0.3, -0.4, np.sqrt(0.75)], [0.0, 0.6, 0.8]])
 WIDE = {name: (0.6, 0.8) for name in ("roughness_R", "roughness_TT", "roughness_TRT")}
-# Of 160 by 320 directions, for lobes as wide as these.
+# Error of 160 by 320 directions for lobes as wide as these.
 SPHERE = 1e-6
 FILM = {"thinfilm_thickness": np.array([0.0, 400.0]), "thinfilm_ior": np.array([1.3, 1.3])}
 METAL = {
@@ -25,12 +25,12 @@ METAL = {
     "extinction": np.full((2, 3), 3.0),
     "roughness": np.full((2, 2), 0.4),
 }
-# The polynomial for a film's curve, as the docstring of `film_albedo_dir` has it.
+# The polynomial for a film's curve in the docstring of `film_albedo_dir`.
 CURVE = 1e-4
 
 
 def hair_inputs(count, **changes):
-    """The node's defaults and changes of them, a row for each direction."""
+    """The node's defaults with some changes, one row per direction."""
     inputs = {**DEFAULTS, **WIDE, "absorption_coefficient": (0.1, 0.4, 1.5), **changes}
     return {name: np.repeat([np.asarray(each, float)], count, 0) for name, each in inputs.items()}
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What OSL's library BSDL and Cycles make of the nodes: variants that a diagnosis on testrender or Cycles names.
+"""Variants of the nodes in OSL's library BSDL and in Cycles, which diagnoses on testrender or
+Cycles name.
 
 The tests of both hosts hold them against the renderers themselves.
 """

@@ -77,7 +77,7 @@ def test_the_four_parts_of_eon_sum_to_one(mu, roughness):
 
 
 def assert_same_density(pdf, again):
-    """Require two densities that should differ by rounding alone."""
+    """Assert that two densities only differ by rounding."""
     np.testing.assert_allclose(pdf, again, rtol=tolerances.SAMPLE_PDF, atol=tolerances.DIRECTION)
 
 
@@ -118,7 +118,7 @@ def test_arguments_broadcast(name):
 
 @every_sampler
 def test_edges_give_unit_directions_above_the_horizon_and_finite_pdf(sampler):
-    # One unit in the last place beside 0 and 1, and where squares underflow.
+    # Numbers one ulp from 0 and 1, and numbers whose squares underflow.
     edges = np.array([0.0, 5e-324, 1e-200, 2.0**-53, 1e-9, 0.25, 0.5, 0.75, 1.0 - 2.0**-53])
     u = np.stack(np.meshgrid(edges, edges), axis=-1)
     for mu in (*edges, 1.0):
@@ -161,7 +161,7 @@ def test_clipped_cosine_keeps_the_side_of_the_lune_that_lands_above_the_horizon(
 
 def test_clipped_cosine_keeps_its_digits_on_the_rim():
     rest, u2 = 2.0 ** -np.arange(1.0, 54.0)[:, np.newaxis], np.linspace(0.0, 1.0, 64, False)
-    z = cltc.cltc_clipped(1.0 - rest, u2, np.float64(0.0), rest)[..., 2]  # nothing is cut
+    z = cltc.cltc_clipped(1.0 - rest, u2, np.float64(0.0), rest)[..., 2]  # without clipping
     np.testing.assert_allclose(z, np.sqrt(rest + 0.0 * u2), rtol=tolerances.RIM)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Samples of facets, sheen and coats: their distribution, and what they weigh.
+"""Samples of microfacets, sheen and coats: their distribution and their weights.
 
 That their density is `pdf`, and that they weigh the albedo in the mean, `test_catalog` holds for every model.
 The seeds are fixed. FALSE_ALARM is the probability that a test of this file fails although all is right.
@@ -29,7 +29,8 @@ FALSE_ALARM = 1e-4
 FACETS = [(1.0, (0.3, 0.3)), (0.5, (0.2, 0.7)), (0.1, (0.5, 0.5)), (0.0, (1.0, 0.4))]
 COATS = [(1.0, 0.3, 1.5), (0.5, 0.1, 1.5), (0.1, 0.5, 2.5), (0.0, 0.3, 1.1)]
 CLAY = {"color": np.array([0.7, 0.35, 0.12]), "roughness": 0.6}
-# Model, cosine of the view, inputs, and those of which one is another: samples of these are noticed.
+# Model, cosine of the view, inputs, and slightly different inputs: the test detects samples of the
+# latter.
 SCENES = [
     *(("conductor", mu, {"roughness": a}, {"roughness": (1.1 * a[0] % 1.0, a[1])}) for mu, a in FACETS),
     *(
@@ -61,7 +62,7 @@ def test_the_density_is_that_of_the_half_vector(mu, alpha):
     wi, pdf = ggx_sample(view(mu, 0.4), uniforms(1000, 3), alpha)
     assert np.abs(np.sum(wi * wi, axis=-1) - 1.0).max() < tolerances.DIRECTION
     above = wi[:, 2] >= 0.0
-    # The half vector of the direction is off by 4 roundings over the cosine between it and wo.
+    # The direction's half vector is off by 4 roundings over the cosine between the two.
     ahead = np.sqrt(0.5 + 0.5 * wi[above] @ view(mu, 0.4))
     error = np.abs(ggx_pdf(view(mu, 0.4), wi[above], alpha) / pdf[above] - 1.0)
     assert (error * ahead).max() < tolerances.MICROFACET

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Samples are distributed as their density says.
+"""The distribution of samples matches their density.
 
 The seeds are fixed. FALSE_ALARM is the probability that a test of this file fails although all is
 right: each of the file's comparisons runs at its share of it.
@@ -30,17 +30,17 @@ every_sampler = pytest.mark.parametrize("sampler", ALL, ids=lambda sampler: samp
 
 
 def seed_of(sampler, mu, roughness):
-    """A seed for each comparison."""
+    """A different seed for each comparison."""
     return [ALL.index(sampler), SCENES.index((mu, roughness))]
 
 
 def chi_square(sampler, pdf_of, mu, roughness, samples=100_000, count=12):
-    """Probability of a chi-square as large, for `sampler` against the density of `pdf_of`."""
+    """Probability of a larger chi-square of `sampler` compared with the density `pdf_of`."""
     u = uniforms(samples, seed_of(sampler, mu, roughness))
     edges = np.unique(np.append(np.arccos(np.sqrt(np.linspace(0.0, 1.0, 9))), np.arccos(mu)))
     counts = binned(sampler.sample(view(mu), u, roughness)[0], edges, count)
     mean = samples * expected(pdf_of, mu, roughness, edges, count)
-    # Pool the bins in which the statistic would not be chi-square.
+    # Pool bins that are too small for a chi-square distribution.
     rare = mean < 10.0
     counts, mean = (
         np.append(counts[~rare], counts[rare].sum()),

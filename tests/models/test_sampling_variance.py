@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The variance and the largest value of the samplers' throughput weights.
+"""Variance and largest value of the samplers' throughput weights.
 
 At unit reflectance the weight is f cos(theta_i) / p. Its mean is 1. That of the exact sampler is 1
 everywhere by the density it returns; here it is taken over the density that its samples really
@@ -20,9 +20,9 @@ from tools.paper.samplers import BY_NAME
 
 UNBIASED = [BY_NAME[name] for name in ("uniform", "cosine", "ltc0", "eon_cltc", "eon")]
 ANGLES = (0.0, 1e-3, 0.03, 0.1, 0.3, 0.6, 0.9, 1.0)
-# Down to where cosine sampling is all but exact.
+# Down to where cosine sampling is nearly exact.
 ROUGHNESS = (1e-9, 1e-6, 1e-3, 0.05, 0.25, 0.5, 0.75, 1.0)
-# Roots of a random number in which the fits are written, dense at both ends.
+# Roots of a random number, the variable of the fits, dense at both ends.
 ROOTS = np.sin(0.5 * np.pi * (np.arange(4001) + 0.5) / 4001) ** 2
 
 
@@ -41,7 +41,7 @@ def largest(name, quantity, roughness, cosines):
 
 
 def variance(weight, probability):
-    """Of a weight whose mean is 1."""
+    """Variance of a weight with mean 1."""
     return (weight - 1.0) ** 2 @ probability
 
 
@@ -53,7 +53,7 @@ def test_mean_weight_is_one(sampler, mu, roughness):
 
 
 def multiple_error():
-    """Cosines, and the relative error of the density that `multiple` draws them with."""
+    """Cosines, and the relative error of the density with which `multiple` draws them."""
     w = Polynomial([0.0, 1.0])
     a, b, c, d, e, f = eon_sampling.MULTIPLE
     t = 1.0 - w**2
@@ -67,7 +67,7 @@ def multiple_error():
 
 
 def upper_error(mu_o):
-    """Cosines, and the relative error of the density that `upper` draws them with."""
+    """Cosines, and the relative error of the density with which `upper` draws them."""
     y = Polynomial([0.0, 1.0])
     fit = y * (1.0 + (1.0 - y) * Polynomial(eon_sampling.UPPER))
     S_o = np.sqrt((1.0 - mu_o) * (1.0 + mu_o))

@@ -123,7 +123,7 @@ def test_conty_kulla_albedo_has_its_closed_forms_at_grazing_and_along_the_normal
 
 
 def test_conty_kulla_albedo_is_the_integral_of_the_value():
-    # On both sides of the cosine from which the inner integral is by quadrature as well.
+    # Cosines on both sides of the value from which the inner integral is by quadrature, too.
     mu, roughness = np.array([0.02, 0.1, 0.24, 0.26, 0.7]), np.array([0.05, 0.1, 0.3, 0.5])
     wo, wi, weights = zip(*(hemisphere_nodes(m, 128) for m in mu), strict=True)
     truth = [
@@ -152,5 +152,5 @@ def test_transmission_is_lamberts():
 
 
 def test_the_rule_of_conty_kulla_integrates_what_ends_in_a_root():
-    x, weights = _rule.__wrapped__()  # which others may have cached
+    x, weights = _rule.__wrapped__()  # a fresh rule, since other tests may have cached it
     np.testing.assert_allclose([weights.sum(), weights @ np.sqrt(x)], [1.0, 2.0 / 3.0], rtol=1e-10)

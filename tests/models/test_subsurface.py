@@ -18,5 +18,5 @@ def test_a_blur_is_the_profile_s_mean_over_the_unit_sphere(reach):
     for mu in (-0.6, 0.0, 0.3, 0.95):
         cosine = mu * along[:, np.newaxis] + np.sqrt(1.0 - mu * mu) * np.outer(across, np.cos(phi))
         rings = np.maximum(cosine, 0.0).mean(axis=1)
-        # The kinks of both sums cost 400^-2 times the slopes of what they sum.
+        # The kinks of both sums cost 400^-2 times the slopes of their terms.
         assert diffusion_blur(mu, reach) == pytest.approx(w @ rings / w.sum(), abs=1e-4)

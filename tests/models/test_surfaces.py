@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Surface shaders as their texts define them: limits, invariants and energy."""
+"""Surface shaders as specified: limits, invariants and energy."""
 
 import numpy as np
 import pytest
@@ -54,7 +54,7 @@ def test_white_surfaces_vanish_in_a_white_environment(model, inputs):
 
 @pytest.mark.parametrize("weight", ["transmission_weight", "base_metalness", "subsurface_weight"])
 def test_clear_glass_and_mixtures_lose_no_light(weight):
-    """White glass passes what it does not reflect; white metal and white scattering reflect all."""
+    """White glass transmits what it does not reflect; white metal and white scattering reflect everything."""
     p = open_pbr.parameters(**{weight: 1.0}, base_color=WHITE, subsurface_color=WHITE)
     total = open_pbr.surface(Light(VIEWS), p) + open_pbr.surface(Light(VIEWS, behind=True), p)
     np.testing.assert_allclose(total, 1.0, atol=1e-6)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Thin films: limits, the transfer-matrix method, and what the specification's approximation costs."""
+"""Thin films: limits, the transfer-matrix method, and the error of the specification's approximation."""
 
 from dataclasses import replace
 
@@ -29,12 +29,13 @@ from tests.support.films import film_spectrum, film_spectrum_xyz
 MU = np.linspace(0.05, 1.0, 40)
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 WHITE, HALF = np.ones(3), np.full(3, 0.5)
-AVERAGED = 2e-5  # of F_ss: a polynomial through 14 values, searched in random films
-HEIGHTS = 1.3e-3  # by which the heights of the sensitivities add up to more than 1
-ORDERS = 1e-8  # of the sum of all orders, for cosines above 0.05
-TRANSFER = 1e-12  # of two ways to the same amplitudes
-XYZ_ALL, XYZ_TWO = (0.012, 0.017), (0.016, 0.07)  # of dielectrics and metals: the page's figures
-CURVE = 1e-4  # of a polynomial of degree 48
+AVERAGED = 2e-5  # error of F_ss by a polynomial through 14 values, from a search in random films
+HEIGHTS = 1.3e-3  # the sensitivities' heights add up to 1 plus this
+ORDERS = 1e-8  # error of the sum of all orders, for cosines above 0.05
+TRANSFER = 1e-12  # difference of two computations of the amplitudes
+# Errors for dielectrics and for metals, as on the page.
+XYZ_ALL, XYZ_TWO = (0.012, 0.017), (0.016, 0.07)
+CURVE = 1e-4  # error of a polynomial of degree 48
 # Index and extinction of substrates: diamond, glass, water, a dark metal and a bright one.
 SUBSTRATES = ((2.4, 0.0), (1.5, 0.0), (1.33, 0.0), (2.9, 3.1), (0.2, 3.4))
 
@@ -48,7 +49,7 @@ def grid():
 
 
 def text_xyz(orders):
-    """XYZ of the grid by the text, shape (..., 3)."""
+    """XYZ of the grid according to the text, shape (..., 3)."""
     mu, thickness, index, ior, extinction = grid()
     opd = formulas.path_difference(mu, thickness, index)
     both = formulas.over_index(mu, index, ior, extinction)
@@ -56,14 +57,14 @@ def text_xyz(orders):
 
 
 def errors(orders):
-    """Differences of the text's XYZ and of that by wavelengths, of dielectrics and of metals."""
+    """Differences between the text's XYZ and the exact ones, of dielectrics and of metals."""
     error = np.abs(text_xyz(orders) - film_spectrum_xyz(*grid()))
     metal = np.array(SUBSTRATES)[:, 1] > 0.0
     return error[~metal].max(), error[metal].max()
 
 
 def bare(thickness):
-    """Reflectances under a film of one thickness and without it, of the three substrates."""
+    """Reflectances of the three substrates with and without a film of the same thickness."""
     return (
         (film_dielectric(MU, thickness, 1.4, 1.8), fresnel_dielectric(MU, 1.8)[:, np.newaxis]),
         (film_conductor(MU, thickness, 1.4, *GOLD), fresnel_conductor(MU, *GOLD)),
@@ -115,7 +116,7 @@ def test_wavelengths_agree_with_the_transfer_matrix_method():
 
 
 def test_the_airy_terms_of_one_wavelength_are_the_transfer_matrix():
-    # With all orders and no damping: the geometric series in place of the sensitivities.
+    # With all orders and no damping: the geometric series replaces the sensitivities.
     for index, extinction in ((1.5, 0.0), (1.1, 0.0), (0.2, 3.4), (2.9, 3.1)):
         arrays = [np.full_like(MU, value) for value in (1.4, index, extinction)]
         opd, total = formulas.path_difference(MU, 350.0, arrays[0]), 0.0
@@ -172,8 +173,8 @@ def test_tristimulus_values_stay_in_0_to_1_with_all_orders():
 
 def test_the_matrix_is_the_printed_one_after_a_bradford_adaptation():
     d65 = np.linalg.solve(XYZ_TO_REC709, np.ones(3))
-    with np.printoptions():  # it changes how arrays print, in every doctest of the process
-        colour = package("colour")  # slow, in every process that collects tests
+    with np.printoptions():  # colour changes how arrays print in every doctest of the process
+        colour = package("colour")  # a slow import, kept out of test collection
     adaptation = colour.adaptation.matrix_chromatic_adaptation_VonKries(np.ones(3), d65, "Bradford")
     np.testing.assert_allclose(XYZ_TO_REC709_E, XYZ_TO_REC709 @ adaptation, atol=5e-8)
     np.testing.assert_allclose(XYZ_TO_REC709_E.sum(axis=1), 1.0, atol=3e-7)
@@ -229,7 +230,7 @@ def test_equal_inputs_of_all_directions_have_the_values_of_each(row):
 
 
 def filmed(row):
-    """Random inputs of a row, with a film that is not next to nothing."""
+    """Random inputs of a row, with a film that is not too thin to matter."""
     values = inputs(row)
     values["roughness"] = np.repeat(values["roughness"][:, np.newaxis], 2, axis=1)
     values["thinfilm_thickness"] = 500.0 * values["thinfilm_thickness"]
@@ -239,7 +240,7 @@ def filmed(row):
 
 @pytest.mark.parametrize("film", [(150.0, 1.4, 1.8), (600.0, 1.4, 1.8), (358.6, 1.925, 1.093)])
 def test_the_average_of_a_curve_is_weighted_by_the_cosine(film):
-    # The last one is clamped at 0, in two channels, between kinks.
+    # The last film's curve is clamped at 0 between kinks, in two channels.
     names = ("thinfilm_thickness", "thinfilm_ior", "ior")
     material = dict(zip(names, map(np.array, film), strict=True)) | {"tint": np.ones(1)}
     mu = (np.arange(2000) + 0.5) / 2000

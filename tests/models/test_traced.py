@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Transformations of PyTorch and JAX over the functions of every model, as they stand.
+"""Transformations of PyTorch and JAX applied to the functions of every model.
 
 A row of the catalog is tried with each of its functions: no step makes a NaN and gradients are finite at every end of
 every input, and gradients equal differences of NumPy inside. `vmap`, `jit` and `compile` return NumPy's values.
@@ -18,9 +18,9 @@ from tests.support.availability import package
 from tests.support.tracing import untraced
 
 SEED, ROWS = 5, 3
-STEP, SLOPE = 1e-5, 3e-5  # of central differences, and their truncation beside a kink of a curve
-VALUE = 1e-11  # of the larger of 1 and the value
-# Where inputs lie, by quantity, and their ends; others lie in [0.3, 0.7] and end at 0 and 1.
+STEP, SLOPE = 1e-5, 3e-5  # step of central differences, and their error near a kink
+VALUE = 1e-11  # relative to the larger of 1 and the value
+# Ranges of inputs by quantity, and their ends; the others lie in [0.3, 0.7] and end at 0 and 1.
 INSIDE = {"ior": (1.2, 2.0), "extinction": (1.0, 3.0), "thinfilm_thickness": (200.0, 900.0)}
 INSIDE |= {
     "thinfilm_ior": (1.2, 1.9),
@@ -29,19 +29,19 @@ INSIDE |= {
 }
 INSIDE |= dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), (0.1, 0.6))
 ENDS = {"ior": (1.0, 2.0), "extinction": (0.0, 3.0), "exponent": (1.0, 5.0)}
-ENDS |= {"thinfilm_thickness": (1.0, 900.0)}  # a film of thickness 0 is another formula
+ENDS |= {"thinfilm_thickness": (1.0, 900.0)}  # thickness 0 has a different formula
 FUNCTIONS = [
     (name, function)
     for name in model_names()
     for function in mxeon.model(name).functions
-    if function not in ("plot", "brdf")  # of which bsdf is the other name
+    if function not in ("plot", "brdf")  # brdf is another name of bsdf
 ]
-# JAX traces the sums of one film for seconds; the curves of the others are compiled in test_arrays.py.
+# JAX needs seconds to trace the sums of one film; test_arrays.py compiles the curves of the others.
 OTHER_FILMS = ("conductor_film", "schlick_film")
 
 
 def vectors(row, function, ends=False):
-    """Arguments before the inputs, a row each: along the normal, at the horizon and between, or inside."""
+    """Arguments before the inputs, one per row: along the normal, at the horizon and between, or inside."""
     rng, mu = np.random.default_rng(SEED), np.array([1.0, 0.0, 0.6] if ends else [0.7, 0.3, 0.9])
     phi, S = np.array([0.0, 0.3, 2.0]), np.sqrt(1.0 - mu * mu)
     wo = np.stack([S * np.cos(phi), S * np.sin(phi), mu], axis=-1)
@@ -58,7 +58,7 @@ def one_for_all(parameter):
 
 
 def inside(row):
-    """Inputs of a row each, away from the ends of their ranges."""
+    """Random inputs, one per row, away from the ends of their ranges."""
     rng, inputs = np.random.default_rng(SEED), {}
     for each in row.parameters:
         shape = (*(ROWS,) * (not one_for_all(each)), *(each.channels,) * bool(each.channels))
@@ -67,7 +67,7 @@ def inside(row):
 
 
 def at_ends(row, function):
-    """Arguments of which one input is at an end of its range, or all are: all rows of one call.
+    """Arguments with one input, or all, at an end of its range: the rows of a single call.
 
     Where an input is one number for all pairs, calls in which all are at an end.
     """
@@ -86,12 +86,12 @@ def at_ends(row, function):
 
 
 def numbers(result):
-    """One array of a result: the density of a sample."""
+    """One array of a result: a sample's density."""
     return result[1] if isinstance(result, tuple) else result
 
 
 def no_nan(torch):
-    """Context in which a step of PyTorch that makes a NaN fails, also one whose result is left out."""
+    """Context in which PyTorch fails at any NaN, even in a result that is discarded."""
     from torch.utils._python_dispatch import TorchDispatchMode
 
     class NoNan(TorchDispatchMode):
@@ -105,7 +105,7 @@ def no_nan(torch):
 
 
 def assert_slopes(function, inputs, found):
-    """Compare gradients of the sum with differences by each component, of all rows at once."""
+    """Compare gradients of the sum with differences by each component, for all rows at once."""
     for name, gradient in found.items():
         array, rowwise = inputs[name], len(np.shape(inputs[name])) > 0
         for index in np.ndindex(array.shape[1:] if rowwise else ()):
@@ -135,17 +135,17 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
         found = {k: none[k] if t.grad is None else t.grad.numpy() for k, t in tensors.items()}
         return value.detach().numpy(), found
 
-    # Inside: values and slopes of NumPy.
+    # Inside the ranges: values and slopes match NumPy.
     given, inputs = vectors(row, function), inside(row)
     value, found = gradients(given, inputs)
     np.testing.assert_allclose(value, numbers(model(*given, **inputs)), VALUE, VALUE)
     assert_slopes(partial(model, *given), inputs, found)
-    # At the ends: finite, and without a warning of NumPy, which would be an error.
+    # At the ends: results are finite and NumPy issues no warning, which would be an error.
     for given_there, inputs_there in at_ends(row, function):
         value_there, slopes = gradients(given_there, inputs_there, no_nan(torch))
         plain = numbers(model(*given_there, **inputs_there))
         assert all(np.isfinite(each).all() for each in (value_there, plain, *slopes.values()))
-    # A row at a time.
+    # Row by row.
     if given and not any(map(one_for_all, row.parameters)):
         arrays = [torch.tensor(each) for each in (*given, *inputs.values())]
         count = len(given)
@@ -158,7 +158,8 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
     ("name", "function"), [each for each in FUNCTIONS if each[0] not in OTHER_FILMS]
 )
 def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
-    """What `jit`, `vmap` and derivatives need of a function; compiling those of films and facets takes minutes.
+    """Only traces functions for `jit`, `vmap` and derivatives; compiling the derivatives of films
+    and facets takes minutes.
 
     Forwards, in a third of the time: backwards, JAX transposes its own steps, as where gradients have values.
     """
@@ -169,11 +170,11 @@ def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
     axes = {each.name: None if one_for_all(each) else 0 for each in row.parameters}
 
     def change(given, inputs):
-        """The sum, and its derivative as all inputs grow alike."""
+        """The sum, and its derivative if all inputs grow equally."""
         model = partial(getattr(row, function), *given)
         return jax.jvp(lambda inputs: numbers(model(**inputs)).sum(), (inputs,), (inputs,))
 
-    with untraced():  # PyTorch reaches the same lines
+    with untraced():  # the PyTorch tests cover the same lines
         found = jax.eval_shape(jax.vmap(change, in_axes=(0, axes)), given, inputs)
     assert [each.shape for each in found] == [(ROWS,)] * 2
 

@@ -116,7 +116,8 @@ def test_the_transmittance_below_index_1_is_a_sum_over_the_critical_cone(mu, alp
     least = np.sqrt(1.0 - ior**2)
     x, w = np.polynomial.legendre.leggauss(64)
     t = 0.5 * (1.0 + x)
-    cosine, weight = least + (1.0 - least) * t * t, w * t * (1.0 - least)  # 1 - F begins as a root
+    # 1 - F starts like a square root.
+    cosine, weight = least + (1.0 - least) * t * t, w * t * (1.0 - least)
     wh = around(wo, cosine, 128)
     wi = refraction_direction(wo, wh, ior)
     stretched = np.sum((wh / [*alpha, 1.0]) ** 2, axis=-1)
@@ -131,7 +132,8 @@ def test_the_transmittance_below_index_1_is_a_sum_over_the_critical_cone(mu, alp
 
 @pytest.mark.parametrize("alpha", [0.1, 0.4, 1.0])
 def test_as_much_light_leaves_a_solid_as_enters(alpha):
-    # n^2 times the cosine-weighted average from inside is that from outside, by paths and by all light.
+    # n^2 times the cosine-weighted average from inside equals the one from outside, by paths and by
+    # all light.
     n, (x, w) = 1.5, np.polynomial.legendre.leggauss(32)
     mu, weight = 0.5 * (x + 1.0), 0.5 * w * (x + 1.0)
 
@@ -148,7 +150,8 @@ def test_as_much_light_leaves_a_solid_as_enters(alpha):
 @pytest.mark.parametrize("ior", INDICES)
 def test_radiance_over_the_squared_index_is_reciprocal(ior):
     wo, wi = pairs()
-    there = dielectric_btdf(wo, wi, 1.0, [0.3, 0.6], ior)  # f(wi, wo), into the side of index 1
+    # F(wi, wo), towards the side with index 1.
+    there = dielectric_btdf(wo, wi, 1.0, [0.3, 0.6], ior)
     back = dielectric_btdf(DOWN * wi, DOWN * wo, 1.0, [0.3, 0.6], 1.0 / ior) / ior**2
     np.testing.assert_allclose(there, back, rtol=1e-9, atol=1e-12)
 
@@ -201,7 +204,7 @@ def test_no_light_passes_between_directions_that_no_facet_joins():
     bent = (
         view(0.3),
         view(0.3) * DOWN,
-    )  # back to where it came from, farther than an index of 1.5 can
+    )  # bent back to where it came from, farther than possible with an index of 1.5
     assert dielectric_btdf(*bent, 1.0, [0.5, 0.5], 1.5)[0] == 0.0
 
 
@@ -247,7 +250,7 @@ def test_mitsuba_agrees_but_for_the_masking_function(mode):
 
 
 def _mitsuba(mi, bsdf, mode, wo, wi):
-    """Mitsuba's value times cosine of a pair."""
+    """Mitsuba's value times cosine for a pair."""
     point = mi.SurfaceInteraction3f()
     point.wi = mi.Vector3f(wo)
     return bsdf.eval(mi.BSDFContext(mode), point, mi.Vector3f(wi))[0]

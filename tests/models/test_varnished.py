@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EON under a varnish: energy, reciprocity, edges, and light that walks.
+"""EON under a varnish: energy, reciprocity, edge cases, and random walks of light.
 
 The seeds are fixed. FALSE_ALARM is the probability that the comparisons with light that walks fail
 although all is right.
@@ -31,8 +31,9 @@ WHITE = {"rho": 1.0, "roughness": 0.6}
 VARNISH = {"alpha": 0.3, "ior": 1.5}
 EDGES = [{"rho": [0.0, 1.0], "roughness": r, "alpha": a, "ior": n}
          for r in (0.0, 1.0) for a in (0.01, 1.0) for n in (1.0, 4.0)]  # fmt: skip
-CURVES = 2e-5  # of the value and its integrals: curves of 28 nodes, at alpha 0.01 and index 1.02
-WALKED, SHAPED = 0.012, 0.21  # errors that the module states, of the albedo and of twelfths
+CURVES = 2e-5  # error of the value and its integrals: curves have 28 nodes; alpha 0.01, index 1.02
+# Errors stated by the module: of the albedo, and of twelfths of the hemisphere.
+WALKED, SHAPED = 0.012, 0.21
 PATHS = 1 << 14
 
 
@@ -76,7 +77,7 @@ def test_the_directional_albedo_is_the_integral_of_the_value(inputs, mu, alpha, 
 @pytest.mark.parametrize(("alpha", "ior"), [(0.02, 1.5), (0.3, 1.1), (1.0, 4.0)])
 def test_the_average_albedo_is_the_average(alpha, ior):
     x, weight = gauss_legendre(400)
-    mu = (0.5 + 0.5 * x) ** 2  # whose nodes crowd at grazing
+    mu = (0.5 + 0.5 * x) ** 2  # the nodes crowd at grazing
     E = varnished_albedo_dir(mu, **CLAY, alpha=alpha, ior=ior)
     average = (0.5 * weight * 4.0 * (0.5 + 0.5 * x) ** 3) @ E
     assert np.abs(varnished_albedo_avg(**CLAY, alpha=alpha, ior=ior) - average).max() < CURVES
@@ -93,7 +94,7 @@ def test_light_that_walks_has_the_albedo_and_under_a_layer_another(ior, alpha, r
     assert (error < WALKED + noise).all() and error[-1] < 1e-4
     off = dielectric_over_eon_albedo_dir(*inputs) - total.mean(axis=0)
     assert off[2] > WALKED + noise[2]
-    # Compare twelfths of the hemisphere; without an interface they are others.
+    # Compare twelfths of the hemisphere; without an interface they differ.
     walked = walked_bins(total, out)
     noise = deviate * np.sqrt(walked_bins(total**2, out) / PATHS) / walked
     for n, right in ((ior, True), (1.0, False)):
@@ -120,7 +121,7 @@ def test_a_fit_finds_the_pigment_where_the_layer_finds_another():
     value = varnished_brdf(wo, wi, **inputs)
     fit = fit_brdf(MeasuredBrdf(wo, wi, value, 0.01 * value), "varnished")
     for name, right in inputs.items():
-        name = {"rho": "color"}.get(name, name)  # as the model calls it
+        name = {"rho": "color"}.get(name, name)  # the model's name for it
         assert fit.values[name] == pytest.approx(right, abs=1e-4)
     layer = fit_brdf(MeasuredBrdf(wo, wi, value, 0.01 * value), "dielectric_over_eon")
     assert (layer.values["color"] < 0.8 * CLAY["rho"]).all()

@@ -16,7 +16,7 @@ ANISOTROPIES = (-0.999999, -0.9, -0.3, 0.0, 1e-9, 0.3, 0.9, 0.999999)
 VIEWS = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.6, 0.0, -0.8], [0.48, 0.64, 0.6]])
 SAMPLES, BINS, SECTORS = 20_000, 12, 5
 ROUNDING = 1e-13
-MOMENT = 1e-10  # of the quadrature below
+MOMENT = 1e-10  # error of the quadrature below
 
 
 def moments(g):
@@ -50,7 +50,8 @@ def test_the_phase_function_is_the_printed_one():
 def test_the_peak_does_not_cancel():
     e = 1e-12
     peak = (2.0 - e) * e / (4.0 * np.pi * e**3)
-    assert np.isclose(volume.hg_phase(1.0, 1.0 - e), peak, rtol=1e-3)  # e itself is rounded so
+    # The rounding of 1 - e dominates.
+    assert np.isclose(volume.hg_phase(1.0, 1.0 - e), peak, rtol=1e-3)
     last = np.nextafter(1.0, 0.0)
     assert np.isfinite(volume.hg_phase([-1.0, 0.0, 1.0], last)).all()
     assert np.isfinite(volume.hg_phase([-1.0, 0.0, 1.0], -last)).all()
@@ -68,7 +69,7 @@ def test_samples_have_their_density(g):
     for view in VIEWS:
         wi, pdf = volume.hg_sample(view, u, g)
         assert np.abs((wi**2).sum(axis=-1) - 1.0).max() < ROUNDING
-        if abs(g) < 0.99:  # a direction rounds at the peak
+        if abs(g) < 0.99:  # directions are too coarse at the peak
             assert np.allclose(volume.hg_pdf(view, wi, g), pdf, rtol=1e-9)
 
 
@@ -83,7 +84,7 @@ def test_the_chi_square_test_tells_anisotropies_apart():
 
 
 def chi_square(g, drawn, view):
-    """Probability of a chi-square as large, of samples for `drawn` against the distribution of g."""
+    """Probability of a larger chi-square of samples for `drawn` compared with the distribution for g."""
     rng = np.random.default_rng([7, int(10 * g) + 10])
     wi, _ = volume.hg_sample(view, rng.random((SAMPLES, 2)), drawn)
     tangent = np.cross(view, [0.0, 1.0, 0.0])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page of claims, and which of the papers' claims the measurements refute."""
+"""The page of claims: which claims of the papers do the measurements refute?"""
 
 import re
 

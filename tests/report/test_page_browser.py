@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The report page in a browser: it works without a network, and without a script too."""
+"""The report page in a browser: it works without a network, and also without scripts."""
 
 from contextlib import contextmanager
 from pathlib import Path
@@ -37,7 +37,7 @@ def browser():
 
 @contextmanager
 def opened(browser, address, **options):
-    """The page in the browser; whatever it asks for or complains of fails the test."""
+    """The page in the browser; any request or console message fails the test."""
     page = browser.new_page(**options)
     with watched(page, address):
         yield page
@@ -55,7 +55,7 @@ def test_a_cell_of_the_matrix_leads_to_its_evidence(browser, address):
         target = cell.get_attribute("href")
         cell.click()
         page.wait_for_selector(f"details{target}[open]")
-        assert page.locator(f"{target} > summary").is_visible()  # those that passed are folded
+        assert page.locator(f"{target} > summary").is_visible()  # passed checks are folded
 
 
 def test_a_failure_leads_to_the_page_on_its_defect(browser, address):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reports of several runs: what got worse, by the exit status too, and the page of the field."""
+"""Reports of several runs: regressions, with the exit status, and the page of the field."""
 
 import json
 import math
@@ -33,7 +33,7 @@ PLACE = "gl, eonlib, value, clay"
 def made_run(
     verdict=PASSED, error=1e-7, device="llvmpipe", difference=1e-7, subject="clay", **fields
 ):
-    """A run with one check; fields of its result besides."""
+    """A run with one check, whose result has these fields."""
     pixels = np.zeros((4, 4, 3))
     picture = Picture("d", "clay", "gl", "eonlib", "side", pixels + difference, pixels, {})
     result = Result("value", "claim", subject, "gl", "eonlib", verdict, error, tolerance=1e-6)
@@ -42,7 +42,7 @@ def made_run(
 
 
 def kept(run, folder):
-    """The folder of a run, with what is read of it."""
+    """The folder of a run, with the parts that are read."""
     Path(folder).mkdir(exist_ok=True)
     Path(folder, "results.json").write_text(to_json(run))
     return str(folder)
@@ -80,7 +80,7 @@ CHANGES = [
     (GONE, made_run(FAILED), (WORSE, "1 check: none -> failed at 1e-07")),
     (made_run(), REFUSED, (WORSE, "clay.mtlx: not refused -> refused")),
     (REFUSED, made_run(), (BETTER, "clay.mtlx: refused -> not refused")),
-    # A document that was removed takes its checks with it; one that was moved does not.
+    # Removing a document removes its checks; moving it does not.
     (
         TWO,
         replace(GONE, documents=TWO.documents[:1]),
@@ -130,7 +130,7 @@ ALL = Errors(1000, 100, 0, 0.3, 0.05)
 
 
 def errors(*regions, samples="a", **changes):
-    """Errors of all samples and in regions, each with what differs from ALL."""
+    """Errors of all samples and in regions, each given by its difference from ALL."""
     whole, *parts = ({**changes}, *regions)
     found = (replace(ALL, **whole), *(replace(ALL, **{**changes, **each}) for each in parts))
     return {"errors": found, "samples": samples}
@@ -140,9 +140,9 @@ ROUGH, SMOOTH = (Region("roughness", "value", **end) for end in ({"low": 0.5}, {
 HALVES = {"region": SMOOTH}, {"region": ROUGH}
 PAGE, TWO_PAGES = {"pages": ("a",)}, {"pages": ("a", "b")}
 PERMITTED = {"verdict": DIFFERS}
-SEED = {"samples": "b", "of": 900}  # other samples, and fewer
+SEED = {"samples": "b", "of": 900}  # fewer samples, and different ones
 INVALID = {"error": math.inf, "tolerance": 0.0, "quantity": Quantity.VALUES}
-# A result before and after, the kind of the change, and a part of its line.
+# A result before and after, the kind of the change, and part of its line.
 GATE = {
     # Regressions that keep the largest error.
     "light is lost below half of the layers": (errors(), errors(wrong=200, rms=0.1), WORSE, "10 % -> 20 % of"),
@@ -190,7 +190,7 @@ GATE = {
     ),
     "a page is found": (errors(), errors() | PAGE, BETTER, "a explains it"),
     "smaller": ({"error": 0.9}, {}, BETTER, "3 times smaller"),
-    # What noise may change.
+    # Changes within the noise.
     "the same": (errors(*HALVES), errors(*HALVES), "", ""),
     "another driver": (errors(), errors(rms=0.0505, largest=0.4, wrong=101), "", ""),
     "another seed": (
@@ -203,7 +203,7 @@ GATE = {
     ),
     "another name of the same error": (errors() | {"diagnosis": QON}, errors() | {"diagnosis": FON}, "", ""),
     "other edges that are not finite": (INVALID | {"error": 376.0}, INVALID | {"error": 380.0}, "", ""),
-    # What does not run.
+    # Checks that do not run.
     "lost": ({}, {"verdict": NOT_RUN, "reason": "timed out"}, LOST, "failed at 0.3 -> not run; timed"),
     "found": ({"verdict": NOT_RUN, "reason": "timed out"}, {}, WORSE, "not run -> failed at 0.3"),
     "implied": ({"verdict": NOT_RUN, "diagnosis": caused("follows")}, {}, OTHER, "not run -> failed"),
@@ -230,8 +230,8 @@ def test_the_rules_tell_a_regression_from_noise_and_from_a_repair(row, tmp_path,
 SCHLICK = "generalized_schlick_bsdf"
 ROUGH_NODE = "oren_nayar_diffuse_bsdf, energy_compensation true"
 LIGHT = "bsdf.response = diffuse *"
-# Regressions of MaterialX's own text: check, title and file of the node, and the text before and after. Most keep the
-# largest error.
+# Regressions of MaterialX's own text: the check, the node's title and file, and the text before and
+# after. Most keep the largest error.
 PLANTED = {
     "a fifth of the light lost below half of the layers": (
         "layering", f"{SCHLICK}, scatter_mode R", SCHLICK, "= vec3(1.0 - avgDirAlbedo * weight);",
@@ -265,7 +265,7 @@ PLANTED = {
 }  # fmt: skip
 
 
-# Undoing these raises errors of some samples, too: stock is too bright there.
+# Undoing these also raises some samples' errors, because stock is too bright there.
 HIDING = {
     "transmission tinted by color0",
     "dark hair for some cuticles",
@@ -311,7 +311,7 @@ def test_a_check_with_a_baseline_is_one_command(tmp_path, capsys):
     document = str(examples_folder() / "clay.mtlx")
     check = ["check", document, "--host", "msl", "--library", "eonlib", "--workers", "0"]
     out, old = str(tmp_path / "out"), tmp_path / "old"
-    assert main([*check, "--report", out, "--annotations"]) == 3  # text of msl is not run
+    assert main([*check, "--report", out, "--annotations"]) == 3  # text for msl is not run
     assert "\n::warning title=mxeon check::not run" in capsys.readouterr().out
     for name, change, status, text in (
         ("same", {}, 0, "no difference"),
@@ -375,12 +375,12 @@ def test_what_is_no_report_is_one_line(tmp_path, capsys, text, words):
     assert words in capsys.readouterr().err
 
 
-# What the schema cannot state, in the words of the reader.
+# Rules that the schema cannot state, and the reader's messages.
 TOGETHER = re.compile("counts must be |must have a tolerance|must be at least 0|inhomogeneous")
 
 
 def replacements(value, replace_it):
-    """A JSON value, changed in one place by one of a few wrong or right values, or without a key."""
+    """Copies of a JSON value with one value replaced by wrong or right ones, or one key removed."""
     for other in (None, True, 7.5, "text", [[]], [True], {"more": [[]]}):
         yield replace_it(other)
     is_list = isinstance(value, list)
@@ -430,7 +430,7 @@ def test_the_schema_and_the_reader_accept_the_same_reports(tmp_path, capsys, mon
 
 
 def refusal_of(folder, capsys):
-    """The one line by which `report diff` refuses a report."""
+    """The one-line refusal of `report diff` for a report."""
     assert main(["report", "diff", str(folder), str(folder)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and error.startswith("mxeon: ")
@@ -461,7 +461,7 @@ REPORT = to_json(made_run())
 
 
 def edit(folder, change):
-    """A report whose results.json was changed."""
+    """A report with a changed results.json."""
     content = json.loads(REPORT)
     change(content)
     (folder / "results.json").write_text(json.dumps(content))
@@ -474,7 +474,7 @@ def test_names_in_a_report_cannot_steer_the_terminal(tmp_path, capsys):
 
 
 def run_with(*folders, verdict=PASSED):
-    """A run with folders as libraries, which fails with the last of them if it fails."""
+    """A run with folders as libraries; only the last may fail."""
     verdicts = [PASSED] * (len(folders) - 1) + [verdict]
     (result,) = made_run().results
     results = tuple(
@@ -489,8 +489,8 @@ def run_with(*folders, verdict=PASSED):
     "before, after",
     [
         (["/old/eonlib"], ["/new/eonlib"]),
-        (["/old/a", "/old/b"], ["/new/b", "/new/a"]),  # by the name, in any order
-        (["/old/a", "/same/b"], ["/new/c", "/same/b"]),  # by the place of what is left
+        (["/old/a", "/old/b"], ["/new/b", "/new/a"]),  # matched by name, in any order
+        (["/old/a", "/same/b"], ["/new/c", "/same/b"]),  # the remaining ones matched by position
     ],
 )
 def test_a_library_that_lies_elsewhere_is_the_same_one(before, after):
@@ -520,7 +520,8 @@ WRONG = (
     made("furnace", 1e-7),
     made("integral", 0.3, pages=("a", "b")),
     made("black", 0.0),
-    made("value", 0.4, subject="sheen_bsdf, mode zeltner"),  # claims no rough diffuse model
+    # Makes no claim about rough diffuse models.
+    made("value", 0.4, subject="sheen_bsdf, mode zeltner"),
 )
 RUN = Run("0.1.0", {}, (Identity("gl", "OpenGL 4.5", "llvmpipe"),), WRONG)
 

@@ -26,7 +26,7 @@ def port(name, kind, value):
 
 @pytest.fixture(autouse=True)
 def nothing_else(monkeypatch):
-    """Documents are read, and no node is judged."""
+    """Documents are read without judging any node."""
     keep_checks(monkeypatch, "host")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Definitions of a studio's own, loaded beside the library."""
+"""A studio's own definitions, loaded in addition to the library."""
 
 import OpenImageIO as oiio
 import pytest
@@ -12,7 +12,7 @@ from mxeon.shaders.library import load_library
 from mxeon.shaders.nodes import document_text
 from tests.support.command import one_line
 
-# A surface shader whose lobe is eonlib's, and a color with its own shader code.
+# A surface shader with eonlib's lobe, and a color with its own shader code.
 DEFINITIONS = """<materialx version="1.39">
   <nodedef name="ND_studio_cloth" node="studio_cloth">
     <input name="dye" type="color3" value="0.3, 0.1, 0.1" />
@@ -45,7 +45,7 @@ COAT = document_text('<studio_cloth name="shading" type="surfaceshader" />')
 
 @pytest.fixture
 def studio(tmp_path):
-    """A folder of definitions, below which one lies in a folder of its own, and a document."""
+    """A folder of definitions, one of them in a subfolder, and a document."""
     folder = tmp_path / "studio" / "nodes"
     folder.mkdir(parents=True)
     (folder / "cloth.mtlx").write_text(DEFINITIONS)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bad documents: each ends in one line that names the place, the rule and the value."""
+"""Invalid documents: each ends in one line that names the place, the rule and the value."""
 
 import pytest
 
@@ -21,7 +21,7 @@ CYCLE = (
 IMAGE = '<image name="image" type="color3"><input name="file" type="filename" value="{}"/></image>'
 A = '<a name="lobe" type="BSDF"/>'
 
-# What a file holds, and what is said of it.
+# Contents of a file, and the message.
 FILES = {
     "empty": ("", "must be a MaterialX document; XML parse error"),
     "prose": ("hello\n", "must be a MaterialX document; XML parse error"),
@@ -45,7 +45,7 @@ FILES = {
     ),
 }
 
-# Values of inputs of the lobe, and what is said of them.
+# Values of the lobe's inputs, and the message.
 VALUES = (
     ({"color": "nan, 1, 1"}, 'input "lobe/color" must be a valid color3 of finite numbers; got n'),
     ({"color": "red"}, 'input "lobe/color" must be a valid color3 of finite numbers; got red'),
@@ -54,7 +54,7 @@ VALUES = (
     ({"energy_compensation": "x"}, 'Invalid value: <input name="energy_compensation"'),
 )
 
-# Values that MaterialX takes, and what is said of them.
+# Values that MaterialX accepts, and the message.
 MODEL = "where its model is defined; got"
 OUTSIDE = (
     ({"color": "0.5, -0.1, 0.5"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0.5, -0.1, 0.5'),
@@ -68,14 +68,14 @@ OUTSIDE = (
     ),
 )
 
-# Texts of a float, and what MaterialX reads of them.
+# Texts of a float, and the value that MaterialX reads.
 READ = {"0.5f": 0.5, "0x10": 0, "1d5": 1, "1/2": 1, "50%": 50, "0.5;0.5": 0.5, "0.5.0": 0.5}
 READ |= {"1.#INF": 1, "1_0": 1, "0.5, 0.6": 0.5, "1e5f": 100000, "0 5": 0}
 CONSTANT = (
     '<constant name="c" type="float"><input name="value" type="float" value="{}"/></constant>'
 )
 
-# Nodes around the lobe, and what is said of them.
+# Nodes around the lobe, and the message.
 NODES = {
     "unknown node": (
         '<nosuch_bsdf name="lobe" type="BSDF"/>',
@@ -115,7 +115,7 @@ NODES = {
 
 
 def refusal(source):
-    """What is said of a document, which has to be one line."""
+    """The one-line refusal of a document."""
     with pytest.raises(DocumentError) as refused:
         generate(source, "glsl")
     message = str(refused.value)
@@ -148,7 +148,7 @@ def test_bad_nodes_are_refused_with_their_names(nodes, rule):
 
 
 def warned(text, **options):
-    """What is said of a document for which shaders are written."""
+    """The warnings about a document for which shaders are generated."""
     with pytest.warns(DocumentWarning) as caught:
         assert generate(text, "glsl", **options)
     [message] = [str(each.message) for each in caught]

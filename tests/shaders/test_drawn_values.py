@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents that draw a value leave the data library, which all documents share, as it is."""
+"""Documents whose values are drawn leave the shared data library unchanged."""
 
 import MaterialX as mx
 import pytest
@@ -7,7 +7,7 @@ import pytest
 from mxeon.shaders.document.drawn_values import emission_document, value_document
 from mxeon.shaders.library import load_library
 
-COLORED = "NG_disney_principled"  # a nodegraph of the library with a color space of its own
+COLORED = "NG_disney_principled"  # a nodegraph of the library with its own color space
 
 
 @pytest.mark.parametrize("make", [value_document, emission_document])

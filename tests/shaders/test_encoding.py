@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of documents: UTF-8 is read as MaterialX reads it, and anything else is refused in one line."""
+"""Text encoding of documents: UTF-8 is read as in MaterialX, and anything else is refused in one line."""
 
 import re
 
@@ -24,7 +24,7 @@ REFUSED = ("utf-16", "utf-16-le", "utf-32", "utf-32-be", "latin-1")
 
 
 def stock(path):
-    """A document as MaterialX reads it, as text."""
+    """Text of a document as MaterialX reads it."""
     document = mx.createDocument()
     mx.readFromXmlFile(document, str(path))
     return mx.writeToXmlString(document)

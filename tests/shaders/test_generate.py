@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Generated shaders: every target, every input, and the compilers that run here."""
+"""Generated shaders: every target, every input, and all compilers that run here."""
 
 import json
 import os
@@ -36,7 +36,7 @@ CONSTANT = {"const", "uniform", "struct", "in", "constant", "precision"}
 VALIDATED = {"glsl": (), "essl": (), "vulkan": ("-V",)}
 SURFACES = ("open_pbr_surface", "standard_surface", "gltf_pbr", "UsdPreviewSurface")
 
-# Every input of the nodes, with a value and another.
+# Every input of the nodes, with two different values.
 VALUES = {
     "weight": ("0.5", "0.25"),
     "color": ("0.8, 0.4, 0.1", "0.1, 0.4, 0.8"),
@@ -77,7 +77,7 @@ def pixel(text, target, **options):
 
 
 def kept(source):
-    """Variables of a shader outside of its functions, of MSL outside of its context's, that are not constant."""
+    """Non-constant variables outside a shader's functions, or in MSL outside its context's."""
     text = re.sub(
         r"//.*|/\*[\s\S]*?\*/|^ *#.*(\\\n.*)*|struct GlobalContext\s*{",
         "",
@@ -95,7 +95,7 @@ def kept(source):
 
 
 def validate(shader, target, folder):
-    """Nothing, if glslangValidator accepts every stage."""
+    """Assert that glslangValidator accepts every stage."""
     files = []
     for stage, suffix in (("pixel", "frag"), ("vertex", "vert")):
         files.append(folder / f"{shader.name}.{suffix}")
@@ -106,7 +106,7 @@ def validate(shader, target, folder):
 
 
 def every_lobe():
-    """One material with every BSDF node of pbrlib and both of ours, and their names."""
+    """A material with every BSDF node of pbrlib and both of ours, and their names."""
     stock = load_library("stock").getNodeDefs()
     names = sorted({each.getNodeString() for each in stock if each.getAttribute("bsdf")} | {EON})
     nodes, total = "", "none"
@@ -160,7 +160,7 @@ def test_our_nodes_compile_together_with_every_bsdf_node_of_pbrlib(target, tmp_p
 
 
 def translated(source, language, folder):
-    """What spirv-cross says of a pixel stage that it cannot translate, or glslang of the HLSL; empty if neither."""
+    """Errors of spirv-cross for a pixel stage, or of glslang for the HLSL; empty if there are none."""
     compiler, translator = program("glslangValidator"), program("spirv-cross")
     glsl, module, text = (folder / f"pixel.{suffix}" for suffix in ("frag", "spv", language))
     glsl.write_text(source, encoding="utf-8")
@@ -198,7 +198,7 @@ ON_VULKAN = [spec for spec in ALL if spec not in ABSENT]
 def test_every_node_and_surface_translates_from_spirv(spec, language, tmp_path):
     source = pixel(spec.within("eonlib").document(), "vulkan", lights=True)
     assert translated(source, language, tmp_path) == ""
-    if spec.title == "gltf_pbr" and language == "hlsl":  # control: a function that HLSL lacks
+    if spec.title == "gltf_pbr" and language == "hlsl":  # control: HLSL lacks this function
         wrong = source.replace("sign(t) * log(abs(t) + sqrt(t * t + 1.0))", "asinh(t)")
         assert wrong != source and "not supported on HLSL" in translated(wrong, language, tmp_path)
 
@@ -206,13 +206,13 @@ def test_every_node_and_surface_translates_from_spirv(spec, language, tmp_path):
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.stem)
 def test_a_source_keeps_no_state(path):
     text = path.read_text(encoding="utf-8")
-    if path.stem == "head":  # of a path tracer's interface, whose state is there alone
+    if path.stem == "head":  # only the interface for path tracers has state
         text = re.sub(r"^\w+ path_\w+;.*$", "", text, flags=re.MULTILINE)
     assert kept(text) == set() and not re.search(r"\bstatic\b", text)
     assert kept(text + "vec3 last = vec3(0.0);\nfloat value;") == {"vec3 last", "float value"}
 
 
-# What no text may have, by what is wrong with it: an engine may show none of it.
+# Patterns of wrong code by title; some engines may never show the error.
 WRONG = {
     "a derivative after a return, which some pixels have taken": r"(?s)\breturn;(?:(?!\n}).)*\b(?:fwidth|dFd[xy])\(",
     "the half vector of opposite directions": r"normalize\(w[io] \+ w[io]\)",
@@ -230,11 +230,11 @@ def test_no_source_has(wrong):
 NAMES = re.compile(
     r"^(?:closure )?(?:#define |struct |\w+ (?=\w+(?:\(|;|\[|$)))(\w+)", re.MULTILINE
 )
-CLOSURES = {"BSDF", "EDF", "VDF"}  # inputs of these types are no variables
+CLOSURES = {"BSDF", "EDF", "VDF"}  # inputs of these types are not variables
 
 
 def test_no_name_in_a_source_is_one_that_materialx_makes_for_a_node():
-    """An input of a node is `node_input` in the text, and an output `node_output`."""
+    """An input of a node becomes `node_input` in the text, and so does an output."""
     ports = {
         port.getName()
         for nodedef in load_library().getNodeDefs()
@@ -263,7 +263,7 @@ def test_a_generated_shader_keeps_no_state_beside_that_of_materialx(target):
     assert len(statics[0]) <= len(statics[1])
 
 
-# Nodes whose names and inputs make uniforms that sound like functions: `thin_film_weight`, `hair_scale`.
+# Nodes whose names make uniforms that look like functions: `thin_film_weight`, `hair_scale`.
 NAMED = {
     "thin_film": lobe("dielectric_bsdf", "thin_film", thinfilm_thickness=400.0)
     + '<multiply name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="thin_film"/></multiply>',
@@ -282,7 +282,8 @@ def test_a_node_named_like_our_functions_makes_the_same_shader(name, target, tmp
     assert other.replace("zzz_", f"{name}_") == shader.stages["pixel"]
 
 
-# What C++ does not compile, by a text that has it: a structure is no function, and an array has an address space.
+# Patterns that C++ does not compile, by title: a structure is not a function, and an array needs an
+# address space.
 NOT_METAL = {
     "ThinFilmComplex(re, im)": r"\b(?!GlobalContext)({})\(",
     "void f(float a, vec3 A[4])": r"[(,]\s*(?!(?:const )?(?:thread|device|constant) )(?:const )?\w+ \w+\[\d*\]\s*[,)]",
@@ -355,7 +356,7 @@ def test_lines_with_the_words_are_left_out_of_what_libraries_print(capfd):
     with lines_left_out("of no use"):
         os.write(ERROR, b"this is of no use\nthis is\n")
     assert capfd.readouterr().err == "this is\n"
-    generate(material(lobe()), "wgsl")  # whose flag is a boolean
+    generate(material(lobe()), "wgsl")  # the flag is a boolean there
     assert capfd.readouterr().err == ""
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents from strangers: what they may not do is refused in one line, with its remedy."""
+"""Documents from strangers: forbidden ones are refused in one line, with a remedy."""
 
 import warnings
 from dataclasses import replace
@@ -34,7 +34,7 @@ FETCH = BOMB.replace('"ha"', 'SYSTEM "../secret.mtlx"')
 
 @pytest.fixture
 def home(tmp_path):
-    """A document's folder with a link out of it, and what lies outside."""
+    """A document's folder with a link out of it, and the files outside."""
     folder = tmp_path / "documents"
     folder.mkdir()
     (folder / "link").symlink_to(tmp_path)
@@ -46,7 +46,7 @@ def home(tmp_path):
 
 
 def refusal(source, policy=DEFAULT):
-    """What is said of a document, which has to be one line."""
+    """The one-line refusal of a document."""
     with pytest.raises(DocumentError) as refused:
         generate(source, "glsl", policy=policy)
     message = str(refused.value)
@@ -131,7 +131,7 @@ def test_generating_reports_code_and_running_it_needs_the_option(home, capsys):
 ROW = material(row(8, ("in1",)))
 SMALL = material(lobe())
 
-# Which limit, a document, and the least value with which it is accepted.
+# A limit, a document, and the smallest value with which it is accepted.
 LIMITED = (
     ("size", SMALL, len(SMALL)),
     ("length", SMALL, len("oren_nayar_diffuse_bsdf") - 10),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Textures and environments: read the right way up, and turned into irradiance."""
+"""Textures and environments: correct orientation, and conversion to irradiance."""
 
 import numpy as np
 import OpenImageIO as oiio
@@ -7,8 +7,8 @@ import pytest
 
 from mxeon.hosts.textures import irradiance, read_latlong
 
-# Sums over a map of 64 x 128 pixels miss the integral of a cosine by the square of a pixel's angle,
-# (pi / 64)^2, a twelfth of it for the middle of an interval; ten times that.
+# Sums over a map of 64 x 128 pixels miss the integral of a cosine by the squared angle of a pixel,
+# (pi / 64)^2, over 12 (midpoint rule); this is ten times that.
 SUM = 10.0 * (np.pi / 64.0) ** 2 / 12.0
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lobes below the surface: which materials have them, and what is said of their pictures."""
+"""Lobes below the surface: the materials that have them, and the warnings about their pictures."""
 
 from dataclasses import replace
 

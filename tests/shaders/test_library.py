@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The data library eonlib: what MaterialX finds with it, in every order, mode and client."""
+"""The data library eonlib: what MaterialX finds with it, for every order, mode and client."""
 
 import re
 import subprocess
@@ -30,7 +30,7 @@ BOTH = (
     '<input name="in2" type="BSDF" nodename="second"/></add>'
 )
 
-# What a shader of a target calls for each node.
+# The function that a target's shader calls for each node.
 CALLS = {
     "glsl": ("oren_nayar_diffuse_bsdf(closureData, ", "eon_diffuse_bsdf(closureData, "),
     "osl": ('"energy_compensation", first_energy_compensation)', '"energy_compensation", 1)'),
@@ -53,14 +53,14 @@ for name in sys.argv[1:]:
 
 
 def loaded(folders):
-    """A document with the libraries of some folders, in their order."""
+    """A document with the libraries of some folders, loaded in order."""
     document = mx.createDocument()
     mx.loadLibraries(folders, mx.getDefaultDataSearchPath(), document)
     return document
 
 
 def run(*arguments, **options):
-    """The output of a Python script, which has to succeed."""
+    """The output of a Python script; asserts success."""
     command = [sys.executable, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, **options)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -68,7 +68,7 @@ def run(*arguments, **options):
 
 
 def written(folders):
-    """Nodedefs and targets of the implementations in the documents of some folders, as XML has them."""
+    """Nodedefs and targets of the implementations in some folders, read as XML."""
     roots = [
         ElementTree.parse(path).getroot() for each in folders for path in each.rglob("*.[mx]*l*")
     ]
@@ -146,7 +146,8 @@ def test_eons_graph_changes_no_text_where_a_target_has_its_own(target, tmp_path)
     assert texts[0] == texts[1]
 
 
-# Changes of the graph: a text, the text in its place, and checks that a target with only the graph then fails.
+# Changes of the graph: a text, its replacement, and the checks that then fail on a target with only
+# the graph.
 CHANGES = (
     ('type="boolean" value="true"', 'type="boolean" value="false"', {"value", "environment"}),
     ('interfacename="weight"', 'value="1.0"', {"inputs", "value"}),
@@ -161,7 +162,7 @@ def test_eons_graph_is_eon_and_the_checks_notice_each_change_of_it(old, new, not
     copy = copy_of_eonlib(tmp_path)
     replace_text(copy, ' nodedef="ND_eon_diffuse_bsdf"', "", "diffuse/eonlib_genglsl_impl.mtlx")
     graph = copy / "diffuse" / "eonlib_ng.mtlx"
-    graph.write_text(graph.read_text().replace(old, new, 1))  # EON's is the first in the file
+    graph.write_text(graph.read_text().replace(old, new, 1))  # EON's occurs first in the file
     judge = Verdicts()
     verdicts = {
         key: judge(key, EON, library=str(copy)).verdict
@@ -208,7 +209,7 @@ def test_generateshader_takes_the_profile_before_the_library(tmp_path):
 
 
 def test_usd_finds_the_library_by_its_plugin_search_path(monkeypatch):
-    with available("cycles"):  # USD with MaterialX comes with Blender
+    with available("cycles"):  # Blender brings a USD with MaterialX
         python = interpreter()
     monkeypatch.setenv("PXR_MTLX_PLUGIN_SEARCH_PATHS", OURS)
     command = [python, "-c", USD, *NODEDEFS]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Copies of eonlib: they hold all that they need, and every version of MaterialX can use them."""
+"""Copies of eonlib: they are self-contained, and every version of MaterialX can use them."""
 
 import subprocess
 import zipfile
@@ -31,7 +31,8 @@ def contents(folder):
 def test_a_copy_is_eonlib_with_its_license_and_recipes(copy):
     found, whole = contents(copy), {}
     for name in ("libraries", *SOURCE_FOLDERS):
-        inside = name.replace("libraries", "documents")  # no folder that would hide MaterialX's own
+        # A folder of the same name would hide MaterialX's own.
+        inside = name.replace("libraries", "documents")
         files = contents(data_folder() / name)
         whole |= {f"{inside}/{file}": data for file, data in files.items()}
     license_text = (data_folder() / "LICENSE").read_bytes()
@@ -73,7 +74,7 @@ def test_the_shaders_of_every_node_of_a_copy_compile(copy, tmp_path, version):
     assert done.returncode == 0, done.stdout
 
 
-# GLSL of these adds what a medium passes to what the layer above it passes.
+# In these versions, GLSL adds a medium's transmission to that of the layer above it.
 MEDIA = dict.fromkeys(TESTED[:-1], "transmittance, ")
 
 

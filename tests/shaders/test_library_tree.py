@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Copies of MaterialX's libraries, whole and in part, in place of the installed ones."""
+"""Complete and partial copies of MaterialX's libraries that replace the installed ones."""
 
 import json
 import shutil
@@ -26,7 +26,7 @@ PARTS = {"pbrlib": ["pbrlib"], "a node and its lib": BURLEY, "a file of lib": BU
 
 @pytest.fixture(autouse=True)
 def few_programs(monkeypatch):
-    """Leave out the checks that compile a program of their own."""
+    """Skip the checks that compile their own programs."""
     keep(monkeypatch, lambda task: task.check not in (*DRAWN, "states"))
 
 
@@ -49,7 +49,7 @@ def test_an_unchanged_copy_of_materialx_has_the_verdicts_of_stock(gl, tmp_path):
 @pytest.mark.parametrize("name", PARTS)
 def test_a_part_is_completed_by_the_installed_libraries(gl, tmp_path, name):
     copy = copy_of_stock(tmp_path, *PARTS[name])
-    # The part by itself: its folder is found by the names of its files.
+    # Only the part: its folder is recognized by its files' names.
     copy = copy / {"pbrlib": "pbrlib"}.get(name, GLSL)
     stock, part = findings(["stock", str(copy)], ["burley_diffuse_bsdf"])
     assert part == stock
@@ -65,7 +65,8 @@ def test_an_export_of_eonlib_has_its_verdicts(gl, tmp_path, part, name):
     assert tree(str(copy)).kind == OVERLAY
 
 
-# A fault in a copy: the file, a text, the text in its place, the node, the first check that fails for it, words.
+# A fault in a copy: the file, a text, its replacement, the node, the first check that fails, and
+# words of the message.
 FAULTS = {
     "a file of lib": (LIB, "D = mx_", "D = 3.0 * mx_", "sheen_bsdf", "value", "3 times the right"),
     "an implementation": (
@@ -79,7 +80,7 @@ FAULTS = {
 }
 
 
-IN_PART = "a file of lib"  # found in a part as well
+IN_PART = "a file of lib"  # also detected in a partial copy
 
 
 @pytest.mark.parametrize("name, parts", [(IN_PART, ["pbrlib"]), *((each, []) for each in FAULTS)])

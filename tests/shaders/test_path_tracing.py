@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text for path tracers: values are the rasterizer's, densities those of what is drawn, for nodes and surface shaders.
+"""Text for path tracers: values match the rasterizer, and densities match the samples, for nodes
+and surface shaders.
 
 The checks `pdf`, `sample`, `path_value` and `path_inside` of `mxeon check` judge every node; here are edges and more
 draws.
@@ -22,7 +23,7 @@ from tests.support.verdicts import PASSED
 from tests.support.wrong_libraries import copy_of_eonlib
 from tools.benchmarks import glass
 
-DEVIATION = 5.0  # standard deviations, which chance reaches once in 3.5 million tests
+DEVIATION = 5.0  # standard deviations; chance exceeds this once in 3.5 million tests
 COLOR = {"color": (0.8, 0.4, 0.2)}
 ROUGH = {"roughness": (0.5, 0.3)}
 FIBER = {
@@ -32,7 +33,8 @@ FIBER = {
     "roughness_TRT": (0.5, 0.6),
     "absorption_coefficient": (0.1, 0.3, 0.5),
 }
-# What the checks of nodes do not draw: films, turned modes, an index below 1; and a node of each other kind.
+# Films, turned modes and an index below 1, which the checks of nodes do not sample; and a node of
+# every other kind.
 NODES = {
     "diffuse": ("oren_nayar_diffuse_bsdf", COLOR | {"roughness": 0.7, "energy_compensation": True}),
     "zeltner": ("sheen_bsdf", COLOR | {"roughness": 0.4, "mode": "zeltner"}),
@@ -83,7 +85,7 @@ def kind(value):
 
 
 def surface_text(category):
-    """XML of a material of a surface shader with all lobes on."""
+    """XML of a material whose surface shader uses all its lobes."""
     inputs = "".join(
         input_text(name, kind(value), value) for name, value in SURFACES[category].items()
     )
@@ -112,16 +114,17 @@ def directions(rng, count):
 
 @pytest.fixture(scope="module")
 def materials(gl):
-    """The material of each document, compiled once."""
+    """The compiled material of each document."""
     known = {}
     return lambda name: known.setdefault(name, paths(gl, DOCUMENTS[name]))
 
 
 def leaves(material, mu, count, **options):
-    """Standard deviations by which draws leave their density."""
+    """Deviation of samples from their density, in standard deviations."""
     wo = view(mu)
     drawn = material.values("wi", wo, u=uniforms(count), **options)
-    if material.values("opacity", wo)[0, 0] < 1.0:  # what passes straight on has no density
+    # Light that passes straight through has no density.
+    if material.values("opacity", wo)[0, 0] < 1.0:
         drawn = drawn * (np.linalg.norm(drawn + wo, axis=1, keepdims=True) >= 1e-6)
     return deviation(
         drawn,
@@ -141,7 +144,8 @@ def test_a_quarter_million_draws_have_their_density(materials, name):
     assert leaves(materials(name), 0.9, 1 << 18) < DEVIATION
 
 
-# Error of the rasterizer's albedo, beside the noise of 2^16 draws: films 0.07, tilted fibers have none in closed form.
+# Error of the rasterizer's albedo, in addition to the noise of 2^16 samples: films 0.07; tilted
+# fibers have no closed form.
 ALBEDO_ERRORS = {
     "soap": 0.07,
     "bubble": 0.05,
@@ -177,7 +181,8 @@ def test_draws_of_hair_find_the_light_that_tilted_cuticles_fold(gl, angle):
     assert (abs(densities.mean(axis=0) - 1.0) < 5.0 * densities.std(axis=0) / 2.0**9).all()
 
 
-# By alpha, variance over the squared mean of walks through a ball of glass, and the largest weight of a draw.
+# By alpha: variance over squared mean of walks through a ball of glass, and the largest weight of a
+# sample.
 VARIANCES = {0.1: (0.051, 1.8), 0.4: (0.25, 1.8), 1.0: (0.31, 2.2)}
 
 
@@ -243,7 +248,7 @@ VERSIONS = {
 
 
 def validated(folder, text, *options):
-    """What glslangValidator says of a pixel stage that it refuses."""
+    """Errors of glslangValidator for a pixel stage."""
     file = folder / "path.frag"
     file.write_text(text, encoding="utf-8")
     done = subprocess.run(

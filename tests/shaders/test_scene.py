@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes: unit vectors, sizes in their range, and points of the sphere under the pixel centres."""
+"""Scenes: unit vectors, sizes within their range, and points of the sphere under the pixel centers."""
 
 import numpy as np
 import pytest
@@ -21,14 +21,14 @@ def test_points_of_the_shader_ball_lie_on_it_with_their_normals():
     points = shader_ball(64)
     seen = points.position[points.mask]
     assert np.abs(distance(seen)).max() <= CLOSE
-    # A point outside of the picture's frame does not exist: nothing lies before what is seen.
+    # Points outside the picture's frame do not exist: nothing covers visible points.
     assert (distance(seen + [0.0, 0.0, 0.01]) > 0.0).all()
     outward = seen - CENTER @ OBJECT
     ball = np.abs(np.linalg.norm(outward, axis=-1) - RADIUS) <= CLOSE
     assert 0.7 < ball.mean() < 0.9
-    # Central differences of a sphere's distance are off by less than their step squared over it.
+    # Central differences of a sphere's distance are off by less than their squared step over it.
     away = np.abs(points.normal[points.mask][ball] * RADIUS - outward[ball]).max(axis=-1)
-    assert np.percentile(away, 98) <= STEP + 2.0 * CLOSE  # the rest lies at the edge of a groove
+    assert np.percentile(away, 98) <= STEP + 2.0 * CLOSE  # the rest is at the edge of a groove
 
 
 def test_nothing_shows_between_the_ball_and_the_foot_behind_its_edge():

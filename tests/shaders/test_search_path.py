@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that documents name: where they are looked for, and what a missing one means to whom."""
+"""Files named by documents: where they are searched, and how missing ones are reported."""
 
 from pathlib import Path
 
@@ -27,7 +27,7 @@ def picture(path, channels=TINT):
 
 @pytest.fixture
 def home(tmp_path):
-    """A document's folder; `shared`, beside it, has pictures and part of another document."""
+    """A document's folder, and `shared` next to it with pictures and part of another document."""
     picture(tmp_path / "shared/maps/a.exr")
     picture(tmp_path / "shared/set.1001.exr")
     picture(tmp_path / "shared/tile.u1_v1.exr")

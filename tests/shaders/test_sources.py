@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shader sources that a document brings: what they may include, and what is said of the others."""
+"""Shader sources in documents: the files that they may include, and the messages for others."""
 
 import os
 from pathlib import Path
@@ -22,12 +22,12 @@ USE = '<own name="own" type="color3"/>' + connected(color='nodename="own"')
 BODY = "void own(out vec3 result) { result = vec3(0.123); }\n"
 OTHER = "float other(float x) { return 2.0 * x; }\n"
 SECRET = "// canary\n"
-pytestmark = pytest.mark.filterwarnings("ignore")  # of code that documents bring
+pytestmark = pytest.mark.filterwarnings("ignore")  # warnings about documents' own code
 
 
 @pytest.fixture
 def home(tmp_path):
-    """A document with a source of its own, a link out of its folder, and what lies outside."""
+    """A document with its own source, a link out of its folder, and the files outside."""
     folder = tmp_path / "documents"
     (folder / "lib").mkdir(parents=True)
     (folder / "link").symlink_to(tmp_path)
@@ -39,13 +39,13 @@ def home(tmp_path):
 
 
 def write(folder, file, attributes="", more=""):
-    """The document."""
+    """Write the document."""
     node = NODEDEF + IMPLEMENTATION.format("", file, attributes) + more + USE
     (folder / "look.mtlx").write_text(material(node))
 
 
 def including(home, *names, text=BODY):
-    """Let the source of the document include files."""
+    """Make the document's source include files."""
     lines = "".join(f'#include "{name}"\n' for name in names)
     (home / "own.glsl").write_text(lines + text)
 
@@ -179,7 +179,7 @@ def test_text_in_all_shaders_is_limited(home):
 
 @pytest.fixture
 def folder(tmp_path):
-    """A library of one node, whose source lies beside its document."""
+    """A library of one node, with its source next to its document."""
     folder = tmp_path / "library"
     folder.mkdir()
     node = NODEDEF + IMPLEMENTATION.format("", "own.glsl", 'function="own"')

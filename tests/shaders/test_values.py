@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Inputs of every type come out of shaders as plain Python values, and go back into programs."""
+"""Inputs of every type come out of shaders as plain Python values, and can be set in programs."""
 
 from dataclasses import replace
 
@@ -68,7 +68,7 @@ def host(request, hosts):
 
 
 def brightness(host, nodes, **values):
-    """What a white furnace shows of a material with these values by the paths of their inputs."""
+    """Brightness of a material in a white furnace with these input values, by path."""
     found = generate(material(nodes), host.target, lights=True, policy=TRUSTED)[0]
     inputs = (replace(each, value=values.get(each.path, each.value)) for each in found.inputs)
     shader = replace(found, inputs=tuple(inputs))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Other versions of MaterialX: what mxeon needs of them is looked up in them, not in a list."""
+"""Other versions of MaterialX: mxeon examines the version itself instead of a list."""
 
 import MaterialX as mx
 import pytest
@@ -24,7 +24,7 @@ CACHES = (
 
 @pytest.fixture
 def fresh():
-    """Libraries and generators as in a new process, before the test and after it."""
+    """Reload libraries and generators as in a new process, before and after the test."""
     for cache in CACHES:
         cache.cache_clear()
     yield
@@ -34,7 +34,7 @@ def fresh():
 
 @pytest.fixture
 def other_interface(fresh, monkeypatch, tmp_path):
-    """A checkout whose oren_nayar_diffuse_bsdf takes one argument more than MaterialX passes."""
+    """A checkout whose oren_nayar_diffuse_bsdf has one parameter more than MaterialX passes."""
     old, new = "float weight, vec3 color", "float gain, float weight, vec3 color"
     wrong_copy(tmp_path, old, new, "genglsl/oren_nayar_diffuse_bsdf.glsl")
     monkeypatch.setattr(library, "data_folder", lambda: tmp_path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What text of a document reaches generated source is words, wherever it stands."""
+"""Text of a document that reaches generated source must consist of plain words."""
 
 from functools import lru_cache
 
@@ -13,7 +13,7 @@ from tests.fuzz import reach
 from tests.support.documents import lobe, material
 from tests.support.sharing import shared
 
-SOME = ("glsl", "osl", "mdl")  # one of each family of generators
+SOME = ("glsl", "osl", "mdl")  # one target of each family of generators
 CLASSES = (*SOME, "msl", "slang")  # essl, vulkan and wgsl inherit from glsl's generator
 IMAGE = '<image name="image" type="color3"><input name="{}" type="{}" value="{}"/></image>'
 KINDS = [kind for kind in vars(mx).values() if hasattr(kind, "CATEGORY")]
@@ -21,7 +21,7 @@ KINDS = [kind for kind in vars(mx).values() if hasattr(kind, "CATEGORY")]
 
 @pytest.fixture(scope="module", autouse=True)
 def furnished(tmp_path_factory):
-    """A working folder with what the documents name, each read once for all targets.
+    """A working folder with the files that documents name, each read once for all targets.
 
     Without values of inputs, which are no source.
     """
@@ -36,7 +36,7 @@ def furnished(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def materials(furnished, tmp_path_factory):
-    """The document of materials, and which of its places reach source."""
+    """The document of materials, and the places that reach source."""
     root = reach.documents()["materials"]
     groups = reach.present(root)
     return root, shared(tmp_path_factory, "reach", lambda: reach.reached(root, groups, CLASSES))
@@ -58,7 +58,7 @@ def test_text_that_reaches_source_in_materials_is_words(materials):
 
 def test_text_that_reaches_source_in_outputs_is_words():
     root = reach.documents()["outputs"]
-    groups = reach.present(root)  # names, types and values are judged alike wherever they stand
+    groups = reach.present(root)  # names, types and values are judged alike everywhere
     texts = [each for each in groups if each[0].attribute not in ("name", "type", "value")]
     found = reach.reached(root, texts, SOME)
     assert ("materialx", "namespace") in named(root, found)

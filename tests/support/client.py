@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Use of an eonlib folder by a program that only has MaterialX, not mxeon.
+"""A program that uses an eonlib folder with MaterialX alone, without mxeon.
 
     python -m tests.support.client FOLDER OUTPUT [DATA]
 

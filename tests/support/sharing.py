@@ -25,7 +25,7 @@ def shared(factory, name, make):
         if name not in _MADE:
             _MADE[name] = make()
         return _MADE[name]
-    path = factory.getbasetemp().parent / f"{name}.pickle"  # this session's own folder
+    path = factory.getbasetemp().parent / f"{name}.pickle"  # a folder of this session
     with FileLock(f"{path}.lock"):
         if not path.exists():
             path.write_bytes(pickle.dumps(make()))

@@ -54,16 +54,16 @@ LISTING_EPSILON = 1.4e-7
 
 # --- fits --------------------------------------------------------------------------------------
 
-# The errors stated next to the coefficients, each the largest error of the printed digits, last
-# digit rounded up. They hold everywhere: exact values come from closed forms, which a rounding of
-# theirs moves by 1e-15. fon_loss, relative, in float64 and in float32; ROOT, relative; density of
-# exact samples, relative, for the worse of the two fits.
+# The errors stated next to the coefficients: the largest errors of the printed digits, with the
+# last digit rounded up. They hold everywhere: the exact values come from closed forms, whose
+# rounding moves them by 1e-15. fon_loss: relative, in float64 and in float32. ROOT: relative.
+# Density of exact samples: relative, for the worse of the two fits.
 FIT_LOSS = 2.7e-7
 FIT_LOSS_32 = 5.4e-7
 FIT_ROOT = 1.8e-7
 EON_DENSITY = 1.3e-5
 
-# Weight and relative variance of exact samples, which the project promises.
+# Weight and relative variance of exact samples, as the project promises.
 EON_WEIGHT = 5e-5
 EON_VARIANCE = 1e-9
 
@@ -77,7 +77,7 @@ TWIN_ALBEDO = 1e-6
 TWIN_VALUE = 2e-6
 
 # Cycles, float32. A point of the sphere is a ray's origin plus its length, both at most 2: three
-# roundings of 2^-23 together, and of a ray that grazes, with error e / mu, the test takes e.
+# roundings of 2^-23 together. For grazing rays the error is e / mu, and the test compares e.
 CYCLES_NORMAL = 3 * 2.0**-23
 
 
@@ -122,8 +122,8 @@ SAMPLE_PDF = 160.0 * ROUNDING
 # 3.2, and a density changes by at most (1 + 2 x 3.2) / pi = 2.4 per radian.
 TURNED_PDF = 2.4 * TURNED_DIRECTION
 
-# Height of a clipped cosine, relative: the root of a product of positive terms, four roundings of the
-# chord's ends and six of the terms, halved, and the root's own.
+# Height of a clipped cosine, relative: the root of a product of positive terms, with half of the
+# four roundings of the chord's ends and the six of the terms, and the root's own.
 RIM = 6 * ROUNDING
 
 # Side of the lune, absolute: x and z are at most 1, and off by 4 roundings and a function, and by RIM.
@@ -164,20 +164,20 @@ FIT_QUADRATURE = 1e-7
 
 # --- pages of upstream -----------------------------------------------------------------------
 
-# A figure with two digits against another such, relative: each is off by half a unit of the second
-# digit, 5 % at most, and drivers part by 1e-5 of 1, one unit in the third digit of the least, 0.01.
+# Two figures with two digits each, relative: each is off by half a unit of the second digit, 5 % at
+# most. Drivers differ by 1e-5, which is one unit in the third digit of the smallest figure, 0.01.
 PRINTED = 0.11
 
 # --- sums over an environment ------------------------------------------------------------------
 
-# An albedo as a sum over visible normals. SwiftShader's sine and cosine are off by 1.9e-4 and turn a
-# direction twice, 8e-4 in all, and the sum changes at most 2.5 times as fast; with 64 directions in
-# place of 1024 it is off by 3e-2.
+# An albedo as a sum over visible normals. SwiftShader's sine and cosine are off by 1.9e-4 and turn
+# a direction twice, 8e-4 in all; the sum changes at most 2.5 times as fast. With 64 directions
+# instead of 1024 it would be off by 3e-2.
 SUMMED_DIRECTIONS = 2e-3
 
 # --- microfacets, float64 ----------------------------------------------------------------------
 
-# Fresnel reflectance of a dielectric of index >= 1 and its average, relative: at most 40 roundings
+# Fresnel reflectance of a dielectric of index >= 1, and its average, relative: at most 40 roundings
 # and a logarithm, in sums whose terms are at most four times the sum.
 FRESNEL = 4.0 * (40 + FUNCTION) * ROUNDING
 
@@ -192,7 +192,8 @@ MICROFACET = (80 + 60) * ROUNDING
 E_SS = 1e-10
 E_SS_SMALL = 2e-8
 SLOPES = 5e-6
-# Albedo below index 1, in roughnesses where an adaptive quadrature reaches it: a hundred times its 1e-13.
+# Albedo for an index below 1, at roughnesses where adaptive quadrature converges: a hundred times
+# its 1e-13.
 SPLIT = 1e-11
 
 # --- transmission, float64 ---------------------------------------------------------------------
@@ -217,8 +218,8 @@ MITSUBA_WEIGHT = 1e-6
 # A dielectric over EON in Mitsuba, relative where it is larger: the fourth power of the facets' distribution, its
 # square, Fresnel's two squares, visibility and the sums of the curves, 24 roundings of 2^-24; 1.0e-6 measured.
 MITSUBA_COAT = 24 * 2.0**-24
-# Its density, besides: the part of the samples that the dielectric gets is as exact as its albedo is, 2e-7 from
-# the curve and 2e-7 from 3 roundings, over that albedo; 1.5e-7 measured.
+# Its density, in addition: the fraction of samples for the dielectric is as exact as its albedo,
+# 2e-7 from the curve and 2e-7 from 3 roundings, divided by that albedo; 1.5e-7 measured.
 MITSUBA_DENSITY = 4e-7
 
 # Curves of a dielectric over EON, as their docstring promises: 9e-8 measured, at alpha 0.01 and index 1.02.

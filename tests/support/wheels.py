@@ -56,7 +56,7 @@ def _main_name():
 
 
 def _main(folder):
-    """Link to the installed MaterialX, with the data of main."""
+    """Link to the installed MaterialX, with the data of the main branch."""
     package = linked(Path(mx.__file__).parent, folder / "MaterialX")
     for file in re.findall(r"^--- a/(.*)$", MAIN.read_text(), re.MULTILINE):
         data = (package / file).read_bytes()
