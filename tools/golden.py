@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every verdict of the suite in one file, to hold a redesign: what it must not change.
+"""All verdicts of the suite in one file, which a redesign must not change.
 
     python tools/golden.py write out/before.jsonl [--host gl ...]   every host that runs here x every library
     python tools/golden.py compare out/before.jsonl out/after.jsonl

@@ -117,7 +117,7 @@ def table_text(table: Table) -> str:
     for port in table:
         types = _types_text(port, table)
         cells = (f"`{port.name}`", port.description, types, port.default, port.accepted)
-        # A text that ends no cell, breaks no row and steers no terminal.
+        # Escape a text so that it cannot end a cell, break a row or control a terminal.
         rows.append(tuple(" ".join(printable(x).split()).replace("|", "\\|") for x in cells))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     rows.insert(1, tuple("-" * width for width in widths))

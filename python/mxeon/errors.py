@@ -11,19 +11,19 @@ from mxeon.names import unknown
 
 PASSED, FAILED, MISUSE, NOT_RUN = 0, 1, 2, 3  # exit statuses of the command
 
-LONGEST = 1000  # characters of a message, which may quote a document
-MOST = 20  # faults that a message lists
-CUT = " [...]"  # ends one that is cut there
-# Controls, changes of the direction of writing, and halves of characters.
+LONGEST = 1000  # maximum length of a message, which may quote a document
+MOST = 20  # maximum number of faults in a message
+CUT = " [...]"  # end of a truncated message
+# Control characters, direction overrides, and surrogates.
 STEERING = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
-# What begins a command to GitHub's runner: in a line, or anywhere.
+# Prefixes of commands to GitHub's runner: at the start of a line, or anywhere.
 COMMAND = re.compile(r"(?:^|(?<=\r))\s*::|##\[", re.MULTILINE)
 
 
 def install(extra: str) -> str:
-    """Command that installs what a part of mxeon needs besides.
+    """Command that installs the additional requirements of a part of mxeon.
 
     >>> install("fit")
     "pip install '.[fit]' in a checkout of mxeon"
@@ -42,7 +42,7 @@ class InputError(MxeonError, ValueError):
 
 
 class DocumentError(InputError):
-    """A document that no shader can be generated from; its arguments are its faults, a line each."""
+    """A document for which no shader can be generated; its arguments are its faults, one per line."""
 
     def __init__(self, *faults: str) -> None:
         super().__init__(*_some(faults, "faults"))
@@ -74,18 +74,19 @@ class PackageError(MxeonError, ImportError):
 
 
 class LibraryError(MxeonError, RuntimeError):
-    """Another data library than the one that was asked for."""
+    """A data library other than the requested one."""
 
     status = FAILED
 
 
 class ShaderError(MxeonError, RuntimeError):
-    """A shader that the host's compiler refuses; holds the compiler's own words."""
+    """A shader that the host's compiler rejects; contains the compiler's message."""
 
     status = FAILED
 
 
-# What compilers say of a line: "0:12(3): error: words", "ERROR: 0:12: words"; Slang quotes the line.
+# Formats of compiler messages: "0:12(3): error: words", "ERROR: 0:12: words"; Slang quotes the
+# line.
 REFUSED = re.compile(
     r"error\[\w+\]: (?P<slang>.+)\n.*\n.*\n\d+ \| (?P<line>.+)|"
     r"[:(](?P<number>\d+)[:()\d]*:\s*(?:error\b[^:]*:\s*)?(?P<words>.+)"
@@ -94,7 +95,8 @@ FUNCTION = re.compile(r"^\w[\w ]* (\w+)\([^;]*$", re.MULTILINE)
 
 
 def refused(host: str, words: str, text: str) -> ShaderError:
-    """The error of a shader's text by a compiler's words: the function, the line and the first complaint.
+    """The error for a shader that a compiler rejected: the function, the line and the first
+    message.
 
     >>> str(refused("gl", "0:2(1): warning: no use\\n0:3(1): error: no x", "float f()\\n{\\n    return x;\\n}\\n"))
     "gl: the shader does not compile, in f: 'return x;': no x"
@@ -113,21 +115,21 @@ def refused(host: str, words: str, text: str) -> ShaderError:
 
 
 class NotRun(MxeonError, RuntimeError):
-    """Something that cannot be executed here; says what and why."""
+    """Something that cannot run here; the message says what and why."""
 
     status = NOT_RUN
 
 
 class Unsupported(NotRun):
-    """A verb that a host does not have."""
+    """An operation that a host does not support."""
 
 
 class Implied(NotRun):
-    """A measurement that a failure with its own result makes impossible."""
+    """A measurement that another failure, with its own result, makes impossible."""
 
 
 class OutsideModel(NotRun):
-    """A value outside the range that a model is defined on; `input` is the document's, by its path."""
+    """A value outside the range for which a model is defined; `input` is its path in the document."""
 
     def __init__(self, message: str, input: str = "") -> None:
         super().__init__(message)
@@ -135,11 +137,11 @@ class OutsideModel(NotRun):
 
 
 class InterfaceError(NotRun):
-    """A MaterialX that calls closures in another way than eonlib's sources define them."""
+    """A MaterialX that calls closures differently from their definitions in eonlib's sources."""
 
 
 def _some(lines: Sequence[str], noun: str) -> Iterator[str]:
-    """The first lines, and the number of the others."""
+    """The first lines, and the number of the rest."""
     if len(lines) > MOST + 1:
         lines = (*lines[:MOST], f"and {len(lines) - MOST} more {noun}")
     return map(one_line, lines)
@@ -152,16 +154,16 @@ def assert_known(rule: str, name: object, known: Iterable[str], listing: str = "
 
 
 def printable(text: str) -> str:
-    """Text with U+FFFD for what steers a terminal or GitHub's runner, or fits in no encoding."""
+    """Text with U+FFFD in place of characters that control a terminal or GitHub's runner, or cannot be encoded."""
     return COMMAND.sub("\ufffd", STEERING.sub("\ufffd", text))
 
 
 def as_output(text: str) -> str:
-    """JSON text without what steers GitHub's runner; of the same value."""
+    """JSON text with the same value that cannot contain commands to GitHub's runner."""
     return text.replace("##[", "#\\u0023[")
 
 
 def one_line(text: object) -> str:
-    """A message as one line that steers no terminal and is short enough to read."""
+    """A message as one readable line without control characters."""
     line = " ".join(printable(str(text)).split())
     return line if len(line) <= LONGEST else f"{line[: LONGEST - len(CUT)]}{CUT}"

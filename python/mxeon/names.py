@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names that must be known: the message about one that is not, with the one that was meant."""
+"""Messages about unknown names, which suggest similar known ones."""
 
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 
-LISTED = 20  # known names of a message, unless one of more is near
-SOME = 4  # names that one word may mean
+LISTED = 20  # maximum known names in a message, unless a similar one is among them
+SOME = 4  # maximum suggestions for one word
 NONE: Mapping[str, str] = {}
 
 
 def meant(
     name: object, known: Iterable[str], alike: float = 0.65, titles: Mapping[str, str] = NONE
 ) -> str:
-    """The end of a message on an unknown name: the known ones that it may stand for, or "".
+    """The end of a message about an unknown name: the known names that it may stand for, or "".
 
     >>> meant("cycels", ("gl", "cycles")), meant("EON", ("eon", "fon"))
     (': did you mean cycles?', ': did you mean eon?')
@@ -34,7 +34,7 @@ def unknown(
     titles: Mapping[str, str] = NONE,
     listing: str = "",
 ) -> str:
-    """The message that a name is none of the known; "" if it is one.
+    """The message that a name is not one of the known; "" if it is.
 
     It lists them, unless one of many is near or `listing` says where they are listed.
 

@@ -86,7 +86,7 @@ def memory(name, jobs, goal=None):
 def parts(rounds, files, whole, cache):
     """Figures and checks of the main job, and of further jobs if `whole`."""
     words = (*files, "--workers", "2")
-    # The examples on gl, with an empty cache and again.
+    # Check the examples on gl, with an empty cache and again.
     jobs = [job(*words, cache=cache) for _ in range(rounds + 1)]
     seconds = [each.seconds for each in jobs]
     usual = statistics.median(seconds[1:])
@@ -100,7 +100,7 @@ def parts(rounds, files, whole, cache):
     )
     if not whole:
         return
-    # A report, and the same run again with --resume.
+    # Write a report, then run the same check with --resume.
     first, again = [], []
     for _ in range(rounds):
         with TemporaryDirectory() as folder:
@@ -115,7 +115,7 @@ def parts(rounds, files, whole, cache):
         ],
         [],
     )
-    # Two libraries, after a run that fills the cache.
+    # Check two libraries, after a run that fills the cache.
     jobs = [job(*words, *BOTH, cache=cache) for _ in range(rounds + 1)][1:]
     share = [each.seconds / usual for each in jobs]
     yield (
@@ -125,7 +125,7 @@ def parts(rounds, files, whole, cache):
         ],
         [],
     )
-    # All nodes, with an empty cache and again.
+    # Check all nodes, with an empty cache and again.
     with TemporaryDirectory() as empty:
         jobs = [job(*words, "--node", "all", cache=empty) for _ in range(2)]
     yield (
@@ -136,7 +136,7 @@ def parts(rounds, files, whole, cache):
         ],
         [Check("gl, --node all", max(each.wrong for each in jobs), 0.0)],
     )
-    # All hosts that run here with both libraries; stock MaterialX fails.
+    # Check both libraries on all hosts that run here; stock MaterialX fails.
     jobs = []
     for hosts, nodes in FIELD.values():
         chosen = [*(f"--host={host}" for host in hosts), *(f"--node={node}" for node in nodes)]

@@ -189,7 +189,7 @@ def overcast():
 
 
 def window():
-    """A square of 30 degrees on the left."""
+    """A square window, 30 degrees wide, on the left."""
     half = np.tan(np.radians(15.0))
     side = half * (2.0 * (np.arange(STEPS) + 0.5) / STEPS - 1.0)
     x, y = (grid.ravel() for grid in np.meshgrid(side, side))

@@ -40,9 +40,10 @@ FACETS = (
     (0.32298, 3.3428, -4.255, 0.51298, 3.6133, -7.43, 3.3391, -2.597, 3.5172, -0.34239),
     (0.14542, 0.030955, -0.22576, -0.22374, 1.0328, -1.4779, 0.16285, -1.7185, 2.1385, 0.018052),
 )  # fmt: skip
-# Orders are summed while the square of one exceeds a limit, of a value this times the squares of the mean
-# reflectances of all channels, of a node of a rule this times the square of its width if that is more; each
-# counts as smaller than the one before it by a factor at least.
+# Orders are summed while the square of one exceeds a limit: for a value, this number times the
+# squared mean reflectances of all channels; for a node of a rule, this number times the squared
+# width if that is larger. Each order counts as smaller than the previous one by at least the given
+# factor.
 VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 8e-14, 1e-3, 0.6
 NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # narrowest sensitivity
 LEAST_PATH, LEAST_LOST = (
@@ -143,7 +144,7 @@ def slopes(category, material, _, mu):
 
 
 def wave_slopes(category, material, _, mu):
-    """Slopes of a curve in the waves of each Gaussian, whose errors may have any sign."""
+    """Slopes of a curve by the waves of each Gaussian, whose errors may have any sign."""
     thickness, index = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
     opd = film.path_difference(mu, thickness, index)
     slopes = 0.0

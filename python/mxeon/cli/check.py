@@ -161,7 +161,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _baseline(options: argparse.Namespace) -> Report:
-    """The accepted run, read before the results of --report move away, which they do too if it is refused."""
+    """Read the accepted run before --report moves earlier results away; they move even if it is refused."""
     from mxeon.conformance.run.journal import Journal
     from mxeon.report.diff import read_results
 
@@ -175,7 +175,7 @@ def _baseline(options: argparse.Namespace) -> Report:
 
 
 def _importing(progress: Progress) -> Callable[[Iterable[T], int], Iterator[T]]:
-    """A progress that imports the report's packages while the workers are busy."""
+    """A progress display that imports the report's packages while the workers are busy."""
 
     def steps(outcomes: Iterable[T], total: int) -> Iterator[T]:
         for outcome in progress(outcomes, total):

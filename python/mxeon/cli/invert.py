@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
     )
     try:
         rho = invert([options.R, options.G, options.B], options.roughness)
-    except ValueError as error:  # the models know no errors of mxeon's
+    except ValueError as error:  # the models raise ValueError, not errors of mxeon
         raise InputError(str(error)) from None
     print(*(f"{float(channel):.9g}" for channel in rho))
     return PASSED

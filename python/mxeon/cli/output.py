@@ -104,7 +104,8 @@ class Line(str):
 
 
 def wrapped(lines: Iterable[str]) -> str:
-    """Lines as wide as the terminal, in the color of their verdicts; unchanged where no terminal shows them.
+    """Lines wrapped to the terminal's width, in the color of their verdicts; unchanged without a
+    terminal.
 
     So that a command that reads them finds whole lines.
     """

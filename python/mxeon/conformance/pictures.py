@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Materials from documents, beside the reference's pictures pixel by pixel; and one material of each node."""
+"""Pictures of documents' materials, compared with the reference's pixel by pixel; and one material of each node."""
 
 import warnings
 from collections.abc import Callable, Iterable, Sequence
@@ -71,7 +71,7 @@ from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
 from mxeon.shaders.nodes import BSDF_NODES
 from mxeon.shaders.scene import BACK, SIDE, STUDIO, Scene, sphere
 
-# Nodes whose shaders take an albedo from a fit.
+# Nodes whose shaders use a fitted albedo.
 FITTED_NODES = {row.category for row in NODES if row.fitted or row.mirror}
 HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
 COSINES = 256  # number of views tried for the largest albedo of a sheen
@@ -79,7 +79,7 @@ COSINES = 256  # number of views tried for the largest albedo of a sheen
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
 POINT_AND_VALUE = roundings(16, "of a pixel's point"), roundings(32, "in the value")
 PLAIN = sum_in(Quantity.PICTURE, *POINT_AND_VALUE, exact=True)
-# The least OpenGL asks for; texels differ by 1 at most.
+# The precision that OpenGL requires; texels differ by at most 1.
 TEXTURED = given(2.0**-8, Quantity.PICTURE, "a filter's weights of 8 bits")
 CODES = f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
 ENCODED = given(SLOPE * TEXTURED.value, Quantity.PICTURE, CODES)
@@ -93,7 +93,7 @@ FITTED, SHADED = (
 
 
 def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tolerance:
-    """Tolerance of a material's pictures: of its lobes' fits or of images, and what else adds to it.
+    """Tolerance of a material's pictures: the lobes' fits or the images, and additional errors.
 
     An image's filter works on codes, before a decoding.
     """
@@ -126,10 +126,10 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tole
 
 
 def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
-    """What inputs of lobes add: a film, an index below 1, and narrow lobes of hair and sheen."""
+    """Additional errors due to inputs of lobes: a film, an index below 1, and narrow lobes of hair and sheen."""
 
     def some(name: str, condition: Callable[[np.ndarray], np.ndarray], category: str = "") -> bool:
-        """Whether an input fulfills a condition anywhere, in lobes of a category or in all."""
+        """Whether an input satisfies a condition anywhere, in lobes of a category or in all."""
         own = (each.inputs for each in lobes if category in ("", each.category))
         return any(bool(np.any(condition(each[name]))) for each in own if name in each)
 
@@ -163,7 +163,7 @@ Pixels: TypeAlias = NDArray[np.floating]
 # A scene, the host's picture and the reference.
 Shown: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]
 Pixel: TypeAlias = tuple[float, dict[str, list[float]], Pixels]
-Note: TypeAlias = tuple[str, str]  # a warning, and what it is about
+Note: TypeAlias = tuple[str, str]  # a warning, and its subject
 
 MATCH = "Every pixel matches the reference."
 
@@ -171,7 +171,7 @@ MATCH = "Every pixel matches the reference."
 def _read(
     file: Path, make: Callable[[], tuple[Shader, ...]]
 ) -> tuple[tuple[Shader, ...], dict[str, str], list[CodeWarning | notes.DocumentWarning]]:
-    """Shaders of a document, their approximations by element, and what else a reader has to know."""
+    """Shaders of a document, their approximations by element, and other notes for readers."""
     with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
         warnings.simplefilter("error", notes.MissingFileWarning)
@@ -186,7 +186,7 @@ def _read(
 def judge_document(
     file: Path, host: Host, judge: Reference, library: str, policy: Policy = DEFAULT
 ) -> tuple[tuple[Result, ...], tuple[Picture, ...], tuple[Note, ...]]:
-    """Pictures of every material of a document on a host, judged against the reference's.
+    """Pictures of every material of a document on a host, compared with the reference's.
 
     Raise DocumentError if no shader can be made from the document.
     """
@@ -201,7 +201,7 @@ def judge_document(
         results.append(result)
         pictures += images
     told = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
-    # Why pictures cannot be right, each reason once.
+    # Reasons why pictures cannot be correct, without duplicates.
     told += dict.fromkeys(
         (text, f"{file.name}: {shader.element}")
         for shader in shaders
@@ -226,7 +226,7 @@ def _scenes(host: Host) -> tuple[Scene, ...]:
 def _judge_material(
     file: Path, shader: Shader, host: Host, judge: Reference, values: HostValues, front_lit: bool
 ) -> tuple[Result, tuple[Picture, ...]]:
-    """One material; `front_lit` where the host has its model for s >= 0 only."""
+    """Judge one material; `front_lit` hosts only have its model for s >= 0."""
     scenes, library = _scenes(host), values.library
     subject = f"{file.name}: {shader.element}"
     place = Result("picture", MATCH, subject, host.name, library, NOT_RUN)
@@ -258,7 +258,7 @@ def _judge_material(
         where = mask[..., None].astype(np.float32) if partly else None
         return Picture(*names, image, reference, metadata, where)
 
-    # Compare them with the reference's, or ask for numbers where it has no model.
+    # Compare them with the reference's; without a model they only have to be finite.
     try:
         _assert_judged(shader, host)
         expected = [judge.expected(shader, scene, values) for scene in scenes]
@@ -270,7 +270,7 @@ def _judge_material(
         return _judge_finite(place, images, str(reason)), tuple(map(picture, scenes, images))
     cases = list(zip(scenes, images, expected, strict=True))
     lobes = [lobe for each in expected for lobe in each.lobes]
-    # A prefiltered environment has one alpha.
+    # A prefiltered environment supports only one alpha.
     rough = host.active.environment == "prefilter" and _stretched(lobes)
     judged = [not rough or scene.environment is None for scene in scenes]
     pictures = tuple(picture(*case, each) for case, each in zip(cases, judged, strict=True))
@@ -291,7 +291,7 @@ def _judge_material(
 
 
 def _known(shader: Shader) -> Diagnosis | None:
-    """What MaterialX is known to make of a document like that of a shader; None for nothing."""
+    """A known error of MaterialX for documents like this shader's, or None."""
     element = shader.document.getDescendant(shader.element)
     if names := notes.same_names(element):
         return defect("same_names", names[0])
@@ -301,7 +301,7 @@ def _known(shader: Shader) -> Diagnosis | None:
 
 
 def _assert_judged(shader: Shader, host: Host) -> None:
-    """Raise NotRun where the host shows another material, or its own closures, which are judged by themselves."""
+    """Raise NotRun if the host shows another material, or its own closures, which have their own checks."""
     if reason := host.unread(shader):
         raise NotRun(f"{host.name}: {reason}: the picture is shown and only has to be finite")
     own = sorted(categories(inner_nodes(shader.document)) & set(BSDF_NODES))
@@ -313,7 +313,7 @@ def _assert_judged(shader: Shader, host: Host) -> None:
 
 
 def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Result:
-    """Result for a material that the models do not cover: its pixels have to be numbers."""
+    """Result for a material that the models do not cover: its pixels must be finite."""
 
     def measure(wrong: bool) -> Measurement:
         shown = [np.where(np.arange(3) == 0, np.nan, images[0])] if wrong else images
@@ -329,7 +329,7 @@ def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Resul
 def _judge_match(
     place: Result, cases: Sequence[Shown], tolerance: Tolerance, diagnose: Callable[[], Diagnosis]
 ) -> Result:
-    """Result for a material that the models cover: its pixels have to be the reference's."""
+    """Result for a material that the models cover: its pixels must match the reference."""
     pixels = [_worst_pixel(case, tolerance.metric) for case in cases]
     error, worst, *_ = max(pixels, key=lambda entry: entry[0])
     first, image, expected = cases[0]
@@ -387,7 +387,7 @@ STUDIED = 4  # materials of a document
 def studio_pictures(
     file: Path, host: Host, library: str, policy: Policy = DEFAULT
 ) -> tuple[Picture, ...]:
-    """Pictures for people of a document's first materials, on a shader ball in a studio; without references."""
+    """Pictures of a document's first materials for presentation, on a shader ball in a studio; without references."""
     shaders, _, _ = _read(file, lambda: host.compile(file, library=library, policy=policy))
     metadata = {"version": mxeon.__version__, "document": str(file), "scene": STUDIO.name}
     pictures = []
@@ -438,7 +438,8 @@ PORTRAIT_SCENES = tuple(replace(scene, size=96) for scene in (SIDE, BACK))
 
 
 def comparison_pictures(case: Case) -> tuple[Picture, ...]:
-    """Pictures of a rough node in light from the side and from behind, each beside its model's.
+    """Pictures of a rough node in light from the side and from behind, and the corresponding
+    pictures of its model.
 
     None for a surface shader's lobe, and on a renderer without exact mirror pairs. Rim and
     terminator are black in both.
@@ -459,6 +460,6 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
         names = (PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)
         keys = ("document", "element", "host", "library", "scene")
         metadata = dict(zip(keys, names, strict=True)) | {"version": mxeon.__version__}
-        metadata |= {"points": case.host.name}  # a host may have only a part of its model
+        metadata |= {"points": case.host.name}  # a host may only have part of its model
         pictures.append(Picture(*names, image, expected, metadata))
     return tuple(pictures)

@@ -241,7 +241,7 @@ FUNCTIONS: Mapping[str, object] = {
 
 
 def _closure_faults(subject: DiffuseSpec, library: str) -> Faults:
-    """Arguments of the closure that differ from the node's inputs, and their count without the weight."""
+    """Arguments of the closure that differ from the node's inputs; the count ignores the weight."""
     expression = _expression(source(subject, "mdl", library))
     rng = generator()
     drawn = subject.random_inputs(rng, MATERIALS)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sentences about results, made of their fields: the only place where one is made. Nothing reads one."""
+"""Sentences about results, made from their fields. No other module makes such sentences, and none reads them."""
 
 import math
 from collections import Counter
@@ -22,7 +22,7 @@ from mxeon.conformance.results import (
 )
 from mxeon.shaders.nodes import FLAG
 
-NAMED = 3  # names in a list, before the number of the others
+NAMED = 3  # names in a list, before the number of the rest
 PARTS_SHOWN = 3  # maximum parts shown of two graphs that differ
 AS_SPECIFIED = "looks as specified"
 
@@ -51,7 +51,7 @@ def of_white(share: float) -> str:
 
 
 def listed(names: Sequence[str]) -> str:
-    """The first names of a list, and the number of the others.
+    """The first names of a list, and the number of the rest.
 
     >>> listed(["a", "b", "c", "d"])
     'a, b, c and 1 more'
@@ -61,7 +61,7 @@ def listed(names: Sequence[str]) -> str:
 
 
 def enumerated(names: Sequence[str]) -> str:
-    """All names of a list that is not empty.
+    """All names of a non-empty list.
 
     >>> enumerated(["a"]), enumerated(["a", "b", "c"])
     ('a', 'a, b and c')
@@ -140,7 +140,7 @@ REGIONS = {
     "normal_away": "where the normal faces away from the viewer",
     **{scene: f"in {light}" for scene, light in LIGHTS.items()},
 }
-# Of an input, those whose range is a region.
+# Sentences for the part of an input whose range is a region.
 PARTS = {
     "value": "{}",
     **{each: f"the {each} component of {{}}" for each in ("first", "second", "smaller", "larger")},
@@ -180,13 +180,13 @@ FAULTS = {
     "pi_missing": "the factor 1/pi is missing",
     "pi_twice": "the factor 1/pi is applied twice",
 }
-# How the states of pixels are joined that all wrong sums have, and those of frames.
+# Conjunctions for the states of pixels that all wrong sums share, and for those of frames.
 STATES = {"state": "", "both_states": " and ", "either_state": " or "}
 FRAMES = {f"{key}_of_frames": word for key, word in STATES.items()}
 SUMS = (
     "each part is right by itself, but {share} combinations of lobes and lights are wrong{states}"
 )
-# Other defects, with what `_filled` has in braces.
+# Other defects; `_filled` replaces the braces.
 DEFECTS = {
     "average_at_half_vector": "the compensation uses F at the half vector instead of its average",
     "average_by_ends": "the compensation uses the average F0 + (F90 - F0) / 21",
@@ -298,7 +298,7 @@ UNKNOWN = {
 
 
 def region(place: Region) -> str:
-    """Where values are wrong.
+    """The region of wrong values, in words.
 
     >>> region(Region("roughness", "value", high=0.25))
     'with roughness 0.25 or below'
@@ -346,7 +346,7 @@ def _model(cause: Cause, distances: Mapping[str, float]) -> str:
 
 
 def _region(cause: Cause) -> str:
-    """How many pairs are wrong, and their region or the worst of them."""
+    """The number of wrong pairs, and their region or the worst one."""
     begins = "wrong for" if cause.key == "wrong" else "correct except for"
     wrong, count = cause.wrong or 0, cause.of or 1
     if cause.region:
@@ -392,7 +392,7 @@ def _cure(cause: Cause) -> str:
 
 
 def _filled(text: str, cause: Cause) -> str:
-    """A text with the names and numbers of a cause in its braces."""
+    """A text with a cause's names and numbers inserted in its braces."""
     factor = cause.values[0] if cause.values else math.nan
     known = (name for name, x in FACTORS.items() if abs(factor / x - 1.0) <= SAME_FACTOR)
     times = next(known, f"{factor:.3g}") if cause.values else ""
@@ -416,7 +416,7 @@ def _filled(text: str, cause: Cause) -> str:
 
 
 def _released(cause: Cause) -> str:
-    """A node, where it differs from the released one, and by how much."""
+    """The difference between a node and its released version."""
     node, *rows = cause.names or ("",)
     known = bool(cause.values and rows and math.isfinite(cause.values[0]))
     size = f", off by up to {in_words(cause.values[0])}" if known else ""
@@ -426,7 +426,7 @@ def _released(cause: Cause) -> str:
 
 
 def _differences(names: Sequence[str]) -> str:
-    """The first parts in which two graphs differ: three texts each, its name and what both say."""
+    """The first differing parts of two graphs: three texts each, its name and both values."""
     parts = [
         f"{name} is {own} instead of {right}"
         for name, own, right in zip(names[::3], names[1::3], names[2::3], strict=False)
@@ -445,7 +445,7 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
     Kind.UNKNOWN: lambda cause: UNKNOWN[cause.key],
     Kind.TEXT: lambda cause: cause.text,
     Kind.CONTROL: lambda cause: "inconclusive: the values are right, but the control passed too",
-    # The reason of a result that was not run says it.
+    # The reason of a result that did not run states it.
     **dict.fromkeys((Kind.NONE, Kind.FOLLOWS, Kind.INPUT), lambda cause: ""),
 }
 
@@ -453,7 +453,7 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
 
 
 def difference(apart: Difference) -> str:
-    """How a picture differs from the reference.
+    """The difference between a picture and the reference, in words.
 
     >>> difference(Difference("back", 0.2035, False, 0.124))
     'up to 20 % of white too bright in light from behind, visible on 12 % of its pixels'
@@ -479,7 +479,7 @@ def size(apart: Difference) -> str:
 
 
 def appearance(apart: Difference) -> str:
-    """How a picture differs from the reference, without the size."""
+    """The difference between a picture and the reference, without its size."""
     light = LIGHTS.get(apart.scene, apart.scene)
     if not math.isfinite(apart.largest):
         return f"has pixels that are infinite or not a number in {light}"
@@ -487,7 +487,7 @@ def appearance(apart: Difference) -> str:
 
 
 def excess(result: Result) -> str:
-    """The error that is too large, or the control that passed; "" for neither."""
+    """The excessive error, or the control that passed; "" for neither."""
     control = result.control
     if result.error is not None and not result.within:
         if result.difference:
@@ -503,7 +503,7 @@ def excess(result: Result) -> str:
 
 
 def look(result: Result) -> str:
-    """How a material looks, by its pictures."""
+    """The appearance of a material in its pictures."""
     if result.verdict == NOT_RUN:
         return f"not judged: {result.reason}"
     if result.verdict != PASSED:
@@ -518,7 +518,7 @@ def look(result: Result) -> str:
 
 
 def unchecked(names: Iterable[str]) -> str:
-    """Inputs of nodes whose values no model has, but the host.
+    """Inputs of nodes whose values come from the host, because no model has them.
 
     >>> unchecked(["SR_tiles.base_color"])
     'not checked: base_color, which comes from a pattern or texture'
@@ -529,7 +529,7 @@ def unchecked(names: Iterable[str]) -> str:
 
 
 def explanation(result: Result) -> str:
-    """The reason for a failure: its size, the diagnosis, and where the defect is described."""
+    """The reason for a failure: its size, the diagnosis, and the page about the defect."""
     pages = (f"see docs/upstream/{page}.md" for page in result.pages)
     return "; ".join(filter(None, (excess(result), diagnosis(result.diagnosis), *pages)))
 
@@ -549,7 +549,7 @@ ROUNDED = "with another driver, few samples leave the tolerance"
 
 
 def growth(key: str, before: float, after: float, place: Region | None) -> str:
-    """A number that grew or fell, and where.
+    """The change of a number, and its place.
 
     >>> growth("wrong", 0.125, 0.25, Region("roughness", "value", low=0.5))
     '12.5 % -> 25 % of the samples are wrong with roughness 0.5 or above'
@@ -585,7 +585,7 @@ def annotation(level: str, title: str, message: str) -> str:
 
 
 def sentence(run: Run) -> str:
-    """The verdict on the results of all libraries that are not judged for comparison."""
+    """The verdict on all libraries, except those judged for comparison."""
     results, counts = run.judged, run.counts
     total = counted(len(results), "check")
     groups: dict[str, dict[str, None]] = {}  # hosts by library
@@ -597,7 +597,7 @@ def sentence(run: Run) -> str:
     if counts[DIFFERS]:
         verb = "differs" if counts[DIFFERS] == 1 else "differ"
         differ = f"; {counts[DIFFERS]} {verb}, but the specification allows it"
-    # Those that a failure keeps from running are part of it.
+    # Checks that a failure prevented count as part of it.
     idle = sum(each.verdict == NOT_RUN and not each.follows for each in results)
     missed = f"; {idle} did not run" if idle else ""
     if counts[FAILED]:
@@ -638,7 +638,7 @@ def sentence(run: Run) -> str:
 
 
 def summary(run: Run) -> str:
-    """The verdict, the MaterialX that was judged, with its folder unless it is installed, and the time."""
+    """The verdict, the judged MaterialX (with its folder unless it is installed), and the time."""
     version, folder = (run.software.get(name) for name in ("MaterialX", "MaterialX folder"))
     judged = f" MaterialX {version}{f', from {folder}' if folder else ''}." if version else ""
     time = "" if run.seconds is None else f" Finished in {run.seconds:.1f} s."
@@ -656,7 +656,7 @@ def origins(run: Run) -> tuple[str, ...]:
 
 
 def not_judged(run: Run) -> tuple[str, ...]:
-    """One line on what no check judges, with the reasons; none if nothing was left out."""
+    """One line on subjects that no check judges, with reasons; empty if there are none."""
     reasons: dict[str, list[str]] = {}
     for what, reason in run.unjudged:
         reasons.setdefault(reason, []).append(what)

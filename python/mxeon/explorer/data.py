@@ -124,7 +124,7 @@ class Still:
 
 @dataclass(frozen=True)
 class Sky:
-    """A reader's own surroundings."""
+    """Surroundings that the reader provided."""
 
     width: int
     height: int

@@ -249,7 +249,7 @@ def _port(shader: Shader, port: Input) -> data.ShaderInput:
 
     low, high = (next(filter(None, map(_least, map(words, names))), None) for names in RANGE)
     if low and high and not math.isfinite(high[0] - low[0]):
-        low = high = None  # a slider of such a length has no step
+        low = high = None  # the length of such a slider would overflow
     label = words("uiname") or name.replace("_", " ")
     # Enumerated words are numbers in the shader; frames of images do not change here.
     shown = not (words("enum") or port.type == "filename" or "frame" in port.path)

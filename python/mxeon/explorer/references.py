@@ -39,7 +39,7 @@ def _direction(pole: float, azimuth: float) -> Array:
 
 
 def _float32(directions: Iterable[Array]) -> Array:
-    """Directions (N, 3) whose numbers float32 has, as a shader sees them."""
+    """Directions (N, 3) rounded to float32, as in a shader."""
     return rounded(np.array(list(directions)).T)
 
 

@@ -30,7 +30,7 @@ class Server(ThreadingHTTPServer):
         self.host = f"127.0.0.1:{self.server_port}"
 
     def receive(self, path: PurePosixPath, content: bytes) -> None:
-        """Keep a file "/files/..." or "/light/...", and show what it is; raise MxeonError for a bad one."""
+        """Store a received file "/files/..." or "/light/..." and show it; raise MxeonError for an invalid one."""
         _, kind, *parts = path.parts
         target = self.folder.joinpath(kind, *parts)
         target.parent.mkdir(parents=True, exist_ok=True)

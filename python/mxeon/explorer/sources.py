@@ -179,7 +179,7 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
     }
     reference = reference_of(shaders["eonlib"])
     [paths] = path_texts(material.text).values()
-    # Of several lobes no permitted form is known; `mxeon check` has a verdict on them.
+    # Permitted forms are only known for single lobes; `mxeon check` judges combinations.
     several = reference and not reference.forms and OREN_NAYAR not in material.text
     judged = LIBRARIES if several else ()
     with temporary_folder("mxeon-explore-") as folder:

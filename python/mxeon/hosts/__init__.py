@@ -142,7 +142,7 @@ def host_row(name: str, *others: Row) -> Row:
 
 
 def front_lit_only(host: str, model: str) -> bool:
-    """Whether a host only has a model for s >= 0; hosts outside the table have all of it."""
+    """Whether a host only has a model for s >= 0; hosts outside the table have complete models."""
     return any(row.name == host and model in row.front_lit for row in HOSTS)
 
 

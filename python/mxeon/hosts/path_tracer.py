@@ -18,7 +18,7 @@ from mxeon.shaders.scene import SHAPES, Scene
 from mxeon.shaders.shader_ball import BELT, OBJECT
 
 SAMPLES, BOUNCES = 64, 8  # default paths per pixel and bounces per path
-NOISY = 0.02  # share of the light; more is told with a remedy
+NOISY = 0.02  # share of the light; larger noise is reported with a remedy
 HEAD = (
     "#version 430\n#define texture(map, at) textureLod(map, at, 0.0)\n"  # paths have no derivatives
 )

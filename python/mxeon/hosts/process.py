@@ -91,7 +91,7 @@ class Worker:
         if line.endswith("}\n"):
             reply: Reply = json.loads(line)
             return reply
-        if line:  # an answer cut short: the process is on its way out
+        if line:  # an incomplete reply: the process is ending
             self._process.kill()
         status = self._process.wait()
         if time.monotonic() - begin >= self.limit:

@@ -101,7 +101,7 @@ def inputs(shader: Shader) -> Uniforms:
 
 
 def light(scene: Scene, directions: int = PICTURE_DIRECTIONS) -> Uniforms:
-    """Values of the uniforms of the viewer, of all lights and of what else a client sets."""
+    """Values of the uniforms of the viewer, all lights and other bindings of a client."""
     client = scene.client
     values: Uniforms = {
         **surroundings(client),

@@ -209,7 +209,7 @@ def _serve(
 
 
 def _start(pool: ProcessPool) -> bool:
-    """Start the threads and processes of a pool; whether it is active then."""
+    """Start the threads and processes of a pool; return whether it is active."""
     try:
         with block_signals(), safe_path():
             if QUIET not in sys.warnoptions:
@@ -270,7 +270,7 @@ def _end(error: BaseException, timeout: float) -> str:
 def _prepare() -> None:
     CONSTS.channel_lock_timeout = LOCK
     parent = multiprocessing.parent_process()
-    assert parent is not None  # a worker has one
+    assert parent is not None  # workers always have a parent
 
     def exit_with_parent() -> None:
         parent.join()

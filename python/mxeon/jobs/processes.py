@@ -19,7 +19,7 @@ HOME = str(Path(__file__).resolve().parents[2])  # the folder that mxeon is impo
 PYTHON = (sys.executable, "-P")  # opens a command line; -P keeps the working folder off the path
 
 _patching = threading.Lock()
-_util: Any = util  # has the private function that is replaced
+_util: Any = util  # contains the private function to replace
 
 
 class _Process(SpawnProcess):

@@ -51,7 +51,8 @@ def raise_signals() -> Iterator[None]:
             raise SignalExit(number)
         _pending.append(number)
 
-    main = threading.current_thread() is threading.main_thread()  # others may have no handlers
+    # Only the main thread may install handlers.
+    main = threading.current_thread() is threading.main_thread()
     numbers = [each for each in ENDING if main and signal.getsignal(each) != signal.SIG_IGN]
     numbers += [each for each in OTHERS if main and signal.getsignal(each) == signal.SIG_DFL]
     before = {number: signal.signal(number, end) for number in numbers}

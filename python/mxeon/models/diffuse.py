@@ -145,7 +145,7 @@ def fon_quotient(mu_o: Array, mu_i: Array, s: Array) -> Array:
 
 
 def qon_footnote_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
-    """QON with 0.57 for 0.33 in A_q: [Portsmouth2025], footnote 1."""
+    """QON with 0.57 instead of 0.33 in A_q: [Portsmouth2025], footnote 1."""
     return rho / np.pi * (qon_aq(sigma, 0.57) + qon_bq(sigma) * qon_quotient(mu_o, mu_i, s))
 
 
@@ -209,7 +209,7 @@ def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
     # C2 cos(phi) tan(beta), where sin(beta) cos(phi) is s / sin(alpha).
     behind = oren_nayar_quotient(xp.minimum(s, 0.0), xp.maximum(S_o, S_i))
     behind = behind * oren_nayar_behind_slope(mu_o, mu_i, S_o, S_i)
-    # C3 and what follows it, where 1 - cos(phi)^2 is (cross / (S_o S_i))^2.
+    # C3 and its factors, where 1 - cos(phi)^2 is (cross / (S_o S_i))^2.
     cross = wo[..., 0] * wi[..., 1] - wo[..., 1] * wi[..., 0]
     aside = oren_nayar_quotient(cross, S_o * S_i) ** 2 / (1.0 + xp.abs(cos_phi))
     aside = aside * oren_nayar_quotient(S_o + S_i, mu_o + mu_i)
@@ -602,7 +602,7 @@ FLOOR = 0.1  # least reflectance that Babylon.js passes to EON
 
 @any_array
 def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Reflection of EON with dot(wo, wi) kept above 1e-8 before s is formed.
+    """Reflection of EON with dot(wo, wi) clamped to at least 1e-8 before s is computed.
 
         s = max(dot(wo, wi), 1e-8) - mu_o mu_i
 
@@ -641,7 +641,7 @@ def burley_schlick_brdf(
 
 @any_array
 def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Reflection of EON whose multiple-scattering lobe carries rho^3 for rho^2.
+    """Reflection of EON whose multiple-scattering lobe has rho^3 instead of rho^2.
 
     Result (..., C): in 1/sr; too dark, and correct where rho is 0 or 1. The OSL closure of
     Blender's Cycles applies its albedo weight to the lobe once too often.
@@ -676,7 +676,7 @@ def fon_white_lobe_brdf(
 
 @any_array
 def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Reflection of EON whose shape is that of a reflectance of at least 0.1.
+    """Reflection of EON with the shape for a reflectance of at least 0.1.
 
         f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1)
 
@@ -694,7 +694,7 @@ def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arra
 
 @any_array
 def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """Reflection of QON that is multiplied by its own color once more.
+    """Reflection of QON multiplied by its own color a second time.
 
     OpenPBR's thin-walled lobe in MaterialX 1.39.5, issue 3027 of MaterialX.
     """

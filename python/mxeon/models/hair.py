@@ -419,7 +419,7 @@ def deon_hair_absorption_from_melanin(
 def chiang_hair_absorption_from_color(
     hair_color: ArrayLike, azimuthal_roughness: ArrayLike
 ) -> Array:
-    """Absorption coefficient of hair that looks of a color after all its scattering.
+    """Absorption coefficient of hair that has a given color after all scattering.
 
         sigma_a = (log(color) / (5.969 - 0.215 b + 2.532 b^2 - 10.73 b^3 + 5.574 b^4 + 0.245 b^5))^2
 

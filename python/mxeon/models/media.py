@@ -45,7 +45,7 @@ HALF_TURN = np.pi / 360.0  # radians of half of a full cone angle in degrees
 
 @any_array
 def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
-    """Radiance L_e = c of a surface that emits the same in all directions.
+    """Radiance L_e = c of a surface that emits equally in all directions.
 
     The equation has no side, so that the back emits as much. [MaterialX2026], section `uniform_edf`,
     Uniform Emission Equation.

@@ -167,7 +167,7 @@ KNOWN_DEFECTS = (
     _named("qon_tinted_twice", "QON tinted twice", "sigma"),
 )
 
-# Additional models in renderers' own nodes; generated shaders never use them.
+# Models that occur only in renderers' own nodes; generated shaders never use them.
 OTHERS = (
     row(
         "eon_fitted",

@@ -38,9 +38,11 @@ WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "
 RANKS = (PASSED, DIFFERS, FAILED)
 PLACE = ("host", "library", "check", "subject")
 SAMPLED = (Quantity.VALUES, Quantity.PIXELS)  # counts that depend on the samples
-# Factor by which another engine or driver changes errors of equal samples, and by how much its functions do.
+# Largest change of errors of equal samples due to another engine or driver: a factor, and an error
+# of its functions.
 EQUAL, FUNCTIONS = 1.02, 2e-5
-# By how much other samples change errors: standard deviations, and the factor of the rms distance to the best match.
+# Largest change of errors due to other samples: standard deviations, and a factor of the rms
+# distance to the best match.
 CHANCE, DISTANCE = 6.0, 3.0
 
 

@@ -52,7 +52,7 @@ class CallableHost(Host):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ClaimedModel(DiffuseModelSpec):
-    """The model that a function claims to be, in place of a node."""
+    """The model that a function claims to be, used instead of a node."""
 
     def document(self, inputs: samples.Values | None = None) -> str:
         return ""  # a function needs none
@@ -74,7 +74,7 @@ class Function(Backend):
 
     @cached_property
     def edges(self) -> Batch:
-        """Pairs and inputs at the edges of the domain, then all others that a check uses: their values must be finite."""
+        """Pairs and inputs at the edges of the domain, then all pairs of other checks: their values must be finite."""
         used = [super().edges]
 
         def note(batch: Batch) -> Batch:
@@ -104,7 +104,7 @@ class Function(Backend):
         return self._evaluations.value(parts(batch), evaluated)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        """Nothing, (N, 0): a function has no environment branch."""
+        """Empty, (N, 0): a function has no environment branch."""
         return np.empty((len(batch.wi), 0))
 
 

@@ -88,7 +88,7 @@ class Entry:
 
     @property
     def cause(self) -> tuple[object, ...]:
-        """What nodes of a renderer have in common that share a row of the page."""
+        """The properties that nodes of a renderer share if they share a row of the page."""
         verdicts = tuple((column, cell.verdict) for column, cell in self.cells.items())
         models = self.claimed, self.form, self.found, self.found_around
         return self.host, *models, verdicts, self.pages

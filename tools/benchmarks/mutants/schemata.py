@@ -91,7 +91,8 @@ def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
     if operator == "product" and (last := _operand(code, end)):
         return [wrapped(end, last, "over")]
     if operator == "comparison":
-        return [Edit(start, _end(code, end), "", f" != {on}")]  # behind what the right side becomes
+        # Inserted after the edits of the right side.
+        return [Edit(start, _end(code, end), "", f" != {on}")]
     if operator == "channel":
         old, new = (CHANNELS[each[1]] for each in (found, put))
         return [Edit(start, end, f"[{on} ? {new} : {old}]", token=True)]

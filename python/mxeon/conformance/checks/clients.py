@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A client's bindings besides the material: lights, an environment, shadows, and blending.
+"""A client's bindings other than the material: lights, an environment, shadows, and blending.
 
 The whole generated main is drawn, with point and spot lights, a shadow map, ambient occlusion and transparency.
 AXES lists the states; any two states of different axes occur together in some frame.

@@ -223,7 +223,7 @@ def with_directions(spec: Spec, methods: Methods) -> bool:
 
 
 def diagnose_transmitted(case: Case) -> Diagnosis:
-    """Whether the light is that of the facets, or divided by G_1 as in MaterialX; and where it is NaN."""
+    """Whether the light matches the facets, or those divided by G_1 as in MaterialX; and where it is NaN."""
     compared, spec = list(transmitted(case)), case.of(TransmissionSpec)
 
     def distance(found: Callable[[Compared], Array]) -> float:
@@ -349,7 +349,7 @@ def diagnose_kept(case: Case) -> Diagnosis:
 
 
 def modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
-    """Values of a mode compared with mode R or 0, and of mode R compared with 0, with the cause of an error."""
+    """Values of each mode compared with mode R or with 0, and the cause of an error."""
     spec = case.of(TransmissionSpec)
     only = case.another(spec.reflection) if spec.reflects else None
     none, unlike = 0.0 * ONE, "_unlike_R" * bool(only)

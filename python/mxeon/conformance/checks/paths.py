@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of the text for path tracers: draws have the density that it states, and the weight of their value.
+"""Checks of the text for path tracers: samples match their stated density, and weights their values.
 
 Views are from both sides of the surface. What smooth transmission draws is nearly one direction, about which draws are
 counted; and so is what it reflects.
@@ -63,10 +63,10 @@ SCATTERED = """if (what < 0.5)
     if (!kept)
         return vec3(0.0);
     return what < 2.5 ? wi : what < 3.5 ? weight : vec3(pdf);"""
-# Apart, since a driver copies the material to each call.
+# Kept separate, because a driver copies the material to each call.
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
 RANDOM = "return path_random(uvec4(uvec3(u), 7u)).xyz;"
-# By name, in the order of their numbers, the text that answers.
+# Name of a value -> text that returns it, in the order of their numbers.
 FUNCTIONS = {
     **dict.fromkeys(("evaluate", "pdf", "wi", "weight", "density"), SCATTERED),
     **dict.fromkeys(("opacity", "emission"), PASSED),
@@ -74,19 +74,20 @@ FUNCTIONS = {
 }
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # targets of mxeon.shaders.path_tracing
 DRAWS = 1 << 15
-ANSWERS = Recent[Array](64)  # a check and its control ask alike
-# Two views whose facets below the critical angle are many and few, and one from which a smooth solid lets no light out.
+ANSWERS = Recent[Array](64)  # a check and its control need the same values
+# Two views that see many and few facets below the critical angle, and one from which a smooth solid
+# transmits no light out.
 VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
 VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
-MATERIALS_DRAWN = 6  # materials whose draws are counted, each at a view of its own
-# Value that a draw must find: a sheen's fit of its albedo may be 0 where 3e-6 is left.
+MATERIALS_DRAWN = 6  # materials with counted samples, each at one view
+# Minimum value that samples must find: a sheen's fitted albedo may be 0 where 3e-6 is left.
 LEAST_LIGHT = 1e-5
-LEAST_DRAWN = 1e-5  # density over a value, below which the light is never drawn in practice
-LEAST_COUNTED = 0.2  # least roughness of the lobes whose draws are counted: the cells are coarse
-# An input as a parameter gives it, a float or a vector of three numbers.
+LEAST_DRAWN = 1e-5  # density over value, below which light is never sampled in practice
+LEAST_COUNTED = 0.2  # minimum roughness of lobes with counted samples: the cells are coarse
+# An input as a shader parameter: a float or a vector of three numbers.
 GIVEN = {"boolean": "{} > 0.5", "integer": "int({})", "vector2": "{}.xy"}
 VECTORS = ("vector2", "vector3", "color3")
-# Of the all-lobes materials: alpha below 1, and an emission.
+# Inputs of the all-lobes materials: alpha below 1, and an emission.
 MEAN_WEIGHT = 0.3333  # MaterialX's weight of a channel when it turns a transparency into alpha
 OPACITY, EMISSION = 0.6, 0.3
 THIN: dict[str, float | str] = {
@@ -96,8 +97,8 @@ THIN: dict[str, float | str] = {
 }
 WALLS = ("thin_walled", "geometry_thin_walled")
 
-# Glass, and the name of its index of refraction. UsdPreviewSurface reflects by Schlick's curve, which has no index of
-# a denser side.
+# Glass, and the name of its index of refraction. UsdPreviewSurface reflects by Schlick's curve,
+# which has no index for the denser side.
 GLASS: dict[str, tuple[str, Values]] = {
     "dielectric_bsdf": ("ior", {"tint": (0.9, 0.8, 0.7), "roughness": (0.4, 0.4)}),
     "standard_surface": ("specular_IOR", {"transmission": 1.0, "specular_roughness": 0.5}),
@@ -105,14 +106,14 @@ GLASS: dict[str, tuple[str, Values]] = {
 }
 INDEX = 2.0  # its inverse is exact
 DRAWN = family(LobeSpec) - BELOW
-GLASSY = TRANSMITTING | MATERIALS  # light enters a solid and leaves it
-# Lobes that reflect by an index, which light inside finds inverted.
+GLASSY = TRANSMITTING | MATERIALS  # light enters and leaves a solid
+# Lobes that reflect by an index, which is inverted for light inside.
 UNLIKE_INSIDE = (
     GLASSY
     | family(CombinedSpec)
     | family(FacetSpec, lambda spec: "ior" not in spec.types or spec.types["ior"] == "float")
 )
-# Glass of that index, a tint, and its curve from outside.
+# Glass with this index, a tint, and its curve from outside.
 SOLIDS: dict[str, tuple[Values, Values, dict[str, Array]]] = {
     "dielectric_bsdf": (
         {**GLASS["dielectric_bsdf"][1], "ior": INDEX},
@@ -130,17 +131,17 @@ SOLIDS: dict[str, tuple[Values, Values, dict[str, Array]]] = {
         },
     ),
 }
-SUMMED = 1 << 12  # draws whose weights are added up
+SUMMED = 1 << 12  # samples whose weights are summed
 DRAWN_SUM = Term(5e-3, "a sum of 4096 draws")
 
 
 @dataclass(frozen=True)
 class Paths:
-    """The text for path tracers of a document's one material, on a host."""
+    """The path-tracing text of a document's only material, on a host."""
 
     host: Host
     text: str
-    ports: "tuple[Port, ...]" = ()  # inputs that are variables, which each row sets
+    ports: "tuple[Port, ...]" = ()  # inputs that are variables, set for each row
 
     def values(
         self,
@@ -151,7 +152,7 @@ class Paths:
         inside: ArrayLike = False,
         inputs: Values = NO_INPUTS,
     ) -> Array:
-        """Answers (N, 3) of a function, one of FUNCTIONS; 0 where nothing is drawn.
+        """Values (N, 3) of one of FUNCTIONS; 0 where nothing is sampled.
 
         - `inputs`: Those of the material, by name or path, and "normal" and "tangent" of the surface.
         """
@@ -190,7 +191,7 @@ class Paths:
 def paths(
     host: Host, document: str, library: str = "eonlib", varied: tuple[str, ...] = ()
 ) -> Paths:
-    """The text of a document; the inputs of these names or paths are variables, and the others constants."""
+    """The text of a document; inputs with these names or paths are variables, all others constants."""
     from mxeon.shaders.generation import generate
 
     uniforms = bool(varied)
@@ -212,7 +213,7 @@ def paths(
 
 
 def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
-    """Materials, with pairs in frames of their own: of a node random ones, of a surface shader all of its lobes.
+    """Materials with pairs in their own frames: random ones of a node, or a surface shader with all lobes.
 
     A node has a normal and a tangent of its own, which are not those of the surface. `walls` says for a surface
     shader that can be a thin wall whether it is one.
@@ -252,24 +253,24 @@ def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
 
 
 def random(count: int, rng: np.random.Generator) -> Array:
-    """Numbers in [0, 1) with the 24 bits that a shader's generator gives, (N, 3)."""
+    """Numbers in [0, 1) with 24 bits, like those of a shader's generator, (N, 3)."""
     return rng.integers(0, 1 << 24, (count, 3)).astype(np.float64) * 2.0**-24
 
 
 def lattice(count: int) -> Array:
-    """Numbers that fill the unit cube evenly, multiples of the powers of a root of x^4 = x + 1, (count, 3)."""
+    """Numbers that evenly fill the unit cube, multiples of the powers of a root of x^4 = x + 1, (count, 3)."""
     steps = 1.2207440846057596 ** -np.arange(1.0, 4.0)
     return float32((0.5 + np.arange(count)[:, np.newaxis] * steps) % 1.0 * (1.0 - 2.0**-24))
 
 
 def refracted(wo: Array, index: float = 1.5) -> Array:
-    """Where the smooth transmission of UsdPreviewSurface goes; straight on beyond the critical angle."""
+    """Direction of the smooth transmission of UsdPreviewSurface; straight on beyond the critical angle."""
     x, y, _ = -wo / index
     return np.array([x, y, -np.sqrt(1.0 - x * x - y * y)]) if x * x + y * y < 1.0 else -wo
 
 
 def steepness(density: Array) -> Array:
-    """What a rounding of a direction is multiplied by: 1 and the inverse of alpha of a lobe of that density.
+    """Factor of a direction's rounding: 1 plus the inverse of the alpha of a lobe with this density.
 
     GGX facets reflect into 1 / (4 pi alpha^2) at most, whose slope is about the inverse of alpha.
     """
@@ -281,7 +282,7 @@ def place(inside: bool) -> str:
 
 
 def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
-    """Standard deviations by which draws leave their density, in materials at views.
+    """Deviations of samples from their density, in standard deviations, for materials at views.
 
     Three views do for a control, which ends at the first that is wrong, and for a surface shader, which has one
     material as a solid and one as a wall.
@@ -294,7 +295,7 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
             for name, each in batch.inputs.items()
             if "roughness" in name
         }
-        if "cuticle_angle" in batch.inputs:  # a steep one leaves a pole along the fiber
+        if "cuticle_angle" in batch.inputs:  # a steep lobe leaves a pole along the fiber
             rough["cuticle_angle"] = np.clip(batch.inputs["cuticle_angle"], 0.45, 0.55)
         batch = batch.altered(**rough)
         few = case.control or isinstance(case.spec, SurfaceShaderSpec)
@@ -302,7 +303,8 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
             one = batch.where(np.arange(row, row + 1))
             assert one.frame is not None
             view, axes = one.wo[0], one.frame[0]
-            glassy = GLASSY(case.spec) and not {*WALLS} & {*batch.inputs}  # a wall has no inside
+            # A thin wall has no inside.
+            glassy = GLASSY(case.spec) and not {*WALLS} & {*batch.inputs}
             for inside in (False, True) if glassy else (row % 2 == 1,):
                 ask = partial(text.values, wo=one.world(one.wo), inside=inside, inputs=one.inputs)
 
@@ -385,10 +387,12 @@ def path_value(case: Case) -> Iterator[Compared]:
         batch = replace(batch, wi=wi)
         normal = np.broadcast_to(NORMAL, wi.shape)
         if isinstance(case.spec, SurfaceShaderSpec) and batch.frame is not None:
-            # Its graph turns tangents about a normal that may face away: 1 or -1 along the frame's axis.
+            # The graph turns tangents about a normal that may face away: 1 or -1 along the frame's
+            # axis.
             normal = np.einsum("nij,ni->nj", batch.frame, batch.inputs["normal"]).round()
         local = replace(batch.altered(normal=normal, tangent=TANGENT), frame=None)
-        # Light from behind is not the rasterizer's, nor is there an inside of what reflects by an index.
+        # The rasterizer has neither light from behind, nor an inside of lobes that reflect by an
+        # index.
         inside = np.arange(len(wi)) % 2 * (not UNLIKE_INSIDE(case.spec))
         wo, own = batch.world(batch.wo), batch.world(wi)
         ask = partial(text.values, wo=wo, wi=own, inside=inside, inputs=batch.inputs)
@@ -407,11 +411,11 @@ def path_value(case: Case) -> Iterator[Compared]:
 
 
 def path_emission(case: Case) -> Iterator[Compared]:
-    """Radiance towards views of both sides, in frames whose axes are exchanged, which rounds nothing."""
+    """Radiance towards views of both sides, in frames with exchanged axes, which is exact."""
     spec = case.of(EmissionSpec)
     thirds = np.stack([np.roll(np.eye(3), turn, axis=0) for turn in range(3)])
     for batch in (*case.batches, case.backend.take(spec.backs)):
-        if "normal" in batch.inputs:  # the axis of a cone, which is a node
+        if "normal" in batch.inputs:  # the axis of a cone comes from a node
             continue
         frame = thirds[np.arange(len(batch.wo)) % 3]
         axes = {"normal": frame[:, :, 2], "tangent": frame[:, :, 0]}
@@ -430,7 +434,7 @@ def pcg4d(v: NDArray[np.uint32]) -> NDArray[np.uint32]:
 
 
 def path_random(case: Case) -> Iterator[Compared]:
-    """Random numbers beside those of pcg4d [Jarzynski2020], bit for bit."""
+    """Random numbers compared with pcg4d [Jarzynski2020], bit for bit."""
     counters = np.arange(3 * 256).reshape(-1, 3) ** 2
     [(text, _)] = subjects(case)
     four = np.pad(counters, [(0, 0), (0, 1)], constant_values=7).T.astype(np.uint32)
@@ -463,7 +467,7 @@ def path_inside(case: Case) -> Iterator[Compared]:
 
 
 def clear_draws(case: Case, inside: bool) -> Iterator[tuple[Batch, Array, Array]]:
-    """Directions and weights of draws in a clear solid, at each view."""
+    """Directions and weights of samples in a clear solid, at each view."""
     values, tint, _ = SOLIDS[case.spec.node]
     [(text, _)] = subjects(case)
     inputs = {**values, "lobe_normal/value": NORMAL, "lobe_tangent/value": TANGENT}
@@ -506,20 +510,22 @@ def path_albedo(case: Case) -> Iterator[Compared]:
 
 # --- directions against a density: a chi-square test on the sphere -------------------------------
 
-# Cells divide the angle from a pole, and the azimuth about it. The first ring is narrow, for a lobe that is
-# nearly a single direction: let the pole be that direction. A density that is off by a share e everywhere
-# adds N e^2 to chi-square, whose deviation is the root of twice the cells: of 2^15 draws in these, six
-# deviations are an e of 6.5 %.
-CELLS = 16  # divisions of the angle, and of the azimuth
-ORDERS = 4, 8, 16, 32, 64, 128  # quadrature nodes of a patch on each axis
-LOOKS = ORDERS[:1], ORDERS[:4], ORDERS  # a look that leaves no suspicion is the last
-SUSPECT = 3.0  # standard deviations, which chance reaches once in 700 times
-CLOSE = 0.5  # expected draws by which the nodes of a patch agree
+# Cells divide the angle from a pole, and the azimuth around it. The first ring is narrow, for lobes
+# that are nearly a single direction: choose that direction as the pole. A density that is wrong
+# everywhere by a fraction e adds N e^2 to chi-square, whose standard deviation is the root of twice
+# the number of cells: with 2^15 samples in these cells, six standard deviations correspond to e =
+# 6.5 %.
+CELLS = 16  # divisions of the angle and of the azimuth
+ORDERS = 4, 8, 16, 32, 64, 128  # quadrature nodes per axis of a patch
+# Numbers of samples to try; the first that raises no suspicion is the last.
+LOOKS = ORDERS[:1], ORDERS[:4], ORDERS
+SUSPECT = 3.0  # standard deviations, exceeded by chance once in 700 tests
+CLOSE = 0.5  # expected samples up to which the nodes of a patch must agree
 MOST_DEVIATIONS = 6.0  # standard deviations, the tolerance of the check
-CONE = 0.02  # radian, the first ring
-LEAST = 1e-7  # radian, below which a density is constant
-INNER = 9  # rings of patches in the first ring of cells, each wider than the one before by a factor
-RARE = 10.0  # expected draws, below which cells are put together
+CONE = 0.02  # radian, width of the first ring
+LEAST = 1e-7  # radian, distance below which a density is constant
+INNER = 9  # rings of patches in the first ring of cells, with a constant ratio of widths
+RARE = 10.0  # minimum expected samples; smaller cells are merged
 
 
 def deviation(
@@ -529,7 +535,7 @@ def deviation(
     other: Array,
     nodes: Sequence[int] = ORDERS,
 ) -> float:
-    """Standard deviations by which the counts of draws leave a density, 0 for any less than chance brings.
+    """Standard deviations between counted samples and a density; 0 if less than the expected noise.
 
     Infinite for a density that is no number.
 
@@ -566,7 +572,7 @@ def deviation(
 
 
 def axes(pole: Array) -> Array:
-    """Two unit vectors across the pole, and the pole, (3, 3)."""
+    """Two unit vectors perpendicular to the pole, and the pole, (3, 3)."""
     across = np.cross(pole, np.eye(3)[np.argmin(np.abs(pole))])
     across /= np.linalg.norm(across)
     return np.stack([across, np.cross(pole, across), pole])
@@ -584,7 +590,8 @@ def cell(w: Array, pole: Array) -> NDArray[np.int64]:
 def density_integrals(
     density: Callable[[Array], Array], poles: Sequence[Array], close: float, nodes: Sequence[int]
 ) -> Array:
-    """Integrals of a density over patches about a pole, and over those of the cone about a second pole.
+    """Integrals of a density over patches around a pole, and over those of the cone around a second
+    pole.
 
     A patch gets each number of `nodes` on each axis until two of them agree up to `close`, in it and beside it: an edge
     of a density may pass between few nodes.
@@ -613,7 +620,7 @@ def density_integrals(
 
 @lru_cache(maxsize=len(ORDERS))
 def patches(nodes: int) -> tuple[Array, Array]:
-    """Directions about the z-axis (P, M, 3) and solid angles (P, M) of the Gauss-Legendre nodes of each patch."""
+    """Directions around the z-axis (P, M, 3) and solid angles (P, M) of the Gauss-Legendre nodes of each patch."""
     x, weight = np.polynomial.legendre.leggauss(nodes)
     edges = np.append(0.0, np.geomspace(LEAST, CONE, INNER))
     edges = np.append(edges, np.linspace(CONE, np.pi, CELLS + 1)[1:])

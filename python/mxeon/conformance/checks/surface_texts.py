@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The check of a sentence that a surface shader's specification says."""
+"""The check of a sentence in a surface shader's specification."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ LOBES, LOBES_TOO = (Cause(Kind.DEFECT, key) for key in ("lobes_of_graph", "lobes
 
 
 def diagnose(case: Case) -> Diagnosis:
-    """The form of the text that the shader has, or that its graph has in float64 if its lobes are wrong."""
+    """The form of the text that the shader follows; if its lobes are wrong, the form of its graph in float64."""
     from mxeon.conformance.reference import Reference
 
     spec, found = case.of(SentenceSpec), SENTENCE.diagnose(case)

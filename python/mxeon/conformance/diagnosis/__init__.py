@@ -55,7 +55,7 @@ SHOWN = 0.1  # least share of the light that remains after changing another inpu
 # An explanation is complete up to the first share of the distance to any other, and is
 # reported as the nearest up to the second.
 SAME, NEAR = 0.03, 0.3
-FAR = 0.2  # another model does not match beyond this share of the distance to the claimed model
+FAR = 0.2  # another model must be nearer than this share of the distance to the claimed model
 NAMED = 0.5  # the closest model is reported up to this share of the values' magnitude
 INEXACT = 30.0  # up to this many tolerances, the expected model counts as inexact
 LEAST_LIGHT = 1e-3  # cosine of the light below which its factors are indistinguishable
@@ -397,7 +397,7 @@ def diagnose_frame(case: Case) -> Diagnosis:
 
 
 def _beside_equal(case: Case, compared: Compared, branch: str) -> tuple[Cause, ...]:
-    """The cause that the worst turned pair is correct if all pixels share its inputs, if that is so."""
+    """The cause that the worst turned pair is correct if all pixels share its inputs, if true."""
     tolerance, output = case.tolerance("frame"), case.direct if branch == "direct" else case.albedo
     worst = np.full(4, tolerance.metric(compared.measured, compared.expected).argmax())
     same = compared.where(worst)

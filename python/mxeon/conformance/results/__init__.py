@@ -34,19 +34,19 @@ NOT_RUN: Final = "not run"
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 # Exit statuses of a run.
 STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
-# In the place of a document: one material of each node, as every host shows it.
+# Replaces the path of a document: one material of each node, as every host renders it.
 PORTRAIT = "portrait"
-SOURCE = "source"  # stands for a host where none has to run
-SHADER_FUNCTIONS = "shader twins"  # stands for a node: the functions of a library
+SOURCE = "source"  # replaces the host if none has to run
+SHADER_FUNCTIONS = "shader twins"  # replaces the node for the functions of a library
 RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
 REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # patterns of the files of a report
-DIRECT = ("value", "lobe")  # the checks of a node in direct light, of which it has one
-VISIBLE = 0.01  # about the least contrast that an eye notices, a share of white or of a highlight
+DIRECT = ("value", "lobe")  # checks of a node in direct light; each node has one of them
+VISIBLE = 0.01  # approximate smallest visible contrast, as a share of white or of a highlight
 
 
 @dataclass(frozen=True)
 class Control:
-    """The deliberately wrong variant of a check, run on the same host; it has to fail.
+    """A deliberately wrong variant of a check on the same host; it has to fail.
 
     - `variant`: The change that makes it wrong.
     - `error`: Measured by the check on it.
@@ -59,18 +59,18 @@ class Control:
 
 
 class Kind(Enum):
-    """What a cause is."""
+    """Kinds of causes."""
 
     NONE = ""
     MODEL = "model"  # a known model or defect, the nearest to the values
-    FAULT = "fault"  # a fault between the inputs and the right model, which gives the values
-    ACCURACY = "accuracy"  # the right model, not accurate enough
+    FAULT = "fault"  # a fault between the inputs and the correct model, which reproduces the values
+    ACCURACY = "accuracy"  # the correct model, but not accurate enough
     REGION = "region"  # the inputs with wrong values
     NOT_FINITE = "not finite"  # the inputs without finite values
-    CURE = "cure"  # inputs and values with which the worst values are right
-    DEFECT = "defect"  # another defect that is known
+    CURE = "cure"  # inputs and values that make the worst values correct
+    DEFECT = "defect"  # another known defect
     UNKNOWN = "unknown"
-    TEXT = "text"  # the words of a compiler, a renderer or a document
+    TEXT = "text"  # the message of a compiler, a renderer or a document
     FOLLOWS = "follows"  # a consequence of another failure, which has its own result
     INPUT = "input"  # a value of the document outside its model
     CONTROL = "control"  # the negative control passed
@@ -94,7 +94,7 @@ class Region:
 
 
 class BriefRepr:
-    """A dataclass whose repr leaves out what has its default."""
+    """A dataclass whose repr omits fields with default values."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
 
@@ -109,7 +109,7 @@ class BriefRepr:
 
 @dataclass(frozen=True, repr=False)
 class Cause(BriefRepr):
-    """One thing that is known of wrong values.
+    """One fact about wrong values.
 
     - `key`: Title of a model, or key of a row of the tables in `mxeon.conformance.words`.
     - `names`, `values`: The inputs, functions or files that it is about, and numbers.
@@ -135,7 +135,7 @@ class Cause(BriefRepr):
 
     @property
     def identity(self) -> tuple[object, ...]:
-        """What two causes that differ in numbers alone have in common."""
+        """The common part of two causes that only differ in numbers."""
         region = self.region and (self.region.name, self.region.part, self.region.channels)
         return self.kind, self.key, self.names, self.branch, region
 
@@ -180,7 +180,7 @@ NO_DIAGNOSIS = Diagnosis()
 
 @dataclass(frozen=True)
 class Errors:
-    """How wrong the samples of a check are, or those in a region.
+    """Errors of a check's samples, or of those in a region.
 
     - `of`, `wrong`, `not_finite`: Number of samples, of those beyond the tolerance, and of those
       without a finite error.
@@ -198,7 +198,8 @@ class Errors:
 
 @dataclass(frozen=True)
 class Difference:
-    """How far a picture is from the reference: a share of white, or of the reference where that is brighter.
+    """Difference between a picture and the reference: a share of white, or of the reference if it
+    is brighter.
 
     - `scene`: The light.
     - `largest`: That of the worst pixel, positive where it is too bright; infinite if it is not finite.
@@ -217,12 +218,12 @@ class Difference:
 
 
 def quoted(text: str) -> Diagnosis:
-    """The diagnosis that quotes another program."""
+    """A diagnosis that quotes another program."""
     return Diagnosis((Cause(Kind.TEXT, text=text),))
 
 
 class Claims(TypedDict, total=False):
-    """What a result says of a renderer's own node beside its verdict; see Result."""
+    """Additional fields of a result for a renderer's own node; see Result."""
 
     claimed: str
     model: str
@@ -300,17 +301,17 @@ class Result(BriefRepr):
 
     @property
     def explanation(self) -> str:
-        """The reason for a failure in words: its size, the diagnosis, and where the defect is described."""
+        """The reason for a failure in words: its size, the diagnosis, and the page about the defect."""
         return str(_words().explanation(self))
 
     @property
     def follows(self) -> bool:
-        """Whether a failure that has a result of its own kept it from running."""
+        """Whether another failure, which has its own result, prevented it from running."""
         return self.diagnosis.kind is Kind.FOLLOWS
 
     @property
     def within(self) -> bool:
-        """Whether there is an error, which is at most the tolerance."""
+        """Whether there is an error that is at most the tolerance."""
         return self.error is not None and self.error <= (self.tolerance or 0.0)
 
 
@@ -324,7 +325,7 @@ def assert_verdict(word: object) -> Verdict:
 
 @dataclass(frozen=True)
 class Picture:
-    """One host's picture of one element, and the reference's where the models can express it.
+    """A host's picture of one element, and the reference's if the models can compute it.
 
     - `image`: Linear radiance, (size, size, 3), float32; see `mxeon.shaders.scene` for its scale.
     - `reference`: The same from the NumPy models; None where the material has other lobes.
@@ -344,7 +345,7 @@ class Picture:
 
     @cached_property
     def difference(self) -> Difference | None:
-        """How far the picture is from the reference; None without one."""
+        """Difference between the picture and the reference; None without a reference."""
         if self.reference is None:
             return None
         image, reference = np.asarray(self.image), np.asarray(self.reference)
@@ -386,7 +387,7 @@ def report_files(folder: AnyPath) -> Iterator[Path]:
 
 @dataclass(frozen=True)
 class Scope:
-    """What a run judges, and with what software.
+    """What a run judges, and the software versions.
 
     - `version`, `software`: That of mxeon, and those of what takes part: Python, NumPy, MaterialX, ...
     - `contents`: Titles of the nodes of each document that the user gave, by its path.
@@ -414,7 +415,7 @@ class Scope:
 
 @dataclass(frozen=True)
 class Run(Scope):
-    """Everything that one `mxeon check` measured, and whether it passed.
+    """All measurements of one `mxeon check`, and whether it passed.
 
     `passed` is the answer. Do not compute it from `results`: they lack documents that were refused, and
     hold the failures of libraries that are judged for comparison.
@@ -464,7 +465,7 @@ class Run(Scope):
         """
         if self.counts[FAILED]:
             return FAILED
-        # Without what is not there nothing has passed.
+        # Without the missing checks, nothing has passed.
         missing = self.counts[NOT_RUN] or not self.judged or self.missing or self.refused
         return NOT_RUN if missing else PASSED
 
@@ -490,7 +491,7 @@ class Run(Scope):
         return tuple(line for lines in self.refused.values() for line in lines)
 
     def is_elsewhere(self, result: Result, *documents: str) -> bool:
-        """Whether a check fails for inputs or lobes alone that no document has that shows its node."""
+        """Whether a check only fails for inputs or lobes that no document with its node uses."""
         from mxeon.conformance.results.known_issues import blamed
 
         region, groups = result.diagnosis.region, blamed(result)
@@ -504,12 +505,12 @@ class Run(Scope):
 
     @property
     def summary(self) -> str:
-        """The verdict in words, the MaterialX that was judged, with its folder unless it is installed, and the time."""
+        """The verdict in words, the judged MaterialX (with its folder unless it is installed), and the time."""
         return str(_words().summary(self))
 
 
 def _words() -> ModuleType:
-    """The module that makes sentences of results, which imports this one."""
+    """The module that makes sentences from results; it imports this one."""
     from mxeon.conformance import words
 
     return words

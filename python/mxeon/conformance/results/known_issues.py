@@ -18,7 +18,7 @@ from mxeon.io.records import ERRORS, strict_converter
 from mxeon.shaders.library import data_folder
 
 STOCK, EONLIB = "stock", "eonlib"
-RENDERER_NODES = "its own nodes"  # stands for a library
+RENDERER_NODES = "its own nodes"  # replaces the library
 Row = tuple[str, str]  # key of a check, and subject
 Table = Mapping[str, Sequence[str]]  # the checks of each subject
 # A page begins with its row as TOML in a comment, then its title.
@@ -27,38 +27,41 @@ PAGE = re.compile(r"<!--\n(?P<row>.*?)\n-->\n(?P<text># (?P<title>[^\n]*)\n.*)",
 
 @dataclass(frozen=True)
 class Issue:
-    """A defect: the row of its page, whose keys are these fields, and what `measured.json` says of it.
+    """A defect: the row of its page, whose keys are these fields, and its measurements in
+    `measured.json`.
 
     In a page, `rows`, `implied` and `repaired` are tables: the checks of each subject.
     """
 
     page: str  # the file without suffix
-    title: str  # the heading, which says what is wrong
-    text: str = field(repr=False)  # all of the page but the row
+    title: str  # the heading, which states the defect
+    text: str = field(repr=False)  # the page without the row
     group: str  # a part of the index, see tools/site/ledger/pages.py
-    host: str = ""  # the host that shows it, "source" for generated text; "" where no check does
-    also: tuple[str, ...] = ()  # other hosts that show it
-    # The library whose results show it: EONLIB for graphs, whose lobes must be right; RENDERER_NODES.
+    host: str = ""  # the host that shows it, "source" for generated text; "" if no check does
+    also: tuple[str, ...] = ()  # additional hosts that show it
+    # The library whose results show it: EONLIB for graphs, which need correct lobes;
+    # RENDERER_NODES.
     library: str = STOCK
-    unavoidable: bool = False  # each library has it: no text can repair it, or none of ours does
-    differs: bool = False  # the specification leaves the choice
-    rows: tuple[Row, ...] = ()  # results that all fail: the table of the page
-    implied: tuple[Row, ...] = ()  # others that fail for it, or may, on those hosts
+    unavoidable: bool = False  # every library has it: no text, or none of ours, can repair it
+    differs: bool = False  # the specification permits both
+    rows: tuple[Row, ...] = ()  # results that all fail: the page's table
+    # Other results that fail, or may fail, because of it on those hosts.
+    implied: tuple[Row, ...] = ()
     # Results that pass with its patch: by default `rows`, except for `remains`.
     repaired: tuple[Row, ...] = ()
-    # Results that pass with its patch, or fail for one of these causes.
+    # Results that pass with its patch, or still fail for one of these causes.
     remains: Mapping[Row, tuple[Cause, ...]] = field(default_factory=dict, hash=False)
-    needs: tuple[str, ...] = ()  # pages whose patches its own needs for that
+    needs: tuple[str, ...] = ()  # pages whose patches are required for that
     kind: str = ""  # kind of the patch: "choice", "NaN" or "compiles"
     pull: int = 0  # the pull request that repairs it after the release
-    cause: Cause | None = None  # the first one of the diagnosis of the first of `rows`
-    patch: tuple[str, ...] = ()  # a file of MaterialX, and a text of it before and after
-    # The largest errors that were measured.
+    cause: Cause | None = None  # first cause in the diagnosis of the first of `rows`
+    patch: tuple[str, ...] = ()  # a file of MaterialX, with a text before and after the patch
+    # The largest measured errors.
     sizes: Mapping[Row, float] = field(default_factory=dict, hash=False)
 
     @property
     def mended(self) -> set[Row]:
-        """Results that the defect no longer explains once it is patched."""
+        """Results that the defect no longer explains after its patch."""
         return {*self.repaired, *self.remains}
 
 
@@ -70,7 +73,7 @@ def folder() -> Path:
 
 @cache
 def issues() -> Mapping[str, Issue]:
-    """The defects by their pages; read when something first fails."""
+    """The defects by page, read at the first failure."""
     measured = json.loads((folder() / "measured.json").read_text("utf-8"))
     pages = sorted(path for path in folder().glob("*.md") if path.stem != "README")
     names = {path.stem: path.read_text("utf-8") for path in pages}
@@ -100,7 +103,7 @@ def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
 
 @cache
 def _converter() -> cattrs.Converter:
-    """Reads rows, whose tables have the checks of each subject."""
+    """A converter that reads rows, whose tables give the checks of each subject."""
     converter = strict_converter({})
 
     def remains(entries: Sequence[dict[str, Table]]) -> dict[Row, tuple[Cause, ...]]:
@@ -127,17 +130,17 @@ def _pairs(table: Table) -> tuple[Row, ...]:
 
 RENDERERS = {"cycles": "this Blender", "three": "this three.js", "babylon": "this Babylon.js"}
 RENDERERS |= {"three-gpu-pathtracer": "this three-gpu-pathtracer"}
-LEFT = 30.0  # smaller errors of the right model have another cause than the issue
+LEFT = 30.0  # smaller errors of the correct model have a different cause than the issue
 SPREAD = 1.5  # engines, drivers and versions of MaterialX may exceed an issue's size by this factor
 
 
 def issues_of(result: Result) -> tuple[Issue, ...]:
-    """The known issues on whose pages the defects are that a result shows."""
+    """The known issues that explain a result."""
     return tuple(issues()[page] for page in result.pages if page in issues())
 
 
 def blamed(result: Result) -> list[set[str]]:
-    """Lobes that fail a combination of lobes, in a set for each page or cause; () for a lobe's own failure."""
+    """Lobes that make a combination of lobes fail, a set for each page or cause; () for a lobe's own failure."""
     if _is_lobe(result.subject):
         return []
     if pages := issues_of(result):
@@ -152,7 +155,7 @@ def _is_lobe(subject: str) -> bool:
 
 
 def with_pages(result: Result, materialx: str = "") -> Result:
-    """A result with the pages of the issues that explain it, if any do.
+    """A result with the pages of the issues that explain it, if any.
 
     `materialx` is the folder whose `libraries` were judged instead of the installed ones: a copy of
     MaterialX's has the issues of stock, but for those that it repairs.
@@ -168,13 +171,13 @@ def with_pages(result: Result, materialx: str = "") -> Result:
         and (result.check, result.subject) in (*issue.rows, *issue.implied)
         and _explains(issue, result, materialx)
     ]
-    # What the text leaves open explains no failure by itself.
+    # Points that the text leaves open explain no failure by themselves.
     left_open = result.verdict == FAILED and all(issue.differs for issue in found)
     return replace(result, pages=() if left_open else tuple(issue.page for issue in found))
 
 
 def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    """Notes on issues that are repaired, all of whose rows pass: a text and a page for each."""
+    """Notes on repaired issues, whose rows all pass: a text and a page for each."""
     verdicts = {
         (result.library, result.host, result.check, result.subject): result.verdict
         for result in results
@@ -195,16 +198,18 @@ def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tu
 
 
 def _explains(issue: Issue, result: Result, materialx: str) -> bool:
-    """Whether an issue explains what was measured, by its size, its diagnosis and its text."""
+    """Whether an issue explains a measurement, by its size, its diagnosis and its text."""
     row = result.check, result.subject
-    # Hosts that show pictures alone measure relative errors, which have no size in another unit.
+    # Hosts that only render pictures measure relative errors, which cannot be compared with a size
+    # in another unit.
     sized = result.host == issue.host or result.quantity is not Quantity.RELATIVE
     if result.error is None and issue.sizes:  # the shader does not compile, for example
         return False
     size = issue.sizes.get(row, math.inf)
     if sized and (result.error or 0.0) > SPREAD * size:
         return False
-    # Where the node's own model is nearest, a defect many times as large is mended; what is left has another cause.
+    # If the node's own model is nearest and the defect is many times larger, it is repaired; the
+    # remaining error has another cause.
     own, *others = result.diagnosis.distances.values() or (math.inf,)
     if sized and own < min(others, default=own) and (result.error or 0.0) < size / LEFT:
         return False
@@ -218,7 +223,7 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
 
 @cache
 def _is_repaired(issue: Issue, materialx: str) -> bool:
-    """Whether MaterialX, the installed one if no folder is named, has the patch of an issue."""
+    """Whether a MaterialX (by default the installed one) has the patch of an issue."""
     if not issue.patch:
         return False
     import MaterialX as mx

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The quantities whose errors are measured, each with its unit and what a reader has to know of it."""
+"""The quantities whose errors are measured, with units and notes for readers."""
 
 from enum import Enum
 
@@ -11,7 +11,7 @@ _SCALED = "pi f cos, relative above 1"
 
 
 class Quantity(Enum):
-    """A quantity: its key in results.json, its unit, and the meaning of the unit; "" where it says all itself."""
+    """A quantity: its key in results.json, its unit, and the meaning of the unit, or "" if it is obvious."""
 
     # Values in direct light.
     VALUE = "value", _SCALED, _LARGE
@@ -24,14 +24,14 @@ class Quantity(Enum):
     PICTURE = "picture", "pi f cos, times cos(theta_o)", f"{_WHITE}; {_RIM}"
     FITTED_PICTURE = "fitted_picture", f"{_SCALED}, times cos(theta_o)", f"{_LARGE}; {_RIM}"
     KIT = "kit", "times what noise, pixels and the mesh allow"
-    # What a view alone sees.
+    # Values that only depend on the view.
     ALBEDO = "albedo", "albedo", _ALL
     MEAN_ALBEDO = "mean_albedo", "mean albedo", _ALL
     VALUE_OR_ALBEDO = "value_or_albedo", "pi f cos or albedo", f"{_WHITE}; {_ALL}"
     MATERIAL_MEAN = "material_mean", f"{_SCALED}, or albedo, mean", f"{_LARGE}; {_ALL}"
     REFLECTANCE = "reflectance", "reflectance"
     REFLECTANCE_RMS = "reflectance_rms", "reflectance, rms"
-    # Light that passes, arrives or is emitted.
+    # Transmitted, arriving and emitted light.
     LIGHT = "light", "light", "1 is all of the light"
     THROUGHPUT = "throughput", "throughput", "a throughput of 1 passes all light"
     TRANSMITTANCE = "transmittance", "transmittance"
@@ -48,7 +48,7 @@ class Quantity(Enum):
     DRAWN = "drawn", "of the value, over the slope of the lobe"
     CONDITIONED = "conditioned", "over 1, the value, and its change with each argument"
     TOLERANCES = "tolerances", "tolerances"
-    # Counts of what is wrong.
+    # Counts of faults.
     INPUTS = "inputs", "inputs"
     VALUES = "values", "values"
     FAULTS = "faults", "faults"
@@ -68,12 +68,12 @@ class Quantity(Enum):
 
     @property
     def counted(self) -> bool:
-        """Whether it is a number of wrong things, none of which is allowed."""
+        """Whether it is a count of faults, none of which is permitted."""
         return self in COUNTS
 
     @property
     def of_views(self) -> bool:
-        """Whether the light's direction has no part in it."""
+        """Whether it does not depend on the light's direction."""
         return self in ALBEDOS
 
 

@@ -18,9 +18,9 @@ IMAGES = ("image", "reference", "judged")  # fields of a picture
 
 @dataclass(frozen=True)
 class StoredImage:
-    """Pixels in a file, read anew by every `np.asarray`, so that a run holds none of them."""
+    """Pixels in a file, read again by every `np.asarray`, so that a run keeps none of them in memory."""
 
-    path: Path  # its stem is the SHA-256 of the file
+    path: Path  # its stem is the file's SHA-256
 
     def __array__(
         self, dtype: DTypeLike | None = None, copy: bool | None = None
@@ -29,10 +29,10 @@ class StoredImage:
 
     @property
     def whole(self) -> bool:
-        """Whether the file is there, and as it was written."""
+        """Whether the file exists, unchanged since it was written."""
         if digest(self.path) != self.path.stem:
             return False
-        try:  # mapped, not read: a header may declare any number of pixels
+        try:  # mapped instead of read: a header may declare any number of pixels
             pixels = np.lib.format.open_memmap(self.path, mode="r")
         except (OSError, ValueError, OverflowError):
             return False
@@ -46,7 +46,7 @@ def make_converter(folder: Path | None = None) -> cattrs.Converter:
     """
     own = {} if folder is None else {Picture: _in_files(folder)}
     converter = strict_converter(own)
-    # Messages for a wrong verdict list the right ones.
+    # Messages for an invalid verdict list the valid ones.
     converter.register_structure_hook_func(
         lambda kind: kind == Verdict, lambda word, _: assert_verdict(word)
     )
@@ -69,6 +69,6 @@ def _in_files(folder: Path) -> Overrides:
 
 
 def images_of(picture: Picture) -> dict[str, ArrayLike]:
-    """The images that a picture has, by the field."""
+    """The images of a picture, by field."""
     images = {name: getattr(picture, name) for name in IMAGES}
     return {name: image for name, image in images.items() if image is not None}

@@ -58,7 +58,7 @@ from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
 from mxeon.shaders.methods import GENERATED, UNCHOSEN, UNTABLED, Methods
 from mxeon.shaders.released_graphs import hidden
 
-Source = tuple[str, str]  # a file, and the library that it is read with
+Source = tuple[str, str]  # a file, and the library with which it is read
 
 
 class Reading(NamedTuple):
@@ -114,7 +114,7 @@ def read_documents(
 def _answers(
     sources: Sequence[Source], policy: Policy, workers: int, timeout: float
 ) -> Generator[tuple[ShownNode, ...] | MxeonError | None, None, None]:
-    """The nodes of each document, or its error; None where reading it ended the process.
+    """The nodes of each document, or its error; None if the process crashed while reading it.
 
     Processes read until it is closed.
     """
@@ -128,7 +128,7 @@ def _answers(
 
 @cache
 def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
-    """Every node that is judged, in the mode in which it is judged; sentences are asked for by name."""
+    """Every judged node, in its judged mode; sentences only run if the user names them."""
     rows = (row for row in ALL_SPECS if row not in SENTENCES)
     return tuple((row, node_of(row.document(), row.node)) for row in rows)
 
@@ -162,13 +162,13 @@ class Task:
 
 @dataclass(frozen=True)
 class Plan(Scope):
-    """The tasks of a run and all that they depend on; equal plans are equal runs."""
+    """The plan of a run: its tasks and everything they depend on; equal plans mean equal runs."""
 
     tasks: tuple[Task, ...]
     # The policy for documents, by the option of the command.
     options: dict[str, str] = field(default_factory=dict)
-    # SHA-256 of each file that the findings depend on, by path; "" where it cannot be read. Empty
-    # where the run is not kept.
+    # SHA-256 of each file that the findings depend on, by path; "" for unreadable files. Empty if
+    # the run is not stored.
     files: dict[str, str] = field(default_factory=dict)
 
 
@@ -184,7 +184,7 @@ class Findings:
     unjudged: tuple[tuple[str, str], ...] = ()
 
     def answer(self, task: Task) -> bool:
-        """Whether these are findings of a task: there are some, and all are of its host."""
+        """Whether these findings can belong to a task: not empty, and all from its host."""
         records: list[Result | Picture] = [*self.results, *self.pictures]
         location = (task.host, task.library)
         return bool(records or self.errors or self.unjudged or task.check == STUDIO) and all(
@@ -192,7 +192,7 @@ class Findings:
         )
 
 
-ALL, COMMON = "all", "common"  # words that stand for several nodes
+ALL, COMMON = "all", "common"  # words for several nodes
 
 
 def assert_known_names(hosts: Iterable[str], nodes: Iterable[str]) -> None:
@@ -233,7 +233,8 @@ def _selected(
         or task.subject in files
         or (task.subject in titles and (nodes or task.check not in by_name))
         or (audit and task.subject not in rare and task.check not in by_name)
-        # A folder may have other graphs than the release, which no picture shows: the reference reads them, too.
+        # A folder may have graphs that differ from the release without any visible effect in
+        # pictures: the reference reads them, too.
         or (task.check == RELEASE and files and not nodes and os.path.isabs(task.library))
     ]
     if chosen or not nodes:
@@ -266,7 +267,7 @@ def make_plan(
     seed: int = 1,
     methods: Methods = UNCHOSEN,
 ) -> Plan:
-    """The tasks of a run, those of one host and library beside each other.
+    """The tasks of a run, grouped by host and library.
 
     `resumable` lists the files that the run depends on. `nodes` are categories, ALL or COMMON; without
     any, those of `files` are judged, or the common ones. Those of `libraries` in `compared` do not
@@ -278,7 +279,7 @@ def make_plan(
     hosts = tuple(dict.fromkeys(hosts))
     tasks: list[Task] = []
     documents: list[str] = []
-    # What a document shows, and what libraries are compared in, is judged with each library.
+    # The contents of documents, and comparisons of libraries, are judged with each library.
     everywhere = bool(files and not nodes) or len(libraries) > 1
     for library in libraries:
         unread = reading.refused.keys()  # unreadable with all libraries, or this one
@@ -291,18 +292,19 @@ def make_plan(
             if not host_row(host).scenes:
                 tasks += [Task(DOCUMENT, file, host, library) for file in readable]
             tasks += _on_host(host, library, paths, everywhere, methods.over(GENERATED))
-            if resumable and host == "gl":  # a report shows it
+            if resumable and host == "gl":  # shown in a report
                 tasks += [Task(STUDIO, file, host, library) for file in readable[:STUDIED]]
-    for host in hosts:  # nodes of a renderer's own, which use no library of ours
+    for host in hosts:  # a renderer's own nodes use none of our libraries
         for spec in own_nodes(host):
             tasks += _checks_of(spec, host, RENDERER_NODES)
     tasks = _selected(tasks, list(map(str, files)), nodes, reading)
-    # A host that measures nothing says so; the task of a document does, on a host that reads none.
+    # Report hosts that measure nothing; for hosts that read no documents, the document's task does
+    # this.
     told = (each for each in tasks if each.check != DOCUMENT or not host_row(each.host).target)
     telling = {task.host for task in told}
     silent = [host for host in hosts if tasks and host not in telling]
     tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in silent]
-    # So does a node that no host judges, beside others that are judged.
+    # Also report a node that no host judges if others are judged.
     subjects = {task.subject for task in tasks}
     named = (each for each in nodes if each not in (ALL, COMMON))
     lost = [each for each in named if subjects.isdisjoint(_titles(each))]
@@ -330,7 +332,7 @@ def make_plan(
     )
 
 
-# What no check judges in any library, each with the reason.
+# Subjects that no check judges in any library, with reasons.
 UNJUDGED = (
     ("displacement, volume shaders and backsurfaceshader", "no host draws them"),
     ("u_envRadianceMips above 1, shadow maps of varying depth", "no host has them"),
@@ -352,7 +354,7 @@ def audits(task: Task) -> bool:
 
 
 def unjudged(library: str) -> tuple[tuple[str, str], ...]:
-    """The nodes that scatter or emit light which a library adds to MaterialX's, and which have no model."""
+    """Nodes added by a library that scatter or emit light, and have no model."""
     definitions = load_library(library).getNodeDefs()
     added = {each.getNodeString() for each in definitions if each.getType() in LIT}
     known = {each.getNodeString() for each in load_library("stock").getNodeDefs()}
@@ -372,7 +374,7 @@ def _on_host(
     everywhere: bool = False,
     methods: Methods = GENERATED,
 ) -> Iterator[Task]:
-    """Tasks of one host with one library, for files and nodes of pbrlib, or those it repairs."""
+    """Tasks of one host with one library, for files and nodes of pbrlib, or for the nodes that it repairs."""
     ways, row = ways_of(host), host_row(host)
     if not ways:
         yield Task(HOST, EVERY_NODE, host, library)
@@ -389,10 +391,10 @@ def _on_host(
         yield from _checks_of(spec, host, library, methods)
     defines = load_library(library).getMatchingNodeDefs
     for each in (*PBRLIB, *SENTENCES):
-        # Where pictures show a renderer's own closures, they are judged with the stock library alone.
+        # If pictures show a renderer's own closures, they are only judged with the stock library.
         own = row.target == "osl" and kind in ("eonlib", "diffuse")
         left = each.closure and row.way == "pictures" and own
-        # Without documents a library of ours is judged by the nodes that it repairs.
+        # Without documents, one of our libraries is judged by the nodes that it repairs.
         missing = each.libraries and not defines(each.node)  # MaterialX lacks eonlib's own nodes
         if not (left or missing) and (
             everywhere or kind in (OVERLAY, *(each.libraries or LIBRARIES))
@@ -417,7 +419,7 @@ def _checks_of(spec: Spec, host: str, library: str, methods: Methods = GENERATED
 
 
 def _software() -> dict[str, str]:
-    """Versions of the packages, as the modules have them: a build from source has no metadata."""
+    """Versions of the packages according to the modules: a build from source has no metadata."""
     folder = str(Path(mx.__file__).parents[1])
     installed = folder in sysconfig.get_paths().values()
     return {

@@ -69,7 +69,8 @@ MEAN = sum_of(
     quantity=Quantity.MATERIAL_MEAN,
     metric=mean_scaled,
 )
-# R over T passes (1 - E)^2: the slope by E is at most 2 for the transmitted light and 1 for the sum.
+# R over T passes (1 - E)^2: its derivative by E is at most 2 for the transmitted light and 1 for
+# the sum.
 GLASS = sum_in(
     Quantity.ALBEDO,
     Term(2.0 * microfacets.LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),

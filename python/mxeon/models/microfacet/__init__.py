@@ -287,7 +287,7 @@ def node_albedo(
     compensate: bool = True,
     summed: bool = False,
 ) -> Array:
-    """Directional albedo of `node_brdf`; `summed`: with the weights of `sum_nodes`."""
+    """Directional albedo of `node_brdf`; `summed` uses the weights of `sum_nodes`."""
     curve, vectors, numbers = _material(category, inputs)
     return lobe_albedo(curve, wo, inputs["roughness"], vectors, numbers, compensate, summed)
 

@@ -37,8 +37,8 @@ LEAST_IOR = 1e-50
 STEP, STEPS = 0.0625, 51
 GROUP = 2**12  # integrand values per block
 
-# Gauss-Legendre nodes for curves without a singularity within the ellipse with foci 0 and 1 and this
-# sum of half axes, in units of 1/2: the error falls as its power -56, 1e-13.
+# Gauss-Legendre nodes for curves whose singularities lie outside the ellipse with foci 0 and 1 and
+# this sum of half axes, in units of 1/2; the error is this sum to the power -56, 1e-13.
 AVERAGE_NODES, ELLIPSE = 28, 1.7
 
 

@@ -160,7 +160,7 @@ def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
 
 @any_array
 def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Masking and shadowing G2 that belongs to anisotropic GGX, height-correlated Smith.
+    """Masking and shadowing G2 for anisotropic GGX, height-correlated Smith.
 
         G2 = 2 mu_o mu_i / (l_o mu_i + l_i mu_o),  l = |(alpha_x x, alpha_y y, z)|
 
@@ -392,13 +392,13 @@ def _interpolated(mu: Array, alpha: Array) -> Array:
     value = chebyshev.chebyshev_sum(
         rows, arrays.fractional_power(arrays.at_most(s, 1.0), 1.0 / 3.0)
     )
-    return xp.where(rough, xp.maximum(value, 0.0), 0.0)  # a mirror misses nothing
+    return xp.where(rough, xp.maximum(value, 0.0), 0.0)  # a mirror loses no light
 
 
 def _of_one_alpha(mu: Array, alpha: float) -> Array:
     """`missing_light` for a single alpha, by a cubic in each cell of the cube root of s."""
     if alpha <= 0.0:
-        return np.zeros(mu.shape)  # a mirror misses nothing
+        return np.zeros(mu.shape)  # a mirror loses no light
     s = np.minimum(mu * (1.0 + alpha) / (mu + alpha), 1.0)
     place = np.cbrt(s)
     place *= CELLS
