@@ -435,7 +435,7 @@ SMOOTH = ("eon", "qon", "burley")  # models whose roughness sharpens no lobe
 # Sine times cosine of a view far from its mirror direction and from the opposite direction.
 OBLIQUE = 0.25
 FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=32, mirrored=1 << 10)
-FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # as stated in its source
+FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # stated in its source
 POINT = 3.0 * EYE / NEAREST  # roundings of a point at the distance 40, seen from a light 1/2 away
 FLAT_SLOPE = 8.0  # largest slope of the diffuse models
 # Twice over the least alpha, and 3 for Fresnel and shadowing.
