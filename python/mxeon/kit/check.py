@@ -50,8 +50,8 @@ def check_kit(
     if not renderer.strip() or not renderer.isprintable():
         raise InputError(f"renderer must be a name on one line; got {renderer!r}")
     folder = Path(folder)
-    asked, depth = questions(claims), unit_sphere().depth
-    pictures = [view for view in views(_size(folder)) if any(each.includes(view) for each in asked)]
+    posed, depth = questions(claims), unit_sphere().depth
+    pictures = [view for view in views(_size(folder)) if any(each.includes(view) for each in posed)]
     place: dict[str, Any] = {"host": renderer, "library": LIBRARY}
     images: dict[str, NDArray[np.float64]] = {}  # usable pictures
     results: list[Result] = []
@@ -88,7 +88,7 @@ def check_kit(
         )
     # Answer the questions, in an order in which each needs the one before.
     notes, obstacle = [], Diagnosis()
-    for question in progress(asked):
+    for question in progress(posed):
         # With a wrong light or encoding, models cannot be told apart.
         result, shown = answer(question, pictures, images, depth, place, obstacle)
         results.append(result)
@@ -98,7 +98,7 @@ def check_kit(
             notes.append(f"{question.title}: {words.diagnosis(shown)}")
     # If a model is wrong, find out whether all pictures show the same wrong one.
     wrong = any(each.check == "model" and each.verdict == FAILED for each in results)
-    if wrong and (title := one_model(asked, pictures, images, depth)):
+    if wrong and (title := one_model(posed, pictures, images, depth)):
         notes.insert(0, f"every picture of a rough material shows one model: {title}")
     return Run(
         version=mxeon.__version__,

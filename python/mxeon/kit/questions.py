@@ -164,13 +164,13 @@ def questions(claim: str = "") -> tuple[Question, ...]:
 
 
 def one_model(
-    asked: Sequence[Question],
+    posed: Sequence[Question],
     views: Sequence[View],
     images: Mapping[str, NDArray[np.float64]],
     depth: float,
 ) -> str:
     """Title of the model that all pictures of rough materials show; "" if there is none."""
-    rough = [each for each in asked if each.key == "model"]
+    rough = [each for each in posed if each.key == "model"]
     chosen = [view for view in views if any(each.includes(view) for each in rough)]
     if any(view.name not in images for view in chosen):
         return ""

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from inspect import signature
 
 import numpy as np
 
@@ -129,25 +128,26 @@ def _tinted(white: Callable[..., Array]) -> Callable[..., Array]:
     return tinted
 
 
-def _named(name: str, title: str, parameter: str) -> Model:
-    """Row of a model whose functions in `mxeon.models.diffuse` begin with its name."""
+def _named(name: str, title: str, parameter: str, at_white: bool = False) -> Model:
+    """Row of a model whose functions in `mxeon.models.diffuse` begin with its name.
+
+    - `at_white`: Whether its albedos are those at unit reflectance.
+    """
     functions = (f"{name}_{each}" for each in ("brdf", "albedo_dir", "albedo_avg"))
-    brdf, *albedos = (getattr(diffuse, each, None) for each in functions)
+    brdf, albedo_dir, albedo_avg = (getattr(diffuse, each, None) for each in functions)
     assert brdf, f"{name}_brdf is not in mxeon.models.diffuse"
-    albedo_dir, albedo_avg = (
-        each if each is None or "rho" in signature(each).parameters else _tinted(each)
-        for each in albedos
-    )
+    if at_white:
+        albedo_dir, albedo_avg = map(_tinted, filter(None, (albedo_dir, albedo_avg)))
     return row(name, title, brdf, parameter, albedo_dir, albedo_avg)
 
 
 DIFFUSE_MODELS = (
     row("lambert", "Lambert", diffuse.lambert_brdf, None, _lambert_albedo_dir, _lambert_albedo_avg),
     _named("oren_nayar", "full Oren-Nayar", "sigma"),
-    _named("qon", "qualitative Oren-Nayar (QON)", "sigma"),
+    _named("qon", "qualitative Oren-Nayar (QON)", "sigma", at_white=True),
     _named("qon_footnote", "QON with the footnote's constant", "sigma"),
     _named("qon_fujii", "QON with Fujii's coefficients", "sigma"),
-    _named("fon", "Fujii Oren-Nayar (FON)", "roughness"),
+    _named("fon", "Fujii Oren-Nayar (FON)", "roughness", at_white=True),
     _named("eon", "energy-preserving Oren-Nayar (EON)", "roughness"),
     row("eon_approx", "EON with the paper's quartic", diffuse.eon_brdf_approx, "roughness"),
 )
