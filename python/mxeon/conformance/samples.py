@@ -176,19 +176,11 @@ def special_directions(rng: Rng) -> tuple[Array, Array]:
     high = _between(rng, EACH, HORIZON, 1.0)
     rim = directions_at(np.zeros(EACH), 2.0 * np.pi * rng.random(EACH))
     normal = np.broadcast_to([0.0, 0.0, 1.0], free.shape)
-    pairs = (
-        (directions_at(mu_o, 0.0 * mu_o), directions_at(mu_i, azimuth)),
-        (free, free),
-        (free, free * [-1.0, -1.0, 1.0]),
-        (normal, free),
-        (free, normal),
-        (normal[:1], normal[:1]),
-        (rim, high),
-        (high, rim),
-        (free, other),
-    )
-    wo, wi = (np.concatenate(each) for each in zip(*pairs, strict=True))
-    return wo, wi
+    grid, lit = directions_at(mu_o, 0.0 * mu_o), directions_at(mu_i, azimuth)
+    mirrored, up = free * [-1.0, -1.0, 1.0], normal[:1]
+    views = [grid, free, free, normal, free, up, rim, high, free]
+    lights = [lit, free, mirrored, free, normal, up, high, rim, other]
+    return np.concatenate(views), np.concatenate(lights)
 
 
 def outside_directions(rng: Rng) -> tuple[Array, Array]:

@@ -67,12 +67,10 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
     if all(has_functions(library, language) for language in LANGUAGES):
         glsl, osl = (COMMENT.sub(" ", twins(language, library)) for language in LANGUAGES)
         ours, *others = map(parts, (glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)))
-        names = ([n for n in ours | each if ours.get(n) != each.get(n)] for each in others)
-        found, control = (
-            [Cause(Kind.DEFECT, "different_in_osl", (name,)) for name in each] for each in names
-        )
+        names, wrong = ([n for n in ours | x if ours.get(n) != x.get(n)] for x in others)
+        found = [Cause(Kind.DEFECT, "different_in_osl", (name,)) for name in names]
         title = "shader twins, osl"
-        results.append(_judged("languages", title, library, lambda: (found, len(control))))
+        results.append(_judged("languages", title, library, lambda: (found, len(wrong))))
     if library != "stock":
         results.append(_judged("clash", "every two nodes", library, partial(_clashes, library)))
         if release := released(library):

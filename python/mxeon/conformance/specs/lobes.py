@@ -79,9 +79,8 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
         factor = batch.strength * (1.0 if self.row.transmits else occlusion)
         lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
-        return np.asarray(
-            np.pi * function(batch.wo, wi, spec.broadcast_inputs(batch)) * lit * factor
-        )
+        value = function(batch.wo, wi, spec.broadcast_inputs(batch))
+        return np.asarray(np.pi * value * lit * factor)
 
     def albedo(self, batch: Batch) -> Array:
         return _albedo(self.row.albedo, batch)

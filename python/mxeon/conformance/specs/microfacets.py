@@ -433,9 +433,8 @@ class TransmissionSpec(FacetSpec):
         def reflected(cosines: Array) -> Array:
             views = samples.directions_at(cosines, 0.0)
             whole = {name: np.repeat(each, len(views), axis=0) for name, each in inputs.items()}
-            return self.functions.reflected(
-                views, {**whole, "roughness": np.full((len(views), 2), alpha)}
-            )
+            whole["roughness"] = np.full((len(views), 2), alpha)
+            return self.functions.reflected(views, whole)
 
         passed = reversed_transmittance(mu, alpha, 1.0 / index, reflected)
         return np.asarray(passed.mean(axis=1))

@@ -140,10 +140,10 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
 
     def outside(self, counts: Counts) -> Batch:
         rng, count = generator(), counts.pairs
-        beyond = (
-            rng.choice(each.beyond, (count, *spec.COMPONENTS[each.type])) for each in self.inputs
-        )
-        return _batch({each.name: values for each, values in zip(self.inputs, beyond, strict=True)})
+        drawn = {}
+        for each in self.inputs:
+            drawn[each.name] = rng.choice(each.beyond, (count, *spec.COMPONENTS[each.type]))
+        return _batch(drawn)
 
     def values(self, function: utilities.Outputs, batch: Batch) -> Array:
         """The output as a color with 0 for missing channels, (N, 3)."""
