@@ -25,9 +25,9 @@ from tests.support.verdicts import Verdicts
 def pytest_configure():
     """Restore signals that nohup or a background job ignores, and refuse unknown hosts.
 
-    A signal that the starter of the tests ignores is ignored by each command that they start. Mesa's
-    software driver compiles shaders without optimizing them, which takes less time and changes no bit
-    of their values.
+    Otherwise every command that the tests start would inherit the ignored signals. Mesa's software
+    driver compiles shaders without optimizing them, which is faster and changes no bit of their
+    values.
     """
     os.environ.setdefault("GALLIVM_PERF", "nopt")
     for number in ENDING:
@@ -44,7 +44,8 @@ def pytest_configure():
 def pytest_collection():
     """Import the models, whose lines are traced, then collect without tracing.
 
-    No garbage is looked for meanwhile, nor until the process ends in what then exists: all of it stays.
+    Garbage collection is disabled meanwhile, and skips the objects that exist then until the
+    process ends.
     """
     for module in walk_packages(models.__path__, f"{models.__name__}."):
         import_module(module.name)

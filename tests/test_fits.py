@@ -2,7 +2,8 @@
 """Fitted coefficients have their stated errors; the scripts reproduce those of the loss and of the
 angle.
 
-The scripts compute in 40 digits, so that a digit that differs is another fit, not another machine.
+The scripts compute with 40 digits, so a different digit means a different fit, not a different
+machine.
 """
 
 import re

@@ -97,7 +97,7 @@ CASES = [(version, row) for version, rows in ROWS.items() for row in sorted(rows
 def judged(tmp_path_factory, failing):
     """A function that gives verdict and diagnosis of each row with a repaired version.
 
-    What main has repaired passes there without the repair.
+    Defects that the main branch has repaired pass there without the patch.
     """
 
     @cache

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nodes on hosts other than gl: one check for each kind of behavior that depends on the host.
 
-What fails on Cycles as the pages of docs/upstream say, `test_upstream.py` judges.
+`test_upstream.py` judges the failures on Cycles that the pages of docs/upstream describe.
 """
 
 import pytest

@@ -198,7 +198,7 @@ def test_eonlib_passes_every_check(run):
 
 @pytest.mark.whole
 def test_eonlib_runs_every_check_of_stock_but_opacity(run, stock):
-    # No library of ours repairs a surface's opacity.
+    # None of our libraries repairs a surface's opacity.
     assert {e.check for e in stock.results} - {e.check for e in run.results} == {"opacity"}
 
 

@@ -38,7 +38,7 @@ def started(kind, flags):
 def opened(browser, address, allowed=(), drawn=True, **options):
     """The page of the explorer at an address, opened by `watched`.
 
-    Unless it is to be drawn it has no WebGL, which costs a software driver most of its time.
+    Pages that need not draw have no WebGL, which takes a software driver most of its time.
     """
     context = browser.new_context(**(SMALL | options))
     page = context.new_page()
@@ -70,7 +70,7 @@ def watched(page, address, allowed=()):
 def until(page, expression, argument=None, seconds=600):
     """Wait until an expression is true, and return its value.
 
-    Playwright's own way needs what the page's policy forbids.
+    Playwright's own function needs features that the page's policy forbids.
     """
     for _ in range(20 * seconds):
         if value := page.evaluate(expression, argument):

@@ -123,7 +123,7 @@ def test_the_diagnoses_of_a_run_can_be_chosen(tmp_path):
     node = f"{OREN_NAYAR}, {FLAG}"
     results = (
         result("gl", f"{node} true", FAILED, eon_clamped=1e-7, eon=0.1),
-        result("gl", f"{node} true", FAILED, lambert=0.0),  # from another check
+        result("gl", f"{node} true", FAILED, lambert=0.0),  # a result of another check
         result("gl", f"{node} false", PASSED, qon=1e-7, eon=0.1),
         result("cycles", f"{node} false", FAILED, qon=0.2, eon_rho_cubed=1e-5),
         result("cycles", "a document", NOT_RUN),

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every public function of the models with bad values: which are refused, and in which words.
 
-The functions are those of the package that take arrays; no list of them is kept. A value is refused
-by a ValueError whose first words are arguments of the signature, or computed to finite numbers.
+The functions are found by introspection: all that accept arrays. A value must be refused by a
+ValueError whose first words are arguments of the signature, or give finite results.
 """
 
 import importlib
@@ -122,7 +122,7 @@ def rows():
 def tried(function, arrays=False):
     """Names of the arguments that get bad values: arrays, numbers, switches and choices.
 
-    Those of a mapping by names follow a dot.
+    Keys of a mapping follow a dot.
     """
     for name, each in _parameters(function).items():
         if _is_array(each) or (not arrays and each.annotation in TAKEN):

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Families of cases: each is a product of tables, from which some are drawn.
 
-A family covers its tables evenly: every include, every name of a file, every argument of the models' functions. Only
-`mutated` draws documents and command lines at random, and `found` has the faults that earlier runs found.
+A family covers its tables evenly: every include, every kind of file name, every argument of the
+models' functions. Only `mutated` draws documents and command lines at random; `found` contains
+faults of earlier runs.
 """
 
 import random

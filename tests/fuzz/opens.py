@@ -3,9 +3,9 @@
 
     python -m tests.fuzz.opens [--cases N] [--bare]
 
-strace sees every file that a process opens, and Python's audit hook those that Python opens, which are
-mxeon's. The others are MaterialX's: they may lie in the libraries and among mxeon's copies, nowhere else.
-With --bare, documents keep the names of their sources, which has to be noticed.
+strace sees every file that a process opens, and Python's audit hook those that Python opens, which
+are mxeon's. MaterialX opened the rest, which must lie in the libraries or among mxeon's copies.
+With --bare, documents keep the names of their sources, as a control that must be detected.
 """
 
 import argparse

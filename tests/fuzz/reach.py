@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Finds the attributes of a document that reach generated source, by generating for every target.
 
-Each attribute of a document that uses every kind of element gets a word of its own; those that come
-out in a shader reached it. Attributes that name each other are changed together.
+In a document that uses every kind of element, each attribute gets a unique word; attributes whose
+words occur in a shader reach it. Attributes that name each other are changed together.
 
     python -m tests.fuzz.reach
 """

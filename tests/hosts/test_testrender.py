@@ -2,7 +2,7 @@
 """testrender as a host: judged with the real programs if they are named, otherwise with a
 recording.
 
-The recording holds what OSL's programs printed and rendered; see `tests.support.osl`.
+The recording contains the output of OSL's programs; see `tests.support.osl`.
 """
 
 import os

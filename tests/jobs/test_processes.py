@@ -19,7 +19,7 @@ from tests.support.faults import square
 NAMES = {*sys.stdlib_module_names, "bpy", "_cycles", "mathutils"}
 NAMES |= {"sitecustomize", "usercustomize", "numpy", "mxeon"}
 PLANT = "import os\nos.write(os.open({!r}, os.O_CREAT | os.O_WRONLY), __file__.encode())\n"
-SCRIPT = """import sys  # as pip writes it
+SCRIPT = """import sys  # pip writes this script
 from mxeon.__main__ import main
 if __name__ == "__main__":
     sys.exit(main())

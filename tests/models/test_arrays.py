@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Arrays of other libraries: values and gradients of every function that accepts them.
 
-Where a library is not installed its tests are skipped. Gradients are compared with differences of the
-same function in NumPy, where these can be relied on.
+Tests of a library that is not installed are skipped. Gradients are compared with differences of the
+same function in NumPy, where these are reliable.
 """
 
 import inspect

@@ -61,7 +61,7 @@ def tree(rng, depth):
         albedo = rng.random(3)
         return Bsdf(albedo, throughput(albedo)), albedo
     (one, E), (other, E_other) = tree(rng, depth - 1), tree(rng, rng.integers(depth))
-    if kind == "layer":  # where E exceeds 1, the base is black
+    if kind == "layer":  # the base is black if E exceeds 1
         return layer(one, other), E + np.where(E < 1.0, 1.0 - E, 0.0) * E_other
     if kind == "mix":
         w = rng.random()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Messages for invalid arguments: one row for each rule, of functions with checks of their own.
 
-`test_arguments` tries every bad value with every function; these are the words.
+`test_arguments` tries every bad value with every function; this module tests the wording.
 """
 
 import re

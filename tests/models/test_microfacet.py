@@ -58,7 +58,7 @@ def fresnel_exact(name, c, channel):
         r0, t, r90 = (mp.mpf(color[channel]) for color in COLORS)
         m = mp.mpf(1) / 7
         a = (r0 + (r90 - r0) * (1 - m) ** 5) * (1 - t) / (m * (1 - m) ** 6)
-        return max(r0 + (r90 - r0) * (1 - c) ** 5 - a * c * (1 - c) ** 6, 0)  # as in OpenPBR
+        return max(r0 + (r90 - r0) * (1 - c) ** 5 - a * c * (1 - c) ** 6, 0)  # OpenPBR's curve
     if name == "dielectric_bsdf":
         g = mp.sqrt(mp.mpf(1.5) ** 2 + c * c - 1)
         ratio = (c * (g + c) - 1) / (c * (g - c) + 1)

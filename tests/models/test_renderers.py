@@ -2,7 +2,7 @@
 """Variants of the nodes in OSL's library BSDL and in Cycles, which diagnoses on testrender or
 Cycles name.
 
-The tests of both hosts hold them against the renderers themselves.
+The tests of both hosts compare them with the renderers themselves.
 """
 
 import numpy as np

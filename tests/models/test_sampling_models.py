@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Samples of microfacets, sheen and coats: their distribution and their weights.
 
-That their density is `pdf`, and that they weigh the albedo in the mean, `test_catalog` holds for every model.
-The seeds are fixed. FALSE_ALARM is the probability that a test of this file fails although all is right.
+`test_catalog` covers two other properties of every model: the density of samples is `pdf`, and
+their mean weight is the albedo. The seeds are fixed. FALSE_ALARM is the probability that a test of
+this file fails by chance.
 """
 
 from functools import partial

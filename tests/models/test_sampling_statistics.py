@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The distribution of samples matches their density.
 
-The seeds are fixed. FALSE_ALARM is the probability that a test of this file fails although all is
-right: each of the file's comparisons runs at its share of it.
+The seeds are fixed. FALSE_ALARM is the probability that a test of this file fails by chance, split
+evenly among the comparisons.
 """
 
 from functools import partial

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Variance and largest value of the samplers' throughput weights.
 
-At unit reflectance the weight is f cos(theta_i) / p. Its mean is 1. That of the exact sampler is 1
-everywhere by the density it returns; here it is taken over the density that its samples really
-have, which differs by what the two fits leave.
+At unit reflectance the weight is f cos(theta_i) / p, with mean 1. For the exact sampler, it is 1
+everywhere if p is the density that the sampler returns; here p is the true density of its samples,
+which differs slightly because of two fits.
 """
 
 import numpy as np

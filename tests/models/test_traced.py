@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Transformations of PyTorch and JAX applied to the functions of every model.
 
-A row of the catalog is tried with each of its functions: no step makes a NaN and gradients are finite at every end of
-every input, and gradients equal differences of NumPy inside. `vmap`, `jit` and `compile` return NumPy's values.
+Each row of the catalog is tested with all its functions. At the ends of every input no step makes a
+NaN and gradients are finite; inside, gradients equal NumPy's differences. `vmap`, `jit` and
+`compile` return NumPy's values.
 """
 
 from contextlib import nullcontext
@@ -69,7 +70,7 @@ def inside(row):
 def at_ends(row, function):
     """Arguments with one input, or all, at an end of its range: the rows of a single call.
 
-    Where an input is one number for all pairs, calls in which all are at an end.
+    For an input that is one number for all pairs, each end is a separate call.
     """
     middle, ends = inside(row), {}
     for each in row.parameters:
@@ -161,7 +162,8 @@ def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
     """Only traces functions for `jit`, `vmap` and derivatives; compiling the derivatives of films
     and facets takes minutes.
 
-    Forwards, in a third of the time: backwards, JAX transposes its own steps, as where gradients have values.
+    In forward mode, which takes a third of the time: in reverse mode, JAX transposes the same
+    steps.
     """
     jax = package("jax")
     jax.config.update("jax_enable_x64", True)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """EON under a varnish: energy, reciprocity, edge cases, and random walks of light.
 
-The seeds are fixed. FALSE_ALARM is the probability that the comparisons with light that walks fail
-although all is right.
+The seeds are fixed. FALSE_ALARM is the probability that the comparisons with random walks fail by
+chance.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Participating media: attenuation, and the phase function with its sampling.
 
-FALSE_ALARM is the probability that a test of this file fails although all is right.
+FALSE_ALARM is the probability that a test of this file fails by chance.
 """
 
 import numpy as np

@@ -234,7 +234,7 @@ def test_the_worst_light_is_first_and_its_scale_reaches_its_largest_difference(r
         text.index(each) for each in ("Light from behind, gl", "Light from the side, gl")
     )
     assert first < text.index("≥ 1.3 % of white") < second
-    assert text.count("1 passed") == 2  # in the header, and in the check's own row
+    assert text.count("1 passed") == 2  # once in the header, once in the check's own row
 
 
 def test_documents_open_with_the_worst_in_the_studio_and_libraries_with_causes(run):

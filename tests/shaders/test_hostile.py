@@ -148,7 +148,7 @@ LIMITED = (
     ("ports", SMALL, 5 + 4 + 3),
     ("nodes", ROW, 11),
     ("chain", ROW, 11),
-    ("depth", material(doubled(4)), 6),  # with the graph of eon_diffuse_bsdf
+    ("depth", material(doubled(4)), 6),  # includes the graph of eon_diffuse_bsdf
 )
 
 

@@ -2,8 +2,8 @@
 """Text for path tracers: values match the rasterizer, and densities match the samples, for nodes
 and surface shaders.
 
-The checks `pdf`, `sample`, `path_value` and `path_inside` of `mxeon check` judge every node; here are edges and more
-draws.
+The checks `pdf`, `sample`, `path_value` and `path_inside` of `mxeon check` judge every node; these
+tests cover edge cases and use more samples.
 """
 
 import shutil

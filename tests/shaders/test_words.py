@@ -23,7 +23,7 @@ KINDS = [kind for kind in vars(mx).values() if hasattr(kind, "CATEGORY")]
 def furnished(tmp_path_factory):
     """A working folder with the files that documents name, each read once for all targets.
 
-    Without values of inputs, which are no source.
+    Values of inputs are omitted, because they are not source text.
     """
     folder = tmp_path_factory.mktemp("reach")
     reach.furnish(folder)

@@ -71,7 +71,7 @@ def hide() -> None:
 def import_all() -> None:
     """Import every module, except those that a renderer's Python runs, and give it another platform.
 
-    OpenGL stays Linux's without a display: any X server may end.
+    OpenGL on Linux remains without a display, because an X server may end at any time.
     """
     import glcontext
 
