@@ -151,7 +151,7 @@ def traced(wo, wi):
 
 
 def values(rounds, pairs):
-    """Figures of values a second, and of the seconds of a million pairs; and checks."""
+    """Figures of values per second and of the seconds for a million pairs, and checks."""
     wo, wi = arguments(pairs, ONE)[:2]
     rivals = {
         (name, each): way for each in (ONE, OWN) for name, way in models(wo, wi, each).items()

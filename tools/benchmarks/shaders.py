@@ -82,7 +82,7 @@ class Rival:
 
 
 def directions(a):
-    """Directions of columns of arguments, in float64, and unit."""
+    """Unit directions from columns of arguments, in float64."""
     mu_o, mu_i, x = a["mu_o"], a["mu_i"], 2.0 * a["turn"] - 1.0
     S_o, S_i = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2)
     wi = np.stack([S_i * x, S_i * np.sqrt(1.0 - x * x), mu_i], -1)

@@ -3,14 +3,13 @@
 
     python -m tools.fits.eon_sampling
 
-Two inverse distributions map a random number to a cosine without any parameter. Written
-x = p + sum(a_k B_k(p)), with p the root of the random number that makes x analytic in it, they keep
-both ends whatever the coefficients are. What counts is the density that results, so that is what the fit makes as nearly
-right as it can: the largest relative error of the density is least (minimax fits on Newton steps,
-which need the exact density but not the exact inverse).
+Two inverse distributions map a random number to a cosine without any parameter. They have the form
+x = p + sum(a_k B_k(p)), where p is the root of the random number in which x is analytic; both ends
+are exact for any coefficients. The fit minimizes the largest relative error of the resulting
+density (minimax fits on Newton steps, which need the exact density but not the exact inverse).
 
 ROOT, only used by shaders, is the root y of K for a given cosine, y = (K / K(pi / 2))^(2/5), which
-is analytic in m = 1 - cos: it takes an arc tangent, a cancellation and a power from them.
+is analytic in m = 1 - cos; the fit replaces an arc tangent, a cancellation and a power.
 """
 
 from tools.fits.fon_loss import closed_form
@@ -79,7 +78,7 @@ def fitted(points, basis, density, root):
 def root_rows(points):
     """Factors of the coefficients of y / m in powers of m, relative to y / m.
 
-    y = (K / K(pi / 2))^(2/5) at the cosine 1 - m; of 40 digits at most 14 cancel here.
+    y = (K / K(pi / 2))^(2/5) at the cosine 1 - m; cancellation costs at most 14 of 40 digits.
     """
     rows = []
     for m in points:

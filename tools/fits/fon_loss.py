@@ -3,9 +3,9 @@
 
     H(mu) = mu [P(mu) + (1 - S)(1 - mu) Q(mu)],  S = sqrt(1 - mu^2)
 
-S carries the branch of H at mu = 1, and so both errors fall geometrically with the degrees. The second term
-vanishes at both ends, so that nothing cancels there. One fit of both makes the largest relative error of H
-least, from the closed form alone.
+S contains the branch point of H at mu = 1, so both errors fall geometrically with the degrees. The
+second term vanishes at both ends, so nothing cancels there. One fit of both minimizes the largest
+relative error of H, using only the closed form.
 
     python -m tools.fits.fon_loss
 """

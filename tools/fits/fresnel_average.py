@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits of F_ss, the cosine-weighted average of a Fresnel reflectance, for the shaders.
 
-Of a dielectric of index n above 1, with t = 1 / n:
+For a dielectric of index n above 1, with t = 1 / n:
 
     1 - F_ss = t N / D,
 
-polynomials in t. Below 1 it follows from the other side: 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)).
-Of a metal, whose curve is 1 at grazing:
+with polynomials in t. An index below 1 follows from the other side: 1 - F_ss(n) = n^2 (1 - F_ss(1 /
+n)). For a metal, whose curve is 1 at grazing:
 
     1 - F_ss = sum of w_k (1 - F(c_k)),
 
-with three cosines and the weights whose largest error over metals is least. Schlick's curve needs
-no fit.
+with three cosines and the weights that minimize the largest error over metals. Schlick's curve
+needs no fit.
 
     python -m tools.fits.fresnel_average
 """

@@ -139,7 +139,8 @@ def peak(mu, alpha, count=400):
 def value_errors(coefficients, across=145, along=97):
     """Largest error of a compensated value, over itself or 1, and the largest factor of F_ss in it.
 
-    A value v / E_ss has the error of E_ss over E_ss, and v (1 - E_ss) / E_ss times that of F_ss.
+    v / E_ss has the relative error of E_ss, and v (1 - E_ss) / E_ss is multiplied by the error of
+    F_ss.
     """
     mu, alpha = points(across, along)
     E, v = albedo(mu, alpha), peak(mu, alpha)

@@ -5,13 +5,14 @@ With r^2 = (alpha_x^2 + alpha_y^2) / 2, the squared roughness along the azimuth 
 
     v^2 = (alpha_x x)^2 + (alpha_y y)^2 + (r z)^2,  u^2 = 2 r^2 - v^2,
 
-and the slopes along and across are correlated by c, c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2. The light that the lobe
-misses is that of isotropic facets of alpha r at the cosine z r / v, times
+and the slopes along and across are correlated by c, c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2. The
+lost light is that of isotropic facets of alpha r at the cosine z r / v, times
 
     1 + C_0 c^2 + C_1 d + C_2 t + C_3 c^2 t,  d = 1 - (alpha_x alpha_y)^2 / r^4,  t = v^2 / r^2 - 1,
 
-of the least largest relative error of E_ss. A Fresnel curve has the average over isotropic facets of alpha
-v k(0.7 + c^2) at the cosine z k(0.35 c^2), k(p) = min((1 + p v) / (1 + p u), 1).
+where the coefficients minimize the largest relative error of E_ss. A Fresnel curve has the average
+over isotropic facets of alpha v k(0.7 + c^2) at the cosine z k(0.35 c^2), k(p) = min((1 + p v) / (1
++ p u), 1).
 
     python -m tools.fits.ggx_anisotropic
 """

@@ -133,7 +133,7 @@ def averages(mu, alpha, functions):
 def azimuths(scale):
     """Nodes and weights on [0, 1], along axis 1: panels [0, scale], [scale^(7/8), ...], ..., [.., 1].
 
-    Beyond the first they are even in the reciprocal, which suits the tail of a peak at 0.
+    Beyond the first panel they are uniform in the reciprocal, which suits the tail of a peak at 0.
     """
     x, w = (each[None, :, None] for each in legendre(DEGREE))
     root = np.sqrt(np.sqrt(np.sqrt(scale)))

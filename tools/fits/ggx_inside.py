@@ -7,21 +7,24 @@ share of facets below the critical angle is
 
     S = t^-p,  t = 1 + exp(g asinh(k ln(tau_c^2 / tau_m^2))),
 
-and their reflectance is that at the tau above which are a REST of them:
+and their mean reflectance is F at the tau that a share REST of them exceeds:
 
     F = 1 - S (1 - F(tau)),  ln(tau^2 / tau_m^2) = sinh(ln(t REST^(-1/p) - 1) / g) / k.
 
-Along the normal GGX's share is 1 / (1 + alpha^2 tau_c^2), which has p of 1 and g k of 1 with small k. At a
-smooth surface g = 2 is the marginal distribution of a slope. With mu the cosine of the view, s its sine,
+Along the normal, GGX's share is 1 / (1 + alpha^2 tau_c^2), which corresponds to p = 1 and g k = 1
+with small k. For a smooth surface, g = 2 gives the marginal distribution of a slope. With mu the
+cosine of the view and s its sine,
 
     tau_m^2 = (mu^2 + a alpha^2) / (s^2 + b alpha^2),  k^2 = k_0 + k_1 mu^2 s^2 / alpha^2,
 
-and logarithms of a, b, k_0, k_1, p and g are sums of 1, x = mu / (mu + alpha), s / (s + alpha),
-y = sqrt(alpha) and x y. What is least is the largest error of the albedo with its compensation. The search
-is in float64 and need not be repeatable; the errors are those of the coefficients in the shader.
+and the logarithms of a, b, k_0, k_1, p and g are linear in 1, x = mu / (mu + alpha), s / (s +
+alpha), y = sqrt(alpha) and x y. The fit minimizes the largest error of the albedo with its
+compensation. The search is in float64 and need not be repeatable; the errors are those of the
+coefficients in the shader.
 
-The share of light that passes by the paths from outside, reversed (`mxeon.models.transmission`), has the form
-S (1 - F(tau)) of other coefficients. Facets that send light up again are what differs: fewer pass at grazing.
+The share of transmitted light according to the reversed paths from outside
+(`mxeon.models.transmission`) has the form S (1 - F(tau)) with other coefficients. It differs
+because of facets that send light up again: less light passes at grazing.
 
     python -m tools.fits.ggx_inside
 """

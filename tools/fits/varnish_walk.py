@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """EON below an interface, by both models and by random walks: python -m tools.fits.varnish_walk.
 
-`dielectric_over_eon` is a `layer`: EON gets what the dielectric does not reflect, and what EON returns
-passes freely. `varnished` has exits and internal reflections in closed form. Here light walks between EON and
-GGX facets, and among the facets as in [Heitz2016], so that the interface loses nothing. It prints for each rho
-the quotients of both albedos and the walk's, the largest error of the second, and the quotients of the light
-that EON returns into twelfths of the hemisphere.
+`dielectric_over_eon` is a `layer`: EON receives what the dielectric does not reflect, and its light
+leaves without loss. `varnished` has exits and internal reflections in closed form. Here random
+walks of light go between EON and GGX facets, and among the facets as in [Heitz2016], so that the
+interface loses nothing. For each rho, the script prints the ratios of both models' albedos to the
+walk's, the largest error of the second model, and the ratios of the light that EON returns into
+twelfths of the hemisphere.
 """
 
 from itertools import product

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The ways of evaluating a node on an engine: supported nodes, samples, and additional errors.
 
-An engine evaluates any pairs of directions, returns closures, lights a point by a camera and a light, or
-renders pictures of a sphere. Each returns its values in the same form, so that a check is written once.
+An engine evaluates any pairs of directions, returns closures, lights a point by a camera and a
+light, or renders pictures of a sphere. Every backend returns values in the same form, so each check
+is written once.
 """
 
 from __future__ import annotations

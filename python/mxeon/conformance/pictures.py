@@ -95,7 +95,7 @@ FITTED, SHADED = (
 def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tolerance:
     """Tolerance of a material's pictures: the lobes' fits or the images, and additional errors.
 
-    An image's filter works on codes, before a decoding.
+    An image is filtered before its color values are decoded.
     """
     nodes, lobes = list(inner_nodes(shader.document)), tuple(lobes)
     fitted = FITTED_NODES & {lobe.category for lobe in lobes}
@@ -441,8 +441,8 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
     """Pictures of a rough node in light from the side and from behind, and the corresponding
     pictures of its model.
 
-    None for a surface shader's lobe, and on a renderer without exact mirror pairs. Rim and
-    terminator are black in both.
+    Empty for a surface shader's lobe, and on a renderer without exact mirror pairs. Rim and
+    terminator are black in both pictures.
     """
     rough = isinstance(case.spec, DiffuseModelSpec) and not isinstance(case.spec, SurfaceLobe)
     if not rough or isinstance(case.backend, Rendered):

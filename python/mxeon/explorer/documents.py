@@ -70,7 +70,7 @@ def document_sources(
         names = image_files(shaders)
         side = min(LARGEST_IMAGE, math.isqrt(ALL_IMAGES // max(len(names), 1)))
         images |= {name: _texels(name, side) for name in names if name not in images}
-        text = document_text(shaders[0].document) if shaders else ""  # one for all of them
+        text = document_text(shaders[0].document) if shaders else ""  # shared by both libraries
         if half == LIBRARIES[0]:
             references = {one.element: reference_of(one) for one in shaders[:REFERENCES]}
         checked = checked_materials(file, each, policy) if len(shaders) <= REFERENCES else {}

@@ -5,10 +5,11 @@ The dielectric reflects E_r of the light, and EON gets the rest, as `layer` of t
 
     f = f_r + (1 - E_r(mu_o)) f_EON,  E = E_r + (1 - E_r) E_EON
 
-E_r, with the energy compensation, is at most the albedo of facets that reflect everything, and so at most 1. This is
-no varnish: what EON returns passes freely, while below an interface light is reflected and refracted on its way out.
-The albedo is up to 2.2 times that of light that walks below the same interface, and 1.04 to 1.84 times at index 1.5 and
-rho 0.2: tools/fits/varnish_walk.py. `varnished_brdf` has both in closed form.
+E_r, with the energy compensation, is at most the albedo of facets that reflect everything, and so
+at most 1. This is not a varnish: the light that EON returns leaves without loss, while a real
+interface reflects and refracts it on its way out. Compared with random walks below the same
+interface, the albedo is up to 2.2 times too high, and 1.04 to 1.84 times at index 1.5 and rho 0.2:
+tools/fits/varnish_walk.py. `varnished_brdf` has both effects in closed form.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
 - `u` (..., 2): Independent uniform random numbers, in [0, 1). The first one chooses the lobe as well.
@@ -24,10 +25,11 @@ not broadcast.
 For a single dielectric, albedo and energy compensation only depend on the viewer's cosine: one integral at
 some cosines, interpolated.
 
-**A varnish**: EON below a rough dielectric interface, with its exits and internal reflections. The interface reflects
-f_r and passes T = 1 - E_r, which reaches EON along refracted directions w'. Of what EON returns, a share R is
-reflected back to it at each pass. The first pass keeps EON's value f_b; the others keep its mean, as in the sum of
-[Saunderson1942], here for a base whose albedo depends on direction:
+**A varnish**: EON below a rough dielectric interface, with its exits and internal reflections. The
+interface reflects f_r and passes T = 1 - E_r, which reaches EON along refracted directions w'. At
+each pass, the interface reflects a share R of the light from EON back to it. The first pass keeps
+EON's value f_b; the others keep its mean, as in the sum of [Saunderson1942], here for a base whose
+albedo depends on direction:
 
     f = f_r + T(mu_o) T(mu_i) / n^2 [f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))]       (1)
     w' = (x / n, y / n, mu'),  mu'^2 = mu^2 + (1 - mu^2) (1 - 1 / n^2)
@@ -46,15 +48,17 @@ Facets reflect onto each other with their mean reflectance F = E_single / E_ss, 
 
     E_r = E_single + D,  D = F^2 (1 - E_ss),  f_r = f_single + D(mu_o) D(mu_i) / (pi <D>)
 
-Approximate are the mean shape of all passes but the first, D, and directions that refract as at a smooth
-surface. Against light that walks (tools/fits/varnish_walk.py: index 1.1 to 2, alpha 0.05 to 0.7, rho 0 to 1, r 0
-and 1, cosines 0.05 to 1) the albedo is off by at most 0.012, and at rho 1 by nothing; what EON returns into a twelfth
-of the hemisphere is 0.95 to 1.05 of the walk's at r 0, and 0.79 to 1.15 at r 1. (2) is the integral of (1) to 1e-6,
-and to 1e-4 at alpha 0.01 and index near 1.
+Three things are approximate: the mean shape of all passes but the first, D, and directions that
+refract as at a smooth surface. Compared with random walks (tools/fits/varnish_walk.py: index 1.1 to
+2, alpha 0.05 to 0.7, rho 0 to 1, r 0 and 1, cosines 0.05 to 1), the albedo is off by at most 0.012,
+and exact at rho 1; the light that EON returns into a twelfth of the hemisphere is 0.95 to 1.05
+times the walk's at r 0, and 0.79 to 1.15 times at r 1. (2) is the integral of (1) to 1e-6, and to
+1e-4 at alpha 0.01 and index near 1.
 
-The base is EON, which is Lambert at r = 0: of its shape k and `<k>` are closed forms. Another base would need its
-own. The sum that serves any base, with its albedo for k and its mean albedo for `<k>`, is not the integral of (1);
-over the same domain it moves EON's albedo by up to 0.004 at r 1/2, and 0.0075 at r 1.
+The base is EON, which is Lambert at r = 0: k and `<k>` have closed forms for its shape. Another
+base would need its own. The sum that works for any base, with its albedo for k and its mean albedo
+for `<k>`, is not the integral of (1); over the same domain it changes EON's albedo by up to 0.004
+at r 1/2, and 0.0075 at r 1.
 """
 
 from __future__ import annotations
@@ -132,8 +136,8 @@ def scaled_cosine(mu: Array, alpha: float | Array) -> Array:
 def coat_curves(alpha: Array, ior: Array) -> Array:
     """Coefficients of the curves of a `Coat`, shape (CURVE_NODES, 2).
 
-    Accuracy: error of the curves below 2e-7 for alpha >= 0.01 and ior in [1, 4], 5e-8 of it that of
-    the slopes at grazing.
+    Accuracy: error of the curves below 2e-7 for alpha >= 0.01 and ior in [1, 4]; the slopes at
+    grazing contribute 5e-8 of it.
     """
     xp, x = array_namespace(alpha), like(chebyshev_nodes(CURVE_NODES), alpha)
     mu, _ = cosine_at(alpha, x)
@@ -251,8 +255,8 @@ def dielectric_over_eon_albedo_avg(
 ) -> Array:
     """Average of `dielectric_over_eon_albedo_dir` over the viewer's directions, weighted by the cosine.
 
-    Result (..., C). Accuracy: error below 2e-7. EON's albedo falls from its value at grazing by
-    what FON loses: of the light that the dielectric passes, the mean loss counts.
+    Result (..., C). Accuracy: error below 2e-7. EON's albedo falls linearly, from its value at
+    grazing, with FON's loss: only the mean loss of the light that the dielectric transmits matters.
 
         >>> dielectric_over_eon_albedo_avg([0.7, 1.0], 0.5, 0.3, 1.5).round(5)
         array([0.69645, 1.     ])
@@ -443,7 +447,7 @@ def absorbed_share(means: Sequence[float | Array], rho: Array, r: Array) -> Arra
         1 - R <k> = (1 - R) + R (1 - <k>)
         1 - <k> = 1 - rho + rho A (r (c1 - <b>_R) - W <H>_R^2)
 
-    The second line has no ones that cancel, as (1 + c1 r) A is 1.
+    No ones cancel in the second line, as (1 + c1 r) A is 1.
     """
     _, exits, loss, turn = means
     weight = formulas.eon_multiple_ratio(rho, r)
@@ -464,8 +468,8 @@ def base_under_varnish(
 
         f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))
 
-    At index 1 it is EON's value to the last bit. k k is expanded into powers of W, so that products with channels are
-    few where the material is one.
+    At index 1 it is EON's value to the last bit. k k is expanded into powers of W, to reduce
+    products with channels for a single material.
     """
     (m_o, p_o, H_o), (m_i, p_i, H_i) = (
         mean_parts(*each, ior, r) for each in zip(mu, turned, strict=True)
@@ -600,9 +604,9 @@ def varnished_brdf(
 
         f = f_r + T(mu_o) T(mu_i) / n^2 [f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))]
 
-    Result (..., C): 1/sr. It is reciprocal, and EON to the last bit at `ior` 1. Accuracy: the albedo is off
-    by at most 0.012 from that of light that walks between facets and EON. A call takes 1.4 times as long as
-    one of `dielectric_over_eon_brdf`. [Saunderson1942].
+    Result (..., C): 1/sr. It is reciprocal, and EON to the last bit at `ior` 1. Accuracy: the
+    albedo differs by at most 0.012 from that of random walks between facets and EON. A call takes
+    1.4 times as long as one of `dielectric_over_eon_brdf`. [Saunderson1942].
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> varnished_brdf(wo, wi, [0.7, 0.1], 0.5, 0.3, 1.5).round(5)

@@ -66,8 +66,8 @@ def fon_loss_mu(mu: Array) -> Array:
         H = mu t (c1 - S t (2 + S) / (3 pi)) + (2 / pi) S atan(t)
         S = sqrt(1 - mu^2),  t = mu / (1 + S)
 
-    With theta_o = pi / 2 - 2 atan(t) and 1 - S = mu t nothing divides by mu and nothing cancels.
-    Near the normal H is c1 + O(S^3).
+    With theta_o = pi / 2 - 2 atan(t) and 1 - S = mu t, there is neither a division by mu nor a
+    cancellation. Near the normal H is c1 + O(S^3).
     """
     return arrays.except_at_1(_fon_loss, mu, C1)
 
@@ -339,9 +339,9 @@ def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arr
 
         f as in `eon_brdf`,  G_F / pi = g1 m + g2 m^2 + g3 m^3 + g4 m^4,  m = 1 - mu
 
-    Accuracy: within 1.25e-3 / pi of `eon_brdf`. H counts as 0 where it would fall below, for mu < 0.0014. Listing
-    1 keeps 1 - E_FON above 1e-7 instead: less than 1.4e-7 / pi away for roughness > 1e-5, and not Lambert at 0.
-    [Portsmouth2025], Eqs. (14), (16)-(19).
+    Accuracy: within 1.25e-3 / pi of `eon_brdf`. H is clamped to 0 where it is negative, for mu <
+    0.0014. Listing 1 instead keeps 1 - E_FON above 1e-7: it differs by less than 1.4e-7 / pi for
+    roughness > 1e-5, and is not Lambert at 0. [Portsmouth2025], Eqs. (14), (16)-(19).
 
         >>> eon_brdf_approx([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.073622, 0.311002])
@@ -607,7 +607,7 @@ def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Ar
         s = max(dot(wo, wi), 1e-8) - mu_o mu_i
 
     Result (..., C): in 1/sr; too bright where dot(wo, wi) < 0, and correct elsewhere. MaterialX's
-    GLSL node clamps the product, for the needs of other nodes, and passes it on.
+    GLSL node clamps the product because other nodes need it, and passes it on.
     """
 
     def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The hair model of [MaterialX2026], section `chiang_hair_bsdf`, after [Chiang2016] and [dEon2011].
 
-The fiber is +x, and the normal +z is turned to the viewer. Light comes from the whole sphere. A direction has the
-inclination theta, sin(theta) = x, and an azimuth about the fiber. Absorption is per radius of the fiber, as in the
-text's equation; the text's table says diameter. Other functions compute roughnesses and absorption from what an artist
-sets.
+The fiber is +x, and the normal +z is turned to the viewer. Light comes from the whole sphere. A
+direction has the inclination theta, sin(theta) = x, and an azimuth about the fiber. Absorption is
+per radius of the fiber, as in the text's equation; the text's table says diameter. Other functions
+compute roughnesses and absorption from artist-friendly inputs.
 
 - `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, fiber +x, normal +z, z >= 0.
 - `wi` (..., 3): Direction to the light, unit vector to 1e-6, on either side.
@@ -217,10 +217,11 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
       variance in square radian and azimuthal scale in radian, in [1e-12, 1e12]; `cuticle_angle` (...), in [0, 1];
       `absorption_coefficient` (..., C), per radius of the fiber, in [0, 1e50]. `form` is a `HairForm`.
 
-    Result (..., C): in 1/sr. As the text has it, it takes no cosine of the light: its integral over all lights is
-    1/pi where nothing is absorbed and the cuticle has no tilt. Roughness (0, 0), a pure mirror, is refused: no
-    function has its value. F has the index `ior`, as in [Chiang2016]; the effective index is another reading.
-    Accuracy: relative error below 1e-13 / min(sqrt(v), s) of the value, or 1e-300. [MaterialX2026].
+    Result (..., C): in 1/sr. Following the text, it does not include a cosine of the light: its
+    integral over all lights is 1/pi if nothing is absorbed and the cuticle has no tilt. Roughness
+    (0, 0), a pure mirror, is refused, because its value is not a function. F has the index `ior`,
+    as in [Chiang2016]; the effective index is another reading. Accuracy: relative error below 1e-13
+    / min(sqrt(v), s) of the value, or 1e-300. [MaterialX2026].
 
         >>> chiang_hair_bcsdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]).round(6)
         array([0.137704, 0.137704, 0.137704])
@@ -396,8 +397,9 @@ def deon_hair_absorption_from_melanin(
     - `melanin_concentration`, `melanin_redness` (...): In [0, 1) and in [0, 1].
     - `eumelanin_color`, `pheomelanin_color` (..., 3): What a fiber's radius of the pigment leaves, in (0, 1].
 
-    The sum is that of [dEon2011]; how a concentration and a redness make its amounts the specification does not
-    say: the equation is that of its implementations. [MaterialX2026], deon_hair_absorption_from_melanin.
+    The sum is that of [dEon2011]. The specification does not say how concentration and redness
+    determine the amounts: the equation is that of its implementations. [MaterialX2026],
+    deon_hair_absorption_from_melanin.
 
         >>> colors = np.exp(-np.array(EUMELANIN)), np.exp(-np.array(PHEOMELANIN))
         >>> deon_hair_absorption_from_melanin(0.25, 0.5, *colors).round(6)

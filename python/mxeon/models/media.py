@@ -436,8 +436,8 @@ def blackbody(temperature: ArrayLike) -> Array:
 def kang_xyz(temperature: ArrayLike) -> Array:
     """CIE 1931 XYZ of a black body by cubic fits, with Y = 1.
 
-    The fits are of 1667 K to 25000 K, where x and y are within 6e-4. Below, as GLSL takes them,
-    they turn back: at 800 K the color is paler than at 1667 K. [Kang2002].
+    The fits cover 1667 K to 25000 K, where x and y are within 6e-4. GLSL also uses them below,
+    where they turn back: at 800 K the color is paler than at 1667 K. [Kang2002].
     """
     (kelvin,) = checked_numbers(temperature=temperature)
     warm, hot = (np.polyval(fit, 1000.0 / kelvin) for fit in KANG_X)

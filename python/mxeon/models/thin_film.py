@@ -67,9 +67,9 @@ SPREADS = np.sqrt([variance for *_, variance in GAUSSIANS])
 AREAS = [v * np.sqrt(2.0 * np.pi * variance) / NORMAL for _, v, _, variance in GAUSSIANS]
 WEIGHTS = np.eye(3)[:, [row for row, *_ in GAUSSIANS]] * AREAS
 
-# All orders are summed one by one where THIN_SPREAD <= 2 pi OPD sigma: what follows DAMPED_ORDERS of
-# them is below exp(-(30 * 0.2)^2) = 3e-16. Thinner films are integrated over wavenumbers, by the
-# trapezoidal rule over 6.5 standard deviations, 2^-48 of a Gaussian's height, in steps of a fifth of one.
+# All orders are summed one by one where THIN_SPREAD <= 2 pi OPD sigma: the terms after DAMPED_ORDERS
+# of them are below exp(-(30 * 0.2)^2) = 3e-16. Thinner films are integrated over wavenumbers, by the
+# trapezoidal rule over 6.5 standard deviations, where a Gaussian falls to 2^-48, in steps of a fifth of one.
 THIN_SPREAD, DAMPED_ORDERS = 0.2, 30
 STEP, STEPS = 0.2, 32
 SAME = 2.0**-20  # relative difference of indices that round the same number

@@ -39,7 +39,7 @@ def cosine_variance() -> Measured:
 def cosine_diverges() -> Measured:
     """How the growth of the variance shrinks from one factor of 10 in mu to the next.
 
-    Before a peak it would shrink. It does not: each factor of 10 adds (A r)^2 / 2 ln 10.
+    It would shrink before a peak. It does not: each factor of 10 adds (A r)^2 / 2 ln 10.
     """
     below = [moments("cosine", mu, 1.0, nodes=200)[1] for mu in (1e-3, 1e-4, 1e-5)]
     growth = np.diff(below)

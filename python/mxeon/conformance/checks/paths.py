@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the text for path tracers: samples match their stated density, and weights their values.
 
-Views are from both sides of the surface. What smooth transmission draws is nearly one direction, about which draws are
-counted; and so is what it reflects.
+Views are from both sides of the surface. The directions of smooth transmission and reflection are
+nearly constant, so samples are counted around them.
 """
 
 import re
@@ -215,8 +215,8 @@ def paths(
 def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
     """Materials with pairs in their own frames: random ones of a node, or a surface shader with all lobes.
 
-    A node has a normal and a tangent of its own, which are not those of the surface. `walls` says for a surface
-    shader that can be a thin wall whether it is one.
+    A node has its own normal and tangent, which differ from the surface's. For a surface shader
+    that supports thin walls, `walls` selects whether it is one.
     """
     spec, batch = case.lobe, case.backend.turned
     rng, count = generator(), len(batch.wo)
@@ -284,9 +284,9 @@ def place(inside: bool) -> str:
 def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
     """Deviations of samples from their density, in standard deviations, for materials at views.
 
-    Three views do for a control, which ends at the first that is wrong, and for a surface shader, which has one
-    material as a solid and one as a wall.
-    The quadrature's own error in a first look only makes the deviation larger.
+    Three views suffice for a surface shader, which has one material as a solid and one as a wall,
+    and for a control, which ends at the first failure. Quadrature errors at a low order only
+    increase the deviation.
     """
     u = random(DRAWS, generator())
     for text, batch in subjects(case, False, True):
@@ -332,7 +332,7 @@ def pdf(case: Case) -> Measurement:
 def parts(case: Case) -> Iterator[tuple[str, bool, Compared]]:
     """Weights times densities against values, densities against those of material_pdf, and values without one.
 
-    The first two are over what each is.
+    The first two are relative to their expected values.
     """
     for text, batch in subjects(case, False, True):
         u, wo = random(len(batch.wo), generator()), batch.world(batch.wo)
@@ -537,7 +537,7 @@ def deviation(
 ) -> float:
     """Standard deviations between counted samples and a density; 0 if less than the expected noise.
 
-    Infinite for a density that is no number.
+    Infinite if the density is not a number.
 
     The cube root of chi-square over its degrees of freedom is nearly normal [WilsonHilferty1931].
 
@@ -593,8 +593,8 @@ def density_integrals(
     """Integrals of a density over patches around a pole, and over those of the cone around a second
     pole.
 
-    A patch gets each number of `nodes` on each axis until two of them agree up to `close`, in it and beside it: an edge
-    of a density may pass between few nodes.
+    For each patch, the number of nodes per axis increases along `nodes` until two results agree up
+    to `close`, in the patch and next to it: an edge of a density may pass between few nodes.
     """
     frames = np.stack(list(map(axes, poles)))
     whole = (INNER + CELLS) * CELLS

@@ -110,7 +110,8 @@ def framed(
         tangent = length * (tangent + rng.uniform(-0.5, 0.5, (len(frame), 1)) * normal)
     axes = {"normal": rounded(normal.T), "tangent": rounded(tangent.T)}
     wo = np.broadcast_to(NORMAL, batch.wo.shape) if along else batch.wo
-    # An axis may be a pole of the environment, where azimuths come from roundings once it is turned.
+    # If an axis is a pole of the environment, its azimuth comes from roundings after the
+    # environment is turned.
     client = CLIENT if make is on_axes and pixels.sky == "uneven" else pixels.client
     batch = replace(batch.altered(**axes), wo=wo, frame=frame)
     return replace(pixels, batch=batch, client=client)

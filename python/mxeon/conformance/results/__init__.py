@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The results of a conformance run as plain data: checks, pictures, albedos, and the verdict on all.
 
-`mxeon.conformance.words` makes sentences of them; nothing reads a sentence.
+`mxeon.conformance.words` makes sentences from them; no code reads such a sentence.
 """
 
 from __future__ import annotations
@@ -417,8 +417,8 @@ class Scope:
 class Run(Scope):
     """All measurements of one `mxeon check`, and whether it passed.
 
-    `passed` is the answer. Do not compute it from `results`: they lack documents that were refused, and
-    hold the failures of libraries that are judged for comparison.
+    Use `passed` for the overall result. It does not follow from `results`, which lack refused
+    documents and include failures of libraries that are judged for comparison.
 
     - `notes`: Warnings that a reader has to see, e.g. what a host cannot express.
     - `missing`: Tasks that are not done yet, where the run was interrupted.

@@ -158,7 +158,7 @@ def with_pages(result: Result, materialx: str = "") -> Result:
     """A result with the pages of the issues that explain it, if any.
 
     `materialx` is the folder whose `libraries` were judged instead of the installed ones: a copy of
-    MaterialX's has the issues of stock, but for those that it repairs.
+    MaterialX's libraries has the issues of stock, except those that it repairs.
     """
     if result.verdict not in (FAILED, DIFFERS):
         return replace(result, pages=())

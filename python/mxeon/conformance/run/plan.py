@@ -74,7 +74,7 @@ def read_documents(
 ) -> Reading:
     """Read documents with each library, in worker processes unless there are none.
 
-    A document that ends its worker has no nodes; the task that draws it says why.
+    A document that crashes its worker has no nodes; the task that draws it reports the reason.
 
     Raise MxeonError if a library cannot be used.
     """
@@ -116,7 +116,7 @@ def _answers(
 ) -> Generator[tuple[ShownNode, ...] | MxeonError | None, None, None]:
     """The nodes of each document, or its error; None if the process crashed while reading it.
 
-    Processes read until it is closed.
+    The processes continue reading until the generator is closed.
     """
     work = partial(document_nodes, policy)
     if not workers:
@@ -269,10 +269,10 @@ def make_plan(
 ) -> Plan:
     """The tasks of a run, grouped by host and library.
 
-    `resumable` lists the files that the run depends on. `nodes` are categories, ALL or COMMON; without
-    any, those of `files` are judged, or the common ones. Those of `libraries` in `compared` do not
-    count. Raises InputError for an unknown name, or if no host judges the nodes; ImportError if this
-    MaterialX is too old.
+    `resumable` lists the files that the run depends on. `nodes` are categories, ALL or COMMON; by
+    default, the nodes of `files` are judged, or the common ones without files. Results of
+    `libraries` in `compared` do not count. Raises InputError for an unknown name, or if no host
+    judges the nodes; ImportError if this MaterialX is too old.
     """
     assert_known_names(hosts, nodes)
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))

@@ -50,7 +50,7 @@ LEAST_CONE = 1e-3  # least share of a full turn
 EXPONENTS = (0.5, 20.0)
 BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
 INNER, OUTER = "inner_angle", "outer_angle"
-LEAST, LARGEST = 1e-3, 16.0  # coefficients, 1/m: of 1e-3 and 1 - 1e-7 of the light
+LEAST, LARGEST = 1e-3, 16.0  # coefficients in 1/m that remove 1e-3 and 1 - 1e-7 of the light
 # In pictures the falloff covers half of the sphere, so that it is not steep.
 INPUTS = {
     each.name: each

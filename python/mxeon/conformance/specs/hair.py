@@ -143,7 +143,7 @@ class HairSpec(PbrSpec):
         return np.asarray(front * near + (1.0 - front) * far)
 
     def alike(self, compared: Compared) -> Compared:
-        """Values over themselves, or over LEAST, plus their slopes in inclination and azimuth of both directions."""
+        """Values relative to themselves or LEAST, plus their slopes in both directions' inclination and azimuth."""
         batch = compared.batch
         total = np.maximum(self.value(batch), LEAST)
         for step in np.eye(4) * STEP:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sentences of the specifications of four surface shaders, each with a material that shows it.
 
-A row fixes some inputs, draws others, and compares the shader with `mxeon.models.surfaces`, written from the
-text. `permitted` are readings or simplifications that the text leaves to an implementation, `wrong` others
-that a diagnosis may name.
+A row fixes some inputs, draws others, and compares the shader with `mxeon.models.surfaces`, written
+from the text. `permitted` are interpretations or simplifications that the text permits; `wrong` are
+others that a diagnosis may name.
 """
 
 from __future__ import annotations

@@ -128,8 +128,8 @@ def schlick(mu: Array, color0: Array, color82: Array, color90: Array, exponent: 
 def dielectric_avg(ior: Array) -> Array:
     """F_ss of a dielectric: closed form for ior >= 1, and by reciprocity below.
 
-    [Walsh1926] with n = e^t: every difference of large terms is taken out, and so is 1 - e^t.
-    ior^2 (1 - F_ss(1 / ior)) = 1 - F_ss(ior) for the same interface from its other side.
+    [Walsh1926] with n = e^t, rearranged so that no large terms cancel, including 1 - e^t. ior^2 (1
+    - F_ss(1 / ior)) = 1 - F_ss(ior) for the same interface from its other side.
     """
     xp = array_namespace(ior)
     inside = ior < 1.0
@@ -192,8 +192,8 @@ def _smooth_avg(ior: Array, extinction: Array) -> Array:
 def _split_avg(ior: Array, extinction: Array) -> Array:
     """F_ss by a double-exponential rule on either side of the critical angle, vectorized over the nodes.
 
-    The nodes crowd at the ends of both parts, where the singularities are. The critical angle counts as a constant
-    of the integral, which does not depend on where it is split.
+    The nodes crowd at the ends of both parts, where the singularities are. The critical angle is
+    treated as constant, since the integral does not depend on where it is split.
     """
     # Find the critical angle, the real part of sqrt(1 - n^2).
     xp = array_namespace(ior, extinction)
@@ -278,10 +278,11 @@ def fresnel_dielectric(mu: ArrayLike, ior: ArrayLike) -> Array:
 
     - `ior`: Index of refraction relative to the exterior medium, in [0, 1e50].
 
-    `ior` 0 disables the Fresnel curve: F is 1, as the equations give it. Below 1 the light comes from the denser
-    side, and F is 1 from the critical angle on. At 1 there is no interface, and F is 0 at grazing too. Accuracy:
-    relative error below 2.2e-14 for `ior` >= 1; below, F has an infinite slope at the critical angle, and belongs
-    to arguments that differ by a rounding. [MaterialX2026], Dielectric Fresnel Equations; dielectric_bsdf.
+    `ior` 0 disables the Fresnel curve: F is 1, as the equations give it. Below 1 the light comes
+    from the denser side, and F is 1 from the critical angle on. At 1 there is no interface, and F
+    is 0 at grazing too. Accuracy: relative error below 2.2e-14 for `ior` >= 1; below 1, F has an
+    infinite slope at the critical angle, so it is exact for arguments that differ by a rounding.
+    [MaterialX2026], Dielectric Fresnel Equations; dielectric_bsdf.
 
         >>> fresnel_dielectric([1.0, 0.5, 0.0], 1.5).round(6)
         array([0.04    , 0.089187, 1.      ])
@@ -293,9 +294,9 @@ def fresnel_dielectric(mu: ArrayLike, ior: ArrayLike) -> Array:
 def fresnel_dielectric_avg(ior: ArrayLike) -> Array:
     """Average Fresnel reflectance F_ss of a dielectric, in closed form; `ior` as for `fresnel_dielectric`.
 
-    Accuracy: relative error below 2.2e-14. Form: Walsh's result in log(ior), with every cancellation near 1 taken out;
-    below 1 from the other side of the interface, ior^2 (1 - F_ss(1 / ior)) = 1 - F_ss(ior). [Walsh1926];
-    [MaterialX2026], Energy Compensation.
+    Accuracy: relative error below 2.2e-14. Form: Walsh's result in log(ior), rearranged so that
+    nothing cancels near 1; below 1 from the other side of the interface, ior^2 (1 - F_ss(1 / ior))
+    = 1 - F_ss(ior). [Walsh1926]; [MaterialX2026], Energy Compensation.
 
         >>> fresnel_dielectric_avg([0.0, 1.0, 1.5]).round(6)
         array([1.      , 0.      , 0.091778])
