@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The journal of a run: no finished task is lost or repeated, and no unfinished task counts as done."""
 
+import gc
 import subprocess
 import sys
+import threading
+from concurrent import futures
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -11,6 +15,7 @@ import numpy as np
 import pytest
 
 from mxeon import check
+from mxeon.conformance.results.records import StoredImage
 from mxeon.shaders.library import examples_folder
 from tests.support.command import DEADLINE, wait_for
 from tests.support.faults import room_for
@@ -211,3 +216,23 @@ def test_a_killed_run_is_resumed_to_the_same_end(tmp_path, monkeypatch):
     lines = path.read_text().splitlines()[1:]
     assert len(lines) == len(set(lines)) and len(done) > 0
     assert read_run(tmp_path).results == check([EXAMPLE], libraries=["eonlib", "stock"]).results
+
+
+def test_threads_read_pixels_at_once(tmp_path):
+    """Garbage may be collected in the middle of CPython's parser, and let another thread run."""
+    np.save(tmp_path / "pixels.npy", np.zeros((4, 4, 3), np.float32))
+    image, thresholds = StoredImage(tmp_path / "pixels.npy"), gc.get_threshold()
+    with ThreadPoolExecutor(1) as pool:
+
+        def read_elsewhere(phase, info):
+            if phase == "start" and threading.current_thread() is threading.main_thread():
+                futures.wait([pool.submit(np.asarray, image)], 0.01)
+
+        gc.callbacks.append(read_elsewhere)
+        gc.set_threshold(1)
+        try:
+            shape = np.asarray(image).shape
+        finally:
+            gc.set_threshold(*thresholds)
+            gc.callbacks.remove(read_elsewhere)
+    assert shape == (4, 4, 3)

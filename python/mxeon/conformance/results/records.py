@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 
 import cattrs
 import numpy as np
@@ -13,6 +14,9 @@ from mxeon.conformance.results import Picture, Verdict, assert_verdict
 from mxeon.io.files import digest
 from mxeon.io.records import Overrides, strict_converter
 
+# NumPy parses the header of a file with `ast`, which in Python 3.11 fails at times when two threads use it:
+# https://github.com/python/cpython/issues/106905.
+READING = Lock()
 IMAGES = ("image", "reference", "judged")  # fields of a picture
 
 
@@ -25,7 +29,8 @@ class StoredImage:
     def __array__(
         self, dtype: DTypeLike | None = None, copy: bool | None = None
     ) -> NDArray[np.generic]:
-        return np.asarray(np.load(self.path), dtype=dtype)
+        with READING:
+            return np.asarray(np.load(self.path), dtype=dtype)
 
     @property
     def whole(self) -> bool:
