@@ -3,7 +3,7 @@
 
 import type { Triple } from "./data";
 
-// Plane: a sphere on a plane.
+// "plane": a sphere on a plane
 export const SHAPES = ["sphere", "plane", "cloth", "ball", "fiber"] as const;
 export const SURROUNDINGS = ["none", "uniform", "studio", "sky", "window", "own"] as const;
 export const COMPARISONS = ["wipe", "side", "difference", "flicker"] as const;

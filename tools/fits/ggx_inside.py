@@ -43,7 +43,7 @@ LEAST = 1e-4  # smallest cosine and roughness
 INDICES = (0.33, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.93, 0.95, 0.98)
 START = (1.6, 0.0, -3.1, -3.8, 0.0, 0.9)  # constants of the logarithms
 REST = 0.7213
-POWERS = (1, 2, 3, 5, 8, 12, 16)  # half the exponents of a norm that tends to the largest error
+POWERS = (1, 2, 3, 5, 8, 12, 16)  # half the exponents of the norms, which approach the maximum norm
 SCALE = 45.0  # makes errors about 1
 DIGITS = 5
 

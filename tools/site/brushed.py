@@ -112,7 +112,9 @@ class Points:
             }
 
     def _spread(self, of, mean):
-        """A function of the view and the roughness at all points, by splines in the root of the cosine and the azimuth."""
+        """A function of view and roughness at all points, interpolated by splines in the root of
+        the cosine and in the azimuth.
+        """
         roots, azimuths = np.linspace(0.05, 1.0, 49), np.linspace(0.0, 0.5 * np.pi, 25)
         mu, phi = (each.ravel() for each in np.meshgrid(roots**2, azimuths, indexing="ij"))
         ring = np.sqrt(1.0 - mu * mu)

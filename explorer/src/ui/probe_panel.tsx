@@ -231,7 +231,7 @@ function Copies({ data, sources, state, calm, pair }: ProbeProps) {
         const texts: [string, string | null][] = [
           ["MaterialX", material_x(state, sources, source, state[name])],
           ["GLSL", shader_text(data, source)],
-          ["Python", of && python_line(of, pair, calm)], // for the visible values
+          ["Python", of && python_line(of, pair, calm)], // uses the visible values
         ];
         return (
           <p key={name} role="group" aria-label={`Copy from ${LETTER[name]}`}>

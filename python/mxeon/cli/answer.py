@@ -63,8 +63,8 @@ def show_run(
 ) -> int:
     """Write a run's report and print its summary; return the exit status.
 
-    Document errors in `said` were printed before. With a baseline, changes decide about the status instead of
-    failures; a refused document is misuse all the same.
+    Document errors in `said` were printed before. With a baseline, changes determine the status
+    instead of failures; a refused document still counts as misuse.
     """
     from mxeon import report
     from mxeon.report import diff

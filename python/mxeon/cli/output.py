@@ -107,7 +107,7 @@ def wrapped(lines: Iterable[str]) -> str:
     """Lines wrapped to the terminal's width, in the color of their verdicts; unchanged without a
     terminal.
 
-    So that a command that reads them finds whole lines.
+    Commands that read them thus get whole lines.
     """
     if not sys.stdout.isatty():
         return printable("\n".join(lines))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The explorer's page, served on this machine, with the files that are dropped on it.
 
-Only the page itself can send files: browsers ask a server first before they send a PUT of another site, and
-this one does not agree. The name of the host is compared, so no other name can lead here.
+Only the page itself can send files: browsers ask a server before they send a PUT from another site,
+and this server does not agree. It checks its own host name, so that no other domain can point here.
 """
 
 from collections.abc import Callable

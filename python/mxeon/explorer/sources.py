@@ -149,7 +149,7 @@ FAMILY = "Models, eonlib's functions"
 VARIANTS = "What renderers do instead"
 RUN = "What the run found"
 
-# These models are offered first: the node can be the first two.
+# Models that are offered first; a node may be either of the first two.
 FIRST = ("eon", "qon", "fon", "lambert")
 
 # Renderers with a wrong model: title, actual model, intended model, and page of docs/upstream.

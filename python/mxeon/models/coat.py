@@ -12,10 +12,10 @@ interface, the albedo is up to 2.2 times too high, and 1.04 to 1.84 times at ind
 tools/fits/varnish_walk.py. `varnished_brdf` has both effects in closed form.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-- `u` (..., 2): Independent uniform random numbers, in [0, 1). The first one chooses the lobe as well.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1). The first one also chooses the lobe.
 - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
 - `rho` (..., C): Reflectance of EON per channel, in [0, 1]; a number is one channel.
-- `roughness` (...): That of EON, in [0, 1].
+- `roughness` (...): Roughness of EON, in [0, 1].
 - `alpha`, `ior`: GGX roughness of the dielectric, in [0.01, 1], and its index of refraction, in [1, 4]: one number
   each for all pairs.
 

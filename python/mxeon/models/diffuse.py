@@ -10,7 +10,7 @@ s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 there 
 - `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
 - `sigma` (...): Deviation of the facets' slope angle, in radian, in [0, pi/2].
 - `roughness` (...): In [0, 1].
-- `color` (..., C): Albedo that is wanted, in [0, 1].
+- `color` (..., C): Desired albedo, in [0, 1].
 
 Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing, with an error below 1e-14 / pi, or below 1e-14
 of the largest value that |s / t| takes at these cosines where that is larger. Albedos of FON and QON (...) are

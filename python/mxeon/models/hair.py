@@ -100,7 +100,7 @@ def attenuation(F: Array, T: Array) -> Array:
 class HairForm:
     """The model in the text's form, or in another form that shaders use.
 
-    - `tilts_light`: Whether the cuticle's tilt turns the light's inclination, and not the viewer's.
+    - `tilts_light`: Whether the cuticle's tilt turns the light's inclination instead of the viewer's.
     - `effective`: Whether F uses the effective index and the cross-section's angle gamma_o.
     """
 
@@ -119,7 +119,7 @@ TEXT = HairForm()
 class Section:
     """A view of the cross-section of a fiber.
 
-    - `sin_o`, `cos_o`: Of the viewer's inclination.
+    - `sin_o`, `cos_o`: Sine and cosine of the viewer's inclination.
     - `gamma_o`, `gamma_t`: Azimuth of the view from the normal, and that of the refracted ray.
     """
 
@@ -307,7 +307,7 @@ def hair_longitudinal(theta_i: ArrayLike, theta_o: ArrayLike, variance: ArrayLik
 def hair_azimuthal(phi: ArrayLike, scale: ArrayLike) -> Array:
     """Azimuthal scattering function N, the logistic density trimmed to [-pi, pi].
 
-    - `phi`: Angle from that of the exit, in radian; wrapped into [-pi, pi].
+    - `phi`: Angle relative to the exit's, in radian; wrapped into [-pi, pi].
     - `scale`: s, in radian, in [1e-12, 1e12].
 
     Result: per radian, at least 0. Its integral over [-pi, pi] is 1. [MaterialX2026], Chiang Hair
@@ -395,7 +395,7 @@ def deon_hair_absorption_from_melanin(
         m = -log(1 - concentration)
 
     - `melanin_concentration`, `melanin_redness` (...): In [0, 1) and in [0, 1].
-    - `eumelanin_color`, `pheomelanin_color` (..., 3): What a fiber's radius of the pigment leaves, in (0, 1].
+    - `eumelanin_color`, `pheomelanin_color` (..., 3): Light left by a fiber's radius of the pigment, in (0, 1].
 
     The sum is that of [dEon2011]. The specification does not say how concentration and redness
     determine the amounts: the equation is that of its implementations. [MaterialX2026],

@@ -7,7 +7,7 @@ straight on has wi = -wo; one below the horizon sees the back of the surface. `m
 values come from a file.
 
 - `wo`, `wi` (..., 3): Unit vectors to 1e-6; z may be negative.
-- `radiance` (..., C): c per channel, that inside the cone for a conical emitter, in [0, 1e50].
+- `radiance` (..., C): c per channel; for a conical emitter, inside the cone; in [0, 1e50].
 - `inner_angle`, `outer_angle` (...): Full angles of the cones where the falloff starts and where it ends, degrees,
   in [0, 360].
 - `color0`, `color90` (..., C): Factors along the normal and at grazing, in [0, 1].
@@ -47,8 +47,8 @@ HALF_TURN = np.pi / 360.0  # radians of half of a full cone angle in degrees
 def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
     """Radiance L_e = c of a surface that emits equally in all directions.
 
-    The equation has no side, so that the back emits as much. [MaterialX2026], section `uniform_edf`,
-    Uniform Emission Equation.
+    The equation does not distinguish sides, so the back emits equally. [MaterialX2026], section
+    `uniform_edf`, Uniform Emission Equation.
 
         >>> uniform_edf([0.6, 0.0, 0.8], [0.5, 2.0])
         array([0.5, 2. ])

@@ -7,7 +7,7 @@ Arguments come in the order `wo`, `wi`, `u`, `roughness`; a sampler omits those 
 - `wi` (..., 3): Direction to the light, a unit vector. If samples may lie below the horizon, those with z < 0
   are wasted: their weight is 0.
 - `u` (..., 2): Independent uniform random numbers, in [0, 1).
-- `roughness` (...): In [0, 1]; of Zeltner's sheen at least 0.01. For GGX (..., 2) or (): alpha along tangent +x
+- `roughness` (...): In [0, 1]; at least 0.01 for Zeltner's sheen. For GGX (..., 2) or (): alpha along tangent +x
   and bitangent.
 - `rho` (...): Gray reflectance for which the sampling of EON is exact, in [0, 1]: one number for each direction.
   Three of them for three samples of one `wo` might be a color, and are refused.
@@ -483,10 +483,11 @@ def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array | float) -> Arr
 def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the clipped transformed cosine, and its density.
 
-    As a sampler of EON it is biased: `wh` is cut at its own horizon, so directions remain that it never draws and that
-    EON reflects into. The lune d x + z < 0 lies at x > 0 where d < 0, as in Listing 3, and at x < 0 where d > 0. The
-    fitted d is positive for mu_o > 0.99991, and there the listing keeps the wrong side; this function keeps the right
-    one. [Portsmouth2025], Eqs. (26) and (27), Listing 3.
+    As a sampler of EON it is biased: clipping `wh` at its own horizon leaves directions into which
+    EON reflects but that are never sampled. The lune d x + z < 0 lies at x > 0 where d < 0, as in
+    Listing 3, and at x < 0 where d > 0. The fitted d is positive for mu_o > 0.99991, and there the
+    listing keeps the wrong side; this function keeps the right one. [Portsmouth2025], Eqs. (26) and
+    (27), Listing 3.
 
         >>> wi, pdf = cltc_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
         >>> bool(np.isclose(pdf, cltc_pdf([0.6, 0.0, 0.8], wi, 1.0), rtol=1e-14))
@@ -515,9 +516,9 @@ def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the paper's mixture of `cltc` and `uniform`, and its density.
 
-    `wi` (..., 3): Unit vectors on or above the horizon. `pdf` (...): Of the mixture, in 1/sr.
-    Listing 4 takes the uniform lobe for u1 <= P_u and divides u1 by P_u: 0/0 at roughness 0 and
-    u1 = 0. Here the uniform lobe has u1 < P_u, which a zero P_u never meets. [Portsmouth2025],
+    `wi` (..., 3): Unit vectors on or above the horizon. `pdf` (...): Density of the mixture, in
+    1/sr. Listing 4 uses the uniform lobe for u1 <= P_u and divides u1 by P_u: 0/0 at roughness 0
+    and u1 = 0. Here the condition is u1 < P_u, which is never true for P_u = 0. [Portsmouth2025],
     Section 4, Listing 4.
 
         >>> wi, pdf = eon_cltc_sample([0.0, 0.0, 1.0], [0.0, 0.0], 0.0)

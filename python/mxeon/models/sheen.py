@@ -6,7 +6,7 @@ The node's input `color` is a tint that scales the lobe; its albedos are those a
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
 - `mu` (...): Cosine of the polar angle of wo, in [0, 1].
 - `color` (..., C): Tint per channel, in [0, 1]; a number is one channel.
-- `roughness` (...): In [0, 1]; that of Zeltner's sheen counts as 0.01 below 0.01.
+- `roughness` (...): In [0, 1]; Zeltner's sheen raises it to at least 0.01.
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
@@ -47,11 +47,12 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
         f = color D / (4 (mu_o + mu_i - mu_o mu_i)),
         D = (2 + 1 / roughness) sin(theta_h)^(1 / roughness) / (2 pi)
 
-    Roughness 0 has the limit of every pair that does not graze on both sides: 0. So has the half vector along the
-    normal, at every roughness. Where both directions graze (mu_o + mu_i below 1e-300) there is no limit, and f counts
-    as 0. Values beyond float64 stop at its largest. The text clamps nothing; MaterialX keeps roughness above 0.005 and
-    cosines above 1e-6. Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi. [MaterialX2026], Conty-Kulla
-    sheen equations; [ContyKulla2017], Eq. (2).
+    Limits: f is 0 at roughness 0 unless both directions graze, and for a half vector along the
+    normal at any roughness. Where both directions graze (mu_o + mu_i below 1e-300) there is no
+    limit, and f counts as 0. Values are limited to float64's largest number. The text clamps
+    nothing; MaterialX keeps roughness above 0.005 and cosines above 1e-6. Accuracy: error below 66
+    / roughness times 2^-53 of f + 1 / pi. [MaterialX2026], Conty-Kulla sheen equations;
+    [ContyKulla2017], Eq. (2).
 
         >>> conty_kulla_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.017299, 0.069198])
@@ -65,9 +66,10 @@ def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: Arra
 
         f = color E(mu_o) a^2 / (pi |M^-1 wi|^4),  M^-1 = (a 0 b; 0 a 0; 0 0 1)
 
-    The text states f times the cosine, which is that of D_o times |M^-1 wi|, and cancels. The frame of M is turned so
-    that wo has azimuth 0. Along the normal b is 0 and any frame serves. Accuracy: as that of `conty_kulla_brdf`.
-    [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], whose omega_i is wo here.
+    The text gives f times the cosine, which is the cosine of D_o times |M^-1 wi| and cancels. The
+    frame of M is turned so that wo has azimuth 0. Along the normal b is 0, so any frame will do.
+    Accuracy: as for `conty_kulla_brdf`. [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], whose
+    omega_i is wo here.
 
         >>> zeltner_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.002916, 0.011662])
@@ -81,9 +83,10 @@ def zeltner_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E = exp(-((mu - m) / s)^2 / 2) / (s sqrt(2 pi)) + o
 
-    The fit falls below 0 for roughness in [0.03, 0.132] away from grazing; text and shaders leave it so. M keeps the
-    sign of z, so the transformed cosine has its whole mass above the horizon, and this is the integral of
-    `zeltner_brdf` times the cosine. [MaterialX2026], Zeltner Sheen Model, Directional Albedo.
+    The fit falls below 0 for roughness in [0.03, 0.132] away from grazing; neither the text nor
+    shaders clamp it. M keeps the sign of z, so the whole mass of the transformed cosine is above
+    the horizon, and this is the integral of `zeltner_brdf` times the cosine. [MaterialX2026],
+    Zeltner Sheen Model, Directional Albedo.
 
         >>> round(float(zeltner_albedo_dir(0.3, 0.5)), 6)
         0.315212

@@ -12,7 +12,7 @@ Sections are those of [MaterialX2026], appendix Thin-Film Iridescence Model, aft
   says otherwise.
 - `category`, `inputs`: Category of the node, and its inputs by the names of its ports, colors with three channels;
   `thinfilm_thickness` in nm, and `thinfilm_ior`.
-- `form`: What the text leaves open: the matrix to RGB, the number of orders, how an index per channel enters a sum
+- `form`: Choices that the text leaves open: the matrix to RGB, the number of orders, how an index per channel enters a sum
   over CIE XYZ, and the treatment of values outside [0, 1], which the text clamps at the very end.
 
 Result (..., 3): linear RGB, in [0, 1].
@@ -132,8 +132,9 @@ def over_schlick(
 ) -> tuple[Interface, Interface]:
     """Film over a Schlick substrate whose curve is F at cos theta_t, for both polarizations.
 
-    Where a dip turns F negative there is no amplitude, and F counts as 0. The phase jumps where both indices
-    are the same: within SAME they count as that, since color0 0.04 below a film of 1.5 is 2e-8 off in float32.
+    If a dip makes F negative there is no amplitude, and F counts as 0. The phase jumps where both
+    indices are equal. Indices within SAME count as equal, because in float32 color0 = 0.04 is off
+    by 2e-8 from the color of a film of index 1.5.
     """
     xp = array_namespace(mu, film_ior, F)
     F = arrays.at_least_0(F)
@@ -204,7 +205,8 @@ def _orders(x: Array, y: Array, phi: Array, orders: int) -> Array:
 
         S(phi) = exp(i mu phi - sigma^2 phi^2)
 
-    With w = z exp(i mu phi) the real part of w^m is 2 Re(w) that of w^(m-1) less |w|^2 that of w^(m-2).
+    With w = z exp(i mu phi), the real part of w^m is 2 Re(w) times that of w^(m-1), minus |w|^2
+    times that of w^(m-2).
     """
     xp, angle = array_namespace(phi), _column(CENTERS, phi) * phi
     damping = xp.exp(-((_column(SPREADS, phi) * phi) ** 2))
@@ -286,7 +288,7 @@ class Form:
     - `orders`: M; None sums all orders.
     - `mixed`: Whether the index of RGB channel k enters XYZ value k. If not, each RGB channel has
       its index in all of XYZ, so that a vanishing film does not change the channels.
-    - `share`: Factor of the Schlick substrate's reflectance in each polarization; by the text 1.
+    - `share`: Factor of the Schlick substrate's reflectance in each polarization; 1 in the text.
     - `least`: Smallest color0 that is converted to the index of a Schlick substrate.
     - `clamped`: Whether values outside [0, 1] are clamped, as the text does.
     """
@@ -463,7 +465,7 @@ def film_conductor(
 
     - `ior`, `extinction` (..., 3): Complex index of refraction per channel, in [0, 1e50].
 
-    Accuracy: as that of `film_dielectric`; at grazing angles, where all orders count, within 1e-4.
+    Accuracy: as for `film_dielectric`, but 1e-4 at grazing angles, where all orders count.
 
         >>> gold = [0.183, 0.421, 1.373], [3.424, 2.346, 1.770]
         >>> film_conductor(1.0, [0.0, 200.0], 1.5, *gold).round(4)
@@ -492,8 +494,8 @@ def film_schlick(
       acos(1/7), and reflectance r90 at grazing, per channel, in [0, 1]; a number is one channel.
     - `exponent` (...): q, in [0, 1e50].
 
-    The curve stands for the film's lower interface at the refracted angle, so that the value jumps where the
-    thickness leaves 0. A curve below 0 counts as 0, for it has no amplitude.
+    The curve replaces the film's lower interface at the refracted angle, so the value jumps as soon
+    as the thickness is not 0. A negative curve counts as 0, because it has no amplitude.
 
         >>> film_schlick(0.5, [0.0, 300.0], 1.5, [1.0, 0.8, 0.1], np.ones(3), np.ones(3), 5.0).round(4)
         array([[1.    , 0.8062, 0.1281],

@@ -16,11 +16,11 @@ transmission loses between facets.
 - `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at acos(1/7), and reflectance at
   grazing, per channel, in [0, 1]; a number is one channel.
 - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
-- `reading`: A key of READINGS: what takes the place of the index that `generalized_schlick_bsdf` does not have, and
+- `reading`: A key of READINGS: the replacement for the index that `generalized_schlick_bsdf` lacks, and
   of 1 - F of a curve that may leave [0, 1].
-- `radiance`: Whether the value is of radiance from wi to wo, as the specification has it; else it is times ior^2,
+- `radiance`: Whether the value is for radiance from wi to wo, as in the specification; otherwise it is times ior^2,
   the form that is integrated over wi to the transmitted share of the light from wo.
-- `shadow`: Whether light is lost to other facets on the far side, as in the BTDF; without, the share is the mean of
+- `shadow`: Whether light is lost to other facets on the far side, as in the BTDF; otherwise the share is the mean of
   1 - F over the normals that wo sees.
 - `inside`: Whether wo lies inside of the solid, where light is totally reflected beyond an angle.
 
@@ -227,10 +227,11 @@ def dielectric_transmittance_dir(
 
         T(wo) = ior^2 integral of dielectric_btdf |mu_i| over the hemisphere of wi
 
-    Result (..., C): in [0, 1] where alpha_x and alpha_y are the same. Accuracy: absolute error below 2e-4 for `ior`
-    >= 1; for less below 1e-8, since the quadrature is split at the critical angle, where F has an infinite slope. At
-    alpha 0 it is that of a plane, tint (1 - F(mu_o)). The albedo over all lights of one view, of the radiance, is this
-    divided by ior^2. [MaterialX2026], Directional Albedo and Energy Conservation; [Walter2007], Eq. (21).
+    Result (..., C): in [0, 1] where alpha_x and alpha_y are equal. Accuracy: absolute error below
+    2e-4 for `ior` >= 1, and below 1e-8 for smaller indices, since the quadrature is split at the
+    critical angle, where F has an infinite slope. At alpha 0 it is that of a plane, tint (1 -
+    F(mu_o)). The albedo of the radiance, over all lights of one view, is this divided by ior^2.
+    [MaterialX2026], Directional Albedo and Energy Conservation; [Walter2007], Eq. (21).
 
         >>> dielectric_transmittance_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], [1.5, 0.75]).round(3)
         array([[0.939],
@@ -438,9 +439,10 @@ def generalized_schlick_btdf(
 ) -> Array:
     """Transmission of `generalized_schlick_bsdf`, scatter modes T and RT.
 
-    F is taken at the angle on the outside, whichever side the light comes from, as renderers take it. Then the value
-    over the squared index is reciprocal. The letter of the specification, the angle of the incident light, would have
-    another F for each direction of one path. [MaterialX2026], Microfacet BTDF; generalized_schlick_bsdf.
+    F is taken at the angle on the outside, whichever side the light comes from, as in renderers.
+    This makes the value over the squared index reciprocal. Taken literally, the specification uses
+    the angle of the incident light, which gives a different F for each direction of a path.
+    [MaterialX2026], Microfacet BTDF; generalized_schlick_bsdf.
 
         >>> pair = [0.6, 0.0, 0.8], [-0.4, 0.0, -0.916515]
         >>> generalized_schlick_btdf(*pair, 0.04, 1.0, 1.0, [0.3, 0.3], 5.0).round(4)

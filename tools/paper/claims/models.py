@@ -52,7 +52,7 @@ def agreement(*errors: ArrayLike) -> Measured:
 
 
 def average(albedo: Callable[..., Any], *parameter: float) -> float:
-    """Integral of 2 mu E(mu) over [0, 1]; theta as variable, in which albedos are smooth."""
+    """Integral of 2 mu E(mu) over [0, 1], with the variable theta, in which albedos are smooth."""
     x, weight = np.polynomial.legendre.leggauss(64)
     theta, weight = 0.25 * np.pi * (1.0 + x), 0.25 * np.pi * weight
     return float(np.sum(weight * np.sin(2.0 * theta) * albedo(np.cos(theta), *parameter)))

@@ -154,7 +154,7 @@ class Paths:
     ) -> Array:
         """Values (N, 3) of one of FUNCTIONS; 0 where nothing is sampled.
 
-        - `inputs`: Those of the material, by name or path, and "normal" and "tangent" of the surface.
+        - `inputs`: Inputs of the material by name or path, and "normal" and "tangent" of the surface.
         """
         number, answer = list(FUNCTIONS).index(what), FUNCTIONS[what]
         if self.host.target == "slang":
@@ -541,8 +541,8 @@ def deviation(
 
     The cube root of chi-square over its degrees of freedom is nearly normal [WilsonHilferty1931].
 
-    - `draws`: Unit vectors, (N, 3); zeros for draws that are lost, whose share is 1 minus the integral.
-    - `density`: Of unit vectors (M, 3), in 1/sr, (M,).
+    - `draws`: Unit vectors, (N, 3); zeros for lost samples, whose share is 1 minus the integral.
+    - `density`: Density of unit vectors (M, 3), in 1/sr, (M,).
     - `pole`, `other`: Directions about which nearly all draws of a smooth lobe may lie. A cone about
       the other is one cell, if it lies apart.
     - `nodes`: See `density_integrals`.

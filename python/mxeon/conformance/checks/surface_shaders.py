@@ -74,7 +74,8 @@ MATERIALS, SUM = family(SurfaceShaderSpec), always(defect("sum_of_lobes"))
 def values(case: Case) -> Compared:
     """Values compared with the layer equation.
 
-    Lobes with two alphas use the mean error, or individual errors in units of their fits' largest.
+    Lobes with two alphas are judged by their mean error, or by individual errors relative to the
+    largest error of their fits.
     """
     [batch] = case.batches
     expected = case.expected(batch)

@@ -49,7 +49,7 @@ class Control:
     """A deliberately wrong variant of a check on the same host; it has to fail.
 
     - `variant`: The change that makes it wrong.
-    - `error`: Measured by the check on it.
+    - `error`: The error that the check measured on it.
     - `caught`: Whether the check failed on it, as it must.
     """
 
@@ -80,10 +80,10 @@ class Kind(Enum):
 class Region:
     """A set of pairs and inputs.
 
-    - `name`: Of a row of `mxeon.conformance.words.REGIONS`, or of an input.
-    - `part`: Of the input whose range it is, a row of `words.PARTS`; "" for a row of `REGIONS`.
+    - `name`: Name of a row of `mxeon.conformance.words.REGIONS`, or of an input.
+    - `part`: Part of the input that has the range, a row of `words.PARTS`; "" for a row of `REGIONS`.
     - `low`, `high`: Ends of the range; None where it has none.
-    - `channels`: Of a color, where the others are right; () for all.
+    - `channels`: Wrong channels of a color; () for all.
     """
 
     name: str
@@ -113,10 +113,10 @@ class Cause(BriefRepr):
 
     - `key`: Title of a model, or key of a row of the tables in `mxeon.conformance.words`.
     - `names`, `values`: The inputs, functions or files that it is about, and numbers.
-    - `branch`: Of the light, where it is wrong in one alone.
+    - `branch`: Branch of the light, if only one is wrong.
     - `region`: Where it holds; None for everywhere.
     - `wrong`, `of`: Number of wrong pairs, and of all.
-    - `rms`: Root-mean-square distance of the values from those that it gives.
+    - `rms`: Root-mean-square distance between the values and those that the cause predicts.
     - `point`: Directions and inputs at the worst point, by name.
     - `text`: Words of another program.
     """
@@ -147,9 +147,9 @@ NO_CAUSE = Cause(Kind.NONE)
 class Diagnosis(BriefRepr):
     """The explanation of a failure.
 
-    - `causes`: What is known, the cause that explains most first.
+    - `causes`: The known causes; the one that explains most comes first.
     - `distances`: Root-mean-square distance to every known model and defect, by title.
-    - `permitted`: Whether a function that the specification leaves open gives all values.
+    - `permitted`: Whether a function that the specification permits reproduces all values.
     """
 
     causes: tuple[Cause, ...] = ()
@@ -202,7 +202,7 @@ class Difference:
     is brighter.
 
     - `scene`: The light.
-    - `largest`: That of the worst pixel, positive where it is too bright; infinite if it is not finite.
+    - `largest`: Difference at the worst pixel, positive if too bright; infinite if it is not finite.
     - `highlight`: Whether the reference is brighter than white there.
     - `visible`: Share of the object's pixels whose difference exceeds VISIBLE.
     """
@@ -235,16 +235,16 @@ class Result(BriefRepr):
 
     - `check`, `claim`: Key of the check and the sentence that it tests.
     - `subject`: A node and its flag, or a document and its element.
-    - `verdict`: PASSED, FAILED or NOT_RUN; DIFFERS where the specification leaves the error open.
+    - `verdict`: PASSED, FAILED or NOT_RUN; DIFFERS if the specification permits the error.
     - `error`, `tolerance`: Measured and allowed; a check passes at error <= tolerance.
-    - `quantity`: What was measured, with its unit; None where nothing was.
-    - `derivation`: That of the tolerance.
+    - `quantity`: What was measured, with its unit; None if nothing was.
+    - `derivation`: Derivation of the tolerance.
     - `worst`: The inputs and values at the worst point, by name.
-    - `errors`: Errors of all samples, then those in each region; () where it passed, or has no samples.
-    - `samples`: Equal for equal samples; "" without `errors`.
-    - `diagnosis`: What explains a failure.
-    - `difference`: That of the worst picture of a material, whose error is weighted; None for others.
-    - `control`: None only where the check did not run.
+    - `errors`: Errors of all samples, then those in each region; () if it passed or has no samples.
+    - `samples`: Checksum of the samples; "" without `errors`.
+    - `diagnosis`: The explanation of a failure.
+    - `difference`: Difference of a material's worst picture, whose `error` is weighted; None for other checks.
+    - `control`: None only if the check did not run.
     - `reason`: Why it did not run.
     - `claimed`, `model`: Titles of the model that a renderer's own node claims, and of its published
       form that was judged.
@@ -328,9 +328,9 @@ class Picture:
     """A host's picture of one element, and the reference's if the models can compute it.
 
     - `image`: Linear radiance, (size, size, 3), float32; see `mxeon.shaders.scene` for its scale.
-    - `reference`: The same from the NumPy models; None where the material has other lobes.
+    - `reference`: The same from the NumPy models; None if the material has unsupported lobes.
     - `metadata`: Its origin: version, host, device, library, document, element, scene.
-    - `judged`: 1 in the pixels that were compared, else 0, (size, size, 1); None where all were.
+    - `judged`: 1 in the pixels that were compared, else 0, (size, size, 1); None if all were.
     """
 
     document: str
@@ -389,15 +389,15 @@ def report_files(folder: AnyPath) -> Iterator[Path]:
 class Scope:
     """What a run judges, and the software versions.
 
-    - `version`, `software`: That of mxeon, and those of what takes part: Python, NumPy, MaterialX, ...
+    - `version`, `software`: Version of mxeon, and versions of other software: Python, NumPy, MaterialX, ...
     - `contents`: Titles of the nodes of each document that the user gave, by its path.
-    - `unreached`: For each of these, by title of a node, the regions that its inputs are not in.
+    - `unreached`: For each of these documents, the regions that a node's inputs are not in, by the node's title.
     - `refused`: The faults of each document that could not be judged, by its path; if other libraries
       can read it, the key names the library behind it: "clay.mtlx with stock".
     - `libraries`: By folder that was judged as a library: its files, under "folder", and those of
       MaterialX that complete it, under "MaterialX", unless it is loaded before all of them.
     - `compared`: Libraries judged for comparison; the verdict ignores their failures.
-    - `unjudged`: What no check judges, each with the reason.
+    - `unjudged`: Subjects that no check judges, with reasons.
     - `seconds`: Time from the first document to the last result; None for a run that is read.
     """
 
@@ -420,8 +420,8 @@ class Run(Scope):
     Use `passed` for the overall result. It does not follow from `results`, which lack refused
     documents and include failures of libraries that are judged for comparison.
 
-    - `notes`: Warnings that a reader has to see, e.g. what a host cannot express.
-    - `missing`: Tasks that are not done yet, where the run was interrupted.
+    - `notes`: Warnings for readers, e.g. about features that a host cannot render.
+    - `missing`: Unfinished tasks of an interrupted run.
     """
 
     hosts: tuple[Identity, ...]

@@ -320,7 +320,7 @@ class MediumSpec(spec.RowSpec[media.Value]):
         return nodes.document_text(INTERFACE + media + layer + nodes.SURFACE)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views, except at grazing where refraction may fail, and random inputs."""
+        """Random views and inputs, without grazing views, where refraction may fail."""
         rng, count = generator(), counts.pairs
         wo = samples.turned_directions(rng, count)
         return (Batch(wo, wo * [1.0, 1.0, -1.0], self.random_inputs(rng, count)),)

@@ -106,7 +106,7 @@ def visibility(pair: Pair) -> Array:
 
 
 def missing(pair: Pair) -> Array:
-    """(1 - E_ss) / E_ss, to 1e-10 where both alphas are the same, elsewhere as `ggx_albedo_dir_anisotropic`."""
+    """(1 - E_ss) / E_ss, to 1e-10 for equal alphas, otherwise as accurate as `ggx_albedo_dir_anisotropic`."""
     return missing_of(pair.wo, pair.roughness)
 
 

@@ -387,7 +387,7 @@ def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array,
         k^2 = (n_max - n) (n - 1 / n_max)
 
     - `reflectivity` (...): Reflectance at normal incidence r, per channel, in [0, 1).
-    - `edge_color` (...): Per channel, in [0, 1]: 0 has the largest n, and no extinction; 1 the least n.
+    - `edge_color` (...): Per channel, in [0, 1]: 0 gives the largest n and no extinction, 1 the smallest n.
 
     The paper's k^2 is (r (n + 1)^2 - (n - 1)^2) / (1 - r), a difference of large numbers. Its roots in n are n_max and
     1 / n_max, and k^2 is their product here; 1 - sqrt(r) is (1 - r) / (1 + sqrt(r)). [Gulbrandsen2014]; [MaterialX2026], artistic_ior.

@@ -73,7 +73,7 @@ class Light:
 
     - `wo`: directions to the viewer.
     - `wi`: directions to the light; None in an environment of radiance 1.
-    - `behind`: whether only what refracts light of the environment counts, as in a rasterizer's lookup.
+    - `behind`: whether only refracted light of the environment counts, as in a rasterizer's lookup.
     """
 
     wo: Array
