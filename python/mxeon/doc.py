@@ -62,7 +62,7 @@ def _table(definitions: Sequence[mx.NodeDef]) -> Table:
 
 
 def _merged(ports: Iterable[PortRow]) -> Iterable[PortRow]:
-    """One port for each name, with the types of all; the first has the other columns."""
+    """One port per name, with the types of all; the other columns come from the first."""
     merged: dict[str, PortRow] = {}
     for port in ports:
         first = merged.get(port.name, port)
@@ -125,7 +125,7 @@ def table_text(table: Table) -> str:
 
 
 def _types_text(port: PortRow, table: Table) -> str:
-    """Types of a port in words; of several ports with the same choice, all refer to the first."""
+    """Types of a port in words; if several ports have the same choice, each refers to the first."""
     first = next(other for other in table if other.types == port.types)
     if len(port.types) == 1:
         return port.types[0]
@@ -136,7 +136,7 @@ def _types_text(port: PortRow, table: Table) -> str:
 
 
 def read_tables(text: str) -> dict[str, Table]:
-    """Tables of a specification whose first column is headed Port, by the node of the heading above."""
+    """Tables of a specification whose first column is headed Port, by the node in the heading above."""
     tables: dict[str, Table] = {}
     for heading, rows in _headed_tables(text):
         columns = [cell.lower() for cell in rows[0]]
@@ -236,7 +236,7 @@ def _of_port(node: str, port: PortRow, defined: PortRow) -> Iterator[Difference]
 
 
 def _value(text: str) -> Any:
-    """A default as its different numbers in order, or as text: 1.0 means 1.0, 1.0, 1.0 as well."""
+    """A default as its distinct numbers in order, or as text: 1.0 also stands for 1.0, 1.0, 1.0."""
     if text in NONE:
         return ""
     try:

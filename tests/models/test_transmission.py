@@ -132,8 +132,8 @@ def test_the_transmittance_below_index_1_is_a_sum_over_the_critical_cone(mu, alp
 
 @pytest.mark.parametrize("alpha", [0.1, 0.4, 1.0])
 def test_as_much_light_leaves_a_solid_as_enters(alpha):
-    # n^2 times the cosine-weighted average from inside equals the one from outside, by paths and by
-    # all light.
+    # n^2 times the cosine-weighted average from inside equals the one from outside, for traced
+    # paths and for integrated light.
     n, (x, w) = 1.5, np.polynomial.legendre.leggauss(32)
     mu, weight = 0.5 * (x + 1.0), 0.5 * w * (x + 1.0)
 

@@ -112,7 +112,7 @@ DIRECTION = 72.0 * ROUNDING
 TURNED_DIRECTION = 10.0 * DIRECTION
 TURNED_SHARE = 10 / 1000
 
-# A density at the sample against that where the direction is given, relative. Both have a length
+# A sample's density compared with the density for its direction, relative. Both have a length
 # or its square to the third or fourth power, 6 roundings each, over det M, a difference of terms
 # <= 1.6 that is 0.91 or more: 4 x (6 + 6) + 6 x 1.8 + 20 others, twice. Near the line where CLTC
 # ends its density is a difference, exact to DIRECTION absolutely.

@@ -53,7 +53,7 @@ class Job:
 
 
 def job(*options, cache=None, longest=None):
-    """Run the command with options; `cache` is the driver's folder, and `longest` the seconds until it is stopped."""
+    """Run the command with options; `cache` is the driver's folder, and `longest` the maximum number of seconds."""
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
     environment |= {} if cache is None else {FOLDER: str(cache)}
     command = [sys.executable, "-P", "-m", "mxeon", "check", "--json", *options]

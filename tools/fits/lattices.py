@@ -41,7 +41,9 @@ LATTICES = {"Fibonacci": fibonacci, "R2": r2, "Hammersley": hammersley}
 
 
 def error(lattice, count, alpha):
-    """Largest relative error of a white lobe's albedo over cosines of the view, for both uses of the two numbers."""
+    """Largest relative error of a white lobe's albedo over cosines of the view, for both
+    assignments of the two numbers.
+    """
     numbers, found = lattice(count), 0.0
     wo = np.stack([np.sqrt(1.0 - COSINES**2), 0.0 * COSINES, COSINES], axis=-1)[:, None]
     for u in (numbers, numbers[::-1]):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Write the tables of surfaces.md: what the shaders do with each sentence of their specifications.
+"""Write the tables of surfaces.md: how the shaders implement each sentence of their specifications.
 
 `python -m tools.site.surface_texts` judges all sentences on HOSTS, and with VERSIONS of MaterialX on gl; ten
 minutes.

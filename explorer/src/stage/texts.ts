@@ -26,7 +26,7 @@ precision highp int;
 precision highp sampler2D;
 `;
 
-/** Paths have no neighboring pixels, and therefore textures no derivatives. */
+/** Paths have no neighboring pixels, so textures are read without derivatives. */
 const NO_MIPS = "#define texture(map, at) textureLod(map, at, 0.0)\n";
 
 /** One triangle that covers the whole frame. */

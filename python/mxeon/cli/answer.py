@@ -489,7 +489,7 @@ def _failures(run: Run) -> Iterator[Line]:
 
 
 def _tone(run: Run, results: Iterable[Result]) -> Verdict | None:
-    """The verdict that failures have for a run, which ignores those of compared libraries."""
+    """The verdict of failures for a run, which ignores libraries judged for comparison."""
     return None if all(each.library in run.compared for each in results) else FAILED
 
 

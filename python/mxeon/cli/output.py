@@ -135,7 +135,7 @@ def warn(message: object) -> None:
 
 
 def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    """Print a warning of Python's; see `warnings.showwarning`."""
+    """Print a Python warning; see `warnings.showwarning`."""
     warn(message)
 
 

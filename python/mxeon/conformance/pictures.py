@@ -208,7 +208,7 @@ def judge_document(
         for scene in _scenes(host)
         for text in host.approximations(shader, scene)
     )
-    # A result names the input itself.
+    # Results already name the inputs that are out of range.
     told_inputs = any(each.diagnosis.kind is Kind.INPUT for each in results)
     untold = (each for each in others if not (told_inputs and isinstance(each, notes.RangeWarning)))
     told += [(str(each), file.name) for each in untold]

@@ -87,7 +87,9 @@ def _error(function: str, values: Array) -> float:
 def exact(function: str) -> tuple[Array, Array]:
     """Values of a shader function in NumPy, and the factor of its errors.
 
-    The factor is pi cos(theta_i) for a BRDF, otherwise the inverse of 1 or the value, plus its change with each argument.
+    The factor is pi cos(theta_i) for a BRDF. For functions judged by their condition, it is the
+    inverse of a sum: the value, or 1 if that is larger, plus the value's change with each argument.
+    Otherwise it is 1.
     """
     columns = random_columns()
     values = _expected(function, columns)

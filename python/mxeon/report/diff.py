@@ -48,7 +48,7 @@ CHANCE, DISTANCE = 6.0, 3.0
 
 @dataclass(frozen=True)
 class Growth:
-    """A number of a result that is larger than before by more than noise, or smaller.
+    """A number of a result that grew or fell by more than noise.
 
     - `key`: A row of `mxeon.conformance.words.GROWTHS`.
     - `region`: The part of the samples; None for all.
@@ -248,7 +248,7 @@ def to_json(changes: Iterable[Change]) -> list[dict[str, object]]:
 
 
 def annotations(changes: Iterable[Change]) -> Iterator[str]:
-    """What got worse or was lost, as commands to GitHub's log: one for each subject, since it shows ten at most."""
+    """Regressions and lost checks as commands to GitHub's log: one per subject, since it shows at most ten."""
     for (kind, host, library, subject), rows in groupby(changes, key=_group):
         if level := {WORSE: "error", LOST: "warning"}.get(kind):
             place = f"{host} with {library}" if host else ""
@@ -394,7 +394,7 @@ def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
 
 
 def _is_rounded(old: Result, new: Result) -> bool:
-    """Whether functions of another driver explain a failure: a few samples leave the tolerance, but not their rms.
+    """Whether another driver's functions explain a failure: a few samples exceed the tolerance, but their rms does not.
 
     Of MaterialX's sheen, 5 of 6957 samples are off by 1.2e-4 on llvmpipe and none on lavapipe, at a tolerance of 2e-5.
     """
@@ -404,7 +404,7 @@ def _is_rounded(old: Result, new: Result) -> bool:
 
 
 def _is_farther(old: Result, new: Result) -> bool:
-    """Whether the best match no longer explains the values as it did; it does up to a share of the own model's distance."""
+    """Whether the best match is clearly farther from the values than before, and not negligibly far."""
     was, now = old.diagnosis.distance, new.diagnosis.distance
     own = next(iter(new.diagnosis.distances.values()), math.inf)
     factor = SPREAD if old.samples == new.samples else DISTANCE

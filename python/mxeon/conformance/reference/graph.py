@@ -279,7 +279,7 @@ class Graph(Nodes):
         return constant
 
     def _along(self, path: Path, outer: Path = ()) -> list[mx.Element]:
-        """Elements at and around a path, outermost first, down from another path's element."""
+        """Elements at a path and around it, outermost first, starting at the depth of another path."""
         ends = range(max(len(outer), 1), len(path) + 1)
         return [self.elements[path[:end]] for end in ends if path[:end] in self.elements]
 
@@ -333,7 +333,7 @@ class Graph(Nodes):
 
 
 def _applied(node: mx.Node, operation: Callable[..., Value], *values: Value) -> Value:
-    """Value of a node whose operation is a function of its inputs; a library's graph may give it any."""
+    """Value of a node whose operation is a function of its inputs; other libraries' graphs may pass invalid ones."""
     try:
         return nodes.fitted(node.getType(), operation(*values))
     except ValueError as error:

@@ -59,7 +59,7 @@ DARK = Scene("dark")  # no light; for emission or other lights
 PLACE = (
     "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"  # OSL expressions of a point's place on the body "plane"
 )
-FEWEST_SAMPLES = 16  # lobes below the surface are noise with fewer
+FEWEST_SAMPLES = 16  # minimum for lobes below the surface, which are too noisy with fewer
 
 
 def request(scene: Scene, lobes: Sequence[str]) -> SceneParts:
