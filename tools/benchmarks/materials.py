@@ -106,7 +106,9 @@ class Frame:
         indices = (corner[:, None] + [0, 1, width, width, 1, width + 1]).astype("u4")
         buffers = [
             (context.buffer(values), f"{values.shape[1]}f", name)
-            for name, values in points.vertices(MESH, "sphere").items()
+            for name, values in points.vertices(
+                points.visible(MESH, "sphere", points.MARGIN)
+            ).items()
             if name in program
         ]
         self._mesh = context.vertex_array(program, buffers, context.buffer(indices))
