@@ -289,6 +289,7 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
     increase the deviation.
     """
     u = random(DRAWS, generator())
+    looks = LOOKS[1:2] if case.control else LOOKS
     for text, batch in subjects(case, False, True):
         rough = {
             name: np.maximum(each, LEAST_COUNTED)
@@ -311,13 +312,13 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
                 def density(w: Array, ask: Callable[..., Array] = ask, axes: Array = axes) -> Array:
                     return case.outputs(Batch(w, w, {}), ask("pdf", wi=w @ axes.T))[:, 0]
 
-                drawn = ask("wi", u=u) @ axes
-                straight = np.linalg.norm(drawn + view, axis=1, keepdims=True) < 1e-6
                 pole = refracted(view, 1.0 / 1.5 if inside else 1.5)
                 mirror = view * [-1.0, -1.0, 1.0]
-                for nodes in (LOOKS[1],) if case.control else LOOKS:
+                for count, nodes, suspect in looks:
+                    drawn = ask("wi", u=u[:count]) @ axes
+                    straight = np.linalg.norm(drawn + view, axis=1, keepdims=True) < 1e-6
                     score = deviation(drawn * ~straight, density, pole, mirror, nodes)
-                    if score <= SUSPECT:
+                    if score <= suspect:
                         break
                 yield score, inside, one
                 if case.control and score > MOST_DEVIATIONS:
@@ -514,13 +515,17 @@ def path_albedo(case: Case) -> Iterator[Compared]:
 # that are nearly a single direction: choose that direction as the pole. A density that is wrong
 # everywhere by a fraction e adds N e^2 to chi-square, whose standard deviation is the root of twice
 # the number of cells: with 2^15 samples in these cells, six standard deviations correspond to e =
-# 6.5 %.
+# 6.5 %, and with half of the samples three do.
 CELLS = 16  # divisions of the angle and of the azimuth
 ORDERS = 4, 8, 16, 32, 64, 128  # quadrature nodes per axis of a patch
-# Numbers of samples to try; the first that raises no suspicion is the last.
-LOOKS = ORDERS[:1], ORDERS[:4], ORDERS
-SUSPECT = 3.0  # standard deviations, exceeded by chance once in 700 tests
-CLOSE = 0.5  # expected samples up to which the nodes of a patch must agree
+# Samples, nodes, and standard deviations; the first look whose score does not exceed them is the last.
+LOOKS = (
+    (DRAWS // 2, ORDERS[:1], 2.0),
+    (DRAWS // 2, ORDERS[:4], 2.0),
+    (DRAWS, ORDERS[:4], 3.0),
+    (DRAWS, ORDERS, 0.0),
+)
+CLOSE = 2.0  # expected samples up to which the nodes of a patch must agree
 MOST_DEVIATIONS = 6.0  # standard deviations, the tolerance of the check
 CONE = 0.02  # radian, width of the first ring
 LEAST = 1e-7  # radian, distance below which a density is constant
