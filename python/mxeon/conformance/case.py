@@ -28,7 +28,7 @@ Change = Callable[[Batch, Array], Array]  # changes values of a batch
 KEPT_SPECS = 2  # specs with cached expected values: the case's own and a related one
 
 
-@lru_cache(maxsize=2 * KEPT_SPECS)
+@lru_cache(maxsize=3 * KEPT_SPECS)
 def remembered(spec: Spec, quantity: str) -> Remembered:
     return Remembered(getattr(spec, quantity))
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance import backends, controls, diagnosis, samples
-from mxeon.conformance.case import SCATTERING, Case, dead_inputs
+from mxeon.conformance.case import SCATTERING, Case, dead_inputs, remembered
 from mxeon.conformance.check import Check, always, family
 from mxeon.conformance.checks import lobes
 from mxeon.conformance.checks.lobes import CLEAR, FILMS, TRANSMITTING
@@ -260,12 +260,9 @@ def transmitted(case: Case) -> Iterator[Compared]:
 
 
 def limited(spec: TransmissionSpec, batch: Batch, measured: Array, opaque: bool) -> Compared:
-    functions = spec.functions
     if opaque and not spec.reflects:
-        return Compared(batch, measured, batch.strength * functions.tint(batch.inputs))
-    rest = functions.tint(batch.inputs) * (1.0 - functions.reflected(batch.wo, batch.inputs))
-    ends = np.maximum(rest, 0.0), functions.passed(batch.wo, batch.inputs, True)
-    least, most = (batch.strength * each for each in (np.minimum(*ends), np.maximum(*ends)))
+        return Compared(batch, measured, batch.strength * spec.functions.tint(batch.inputs))
+    least, most = batch.strength * np.sort(remembered(spec, "ends")(batch), axis=0)
     return Compared(batch, measured, np.clip(measured, least, most))
 
 

@@ -503,7 +503,7 @@ def path_albedo(case: Case) -> Iterator[Compared]:
     for view in VIEWS:
         one = Batch(view[np.newaxis], view[np.newaxis], batch.inputs)
         one = one.altered(normal=NORMAL, tangent=TANGENT)
-        drawn = text.values("weight", view, u=lattice(DRAWS)).mean(axis=0, keepdims=True)
+        drawn = text.values("weight", view, u=lattice(SUMMED)).mean(axis=0, keepdims=True)
         seen = case.evaluating.albedo(one) + case.evaluating.transmitted(one)
         opacity = text.values("opacity", view)
         yield Compared(one, case.outputs(one, drawn), 1.0 - opacity + opacity * seen)
@@ -700,7 +700,7 @@ ROWS = (
     PATHS(key="path_albedo",
           claim="Draws from outside carry the light that a rasterizer reflects and transmits.",
           applies=MATERIALS, measure=path_albedo,
-          tolerance=ALBEDO.plus(Term(5e-3, "a sum of 32768 draws")),
+          tolerance=ALBEDO.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
           explain=always(defect("other_path_albedo")),
           methods=lambda spec, methods: (

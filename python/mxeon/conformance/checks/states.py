@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance import controls, samples
-from mxeon.conformance.backends import joined
+from mxeon.conformance.backends import Backend, joined
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import Check, family
 from mxeon.conformance.checks.lobes import DARK
@@ -282,31 +282,33 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
     return tuple(found)
 
 
-def pixels_of(case: Case) -> list[Pixels]:
+@lru_cache(maxsize=1)  # a control has the same
+def pixels_of(backend: Backend) -> tuple[Pixels, ...]:
     """Pixels with combinations of the states that the node and the engine support."""
-    rng, plain = samples.generator(), {*case.lobe.plain, *case.backend.plain}
-    if not case.host.reads_images:
+    lobe, rng = backend.lobe, samples.generator()
+    plain = {*lobe.plain, *backend.plain}
+    if not backend.host.reads_images:
         plain.add("inputs from an image")
     if "frame" in plain:
         plain.add(TURNED_SKY)
-    if Ability.MATERIAL in case.spec.requires:  # its tints are internal
+    if Ability.MATERIAL in lobe.requires:  # its tints are internal
         plain.add(TWO_SIDED)
-    if case.host.active.transmission == "opacity":  # environments do not scale it
+    if backend.host.active.transmission == "opacity":  # environments do not scale it
         plain.add(TWO_SIDED)
     axes = tuple(
         tuple(state for n, state in enumerate(each) if not n or not {name, state} & plain)
         for name, each in AXES.items()
     )
     rows = covering(axes)
-    turned = case.backend.turned
+    turned = backend.turned
     batch = turned.where(np.arange(EACH * len(rows)) % len(turned.wo))
-    if case.lobe.curved:  # otherwise light does not leave elsewhere
-        batch = batch.altered(**case.lobe.random_inputs(rng, len(batch.wo)))
-    if case.lobe.types.get("roughness") == "vector2":
+    if lobe.curved:  # otherwise light does not leave elsewhere
+        batch = batch.altered(**lobe.random_inputs(rng, len(batch.wo)))
+    if lobe.types.get("roughness") == "vector2":
         alpha = np.array(batch.inputs["roughness"])
         alpha[::2, 1] = np.roll(alpha[:, 0], 1)[::2]  # two alphas in at least every other pixel
         batch = batch.altered(roughness=alpha)
-    if "weight" in case.spec.names:
+    if "weight" in lobe.names:
         # Equal within a square: derivatives are undefined where a lobe is skipped.
         batch = batch.altered(weight=np.repeat(rng.choice(WEIGHTS, len(batch.wo) // 4), 4))
     found = []
@@ -316,7 +318,7 @@ def pixels_of(case: Case) -> list[Pixels]:
         for axis, words in zip(AXES.values(), states, strict=True):
             pixels = axis[words](pixels, rng)
         found.append(pixels)
-    return found
+    return tuple(found)
 
 
 exchanged = controls.with_batch(
@@ -326,7 +328,7 @@ exchanged = controls.with_batch(
 
 
 def states(case: Case) -> Iterator[Compared]:
-    groups = pixels_of(case)
+    groups: Sequence[Pixels] = pixels_of(case.backend)
     if case.control:
         groups = [each for each in groups if not each.image][:FEW]
     # Draw constant inputs separately.
@@ -486,7 +488,7 @@ def in_turn(batch: Batch, client: Client) -> Batch:
 def diagnose(case: Case) -> Diagnosis:
     tolerance, compared = case.tolerance("states"), list(states(case))
     bad = np.concatenate(list(map(tolerance.wrong, compared)))
-    pixels = [words for each in pixels_of(case) for words in _words(each)]
+    pixels = [words for each in pixels_of(case.backend) for words in _words(each)]
     return Diagnosis((shared(bad, pixels), *not_finite(compared)))
 
 

@@ -427,6 +427,12 @@ class TransmissionSpec(FacetSpec):
     def reflects(self) -> bool:
         return self.row.fixed["scatter_mode"] == "RT"
 
+    def ends(self, batch: Batch) -> Array:
+        """Light that passes by the BTDF, and all light that is not reflected, for light of 1, (2, N, 3)."""
+        wo, inputs, functions = batch.wo, batch.inputs, self.functions
+        rest = functions.tint(inputs) * (1.0 - functions.reflected(wo, inputs))
+        return np.stack([functions.passed(wo, inputs, True), np.maximum(rest, 0.0)])
+
     def reversed(self, mu: Array, alpha: float, index: float, inputs: Mapping[str, Array]) -> Array:
         """Share of the light that passes from the denser side with this index, averaged over the channels, (N,)."""
 
