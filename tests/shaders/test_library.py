@@ -241,6 +241,19 @@ def test_a_folder_is_loaded_before_the_standard_libraries(tmp_path):
     assert not any(one.ours for one in found)
 
 
+def test_materials_in_a_folder_do_not_replace_nodes_of_other_documents(tmp_path):
+    (tmp_path / "brick.mtlx").write_text(BRICK)
+    constant = '<constant name="own" type="color3"><input name="value" type="color3" value="{}"/></constant>'
+    image = '<image name="own" type="color3"><input name="file" type="filename" value="own.png"/></image>'
+    own = connected(color='nodename="own"')
+    (tmp_path / "materials.mtlx").write_text(material(image + own))
+    [shader] = generate(material(constant.format("0.7, 0, 0") + own), "glsl", library=tmp_path)
+    assert not any(port.type == "filename" for port in shader.inputs)
+    assert {type(each) for each in library.load_library(tmp_path).getChildren()}.isdisjoint(
+        {mx.Node}
+    )
+
+
 @pytest.mark.parametrize("text", ["<materialx", '<materialx version="1.39">text</materialx>'])
 def test_a_folder_with_a_broken_document_is_one_line(tmp_path, text):
     (tmp_path / "brick.mtlx").write_text(text)
