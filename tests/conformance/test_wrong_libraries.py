@@ -320,6 +320,49 @@ def test_what_is_written_differently_and_has_the_released_values_passes(judged, 
     assert result.verdict == PASSED, said(result)
 
 
+SHARED = ("genglsl/lib/eon.glsl", "genosl/lib/eon.osl")
+ENTRY, PATHS = "genglsl/oren_nayar_diffuse_bsdf.glsl", "genglsl/path/microfacets.glsl"
+LOSS = (
+    "float P = EON_P0 + mu * (EON_P1 + mu * (EON_P2 + mu * (EON_P3 + mu * EON_P4)));",
+    "float Q = EON_Q0 + mu * (EON_Q1 + mu * (EON_Q2 + mu * EON_Q3));",
+)
+SIGNATURE = """void oren_nayar_diffuse_bsdf(ClosureData closureData, float weight, vec3 color, float roughness,
+                             vec3 N, bool energy_compensation, inout BSDF bsdf)"""
+# Files of eonlib, a text and the one in its place.
+REWRITTEN = {
+    "a comment with braces": (SHARED, "// A_F of", "// void main() { } } /* A_F of"),
+    "a renamed variable": (SHARED, "sigma2", "squared_sigma"),
+    "more digits": (SHARED, "EON_PI 3.14159265358979", "EON_PI 3.1415926535897932385"),
+    "an exponent": (SHARED, "1.0 - 0.5 * sigma2", "1.0 - 5.0e-1 * sigma2"),
+    "line ends": (SHARED, "\n", "\r\n"),
+    "an unused function": (SHARED, "// A_q of", "float eonlib_half(float x)\n{\n    return 0.5 * x;\n}\n\n// A_q of"),
+    "exchanged statements": (SHARED, "\n    ".join(LOSS), "\n    ".join(LOSS[::-1])),
+    "a named part": (SHARED, "return 1.0 / (1.0 + EON_C1 * roughness);", "float under = EON_C1 * roughness + 1.0;\n    return 1.0 / under;"),
+    "another layout": ((ENTRY,), SIGNATURE, SIGNATURE.replace(" ", "\n\t").replace("float", "/* r */ float")),
+    "a comment in the document": (("libraries/diffuse/eonlib_genglsl_impl.mtlx",), '<materialx version="1.39">', '<materialx version="1.39" ><!-- <implementation name="IM" /> -->'),
+    "a whole number": ((DEFINITIONS,), 'value="0.0"', 'value="0"'),
+}  # fmt: skip
+EDITED = {  # the text for path tracers
+    "a comment of the paths": ("bool turned = distance(", "// material_pdf( { } }\n        bool turned = distance("),
+    "a renamed variable of the paths": ("returned", "sent_back"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [*REWRITTEN, *EDITED])
+def test_eonlib_written_differently_passes(judged, tmp_path, name):
+    files, old, new = REWRITTEN.get(name) or ((PATHS,), *EDITED[name])
+    library = str(copy_of_eonlib(tmp_path))
+    replace_text(tmp_path, old, new, *files)
+    node = "dielectric_bsdf, scatter_mode R" if name in EDITED else ON
+    results = [
+        *judged.texts("languages", library).values(),
+        *judged.all("twins", SHADER_FUNCTIONS, "gl", library),
+        *(judged(key, node, library=library) for key in ("value", "states", "inputs", "sample")),
+    ]
+    failures = [(each.check, each.reason, said(each)) for each in results if each.verdict != PASSED]
+    assert not failures
+
+
 @pytest.mark.parametrize("title", ["generalized_schlick_bsdf, scatter_mode R", "conductor_bsdf"])
 def test_directions_of_an_environment_by_other_points_pass(judged, tmp_path, title):
     """The points are those of the R2 sequence, which fill the square as evenly as MaterialX's lattice."""
