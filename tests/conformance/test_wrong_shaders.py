@@ -266,6 +266,7 @@ WRONG = {
     "absorption_vdf": (
         ("genglsl/absorption_vdf.glsl", "if (closureData.closureType == CLOSURE_TYPE_TRANSMISSION)", "", "above",
          ("medium_in_reflection",)),
+        ("genglsl/layer_bsdf.glsl", "base.response * passed", "base.response", "between", ("medium_between",)),
     ),
     "anisotropic_vdf": (
         ("genglsl/anisotropic_vdf.glsl", "absorption + scattering", "absorption + min(scattering, 2.0)", "transmittance",

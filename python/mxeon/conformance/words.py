@@ -233,6 +233,7 @@ DEFECTS = {
     "undrawn_light": "light comes from where no draw goes, from {0}",
     "other_refraction": "an environment is looked up in other directions than those of visible facets",
     "medium_in_reflection": "a medium takes light that is reflected above it",
+    "medium_between": "a medium between two lobes does not take its share",
     "negative_color": "a negative color reflects other light than in MaterialX's own text",
     "other_path_value": "a path tracer gets another value than a rasterizer",
     "other_path_emission": "a path tracer gets another emission than the node's equation",

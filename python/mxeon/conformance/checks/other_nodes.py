@@ -37,6 +37,15 @@ def above(case: Case) -> Iterator[Compared]:
         yield Compared(batch, passed, np.ones_like(passed))
 
 
+def between(case: Case) -> Iterator[Compared]:
+    """Light through the lobe below a medium, compared with the medium's share of the light without one."""
+    for batch in case.batches:
+        lit = batch.altered(**{"bottom/weight": 1.0})
+        clear = {each.name: np.zeros(3) for each in case.spec.inputs if each.type == "vector3"}
+        whole = case.evaluating.transmitted(lit.altered(**clear))
+        yield Compared(batch, case.transmitted(lit), whole * case.expected(batch))
+
+
 # --- utility nodes, in units in which the roundings of their values are alike ---------------------
 
 
@@ -80,6 +89,11 @@ ROWS = (
               "a medium takes a tenth",
               lambda case: replace(case, throughputs=lambda batch, values: 0.9 * values)),
           explain=lambda case: defect("medium_in_reflection"), requires=Ability.PAIRS | Ability.LIGHT),
+    Check(key="between",
+          claim="Between two lobes, a medium takes its share of the light that the lower one transmits.",
+          applies=MEDIA, measure=between, tolerance="value",
+          control=controls.scale("values are 0.1 % too large", 1.001),
+          explain=lambda case: defect("medium_between"), requires=Ability.PAIRS | Ability.LIGHT),
     Check(key="opacity", claim="The light that a surface emits is scaled by its opacity.",
           applies=family(emission.EmittingSurface), measure=VALUE, tolerance="value",
           control=controls.with_inputs("the opacity is 1", opacity=1.0), explain=diagnose_opacity),

@@ -294,15 +294,25 @@ def _spec(row: Emission) -> EmissionSpec:
 EMISSION_SPECS = tuple(map(_spec, (*emissions.EMISSIONS, *emissions.COMBINED_EMISSIONS)))
 
 
-# --- media: the VDF nodes, below a surface that lets light through --------------------------------
+# --- media: the VDF nodes, between two lobes that let light through --------------------------------
 
 # Roundings of the exponential of a sum, of a product, and of the quotient of two such values.
 TRANSMITTANCE = sum_of(roundings(12), quantity=Quantity.TRANSMITTANCE)
-INTERFACE_TYPES = {"weight": "float", "scatter_mode": "string"}
-INTERFACE = nodes.lobe_text(
-    "dielectric_bsdf", {"weight": 1.0, "scatter_mode": "T"}, "top", INTERFACE_TYPES
+TYPES = {"weight": "float", "scatter_mode": "string"}
+TOP, BOTTOM = (
+    nodes.lobe_text("dielectric_bsdf", {"weight": 1.0, "scatter_mode": "T"}, name, TYPES)
+    for name in ("top", "bottom")
 )
-PORTS = nodes.connection_text("top", "BSDF", "top") + nodes.connection_text("base", "VDF", "medium")
+
+
+def layer_text(name: str, top: str, kind: str, base: str) -> str:
+    ports = nodes.connection_text("top", "BSDF", top) + nodes.connection_text("base", kind, base)
+    return nodes.node_text("layer", "BSDF", name, ports)
+
+
+LAYERS = layer_text("filled", "top", "VDF", "medium") + layer_text(
+    "lobe", "filled", "BSDF", "bottom"
+)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -316,8 +326,7 @@ class MediumSpec(spec.RowSpec[media.Value]):
     def document(self, inputs: Values | None = None) -> str:
         network = chained(self.row, "VDF", "anisotropic_vdf", "medium")
         media = nodes.network_text(network, spec.ports(self.inputs, inputs))
-        layer = nodes.node_text("layer", "BSDF", "lobe", PORTS)
-        return nodes.document_text(INTERFACE + media + layer + nodes.SURFACE)
+        return nodes.document_text(TOP + media + BOTTOM + LAYERS + nodes.SURFACE)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random views and inputs, without grazing views, where refraction may fail."""
@@ -353,7 +362,7 @@ def _medium_spec(row: Medium) -> MediumSpec:
         inputs=(*inputs, ANISOTROPY) if row.category == "anisotropic_vdf" else inputs,
         errors={"value": TRANSMITTANCE},
         counts=Counts(1 << 8),
-        fixed={"top/weight": 0.0},
+        fixed={"top/weight": 0.0, "bottom/weight": 0.0},
         evaluated=("transmission", "throughput", 1.0),
         optional=True,
         engines={"value": ENGINE if combined else ENGINE[:1]},
