@@ -151,7 +151,7 @@ STOCK = {
     **{title: {"implemented": ("not_implemented", "glsl", title)} for title in ABSENT},
     "anisotropic_vdf": {
         "inputs": ("inputs_without_effect", "scattering"),
-        "transmittance": ("model", "absorption alone"),
+        "transmittance": ("model", "absorption alone"), "between": ("medium_between",),
     },
     "surface, an EDF alone": {"opacity": ("input_ignored", "opacity")},
     **{
@@ -233,6 +233,11 @@ def test_what_stock_materialx_has_right_passes(stock):
     assert passed >= right | {("value", QON), ("black", EON), ("furnace", EON)}
     read = {each.check for each in stock.results if each.host == "source"}
     assert read == {"closure", "source"}
+
+
+@pytest.mark.whole
+def test_no_error_that_is_permitted_is_infinite(stock):
+    assert all(np.isfinite(each.error) for each in stock.results if each.verdict == DIFFERS)
 
 
 @pytest.mark.whole
