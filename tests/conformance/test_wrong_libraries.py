@@ -348,6 +348,7 @@ EDITED = {  # the text for path tracers
 }  # fmt: skip
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("name", [*REWRITTEN, *EDITED])
 def test_eonlib_written_differently_passes(judged, tmp_path, name):
     files, old, new = REWRITTEN.get(name) or ((PATHS,), *EDITED[name])
