@@ -40,7 +40,9 @@ class PairHost(base.Host):
         shader, wo, wi, inputs, branch, output, irradiance, _ = query
         through = output == "throughput"
         if irradiance is not None or (branch == TRANSMITTED and not through):
-            raise self._unsupported("uneven environment, and none below alone", "gl")
+            raise self._unsupported(
+                "uneven environment, and none that is only below the surface", "gl"
+            )
         if branch == DIRECT and output == "response":
             if not visible(wo, wi).all():
                 raise InputError(
