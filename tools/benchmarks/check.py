@@ -26,7 +26,7 @@ FIELD = {
     "hosts": ([row.name for row in HOSTS if not row.needs], DIFFUSE),
     "renderers": ([row.name for row in ROWS], ("common",)),
 }
-LONGEST = 240.0  # seconds of each half of the field, which is stopped then
+LONGEST = 240.0  # time limit in seconds for each half of the field
 CACHE, FOLDER = "MESA_SHADER_CACHE_DISABLE", "MESA_SHADER_CACHE_DIR"
 MEMORY = 600.0  # MiB
 # Starts the command, and writes the KiB of its largest process to a file. It must be small: Linux counts the memory of the

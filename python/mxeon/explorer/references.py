@@ -26,7 +26,8 @@ from mxeon.shaders.nodes import DIFFUSE_NODES
 
 DIGITS = 7
 POLES = (8.0, 35.0, 60.0, 80.0)  # degrees from the normal, of both directions
-# Between the directions. None mirrors the other exactly: there, a smooth lobe has no finite value.
+# Azimuths between the directions, in degrees. Exact mirror pairs are avoided: there, a smooth lobe has no
+# finite value.
 AZIMUTHS = (0.0, 100.0, 176.0)
 VIEWS = (0.05, 0.2, 0.4, 0.6, 0.8, 0.98)  # cosines
 LOBES = ("BSDF", "VDF", "surfaceshader")

@@ -126,7 +126,7 @@ def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
         words = (document, picture.element, picture.host, picture.library, picture.scene)
         name = "-".join(NOT_PLAIN.sub("_", word)[:40] for word in words)
         uses[name.lower()] += 1
-        # No other name has a sixth word.
+        # Only numbered names have a sixth word, so they cannot collide with others.
         names.append(name if uses[name.lower()] == 1 else f"{name}-{uses[name.lower()]}")
     return tuple(names)
 

@@ -51,7 +51,8 @@ from mxeon.shaders.methods import Methods
 LEAST_LIGHT = 0.01  # least light of a uniform environment for measurements of an uneven one
 # Texels are pi / 128 high and wide and read at their middles; engines have 8-bit filter weights.
 TEXEL = math.sqrt(2.0) * math.pi / samples.SKY_ROWS * 2.0**-8
-ARC_SINE = 4e-4  # largest error of an engine's arc sine: llvmpipe's, ten times the rest
+# Largest error of an engine's arc sine: llvmpipe's, which is ten times that of other engines.
+ARC_SINE = 4e-4
 SURROUNDINGS = sum_in(
     Quantity.IRRADIANCE,
     Term(samples.SLOPE * TEXEL, "2^-8 of a texel, times the slope of the map, 1/2"),

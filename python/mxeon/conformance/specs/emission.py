@@ -187,7 +187,7 @@ class ConeSpec(EmissionSpec):
         return *super().batches(counts), _away(near), _away(turned)
 
     def alike(self, compared: Compared) -> Compared:
-        """Scales errors by 1 + the falloff's largest slope among the cosines to which a view may round."""
+        """Scales errors by 1 + the falloff's largest slope at cosines within a rounding of the view's."""
         batch = compared.batch
         inner, outer = (batch.inputs[name] for name in (INNER, OUTER))
         width = np.where(outer > inner, cone_width(inner, outer), np.inf)
