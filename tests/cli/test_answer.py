@@ -376,3 +376,9 @@ def test_an_answer_is_as_wide_as_the_terminal_and_in_color_unless_it_is_not_want
     assert [each for each in plain if len(each) > 40] == [f"  {path}"]
     assert " ".join(" ".join(plain).split()) == " ".join(" ".join(lines).split())
     assert plain[-2:] == lines[-2:]
+
+
+def test_a_reason_why_checks_did_not_run_stands_once():
+    missing = [make(NOT_RUN, reason="no driver") for make in (made, stock)]
+    found = [line for line in answer(made_run(*missing)) if line.startswith("not run")]
+    assert found == ["not run: gl with eonlib, gl with stock, 2 checks: no driver"]

@@ -7,7 +7,6 @@ import argparse
 import json
 import re
 import sys
-from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -399,15 +398,15 @@ def model_of(title: str) -> str:
 
 def _not_run(run: Run, full: bool, looks: Sequence[str]) -> Iterator[str]:
     """The first reasons (or all) why checks did not run, unless a material's sentence states them."""
-    reasons = Counter(
-        (each.location, each.reason)
-        for each in run.results
-        if each.verdict == NOT_RUN and not each.follows
-        if not (each.check in KEYS and any(one_line(each.reason) in look for look in looks))
-    )
+    reasons: dict[str, list[Result]] = {}
+    for each in run.results:
+        said = each.check in KEYS and any(one_line(each.reason) in look for look in looks)
+        if each.verdict == NOT_RUN and not each.follows and not said:
+            reasons.setdefault(each.reason, []).append(each)
     shown = len(reasons) if full else FEWEST
-    for (where, reason), count in list(reasons.items())[:shown]:
-        yield f"not run: {where}, {counted(count, 'check')}: {reason}"
+    for reason, results in list(reasons.items())[:shown]:
+        where = listed(_unique(each.location for each in results))
+        yield f"not run: {where}, {counted(len(results), 'check')}: {reason}"
     if len(reasons) > shown:
         yield f"not run for {counted(len(reasons) - shown, 'other reason')}; --full"
 
