@@ -12,7 +12,7 @@ from numpy.testing import assert_array_equal
 import mxeon
 from mxeon import models
 from mxeon.models.catalog import MODELS
-from mxeon.models.nodes import NODES
+from mxeon.models.nodes import PBR_NODES
 from mxeon.models.nodes.node import DEFAULTS
 from mxeon.shaders.library import load_library
 from tests.support import tolerances
@@ -139,7 +139,7 @@ def test_a_node_gives_the_model_of_its_default_mode(category):
     assert row.node == category
     ports = load_library("stock").getNodeDef(f"ND_{category}").getActiveInputs()
     modes = {port.getName(): port.getValueString() for port in ports if port.getName() in MODES}
-    own = {each.name: each.fixed for each in NODES}.get(row.name, {})
+    own = {each.name: each.fixed for each in PBR_NODES}.get(row.name, {})
     assert own.items() <= modes.items()
     assert modes.get("energy_compensation") in (None, "false") or row.name == "eon"
 

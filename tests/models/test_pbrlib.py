@@ -10,13 +10,13 @@ from mxeon.models.diffuse import burley_albedo_dir
 from mxeon.models.media import blackbody_xyz, kang_xyz
 from mxeon.models.microfacet import defects as materialx_fits
 from mxeon.models.microfacet.ggx import ggx_albedo_dir
-from mxeon.models.nodes import NODES, node
+from mxeon.models.nodes import PBR_NODES, node
 from mxeon.models.nodes.combinations import COMBINATIONS, NESTED, ROUGHNESS
 from mxeon.models.nodes.microfacets import LOBES, MICROFACET_NODES
 from mxeon.models.sheen import conty_kulla_albedo_dir, zeltner_albedo_dir, zeltner_brdf
 
 COUNT = 6
-ROWS = NODES + COMBINATIONS
+ROWS = PBR_NODES + COMBINATIONS
 VECTORS = ("color", "tint", "color0", "color82", "color90", "extinction")
 INTEGRAL = 2e-3  # error of 48 by 48 nodes for alpha from 0.4, and for roughness 0.5
 PRINTED = 5e-6  # half a unit of the last of six digits
@@ -50,7 +50,7 @@ def directions(count=COUNT):
 
 
 def test_an_unknown_node_lists_the_known_ones():
-    assert node("burley") is NODES[0]
+    assert node("burley") is PBR_NODES[0]
     with pytest.raises(ValueError, match="^node must be one of burley, .*, schlick; got 'hair'$"):
         node("hair")
 

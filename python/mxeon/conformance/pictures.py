@@ -60,7 +60,7 @@ from mxeon.hosts.base import Host
 from mxeon.hosts.still import still
 from mxeon.io.srgb import SLOPE
 from mxeon.models.hair import ROUGHNESSES
-from mxeon.models.nodes import NODES
+from mxeon.models.nodes import PBR_NODES
 from mxeon.models.nodes.microfacets import LOBES as MICROFACETS
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders.document import notes
@@ -72,7 +72,7 @@ from mxeon.shaders.nodes import BSDF_NODES
 from mxeon.shaders.scene import BACK, SIDE, STUDIO, Scene, sphere
 
 # Nodes whose shaders use a fitted albedo.
-FITTED_NODES = {row.category for row in NODES if row.fitted or row.mirror}
+FITTED_NODES = {row.category for row in PBR_NODES if row.fitted or row.mirror}
 HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
 COSINES = 256  # number of views tried for the largest albedo of a sheen
 

@@ -16,7 +16,7 @@ from mxeon.models import coat, sampling, table
 from mxeon.models.core.arguments import checked_choice, checked_directions
 from mxeon.models.core.arrays import Array, any_array, array_namespace, cosine, library
 from mxeon.models.media import hg_pdf, hg_sample
-from mxeon.models.nodes import NODES
+from mxeon.models.nodes import PBR_NODES
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.microfacets import FILM_NODES, TRANSMISSION_NODES, TRANSMISSIONS
 from mxeon.models.nodes.node import Inputs, Parameter, PbrNode, parameter
@@ -79,7 +79,7 @@ NODES_BY_CATEGORY = {
     "eon_diffuse_bsdf": "eon",
     "generalized_schlick": "schlick",
     # Reversed, so that a node's first mode wins.
-    **{row.category: row.name for row in reversed((*NODES, SUBSURFACE_NODE, HAIR_NODE))},
+    **{row.category: row.name for row in reversed((*PBR_NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }
 
 
@@ -232,7 +232,7 @@ MODELS = {
         *map(_of_node, table.OTHERS + table.PARAMETRIZATIONS),
         _over_eon("dielectric_over_eon", "dielectric over EON"),
         _over_eon("varnished", "EON under a varnish"),
-        *map(_of_node, (*NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
+        *map(_of_node, (*PBR_NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
         *map(_of_transmission, TRANSMISSION_NODES),
     )
 }

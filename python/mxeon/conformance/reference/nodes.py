@@ -27,7 +27,7 @@ from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf, throughput
 from mxeon.models.media import diffusion_blur, transmittance
 from mxeon.models.microfacet import node_albedo
-from mxeon.models.nodes import NODES, microfacets
+from mxeon.models.nodes import PBR_NODES, microfacets
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.media import METER
 from mxeon.models.nodes.microfacets import MICROFACET_NODES, TRANSMISSION_NODES, TRANSMISSIONS
@@ -294,7 +294,7 @@ def _within(axes: Array, directions: Array) -> Array:
 
 
 DIFFUSE = {False: diffuse_model("qon"), True: replace(diffuse_model("eon"), category=EON)}
-ROWS = (*NODES, *INNER_NODES)
+ROWS = (*PBR_NODES, *INNER_NODES)
 LOBES = {
     category: tuple(row for row in ROWS if row.category == category)
     for category in (*DIFFUSE_NODES, *(row.category for row in ROWS))

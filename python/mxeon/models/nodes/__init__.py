@@ -8,10 +8,10 @@ from mxeon.models.nodes.lobes import LOBE_NODES
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
 from mxeon.models.nodes.node import PbrNode
 
-NODES = (*LOBE_NODES, *MICROFACET_NODES)
+PBR_NODES = (*LOBE_NODES, *MICROFACET_NODES)
 
 
 def node(name: str) -> PbrNode:
-    """The row of NODES with this name."""
-    rows = {row.name: row for row in NODES}
+    """The row of PBR_NODES with this name."""
+    rows = {row.name: row for row in PBR_NODES}
     return rows[checked_choice("node", name, rows)]
