@@ -13,7 +13,7 @@ import {
   type State,
   type Value,
 } from "./state";
-import { consistent, first_view, sources_of } from "./view";
+import { consistent, firstView, sourcesOf } from "./view";
 
 interface Codec<T> {
   readonly write: (value: T) => string;
@@ -108,8 +108,8 @@ const FIELDS: { readonly [K in keyof Omit<State, "inputs">]: [string, Codec<Stat
 const INPUT = "input:"; // followed by the source, a colon and the uniform
 
 /** The address of a view, without "#". */
-export function to_address(state: State, data: PageData): string {
-  const first = first_view(data);
+export function toAddress(state: State, data: PageData): string {
+  const first = firstView(data);
   const parts = new URLSearchParams();
   for (const name of Object.keys(FIELDS) as (keyof typeof FIELDS)[]) {
     const [key, codec] = FIELDS[name] as [string, Codec<unknown>];
@@ -118,7 +118,7 @@ export function to_address(state: State, data: PageData): string {
   }
   for (const [source, values] of Object.entries(state.inputs)) {
     for (const [name, value] of Object.entries(values)) {
-      parts.set(`${INPUT}${source}:${name}`, write_value(value));
+      parts.set(`${INPUT}${source}:${name}`, writeValue(value));
     }
   }
   // Slashes, colons and commas are legal in a fragment.
@@ -126,10 +126,10 @@ export function to_address(state: State, data: PageData): string {
 }
 
 /** The view of an address, without "#". */
-export function from_address(address: string, data: PageData): State {
+export function fromAddress(address: string, data: PageData): State {
   const parts = new URLSearchParams(address);
-  const sources = sources_of(data);
-  const first = first_view(data);
+  const sources = sourcesOf(data);
+  const first = firstView(data);
   const state: Record<string, unknown> = { ...first };
   for (const name of Object.keys(FIELDS) as (keyof typeof FIELDS)[]) {
     const [key, codec] = FIELDS[name] as [string, Codec<unknown>];
@@ -139,30 +139,30 @@ export function from_address(address: string, data: PageData): State {
   for (const name of ["left", "right"] as const) {
     if (!sources.has((state[name] as Side).source)) state[name] = first[name];
   }
-  state["inputs"] = read_inputs(parts, data);
+  state["inputs"] = readInputs(parts, data);
   return consistent(state as unknown as State, sources);
 }
 
-function write_value(value: Value): string {
+function writeValue(value: Value): string {
   if (typeof value === "boolean") return value ? "true" : "false";
   return typeof value === "number" ? short(value) : value.map(short).join(",");
 }
 
 /** Input values that exist on the page and have the right type and length. */
-function read_inputs(parts: URLSearchParams, data: PageData): State["inputs"] {
+function readInputs(parts: URLSearchParams, data: PageData): State["inputs"] {
   const inputs: Record<string, Record<string, Value>> = {};
   for (const source of data.sources) {
     if (source.kind !== "shader") continue;
     for (const port of source.inputs) {
       const text = parts.get(`${INPUT}${source.id}:${port.name}`);
-      const value = text === null ? undefined : read_value(text, port.value);
+      const value = text === null ? undefined : readValue(text, port.value);
       if (value !== undefined) (inputs[source.id] ??= {})[port.name] = value;
     }
   }
   return inputs;
 }
 
-function read_value(text: string, like: Value | null): Value | undefined {
+function readValue(text: string, like: Value | null): Value | undefined {
   if (typeof like === "boolean") return { true: true, false: false }[text];
   const all = number(-1e9, 1e9);
   if (typeof like === "number") return all.read(text, like);

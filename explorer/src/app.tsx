@@ -2,19 +2,19 @@
 // The page: its view, the actions that change it, and its parts.
 
 import { useCallback, useEffect, useLayoutEffect, useMemo, useState } from "preact/hooks";
-import { from_address, to_address } from "./address";
+import { fromAddress, toAddress } from "./address";
 import { copy } from "./copies";
 import type { PageData } from "./data";
 import {
   type ErrorsOf,
-  farthest_row,
+  farthestRow,
   useErrors,
   useEvidence,
   useMeasured,
   useRest,
 } from "./measuring";
 import { model } from "./models/table";
-import { facing_point, type Point, unit_pair, worst_point } from "./probe";
+import { facingPoint, type Point, unitPair, worstPoint } from "./probe";
 import type { Stage } from "./stage";
 import { toSide } from "./stage/scenes";
 import type { State } from "./state";
@@ -25,7 +25,7 @@ import { Material, Wanted } from "./ui/material";
 import { Probe } from "./ui/probe_panel";
 import { Materials, Sides, type ViewProps } from "./ui/sides";
 import { StageView } from "./ui/stage_view";
-import { actual_model, consistent, meant_model, source_of, sources_of, type Sources } from "./view";
+import { actualModel, consistent, meantModel, sourceOf, sourcesOf, type Sources } from "./view";
 
 const ADDRESS_DELAY = 300; // milliseconds; browsers refuse frequent changes of the address
 
@@ -36,8 +36,8 @@ interface AppProps {
 }
 
 export function App({ data, tell }: AppProps) {
-  const sources = useMemo(() => sources_of(data), [data]);
-  const [state, setState] = useState(() => from_address(location.hash.slice(1), data));
+  const sources = useMemo(() => sourcesOf(data), [data]);
+  const [state, setState] = useState(() => fromAddress(location.hash.slice(1), data));
   const change = useCallback(
     (patch: Partial<State>) => setState((old) => consistent({ ...old, ...patch }, sources)),
     [],
@@ -52,18 +52,18 @@ export function App({ data, tell }: AppProps) {
   // Slow computations follow the view when it rests.
   const rest = useRest(stage, state, dragging);
   const calm = rest ?? state;
-  const worst = useWorst(rest, sources) ?? facing_point(state);
+  const worst = useWorst(rest, sources) ?? facingPoint(state);
   const errors = useState<ErrorsOf>(new Map());
-  const row = calm.probe ? null : farthest_row(sources, calm, errors[0]);
+  const row = calm.probe ? null : farthestRow(sources, calm, errors[0]);
   const pair = useMemo(() => {
     if (row !== null) return { wo: data.pairs[row]![0], wi: data.pairs[row]![1] };
     const probed = stage && rest?.probe ? stage.pick(...rest.probe, rest) : null;
-    return probed && probed.wi[2] > 0 && probed.wo[2] > 0 ? unit_pair(probed) : worst;
+    return probed && probed.wi[2] > 0 && probed.wo[2] > 0 ? unitPair(probed) : worst;
   }, [stage, rest, row]);
   const measured = useMeasured(stage, pair, state, dragging || rest !== state);
   useErrors(stage, sources, calm, measured, errors);
   const evidence = useEvidence(stage, sources, calm, pair, measured, errors[0]);
-  const differ = rest && stage && state.shape === "sphere" ? on_sphere(stage, rest, worst) : null;
+  const differ = rest && stage && state.shape === "sphere" ? onSphere(stage, rest, worst) : null;
   const view: ViewProps = { data, sources, state, change };
   // During a drag the picture has priority: numbers follow at rest.
   const still = dragging ? calm : state;
@@ -136,7 +136,7 @@ function Header({ data }: { readonly data: PageData }) {
 function useAddress(state: State, setState: (state: State) => void, data: PageData): void {
   useEffect(() => {
     const write = (): void => {
-      const address = to_address(state, data);
+      const address = toAddress(state, data);
       if (address !== location.hash.slice(1)) {
         history.replaceState(
           null,
@@ -149,7 +149,7 @@ function useAddress(state: State, setState: (state: State) => void, data: PageDa
     return () => clearTimeout(timer);
   }, [state]);
   useEffect(() => {
-    const read = (): void => setState(from_address(location.hash.slice(1), data));
+    const read = (): void => setState(fromAddress(location.hash.slice(1), data));
     addEventListener("hashchange", read);
     return () => removeEventListener("hashchange", read);
   }, []);
@@ -177,17 +177,17 @@ function useWorst(state: State | null, sources: Sources): Point | null {
   return useMemo(() => {
     if (!state) return null;
     const [first, second] = [state.left, state.right].map((side) => {
-      const source = source_of(sources, side);
+      const source = sourceOf(sources, side);
       return (
-        actual_model(source, side, state) ?? meant_model(source, side, state) ?? model("lambert")
+        actualModel(source, side, state) ?? meantModel(source, side, state) ?? model("lambert")
       );
     });
-    return worst_point(first!, second!, state);
+    return worstPoint(first!, second!, state);
   }, [state]);
 }
 
 /** Position of a point of the sphere in the picture. */
-function on_sphere(stage: Stage, state: State, { normal }: Point): [number, number] {
+function onSphere(stage: Stage, state: State, { normal }: Point): [number, number] {
   const { width, height } = stage.size();
   const radius = stage.diameter(state) / 2;
   return [toSide(state, 0.5 + (normal[0] * radius) / width), 0.5 - (normal[1] * radius) / height];

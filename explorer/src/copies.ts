@@ -5,25 +5,25 @@ import type { PageData, Source } from "./data";
 import type { Model } from "./models/table";
 import type { Pair } from "./probe";
 import type { Side, State, Value } from "./state";
-import { type Sources, values_of } from "./view";
+import { type Sources, valuesOf } from "./view";
 
 /** The material of a side as a MaterialX document; null if no node has this model. */
-export function material_x(
+export function materialX(
   state: State,
   sources: Sources,
   source: Source,
   side: Side,
 ): string | null {
-  if (source.kind === "shader") return with_values(source, values_of(source, state, side));
+  if (source.kind === "shader") return withValues(source, valuesOf(source, state, side));
   const node = sources.get("shader/eonlib");
   if (source.model !== source.meant || node?.kind !== "shader") return null;
   if (source.model !== "eon" && source.model !== "qon") return null;
   const flagged = { ...side, flag: source.model === "eon" };
-  return with_values(node, values_of(node, state, flagged));
+  return withValues(node, valuesOf(node, state, flagged));
 }
 
 /** A document with other input values. */
-function with_values(
+function withValues(
   source: Extract<Source, { kind: "shader" }>,
   values: ReadonlyMap<string, Value>,
 ): string {
@@ -31,14 +31,14 @@ function with_values(
   for (const port of source.inputs) {
     const value = values.get(port.name);
     if (value === undefined || value === port.value || port.image) continue;
-    const input = input_of(document, port.path, port.type);
-    if (input) input.setAttribute("value", text_of(value));
+    const input = inputOf(document, port.path, port.type);
+    if (input) input.setAttribute("value", textOf(value));
   }
   return new XMLSerializer().serializeToString(document);
 }
 
 /** The element of a name path, created if its node lacks it; null if there is no such node. */
-function input_of(document: Document, path: string, type: string): Element | null {
+function inputOf(document: Document, path: string, type: string): Element | null {
   const names = path.split("/");
   const last = names.pop()!;
   let element: Element = document.documentElement;
@@ -56,19 +56,19 @@ function input_of(document: Document, path: string, type: string): Element | nul
   return made;
 }
 
-function text_of(value: Value): string {
+function textOf(value: Value): string {
   return typeof value === "object" ? value.map(String).join(", ") : String(value);
 }
 
 /** The shader text of a side; null for a variant that eonlib lacks. */
-export function shader_text(data: PageData, source: Source): string | null {
+export function shaderText(data: PageData, source: Source): string | null {
   if (source.kind === "shader") return source.pixel;
   if (source.model !== source.meant) return null;
   return `// ${source.model}_brdf is one of these functions.\n${data.functions}`;
 }
 
 /** A line of Python that prints pi f cos(theta_i) of a model for a pair, per channel. */
-export function python_line(of: Model, { wo, wi }: Pair, state: State): string {
+export function pythonLine(of: Model, { wo, wi }: Pair, state: State): string {
   const parameter = of.parameter ? `, ${state.roughness}` : "";
   const list = (values: readonly number[]): string => `[${values.join(", ")}]`;
   return (

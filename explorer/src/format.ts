@@ -25,7 +25,7 @@ export function degrees(radian: number): string {
 }
 
 /** A linear color as a hexadecimal sRGB color, clipped to its gamut. */
-export function to_hex(color: Vec3): string {
+export function toHex(color: Vec3): string {
   const code = (linear: number): string => {
     const x = Math.min(Math.max(linear, 0), 1);
     const encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055;
@@ -37,7 +37,7 @@ export function to_hex(color: Vec3): string {
 }
 
 /** A hexadecimal sRGB color as a linear color with four decimals, finer than its codes. */
-export function from_hex(hex: string): [number, number, number] {
+export function fromHex(hex: string): [number, number, number] {
   const one = (start: number): number => {
     const x = parseInt(hex.slice(start, start + 2), 16) / 255;
     const linear = x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;

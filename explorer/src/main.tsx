@@ -2,7 +2,7 @@
 // Reads the page's data and shows the page.
 
 import { render } from "preact";
-import { from_address, to_address } from "./address";
+import { fromAddress, toAddress } from "./address";
 import { App } from "./app";
 import type { PageData } from "./data";
 import * as albedo from "./models/albedo";
@@ -10,7 +10,7 @@ import * as inversion from "./models/inversion";
 import * as table from "./models/table";
 import type { Stage } from "./stage";
 import type { State } from "./state";
-import { page_data } from "./texts";
+import { pageData } from "./texts";
 import "./style.css";
 
 /** Access for tests and for the browser's console. */
@@ -20,20 +20,20 @@ interface Hook {
   show: (state: State) => void;
   readonly data: PageData;
   readonly models: typeof albedo & typeof inversion & typeof table;
-  readonly to_address: (state: State) => string;
-  readonly from_address: (address: string) => State;
+  readonly toAddress: (state: State) => string;
+  readonly fromAddress: (address: string) => State;
 }
 
 declare global {
   var mxeon: Hook | undefined;
 }
 
-const data = page_data(document.getElementById("data")!.textContent!);
+const data = pageData(document.getElementById("data")!.textContent!);
 const hook = {
   data,
   models: { ...albedo, ...inversion, ...table },
-  to_address: (state: State) => to_address(state, data),
-  from_address: (address: string) => from_address(address, data),
+  toAddress: (state: State) => toAddress(state, data),
+  fromAddress: (address: string) => fromAddress(address, data),
 };
 
 function tell(stage: Stage | null, state: State, show: (state: State) => void): void {

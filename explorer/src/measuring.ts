@@ -3,12 +3,12 @@
 
 import { useEffect, useMemo, useState } from "preact/hooks";
 import type { ModelName } from "./data";
-import { is_other, type Pair, values } from "./probe";
+import { isOther, type Pair, values } from "./probe";
 import type { Stage } from "./stage";
 import type { SideName, State } from "./state";
 import type { Measured } from "./ui/probe_panel";
 import type { Errors, Evidence } from "./verdict";
-import { actual_model, has_table, SIDES, source_of, type Sources } from "./view";
+import { actualModel, hasTable, SIDES, sourceOf, type Sources } from "./view";
 
 const REST = 120; // milliseconds without a change
 const MEASURE_DELAY = 60;
@@ -74,8 +74,8 @@ export function useErrors(
 ): void {
   useEffect(() => {
     if (!stage || !measured) return;
-    const asked = SIDES.map((side) => source_of(sources, state[side]))
-      .filter(has_table)
+    const asked = SIDES.map((side) => sourceOf(sources, state[side]))
+      .filter(hasTable)
       .find(({ id }) => !errors.has(id));
     if (!asked) return;
     const timer = window.setTimeout(() => {
@@ -87,10 +87,10 @@ export function useErrors(
 }
 
 /** The row of the reference table with the largest error, for sides without a model in the page. */
-export function farthest_row(sources: Sources, state: State, errors: ErrorsOf): number | null {
-  const sides = SIDES.map((side) => source_of(sources, state[side]));
+export function farthestRow(sources: Sources, state: State, errors: ErrorsOf): number | null {
+  const sides = SIDES.map((side) => sourceOf(sources, state[side]));
   const found = sides
-    .filter(has_table)
+    .filter(hasTable)
     .map((each) => errors.get(each.id)?.direct)
     .filter((each) => each !== undefined);
   if (found.length === 0 || found.length < sides.length) return null;
@@ -112,16 +112,16 @@ export function useEvidence(
     if (!measured) return;
     const found = new Map(confirmed);
     for (const side of SIDES) {
-      const of = actual_model(source_of(sources, state[side]), state[side], state);
+      const of = actualModel(sourceOf(sources, state[side]), state[side], state);
       const value = measured[side];
       if (!of || !value) continue;
-      const right = !is_other(value, values(of, pair, state.color, state.roughness));
+      const right = !isOther(value, values(of, pair, state.color, state.roughness));
       found.set(key(side, of.name), right && found.get(key(side, of.name)) !== false);
     }
     setConfirmed(found);
   }, [measured]);
   const one = (side: SideName): Evidence => {
-    const of = actual_model(source_of(sources, state[side]), state[side], state);
+    const of = actualModel(sourceOf(sources, state[side]), state[side], state);
     return {
       able: stage !== null,
       confirmed: (of && confirmed.get(key(side, of.name))) ?? null,

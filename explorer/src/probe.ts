@@ -2,7 +2,7 @@
 // Pairs of directions and the models' float64 values for them, which the probe shows.
 
 import type { Triple, Vec3 } from "./data";
-import { pi_f_cos, type Model } from "./models/table";
+import { piFCos, type Model } from "./models/table";
 import type { State } from "./state";
 
 const RADIAN = Math.PI / 180;
@@ -23,30 +23,30 @@ function unit(v: Vec3): Triple {
 }
 
 /** Unit vector to the light: x points right, y up, z to the viewer. */
-export function light_of({ azimuth, elevation }: Pick<State, "azimuth" | "elevation">): Triple {
+export function lightOf({ azimuth, elevation }: Pick<State, "azimuth" | "elevation">): Triple {
   const [a, e] = [azimuth * RADIAN, elevation * RADIAN];
   return [Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)];
 }
 
 /** The pair for a normal, a viewer and a light, all unit vectors in one frame. */
-export function pair_of(normal: Vec3, viewer: Vec3, light: Vec3): Pair {
-  const mu_o = Math.min(dot(normal, viewer), 1.0);
-  const mu_i = Math.min(dot(normal, light), 1.0);
-  const s = dot(viewer, light) - mu_o * mu_i;
-  const S_o = Math.sqrt(1.0 - mu_o * mu_o);
-  const x = S_o > 0.0 ? s / S_o : Math.sqrt(Math.max(0.0, 1.0 - mu_i * mu_i));
-  const y = Math.sqrt(Math.max(0.0, 1.0 - mu_i * mu_i - x * x));
-  return { wo: [S_o, 0.0, mu_o], wi: unit([x, y, mu_i]) };
+export function pairOf(normal: Vec3, viewer: Vec3, light: Vec3): Pair {
+  const muO = Math.min(dot(normal, viewer), 1.0);
+  const muI = Math.min(dot(normal, light), 1.0);
+  const s = dot(viewer, light) - muO * muI;
+  const S_o = Math.sqrt(1.0 - muO * muO);
+  const x = S_o > 0.0 ? s / S_o : Math.sqrt(Math.max(0.0, 1.0 - muI * muI));
+  const y = Math.sqrt(Math.max(0.0, 1.0 - muI * muI - x * x));
+  return { wo: [S_o, 0.0, muO], wi: unit([x, y, muI]) };
 }
 
 /** A pair whose directions are unit vectors in float64. */
-export function unit_pair({ wo, wi }: Pair): Pair {
+export function unitPair({ wo, wi }: Pair): Pair {
   return { wo: unit(wo), wi: unit(wi) };
 }
 
 /** pi f cos(theta_i) of a model for a pair, per channel. */
 export function values(of: Model, { wo, wi }: Pair, color: Vec3, roughness: number): Triple {
-  const one = (rho: number): number => pi_f_cos(of, wo, wi, rho, roughness);
+  const one = (rho: number): number => piFCos(of, wo, wi, rho, roughness);
   return [one(color[0]), one(color[1]), one(color[2])];
 }
 
@@ -60,7 +60,7 @@ export function apart(a: Vec3, b: Vec3): number {
 const ROUNDING = 64 * 2 ** -24;
 
 /** Whether two values differ by more than rounding. */
-export function is_other(value: Vec3, other: Vec3): boolean {
+export function isOther(value: Vec3, other: Vec3): boolean {
   return !(Math.abs(apart(value, other)) < ROUNDING);
 }
 
@@ -73,8 +73,8 @@ export interface Point extends Pair {
 const GRID = 96;
 
 /** The point on the sphere where two models differ most in this light. */
-export function worst_point(first: Model, second: Model, state: State): Point {
-  const light = light_of(state);
+export function worstPoint(first: Model, second: Model, state: State): Point {
+  const light = lightOf(state);
   let worst: Point | null = null;
   for (let row = 0; row < GRID; row++) {
     for (let column = 0; column < GRID; column++) {
@@ -84,7 +84,7 @@ export function worst_point(first: Model, second: Model, state: State): Point {
       if (squared <= 0.0) continue;
       const normal: Triple = [x, y, Math.sqrt(squared)];
       if (dot(normal, light) <= 0.0) continue;
-      const pair = pair_of(normal, [0, 0, 1], light);
+      const pair = pairOf(normal, [0, 0, 1], light);
       const { color, roughness } = state;
       const difference = apart(
         values(first, pair, color, roughness),
@@ -95,29 +95,29 @@ export function worst_point(first: Model, second: Model, state: State): Point {
       }
     }
   }
-  return worst && Math.abs(worst.apart) > 1e-12 ? worst : facing_point(state);
+  return worst && Math.abs(worst.apart) > 1e-12 ? worst : facingPoint(state);
 }
 
 /** A point whose normal is halfway between the viewer's and the light's directions. */
-export function facing_point(state: State): Point {
-  const light = light_of(state);
+export function facingPoint(state: State): Point {
+  const light = lightOf(state);
   const half = unit([light[0], light[1], light[2] + 1.0 + 1e-9]);
-  return { ...pair_of(half, [0, 0, 1], light), normal: half, apart: 0 };
+  return { ...pairOf(half, [0, 0, 1], light), normal: half, apart: 0 };
 }
 
 const STEPS = 20;
 
 /** The largest signed difference of two models over all pairs of directions. */
-export function largest_apart(first: Model, second: Model, color: Vec3, roughness: number): number {
+export function largestApart(first: Model, second: Model, color: Vec3, roughness: number): number {
   let most = 0.0;
   for (let o = 0; o <= STEPS; o++) {
-    const theta_o = (o / STEPS) * 89.9 * RADIAN;
-    const wo: Triple = [Math.sin(theta_o), 0, Math.cos(theta_o)];
+    const thetaO = (o / STEPS) * 89.9 * RADIAN;
+    const wo: Triple = [Math.sin(thetaO), 0, Math.cos(thetaO)];
     for (let i = 0; i <= STEPS; i++) {
-      const theta_i = (i / STEPS) * 89.9 * RADIAN;
+      const thetaI = (i / STEPS) * 89.9 * RADIAN;
       for (let p = 0; p <= STEPS; p++) {
         const phi = (p / STEPS) * Math.PI;
-        const [S, z] = [Math.sin(theta_i), Math.cos(theta_i)];
+        const [S, z] = [Math.sin(thetaI), Math.cos(thetaI)];
         const pair: Pair = { wo, wi: [S * Math.cos(phi), S * Math.sin(phi), z] };
         const one = apart(
           values(first, pair, color, roughness),

@@ -27,7 +27,7 @@ interface PackedData extends Omit<PageData, "sources"> {
 }
 
 /** The data that Python embeds, with the indices replaced by the texts. */
-export function page_data(json: string): PageData {
+export function pageData(json: string): PageData {
   const { texts, references, images, sources, ...rest } = JSON.parse(json) as PackedData;
   const whole = (places: readonly number[]) => places.map((place) => texts[place]).join("\n\n");
   const unpacked = sources.map((source) =>

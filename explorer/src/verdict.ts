@@ -5,10 +5,10 @@
 
 import type { ShaderForm, ShaderSource } from "./data";
 import { show } from "./format";
-import { albedo_dir, type Model } from "./models/table";
-import { largest_apart, worst_point } from "./probe";
+import { albedoDir, type Model } from "./models/table";
+import { largestApart, worstPoint } from "./probe";
 import type { Side, State } from "./state";
-import { actual_model, has_table, meant_model, type Sources, source_of, values_of } from "./view";
+import { actualModel, hasTable, meantModel, type Sources, sourceOf, valuesOf } from "./view";
 
 /** "differs": from the reference, in a way that the specification permits. */
 export type Kind = "correct" | "wrong" | "differs" | "model" | "unknown" | "measuring";
@@ -46,20 +46,15 @@ const UNCHECKED = "Not judged by this page: run mxeon check on a document with t
 const UNREAD = "Nothing is measured: this browser draws no shader.";
 
 /** The verdict on a side for the colors, roughness and light of a view. */
-export function verdict_on(
-  state: State,
-  sources: Sources,
-  side: Side,
-  evidence: Evidence,
-): Verdict {
-  const source = source_of(sources, side);
+export function verdictOn(state: State, sources: Sources, side: Side, evidence: Evidence): Verdict {
+  const source = sourceOf(sources, side);
   if (evidence.failure) return { kind: "wrong", badge: "not drawn", text: evidence.failure };
-  const [actual, meant] = [actual_model(source, side, state), meant_model(source, side, state)];
+  const [actual, meant] = [actualModel(source, side, state), meantModel(source, side, state)];
   const checked = source.kind === "shader" ? source.checked : null;
-  const changed = checked && source.kind === "shader" && is_changed(source, state, side);
+  const changed = checked && source.kind === "shader" && isChanged(source, state, side);
   const text = checked ? (changed ? "With its own inputs: " : "") + checked.text : "";
   if (!actual || !meant) {
-    const own = has_table(source) ? by_reference(source, evidence) : null;
+    const own = hasTable(source) ? byReference(source, evidence) : null;
     if (checked) {
       const { kind } = checked;
       // This browser's values may be wrong where `mxeon check` is right.
@@ -82,19 +77,19 @@ export function verdict_on(
   if (source.kind === "model") {
     return { kind: "model", badge: actual.short, text: `The model itself: ${actual.title}.` };
   }
-  return by_model(actual, evidence);
+  return byModel(actual, evidence);
 }
 
 /** Whether the inputs of a document's material have changed since `mxeon check` judged it. */
-function is_changed(source: ShaderSource, state: State, side: Side): boolean {
-  const drawn = values_of(source, state, side);
+function isChanged(source: ShaderSource, state: State, side: Side): boolean {
+  const drawn = valuesOf(source, state, side);
   return source.inputs.some(
     ({ name, value }) => value !== null && String(drawn.get(name)) !== String(value),
   );
 }
 
 /** The verdict on a shader that claims to be the intended model. */
-function by_model({ short, title }: Model, { able, confirmed }: Evidence): Verdict {
+function byModel({ short, title }: Model, { able, confirmed }: Evidence): Verdict {
   if (!able) return { kind: "model", badge: short, text: UNREAD };
   if (confirmed === null) return { kind: "measuring", badge: "measuring", text: MEASURING };
   if (!confirmed)
@@ -103,7 +98,7 @@ function by_model({ short, title }: Model, { able, confirmed }: Evidence): Verdi
 }
 
 /** The verdict on a shader according to the table of its reference. */
-function by_reference(source: ShaderSource, { able, errors }: Evidence): Verdict {
+function byReference(source: ShaderSource, { able, errors }: Evidence): Verdict {
   const { bounds, forms } = source.reference!;
   if (!able) return { kind: "unknown", badge: "material", text: UNREAD };
   if (!errors) return { kind: "measuring", badge: "measuring", text: MEASURING };
@@ -136,9 +131,9 @@ function by_reference(source: ShaderSource, { able, errors }: Evidence): Verdict
 /** A sentence about a model that is not the intended one. */
 function wrong(actual: Model, meant: Model, state: State): string {
   const { color, roughness } = state;
-  const here = Math.abs(worst_point(actual, meant, state).apart);
-  const anywhere = Math.abs(largest_apart(actual, meant, color, roughness));
-  const albedo = albedo_error(actual, meant, state);
+  const here = Math.abs(worstPoint(actual, meant, state).apart);
+  const anywhere = Math.abs(largestApart(actual, meant, color, roughness));
+  const albedo = albedoError(actual, meant, state);
   const parts = [`It is ${actual.title}`];
   if (actual.wrong && actual.meant === meant.name) parts.push(actual.wrong);
   const amount = [];
@@ -151,12 +146,12 @@ function wrong(actual: Model, meant: Model, state: State): string {
 }
 
 /** The largest difference of two albedos in closed form; 0 if one has none. */
-function albedo_error(actual: Model, meant: Model, { color, roughness }: State): number {
-  if (!actual.albedo_dir || !meant.albedo_dir) return 0.0;
+function albedoError(actual: Model, meant: Model, { color, roughness }: State): number {
+  if (!actual.albedoDir || !meant.albedoDir) return 0.0;
   let most = 0.0;
   for (let step = 0; step <= 32; step++) {
     for (const rho of color) {
-      const [is, should] = [actual, meant].map((of) => albedo_dir(of, step / 32, rho, roughness));
+      const [is, should] = [actual, meant].map((of) => albedoDir(of, step / 32, rho, roughness));
       most = Math.max(most, Math.abs(is! - should!));
     }
   }

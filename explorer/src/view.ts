@@ -2,7 +2,7 @@
 // Functions of a view and its data: the model on each side, and what follows from it.
 
 import type { ModelName, PageData, ShaderSource, Source, Triple } from "./data";
-import { model, rho_from_albedo, type Model } from "./models/table";
+import { model, rhoFromAlbedo, type Model } from "./models/table";
 import { INITIAL, type Side, type SideName, type State, type Value } from "./state";
 
 export const SIDES = ["left", "right"] as const;
@@ -13,71 +13,71 @@ export const LETTER: Readonly<Record<SideName, string>> = { left: "A", right: "B
 /** The embedded data, by id. */
 export type Sources = ReadonlyMap<string, Source>;
 
-export function sources_of(data: PageData): Sources {
+export function sourcesOf(data: PageData): Sources {
   return new Map(data.sources.map((source) => [source.id, source]));
 }
 
 /** The source shown on a side. */
-export function source_of(sources: Sources, side: Side): Source {
+export function sourceOf(sources: Sources, side: Side): Source {
   return sources.get(side.source)!;
 }
 
 /** The model of a side; null if only its shader's values can tell. */
-export function actual_model(source: Source, side: Side, state: State): Model | null {
+export function actualModel(source: Source, side: Side, state: State): Model | null {
   if (source.kind === "model") return model(source.model);
-  return source.actual && !is_changed(source, state) ? model(by_flag(source.actual, side)) : null;
+  return source.actual && !isChanged(source, state) ? model(byFlag(source.actual, side)) : null;
 }
 
 /** The intended model of a side; null if it is unknown. */
-export function meant_model(source: Source, side: Side, state: State): Model | null {
+export function meantModel(source: Source, side: Side, state: State): Model | null {
   if (source.kind === "model") return model(source.meant);
-  return source.meant && !is_changed(source, state) ? model(by_flag(source.meant, side)) : null;
+  return source.meant && !isChanged(source, state) ? model(byFlag(source.meant, side)) : null;
 }
 
 /** Whether a shader is judged by its reference table, because the page has no model for it. */
-export function has_table(source: Source): source is ShaderSource {
+export function hasTable(source: Source): source is ShaderSource {
   return source.kind === "shader" && !!source.reference && !(source.meant && source.actual);
 }
 
 /** Values of a side's reference in a row of its table, for the source's initial inputs. */
 export function tabled(source: Source, state: State, row: number | null): Triple | null {
-  if (row === null || !has_table(source) || is_changed(source, state)) return null;
+  if (row === null || !hasTable(source) || isChanged(source, state)) return null;
   const [r, g, b] = source.reference?.direct.slice(3 * row, 3 * row + 3) ?? [];
   return r === undefined ? null : [r, g!, b!];
 }
 
 /** Whether an input of a document, such as its weight, was changed. */
-function is_changed(source: ShaderSource, state: State): boolean {
+function isChanged(source: ShaderSource, state: State): boolean {
   const values = state.inputs[source.id] ?? {};
   return source.inputs.some(({ name, value }) => name in values && values[name] !== value);
 }
 
-function by_flag(of: { on: ModelName; off: ModelName }, side: Side): ModelName {
+function byFlag(of: { on: ModelName; off: ModelName }, side: Side): ModelName {
   return side.flag ? of.on : of.off;
 }
 
 /** Whether a side has energy_compensation. */
-export function has_flag(source: Source): boolean {
+export function hasFlag(source: Source): boolean {
   return source.kind === "shader" && source.controls.flag !== "";
 }
 
 /** A short name for a side. */
-export function short_title(source: Source, side: Side): string {
+export function shortTitle(source: Source, side: Side): string {
   if (source.kind === "model") return source.title.split(":")[0]!.replace(/.*\((.*)\)$/, "$1");
-  if (has_flag(source)) return `${source.library}, flag ${side.flag ? "on" : "off"}`;
+  if (hasFlag(source)) return `${source.library}, flag ${side.flag ? "on" : "off"}`;
   return source.title;
 }
 
 /** A view whose color follows from the requested albedo, if there is one. */
 export function consistent(state: State, sources: Sources): State {
   if (!state.keep) return state;
-  const of = inversion_model(state, sources);
+  const of = inversionModel(state, sources);
   return { ...state, color: enter(of, state.wanted, state.roughness, state.average) };
 }
 
 /** The model whose albedo is inverted: the intended one of the left side. */
-export function inversion_model(state: State, sources: Sources): Model {
-  return meant_model(source_of(sources, state.left), state.left, state) ?? model("eon");
+export function inversionModel(state: State, sources: Sources): Model {
+  return meantModel(sourceOf(sources, state.left), state.left, state) ?? model("eon");
 }
 
 /** The color to enter for an albedo. */
@@ -88,12 +88,12 @@ export function enter(
   average: boolean,
 ): Triple {
   const [r, g, b] = wanted;
-  const one = (seen: number): number => rho_from_albedo(of, seen, roughness, average);
+  const one = (seen: number): number => rhoFromAlbedo(of, seen, roughness, average);
   return [one(r), one(g), one(b)];
 }
 
 /** A view with another source on a side; documents set color, roughness and flag. */
-export function with_source(
+export function withSource(
   state: State,
   sources: Sources,
   side: SideName,
@@ -114,7 +114,7 @@ export function with_source(
 }
 
 /** A view of a shader with its own inputs. */
-export function own_view(source: ShaderSource): State {
+export function ownView(source: ShaderSource): State {
   const value = (name: string) => source.inputs.find((port) => port.name === name)?.value;
   const { color, roughness, flag } = source.controls;
   return {
@@ -126,7 +126,7 @@ export function own_view(source: ShaderSource): State {
 }
 
 /** Values of a shader's inputs in the drawn picture, by uniform name. */
-export function values_of(source: ShaderSource, state: State, side: Side): Map<string, Value> {
+export function valuesOf(source: ShaderSource, state: State, side: Side): Map<string, Value> {
   const values = new Map<string, Value>();
   for (const port of source.inputs) {
     if (port.value !== null) values.set(port.name, port.value);
@@ -142,27 +142,27 @@ export function values_of(source: ShaderSource, state: State, side: Side): Map<s
 }
 
 /** The common part of a material's ids, without the library. */
-export function stem_of(id: string): string {
+export function stemOf(id: string): string {
   return id.replace(/[^/]*$/, "");
 }
 
 /** Titles of the materials with shaders on the page, by the common part of their ids. */
-export function materials_of(data: PageData): ReadonlyMap<string, string> {
+export function materialsOf(data: PageData): ReadonlyMap<string, string> {
   const shaders = data.sources.filter((source) => source.kind === "shader");
   const own = shaders.filter(({ id }) => id.startsWith("document/"));
   return new Map(
-    [...own, ...shaders].map(({ id, title }) => [stem_of(id), title.replace(/, [^,]*$/, "")]),
+    [...own, ...shaders].map(({ id, title }) => [stemOf(id), title.replace(/, [^,]*$/, "")]),
   );
 }
 
 /** A view of a material with both libraries, or with the only one that has it. */
-export function with_material(state: State, sources: Sources, stem: string): Partial<State> {
-  const ids = [...sources.keys()].filter((id) => stem_of(id) === stem);
+export function withMaterial(state: State, sources: Sources, stem: string): Partial<State> {
+  const ids = [...sources.keys()].filter((id) => stemOf(id) === stem);
   const [first, second = first] = ids;
-  const change = with_source(state, sources, "left", first!);
+  const change = withSource(state, sources, "left", first!);
   const shape = stem.includes("hair") ? "fiber" : state.shape === "fiber" ? "ball" : state.shape;
   const right = { ...state.right, ...change.left, source: second! };
-  return { ...change, right, shape, ...light_for(state, stem) };
+  return { ...change, right, shape, ...lightFor(state, stem) };
 }
 
 const FRONT = { azimuth: 40, elevation: 45 }; // direction that shows highlights
@@ -171,22 +171,22 @@ const FRONT = { azimuth: 40, elevation: 45 }; // direction that shows highlights
  * The default light of a material, unless the reader has moved it: diffuse models differ most when
  * lit from behind.
  */
-function light_for(state: State, stem: string): Partial<State> {
+function lightFor(state: State, stem: string): Partial<State> {
   const first = { azimuth: INITIAL.azimuth, elevation: INITIAL.elevation };
-  const is_at = (light: typeof FRONT): boolean =>
+  const isAt = (light: typeof FRONT): boolean =>
     state.azimuth === light.azimuth && state.elevation === light.elevation;
-  if (!is_at(first) && !is_at(FRONT)) return {};
+  if (!isAt(first) && !isAt(FRONT)) return {};
   return stem.startsWith("lobe/") ? FRONT : first;
 }
 
 /** The first view of a page: its first document, if it has one. */
-export function first_view(data: PageData): State {
-  const sources = sources_of(data);
+export function firstView(data: PageData): State {
+  const sources = sourcesOf(data);
   const documents = data.sources.filter((source) => source.id.startsWith("document/"));
   const [first] = documents;
   const initial: State = { ...INITIAL, surroundings: data.sky ? "own" : INITIAL.surroundings };
   if (!first) return initial;
-  const twin = documents.find((each) => each !== first && stem_of(each.id) === stem_of(first.id));
-  const left = { ...initial, ...with_source(initial, sources, "left", first.id) };
+  const twin = documents.find((each) => each !== first && stemOf(each.id) === stemOf(first.id));
+  const left = { ...initial, ...withSource(initial, sources, "left", first.id) };
   return twin ? { ...left, right: { ...left.left, source: twin.id } } : left;
 }

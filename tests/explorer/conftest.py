@@ -36,7 +36,7 @@ def shared_page(browser, address):
 @pytest.fixture
 def page(shared_page):
     """The page with its first view."""
-    shared_page.evaluate("mxeon.show(mxeon.from_address(''))")
+    shared_page.evaluate("mxeon.show(mxeon.fromAddress(''))")
     return shared_page
 
 

@@ -54,7 +54,7 @@ def checked(browser, documents):
 @pytest.mark.parametrize("name", VIEWS)
 def test_axe_finds_nothing(checked, name):
     checked.emulate_media(color_scheme="dark" if name == "dark" else "light")
-    checked.evaluate("mxeon.show(mxeon.from_address(''))")
+    checked.evaluate("mxeon.show(mxeon.fromAddress(''))")
     show(checked, **VIEWS[name])
     assert findings(checked) == []
 

@@ -35,10 +35,10 @@ CHANGED = {
 
 
 def test_a_view_of_other_values_everywhere_comes_back(undrawn):
-    first = undrawn.evaluate("mxeon.from_address('')")
+    first = undrawn.evaluate("mxeon.fromAddress('')")
     assert set(CHANGED) == set(first)
     assert all(CHANGED[name] != first[name] for name in CHANGED.keys() - {"keep"})
-    again = undrawn.evaluate("view => mxeon.from_address(mxeon.to_address(view))", CHANGED)
+    again = undrawn.evaluate("view => mxeon.fromAddress(mxeon.toAddress(view))", CHANGED)
     assert again == CHANGED
 
 
@@ -53,13 +53,13 @@ def test_a_view_of_other_values_everywhere_comes_back(undrawn):
     ],
 )
 def test_what_cannot_be_read_keeps_its_first_value(undrawn, part):
-    assert undrawn.evaluate("address => mxeon.from_address(address)", part) == undrawn.evaluate(
-        "mxeon.from_address('')"
+    assert undrawn.evaluate("address => mxeon.fromAddress(address)", part) == undrawn.evaluate(
+        "mxeon.fromAddress('')"
     )
 
 
 def test_numbers_out_of_range_come_to_its_ends(undrawn):
-    view = undrawn.evaluate("mxeon.from_address('roughness=7&color=-1,0.5,2&elevation=-1e9')")
+    view = undrawn.evaluate("mxeon.fromAddress('roughness=7&color=-1,0.5,2&elevation=-1e9')")
     assert (view["roughness"], view["color"], view["elevation"]) == (1, [0, 0.5, 1], -90)
 
 

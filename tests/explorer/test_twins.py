@@ -53,9 +53,9 @@ def test_albedos_are_numpys(undrawn, row):
           const of = mxeon.models.model(name);
           return [
             parameters.map(parameter => mus.map(mu => rhos.map(rho =>
-              of.albedo_dir ? of.albedo_dir(mu, rho, parameter)
-                            : mxeon.models.albedo_dir(of, mu, rho, parameter, 16)))),
-            of.albedo_avg && parameters.map(p => rhos.map(rho => of.albedo_avg(rho, p)))];
+              of.albedoDir ? of.albedoDir(mu, rho, parameter)
+                            : mxeon.models.albedoDir(of, mu, rho, parameter, 16)))),
+            of.albedoAvg && parameters.map(p => rhos.map(rho => of.albedoAvg(rho, p)))];
         }""",
         [row.name, COSINES, RHO, PARAMETERS],
     )
@@ -72,13 +72,17 @@ def test_albedos_are_numpys(undrawn, row):
 
 
 @pytest.mark.parametrize(
-    "invert", [eon_rho_from_albedo_normal, eon_rho_from_albedo_avg], ids=["normal", "average"]
+    "name, invert",
+    [
+        ("eonRhoFromAlbedoNormal", eon_rho_from_albedo_normal),
+        ("eonRhoFromAlbedoAvg", eon_rho_from_albedo_avg),
+    ],
 )
-def test_colors_to_enter_are_numpys(undrawn, invert):
+def test_colors_to_enter_are_numpys(undrawn, name, invert):
     colors = np.linspace(0.0, 1.0, 21)
     for roughness in PARAMETERS:
         values = undrawn.evaluate(
-            f"([colors, r]) => colors.map(c => mxeon.models.{invert.__name__}(c, r))",
+            f"([colors, r]) => colors.map(c => mxeon.models.{name}(c, r))",
             [colors.tolist(), roughness],
         )
         assert np.abs(np.array(values) - invert(colors, roughness)).max() < TWINS

@@ -23,75 +23,75 @@ export function cosines(wo: Vec3, wi: Vec3): [mu_o: number, mu_i: number, s: num
 }
 
 /** H(mu) = c1 - G_F(mu) / pi: [Portsmouth2025], Eq. (13); FON loses r A_F H(mu). */
-export function fon_loss(mu: number): number {
+export function fonLoss(mu: number): number {
   const S = Math.sqrt((1.0 - mu) * (1.0 + mu));
   const t = mu / (1.0 + S);
   return mu * t * (C1 - (S * t * (2.0 + S)) / (3.0 * PI)) + (2.0 / PI) * S * Math.atan(t);
 }
 
 /** H(mu) with the quartic of [Portsmouth2025], Eq. (14): below 0 where mu < 0.0014. */
-export function fon_loss_approx(mu: number): number {
+export function fonLossApprox(mu: number): number {
   const m = 1.0 - mu;
   const [g1, g2, g3, g4] = FON_G;
   return C1 - m * (g1 + m * (g2 + m * (g3 + m * g4)));
 }
 
 /** A_F: [Portsmouth2025], below Eq. (11). */
-export function fon_af(roughness: number): number {
+export function fonAf(roughness: number): number {
   return 1.0 / (1.0 + C1 * roughness);
 }
 
 /** rho A_F / pi: [Portsmouth2025], Eq. (10). */
-export function fon_lambert(rho: number, roughness: number): number {
-  return (rho / PI) * fon_af(roughness);
+export function fonLambert(rho: number, roughness: number): number {
+  return (rho / PI) * fonAf(roughness);
 }
 
 /** A_q: [Portsmouth2025], below Eq. (1). */
-export function qon_aq(sigma: number, constant = 0.33): number {
+export function qonAq(sigma: number, constant = 0.33): number {
   return 1.0 - (0.5 * sigma ** 2) / (sigma ** 2 + constant);
 }
 
 /** B_q: [Portsmouth2025], below Eq. (1). */
-export function qon_bq(sigma: number): number {
+export function qonBq(sigma: number): number {
   return (0.45 * sigma ** 2) / (sigma ** 2 + 0.09);
 }
 
 /** D, the divisor in the albedo and the value of EON. */
-export function eon_denominator(rho: number, roughness: number): number {
+export function eonDenominator(rho: number, roughness: number): number {
   return 1.0 + C1 * roughness - rho * (roughness * (C1 - C2));
 }
 
 /** Weight of H(mu_o) H(mu_i) relative to FON's 1 + r s / t_F: Eq. (19) over Eq. (10). */
-export function eon_multiple_ratio(rho: number, roughness: number): number {
+export function eonMultipleRatio(rho: number, roughness: number): number {
   const weight = (roughness * (1.0 + C2 * roughness)) / (C1 - C2);
-  return (rho * weight) / eon_denominator(rho, roughness);
+  return (rho * weight) / eonDenominator(rho, roughness);
 }
 
 /** value / divisor, or 0 if a divisor >= 0 vanishes: this family has no limit there. */
-export function oren_nayar_quotient(value: number, divisor: number): number {
+export function orenNayarQuotient(value: number, divisor: number): number {
   return divisor < TINY ? 0.0 : value / divisor;
 }
 
 /** s / t_q: [Portsmouth2025], Eq. (4). */
-export function qon_quotient(mu_o: number, mu_i: number, s: number): number {
-  return oren_nayar_quotient(Math.max(s, 0.0), Math.max(mu_o, mu_i));
+export function qonQuotient(muO: number, muI: number, s: number): number {
+  return orenNayarQuotient(Math.max(s, 0.0), Math.max(muO, muI));
 }
 
 /** s / t_F: [Portsmouth2025], Eq. (11). */
-export function fon_quotient(mu_o: number, mu_i: number, s: number): number {
-  return qon_quotient(mu_o, mu_i, s) + Math.min(s, 0.0);
+export function fonQuotient(muO: number, muI: number, s: number): number {
+  return qonQuotient(muO, muI, s) + Math.min(s, 0.0);
 }
 
 /** rho / pi A_F (1 + r s / t_F + weight H(mu_o) H(mu_i)): [Portsmouth2025], Eq. (16). */
-export function eon_brdf_mu(
-  mu_o: number,
-  mu_i: number,
+export function eonBrdfMu(
+  muO: number,
+  muI: number,
   s: number,
   rho: number,
   roughness: number,
 ): number {
-  const single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s);
-  const losses = fon_loss(mu_o) * fon_loss(mu_i);
-  const multi_scatter = eon_multiple_ratio(rho, roughness) * losses;
-  return fon_lambert(rho, roughness) * (single_scatter + multi_scatter);
+  const singleScatter = 1.0 + roughness * fonQuotient(muO, muI, s);
+  const losses = fonLoss(muO) * fonLoss(muI);
+  const multiScatter = eonMultipleRatio(rho, roughness) * losses;
+  return fonLambert(rho, roughness) * (singleScatter + multiScatter);
 }

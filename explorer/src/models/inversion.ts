@@ -5,7 +5,7 @@
 import { C1, C2 } from "./formulas";
 
 /** Reflectance for which EON has this directional albedo at normal incidence: Eqs. (28) to (31). */
-export function eon_rho_from_albedo_normal(color: number, roughness: number): number {
+export function eonRhoFromAlbedoNormal(color: number, roughness: number): number {
   const b = 1.0 + (C1 - C2) * roughness * color;
   const d = 1.0 + C1 * roughness;
   const rho = (2.0 * color * d) / (b + Math.sqrt(b * b + 4.0 * C2 * roughness * d * color));
@@ -13,7 +13,7 @@ export function eon_rho_from_albedo_normal(color: number, roughness: number): nu
 }
 
 /** Reflectance for which EON has this average albedo: [Portsmouth2025], Eqs. (29), (33). */
-export function eon_rho_from_albedo_avg(color: number, roughness: number): number {
+export function eonRhoFromAlbedoAvg(color: number, roughness: number): number {
   const scaled = color * (1.0 + C1 * roughness);
   return scaled / (scaled + (1.0 + C2 * roughness) * (1.0 - color));
 }

@@ -6,7 +6,7 @@ import type { ModelName, Vec3 } from "../data";
 import * as albedo from "./albedo";
 import * as models from "./brdf";
 import type { Brdf } from "./brdf";
-import { bisect, eon_rho_from_albedo_avg, eon_rho_from_albedo_normal } from "./inversion";
+import { bisect, eonRhoFromAlbedoAvg, eonRhoFromAlbedoNormal } from "./inversion";
 import * as defects from "./known_defects";
 
 export interface Model {
@@ -15,8 +15,8 @@ export interface Model {
   readonly short: string; // short title
   readonly brdf: Brdf;
   readonly parameter: "roughness" | "sigma" | null;
-  readonly albedo_dir: albedo.AlbedoDir | null; // closed form, if known
-  readonly albedo_avg: albedo.AlbedoAvg | null;
+  readonly albedoDir: albedo.AlbedoDir | null; // closed form, if known
+  readonly albedoAvg: albedo.AlbedoAvg | null;
   /** Only defects: the intended model, and where the defect differs from it. */
   readonly meant: ModelName | null;
   readonly wrong: string;
@@ -28,15 +28,15 @@ type White = (...of: number[]) => number;
  * Convert `white(..., parameter)`, an albedo at unit reflectance, to a function of rho and the
  * parameter.
  */
-function tinted_dir(white: White): albedo.AlbedoDir {
+function tintedDir(white: White): albedo.AlbedoDir {
   return (mu, rho, parameter) => rho * white(mu, parameter);
 }
 
-function tinted_avg(white: White): albedo.AlbedoAvg {
+function tintedAvg(white: White): albedo.AlbedoAvg {
   return (rho, parameter) => rho * white(parameter);
 }
 
-const MODEL = { albedo_dir: null, albedo_avg: null, meant: null, wrong: "" } as const;
+const MODEL = { albedoDir: null, albedoAvg: null, meant: null, wrong: "" } as const;
 
 export const MODELS: readonly Model[] = [
   {
@@ -44,47 +44,47 @@ export const MODELS: readonly Model[] = [
     name: "eon",
     title: "energy-preserving Oren-Nayar (EON)",
     short: "EON",
-    brdf: models.eon_brdf,
+    brdf: models.eonBrdf,
     parameter: "roughness",
-    albedo_dir: albedo.eon_albedo_dir,
-    albedo_avg: albedo.eon_albedo_avg,
+    albedoDir: albedo.eonAlbedoDir,
+    albedoAvg: albedo.eonAlbedoAvg,
   },
   {
     ...MODEL,
     name: "qon",
     title: "qualitative Oren-Nayar (QON)",
     short: "QON",
-    brdf: models.qon_brdf,
+    brdf: models.qonBrdf,
     parameter: "sigma",
-    albedo_dir: tinted_dir(albedo.qon_albedo_dir),
-    albedo_avg: tinted_avg(albedo.qon_albedo_avg),
+    albedoDir: tintedDir(albedo.qonAlbedoDir),
+    albedoAvg: tintedAvg(albedo.qonAlbedoAvg),
   },
   {
     ...MODEL,
     name: "fon",
     title: "Fujii Oren-Nayar (FON)",
     short: "FON",
-    brdf: models.fon_brdf,
+    brdf: models.fonBrdf,
     parameter: "roughness",
-    albedo_dir: tinted_dir(albedo.fon_albedo_dir),
-    albedo_avg: tinted_avg(albedo.fon_albedo_avg),
+    albedoDir: tintedDir(albedo.fonAlbedoDir),
+    albedoAvg: tintedAvg(albedo.fonAlbedoAvg),
   },
   {
     ...MODEL,
     name: "lambert",
     title: "Lambert",
     short: "Lambert",
-    brdf: models.lambert_brdf,
+    brdf: models.lambertBrdf,
     parameter: null,
-    albedo_dir: (_mu, rho) => rho,
-    albedo_avg: (rho) => rho,
+    albedoDir: (_mu, rho) => rho,
+    albedoAvg: (rho) => rho,
   },
   {
     ...MODEL,
     name: "oren_nayar",
     title: "full Oren-Nayar",
     short: "full Oren-Nayar",
-    brdf: models.oren_nayar_brdf,
+    brdf: models.orenNayarBrdf,
     parameter: "sigma",
   },
   {
@@ -92,7 +92,7 @@ export const MODELS: readonly Model[] = [
     name: "qon_footnote",
     title: "QON with the footnote's constant",
     short: "QON, footnote",
-    brdf: models.qon_footnote_brdf,
+    brdf: models.qonFootnoteBrdf,
     parameter: "sigma",
   },
   {
@@ -100,7 +100,7 @@ export const MODELS: readonly Model[] = [
     name: "qon_fujii",
     title: "QON with Fujii's coefficients",
     short: "QON, Fujii",
-    brdf: models.qon_fujii_brdf,
+    brdf: models.qonFujiiBrdf,
     parameter: "sigma",
   },
   {
@@ -108,7 +108,7 @@ export const MODELS: readonly Model[] = [
     name: "eon_approx",
     title: "EON with the paper's quartic",
     short: "EON, quartic",
-    brdf: models.eon_brdf_approx,
+    brdf: models.eonBrdfApprox,
     parameter: "roughness",
   },
 ];
@@ -119,7 +119,7 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     name: "eon_clamped",
     title: "EON with clamped dot(wo, wi)",
     short: "EON, clamped",
-    brdf: defects.eon_clamped_brdf,
+    brdf: defects.eonClampedBrdf,
     parameter: "roughness",
     meant: "eon",
     wrong: "too bright where the light comes from behind, dot(wo, wi) < 0",
@@ -129,9 +129,9 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     name: "eon_rho_cubed",
     title: "EON with rho^3",
     short: "EON, rho^3",
-    brdf: defects.eon_rho_cubed_brdf,
+    brdf: defects.eonRhoCubedBrdf,
     parameter: "roughness",
-    albedo_dir: defects.eon_rho_cubed_albedo_dir,
+    albedoDir: defects.eonRhoCubedAlbedoDir,
     meant: "eon",
     wrong: "too dark where the color is neither 0 nor 1",
   },
@@ -140,9 +140,9 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     name: "fon_white_lobe",
     title: "FON + white lobe",
     short: "FON + white",
-    brdf: defects.fon_white_lobe_brdf,
+    brdf: defects.fonWhiteLobeBrdf,
     parameter: "roughness",
-    albedo_dir: defects.fon_white_lobe_albedo_dir,
+    albedoDir: defects.fonWhiteLobeAlbedoDir,
     meant: "eon",
     wrong: "too bright wherever the color is below 1; black reflects light",
   },
@@ -151,9 +151,9 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     name: "qon_fitted",
     title: "QON with MaterialX's fit of its albedo",
     short: "QON, fitted albedo",
-    brdf: models.qon_brdf,
+    brdf: models.qonBrdf,
     parameter: "sigma",
-    albedo_dir: defects.qon_fitted_albedo_dir,
+    albedoDir: defects.qonFittedAlbedoDir,
     meant: "qon",
     wrong: "wrong in surroundings only: the albedo is off by up to 0.063",
   },
@@ -162,9 +162,9 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     name: "qon_tinted_twice",
     title: "QON tinted twice",
     short: "QON, tinted twice",
-    brdf: defects.qon_tinted_twice_brdf,
+    brdf: defects.qonTintedTwiceBrdf,
     parameter: "sigma",
-    albedo_dir: defects.qon_tinted_twice_albedo_dir,
+    albedoDir: defects.qonTintedTwiceAlbedoDir,
     meant: "qon",
     wrong: "too dark where the color is neither 0 nor 1",
   },
@@ -178,46 +178,46 @@ export function model(name: ModelName): Model {
 }
 
 /** pi f cos(theta_i) of one channel; 0 if the light is below the horizon. */
-export function pi_f_cos(of: Model, wo: Vec3, wi: Vec3, rho: number, parameter: number): number {
+export function piFCos(of: Model, wo: Vec3, wi: Vec3, rho: number, parameter: number): number {
   return wi[2] <= 0.0 ? 0.0 : Math.PI * of.brdf(wo, wi, rho, parameter) * wi[2];
 }
 
 /** Directional albedo, in closed form if there is one, else by quadrature with `nodes`. */
-export function albedo_dir(
+export function albedoDir(
   of: Model,
   mu: number,
   rho: number,
   parameter: number,
   nodes = 64,
 ): number {
-  if (of.albedo_dir) return of.albedo_dir(mu, rho, parameter);
-  return albedo.albedo_dir_quadrature(of.brdf, mu, rho, parameter, nodes);
+  if (of.albedoDir) return of.albedoDir(mu, rho, parameter);
+  return albedo.albedoDirQuadrature(of.brdf, mu, rho, parameter, nodes);
 }
 
 /** Average albedo, 2 times the integral of mu E(mu): in closed form, or by Simpson's rule. */
-export function albedo_avg(of: Model, rho: number, parameter: number): number {
-  if (of.albedo_avg) return of.albedo_avg(rho, parameter);
+export function albedoAvg(of: Model, rho: number, parameter: number): number {
+  if (of.albedoAvg) return of.albedoAvg(rho, parameter);
   const steps = 16;
   let sum = 0.0;
   for (let k = 0; k <= steps; k++) {
     const mu = k / steps;
     const weight = k === 0 || k === steps ? 1 : 2 + 2 * (k % 2);
-    sum += (weight / (3 * steps)) * 2.0 * mu * albedo_dir(of, mu, rho, parameter, 16);
+    sum += (weight / (3 * steps)) * 2.0 * mu * albedoDir(of, mu, rho, parameter, 16);
   }
   return sum;
 }
 
 /** Color to enter for one channel to have this albedo, at normal incidence or on average. */
-export function rho_from_albedo(
+export function rhoFromAlbedo(
   of: Model,
   seen: number,
   parameter: number,
   average: boolean,
 ): number {
   if (of.name === "eon") {
-    return (average ? eon_rho_from_albedo_avg : eon_rho_from_albedo_normal)(seen, parameter);
+    return (average ? eonRhoFromAlbedoAvg : eonRhoFromAlbedoNormal)(seen, parameter);
   }
-  const albedo_of = (rho: number): number =>
-    average ? albedo_avg(of, rho, parameter) : albedo_dir(of, 1.0, rho, parameter, 16);
-  return bisect(albedo_of, seen);
+  const albedoOf = (rho: number): number =>
+    average ? albedoAvg(of, rho, parameter) : albedoDir(of, 1.0, rho, parameter, 16);
+  return bisect(albedoOf, seen);
 }

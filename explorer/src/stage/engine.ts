@@ -6,7 +6,7 @@
 import type { PageData, ReferenceTable, ShaderSource, Source, Triple, Vec3 } from "../data";
 import type { SideName, State } from "../state";
 import type { ErrorOf, Errors } from "../verdict";
-import { own_view } from "../view";
+import { ownView } from "../view";
 import { DIFFERENCE_COLORS, linear } from "./colors";
 import * as gpu from "./gpu";
 import { modelOf, pathText, shaderUniforms, wanted } from "./materials";
@@ -164,7 +164,7 @@ export class Engine {
   /** Largest errors of a shader with its own inputs; null while it compiles or if it fails. */
   check(source: ShaderSource): Errors | null {
     const { pairs, views } = this.data;
-    const view = own_view(source);
+    const view = ownView(source);
     const lamp: State = { ...view, shape: "sphere", light: 1, surroundings: "none" };
     const white: State = { ...lamp, light: 0, surroundings: "uniform" };
     if (!source.reference || !this.isValued(lamp, "left")) return null;
@@ -389,7 +389,7 @@ export class Engine {
       layer((state.paths && this.traced?.target(name, passes)) || this.targets[name]);
     const [width] = size;
     const flicks = state.comparison === "flicker";
-    const side_by_side = state.comparison === "side";
+    const sideBySide = state.comparison === "side";
     const flicker = state.shown === "left" ? 2 * width : -width;
     gpu.drawPass(this.gl, program, now, size, {
       ...this.uniforms,
@@ -398,8 +398,8 @@ export class Engine {
       stage_before: layer(before),
       stage_share: 1 / (index + 1),
       stage_gain: 2 ** state.exposure,
-      stage_edge: flicks ? flicker : (side_by_side ? 0.5 : state.wipe) * width,
-      stage_shift: side_by_side ? Math.round(width / 4) : 0,
+      stage_edge: flicks ? flicker : (sideBySide ? 0.5 : state.wipe) * width,
+      stage_shift: sideBySide ? Math.round(width / 4) : 0,
       stage_scale: state.comparison === "difference" ? state.scale : 0,
       stage_colors: DIFFERENCE_COLORS.flat().map(linear),
       stage_traced: state.paths,

@@ -4,7 +4,7 @@
 
 import { useEffect, useState } from "preact/hooks";
 import { copy } from "../copies";
-import { stem_of, with_material } from "../view";
+import { stemOf, withMaterial } from "../view";
 import type { ViewProps } from "./sides";
 
 const DOCUMENT = /\.mtlx$/i;
@@ -19,7 +19,7 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
     const over = (event: DragEvent): void => event.preventDefault();
     const drop = (event: DragEvent): void => {
       event.preventDefault();
-      void files_of(event.dataTransfer).then(shown);
+      void filesOf(event.dataTransfer).then(shown);
     };
     const shown = async (files: ReadonlyMap<string, File>): Promise<void> => {
       const names = [...files.keys()];
@@ -38,8 +38,8 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
         ({ id, group }) => id.startsWith("document/") && group === first,
       );
       say(own ? "" : `To see ${first}, run`);
-      if (own) change(with_material(state, sources, stem_of(own.id)));
-      else setCommand(command_for(first));
+      if (own) change(withMaterial(state, sources, stemOf(own.id)));
+      else setCommand(commandFor(first));
     };
     addEventListener("dragover", over);
     addEventListener("drop", drop);
@@ -74,7 +74,7 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
 }
 
 /** Dropped files by path, including those in folders, because documents name images by paths. */
-async function files_of(dropped: DataTransfer | null): Promise<Map<string, File>> {
+async function filesOf(dropped: DataTransfer | null): Promise<Map<string, File>> {
   const files = new Map<string, File>();
   const add = async (entry: FileSystemEntry): Promise<void> => {
     if (entry.isFile) {
@@ -117,7 +117,7 @@ async function sent(files: ReadonlyMap<string, File>, documents: boolean): Promi
 }
 
 /** The command that shows a document or an environment map. */
-function command_for(name: string): string {
+function commandFor(name: string): string {
   const path = name.startsWith("-") ? `./${name}` : name; // a name must not look like an option
   const file = /^[\w./-]+$/.test(path) ? path : `'${path.replaceAll("'", `'\\''`)}'`;
   return `mxeon explore ${DOCUMENT.test(name) ? "" : "--environment "}${file}`;

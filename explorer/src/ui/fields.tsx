@@ -4,7 +4,7 @@
 import type { ComponentChildren } from "preact";
 import { useId, useRef, useState } from "preact/hooks";
 import type { Triple, Vec3 } from "../data";
-import { from_hex, to_hex } from "../format";
+import { fromHex, toHex } from "../format";
 
 interface NumberProps {
   readonly label: string;
@@ -150,8 +150,8 @@ export function Color({ label, value, onChange }: ColorProps) {
       <input
         type="color"
         aria-label={`${label}, picker`}
-        value={to_hex(value)}
-        onInput={(event) => onChange(from_hex(event.currentTarget.value))}
+        value={toHex(value)}
+        onInput={(event) => onChange(fromHex(event.currentTarget.value))}
       />
       {CHANNELS.map((name, channel) => (
         <NumberField
@@ -172,7 +172,7 @@ export function Color({ label, value, onChange }: ColorProps) {
 export function Swatch({ color }: { readonly color: Vec3 }) {
   return (
     <svg class="swatch" viewBox="0 0 1 1" aria-hidden="true">
-      <rect width="1" height="1" fill={to_hex(color)} />
+      <rect width="1" height="1" fill={toHex(color)} />
     </svg>
   );
 }

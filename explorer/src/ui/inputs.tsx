@@ -3,7 +3,7 @@
 
 import type { Port, ShaderSource, Triple } from "../data";
 import type { State, Value } from "../state";
-import { SIDES, source_of, stem_of, values_of } from "../view";
+import { SIDES, sourceOf, stemOf, valuesOf } from "../view";
 import { Check, Color, NumberField, Slider } from "./fields";
 import type { ViewProps } from "./sides";
 
@@ -12,9 +12,9 @@ export function Inputs(props: ViewProps) {
   const { sources, state } = props;
   const shown = new Map<string, ShaderSource>();
   for (const name of SIDES) {
-    const source = source_of(sources, state[name]);
+    const source = sourceOf(sources, state[name]);
     if (source.kind === "shader" && !source.id.startsWith("shader/")) {
-      const stem = stem_of(source.id);
+      const stem = stemOf(source.id);
       if (!shown.has(stem)) shown.set(stem, source);
     }
   }
@@ -29,9 +29,9 @@ export function Inputs(props: ViewProps) {
 
 function Group({ source, data, state, change }: ViewProps & { readonly source: ShaderSource }) {
   const side = SIDES.map((name) => state[name]).find((each) => each.source === source.id)!;
-  const values = values_of(source, state, side);
+  const values = valuesOf(source, state, side);
   const own = new Set(Object.values(source.controls));
-  const twins = data.sources.filter((each) => stem_of(each.id) === stem_of(source.id));
+  const twins = data.sources.filter((each) => stemOf(each.id) === stemOf(source.id));
   const set = (port: Port, value: Value): void => {
     const inputs: Record<string, State["inputs"][string]> = { ...state.inputs };
     for (const { id } of twins) inputs[id] = { ...inputs[id], [port.name]: value };

@@ -4,12 +4,12 @@
 import { useMemo } from "preact/hooks";
 import type { Triple, Vec3 } from "../data";
 import { triple } from "../format";
-import { albedo_avg, albedo_dir, type Model } from "../models/table";
-import { actual_model, enter, LETTER, meant_model, SIDES, source_of } from "../view";
+import { albedoAvg, albedoDir, type Model } from "../models/table";
+import { actualModel, enter, LETTER, meantModel, SIDES, sourceOf } from "../view";
 import { Check, Choice, Color, Slider, Swatch } from "./fields";
 import type { ViewProps } from "./sides";
 
-function per_channel(color: Vec3, one: (rho: number) => number): Triple {
+function perChannel(color: Vec3, one: (rho: number) => number): Triple {
   return [one(color[0]), one(color[1]), one(color[2])];
 }
 
@@ -21,8 +21,8 @@ export function Material({
   drawn,
 }: ViewProps & { readonly drawn: boolean }) {
   const { color, roughness } = state;
-  const shown = SIDES.map((name) => source_of(sources, state[name]));
-  const models = shown.map((source, k) => actual_model(source, state[SIDES[k]!], state));
+  const shown = SIDES.map((name) => sourceOf(sources, state[name]));
+  const models = shown.map((source, k) => actualModel(source, state[SIDES[k]!], state));
   const moves = (control: "color" | "roughness"): boolean =>
     shown.some((source) => source.kind === "model" || source.controls[control] !== "");
   if (!moves("color") && !moves("roughness")) return null;
@@ -81,8 +81,8 @@ interface AlbedosProps {
 function Albedos({ of, color, roughness }: AlbedosProps) {
   const albedos = useMemo(
     () => [
-      per_channel(color, (rho) => albedo_dir(of, 1.0, rho, roughness, 24)),
-      per_channel(color, (rho) => albedo_avg(of, rho, roughness)),
+      perChannel(color, (rho) => albedoDir(of, 1.0, rho, roughness, 24)),
+      perChannel(color, (rho) => albedoAvg(of, rho, roughness)),
     ],
     [of, color, roughness],
   );
@@ -101,7 +101,7 @@ function Albedos({ of, color, roughness }: AlbedosProps) {
 /** The color to enter for a given albedo, if the material is one rough diffuse lobe. */
 export function Wanted(props: ViewProps) {
   const { sources, state } = props;
-  const of = meant_model(source_of(sources, state.left), state.left, state);
+  const of = meantModel(sourceOf(sources, state.left), state.left, state);
   return of && <WantedFor {...props} of={of} />;
 }
 
@@ -111,8 +111,8 @@ function WantedFor({ state, change, of }: ViewProps & { readonly of: Model }) {
     () => enter(of, wanted, roughness, average),
     [of, wanted, roughness, average],
   );
-  const seen = per_channel(color, (rho) =>
-    average ? albedo_avg(of, rho, roughness) : albedo_dir(of, 1.0, rho, roughness, 24),
+  const seen = perChannel(color, (rho) =>
+    average ? albedoAvg(of, rho, roughness) : albedoDir(of, 1.0, rho, roughness, 24),
   );
   const reached = seen.every((one, channel) => Math.abs(one - wanted[channel]!) < 1e-6);
   return (

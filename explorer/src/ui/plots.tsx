@@ -5,7 +5,7 @@ import { scaleLinear } from "d3-scale";
 import { line, lineRadial } from "d3-shape";
 import type { Triple, Vec3 } from "../data";
 import { degrees, show } from "../format";
-import { albedo_dir, type Model } from "../models/table";
+import { albedoDir, type Model } from "../models/table";
 import type { Pair } from "../probe";
 import type { SideName } from "../state";
 import { LETTER } from "../view";
@@ -53,8 +53,8 @@ export function Polar({ curves, pair, color, roughness }: PlotProps) {
   const draw = lineRadial<[number, number]>()
     .angle(([angle]) => angle)
     .radius(([, r]) => Math.min(Math.max(radius(r), 0), 1.4 * RADIUS));
-  const theta_o = Math.acos(wo[2]);
-  const theta_i = Math.atan2(pair.wi[0], pair.wi[2]);
+  const thetaO = Math.acos(wo[2]);
+  const thetaI = Math.atan2(pair.wi[0], pair.wi[2]);
   const out = RADIUS + 14;
   const to = (angle: number): [number, number] => [out * Math.sin(angle), -out * Math.cos(angle)];
   return (
@@ -63,11 +63,11 @@ export function Polar({ curves, pair, color, roughness }: PlotProps) {
         class="plot"
         viewBox="-172 -146 344 166"
         role="img"
-        aria-label={`Lobe in the plane of incidence, viewer at ${degrees(theta_o)}`}
+        aria-label={`Lobe in the plane of incidence, viewer at ${degrees(thetaO)}`}
       >
         {radius.ticks(4).map((tick) => (
           <g key={tick}>
-            <path class="grid" d={half_circle(radius(tick))} />
+            <path class="grid" d={halfCircle(radius(tick))} />
             {tick > 0 && (
               <text class="tick" x={-radius(tick)} y="13" text-anchor="middle">
                 {show(tick)}
@@ -80,8 +80,8 @@ export function Polar({ curves, pair, color, roughness }: PlotProps) {
         {lobes.map((lobe, k) => (
           <path key={curves[k]!.side} class={`curve ${curves[k]!.side}`} d={draw(lobe) ?? ""} />
         ))}
-        <Ray angle={theta_o} end={to(theta_o)} name="eye" />
-        <Ray angle={theta_i} end={to(theta_i)} name="light" />
+        <Ray angle={thetaO} end={to(thetaO)} name="eye" />
+        <Ray angle={thetaI} end={to(thetaI)} name="light" />
       </svg>
       <figcaption>
         Lobe in the plane of incidence: π f over the light's angle, {CHANNELS[channel]} channel
@@ -91,7 +91,7 @@ export function Polar({ curves, pair, color, roughness }: PlotProps) {
 }
 
 /** The upper half of a circle about the origin. */
-function half_circle(r: number): string {
+function halfCircle(r: number): string {
   return `M${-r} 0A${r} ${r} 0 0 1 ${r} 0`;
 }
 
@@ -126,7 +126,7 @@ export function AlbedoPlot({ curves, pair, color, roughness }: PlotProps) {
     Array.from({ length: POINTS }, (_, k): [number, number] => {
       const angle = (90 * k) / (POINTS - 1);
       const mu = Math.max(Math.cos((angle * Math.PI) / 180), 0.0);
-      return [angle, albedo_dir(model, mu, rho, roughness, 12)];
+      return [angle, albedoDir(model, mu, rho, roughness, 12)];
     }),
   );
   const all = lines.flat().map(([, y]) => y);
@@ -140,7 +140,7 @@ export function AlbedoPlot({ curves, pair, color, roughness }: PlotProps) {
     ([, albedo]) => y(albedo),
   );
   const angle = (Math.acos(Math.min(pair.wo[2], 1)) * 180) / Math.PI;
-  const marks = curves.map(({ model }) => albedo_dir(model, pair.wo[2], rho, roughness, 24));
+  const marks = curves.map(({ model }) => albedoDir(model, pair.wo[2], rho, roughness, 24));
   return (
     <figure>
       <svg

@@ -4,11 +4,11 @@
 import type { ComponentChild } from "preact";
 import { useMemo, useState } from "preact/hooks";
 import type { Triple } from "../data";
-import { copy, material_x, python_line, shader_text } from "../copies";
+import { copy, materialX, pythonLine, shaderText } from "../copies";
 import type { State } from "../state";
 import { degrees, signed, triple } from "../format";
-import { apart, is_other, type Pair, values } from "../probe";
-import { actual_model, LETTER, meant_model, SIDES, source_of, tabled } from "../view";
+import { apart, isOther, type Pair, values } from "../probe";
+import { actualModel, LETTER, meantModel, SIDES, sourceOf, tabled } from "../view";
 import { AlbedoPlot, type Curve, Polar } from "./plots";
 import type { ViewProps } from "./sides";
 
@@ -32,13 +32,11 @@ const DECIMALS = 7;
 export function Probe(props: ProbeProps) {
   const { sources, calm, change, pair, row, drawn } = props;
   const { color, roughness, probe } = calm;
-  const known = SIDES.some((side) =>
-    actual_model(source_of(sources, calm[side]), calm[side], calm),
-  );
+  const known = SIDES.some((side) => actualModel(sourceOf(sources, calm[side]), calm[side], calm));
   const plots = useMemo(() => {
     const curves: Curve[] = [];
     for (const side of SIDES) {
-      const of = actual_model(source_of(sources, calm[side]), calm[side], calm);
+      const of = actualModel(sourceOf(sources, calm[side]), calm[side], calm);
       if (of) curves.push({ side, model: of });
     }
     if (!drawn || curves.length === 0) return null;
@@ -115,7 +113,7 @@ function Values({ sources, calm: state, pair, row, measured, able }: ProbeProps)
       <tbody>
         <Row title="value">
           {SIDES.map((name) => {
-            const of = actual_model(source_of(sources, state[name]), state[name], state);
+            const of = actualModel(sourceOf(sources, state[name]), state[name], state);
             const value = measured?.[name];
             if (!value && able) return <Measuring />;
             if (!value && !of) return "–";
@@ -123,7 +121,7 @@ function Values({ sources, calm: state, pair, row, measured, able }: ProbeProps)
               <>
                 <span class="of">{value ? "shader, float32" : `${of!.short}, float64`}</span>
                 <Numbers values={value ?? values(of!, pair, color, roughness)} />
-                {value && of && is_other(value, values(of, pair, color, roughness)) && (
+                {value && of && isOther(value, values(of, pair, color, roughness)) && (
                   <strong class="wrong">The shader is not {of.short}.</strong>
                 )}
               </>
@@ -132,8 +130,8 @@ function Values({ sources, calm: state, pair, row, measured, able }: ProbeProps)
         </Row>
         <Row title="reference">
           {SIDES.map((name) => {
-            const source = source_of(sources, state[name]);
-            const of = meant_model(source, state[name], state);
+            const source = sourceOf(sources, state[name]);
+            const of = meantModel(source, state[name], state);
             const should = of ? values(of, pair, color, roughness) : tabled(source, state, row);
             if (!should) return "–";
             return (
@@ -146,10 +144,10 @@ function Values({ sources, calm: state, pair, row, measured, able }: ProbeProps)
         </Row>
         <Row title="error">
           {SIDES.map((name) => {
-            const source = source_of(sources, state[name]);
+            const source = sourceOf(sources, state[name]);
             const [is, of] = [
-              actual_model(source, state[name], state),
-              meant_model(source, state[name], state),
+              actualModel(source, state[name], state),
+              meantModel(source, state[name], state),
             ];
             const should = of ? values(of, pair, color, roughness) : tabled(source, state, row);
             if (!should) return "–";
@@ -162,7 +160,7 @@ function Values({ sources, calm: state, pair, row, measured, able }: ProbeProps)
             const bound = source.kind === "shader" && !of ? source.reference!.bounds.direct : null;
             const right =
               bound === null
-                ? !is_other(value, should)
+                ? !isOther(value, should)
                 : Math.abs(error) <= bound * Math.max(1, ...should);
             return (
               <strong class={right ? "correct" : "wrong"}>
@@ -226,12 +224,12 @@ function Copies({ data, sources, state, calm, pair }: ProbeProps) {
   return (
     <div class="copies">
       {SIDES.map((name) => {
-        const source = source_of(sources, state[name]);
-        const of = actual_model(source_of(sources, calm[name]), calm[name], calm);
+        const source = sourceOf(sources, state[name]);
+        const of = actualModel(sourceOf(sources, calm[name]), calm[name], calm);
         const texts: [string, string | null][] = [
-          ["MaterialX", material_x(state, sources, source, state[name])],
-          ["GLSL", shader_text(data, source)],
-          ["Python", of && python_line(of, pair, calm)], // uses the visible values
+          ["MaterialX", materialX(state, sources, source, state[name])],
+          ["GLSL", shaderText(data, source)],
+          ["Python", of && pythonLine(of, pair, calm)], // uses the visible values
         ];
         return (
           <p key={name} role="group" aria-label={`Copy from ${LETTER[name]}`}>

@@ -4,16 +4,16 @@
 import { useMemo } from "preact/hooks";
 import type { PageData } from "../data";
 import { SAMPLERS, type Sampler, type SideName, type State } from "../state";
-import { type Evidence, type Verdict, verdict_on } from "../verdict";
+import { type Evidence, type Verdict, verdictOn } from "../verdict";
 import {
-  has_flag,
+  hasFlag,
   LETTER,
-  materials_of,
+  materialsOf,
   SIDES,
-  source_of,
-  stem_of,
-  with_material,
-  with_source,
+  sourceOf,
+  stemOf,
+  withMaterial,
+  withSource,
   type Sources,
 } from "../view";
 import { Check, Choice } from "./fields";
@@ -33,15 +33,15 @@ const SAMPLER_TITLES: Readonly<Record<Sampler, string>> = {
 
 /** Selects which material of both libraries is compared. */
 export function Materials({ data, sources, state, change }: ViewProps) {
-  const materials = materials_of(data);
-  const stem = stem_of(state.left.source);
+  const materials = materialsOf(data);
+  const stem = stemOf(state.left.source);
   return (
     <section class="materials" aria-label="What to compare">
       <Choice
         label="eonlib beside stock MaterialX"
         value={stem}
         options={[...materials].map(([key, title]) => [key, title] as const)}
-        onChange={(key) => change(with_material(state, sources, key))}
+        onChange={(key) => change(withMaterial(state, sources, key))}
       />
     </section>
   );
@@ -67,13 +67,13 @@ const WAITING: Verdict = { kind: "measuring", badge: "measuring", text: "" };
 function SideCard(props: SidesProps & { readonly name: SideName }) {
   const { name, data, sources, state, rest, evidence, change } = props;
   const side = state[name];
-  const source = source_of(sources, side);
+  const source = sourceOf(sources, side);
   const groups = [...new Set(data.sources.map((each) => each.group))];
   const { able, confirmed, errors, failure } = evidence[name];
   // During motion, keep the last verdict if the material is still the same.
   const judged = rest && rest[name] === side ? rest : null;
   const verdict = useMemo(
-    () => (judged ? verdict_on(judged, sources, side, evidence[name]) : WAITING),
+    () => (judged ? verdictOn(judged, sources, side, evidence[name]) : WAITING),
     [judged, side, able, confirmed, errors, failure],
   );
   return (
@@ -85,7 +85,7 @@ function SideCard(props: SidesProps & { readonly name: SideName }) {
         <span class="hidden">Material {LETTER[name]}</span>
         <select
           value={side.source}
-          onChange={(event) => change(with_source(state, sources, name, event.currentTarget.value))}
+          onChange={(event) => change(withSource(state, sources, name, event.currentTarget.value))}
         >
           {groups.map((group) => (
             <optgroup key={group} label={group}>
@@ -105,7 +105,7 @@ function SideCard(props: SidesProps & { readonly name: SideName }) {
       </p>
       <div class="foot">
         <Pages names={source.pages} pattern={data.pages} />
-        {has_flag(source) && (
+        {hasFlag(source) && (
           <Check
             label={<code>energy_compensation</code>}
             value={side.flag}

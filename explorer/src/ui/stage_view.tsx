@@ -6,7 +6,7 @@ import { show, signed } from "../format";
 import { type Stage, type Status, createStage } from "../stage";
 import { DIFFERENCE_COLORS } from "../stage/colors";
 import { COMPARISONS, type Comparison, type State, ZOOMS } from "../state";
-import { LETTER, short_title, SIDES, source_of } from "../view";
+import { LETTER, shortTitle, SIDES, sourceOf } from "../view";
 import { Choice, Slider } from "./fields";
 import { LightHandle, ProbeMark, WipeHandle } from "./handles";
 import type { ViewProps } from "./sides";
@@ -111,7 +111,7 @@ export function StageView(props: StageViewProps) {
   };
 
   if (stage === null) return <Stills stills={data.stills} />;
-  const names = SIDES.map((name) => short_title(source_of(sources, state[name]), state[name]));
+  const names = SIDES.map((name) => shortTitle(sourceOf(sources, state[name]), state[name]));
   return (
     <section class="stage" aria-label="Picture">
       <Toolbar {...props} />
@@ -197,12 +197,12 @@ function Labels({ state, names }: { readonly state: State; readonly names: reado
 function StatusLine({ status }: { readonly status: Status | null }) {
   return (
     <p class="status" role="status">
-      {status && status_text(status)}
+      {status && statusText(status)}
     </p>
   );
 }
 
-function status_text(status: Status): string {
+function statusText(status: Status): string {
   switch (status.kind) {
     case "drawn":
     case "restored":
