@@ -398,7 +398,6 @@ class Scope:
       MaterialX that complete it, under "MaterialX", unless it is loaded before all of them.
     - `compared`: Libraries judged for comparison; the verdict ignores their failures.
     - `unjudged`: Subjects that no check judges, with reasons.
-    - `seconds`: Time from the first document to the last result; None for a run that is read.
     """
 
     version: str
@@ -422,6 +421,7 @@ class Run(Scope):
 
     - `notes`: Warnings for readers, e.g. about features that a host cannot render.
     - `missing`: Unfinished tasks of an interrupted run.
+    - `seconds`: Time from the first document to the last result; None for a run that is read.
     """
 
     hosts: tuple[Identity, ...]
