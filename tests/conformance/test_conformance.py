@@ -10,7 +10,7 @@ from mxeon.hosts import HOSTS
 from mxeon.shaders.methods import Methods
 from mxeon.shaders.nodes import INVERSIONS
 from tests.support.plans import keep_checks
-from tests.support.sharing import DRAWN, EXAMPLES
+from tests.support.sharing import EXAMPLES
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED, SHADER_FUNCTIONS
 
 
@@ -97,7 +97,7 @@ def test_two_libraries_are_asked_the_same(run, stock):
         for each in (stock, run)
     ]
     own = {"eon_diffuse_bsdf", SHADER_FUNCTIONS, *INVERSIONS}
-    eonlib = {each for each in asked[1] if each[1] not in own and each[0] not in DRAWN}
+    eonlib = {each for each in asked[1] if each[1] not in own}
     assert eonlib < asked[0]
     assert {check for check, _ in asked[0] - eonlib} == {"implemented", "lobe", "opacity"}
 

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from mxeon import check
 from mxeon.conformance import words
 from mxeon.conformance.results import (
     DIFFERS,
@@ -24,8 +25,9 @@ from mxeon.report import to_json
 from mxeon.report.diff import compare, read_results
 from mxeon.report.junit import to_junit
 from mxeon.survey.field import read_field
+from tests.support.plans import keep
 from tests.support.results import caused
-from tests.support.sharing import DOCUMENTS
+from tests.support.sharing import DOCUMENTS, DRAWN
 from tests.support.verdicts import has
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
@@ -194,6 +196,14 @@ def test_eonlib_passes_every_check(run):
     assert {each.verdict for each in run.results} == {PASSED} and not run.errors
     assert all(each.control and each.control.caught for each in run.results)
     assert len(run.results) > 400
+
+
+@pytest.mark.whole
+def test_eonlib_passes_every_check_of_its_text_for_path_tracers(monkeypatch):
+    keep(monkeypatch, lambda task: task.check in DRAWN)
+    results = check(None, ["gl"], nodes=["all"]).results
+    assert {(each.check, each.verdict) for each in results} == {(each, PASSED) for each in DRAWN}
+    assert all(each.control and each.control.caught for each in results)
 
 
 @pytest.mark.whole

@@ -32,7 +32,7 @@ def shared(factory, name, make):
         return pickle.loads(path.read_bytes())
 
 
-# Checks of the text for path tracers; drivers take seconds to compile a surface shader.
+# Checks of the text for path tracers, which eonlib alone has.
 DRAWN = (
     *("pdf", "sample", "path_value", "path_inside", "path_energy", "path_leaving", "path_albedo"),
     *("path_emission", "path_random"),
@@ -42,15 +42,12 @@ DRAWN = (
 def every_node(factory, library):
     """Results of every node and some documents on gl with a library, computed once for all tests.
 
-    `test_path_tracing.py` and the longest tests judge the text of surface shaders for path tracers.
+    The longest tests judge the text for path tracers.
     """
 
     def make():
         with pytest.MonkeyPatch.context() as patch:
-            keep(
-                patch,
-                lambda task: task.check not in DRAWN or not task.subject.endswith("every lobe"),
-            )
+            keep(patch, lambda task: task.check not in DRAWN)
             return mxeon.check(DOCUMENTS[library], ["gl"], [library], nodes=["all"])
 
     return shared(factory, library, make)
