@@ -14,7 +14,7 @@ import MaterialX as mx
 from mxeon.conformance.results import SOURCE, Cause, Kind, Result
 from mxeon.conformance.results.known_issues import EONLIB, RENDERERS, STOCK, Issue, Row, issues
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import make_plan, node_names
+from mxeon.conformance.run.plan import ALL, make_plan, node_names
 from mxeon.errors import NotRun
 from mxeon.shaders.document.policy import DEFAULT
 from tools.site.ledger import figure, measured, write_measured
@@ -35,7 +35,7 @@ def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple
     """
     rows = rows or {row for e in CHECKED if shows(e, host, library) for row in e.rows}
     hosts = () if host == SOURCE else (host,)
-    tasks = make_plan((), hosts, (library,), nodes=node_names()).tasks
+    tasks = make_plan((), hosts, (library,), nodes=(ALL, *node_names())).tasks
     chosen = [
         each
         for each in tasks
