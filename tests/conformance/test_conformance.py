@@ -39,6 +39,7 @@ def test_a_node_that_is_judged_nowhere_is_refused(host, node, message):
         check(None, [host], nodes=[node])
 
 
+@pytest.mark.whole
 def test_texts_are_judged_by_values_and_where_a_host_runs_them_by_the_host(run):
     read = [each for each in run.results if each.host == "source"]
     assert {each.check for each in read} == {

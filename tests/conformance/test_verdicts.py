@@ -192,6 +192,7 @@ FREE = {
 }  # fmt: skip
 
 
+@pytest.mark.whole
 def test_eonlib_passes_every_check(run):
     assert {each.verdict for each in run.results} == {PASSED} and not run.errors
     assert all(each.control and each.control.caught for each in run.results)
@@ -368,12 +369,14 @@ def test_what_is_left_of_a_mended_defect_has_not_its_page():
 # --- pictures -----------------------------------------------------------------------------------
 
 
+@pytest.mark.whole
 def test_pictures_come_with_the_reference_where_there_is_one(run):
     known = {picture.document: picture.reference is not None for picture in run.pictures}
     names = {path.name for path in DOCUMENTS["eonlib"]}
     assert known == dict.fromkeys((*names, PORTRAIT), True) and len(names) > 15
 
 
+@pytest.mark.whole
 def test_a_portrait_of_each_diffuse_node_is_its_model(run):
     found = {(each.element, each.scene): each for each in run.pictures if each.document == PORTRAIT}
     assert {*found} == {
