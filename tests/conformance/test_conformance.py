@@ -113,6 +113,7 @@ def test_misuse_loses_nothing_of_an_earlier_run(tmp_path, monkeypatch):
     assert {path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("check", ["transmitted", "transmitted_inputs", "states"])
 @pytest.mark.parametrize(
     "methods",

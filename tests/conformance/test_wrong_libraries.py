@@ -291,6 +291,7 @@ HARMLESS = {
 }  # fmt: skip
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("name", CHANGED)
 def test_what_differs_from_the_release_is_named_with_its_size(judged, tmp_path, name):
     file, old, new, *wanted = CHANGED[name]

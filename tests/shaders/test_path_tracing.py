@@ -154,6 +154,7 @@ ALBEDO_ERRORS = {
 }
 
 
+@pytest.mark.whole
 @every_document
 def test_a_furnace_by_sampling_is_the_albedo(gl, materials, name):
     wo = view(0.8)
@@ -169,6 +170,7 @@ def test_a_furnace_by_sampling_is_the_albedo(gl, materials, name):
     assert (error < noise + ALBEDO_ERRORS.get(name, 5e-3)).all()
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("angle", [0.3, 0.7, 0.95])
 def test_draws_of_hair_find_the_light_that_tilted_cuticles_fold(gl, angle):
     material = paths(gl, material_text("chiang_hair_bsdf", FIBER | {"cuticle_angle": angle}))
@@ -186,6 +188,7 @@ def test_draws_of_hair_find_the_light_that_tilted_cuticles_fold(gl, angle):
 VARIANCES = {0.1: (0.051, 1.8), 0.4: (0.25, 1.8), 1.0: (0.31, 2.2)}
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("alpha", VARIANCES)
 def test_walks_through_rough_glass_vary_little(gl, alpha):
     total, largest = glass.walks(glass.eonlib(alpha), np.random.default_rng(1))
@@ -207,6 +210,7 @@ def test_no_answer_is_nan(materials, name, inside):
             assert np.isfinite(ask(what, wi=w)).all()
 
 
+@pytest.mark.whole
 def test_no_edge_of_an_input_is_nan(gl):
     edges = [
         {"roughness": (0.0, 0.0)},
