@@ -221,15 +221,17 @@ def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
     spec, batch = case.lobe, case.backend.turned
     rng, count = generator(), len(batch.wo)
     if isinstance(spec, SurfaceShaderSpec):
+        known = spec.types  # glTF has no anisotropy before MaterialX 1.39.4
         values, _ = materials(*spec.judged, *spec.others)
+        values = {name: value for name, value in values.items() if name in known}
         thin: dict[str, ArrayLike] = {
-            name: (value,) * 3 if spec.types[name] == "color3" else value
+            name: (value,) * 3 if known[name] == "color3" else value
             for name, value in THIN.items()
-            if name in spec.types and name not in values
+            if name in known and name not in values
         }
         axes = {name: batch.inputs[name] for name in ("normal", "tangent")}
         for wall in walls or (False,):
-            named = [name for name in WALLS if name in spec.types]
+            named = [name for name in WALLS if name in known]
             if wall and not named:
                 continue
             solid: Values = {**values, **thin, **dict.fromkeys(named * wall, True)}
