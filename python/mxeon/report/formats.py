@@ -16,7 +16,6 @@ from mxeon.conformance import words
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result
 from mxeon.conformance.results.known_issues import Issue, folder, issues_of
 
-LINK, SEE = Markup('<a href="{}">{}</a>'), Markup("see ")
 # CSS class of each verdict, and a sign for readers who cannot see the color.
 LOOKS = {
     PASSED: ("passed", "✓"),
@@ -51,7 +50,7 @@ def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, f
 def linked(result: Result) -> Markup:
     """Explanation of a result as HTML: a passed control, the diagnosis, and links to known issues."""
     excess = words.excess(result) if result.within and result.verdict != PASSED else ""
-    links = [SEE + LINK.format(page_address(issue), issue.title) for issue in issues_of(result)]
+    links = [Markup("see ") + each for each in _links(result)]
     return Markup("; ").join(
         [each for each in (excess, words.diagnosis(result.diagnosis), *links) if each]
     )
@@ -59,8 +58,13 @@ def linked(result: Result) -> Markup:
 
 def causes_of(result: Result) -> list[Markup]:
     """Links to the known issues that explain a failure, or else its diagnosis."""
-    links = [LINK.format(page_address(issue), issue.title) for issue in issues_of(result)]
-    return links or [Markup.escape(words.diagnosis(result.diagnosis) or words.excess(result))]
+    diagnosis = words.diagnosis(result.diagnosis) or words.excess(result)
+    return _links(result) or [Markup.escape(diagnosis)]
+
+
+def _links(result: Result) -> list[Markup]:
+    link = Markup('<a href="{}">{}</a>')
+    return [link.format(page_address(issue), issue.title) for issue in issues_of(result)]
 
 
 def page_address(issue: Issue) -> str:

@@ -41,7 +41,6 @@ from mxeon.report.pieces import (
 )
 from mxeon.shaders.scene import STUDIO
 
-# Markers of hosts in plots: matplotlib's name, and a character that looks like it.
 # Materials with pictures inside the page, about a megabyte each; further ones are linked.
 SHOWN_MATERIALS = 60
 LARGE = 512  # pixels on a side of a picture in the studio
