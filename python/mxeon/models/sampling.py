@@ -28,7 +28,7 @@ sum of four nonnegative parts:
 | flat     | 1 + q x                                 | 1                                          |
 
 with K(theta) = (theta - sin(theta) cos(theta))/2 - sin^3(theta)/3. The integrals sum to 1 + c1 r, which is 1 / A:
-docs/sampling.md has the proof. Each part is drawn by its inverse distribution. Those of `flat` and `lower` are
+docs/note.md, section 3, has the proof. Each part is drawn by its inverse distribution. Those of `flat` and `lower` are
 closed forms; those of `multiple` and `upper` have no parameter and are fitted. The returned density is that
 of the four parts. Directions follow it with a relative error of at most 1.3e-5 of the part: a mean of the parts'
 errors under non-negative weights, so that the sum has no larger error anywhere.
