@@ -11,10 +11,11 @@ from mxeon.conformance import words
 from mxeon.conformance.results import Diagnosis
 from mxeon.conformance.results.known_issues import EONLIB, Issue, issues
 from mxeon.conformance.results.quantities import Quantity
-from tools.site.ledger import ROOT, measured, patches, patches_of
+from tools.site import with_block
+from tools.site.ledger import FOLDER, ROOT, measured, patches, patches_of
 
 VERSIONS = Path(__file__).with_name("versions.json")
-INDEX = "README"
+PAGE = FOLDER / "README.md"
 PLACE = re.compile(r"<!-- patches (\S+) -->")  # placeholder for a project's table in the index
 WHOLE = 20  # shorter diffs are shown in full
 SHOWN = 8  # lines of a longer diff on a page, unless its first change is longer
@@ -41,10 +42,10 @@ GROUPS = {
 }
 
 
-def entries() -> str:
-    """The list of all pages, by group.
+def page(text: str) -> str:
+    """The index with its list of all pages.
 
-    Raises ValueError if a page's group is not in GROUPS.
+    Raises ValueError if a page's group is not in the index.
     """
     groups: dict[str, list[str]] = {name: [] for name in GROUPS}
     for issue in issues().values():
@@ -54,13 +55,13 @@ def entries() -> str:
             )
         differs = " (*differs*)" * issue.differs
         groups[issue.group].append(f"- [{issue.title}]({issue.page}.md){differs}\n")
-    return "\n".join(f"{GROUPS[name]}:\n\n{''.join(lines)}" for name, lines in groups.items())
+    parts = (f"{GROUPS[name]}:\n\n{''.join(lines)}" for name, lines in groups.items())
+    return with_block(text, "entries", "\n".join(parts))
 
 
 def filled(name: str, text: str) -> str:
     """The Markdown of a ledger page, or of the index, with the site's additions."""
-    if name == INDEX:
-        text = text.replace("<!-- entries -->", entries())
+    if name == PAGE.stem:
         return PLACE.sub(lambda found: patch_table(found[1]), text)
     issue = issues()[name]
     diff, more = short_diff(name)
