@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Draws comments and docstrings at random, to be read without their code.
+
+    python -m tools.comments SEED COUNT FOLDER ...
+
+A reader marks each that has to be read twice. Folders are such as `tools` or `python/mxeon/models`; COUNT is for each.
+"""
+
+import ast
+import random
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+OURS = re.compile(r"(?P<mark>//|#) (?!SPDX|---|noqa|type:|fmt:|ruff:)(?P<text>\S.*)")
+SUFFIXES = (".py", ".glsl", ".osl", ".ts")
+
+
+def texts(path: Path) -> list[str]:
+    """The docstrings and comments of a file; a comment of several lines is one."""
+    text, found, last = path.read_text(encoding="utf-8"), [], 0
+    if path.suffix == ".py":
+        nodes = (n for n in ast.walk(ast.parse(text)) if hasattr(n, "body"))
+        documented = (ast.Module, ast.ClassDef, ast.FunctionDef)
+        found = [doc for n in nodes if isinstance(n, documented) if (doc := ast.get_docstring(n))]
+    for number, line in enumerate(text.splitlines(), 1):
+        match = OURS.search(line)
+        if not match or (match["mark"] == "#") != (path.suffix == ".py"):
+            continue
+        whole = not line[: match.start()].strip()
+        if whole and last == number - 1:
+            found[-1] += f" {match['text']}"
+        else:
+            found.append(match["text"] if whole else line.strip())
+        last = number if whole else 0
+    return found
+
+
+def main(seed: str, count: str, *folders: str) -> None:
+    for folder in folders:
+        command = ["git", "ls-files", folder]
+        names = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        files = [name for name in names.splitlines() if name.endswith(SUFFIXES)]
+        drawn = [(name, each) for name in files for each in texts(ROOT / name)]
+        for name, each in random.Random(seed).sample(drawn, min(int(count), len(drawn))):
+            print(f"{name}: {' '.join(each.split())}")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
