@@ -76,7 +76,7 @@ def repaired(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.mark.parametrize("spec", SENTENCES, ids=lambda spec: spec.title)
 def test_patched_graphs_do_what_their_texts_say(spec: SentenceSpec, repaired: str):
-    """Or they do what a text permits, or what pbrlib's layer does with a colored sheen."""
+    """Exceptions: forms that a text permits, and pbrlib's layer below a colored sheen."""
     [batch] = spec.batches(Counts())
     own, *others = spec.value_candidates
     forms = [each for each in others if each.permitted or each.title.startswith("tinted light")]

@@ -11,7 +11,7 @@ from mxeon.models.diffuse import eon_albedo_dir
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
-# Their defects only show under other lobes, or with a tilted normal.
+# Lobes whose defects only show under other lobes, or with a tilted normal.
 ALIKE = ("lobe/sheen_zeltner",)
 COLOR = (0.8, 0.4, 0.1)
 

@@ -90,7 +90,7 @@ def test_every_drawn_direction_has_a_value_and_its_density(name):
     value, below = row.bsdf(wo, wi, **inputs), wi[:, 2] < 0.0
     if row.lights != "all sides":
         assert not value[below if row.lights == "front" else ~below].any()
-    # The mean of the weights is the albedo; samples that are not above are below.
+    # The mean weight is the albedo. The density's integral over the upper side and the share of samples below add to 1.
     cosine = 1.0 if name == "hair" else np.abs(wi[:, 2:])
     weights = value * cosine / pdf[:, np.newaxis]
     error = np.abs(weights.mean(axis=0) - row.albedo_dir(0.4, **inputs))

@@ -17,7 +17,7 @@ def square(item):
 
 
 def misbehave(item):
-    """Misbehave as the item names; square a number."""
+    """Misbehave in the way that the item names; a number is squared instead."""
     if isinstance(item, int):
         return square(item)
     print(f"about to {item}", file=sys.stderr, flush=True)

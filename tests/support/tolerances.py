@@ -32,8 +32,8 @@ ONE_ROUNDING = 2.0 * ROUNDING
 # 40 roundings and a power of at most 0.5 / roughness, whose base takes 10.
 SHEEN = (40 + 2 * FUNCTION + 10) * ROUNDING
 
-# Turning a pair about the normal rounds each component three times, so s moves by 9 roundings of
-# S_o S_i and the value by as much of the largest |s / t|, beside the roundings of BRDF.
+# Turning a pair about the normal rounds each component three times, so s changes by 9 roundings of
+# S_o S_i, and the value by 9 of the largest |s / t|. The roundings of BRDF add to that.
 ROTATION = BRDF + 12.0 * ROUNDING
 
 # eon_brdf_approx against eon_brdf, in 1 / pi: [Portsmouth2025], Eq. (14) is off by up to 6.0e-4 in

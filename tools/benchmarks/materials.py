@@ -100,7 +100,7 @@ class Frame:
             if name in program:
                 host._texture(raster.WHITE_TEXELS, False).use(location=unit)
                 program[name].value = unit
-        # Vertices at the pixel centers of a small picture and beyond, and two triangles between four.
+        # A mesh with a vertex at each pixel center of a small picture with a margin.
         width = MESH + 2 * points.MARGIN
         corner = np.arange(width * width).reshape(width, width)[:-1, :-1].ravel()
         indices = (corner[:, None] + [0, 1, width, width, 1, width + 1]).astype("u4")

@@ -137,7 +137,7 @@ def main():
     mi.set_variant("llvm_ad_rgb")
     register()
     register_plugin(mi, COSINE, EonByCosinePlugin)
-    # Noise first: the table of times takes the other threads away.
+    # Measure noise first: timing leaves Mitsuba a single thread.
     for page, mark, rows in (
         ("sampling.md", "mitsuba", noise_table),
         ("mitsuba.md", "time", time_table),

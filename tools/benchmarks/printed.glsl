@@ -2,8 +2,8 @@
 // Functions to time the shaders against, none of which is shipped: EON and its sampling with the
 // operations of the paper's listings.
 //
-// Included after eon_sampling.glsl, whose constants and matrix it uses. H stands for albedos there:
-// they keep the divisions, bounds and shared terms of [Portsmouth2025], Listings 1, 3 and 4.
+// Included after eon_sampling.glsl, whose constants and matrix it uses. That file computes H instead of
+// albedos; this one keeps the divisions, bounds and shared terms of [Portsmouth2025], Listings 1, 3 and 4.
 
 #define PRINTED_EPSILON 1.0e-7
 

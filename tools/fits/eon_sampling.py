@@ -21,7 +21,7 @@ STEPS = 4  # Newton steps; a fifth changes no printed digit
 # Average of H over the projected hemisphere: c1 - c2 of [Portsmouth2025].
 LOSS_AVG = 6 / (5 * mp.pi) - mp.one / 6
 
-# Total of `upper_density` over [0, 1], before it is divided by it.
+# Integral over [0, 1] of the numerator of `upper_density`.
 UPPER_TOTAL = mp.pi / 4 - mp.one / 3
 
 MULTIPLE_POWERS = (2, 4, 5, 6, 7, 11)

@@ -31,7 +31,7 @@ LEAST = 1e-4  # smallest alpha and cosine of the fits
 BLOCK = 20  # points that are integrated together
 BISECTIONS = 50
 FLAT = 0.01  # least slope that counts
-DEGREE, OUTER = 8, 12  # nodes of the azimuth: of a panel, and beyond the panels
+DEGREE, OUTER = 8, 12  # azimuth nodes per panel, and outside the panels
 
 
 def dielectric(c, ior):

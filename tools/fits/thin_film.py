@@ -66,7 +66,7 @@ def shader_curve(category, material, mu, width=0.0):
     means = [R + (1.0 - R) ** 2 * S / each for (R, S), each in zip(pairs, lost, strict=True)]
     weights = [(1.0 - R) * (1.0 - S) / each for (R, S), each in zip(pairs, lost, strict=True)]
     sizes = [np.sqrt(R * S) for R, S in pairs]
-    # As many orders as count of both polarizations and all channels.
+    # Sum the orders that matter in any polarization or channel.
     bright = 3.0 * ((0.5 * sum(means)) ** 2).mean(axis=0)
     least = np.maximum(VALUE_ORDER * bright, WIDTH_ORDER * np.square(width))
     count = order_count(np.stack(weights), np.stack(sizes), opd, spread, least)

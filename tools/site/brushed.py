@@ -95,7 +95,7 @@ class Points:
         self.wo = self.axes[..., 2]
         self.roughness = np.array(ALPHAS[name])[:, None]
         self.color = np.array(COLORS[name])[:, None] * lines
-        # (1 - E_ss) / E_ss, and the light that the base of vinyl receives, of June and exact.
+        # (1 - E_ss) / E_ss, and the light that the base of vinyl receives, each for June's masking and exact.
         self.missing = [self._spread(microfacet.missing_of, mean) for mean in (True, False)]
         if name == "vinyl":
             self.curve = microfacet.DIELECTRIC_CURVE

@@ -144,7 +144,7 @@ def fresnel_errors(mu, alpha, ior=GLASS):
 
 
 def largest_figures():
-    """Largest variances over cosines; largest errors of E_ss and of a dielectric's albedo, and means of some."""
+    """Largest variances of samplers, and largest and mean errors of E_ss and of a dielectric's albedo."""
     mu = np.append(0.01, np.linspace(0.05, 1.0, 20))
     found = {
         f"{name} {r}": variances(name, r, mu).max()

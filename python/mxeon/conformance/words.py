@@ -180,7 +180,7 @@ FAULTS = {
     "pi_missing": "the factor 1/pi is missing",
     "pi_twice": "the factor 1/pi is applied twice",
 }
-# Conjunctions for the states of pixels that all wrong sums share, and for those of frames.
+# Words between the states that all wrong pixels share, and between those of all wrong frames.
 STATES = {"state": "", "both_states": " and ", "either_state": " or "}
 FRAMES = {f"{key}_of_frames": word for key, word in STATES.items()}
 SUMS = (

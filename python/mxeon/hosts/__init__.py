@@ -62,7 +62,7 @@ def start(name: str) -> Engine:
 class Row:
     """A host, and what is judged on it.
 
-    - `nodes`: The specs of a renderer's own nodes by its name; the call also adds its backends and checks.
+    - `nodes`: Returns the specs of a renderer's own nodes, and registers its backends and checks.
     """
 
     name: str
@@ -81,7 +81,6 @@ class Row:
 WHITE_LIGHT = replace(FURNACE, size=128)
 
 HOSTS = (
-    # Its pictures are exact and take no time.
     Row("gl", "glsl", "pairs", scenes=(SIDE, BACK, WHITE_LIGHT), surfaces=True),
     Row("webgl", "essl", "pairs", scenes=(SIDE, BACK, WHITE_LIGHT)),
     Row("vulkan", "vulkan", "pairs"),

@@ -105,7 +105,7 @@ def apart(wo: Array, wi: Array) -> Array:
     sine = np.linalg.norm(across, axis=1, keepdims=True)
     across = np.where(sine > NO_SINE, across, perpendicular(wo))
     along = np.sign(cosine) * np.sqrt(1.0 - FARTHER**2)
-    moved = unit(along * wo + FARTHER * unit(across))  # wo is one up to its roundings
+    moved = unit(along * wo + FARTHER * unit(across))  # wo only has unit length up to rounding
     return np.where(visible(wo, wi)[:, np.newaxis], wi, moved)
 
 

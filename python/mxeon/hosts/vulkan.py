@@ -30,7 +30,7 @@ except ImportError:
 
 COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin")
 REMOVER = ("spirv-opt", "--remove-unused-interface-variables")
-TIMEOUT = 60.0  # seconds for one of them
+TIMEOUT = 60.0  # seconds for one run of a compiler
 
 # wgpu's kinds of bindings.
 FILTERED = {"texture": {"sample_type": "float"}}

@@ -61,7 +61,7 @@ GAUSSIANS = (
 )
 NORMAL = 1.0685e-7
 METERS = 1e-9  # 1 nm in m
-# Their centers, standard deviations, and weights in XYZ, (3, 4).
+# Centers, standard deviations, and weights in XYZ of the Gaussians, (3, 4).
 CENTERS = np.array([mu for _, _, mu, _ in GAUSSIANS])
 SPREADS = np.sqrt([variance for *_, variance in GAUSSIANS])
 AREAS = [v * np.sqrt(2.0 * np.pi * variance) / NORMAL for _, v, _, variance in GAUSSIANS]

@@ -110,7 +110,7 @@ def wrong_library(mutant: Mutant) -> Iterator[str]:
 def failures_of(
     tasks: Sequence[Task], judge: Judge, every: bool = True, clean: str = "eonlib"
 ) -> list[Result]:
-    """Results that only pass without the mutant, of all tasks or of the first."""
+    """Results that only pass without the mutant; stops after the first task that has some unless `every`."""
     failures: list[Result] = []
     for task in tasks:
         found = _failed(task, judge)

@@ -66,7 +66,7 @@ SCATTERED = """if (what < 0.5)
 # Kept separate, because a driver copies the material to each call.
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
 RANDOM = "return path_random(uvec4(uvec3(u), 7u)).xyz;"
-# Name of a value -> text that returns it, in the order of their numbers.
+# Text that returns each value; a value's position is its number `what` in the text.
 FUNCTIONS = {
     **dict.fromkeys(("evaluate", "pdf", "wi", "weight", "density"), SCATTERED),
     **dict.fromkeys(("opacity", "emission"), PASSED),
@@ -394,8 +394,8 @@ def path_value(case: Case) -> Iterator[Compared]:
             # axis.
             normal = np.einsum("nij,ni->nj", batch.frame, batch.inputs["normal"]).round()
         local = replace(batch.altered(normal=normal, tangent=TANGENT), frame=None)
-        # The rasterizer has neither light from behind, nor an inside of lobes that reflect by an
-        # index.
+        # The rasterizer lights nothing from behind, and has no views from inside for lobes with an
+        # index of refraction.
         inside = np.arange(len(wi)) % 2 * (not UNLIKE_INSIDE(case.spec))
         wo, own = batch.world(batch.wo), batch.world(wi)
         ask = partial(text.values, wo=wo, wi=own, inside=inside, inputs=batch.inputs)

@@ -82,7 +82,7 @@ FACTORS = {
     (media.FACTOR, "color3"): replace(color(media.FACTOR, edges=()), high=3.0),
 }
 
-# Cosine distance from a hard edge in which the engine's own cosine decides; for narrow cones, half of 1 - cos.
+# Closer to a hard edge than this cosine, the engine's rounding decides; half of 1 - cos for narrow cones.
 EDGE = 1e-3
 SMALL = Scene("dark", size=8)
 OPACITIES = (0.0, 0.25, 1.0)

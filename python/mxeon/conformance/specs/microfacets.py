@@ -74,7 +74,7 @@ INPUTS = {
     ),
 }
 # fmt: on
-# A film on nothing has the largest error of MaterialX's average; its row has no special light in `domain`.
+# MaterialX's average is worst for a film around index 1, a bubble. `domain` draws no special light for its row.
 BUBBLE: Values = dict.fromkeys(("weight", "tint", "ior"), 1.0)
 BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
@@ -89,7 +89,7 @@ COMPENSATED = 0.6
 LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
 INSIDE_FIT = 2.8e-2  # ggx_inside.py: albedo of a dielectric of index below 1
 PASSING_FIT = 3.6e-2  # ggx_inside.py: share of light from the denser side that passes
-DIP_FIT = 5.9e-3  # ggx_cosine.py: what a full dip at 82 degrees adds to it
+DIP_FIT = 5.9e-3  # ggx_cosine.py: additional error of a full dip at 82 degrees
 LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
 
 
@@ -475,7 +475,7 @@ TRANSMISSION_SPECS = tuple(
 FILM_SEEN = 7.82e-2
 FILM_OILED = 6.92e-2  # the same for films with index >= 1.25
 FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
-CURVE_ROUNDINGS = 10 * 9.5 + 16  # ten in a phase, times the curve's slope in its logarithm, plus 16
+CURVE_ROUNDINGS = 10 * 9.5 + 16  # 10 in a phase, times the curve's slope 9.5, plus 16 in the curve
 
 FILM_ALBEDO = sum_in(
     Quantity.ALBEDO,
@@ -657,7 +657,7 @@ def _steep(batch: Batch) -> np.ndarray:
     return np.asarray(cosine >= LEAST_FACET)
 
 
-# Error of a film's phases beyond two roundings. Curves from 200 nm have slope 2 in cosines and sines.
+# The engine's error of a film's phases. From 200 nm on, reflectance changes twice as fast as cosines and sines.
 WAVE_ERROR = spec.EngineError(
     "the engine's own cosine and sine, times 2",
     spec.WAVE.error(lambda: [samples.float32(np.linspace(0.0, FILM_PHASE, spec.ARGUMENTS))], 2.0),

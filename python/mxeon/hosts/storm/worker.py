@@ -70,7 +70,7 @@ class Canvas:
         self.device = self._call("glGetString", c_char_p, RENDERER).decode()
 
     def clear(self, size: int) -> None:
-        """Make it black, `size` pixels wide and high, and the target of drawing."""
+        """Draw into this frame from now on; it is black, and `size` pixels wide and high."""
         if size != self._size:
             self._allocate(size)
         self._call("glBindFramebuffer", None, FRAME, self._name)
@@ -207,7 +207,7 @@ class Stage:
 
 def import_usd(root: str, libraries: str) -> Foreign:
     """OpenUSD of Blender's package, with libraries in addition to MaterialX's own or those in `root`."""
-    # Find it without importing Blender.
+    # Find Blender's package without importing it.
     found = find_spec("bpy")
     if found is None or not found.submodule_search_locations:
         raise ImportError("no package bpy")

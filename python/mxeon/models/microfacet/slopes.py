@@ -192,8 +192,8 @@ def refracting_nodes(
 ) -> tuple[Array, Array, Array, Array]:
     """Cosines wo . h and of the refracted wi, its stretched length, and weights of the facets that wo sees.
 
-    wi = (L h - wo) / n, below the horizon, n^2 = 1 - squared and L = |wo + n wi|. It is above the
-    horizon below the r of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2.
+    wi = (L h - wo) / n, below the horizon, n^2 = 1 - squared and L = |wo + n wi|. At smaller r than
+    the root of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2, it would point above the horizon.
     """
     # Split the azimuths where h on the critical cone lies at the horizon itself.
     slopes = Slopes.seen(wo, roughness)
