@@ -51,7 +51,6 @@ RULES = {
     "hair_color must lie in (0, 1]; got 0.0 at index (0,)": (
         lambda: models.chiang_hair_absorption_from_color([0.0, 1.0, 1.0], 0.5)
     ),
-    "theta_i must lie in [-pi/2, pi/2]; got 2.0": lambda: models.hair_longitudinal(2.0, 0.0, 0.1),
     "roughness_R must lie in [1e-12, 1e12]; got 0.0 at index (0,)": (
         lambda: models.chiang_hair_bcsdf(UP, UP, roughness_R=(0.0, 0.1))
     ),

@@ -12,7 +12,7 @@ from mxeon.models.hair import (
     deon_hair_absorption_from_melanin,
 )
 from mxeon.models.media import blackbody, blackbody_xyz
-from mxeon.models.microfacet.fresnel import artistic_ior, fresnel_conductor, normal_reflectance
+from mxeon.models.microfacet.fresnel import artistic_ior, fresnel_conductor
 from mxeon.models.microfacet.ggx import glossiness_anisotropy, roughness_anisotropy, roughness_dual
 from mxeon.models.nodes.utilities import UTILITIES, node
 from mxeon.shaders.library import load_library
@@ -120,5 +120,5 @@ def test_a_row_takes_any_input_and_returns_each_output(row):
 def test_a_row_has_the_reflectivity_up_to_its_limit():
     inputs = {"reflectivity": np.array([[0.5, 0.99, 1.0]]), "edge_color": np.full((1, 3), 0.5)}
     outputs = node("artistic_ior").value(inputs)
-    reflectance = normal_reflectance(outputs["ior"], outputs["extinction"])
+    reflectance = fresnel_conductor(1.0, outputs["ior"], outputs["extinction"])
     assert reflectance == pytest.approx(np.array([[0.5, 0.99, 0.99]]))

@@ -40,27 +40,27 @@ def test_the_phase_function_integrates_to_1_and_has_the_mean_cosine_g(g):
     assert abs(total - 1.0) <= MOMENT and abs(mean - g) <= MOMENT
 
 
+def phase(cosine, g):
+    """The density of a deflection by the angle with this cosine."""
+    x = np.sqrt(1.0 - np.square(cosine))
+    return volume.hg_pdf([0.0, 0.0, 1.0], np.stack([x, 0.0 * x, -np.asarray(cosine)], axis=-1), g)
+
+
 def test_the_phase_function_is_the_printed_one():
     cosine, g = np.linspace(-1.0, 1.0, 21), np.linspace(-0.9, 0.9, 7)[:, np.newaxis]
     printed = (1.0 - g * g) / (4.0 * np.pi * (1.0 + g * g - 2.0 * g * cosine) ** 1.5)
-    assert np.allclose(volume.hg_phase(cosine, g), printed, rtol=ROUNDING)
-    assert np.allclose(volume.hg_phase(cosine, -g), volume.hg_phase(-cosine, g), rtol=ROUNDING)
+    assert np.allclose(phase(cosine, g), printed, rtol=ROUNDING)
+    assert np.allclose(phase(cosine, -g), phase(-cosine, g), rtol=ROUNDING)
 
 
 def test_the_peak_does_not_cancel():
     e = 1e-12
     peak = (2.0 - e) * e / (4.0 * np.pi * e**3)
     # The rounding of 1 - e dominates.
-    assert np.isclose(volume.hg_phase(1.0, 1.0 - e), peak, rtol=1e-3)
+    assert np.isclose(phase(1.0, 1.0 - e), peak, rtol=1e-3)
     last = np.nextafter(1.0, 0.0)
-    assert np.isfinite(volume.hg_phase([-1.0, 0.0, 1.0], last)).all()
-    assert np.isfinite(volume.hg_phase([-1.0, 0.0, 1.0], -last)).all()
-
-
-def test_the_density_is_the_phase_function_of_the_deflection():
-    wo, wi = VIEWS[:, np.newaxis], VIEWS
-    cosine = -np.clip((wo * wi).sum(axis=-1), -1.0, 1.0)
-    assert np.allclose(volume.hg_pdf(wo, wi, 0.7), volume.hg_phase(cosine, 0.7), rtol=1e-12)
+    assert np.isfinite(phase([-1.0, 0.0, 1.0], last)).all()
+    assert np.isfinite(phase([-1.0, 0.0, 1.0], -last)).all()
 
 
 @pytest.mark.parametrize("g", ANISOTROPIES)

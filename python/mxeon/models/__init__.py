@@ -50,8 +50,6 @@ from mxeon.models.hair import chiang_hair_attenuation as chiang_hair_attenuation
 from mxeon.models.hair import chiang_hair_bcsdf as chiang_hair_bcsdf
 from mxeon.models.hair import chiang_hair_roughness as chiang_hair_roughness
 from mxeon.models.hair import deon_hair_absorption_from_melanin as deon_hair_absorption_from_melanin
-from mxeon.models.hair import hair_azimuthal as hair_azimuthal
-from mxeon.models.hair import hair_longitudinal as hair_longitudinal
 from mxeon.models.media import blackbody as blackbody
 from mxeon.models.media import blackbody_xyz as blackbody_xyz
 from mxeon.models.media import conical_edf as conical_edf
@@ -60,7 +58,6 @@ from mxeon.models.media import diffusion_blur as diffusion_blur
 from mxeon.models.media import generalized_schlick_edf as generalized_schlick_edf
 from mxeon.models.media import generalized_schlick_exitance as generalized_schlick_exitance
 from mxeon.models.media import hg_pdf as hg_pdf
-from mxeon.models.media import hg_phase as hg_phase
 from mxeon.models.media import hg_sample as hg_sample
 from mxeon.models.media import surface_radiance as surface_radiance
 from mxeon.models.media import transmittance as transmittance
@@ -81,7 +78,6 @@ from mxeon.models.microfacet.fresnel import fresnel_dielectric_avg as fresnel_di
 from mxeon.models.microfacet.fresnel import fresnel_schlick as fresnel_schlick
 from mxeon.models.microfacet.fresnel import fresnel_schlick_avg as fresnel_schlick_avg
 from mxeon.models.microfacet.ggx import ggx_albedo_dir as ggx_albedo_dir
-from mxeon.models.microfacet.ggx import ggx_ndf as ggx_ndf
 from mxeon.models.microfacet.ggx import glossiness_anisotropy as glossiness_anisotropy
 from mxeon.models.microfacet.ggx import roughness_anisotropy as roughness_anisotropy
 from mxeon.models.microfacet.ggx import roughness_dual as roughness_dual
@@ -109,7 +105,6 @@ from mxeon.models.transmission import (
 )
 from mxeon.models.transmission import refraction_direction as refraction_direction
 from mxeon.models.transmission import schlick_ior as schlick_ior
-from mxeon.models.transmission import transmission_half_vector as transmission_half_vector
 
 __all__ = [
     name for name, value in globals().items() if callable(value) and not name.startswith("_")

@@ -283,42 +283,6 @@ def chiang_hair_attenuation(
     return array_namespace(values).reshape(values, (*values.shape[:-1], channels, 4))
 
 
-@any_array
-def hair_longitudinal(theta_i: ArrayLike, theta_o: ArrayLike, variance: ArrayLike) -> Array:
-    """Longitudinal scattering function M, whose integral over theta_i times cos(theta_i) is 1.
-
-        M = exp(-sin(theta_i) sin(theta_o) / v) I_0(cos(theta_i) cos(theta_o) / v) / (2 v sinh(1 / v))
-
-    - `theta_i`, `theta_o`: Inclinations from the plane across the fiber, in radian, in [-pi/2, pi/2].
-    - `variance`: v, in square radian, in [1e-12, 1e12].
-
-    [MaterialX2026], Chiang Hair Model, Longitudinal Scattering; [dEon2011], Eq. (7).
-
-        >>> round(float(hair_longitudinal(0.3, -0.3, 0.01)), 6)
-        4.18169
-    """
-    i, o, v = arguments.checked_numbers(theta_i=theta_i, theta_o=theta_o, variance=variance)
-    xp = array_namespace(i, o, v)
-    inclined = xp.sin(i), xp.cos(i), xp.sin(o), xp.cos(o)
-    return longitudinal(*inclined, v)
-
-
-@any_array
-def hair_azimuthal(phi: ArrayLike, scale: ArrayLike) -> Array:
-    """Azimuthal scattering function N, the logistic density trimmed to [-pi, pi].
-
-    - `phi`: Angle relative to the exit's, in radian; wrapped into [-pi, pi].
-    - `scale`: s, in radian, in [1e-12, 1e12].
-
-    Result: per radian, at least 0. Its integral over [-pi, pi] is 1. [MaterialX2026], Chiang Hair
-    Model, Azimuthal Scattering; [Chiang2016], Appendix A, Eq. (12).
-
-        >>> round(float(hair_azimuthal(0.5, 0.3)), 6)
-        0.325121
-    """
-    return azimuthal(*arguments.checked_numbers(phi=phi, scale=scale))
-
-
 DEFAULTS: dict[str, float | tuple[float, ...]] = {
     **dict.fromkeys(TINTS, (1.0, 1.0, 1.0)),
     "ior": 1.55,

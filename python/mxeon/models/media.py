@@ -214,25 +214,6 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
 
 
 @any_array
-def hg_phase(cos_theta: ArrayLike, g: ArrayLike) -> Array:
-    """Phase function of Henyey and Greenstein, a density in solid angle, 1/sr.
-
-        f_p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2))
-
-    - `cos_theta`: Cosine of the angle of deflection, in [-1, 1]: 1 is straight on.
-
-    The denominator is (1 - |g|)^2 + 2 |g| (1 - cos), with the sign of g on the cosine, and 1 - g^2 a product: neither
-    cancels near g = 1 or -1. [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase Function.
-
-        >>> hg_phase([1.0, -1.0], 0.5).round(6)
-        array([0.477465, 0.017684])
-    """
-    cosine, mean = checked_numbers(cos_theta=cos_theta, g=g)
-    xp = array_namespace(cosine, mean)
-    return _phase(1.0 - xp.where(mean < 0.0, -cosine, cosine), mean)[()]
-
-
-@any_array
 def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the phase function of Henyey and Greenstein, and its density `hg_pdf`.
 
@@ -265,10 +246,15 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
 
 @any_array
 def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
-    """Density of `hg_sample` at `wi`, in 1/sr: `hg_phase` at cos = -dot(wo, wi).
+    """Phase function of Henyey and Greenstein, the density of `hg_sample` at `wi`, in 1/sr.
 
-    >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
-    0.477465
+        f_p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2)),  cos = -dot(wo, wi)
+
+    The denominator is (1 - |g|)^2 + 2 |g| (1 - cos), with the sign of g on the cosine, and 1 - g^2 a product: neither
+    cancels near g = 1 or -1. [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase Function.
+
+        >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
+        0.477465
     """
     views, lights, (mean,) = (
         checked_sphere("wo", wo),

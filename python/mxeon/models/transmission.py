@@ -79,25 +79,6 @@ def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Ar
     return evaluate_material(refracted, vectors, {"ior": checked("ior", ior)}, 3)
 
 
-@any_array
-def transmission_half_vector(wo: ArrayLike, wi: ArrayLike, ior: ArrayLike) -> Array:
-    """Normal of the microfacet that refracts one direction into the other.
-
-        wh = +-(wo + ior wi) / |wo + ior wi|, on the side of wo
-
-    Result (..., 3): (0, 0, 0) if both directions lie on the same side of the vector: no facet joins them. The
-    specification's vector points to the side with the smaller index; no term of its BTDF depends on that.
-    [MaterialX2026], Microfacet BTDF; [Walter2007], Eq. (16).
-
-        >>> wi = refraction_direction([0.6, 0.0, 0.8], [0.0, 0.6, 0.8], 1.5)
-        >>> transmission_half_vector([0.6, 0.0, 0.8], wi, 1.5).round(6)
-        array([-0. ,  0.6,  0.8])
-    """
-    vectors = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
-    numbers = {"ior": checked("ior", ior)}
-    return evaluate_material(lambda wo, wi, ior: Facet.of(wo, wi, ior).normal, vectors, numbers, 3)
-
-
 def refracted(wo: Array, normal: Array, ior: Array) -> Array:
     """`refraction_direction` on float64 arrays, components first."""
     xp = array_namespace(wo, normal, ior)

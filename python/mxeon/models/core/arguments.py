@@ -37,7 +37,7 @@ def _each(names: str, ends: tuple[float, float, str]) -> dict[str, tuple[float, 
 
 
 # Ranges that rounding may exceed.
-CLOSED = ("[0, 1]", "[0.01, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]", "[-pi/2, pi/2]")
+CLOSED = ("[0, 1]", "[0.01, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]")
 
 
 class Ranges(dict[str, tuple[float, float, str]]):
@@ -71,7 +71,6 @@ RANGES = Ranges(
         **_each("cos_theta", (-1.0, 1.0, "[-1, 1]")),
         **_each("g", (-_BELOW_ONE, _BELOW_ONE, "(-1, 1)")),
         **_each("inner_angle outer_angle", (0.0, 360.0, "[0, 360]")),
-        **_each("theta_i theta_o", (-0.5 * np.pi, 0.5 * np.pi, "[-pi/2, pi/2]")),
         **_each("sigma", (0.0, 0.5 * np.pi, "[0, pi/2]")),
     }
 )

@@ -401,9 +401,3 @@ def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array,
     ior = g * n_min + (1.0 - g) * n_max
     square = g * (n_max - n_min) * ((ior - n_min) + (n_min - 1.0 / n_max))
     return ior, root(arrays.at_least_0(square))
-
-
-def normal_reflectance(ior: Array, extinction: Array) -> Array:
-    """Fresnel reflectance at normal incidence; arguments are not checked."""
-    square = extinction**2
-    return ((ior - 1.0) ** 2 + square) / ((ior + 1.0) ** 2 + square)

@@ -97,23 +97,6 @@ def reciprocal(x: Array) -> Array:
 
 
 @any_array
-def ggx_ndf(wh: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density D of microfacet normals, anisotropic GGX.
-
-        D = 1 / (pi alpha_x alpha_y ((h_x / alpha_x)^2 + (h_y / alpha_y)^2 + h_z^2)^2)
-
-    Result (...): 1/sr; its integral times h_z over the hemisphere is 1. Where an alpha is 0, D is a
-    delta function, which has no value; it counts as 0. [MaterialX2026], GGX Normal Distribution
-    Function.
-
-        >>> ggx_ndf([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]], [0.5, 0.25]).round(6)
-        array([2.546479, 0.588591])
-    """
-    vectors = {"wh": checked_directions("wh", wh), "roughness": checked_roughness(roughness)}
-    return evaluate_number(ndf, vectors, {})
-
-
-@any_array
 def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """Masking G1 of anisotropic GGX: the visible part of the microfacets.
 
