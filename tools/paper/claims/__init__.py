@@ -18,7 +18,6 @@ unless stated otherwise. Equations, figures and listings have the numbers of [Po
 
 A claim *holds* if all of its measured values meet its limit, holds *in part* if some do, and *fails* if none
 does; NaN meets no limit. The tables have the claims that do not hold, with the limit in the column *required*.
-The last section is about MaterialX's text, not the paper.
 """
 LARGEST = "largest difference "  # begins sentences of claims that hold up to roundings
 TALLY = "{count} claims; verdicts: {holds} holds, {part} holds in part, {fails} fails."
@@ -58,7 +57,6 @@ class Section:
     """Claims under one heading."""
 
     heading: str
-    remark: str = ""  # text below the table on claims that cannot be measured
     claims: list[Claim] = field(default_factory=list)
 
     def claim(
@@ -118,6 +116,5 @@ def page(sections: Sequence[Section]) -> str:
             lines += [
                 f"- Up to roundings ({largest:.1e}): {'; '.join(f'{a}, {b}' for a, b, *_ in exact)}."
             ]
-        remark = [section.remark, ""] if section.remark else []
-        parts.append("\n".join([f"## {section.heading}", "", tally, "", *lines, "", *remark]))
+        parts.append("\n".join([f"## {section.heading}", "", tally, "", *lines, ""]))
     return "\n".join(parts)
