@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rows of pbrlib's nodes: functions and variants keep what the rows promise."""
 
+from itertools import chain
+
 import numpy as np
 import pytest
 
-from mxeon.models.core.layering import Bsdf, layer
 from mxeon.models.core.quadrature import hemisphere_nodes
 from mxeon.models.diffuse import burley_albedo_dir
 from mxeon.models.media import blackbody_xyz, kang_xyz
@@ -13,10 +14,12 @@ from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.nodes import PBR_NODES, node
 from mxeon.models.nodes.combinations import COMBINATIONS, NESTED, ROUGHNESS
 from mxeon.models.nodes.microfacets import LOBES, MICROFACET_NODES
-from mxeon.models.sheen import conty_kulla_albedo_dir, zeltner_albedo_dir, zeltner_brdf
+from mxeon.models.nodes.renderers import BSDL_VARIANTS, CYCLES_VARIANTS
+from mxeon.models.sheen import conty_kulla_albedo_dir
 
 COUNT = 6
 ROWS = PBR_NODES + COMBINATIONS
+RENDERERS = BSDL_VARIANTS, CYCLES_VARIANTS
 VECTORS = ("color", "tint", "color0", "color82", "color90", "extinction")
 INTEGRAL = 2e-3  # error of 48 by 48 nodes for alpha from 0.4, and for roughness 0.5
 PRINTED = 5e-6  # half a unit of the last of six digits
@@ -73,25 +76,38 @@ def test_values_integrate_to_the_albedo(row):
 
 
 @pytest.mark.parametrize(
-    "row", [row for row in ROWS if row.reciprocal and not row.transmits], ids=lambda row: row.name
+    "row", [row for row in ROWS if not row.transmits], ids=lambda row: row.name
 )
-def test_a_reciprocal_node_is_reciprocal(row):
+def test_a_node_is_reciprocal_if_its_row_says_so(row):
     wo, wi, values = directions(), directions()[::-1], inputs(row)
-    np.testing.assert_allclose(row.value(wo, wi, values), row.value(wi, wo, values), rtol=1e-13)
+    forth, back = row.value(wo, wi, values), row.value(wi, wo, values)
+    assert np.allclose(forth, back, rtol=1e-13) == row.reciprocal
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
 def test_each_variant_has_another_value_or_another_albedo(row):
+    """The variants of the row, and those of OSL's library and of Cycles."""
     wo, wi, values = directions(), directions()[::-1], inputs(row)
-    for variant in row.variants:
-        if variant.value and variant.title != "Smith at the geometric mean":
-            assert not np.allclose(
-                variant.value(wo, wi, values), row.value(wo, wi, values), rtol=1e-6
-            )
+    others = (each.get(row.name, ()) for each in RENDERERS)
+    for variant in chain(row.variants, *others):
+        if variant.value:
+            value = variant.value(wo, wi, values)
+            same = np.allclose(value, row.value(wo, wi, values), rtol=1e-6)
+            assert np.isfinite(value).all()
+            assert not same or variant.title == "Smith at the geometric mean"
         if variant.albedo:
             albedo = variant.albedo(wo, values)
             assert albedo.shape == (COUNT, 3) and np.isfinite(albedo).all()
             assert not np.allclose(albedo, row.albedo(wo, values), rtol=1e-6)
+
+
+@pytest.mark.parametrize("variants", RENDERERS, ids=["BSDL", "Cycles"])
+def test_color82_counts_as_1_in_renderers_of_osl(variants):
+    wo, wi, values = directions(), directions()[::-1], inputs(node("schlick"))
+    both = values, values | {"color82": np.full((COUNT, 3), 0.9)}
+    for each in variants["schlick"]:
+        assert not each.value or np.array_equal(*(each.value(wo, wi, given) for given in both))
+        assert not each.albedo or np.array_equal(*(each.albedo(wo, given) for given in both))
 
 
 @pytest.mark.parametrize("row", MICROFACET_NODES, ids=lambda row: row.name)
@@ -104,19 +120,6 @@ def test_a_mirror_reflects_all_light_and_prefiltered_what_the_fit_says(row):
     share = materialx_fits.fitted_albedo(mu, alpha, 1.0, 1.0) / ggx_albedo_dir(mu, alpha)
     found = LOBES[row.category].prefiltered(wo, values)
     np.testing.assert_allclose(found, np.stack([share] * 3, -1), atol=1e-5)
-
-
-def test_a_layer_is_the_algebra_of_two_sheens():
-    wo, wi = directions(), directions()[::-1]
-    values = inputs(COMBINATIONS[0])
-    top, base = (
-        Bsdf(
-            zeltner_brdf(wo, wi, np.ones(3), values[path]),
-            1.0 - zeltner_albedo_dir(wo[:, 2], values[path])[:, np.newaxis],
-        )
-        for path in ROUGHNESS
-    )
-    np.testing.assert_array_equal(COMBINATIONS[0].value(wo, wi, values), layer(top, base).value)
 
 
 def test_the_fits_of_materialx_have_the_values_of_its_shaders():
