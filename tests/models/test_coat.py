@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A dielectric over EON: its curves and albedos."""
+"""A dielectric over EON, and EON under a varnish: their curves and albedos."""
 
 import numpy as np
 import pytest
@@ -13,6 +13,9 @@ from mxeon.models import (
     eon_albedo_avg,
     fresnel_dielectric_avg,
     ggx_albedo_dir,
+    varnished_albedo_avg,
+    varnished_albedo_dir,
+    varnished_brdf,
 )
 from mxeon.models.coat import constant_coat
 from mxeon.models.microfacet import slopes
@@ -23,6 +26,18 @@ from tests.support.tolerances import COAT, COAT_INTEGRAL
 
 CLAY = {"rho": np.array([0.7, 0.35, 0.12]), "roughness": 0.6}
 DIELECTRIC = {"alpha": 0.3, "ior": 1.5}
+CURVES = 2e-5  # error of a varnish: its curves have 28 nodes; alpha 0.01, index 1.02
+# Value, directional and average albedo of each interface, and the error of the average.
+INTERFACES = (
+    (
+        dielectric_over_eon_brdf,
+        dielectric_over_eon_albedo_dir,
+        dielectric_over_eon_albedo_avg,
+        COAT,
+    ),
+    (varnished_brdf, varnished_albedo_dir, varnished_albedo_avg, CURVES),
+)
+every_interface = pytest.mark.parametrize("interface", INTERFACES, ids=("layer", "varnish"))
 COSINES = np.append([0.0, 1e-10, 1e-8, 1e-6, 1e-5, 1e-4], np.geomspace(1e-3, 1.0, 9))
 
 
@@ -44,23 +59,27 @@ def test_curves_are_those_of_a_finer_quadrature(monkeypatch, alpha, ior):
     assert np.abs(reflected - E * (1.0 + coat.average * expected)).max() < COAT
 
 
-@pytest.mark.parametrize("mu", (1.0, 0.5, 0.1))
-def test_the_directional_albedo_is_the_integral_of_the_value(mu):
+@every_interface
+@pytest.mark.parametrize(
+    ("mu", "alpha", "ior"), [(1.0, 0.5, 1.5), (0.5, 1.0, 4.0), (0.1, 0.5, 1.1)]
+)
+def test_the_directional_albedo_is_the_integral_of_the_value(interface, mu, alpha, ior):
+    brdf, albedo_dir, *_ = interface
     wi, weights = hemisphere(mu)
-    value = dielectric_over_eon_brdf(view(mu), wi, **CLAY, alpha=0.5, ior=1.5)
-    integral = (weights * wi[:, 2]) @ value
-    albedo = dielectric_over_eon_albedo_dir(mu, **CLAY, alpha=0.5, ior=1.5)
-    assert np.abs(integral - albedo).max() < COAT_INTEGRAL
+    inputs = CLAY | {"rho": np.array([0.7, 0.12, 1.0]), "alpha": alpha, "ior": ior}
+    value, albedo = brdf(view(mu), wi, **inputs), albedo_dir(mu, **inputs)
+    assert np.abs((weights * wi[:, 2]) @ value - albedo).max() < COAT_INTEGRAL
 
 
-@pytest.mark.parametrize("alpha", (0.02, 0.3, 1.0))
-def test_the_average_albedo_is_the_average(alpha):
+@every_interface
+@pytest.mark.parametrize(("alpha", "ior"), [(0.02, 1.5), (0.3, 1.1), (1.0, 4.0)])
+def test_the_average_albedo_is_the_average(interface, alpha, ior):
+    _, albedo_dir, albedo_avg, error = interface
     x, weight = gauss_legendre(400)
     mu = (0.5 + 0.5 * x) ** 2  # the nodes crowd at grazing
-    E = dielectric_over_eon_albedo_dir(mu, **CLAY, alpha=alpha, ior=1.5)
+    E = albedo_dir(mu, **CLAY, alpha=alpha, ior=ior)
     average = (0.5 * weight * 4.0 * (0.5 + 0.5 * x) ** 3) @ E
-    found = dielectric_over_eon_albedo_avg(**CLAY, alpha=alpha, ior=1.5)
-    assert np.abs(found - average).max() < COAT
+    assert np.abs(albedo_avg(**CLAY, alpha=alpha, ior=ior) - average).max() < error
 
 
 def test_a_white_base_returns_all_light_and_an_index_of_1_hides_nothing():
@@ -95,26 +114,3 @@ def test_a_coat_each_is_refused_for_other_arrays():
     row, alpha = mxeon.model("dielectric_over_eon"), torch.tensor([0.1, 0.3])
     with pytest.raises(ValueError, match="^alpha must be one number"):
         row.brdf(view(0.5), view(0.7), alpha=alpha)
-
-
-def test_gradients_by_the_coat_are_those_of_differences():
-    torch = package("torch")
-    wo, u = view(0.6), uniforms(4, 1)
-    functions = (
-        dielectric_over_eon_albedo_avg,
-        lambda **inputs: dielectric_over_eon_sample(wo, u, **inputs)[1],
-    )
-    for function in functions:
-        given = {
-            k: torch.tensor(v, dtype=torch.float64, requires_grad=True)
-            for k, v in DIELECTRIC.items()
-        }
-        function(**CLAY, **given).sum().backward()
-        for name, tensor in given.items():
-            ends = [
-                function(**CLAY, **DIELECTRIC | {name: DIELECTRIC[name] + h}).sum()
-                for h in (1e-4, -1e-4)
-            ]
-            assert tensor.grad.item() == pytest.approx(
-                (ends[0] - ends[1]) / 2e-4, rel=1e-5, abs=1e-6
-            )
