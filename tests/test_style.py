@@ -48,13 +48,6 @@ def fragments(text):
     ]
 
 
-def test_a_fragment_is_found():
-    assert fragments("# One\n# of two\nA = 1  # of three\n\n    # in four\n") == [
-        "A = 1  # of three",
-        "# in four",
-    ]
-
-
 def test_comments_stand_by_themselves():
     files = [f for part in ("python", "tools", "tests") for f in (ROOT / part).rglob("*.py")]
     texts = [f.read_text("utf-8") for f in files if f != Path(__file__)]

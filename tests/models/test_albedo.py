@@ -76,16 +76,6 @@ def test_at_parameter_zero_the_albedos_are_rho(row):
     assert np.array_equal(row.albedo_avg(RHO, *parameter(row, 0.0)), RHO)
 
 
-def test_fon_loses_nothing_at_grazing_and_most_at_normal_incidence():
-    assert fon_loss(0.0) == 0.0
-    assert fon_loss(1.0) == 0.5 - 2.0 / (3.0 * np.pi)
-
-
-def test_qon_at_grazing_takes_its_limit():
-    a, b = 1.0 - 0.5 / 1.33, 0.45 / 1.09
-    assert qon_albedo_dir(0.0, 1.0) == pytest.approx(a + b / 2.0, rel=tolerances.LOSS)
-
-
 # --- invariants ------------------------------------------------------------------------------
 
 

@@ -59,14 +59,6 @@ def test_black_reflects_nothing(row):
     assert not row.brdf(wo, wi, 0.0, *parameter(row, fraction)).any()
 
 
-def test_full_oren_nayar_at_normal_incidence_is_its_first_coefficient_and_interreflection():
-    sigma, rho = 0.7, 0.8
-    first = 1.0 - 0.5 * sigma**2 / (sigma**2 + 0.33)
-    second = 0.17 * rho * sigma**2 / (sigma**2 + 0.13)
-    value = oren_nayar_brdf([0, 0, 1], direction(0.3, 1.0), rho, sigma)
-    assert value * np.pi == pytest.approx(rho * (first + second), abs=tolerances.BRDF)
-
-
 # --- invariants ------------------------------------------------------------------------------
 
 
@@ -108,11 +100,6 @@ def test_eon_is_a_mixture_of_its_own_white_and_of_white_fon():
     scale = largest_quotient(wo, wi)[:, np.newaxis]
     error = np.pi * np.abs(mixture - eon_brdf(wo, wi, rho, r)) / scale
     assert error.max() <= 2.0 * tolerances.BRDF
-
-
-def test_back_lit_pairs_see_a_signed_s():
-    wo, wi = direction(0.2, 0.0), direction(0.3, np.pi)
-    assert fon_brdf(wo, wi, 1.0, 1.0) < fon_brdf(wo, direction(0.3, np.pi / 2.0), 1.0, 1.0)
 
 
 # --- agreement -------------------------------------------------------------------------------
