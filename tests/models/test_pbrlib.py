@@ -13,7 +13,7 @@ from mxeon.models.microfacet import defects as materialx_fits
 from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.nodes import PBR_NODES, node
 from mxeon.models.nodes.combinations import COMBINATIONS, NESTED, ROUGHNESS
-from mxeon.models.nodes.microfacets import LOBES, MICROFACET_NODES
+from mxeon.models.nodes.microfacets import FILM_NODES, LOBES, MICROFACET_NODES
 from mxeon.models.nodes.renderers import BSDL_VARIANTS, CYCLES_VARIANTS
 from mxeon.models.sheen import conty_kulla_albedo_dir
 
@@ -36,11 +36,13 @@ def inputs(row, count=COUNT):
         values[name] = 0.3 + 0.6 * rng.random(shape)
         if name == "exponent":
             values[name] = 5.0 * values[name]
-        if name == "ior":
+        if name in ("ior", "thinfilm_ior"):
             values[name] = 1.0 + values[name]
+        if name == "thinfilm_thickness":
+            values[name] = 500.0 * values[name]
         if name in ROUGHNESS and row.name in NESTED:
             values[name] = 0.9 + 0.1 * rng.random(count)  # the sum reflects more than all light
-        if name == "roughness" and row in MICROFACET_NODES:
+        if name == "roughness" and row in MICROFACET_NODES + FILM_NODES:
             values[name] = np.repeat(0.4 + 0.5 * rng.random((count, 1)), 2, axis=1)
     return values
 
@@ -84,7 +86,7 @@ def test_a_node_is_reciprocal_if_its_row_says_so(row):
     assert np.allclose(forth, back, rtol=1e-13) == row.reciprocal
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", ROWS + FILM_NODES, ids=lambda row: row.name)
 def test_each_variant_has_another_value_or_another_albedo(row):
     """The variants of the row, and those of OSL's library and of Cycles."""
     wo, wi, values = directions(), directions()[::-1], inputs(row)

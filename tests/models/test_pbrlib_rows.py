@@ -71,13 +71,6 @@ def test_a_film_of_no_thickness_leaves_the_albedo_of_a_metal():
         assert np.abs(found[1] - bare[1]).max() > 10.0 * CURVE
 
 
-def test_a_film_of_no_thickness_leaves_the_values_of_a_metal():
-    wi = np.array([0.0, 0.6, 0.8])
-    bare, filmed = CONDUCTOR_LOBE.value(WO, wi, METAL), CONDUCTOR_LOBE.value(WO, wi, METAL | FILM)
-    assert filmed[0] == pytest.approx(bare[0], rel=CURVE)
-    assert np.abs(filmed[1] - bare[1]).max() > 10.0 * CURVE
-
-
 def test_what_a_dielectric_reflects_beside_its_transmission_has_no_tint():
     inputs = {
         "tint": np.full((2, 3), 0.5),

@@ -189,7 +189,7 @@ def test_half_of_a_schlick_substrate_darkens_a_white_metal():
 
 @pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
 def test_an_albedo_takes_a_polynomial_that_is_its_curve(row):
-    values = {name: value[:1] for name, value in filmed(row).items() if name != "roughness"}
+    values = {name: value[:1] for name, value in inputs(row).items() if name != "roughness"}
     columns = {name: value.T if value.ndim == 2 else value for name, value in values.items()}
     spread = {k: v[:, None, None] if v.ndim == 2 else v for k, v in columns.items()}
     smooth = PolynomialCurve(row.category, TEXT)(MU[:, None, None], **spread)[:, :, 0, 0]
@@ -198,7 +198,7 @@ def test_an_albedo_takes_a_polynomial_that_is_its_curve(row):
 
 @pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
 def test_a_row_with_a_film_of_thickness_0_is_the_row_without(row):
-    wo, wi, values = directions(), directions()[::-1], filmed(row)
+    wo, wi, values = directions(), directions()[::-1], inputs(row)
     none = {**values, "thinfilm_thickness": np.zeros(len(wo))}
     plain = next(each for each in row.variants if each.title == "no film")
     np.testing.assert_allclose(row.value(wo, wi, none), plain.value(wo, wi, values), rtol=1e-13)
@@ -206,20 +206,8 @@ def test_a_row_with_a_film_of_thickness_0_is_the_row_without(row):
 
 
 @pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
-def test_each_variant_of_a_film_is_another_function(row):
-    wo, wi, values = directions(), directions()[::-1], filmed(row)
-    own, albedo = row.value(wo, wi, values), row.albedo(wo, values)
-    for variant in row.variants:
-        if variant.value:
-            assert not np.allclose(variant.value(wo, wi, values), own, rtol=1e-6), variant.title
-        if variant.albedo:
-            other = variant.albedo(wo, values)
-            assert other.shape == albedo.shape and not np.allclose(other, albedo, rtol=1e-6)
-
-
-@pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
 def test_equal_inputs_of_all_directions_have_the_values_of_each(row):
-    wo, wi, values = directions(), directions()[::-1], filmed(row)
+    wo, wi, values = directions(), directions()[::-1], inputs(row)
     same = {name: np.repeat(value[:1], len(wo), axis=0) for name, value in values.items()}
     one = {name: value[:1] for name, value in values.items()}
     each = [row.value(wo[[k]], wi[[k]], one)[0] for k in range(len(wo))]
@@ -227,15 +215,6 @@ def test_equal_inputs_of_all_directions_have_the_values_of_each(row):
     assert row.albedo(wo, same).shape == wo.shape
     twice = {name: np.repeat(value[:1], 2, axis=0) for name, value in values.items()}
     assert film_brdf(row.category, wo[0], wi[0], twice).shape == (2, 3)
-
-
-def filmed(row):
-    """Random inputs of a row, with a film that is not too thin to matter."""
-    values = inputs(row)
-    values["roughness"] = np.repeat(values["roughness"][:, np.newaxis], 2, axis=1)
-    values["thinfilm_thickness"] = 500.0 * values["thinfilm_thickness"]
-    values["thinfilm_ior"] = 1.0 + values["thinfilm_ior"]
-    return values
 
 
 @pytest.mark.parametrize("film", [(150.0, 1.4, 1.8), (600.0, 1.4, 1.8), (358.6, 1.925, 1.093)])
