@@ -200,10 +200,8 @@ def test_microfacets_neither_reflect_nor_transmit_more_than_all_light(ior):
 
 
 def test_no_light_passes_between_directions_that_no_facet_joins():
-    bent = (
-        view(0.3),
-        view(0.3) * DOWN,
-    )  # bent back to where it came from, farther than possible with an index of 1.5
+    # No index bends light below the surface back to the side that it came from.
+    bent = (view(0.3), view(0.3) * DOWN)
     assert dielectric_btdf(*bent, 1.0, [0.5, 0.5], 1.5)[0] == 0.0
 
 

@@ -144,7 +144,7 @@ def slopes(category, material, _, mu):
 
 
 def wave_slopes(category, material, _, mu):
-    """Slopes of a curve by the waves of each Gaussian, whose errors may have any sign."""
+    """Derivatives of a curve by the amplitude of each Gaussian's wave."""
     thickness, index = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
     opd = film.path_difference(mu, thickness, index)
     slopes = 0.0

@@ -34,7 +34,7 @@ NAMES = tuple(name for name, _ in groupby(SENTENCES, lambda spec: spec.node))
 TRANSPORT = (
     "how light travels inside the object is the renderer's; path tracers only get the medium"
 )
-# What no row shows: text, section, what it says, and why.
+# Statements that no row judges: text, section, statement, and the reason.
 # fmt: off
 NOT_JUDGED = (
     (OPENPBR, "Subsurface", "radius, scale, anisotropy and the inversion of the albedo", TRANSPORT),

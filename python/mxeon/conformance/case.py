@@ -179,7 +179,7 @@ def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
 def frames(case: Case) -> Iterator[Compared]:
     """Values in turned frames, half of them with a normal that faces away, compared with unturned ones."""
     turned = case.backend.turned
-    # Each sums over the environment: use every fifth pair, which covers both sides.
+    # An albedo sums over the environment, which is slow: every fifth pair covers both sides.
     some = turned.where(slice(None, None, 5))
     shown = [(case.direct, turned), (case.albedo, some)]
     if "retroreflective" in case.changes:

@@ -17,7 +17,7 @@ from mxeon.shaders.scene import VisiblePoints, pixel_centers
 from mxeon.shaders.shader_ball import GROUND, NEAR, OBJECT
 
 SIZE = 1.9  # diagonal of the box around a mesh; the frame is 2 wide
-OFFSET = 1e-4  # between a point and the next ray
+OFFSET = 1e-4  # distance of a ray's origin from the surface that it leaves
 
 
 @lru_cache(maxsize=2)

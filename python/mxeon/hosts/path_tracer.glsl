@@ -13,9 +13,9 @@ uniform int tracer_size;
 uniform bool tracer_ball;
 uniform vec3 tracer_light; // Towards a distant light of irradiance pi; zero for none.
 uniform sampler2D tracer_environment;
-uniform bool tracer_mapped; // Whether the environment is a map, whose texels are drawn by their light:
-uniform sampler2D tracer_drawn; // numbers of texels, each as often as it is to be drawn, 256 x 256,
-uniform sampler2D tracer_chance; // and the probability of each texel.
+uniform bool tracer_mapped; // Whether the environment is a map, whose texels are drawn by their light.
+uniform sampler2D tracer_drawn; // 256 x 256 numbers of texels, each as often as it is to be drawn.
+uniform sampler2D tracer_chance; // The probability of drawing each texel.
 uniform mat3 tracer_foot; // From the picture to the foot of the shader ball, and from there to its belt.
 uniform mat3 tracer_belt;
 

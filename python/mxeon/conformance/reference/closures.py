@@ -52,7 +52,7 @@ FLAGGED = {
 
 @dataclass(frozen=True)
 class Views:
-    """Some points, and the branch of their light."""
+    """Points to shade, with what their light depends on."""
 
     points: ShadingPoints
     occlusion: Array  # share of a light that reaches the surface from above

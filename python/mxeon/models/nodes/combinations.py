@@ -30,10 +30,8 @@ COLORS = ("top/color", "base/color")
 AMOUNT = "lobe/mix"  # weight of `top` or of the sum
 AMOUNT_ABOVE = "mixed/mix"  # weight of the sum in a mix that is the top of a layer
 FACTOR = "lobe/in2"  # factor of `top` or of the sum
-MASKS = (
-    "inner/in1",
-    "outer/in1",
-)  # weights of a white opaque lobe over `top`, and of both over another lobe
+# A white opaque lobe of the first weight lies over `top`; the second weighs both over another lobe.
+MASKS = ("inner/in1", "outer/in1")
 Sheen = Callable[[Array, Array, Array, Array], Bsdf]  # (wo, wi, roughness, color)
 Combine = Callable[[Bsdf, Bsdf, Inputs], Bsdf]
 Finish = Callable[[Bsdf], Bsdf]
