@@ -39,10 +39,10 @@ from mxeon.shaders.library_export import CLIENTS
 if TYPE_CHECKING:
     from mxeon.report.diff import Report
 
-LINES = 10  # maximum lines printed for one document
 MANY = 20  # maximum documents before they are grouped by cause
-LOOKS = 4  # maximum lines on the materials of one document
-FEWEST = 3  # minimum of nodes and causes for several documents; maximum of reasons why checks did not run
+# Maximum lines of each section; the table of nodes has a header.
+LONGEST = {"material": 4, "node": 4, "cause": 3, "note": 2}
+REASONS = 3  # maximum reasons why checks did not run
 UNBOUNDED = 1e3  # larger errors are described in words
 LETTERS = re.compile(r"\(([A-Z]+)\)$")  # abbreviation at the end of a model's title
 REFUSED = "refused"
@@ -117,43 +117,30 @@ def _line(result: Result) -> str:
 
 
 def answer(run: Run, full: bool = False) -> list[str]:
-    """The lines of the summary, at most LINES for one document unless it is `full`."""
+    """The sections of the summary, each cut at a fixed number of lines unless it is `full`."""
     many = len(run.contents) + len(run.refused) > MANY
-    looks = summary_by_cause(run) if many else list(_looks(run))
-    rows = {} if many else _rows(run)
-    remedy, failures = [one_line(line) for line in _remedy(run)], list(_failures(run))
-    notes = [f"note: {note}" for note in run.notes]
+    looks: list[str] = summary_by_cause(run) if many else list(_looks(run))
     idle = _not_run(run, full, [] if many else looks)
-    stopped = [Line.of(one_line(each), NOT_RUN) for each in idle]
-    others = map(one_line, (*words.origins(run), *words.not_judged(run)))
-    first = [*stopped, *others]
+    lines: list[str] = [Line.of(one_line(each), NOT_RUN) for each in idle]
+    lines += map(one_line, (*words.origins(run), *words.not_judged(run)))
+    nodes = [] if many else _table(run, _rows(run))
+    causes = [Line.of(one_line(each), each.verdict) for each in _failures(run)]
+    notes = [one_line(f"note: {note}") for note in run.notes]
+    more = []
+    for name, section in (("material", looks), ("node", nodes), ("cause", causes), ("note", notes)):
+        # Every one of several documents has its line.
+        whole = full or (name == "material" and len(run.contents) != 1)
+        most = len(section) if whole else LONGEST[name]
+        lines += section[:most]
+        if cut := len(section[most:]):
+            more.append(counted(cut, f"more {name}"))
     # The verdict comes first without documents, or if something was not judged.
     begins = run.refused or run.verdict == NOT_RUN or not run.contents
-    alone = len(run.contents) == 1
-    seen = max(1, LOOKS - len(first)) if alone and not full else len(looks)
-    # The verdict and the number of omitted lines take a line each.
-    room = LINES - len(first) - min(seen, len(looks)) - len(remedy) - 2
-    least = 1 if alone else FEWEST
-    kept = max(least, room - 1 - min(2, len(failures) + len(notes)))
-    kept = kept if rows and not full else len(rows)
-    table = list(_table(run, rows, kept))
-    causes = len(failures) if full else max(least, room - len(table) - bool(notes))
-    noted = len(notes) if full else max(1, room - len(table) - len(failures[:causes]))
-    failed = [Line.of(one_line(each), each.verdict) for each in failures[:causes]]
-    after = [*failed, *map(one_line, notes[:noted])]
-    lines: list[str] = [*first, *looks[:seen], *table, *after]
     summary = Line.of(one_line(run.summary), run.verdict)
     lines.insert(0 if begins else len(lines), summary)
-    counts = (
-        len(looks) - seen,
-        len(rows) - kept,
-        len(failures) - causes,
-        len(notes) - noted,
-    )
-    cut = zip(("material", "node", "cause", "note"), counts, strict=True)
-    if more := [counted(count, f"more {name}") for name, count in cut if count > 0]:
+    if more:
         lines.append(f"{', '.join(more)}: --full")
-    return [*lines, *remedy]
+    return [*lines, *map(one_line, _remedy(run))]
 
 
 class DocumentVerdict(NamedTuple):
@@ -346,21 +333,20 @@ def _rank(run: Run, result: Result) -> int:
     return ELSEWHERE if right and all(right) else WRONG
 
 
-def _table(run: Run, rows: Rows, kept: int) -> Iterator[str]:
-    """The first nodes, a line each, with a column for each library."""
+def _table(run: Run, rows: Rows) -> list[str]:
+    """A header and the nodes, a line each, with a column for each library."""
     if not rows:
-        return
+        return []
     hosts = _unique(host for _, host in rows)
     libraries = _unique(each.library for row in rows.values() for each in row)
     table = [[f"nodes on {', '.join(hosts)}, largest error", *libraries]]
-    for (title, host), row in list(rows.items())[:kept]:
+    for (title, host), row in rows.items():
         cells = [_cell(run, [each for each in row if each.library == name]) for name in libraries]
         table.append([title if len(hosts) == 1 else f"{title} on {host}", *cells])
     table = [list(map(one_line, row)) for row in table]
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    for line in table:
-        cells = [cell.ljust(width) for cell, width in zip(line, widths, strict=True)]
-        yield f"  {'  '.join(cells)}".rstrip()
+    rows_of_cells = (map(str.ljust, line, widths) for line in table)
+    return [f"  {'  '.join(cells)}".rstrip() for cells in rows_of_cells]
 
 
 def _cell(run: Run, results: Sequence[Result]) -> str:
@@ -403,7 +389,7 @@ def _not_run(run: Run, full: bool, looks: Sequence[str]) -> Iterator[str]:
         said = each.check in KEYS and any(one_line(each.reason) in look for look in looks)
         if each.verdict == NOT_RUN and not each.follows and not said:
             reasons.setdefault(each.reason, []).append(each)
-    shown = len(reasons) if full else FEWEST
+    shown = len(reasons) if full else REASONS
     for reason, results in list(reasons.items())[:shown]:
         where = listed(_unique(each.location for each in results))
         yield f"not run: {where}, {counted(len(results), 'check')}: {reason}"
