@@ -19,7 +19,7 @@ from pytest import approx
 from mxeon import check
 from mxeon.cli import main
 from mxeon.cli.answer import answer
-from mxeon.cli.explore import MATERIALS
+from mxeon.cli.explore import DOCUMENT_LIMIT
 from mxeon.conformance import words
 from mxeon.conformance.results import VISIBLE
 from mxeon.errors import MISUSE
@@ -236,7 +236,7 @@ def test_more_materials_than_a_page_may_hold_are_refused(tmp_path, capsys):
     assert main([*arguments, "--maxShaders", "0"]) == MISUSE
     assert "renderable elements; got 2: raise it with --maxShaders" in capsys.readouterr().err
     assert main(["explore", "--help-limits"]) == PASSED_STATUS
-    assert f"renderable elements (default: {MATERIALS})" in " ".join(
+    assert f"renderable elements (default: {DOCUMENT_LIMIT})" in " ".join(
         capsys.readouterr().out.split()
     )
 

@@ -13,7 +13,7 @@ from mxeon.cli.batch import run_batch
 from mxeon.cli.output import fail, show, status_of, warn
 from mxeon.errors import PASSED
 
-MATERIALS = 300  # limit per document: a page of 3 MB, in 10 s
+DOCUMENT_LIMIT = 300  # limit per document: a page of 3 MB, in 10 s
 
 
 def add_parser(commands: arguments.Commands) -> None:
@@ -46,7 +46,7 @@ def add_parser(commands: arguments.Commands) -> None:
         help="what to compare eonlib with: stock (default), or a folder",
     )
     arguments.add_shared(command, "--materialx", "--workers", "--timeout")
-    arguments.add_policy(command, runs_code=True, shaders=MATERIALS)
+    arguments.add_policy(command, runs_code=True, shaders=DOCUMENT_LIMIT)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -221,7 +221,7 @@ def isotropic(batch: Batch) -> Batch:
 class Evaluating(Backend):
     """An engine that runs the generated shader for any pairs."""
 
-    abilities = ~(Ability.BELOW | Ability.SURFACE | Ability.FRAME)
+    abilities = ~(Ability.BELOW | Ability.SURFACE | Ability.CLIENT)
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
@@ -702,7 +702,7 @@ class Spheres(Pictures):
 
     def batch(self, scene: Scene, inputs: Values) -> Batch:
         wo, wi, mask = self.points(scene)
-        return Batch(wo[mask], wi[mask], inputs, scene)
+        return Batch(wo[mask], wi[mask], samples.arrays(inputs), scene)
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -828,7 +828,7 @@ class DarkPictures(Pictures):
 class Frames(Pictures):
     """The whole main, drawn with a client's bindings."""
 
-    abilities = Ability.FRAME | Ability.LIGHT
+    abilities = Ability.CLIENT | Ability.LIGHT
 
 
 class EmissionPictures(Spheres):

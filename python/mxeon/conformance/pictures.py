@@ -32,7 +32,7 @@ from mxeon.conformance.results import (
     Result,
     quoted,
 )
-from mxeon.conformance.samples import Batch, Values
+from mxeon.conformance.samples import Batch, Values, arrays
 from mxeon.conformance.specs import microfacets
 from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
@@ -454,7 +454,7 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
             continue
         where = mask.copy()
         where[where] = judged
-        batch = Batch(wo[judged], wi[judged], PORTRAYED, scene)
+        batch = Batch(wo[judged], wi[judged], arrays(PORTRAYED), scene)
         image, expected = (np.zeros((*where.shape, 3), np.float32) for _ in range(2))
         image[where], expected[where] = case.direct(batch), case.expected(batch)
         names = (PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)

@@ -53,9 +53,9 @@ from mxeon.shaders.scene import CLIENT, FURNACE, SIDE, Client
 
 RELEASE, SUBJECT = "release", "definitions, units, graphs and texts"
 CLAIM = "What has no model is as MaterialX released it, or has the same values."
-ROWS = 64  # samples of the inputs
+SAMPLES = 64  # samples of the inputs
 MOST = 12  # maximum number of evaluated nodes
-SIZE, MATERIALS = 24, 3  # size and number of pictures for differently arranged lobes
+SIZE, PICTURED = 24, 3  # size and number of pictures for differently arranged lobes
 # Compared attributes of inputs and outputs; ranges only guide editors and are only compared for eonlib's nodes.
 ATTRIBUTES = ("type", "defaultgeomprop", "uniform", "unit", "unittype", "colorspace", "enum")
 RANGE = ("uimin", "uimax")
@@ -384,7 +384,7 @@ class Comparison:
         return distance(self._values(own), expected)
 
     def _values(self, subject: Subject) -> Array:
-        """Values of a subject, (ROWS, 3), or (ROWS, 6) with a fourth component."""
+        """Values of a subject, (SAMPLES, 3), or (SAMPLES, 6) with a fourth component."""
         found = []
         for index in ("", "3") if subject.kind in JOINED else ("",):
             document = mx.createDocument()
@@ -402,7 +402,7 @@ class Comparison:
                 port.setOutputString(output)
             edf = document.addNode("uniform_edf", "lobe", "EDF")
             edf.addInput("color", "color3").setNodeName("color")
-            up = np.tile([0.0, 0.0, 1.0], (ROWS, 1))
+            up = np.tile([0.0, 0.0, 1.0], (SAMPLES, 1))
             shader = self._compiled(document, edf, subject.library)
             found.append(self._host.evaluate(shader, up, up, samples(subject.definition), GRAPH))
         return np.concatenate(found, axis=1).astype(np.float64)
@@ -418,7 +418,7 @@ class Comparison:
         except MxeonError:
             return np.inf
         rng, error = generator(), 0.0
-        for _ in range(MATERIALS):
+        for _ in range(PICTURED):
             drawn: dict[str, float | tuple[float, ...]] = {}
             for port in shaders[0].inputs:
                 if port.type == "float":
@@ -453,7 +453,7 @@ class Comparison:
     @cached_property
     def tolerance(self) -> Tolerance:
         """The largest difference between the values of one graph that is written in two ways."""
-        base, exponent = float32(np.linspace(0.01, 1.0, ROWS)), float32(np.full(ROWS, 2.0))
+        base, exponent = float32(np.linspace(0.01, 1.0, SAMPLES)), float32(np.full(SAMPLES, 2.0))
         power = float(POWER.errors(self._host, base, exponent).max())
         engine = Term(8.0 * power, "the engine's pow(), eight times")
         terms = roundings(64, "of the terms of a graph"), engine
@@ -466,13 +466,13 @@ def samples(definition: mx.NodeDef) -> dict[str, Array]:
     In every third row all inputs are equal, since a graph may compare them.
     """
     rng, found = generator(), {}
-    equal = rng.random((ROWS, 1))
+    equal = rng.random((SAMPLES, 1))
     for port in definition.getActiveInputs():
         kind = JOINED.get(port.getType(), port.getType())
         for name, each in ((port.getName(), kind), (f"{port.getName()}_4", "float")):
             if each in COMPONENTS:
-                values = rng.random((ROWS, COMPONENTS[each]))
-                values[ROWS // 2 :] = 4.0 * values[ROWS // 2 :] - 1.5
+                values = rng.random((SAMPLES, COMPONENTS[each]))
+                values[SAMPLES // 2 :] = 4.0 * values[SAMPLES // 2 :] - 1.5
                 values[::3] = equal[::3]
                 if each in ("integer", "boolean"):
                     values = np.floor(values * 2.0).clip(0.0)

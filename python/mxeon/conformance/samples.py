@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -57,6 +57,10 @@ class Counts:
         return replace(self, **{name: math.ceil(share * getattr(self, name)) for name in names})
 
 
+def arrays(inputs: Values) -> dict[str, Array]:
+    return {name: np.asarray(each) for name, each in inputs.items()}
+
+
 @dataclass(frozen=True)
 class Batch:
     """Pairs of directions and the node's inputs for them."""
@@ -66,13 +70,13 @@ class Batch:
     wo: Array
     wi: Array
     # Node inputs and "occlusion", (N, ...) or constant. The normal is in world space.
-    inputs: Mapping[str, Any]  # NumPy's ArrayLike does not allow arithmetic
+    inputs: Mapping[str, Array]
     scene: Scene | None = None  # scene of the picture with these points
     # World axes of the local frames, as columns; None if they equal the world's.
     frame: Array | None = None
 
     def altered(self, **inputs: ArrayLike) -> "Batch":
-        return replace(self, inputs={**self.inputs, **inputs})
+        return replace(self, inputs={**self.inputs, **arrays(inputs)})
 
     def with_row(self, row: int, wo: ArrayLike, **inputs: ArrayLike) -> "Batch":
         """A copy with another view and other inputs in one row."""
@@ -108,7 +112,7 @@ class Batch:
     @property
     def strength(self) -> Array:
         """Factor of an albedo, (N, 1) or (1, 1): the weight, or 0 if it is negative."""
-        return np.maximum(np.reshape(self.inputs.get("weight", 1.0), (-1, 1)), 0.0)
+        return np.maximum(np.reshape(self.inputs.get("weight", np.ones(1)), (-1, 1)), 0.0)
 
     @property
     def rough(self) -> Array:

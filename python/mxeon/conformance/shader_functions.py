@@ -128,27 +128,23 @@ NAMED: Mapping[str, Callable[..., Array]] = {
     "eon_rotate_z": lambda wi, cosine, sine: sampling.rotate_z(wi, cosine, sine),
     # y of the angle with cosine 1 - m, from the exact integral that the shader fits.
     "eon_upper_root": lambda m: sampling.eon_upper_limit(1.0 - m, np.sqrt(m * (2.0 - m))),
-    "ltc_transformed": lambda wo, wh, roughness, d: sampling.ltc_transformed(wo, wh, roughness, d)[
-        0
-    ],
     "oren_nayar_s": lambda wo, wi: diffuse.cosines(wo, wi)[2],
 }
+# Internal functions whose colors have their channels first in NumPy.
+CHANNELS_FIRST = re.compile(r"fon_lambert|eon_(denominator|multiple_ratio)|(qon|eon)_brdf_mu")
 
 
 def _expected(function: str, columns: Columns) -> Array:
     """Values of a shader function in NumPy, (N, 1) or (N, 3)."""
     version = NAMED.get(function) or getattr(sampling, function, None) or getattr(diffuse, function)
-    parameters = inspect.signature(version).parameters
-    arguments = {name: columns[name] for name in parameters if name in columns}
-    # Internal functions take one channel or channels first, public ones rows of colors.
-    own = "rho" in parameters and parameters["rho"].annotation == "Array"
-    channels_first = own and version.__module__ == diffuse.__name__
-    if "rho" in arguments:
-        arguments["rho"] = columns["gray" if _takes_gray(function) else "rho"]
-        arguments["rho"] = arguments["rho"].T if channels_first else arguments["rho"]
-    values = version(**arguments)
+    columns = {**columns, "rho": columns["gray" if _takes_gray(function) else "rho"]}
+    channels_first = CHANNELS_FIRST.fullmatch(function)
+    if channels_first:
+        columns["rho"] = columns["rho"].T
+    names = columns.keys() & inspect.signature(version).parameters.keys()
+    values = version(**{name: columns[name] for name in names})
     values = np.asarray(values[0] if isinstance(values, tuple) else values)
-    values = values.T if channels_first and values.ndim == 2 else values
+    values = values.T if channels_first else values
     return values.reshape(len(columns["mu"]), -1)
 
 

@@ -124,7 +124,7 @@ class Ability(Flag):
     IMPLEMENTATION = auto()  # only the implementation of a node without values
     OUTPUT = auto()
     # Required by checks: pairs at the edges of the domain, and branches of lighting.
-    FRAME = auto()  # the whole main with a client's bindings
+    CLIENT = auto()  # the whole main with a client's bindings
     PAIRS = auto()
     LIGHT = auto()
 

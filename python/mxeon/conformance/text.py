@@ -200,7 +200,7 @@ def _dropped(subject: ScatteringSpec, target: str, library: str) -> Faults:
 
 # --- closures: the node's arguments for random materials, in MDL -----------------------------------
 
-MATERIALS = 256
+DRAWS = 256
 ROUNDED = 1e-12  # 4500 float64 roundings, more than in any text
 TINT = "multiscatter_tint"
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
@@ -242,15 +242,15 @@ def _closure_faults(subject: DiffuseSpec, library: str) -> Faults:
     """Arguments of the closure that differ from the node's inputs; the count ignores the weight."""
     expression = _expression(source(subject, "mdl", library))
     rng = generator()
-    drawn = subject.random_inputs(rng, MATERIALS)
-    rows = {name: each.reshape(MATERIALS, -1) for name, each in drawn.items()}
-    rows["weight"], normal = rng.random((MATERIALS, 1)), rng.standard_normal((MATERIALS, 3))
+    drawn = subject.random_inputs(rng, DRAWS)
+    rows = {name: each.reshape(DRAWS, -1) for name, each in drawn.items()}
+    rows["weight"], normal = rng.random((DRAWS, 1)), rng.standard_normal((DRAWS, 3))
     rows["normal"] = normal / np.linalg.norm(normal, axis=1, keepdims=True)
     # [Portsmouth2025], Eq. (19); MDL without the flag is FON.
     rho, r = rows["color"], rows["roughness"]
     average = (1.0 + formulas.C2 * r) / (1.0 + formulas.C1 * r)
     tint = rho**2 * average / (1.0 - rho * (1.0 - average))
-    expected = {**rows, TINT: tint if subject.model == "eon" else np.zeros((MATERIALS, 3))}
+    expected = {**rows, TINT: tint if subject.model == "eon" else np.zeros((DRAWS, 3))}
     flag = {FLAG: np.array([[int(subject.flag is not False)]])}
 
     def faults(given: Inputs) -> Iterator[Cause]:

@@ -20,7 +20,7 @@ from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import VisiblePoints
 
 PROGRAMS = 4  # cached programs, 10 MB each: a document's scenes and a node's checks share them
-ROWS = 256  # rows of a texture to copy at a time
+COPIED = 256  # rows of a texture to copy at a time
 CONSTANTS = 64  # cached textures of one value: most inputs are constant
 POINTS = 4  # cached textures of points: most materials have the same vertex stage
 REMEDIES = {
@@ -207,8 +207,8 @@ class GlHost(FragmentHost):
             texels = texels[..., :1]
         height, width, components = texels.shape
         texture = self._context.texture((width, height), components, dtype="f4")
-        for row in range(0, height, ROWS):
-            rows = np.ascontiguousarray(texels[row : row + ROWS], dtype=np.float32)
+        for row in range(0, height, COPIED):
+            rows = np.ascontiguousarray(texels[row : row + COPIED], dtype=np.float32)
             texture.write(rows, viewport=(0, row, width, len(rows)))
         if gray:
             texture.swizzle = "RRR1"

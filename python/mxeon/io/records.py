@@ -14,7 +14,7 @@ from mxeon.errors import InputError
 
 NOT_FINITE = ("NaN", "Infinity", "-Infinity")
 # Raised on reading JSON of unknown origin.
-ERRORS = (
+UNREADABLE = (
     ValueError,
     KeyError,
     TypeError,
@@ -30,7 +30,7 @@ def strict_converter(fields: Mapping[Any, Overrides]) -> cattrs.Converter:
     """A converter between dataclasses and the types of JSON.
 
     `fields` are a record's fields with other keys or types in JSON. Non-finite numbers are written as the texts
-    NOT_FINITE. `structure` raises some of ERRORS.
+    NOT_FINITE. `structure` raises some of UNREADABLE.
     """
     converter = cattrs.Converter(
         forbid_extra_keys=True, unstruct_collection_overrides={tuple: list}
@@ -57,7 +57,7 @@ def read_strictly(converter: cattrs.Converter, value: object, kind: type[T]) -> 
 
     try:
         record = converter.structure(value, kind)
-    except ERRORS as error:
+    except UNREADABLE as error:
         first = cattrs.transform_error(error, format_exception=reason)[0]
         raise InputError(first) from None
     if converter.unstructure(record) != value:  # a text was taken for a list, for example

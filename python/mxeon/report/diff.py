@@ -31,7 +31,7 @@ from mxeon.conformance.results.records import make_converter
 from mxeon.errors import InputError, one_line
 from mxeon.hosts.base import Identity
 from mxeon.io.files import regular
-from mxeon.io.records import ERRORS, read_strictly, spelled
+from mxeon.io.records import UNREADABLE, read_strictly, spelled
 from mxeon.report import JSON_FORMAT, SCHEMA
 
 WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "other")
@@ -172,7 +172,7 @@ def read_results(folder: str | PathLike[str]) -> Report:
             return read_report(content)
     except OSError as error:
         raise InputError(f"{rule}; {error.strerror}") from None
-    except ERRORS as error:
+    except UNREADABLE as error:
         reason = f"lacks {error}" if isinstance(error, KeyError) else error
         raise InputError(f"{rule}; {reason}") from None
     raise InputError(

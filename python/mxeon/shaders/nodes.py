@@ -84,8 +84,8 @@ def value_text(value: ArrayLike) -> str:
     """
     if isinstance(value, str):
         return value
-    if isinstance(value, bool):
-        return str(value).lower()
+    if np.asarray(value).dtype == bool:
+        return str(bool(value)).lower()
     return ", ".join(repr(float(each)) for each in np.ravel(value))
 
 

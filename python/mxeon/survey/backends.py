@@ -95,7 +95,7 @@ class Native(backends.CyclesPictures):
 
     def picture(self, batch: Batch) -> Array:
         scene, inputs = backends.scene_of(batch), batch.inputs
-        material = self.node.made(inputs["color"], inputs["roughness"])
+        material = self.node.made(inputs["color"].tolist(), float(inputs["roughness"]))
         image = self.renderer.node(material, scene)
         return image[self.seen(scene)][self.points(scene)[2]].astype(np.float64)
 

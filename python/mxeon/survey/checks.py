@@ -65,7 +65,7 @@ def _deviation(case: Case, mu: float) -> float:
     wi = cast(Renderer, case.host).sample(*draws).astype(np.float64)
 
     def density(w: Array) -> Array:
-        batch = Batch(np.broadcast_to(wo, w.shape), w, {"roughness": ROUGHNESS})
+        batch = Batch(np.broadcast_to(wo, w.shape), w, {"roughness": np.array(ROUGHNESS)})
         return np.where(w[:, 2] > 0.0, _density(case, batch), 0.0)
 
     return deviation(np.where(wi[:, 2:] > 0.0, wi, 0.0), density, pole, pole)

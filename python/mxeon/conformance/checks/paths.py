@@ -21,11 +21,11 @@ from mxeon.conformance.case import Case
 from mxeon.conformance.check import Check, Specs, always, family
 from mxeon.conformance.checks.lobes import BELOW, CLEAR, DARK, TRANSMITTING
 from mxeon.conformance.checks.microfacets import with_directions
-from mxeon.conformance.checks.surface_shaders import MATERIALS
+from mxeon.conformance.checks.surface_shaders import SURFACES
 from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
 from mxeon.conformance.samples import Array, Batch, Values, float32, generator
-from mxeon.conformance.spec import NO_ABILITY, Ability, LobeSpec, draw, materials
+from mxeon.conformance.spec import NO_ABILITY, Ability, LobeSpec, Spec, draw, materials
 from mxeon.conformance.specs.combinations import CombinedSpec
 from mxeon.conformance.specs.emission import EmissionSpec
 from mxeon.conformance.specs.microfacets import PASSING, THROUGHPUT, FacetSpec, TransmissionSpec
@@ -106,7 +106,7 @@ GLASS: dict[str, tuple[str, Values]] = {
 }
 INDEX = 2.0  # its inverse is exact
 DRAWN = family(LobeSpec) - BELOW
-GLASSY = TRANSMITTING | MATERIALS  # light enters and leaves a solid
+GLASSY = TRANSMITTING | SURFACES  # light enters and leaves a solid
 # Lobes that reflect by an index, which is inverted for light inside.
 UNLIKE_INSIDE = (
     GLASSY
@@ -215,30 +215,41 @@ def paths(
 def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
     """Materials with pairs in their own frames: random ones of a node, or a surface shader with all lobes.
 
-    A node has its own normal and tangent, which differ from the surface's. For a surface shader
-    that supports thin walls, `walls` selects whether it is one.
+    For a surface shader that supports thin walls, `walls` selects whether it is one.
     """
+    if is_shader(case.spec):
+        yield from shaders(case, *walls)
+    else:
+        yield random_materials(case)
+
+
+def is_shader(spec: Spec) -> bool:
+    return Ability.MATERIAL in spec.requires
+
+
+def shaders(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
+    spec, batch = case.of(SurfaceShaderSpec), case.backend.turned
+    known = spec.types  # glTF has no anisotropy before MaterialX 1.39.4
+    values, _ = materials(*spec.judged, *spec.others)
+    values = {name: value for name, value in values.items() if name in known}
+    thin: dict[str, ArrayLike] = {
+        name: (value,) * 3 if known[name] == "color3" else value
+        for name, value in THIN.items()
+        if name in known and name not in values
+    }
+    axes = {name: batch.inputs[name] for name in ("normal", "tangent")}
+    named = [name for name in WALLS if name in known]
+    for wall in [each for each in walls or (False,) if named or not each]:
+        solid: Values = {**values, **thin, **dict.fromkeys(named * wall, True)}
+        numbers = {name: np.asarray(each, np.float64) for name, each in solid.items()}
+        text = paths(case.host, spec.document(solid), case.library)
+        yield text, replace(batch, inputs={**numbers, **axes})
+
+
+def random_materials(case: Case) -> tuple[Paths, Batch]:
+    """Materials of a node with its own normal and tangent, which differ from the surface's."""
     spec, batch = case.lobe, case.backend.turned
     rng, count = generator(), len(batch.wo)
-    if isinstance(spec, SurfaceShaderSpec):
-        known = spec.types  # glTF has no anisotropy before MaterialX 1.39.4
-        values, _ = materials(*spec.judged, *spec.others)
-        values = {name: value for name, value in values.items() if name in known}
-        thin: dict[str, ArrayLike] = {
-            name: (value,) * 3 if known[name] == "color3" else value
-            for name, value in THIN.items()
-            if name in known and name not in values
-        }
-        axes = {name: batch.inputs[name] for name in ("normal", "tangent")}
-        for wall in walls or (False,):
-            named = [name for name in WALLS if name in known]
-            if wall and not named:
-                continue
-            solid: Values = {**values, **thin, **dict.fromkeys(named * wall, True)}
-            numbers = {name: np.asarray(each, np.float64) for name, each in solid.items()}
-            text = paths(case.host, spec.document(solid), case.library)
-            yield text, replace(batch, inputs={**numbers, **axes})
-        return
     own: Values = {each.name: NORMAL for each in spec.inputs if each.type == "vector3"}
     flags = [each.name for each in spec.inputs if each.type == "boolean"]
     rest = [each for each in spec.inputs if each.name not in {*flags, *batch.inputs, *own}]
@@ -251,7 +262,7 @@ def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
         }
         drawn |= {name: np.roll(each, 1, axis=0) for name, each in axes.items()}
     batch = batch.altered(**draw(rng, count, rest), **drawn)
-    yield paths(case.host, spec.document(own), case.library, tuple(batch.inputs)), batch
+    return paths(case.host, spec.document(own), case.library, tuple(batch.inputs)), batch
 
 
 def random(count: int, rng: np.random.Generator) -> Array:
@@ -301,7 +312,7 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
         if "cuticle_angle" in batch.inputs:  # a steep lobe leaves a pole along the fiber
             rough["cuticle_angle"] = np.clip(batch.inputs["cuticle_angle"], 0.45, 0.55)
         batch = batch.altered(**rough)
-        few = case.control or isinstance(case.spec, SurfaceShaderSpec)
+        few = case.control or is_shader(case.spec)
         for row in range(3 if few else MATERIALS_DRAWN):
             one = batch.where(np.arange(row, row + 1))
             assert one.frame is not None
@@ -389,7 +400,8 @@ def path_value(case: Case) -> Iterator[Compared]:
         wi[:8] = batch.wo[:8]
         batch = replace(batch, wi=wi)
         normal = np.broadcast_to(NORMAL, wi.shape)
-        if isinstance(case.spec, SurfaceShaderSpec) and batch.frame is not None:
+        shader = is_shader(case.spec)
+        if shader and batch.frame is not None:
             # The graph turns tangents about a normal that may face away: 1 or -1 along the frame's
             # axis.
             normal = np.einsum("nij,ni->nj", batch.frame, batch.inputs["normal"]).round()
@@ -399,7 +411,7 @@ def path_value(case: Case) -> Iterator[Compared]:
         inside = np.arange(len(wi)) % 2 * (not UNLIKE_INSIDE(case.spec))
         wo, own = batch.world(batch.wo), batch.world(wi)
         ask = partial(text.values, wo=wo, wi=own, inside=inside, inputs=batch.inputs)
-        thin = isinstance(case.spec, SurfaceShaderSpec) and case.spec.node != "UsdPreviewSurface"
+        thin = shader and case.spec.node != "UsdPreviewSurface"
         share = OPACITY if thin else 1.0
         opacity = 1.0 - 3.0 * MEAN_WEIGHT * (1.0 - share)
         steep = steepness(ask("pdf")[:, :1])
@@ -408,7 +420,7 @@ def path_value(case: Case) -> Iterator[Compared]:
         yield Compared(batch, np.pi * found / steep, opacity * np.pi * value / steep)
         yield Compared(batch, ask("opacity"), np.full((len(wi), 1), opacity))
         emitted = np.zeros((len(wi), 3))
-        if isinstance(case.spec, SurfaceShaderSpec):
+        if shader:
             emitted = case.evaluating.evaluate(local, "emission", "radiance")
         yield Compared(batch, ask("emission"), share * emitted)
 
@@ -450,7 +462,7 @@ def path_random(case: Case) -> Iterator[Compared]:
 
 def path_inside(case: Case) -> Iterator[Compared]:
     name, values = GLASS[case.spec.node]
-    if isinstance(case.spec, SurfaceShaderSpec):
+    if is_shader(case.spec):
         text = paths(case.host, case.spec.document({**values, name: INDEX}), case.library, (name,))
         batch = case.backend.turned
         batch = replace(batch, inputs={each: batch.inputs[each] for each in ("normal", "tangent")})
@@ -701,7 +713,7 @@ ROWS = (
           explain=always(defect("inside_is_not_outside"))),
     PATHS(key="path_albedo",
           claim="Draws from outside carry the light that a rasterizer reflects and transmits.",
-          applies=MATERIALS, measure=path_albedo,
+          applies=SURFACES, measure=path_albedo,
           tolerance=ALBEDO.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
           explain=always(defect("other_path_albedo")),

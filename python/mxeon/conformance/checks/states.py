@@ -48,7 +48,7 @@ if TYPE_CHECKING:  # the import loads MaterialX
 
 EACH = 12  # pixels per combination of states: three 2 x 2 squares in a frame of two rows
 STEP = 0.05  # radian between pixels of a bent surface with radius 1
-FRAME = ("normal", "tangent", "position", SURFACE)
+VECTORS = ("normal", "tangent", "position", SURFACE)
 FLAT = NORMAL, TANGENT, (0.0, 0.0, 0.0), NORMAL
 WEIGHTS = (0.0, 0.3, 1.0, 1.0)
 FEW = 6  # combinations in a control
@@ -145,7 +145,7 @@ def bent(pixels: Pixels, rng: Random, columns: float = 0.0, rows: float = 0.0) -
     frame = aimed(frame, frame[:, :, 2], up)
     inputs = dict(
         zip(
-            FRAME,
+            VECTORS,
             map(float32, (frame[:, :, 3], frame[:, :, 4], place, frame[:, :, 3])),
             strict=True,
         )
@@ -157,7 +157,7 @@ def doubled(pixels: Pixels, rng: Random, component: bool = False, swapped: bool 
     """A second lobe that differs in one input of each pixel, or in one component of it."""
     first = broadcast_inputs(pixels.batch)
     second, words = dict(first), [""] * EACH
-    names = [name for name in first if name not in FRAME]
+    names = [name for name in first if name not in VECTORS]
     for row in range(EACH):
         name = words[row] = names[(row + rng.integers(2)) % len(names)]
         values = second[name] = np.array(second[name])
@@ -189,7 +189,7 @@ def changed(pixels: Pixels, change: Callable[[Array], Array]) -> Pixels:
     """A copy with changed values of all inputs except the frame, in both lobes."""
     batch, second = pixels.batch, pixels.second
     inputs, others = (
-        {name: each if name in FRAME else change(each) for name, each in values.items()}
+        {name: each if name in VECTORS else change(each) for name, each in values.items()}
         for values in (broadcast_inputs(batch), second or {})
     )
     return replace(pixels, batch=replace(batch, inputs=inputs), second=second and others)
@@ -380,7 +380,7 @@ def imaged(
     """Light in pixels whose last lobe reads its inputs from an image, each from 2 x 2 equal texels."""
     count, last = len(batch.wo), "second/" if two else "lobe/"
     own = {name.removeprefix("second/"): name for name in batch.inputs if ("/" in name) == two}
-    names = [name for name in own if name in case.lobe.types and name not in FRAME]
+    names = [name for name in own if name in case.lobe.types and name not in VECTORS]
     texels, places = [], {}
     for row, name in enumerate(names):
         values = batch.inputs[own[name]].reshape(count, -1)
@@ -413,7 +413,7 @@ def batch_of(pixels: Pixels) -> Batch:
         **{
             f"second/{name}": each
             for name, each in (pixels.second or {}).items()
-            if name not in FRAME
+            if name not in VECTORS
         },
         **{
             f"second_{name}/value": pixels.second[name.replace("curve_direction", "tangent")]
@@ -446,7 +446,7 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
             frame = batch.frame if aside is None else aside
             own = flat = replace(batch, inputs=inputs, wo=wo, wi=lights[0], frame=frame)
             if not curved:
-                axes = dict(zip(FRAME, FLAT, strict=True))
+                axes = dict(zip(VECTORS, FLAT, strict=True))
                 flat = replace(own.altered(**axes), frame=None)
             for light in lights[: pixels.lights]:
                 parts.setdefault("light", []).append((number, replace(flat, wi=light)))
@@ -480,7 +480,7 @@ def in_turn(batch: Batch, client: Client) -> Batch:
     )
     axes = {
         name: float32(np.broadcast_to(batch.inputs.get(name, first), batch.wo.shape) @ ROTATION.T)
-        for name, first in zip(FRAME, FLAT, strict=True)
+        for name, first in zip(VECTORS, FLAT, strict=True)
     }
     return replace(batch.altered(**axes), frame=ROTATION @ frame)
 

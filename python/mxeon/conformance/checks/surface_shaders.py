@@ -14,6 +14,7 @@ from mxeon.conformance.check import Check, always, family
 from mxeon.conformance.checks.lobes import LAYERS, finds_albedo
 from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
+from mxeon.conformance.samples import arrays
 from mxeon.conformance.spec import Ability
 from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.surface_shaders import STRETCHED_FIT, SurfaceShaderSpec, stretched
@@ -68,7 +69,7 @@ def wrong_layers(case: Case) -> list[str]:
     return found
 
 
-MATERIALS, SUM = family(SurfaceShaderSpec), always(defect("sum_of_lobes"))
+SURFACES, SUM = family(SurfaceShaderSpec), always(defect("sum_of_lobes"))
 
 
 def values(case: Case) -> Compared:
@@ -99,7 +100,7 @@ def lobes_mean(case: Case) -> Iterator[Compared]:
 
 
 def lobes_furnace(case: Case) -> Compared:
-    white = replace(case.backend.views[0], inputs=case.of(SurfaceShaderSpec).white)
+    white = replace(case.backend.views[0], inputs=arrays(case.of(SurfaceShaderSpec).white))
     return Compared(white, case.albedo(white), np.ones((1, 3)))
 
 
@@ -143,7 +144,7 @@ def without_effect(case: Case) -> list[str]:
     if missing := [name for name in names if name not in given]:
         names_lost = ", ".join(missing)
         raise NotRun(f"{spec.node} of this MaterialX lacks an input that is varied: {names_lost}")
-    inputs = {name: given[name] for name in names}
+    inputs = {name: np.asarray(given[name]) for name in names}
     few = replace(case.backend.batches[0].first(CHANGED), inputs=inputs)
     batch = joined([few.altered(**row) for row in rows])
     effective = np.zeros(len(spec.names), bool)
@@ -180,38 +181,38 @@ def diagnose_reach(case: Case) -> Diagnosis:
 ROWS = (
     Check(key="lobes",
           claim="In direct light, the material is the sum of its lobes by the layer equation.",
-          applies=MATERIALS, measure=values, tolerance="value", control=controls.shifted,
+          applies=SURFACES, measure=values, tolerance="value", control=controls.shifted,
           explain=diagnose_lobes),
     Check(key="lobes_film", claim="Under a thin film, too, the material is the sum of its lobes.",
           applies=family(SurfaceShaderSpec, lambda spec: bool(spec.film)), measure=lobes_film,
           tolerance="lobes_film", control=controls.shifted, explain=SUM, requires=Ability.LIGHT),
     Check(key="lobes_albedo",
           claim="The environment branch returns the albedo of all lobes by the layer equation.",
-          applies=MATERIALS, measure=ALBEDO, tolerance="albedo", control=controls.shifted,
+          applies=SURFACES, measure=ALBEDO, tolerance="albedo", control=controls.shifted,
           explain=SUM, methods=finds_albedo),
     Check(key="lobes_mean",
           claim="Averaged over many materials and views, the shader returns as much light as its lobes.",
-          applies=MATERIALS, measure=lobes_mean, tolerance="lobes_mean",
+          applies=SURFACES, measure=lobes_mean, tolerance="lobes_mean",
           control=controls.scale("every value is 1 % too low", 0.99), explain=SUM,
           requires=Ability.LIGHT, methods=finds_albedo),
     Check(key="lobes_furnace",
           claim="A white material with many lobes disappears in a white environment.",
-          applies=MATERIALS, measure=lobes_furnace, tolerance="albedo",
+          applies=SURFACES, measure=lobes_furnace, tolerance="albedo",
           control=controls.scale("every value is 10 % too low", 0.9), explain=SUM,
           requires=Ability.LIGHT, methods=finds_albedo),
     Check(key="lobes_energy",
           claim="No material with these lobes reflects and transmits more light than it receives.",
-          applies=MATERIALS, measure=lobes_energy, tolerance="albedo",
+          applies=SURFACES, measure=lobes_energy, tolerance="albedo",
           control=controls.scale("every value is 50 % too high", 1.5), explain=SUM,
           requires=Ability.LIGHT, methods=finds_albedo),
     Check(key="glass",
           claim="Clear glass reflects and transmits the shares of a white environment that its lobes have by the layer equation.",
-          applies=MATERIALS, measure=glass, tolerance="glass",
+          applies=SURFACES, measure=glass, tolerance="glass",
           control=controls.scale("values are 5 % too large", 1.05), explain=SUM,
           requires=Ability.LIGHT),
     Check(key="reach",
           claim="Every input changes a value, except those that are known to change nothing.",
-          applies=MATERIALS, measure=lambda case: count_named(misplaced(case)),
+          applies=SURFACES, measure=lambda case: count_named(misplaced(case)),
           tolerance=count_of(Quantity.INPUTS), control=ignore_changes, explain=diagnose_reach),
 )
 # fmt: on

@@ -17,8 +17,8 @@ INDICES = {"index": "ior", "extinction": "extinction"}
 INPUT_OF = {"weight": "weight", "roughness": "roughness", "cuticle": "cuticle_angle", **INDICES}
 ABOUT = {"color": COLORS, **{name: (port,) for name, port in INPUT_OF.items()}}
 # Inputs whose ranges are never reported.
-FRAME = ("normal", "tangent", "curve_direction", "position", "surface_normal")
-USUAL = {"weight": 1.0, "occlusion": 1.0}  # defaults for batches without them
+UNREPORTED = ("normal", "tangent", "curve_direction", "position", "surface_normal")
+USUAL = {"weight": np.ones(1), "occlusion": np.ones(1)}  # defaults for batches without them
 CHANNELS = "red", "green", "blue"
 EXACT = count_of(Quantity.VALUES)
 # Largest share of the correct values in an input range with all wrong values, usually and if the
@@ -85,12 +85,7 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
     channels = tuple(each for each, is_wrong in zip(CHANNELS, wrong, strict=False) if is_wrong)
     if wrong.all():
         channels = ()
-    batches = [case.batch for case in cases]
-    for name in batches[0].inputs:
-        given = [batch.inputs.get(name, USUAL.get(name)) for batch in batches]
-        if name in FRAME or any(each is None for each in given):
-            continue
-        columns = [_rows(each, len(batch.wo)) for each, batch in zip(given, batches, strict=True)]
+    for name, columns in _columns([case.batch for case in cases]):
         for part, numbers in _parts(name, np.concatenate(columns), wrong):
             values = np.broadcast_to(numbers, bad.shape)
             low, high = float(values[bad].min()), float(values[bad].max())
@@ -236,16 +231,20 @@ def errors(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[tuple[Error
     for name, field in (("viewer", "wo"), ("light", "wi")):
         ends = Region(f"{name}_cosine_below", high=HALF), Region(f"{name}_cosine_above", low=HALF)
         divide((getattr(each, field)[:, 2] for each in batches), HALF, *ends)
-    for name in batches[0].inputs:
-        given = [each.inputs.get(name, USUAL.get(name)) for each in batches]
-        if name in FRAME or any(each is None for each in given):
-            continue
-        columns = [_rows(each, len(batch.wo)) for each, batch in zip(given, batches, strict=True)]
+    for name, columns in _columns(batches):
         part = "larger" if columns[0].shape[1] > 1 else "value"
         numbers = [each.max(axis=1) for each in columns]
         middle = float(f"{np.median(np.concatenate(numbers)):.2g}")
         divide(numbers, middle, Region(name, part, high=middle), Region(name, part, low=middle))
     return tuple(found), checksum(batches)
+
+
+def _columns(batches: Sequence[Batch]) -> Iterator[tuple[str, list[Array]]]:
+    """Inputs that all batches have, with a row for each of their pairs; without those that are never reported."""
+    rows = [({**USUAL, **batch.inputs}, len(batch.wo)) for batch in batches]
+    for name in batches[0].inputs:
+        if name not in UNREPORTED and all(name in inputs for inputs, _ in rows):
+            yield name, [_rows(inputs[name], count) for inputs, count in rows]
 
 
 def _rows(values: ArrayLike, count: int) -> Array:

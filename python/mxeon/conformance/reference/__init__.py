@@ -29,7 +29,7 @@ SCENES = 4  # cached scenes' points, as many as a run has pictures
 # Size of pattern pictures, and how many are drawn to find a wrong pattern.
 PATTERN_SIZE, PATTERNS_DRAWN = 32, 16
 OTHER = 0.01  # least reported difference of a pattern, above the errors of filters and powers
-ROWS = 32  # rows and columns of judged pixels if each has a different material
+LATTICE = 32  # rows and columns of judged pixels if each has a different material
 MOST = 2000  # up to this many pixels are all judged then; an integral takes a millisecond
 
 PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # generators draw at most three components
@@ -130,7 +130,7 @@ class Reference(base.Host):
                 behind = Graph(shader.document, dark, measure=measure if values else None)
                 image[chosen] += behind.element(shader.element)
         except ManyMaterialsError:
-            return self.expected(shader, scene, values, -(-scene.size // ROWS))
+            return self.expected(shader, scene, values, -(-scene.size // LATTICE))
         except NotRun:
             shown = shader.document.getDescendant(shader.element)
             if values is None or not shown.isA(mx.Output) or shown.getType() in LIT:

@@ -42,7 +42,9 @@ SCHLICK = node("schlick")
 MICROFACETS = {row.category: row for row in (node("dielectric"), node("conductor"), SCHLICK)}
 OTHERS = (node("burley"), node("translucent"), HAIR_NODE)
 # Closures have the names of their nodes, with one exception.
-ROWS = MICROFACETS | {row.category: row for row in OTHERS} | {"subsurface_bssrdf": SUBSURFACE_NODE}
+BY_CLOSURE = (
+    MICROFACETS | {row.category: row for row in OTHERS} | {"subsurface_bssrdf": SUBSURFACE_NODE}
+)
 # Closures with a keyword, by default 0, that selects the model.
 FLAGGED = {
     OREN_NAYAR: (FLAG, (DIFFUSE[False], DIFFUSE[True])),
@@ -68,7 +70,7 @@ class Views:
             unset, given = (partial(self._lobe, tree, each, layered) for each in models)
             return _mixed(unset, given, column(np.where(flag == 0.0, 0.0, 1.0)))
         if tree.name not in OPERATIONS:
-            return self._lobe(tree, ROWS[tree.name], layered)
+            return self._lobe(tree, BY_CLOSURE[tree.name], layered)
         first, second = (*tree.parts, None)[:2]
         factor = column(tree.arguments["factor"]) if "factor" in tree.arguments else ONE
         if tree.name == LAYER:

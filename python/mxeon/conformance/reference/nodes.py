@@ -294,10 +294,10 @@ def _within(axes: Array, directions: Array) -> Array:
 
 
 DIFFUSE = {False: diffuse_model("qon"), True: replace(diffuse_model("eon"), category=EON)}
-ROWS = (*PBR_NODES, *INNER_NODES)
+MODELS = (*PBR_NODES, *INNER_NODES)
 LOBES = {
-    category: tuple(row for row in ROWS if row.category == category)
-    for category in (*DIFFUSE_NODES, *(row.category for row in ROWS))
+    category: tuple(row for row in MODELS if row.category == category)
+    for category in (*DIFFUSE_NODES, *(row.category for row in MODELS))
 }
 
 NOTHING = Bsdf(np.zeros(3), np.ones(3))  # an absent lobe

@@ -14,7 +14,7 @@ import cattrs
 
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Cause, Kind, Quantity, Result
 from mxeon.errors import CheckError
-from mxeon.io.records import ERRORS, strict_converter
+from mxeon.io.records import UNREADABLE, strict_converter
 from mxeon.shaders.library import data_folder
 
 STOCK, EONLIB = "stock", "eonlib"
@@ -93,7 +93,7 @@ def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
     row |= {name: measured[name] for name in ("cause", "patch", "sizes") if name in measured}
     try:
         issue = _converter().structure(row, Issue)
-    except ERRORS as error:
+    except UNREADABLE as error:
         raise CheckError(f"row of {page}.md: {cattrs.transform_error(error)[0]}") from error
     if issue.patch and not issue.repaired:
         repaired = tuple(pair for pair in issue.rows if pair not in issue.remains)

@@ -27,7 +27,7 @@ from mxeon.conformance.run.plan import Findings, Plan
 from mxeon.conformance.words import counted, listed
 from mxeon.errors import InputError
 from mxeon.io.files import BINARY, below, regular, replacing, sync
-from mxeon.io.records import ERRORS
+from mxeon.io.records import UNREADABLE
 
 FORMAT = 9
 JOURNAL = "journal/items.jsonl"
@@ -176,7 +176,7 @@ def _left(path: Path) -> str:
         with open(path, "rb", opener=regular) as file:
             total = len(json.loads(file.readline())["tasks"])
             done = {found[1] for found in map(TASK.fullmatch, file) if found}
-    except (OSError, *ERRORS):
+    except (OSError, *UNREADABLE):
         return ""
     return f"{total - len(done)} of {counted(total, 'task')}" if len(done) < total else ""
 
@@ -208,7 +208,7 @@ def _read(folder: Path) -> tuple[Plan, dict[int, Findings], int]:
             images = (each for one in part.pictures for each in images_of(one).values())
             if all(cast(StoredImage, each).whole for each in images):
                 findings[task] = part
-    except ERRORS as error:
+    except UNREADABLE as error:
         rule = f"{path}: must be a journal of format {FORMAT} as mxeon wrote it"
         reason = f"{place} is of another run or program; {error}"
         raise InputError(f"{rule}; {reason}; run again without --resume") from None

@@ -22,14 +22,16 @@ FILTERED = Term(
     INTENSITY * SLOPE * 2.0 * (TEXEL**2 / 8.0 + TEXEL / 512.0),
     f"a filter of an uneven environment, times {INTENSITY}",
 )
-FRAME = sum_of(roundings(64, "of directions, distances and powers, four lights in all"), FILTERED)
+CLIENT_ERROR = sum_of(
+    roundings(64, "of directions, distances and powers, four lights in all"), FILTERED
+)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FrameSpec(Spec):
     """The node `surface` with all client bindings."""
 
-    requires = Ability.FRAME
+    requires = Ability.CLIENT
 
     def document(self, inputs: Values | None = None) -> str:
         """The front surface has the opacity `front/opacity` and the mix weight `shading/mix`."""
@@ -51,4 +53,6 @@ class FrameSpec(Spec):
         return nodes.document_text("".join(texts))
 
 
-CLIENT_FRAME = FrameSpec(title="surface, a client's frame", node="surface", errors={"frame": FRAME})
+CLIENT_FRAME = FrameSpec(
+    title="surface, a client's frame", node="surface", errors={"frame": CLIENT_ERROR}
+)

@@ -259,7 +259,7 @@ class EmittingSurface(spec.ValueSpec):
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         points = sphere(SMALL.size)
         wo = local_directions(points.normal[points.mask], VIEW)
-        return tuple(Batch(wo, wo, {"opacity": each}, SMALL) for each in OPACITIES)
+        return tuple(Batch(wo, wo, {"opacity": np.array(each)}, SMALL) for each in OPACITIES)
 
     def value(self, batch: Batch) -> Array:
         radiance = surface_radiance(SURFACE_COLOR, (0.0, 0.0, 0.0), batch.inputs["opacity"])

@@ -203,7 +203,7 @@ class HairSpec(PbrSpec):
             inputs[name] = rounded(
                 low * (high / low) ** rng.random(count) for low, high in (row.variances, row.scales)
             )
-        return Batch(wo, in_lobes(rng, wo, inputs), {**inputs, **row.tints})
+        return Batch(wo, in_lobes(rng, wo, inputs), inputs).altered(**row.tints)
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
         least = WIDE_VARIANCE, WIDE_SCALE

@@ -7,6 +7,7 @@ from functools import lru_cache, partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.conformance import samples
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values
 from mxeon.conformance.spec import ZERO, Ability, Input, broadcast_inputs
@@ -74,8 +75,8 @@ SUBSURFACE = SubsurfaceSpec(
 
 def spread(batch: Batch, far: float = FAR, **changes: ArrayLike) -> Array:
     """Light on a unit sphere by the profile of l / (1 - g), (N, 3), for a batch with changed inputs."""
-    inputs = {**batch.inputs, **changes}
-    reach = np.array(inputs["radius"]) / (1.0 - inputs["anisotropy"])
+    inputs = batch.altered(**changes).inputs
+    reach = inputs["radius"] / (1.0 - inputs["anisotropy"])
     light = [np.interp(batch.wi[:, 2], COSINES, _profile(each, far)) for each in reach.tolist()]
     return np.asarray(inputs["color"] * np.stack(light, axis=-1))
 
@@ -102,9 +103,9 @@ ON_SPHERES = (
     Candidate("the profile, whatever the sign of the anisotropy",
               lambda batch: spread(batch, anisotropy=abs(batch.inputs["anisotropy"]))),
     Candidate("the profile, whatever an anisotropy below 0",
-              lambda batch: spread(batch, anisotropy=max(batch.inputs["anisotropy"], 0.0))),
+              lambda batch: spread(batch, anisotropy=np.maximum(batch.inputs["anisotropy"], 0.0))),
     Candidate("the profile, with red and blue of the radius exchanged",
-              lambda batch: spread(batch, radius=np.array(batch.inputs["radius"])[..., ::-1])),
+              lambda batch: spread(batch, radius=batch.inputs["radius"][..., ::-1])),
     Candidate("MaterialX's blur along a circle of radius 1", _around),
     *(
         Candidate(f"the profile of a mean free path of {each:g}, whatever the radius",
@@ -124,7 +125,7 @@ def _points(scene: Scene, inputs: Values) -> Batch:
     """Points of a sphere away from its rim, including shadowed ones."""
     normal = sphere(scene.size).normal[inner(scene.size)]
     wo, wi = (local_directions(normal, each) for each in (VIEW, scene.light or VIEW))
-    return Batch(wo, wi, inputs, scene)
+    return Batch(wo, wi, samples.arrays(inputs), scene)
 
 
 def inner(size: int) -> NDArray[np.bool_]:

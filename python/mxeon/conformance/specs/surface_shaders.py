@@ -183,7 +183,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
     def clear(self, batch: Batch) -> Batch:
         """The same views of glass, with the materials' roughness and index."""
         finish = {name: batch.inputs[name] for name in self.finish}
-        return replace(batch, inputs={**finish, **self.glass})
+        return replace(batch, inputs=finish).altered(**self.glass)
 
     @cached_property
     def _shader(self) -> Shader:
@@ -222,8 +222,13 @@ class SurfaceShaderSpec(spec.LobeSpec):
         if "base_metalness" in self.names:  # only OpenPBR's metal has a color at 82 degrees
             color0 = batch.inputs["base_color"] * batch.inputs["base_weight"][:, np.newaxis]
             color82, color90 = batch.inputs["specular_color"], np.ones((1, 3))
-            curve = {"color0": color0, "color82": color82, "color90": color90, "exponent": 5.0}
-            batch = batch.where(~microfacets.falls_below_0(replace(batch, inputs=curve)))
+            curve: Values = {
+                "color0": color0,
+                "color82": color82,
+                "color90": color90,
+                "exponent": 5.0,
+            }
+            batch = batch.where(~microfacets.falls_below_0(batch.altered(**curve)))
         return (batch,)
 
     def edges(self, counts: Counts) -> Batch:

@@ -52,7 +52,7 @@ OPENGL = {
 SEARCH_PATH = mx.getDefaultDataSearchPath()
 # The module of the generator's options imports only MaterialX.
 set_options = run_path(str(Path(__file__).parents[2] / "shaders" / "options.py"))["set_options"]
-ERRORS = (mx.Exception, mx_render.ExceptionRenderError, LookupError)
+RAISED = (mx.Exception, mx_render.ExceptionRenderError, LookupError)
 
 
 def open_display() -> None:
@@ -243,4 +243,4 @@ def start(
         np.save(output, shown.draw(**draw))
 
     greeting = {"version": f"MaterialX {mx.getVersionString()}", "device": device(first)}
-    return greeting, answer, ERRORS
+    return greeting, answer, RAISED

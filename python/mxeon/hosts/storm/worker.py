@@ -41,7 +41,7 @@ DEVICE, DESKTOP = 0x313F, 0x30A2
 CONFIG = (c_int * 5)(0x3040, 0x0008, 0x3033, 0, 0x3038)  # OpenGL, no surface
 # OpenGL 4.5, compatibility: Storm uses functions that the core profile lacks.
 CONTEXT = (c_int * 7)(0x3098, 4, 0x30FB, 5, 0x30FD, 2, 0x3038)
-FRAME, BUFFER, COLOR, DEPTH = 0x8D40, 0x8D41, 0x8CE0, 0x8D00
+FRAMEBUFFER, BUFFER, COLOR, DEPTH = 0x8D40, 0x8D41, 0x8CE0, 0x8D00
 RGBA32F, DEPTH32F, RGBA, FLOAT = 0x8814, 0x8CAC, 0x1908, 0x1406
 BOTH, RENDERER = 0x4100, 0x1F01
 usd: Foreign = None  # OpenUSD, imported by `start`
@@ -73,7 +73,7 @@ class Canvas:
         """Draw into this frame from now on; it is black, and `size` pixels wide and high."""
         if size != self._size:
             self._allocate(size)
-        self._call("glBindFramebuffer", None, FRAME, self._name)
+        self._call("glBindFramebuffer", None, FRAMEBUFFER, self._name)
         self._call("glClearColor", None, *[c_float(0.0)] * 4)
         self._call("glClearDepth", None, c_double(1.0))
         self._call("glClear", None, BOTH)
@@ -81,7 +81,7 @@ class Canvas:
     def pixels(self) -> Pixels:
         """Its pixels, (size, size, 3), row 0 at the top."""
         image = np.zeros((self._size, self._size, 4), np.float32)
-        self._call("glBindFramebuffer", None, FRAME, self._name)
+        self._call("glBindFramebuffer", None, FRAMEBUFFER, self._name)
         memory = c_void_p(image.ctypes.data)
         self._call("glReadPixels", None, 0, 0, self._size, self._size, RGBA, FLOAT, memory)
         return image[::-1, :, :3]
@@ -89,12 +89,12 @@ class Canvas:
     def _allocate(self, size: int) -> None:
         buffers = (c_uint * 2)()
         self._call("glGenFramebuffers", None, 1, byref(self._name))
-        self._call("glBindFramebuffer", None, FRAME, self._name)
+        self._call("glBindFramebuffer", None, FRAMEBUFFER, self._name)
         self._call("glGenRenderbuffers", None, 2, buffers)
         for buffer, kind, place in zip(buffers, (RGBA32F, DEPTH32F), (COLOR, DEPTH), strict=True):
             self._call("glBindRenderbuffer", None, BUFFER, buffer)
             self._call("glRenderbufferStorage", None, BUFFER, kind, size, size)
-            self._call("glFramebufferRenderbuffer", None, FRAME, place, BUFFER, buffer)
+            self._call("glFramebufferRenderbuffer", None, FRAMEBUFFER, place, BUFFER, buffer)
         self._size = size
 
     def _call(self, name: str, result: Type, *arguments: object) -> Foreign:

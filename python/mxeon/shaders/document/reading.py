@@ -37,7 +37,7 @@ from mxeon.shaders.library import load_library
 
 __all__ = ["Document", "DocumentError", "DocumentWarning", "read_document"]
 
-ERRORS = (mx.Exception, LookupError)  # raised by MaterialX
+RAISED = (mx.Exception, LookupError)  # raised by MaterialX
 ALIKE = 0.85  # least similarity for suggestions; names of nodes have similar endings
 
 
@@ -165,7 +165,7 @@ class _Reader:
         options.readXIncludeFunction = include
         try:
             mx.readFromXmlString(document, text, mx.FileSearchPath(), options)
-        except (*ERRORS, mx.ExceptionParseError) as error:
+        except (*RAISED, mx.ExceptionParseError) as error:
             reason = str(error).strip().splitlines()[0]
             raise DocumentError(f"{title}: must be a MaterialX document; {reason}") from None
         _check_version(document, title)
@@ -219,7 +219,7 @@ def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Polic
     # MaterialX reports only one wrong input of a node, without a suggestion.
     try:
         valid, message = document.validate()
-    except ERRORS as error:
+    except RAISED as error:
         valid, message = False, str(error)
     if valid:
         return
