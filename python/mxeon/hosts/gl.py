@@ -132,22 +132,14 @@ class GlHost(FragmentHost):
         self._context.release()
 
     @_current
-    def _evaluate(
-        self,
-        vertex: str,
-        pixel: str,
-        arguments: Mapping[str, Array],
-        textures: Mapping[str, Array],
-        uniforms: raster.Uniforms,
-    ) -> Array:
-        program = self._program(vertex, pixel)
-        _set(program, uniforms)
-        own = self._textures(program, textures)
-        count, size = fragment.frame(arguments)
-        used = {
-            n: self._argument(rows, size) for n, rows in arguments.items() if program.get(n, None)
-        }
-        return self._draw(program, {**used, **own}, size).reshape(-1, 3)[:count]
+    def _evaluate(self, frame: raster.Frame) -> Array:
+        program = self._program(frame.vertex, frame.pixel)
+        _set(program, frame.uniforms)
+        count, size = fragment.frame(frame.arguments)
+        used = {n: rows for n, rows in frame.arguments.items() if program.get(n, None)}
+        own = {name: self._argument(rows, size) for name, rows in used.items()}
+        textures = {**own, **self._textures(program, frame.textures)}
+        return self._draw(program, textures, size).reshape(-1, 3)[:count]
 
     def _draw(
         self,

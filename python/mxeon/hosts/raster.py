@@ -7,7 +7,7 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -160,6 +160,16 @@ FRAME_UNIFORMS = (
 )
 
 
+class Frame(NamedTuple):
+    """Both stages of a program, and what they read: rows of arguments, texels, and uniforms."""
+
+    vertex: str
+    pixel: str
+    arguments: Mapping[str, Array] = {}
+    textures: Mapping[str, Array] = {}
+    uniforms: Uniforms = FRAME_UNIFORMS
+
+
 class FragmentHost(base.Host):
     """A host whose engine draws frames with one pixel per element of an evaluation or a call."""
 
@@ -202,41 +212,23 @@ class FragmentHost(base.Host):
         textures = environment(query.irradiance) | images(query.shader) | self.table(query.shader)
         uniforms = FRAME_UNIFORMS | surroundings(query.client)
         vertex = query.shader.stages["vertex"]
-        return self._in_parts(vertex, pixel, arguments, textures, uniforms)
+        return self._in_parts(Frame(vertex, pixel, arguments, textures, uniforms))
 
     def _drawn_table(self, text: str) -> Array:
         pixel, dialect = fragment.table_stage(text, self.target), fragment.DIALECTS[self.target]
-        texels = self._evaluate(dialect.vertex, pixel, {}, {}, FRAME_UNIFORMS)
+        texels = self._evaluate(Frame(dialect.vertex, pixel))
         return texels.reshape(TABLE_SIZE, TABLE_SIZE, 3)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         pixel, texels = fragment.function_evaluation(source, function, arguments, self.target)
         vertex = fragment.DIALECTS[self.target].vertex
-        return self._in_parts(vertex, pixel, texels, environment(None), FRAME_UNIFORMS)
+        return self._in_parts(Frame(vertex, pixel, texels, environment(None)))
 
-    def _in_parts(
-        self,
-        vertex: str,
-        pixel: str,
-        arguments: Mapping[str, Array],
-        textures: Mapping[str, Array],
-        uniforms: Uniforms,
-    ) -> Array:
+    def _in_parts(self, frame: Frame) -> Array:
         """Values of a pixel stage for any number of elements; engines limit the size of a texture."""
-        return np.concatenate(
-            [
-                self._evaluate(vertex, pixel, part, textures, uniforms)
-                for part in fragment.parts(arguments)
-            ]
-        )
+        frames = (frame._replace(arguments=part) for part in fragment.parts(frame.arguments))
+        return np.concatenate(list(map(self._evaluate, frames)))
 
     @abstractmethod
-    def _evaluate(
-        self,
-        vertex: str,
-        pixel: str,
-        arguments: Mapping[str, Array],
-        textures: Mapping[str, Array],
-        uniforms: Uniforms,
-    ) -> Array:
+    def _evaluate(self, frame: Frame) -> Array:
         """Values of a pixel stage, one pixel per element, as many as the longest argument has."""

@@ -97,23 +97,16 @@ class VulkanHost(FragmentHost):
     def close(self) -> None:
         self._device.destroy()
 
-    def _evaluate(
-        self,
-        vertex: str,
-        pixel: str,
-        arguments: Mapping[str, Array],
-        textures: Mapping[str, Array],
-        uniforms: raster.Uniforms,
-    ) -> Array:
+    def _evaluate(self, frame: raster.Frame) -> Array:
         """Values of a pixel stage; the dialect's vertex stage is used, as both stages share one block."""
-        count, size = fragment.frame(arguments)
-        texels = [fragment.texels(rows, size, fragment.ODD) for rows in arguments.values()]
+        count, size = fragment.frame(frame.arguments)
+        texels = [fragment.texels(rows, size, fragment.ODD) for rows in frame.arguments.values()]
         sets: tuple[Bindings, ...] = (
-            self._generated(pixel, textures, uniforms),
-            {0: (SAMPLER, self._sampler(TABLE in textures))},
+            self._generated(frame),
+            {0: (SAMPLER, self._sampler(TABLE in frame.textures))},
             {number: (UNFILTERED, self._texture(rows)) for number, rows in enumerate(texels)},
         )
-        layouts, pipeline = self._program(pixel, sets)
+        layouts, pipeline = self._program(frame.pixel, sets)
         groups = [
             self._device.create_bind_group(
                 layout=layout,
@@ -190,17 +183,15 @@ class VulkanHost(FragmentHost):
     def _code(self, stage: str, text: str) -> bytes | str:
         return _spirv(stage, text)
 
-    def _generated(
-        self, text: str, textures: Mapping[str, Array], uniforms: raster.Uniforms
-    ) -> Bindings:
+    def _generated(self, frame: raster.Frame) -> Bindings:
         """Bindings of a generated text: textures, white by default, and blocks."""
-        unique = {id(texels): texels.astype(np.float16) for texels in textures.values()}
-        halves = {name: unique[id(texels)] for name, texels in textures.items()}
+        unique = {id(texels): texels.astype(np.float16) for texels in frame.textures.values()}
+        halves = {name: unique[id(texels)] for name, texels in frame.textures.items()}
         bindings: Bindings = {}
-        for match in DECLARATION.finditer(text):
+        for match in DECLARATION.finditer(frame.pixel):
             number = int(match["number"])
             if match["block"] is not None:
-                data = _std140(match["block"], uniforms)
+                data = _std140(match["block"], frame.uniforms)
                 block = self._device.create_buffer_with_data(data=data, usage="UNIFORM")
                 bindings[number] = UNIFORM_BINDING, block
             elif match["kind"] == "sampler":

@@ -149,38 +149,26 @@ class WebGlHost(Chromium, FragmentHost):
         parts: Sequence[raster.Rectangle],
     ) -> Array:
         captured, frame = points.outputs(shader), points.frame(seen)
-        stages = {"vertex": VERTEX, "pixel": points.pixel_stage(shader)}
         pattern = r"^uniform vec2 (\w+(_uv_scale|_uv_offset));"
         images = re.findall(pattern, shader.stages["pixel"], re.MULTILINE)
         placed = {name: PLACED[kind] for name, kind in images}
         if captured:
             textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen)
-        return self._draw(stages, {**UNIFORMS, **placed, **uniforms}, textures, frame)[::-1]
+        pixel = points.pixel_stage(shader)
+        drawn = raster.Frame(VERTEX, pixel, textures=textures, uniforms=placed | uniforms)
+        return self._draw(drawn, frame)[::-1]
 
-    def _evaluate(
-        self,
-        vertex: str,
-        pixel: str,
-        arguments: Mapping[str, Array],
-        textures: Mapping[str, Array],
-        uniforms: raster.Uniforms,
-    ) -> Array:
-        count, size = fragment.frame(arguments)
-        own = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
-        stages = {"vertex": vertex, "pixel": pixel}
-        frame = self._draw(stages, UNIFORMS | uniforms, {**own, **textures}, size)
-        return frame.reshape(-1, 3)[:count]
+    def _evaluate(self, frame: raster.Frame) -> Array:
+        count, size = fragment.frame(frame.arguments)
+        own = {name: fragment.texels(rows, size) for name, rows in frame.arguments.items()}
+        textures = {**own, **frame.textures}
+        return self._draw(frame._replace(textures=textures), size).reshape(-1, 3)[:count]
 
-    def _draw(
-        self,
-        stages: Mapping[str, str],
-        uniforms: Mapping[str, object],
-        textures: Mapping[str, Array],
-        size: tuple[int, int],
-    ) -> Array:
+    def _draw(self, frame: raster.Frame, size: tuple[int, int]) -> Array:
         """One frame as float32 (height, width, 3), row 0 at the bottom."""
-        job = {**stages, "size": size, "uniforms": uniforms}
-        arrays = {"textures": textures, "attributes": raster.TRIANGLE}
+        uniforms = UNIFORMS | frame.uniforms
+        job = {"vertex": frame.vertex, "pixel": frame.pixel, "size": size, "uniforms": uniforms}
+        arrays = {"textures": frame.textures, "attributes": raster.TRIANGLE}
         pixels = np.frombuffer(self._bytes("draw", job, arrays), dtype=np.float32)
         return pixels.reshape(size[1], size[0], 4)[..., :3]
 
