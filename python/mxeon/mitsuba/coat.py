@@ -17,6 +17,7 @@ from mxeon.mitsuba.diffuse import EonPlugin, Mitsuba, RoughDiffusePlugin
 from mxeon.mitsuba.octaves import gather_cubic, octave_cells, octave_cubics
 from mxeon.models.coat import (
     Coat,
+    Means,
     Varnish,
     base_under_varnish,
     constant_coat,
@@ -207,12 +208,12 @@ class VarnishPlugin(CoatPlugin):
         active = self._front(context, si.wi, wo, active)
         is_glossy, is_diffuse = self._enabled(context)
         color, amount = self.reflectance.eval(si, active), self.amount.eval_1(si, active)
-        (facets, c), (spread, *_) = self._facets(si.wi, wo), self._means()
+        (facets, c), means = self._facets(si.wi, wo), self._means()
         ior, s = self._inside("ior"), si.wi.x * wo.x + si.wi.y * wo.y
         above, below = (nonnegative(self._curves(w.z)) for w in (si.wi, wo))
-        passed = (1.0 - above[0] - above[1]) * (1.0 - below[0] - below[1]) / ior**2
-        several = above[1] * below[1] / (np.pi * nonzero(spread))
-        given = (si.wi.z, wo.z), s, (above[2], below[2]), ior, self._means()
+        passed = (1.0 - above.E_single - above.D) * (1.0 - below.E_single - below.D) / ior**2
+        several = above.D * below.D / (np.pi * nonzero(means.D))
+        given = (si.wi.z, wo.z), s, (above.b, below.b), ior, means
         channels = [
             self.mi.Float(
                 is_glossy * facets * dielectric(c, ior)
@@ -232,10 +233,11 @@ class VarnishPlugin(CoatPlugin):
             return self.mi.Float(enabled[0])
         curves, ior = nonnegative(self._curves(si.wi.z)), self._inside("ior")
         total = varnish_albedo(si.wi.z, curves, ior, self._means(), rho, amount)
-        return self.mi.Float(curves[0]) / self.dr.maximum(self.mi.Float(total), 1e-30)
+        return self.mi.Float(curves.E_single) / self.dr.maximum(self.mi.Float(total), 1e-30)
 
-    def _means(self) -> list[Mitsuba]:
+    def _means(self) -> Means:
         if not self._compiled:
-            return list(self.coat.means)
+            means: Means = self.coat.means
+            return means
         start = self.dr.width(self.table) - 4
-        return [self.dr.gather(self.mi.Float, self.table, start + k) for k in range(4)]
+        return Means(*(self.dr.gather(self.mi.Float, self.table, start + k) for k in range(4)))

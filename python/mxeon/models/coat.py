@@ -63,11 +63,11 @@ at r 1/2, and 0.0075 at r 1.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, wraps
 from inspect import signature
-from typing import ParamSpec, TypeVar, cast
+from typing import NamedTuple, ParamSpec, TypeVar, cast
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebint, chebval
@@ -395,29 +395,42 @@ TERMS, SMOOTH = 24, 16  # coefficients of E_single and of the other curves, over
 FINE, BELOW = 48, 24  # nodes of integrals over what E_r returns, and beyond the critical angle
 
 
+class Curves(NamedTuple):
+    """Functions of the outer cosine: E_single, D, and `b`, which is b mu' / S', S' = sqrt(1 - mu'^2)."""
+
+    E_single: Array
+    D: Array
+    b: Array
+
+
+class Means(NamedTuple):
+    """Means of an interface: <D>, <H>_R and <b>_R; and `passed`, 1 - R."""
+
+    D: float | Array
+    passed: float | Array
+    H: float | Array
+    b: float | Array
+
+
 @dataclass(frozen=True)
 class Varnish:
-    """An interface: Chebyshev coefficients of its curves over the outer cosine, and its means.
-
-    - `curves`: E_single, D, and b mu' / S', S' = sqrt(1 - mu'^2).
-    - `means`: <D>, 1 - R, <H>_R and <b>_R.
-    """
+    """An interface: Chebyshev coefficients of its `Curves`, and its means."""
 
     alpha: float | Array
     ior: float | Array
     curves: Sequence[list[float] | Array]
-    means: Sequence[float | Array]
+    means: Means
 
-    def at(self, mu: Array) -> list[Array]:
-        """E_single, D, and b mu' / S'; the polynomials for the first two may fall below 0."""
+    def at(self, mu: Array) -> Curves:
+        """The curves; the polynomials for E_single and D may fall below 0."""
         x = scaled_cosine(mu, self.alpha)
-        return [chebyshev_sum(cast(Array, each), x) for each in self.curves]
+        return Curves(*(chebyshev_sum(cast(Array, each), x) for each in self.curves))
 
 
-def nonnegative(curves: Sequence[Array]) -> tuple[Array, Array, Array]:
+def nonnegative(curves: Iterable[Array]) -> Curves:
     """Curves of `Varnish.at` with E_single and D clamped to at least 0."""
-    single, several, turned = curves
-    return arrays.at_least_0(single), arrays.at_least_0(several), turned
+    E_single, D, b = curves
+    return Curves(arrays.at_least_0(E_single), arrays.at_least_0(D), b)
 
 
 def refracted_cosine(mu: Array, ior: float | Array) -> Array:
@@ -428,20 +441,18 @@ def refracted_cosine(mu: Array, ior: float | Array) -> Array:
     return root(mu * mu + (1.0 - mu) * (1.0 + mu) * (1.0 - 1.0 / ior**2))
 
 
-def mean_parts(
-    mu: Array, turned: Array, ior: float | Array, r: Array
-) -> tuple[Array, Array, Array]:
+def mean_parts(mu: Array, b: Array, ior: float | Array, r: Array) -> tuple[Array, Array, Array]:
     """The parts mu', 1 + r b and H(mu') of the mean k of EON's value over the light that returns.
 
         k = rho A (1 + r b(mu) + W H(mu') <H>_R)
 
-    `turned` is b mu' / S'.
+    The parameter `b` is b mu' / S'.
     """
     m = refracted_cosine(mu, ior)
-    return m, 1.0 + r * turned * root((1.0 - m) * (1.0 + m)) / nonzero(m), fon_loss_mu(m)
+    return m, 1.0 + r * b * root((1.0 - m) * (1.0 + m)) / nonzero(m), fon_loss_mu(m)
 
 
-def absorbed_share(means: Sequence[float | Array], rho: Array, r: Array) -> Array:
+def absorbed_share(means: Means, rho: Array, r: Array) -> Array:
     """Share of the light between EON and the interface that a pass does not return, 1 - R <k>.
 
         1 - R <k> = (1 - R) + R (1 - <k>)
@@ -449,18 +460,17 @@ def absorbed_share(means: Sequence[float | Array], rho: Array, r: Array) -> Arra
 
     No ones cancel in the second line, as (1 + c1 r) A is 1.
     """
-    _, exits, loss, turn = means
-    weight = formulas.eon_multiple_ratio(rho, r)
-    lost = 1.0 - rho + rho * formulas.fon_af(r) * (r * (C1 - turn) - weight * loss**2)
-    return exits + (1.0 - exits) * lost
+    A, W = formulas.fon_af(r), formulas.eon_multiple_ratio(rho, r)
+    lost = 1.0 - rho + rho * A * (r * (C1 - means.b) - W * means.H**2)
+    return means.passed + (1.0 - means.passed) * lost
 
 
 def base_under_varnish(
     mu: tuple[Array, Array],
     s: Array,
-    turned: tuple[Array, Array],
+    b: tuple[Array, Array],
     ior: float | Array,
-    means: Sequence[float | Array],
+    means: Means,
     rho: Array,
     r: Array,
 ) -> Array:
@@ -472,34 +482,31 @@ def base_under_varnish(
     products with channels for a single material.
     """
     (m_o, p_o, H_o), (m_i, p_i, H_i) = (
-        mean_parts(*each, ior, r) for each in zip(mu, turned, strict=True)
+        mean_parts(*each, ior, r) for each in zip(mu, b, strict=True)
     )
-    single = 1.0 + r * formulas.fon_quotient(m_o, m_i, s / ior**2)
-    weight = formulas.eon_multiple_ratio(rho, r)
-    again = rho * formulas.fon_af(r) * (1.0 - means[1]) / absorbed_share(means, rho, r)
-    mixed = again * weight * means[2]
-    several = (weight + mixed * weight * means[2]) * (H_o * H_i)
-    several = several + mixed * (p_o * H_i + p_i * H_o) + again * (p_o * p_i)
-    return formulas.fon_lambert(rho, r) * (single + several)
+    first = 1.0 + r * formulas.fon_quotient(m_o, m_i, s / ior**2)
+    A, W = formulas.fon_af(r), formulas.eon_multiple_ratio(rho, r)
+    again = rho * A * (1.0 - means.passed) / absorbed_share(means, rho, r)
+    mixed = again * W * means.H
+    others = (W + mixed * W * means.H) * (H_o * H_i)
+    others = others + mixed * (p_o * H_i + p_i * H_o) + again * (p_o * p_i)
+    return formulas.fon_lambert(rho, r) * (first + others)
 
 
 def varnish_albedo(
-    mu: Array,
-    curves: Sequence[Array],
-    ior: float | Array,
-    means: Sequence[float | Array],
-    rho: Array,
-    r: Array,
+    mu: Array, curves: Curves, ior: float | Array, means: Means, rho: Array, r: Array
 ) -> Array:
     """Directional albedo of EON under a varnish, (2).
 
     E = E_r + T [E_b(mu') - R k (1 - <E_b>_R) / (1 - R <k>)],  T = 1 - E_r,  E_r = E_single + D
     """
-    (single, several, turned), (_, exits, loss, _) = curves, means
-    _, p, H = mean_parts(mu, turned, ior, r)
-    k = rho * formulas.fon_af(r) * (p + formulas.eon_multiple_ratio(rho, r) * (loss * H))
-    kept = (1.0 - exits) * (1.0 - eon_albedo(loss, rho, r)) / absorbed_share(means, rho, r)
-    return single + several + (1.0 - single - several) * (eon_albedo(H, rho, r) - k * kept)
+    E_single, D, b = curves
+    _, p, H = mean_parts(mu, b, ior, r)
+    A, W = formulas.fon_af(r), formulas.eon_multiple_ratio(rho, r)
+    k = rho * A * (p + W * (means.H * H))
+    R, E_R = 1.0 - means.passed, eon_albedo(means.H, rho, r)
+    kept = R * (1.0 - E_R) / absorbed_share(means, rho, r)
+    return E_single + D + (1.0 - E_single - D) * (eon_albedo(H, rho, r) - k * kept)
 
 
 def nonzero(x: float | Array) -> Array:
@@ -531,29 +538,29 @@ def integral_matrices() -> tuple[Array, Array, Array, Array]:
 
 
 def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
-    """Coefficients of the curves of a `Varnish`, and its means, shape (4,)."""
+    """Coefficients of the curves of a `Varnish`, and its means, shape (4,), in the order of their fields."""
     xp, coat = array_namespace(alpha, ior), coat_of(cast(float, alpha), cast(float, ior))
     places, slope, to_curves, to_nodes = (like(each, alpha) for each in integral_matrices())
     matrix = like(chebyshev_coefficients(np.eye(TERMS)), alpha)
 
     # Facets: E_single and D.
     mu, _ = cosine_at(alpha, like(chebyshev_nodes(TERMS), alpha))
-    missing, reflected = coat.at(mu)
-    single = reflected / (1.0 + coat.average * missing)
-    several = single * single * missing * (1.0 + missing)
-    facets = xp.tensordot(matrix, single, axes=1), xp.tensordot(matrix, several, axes=1)[:SMOOTH]
+    missing, E_r = coat.at(mu)
+    E_single = E_r / (1.0 + coat.average * missing)
+    D = E_single * E_single * missing * (1.0 + missing)
+    facets = xp.tensordot(matrix, E_single, axes=1), xp.tensordot(matrix, D, axes=1)[:SMOOTH]
 
     # Returned light: E_r 2 mu' dmu' at the quadrature nodes, and the part beyond the critical angle.
     fine, step = cosine_at(alpha, places)
-    single, several = (arrays.at_least_0(chebyshev_sum(each, places)) for each in facets)
+    E_single, D = (arrays.at_least_0(chebyshev_sum(each, places)) for each in facets)
     area = 2.0 * fine * step * slope
-    share, m = (single + several) * area / ior**2, refracted_cosine(fine, ior)
+    share, m = (E_single + D) * area / ior**2, refracted_cosine(fine, ior)
     total = to_nodes[-1]
     squared = 1.0 - 1.0 / ior**2
     x, weight = (like(each, alpha) for each in unit_rule(BELOW))
     beyond, weight = root(squared) * x, 2.0 * squared * weight * x
     R = squared + xp.sum(total * share)
-    loss = xp.sum(weight * fon_loss_mu(beyond)) + xp.sum(total * share * fon_loss_mu(m))
+    H = xp.sum(weight * fon_loss_mu(beyond)) + xp.sum(total * share * fon_loss_mu(m))
 
     # s / t has the integral 2 S S' (1 / max(mu, mu') - 1) over azimuths; with R(m) the share that returns,
     #   b mu' / S' = 2 / (pi R) [(1 - mu') int_0^mu' R(m) S m dm + mu' int_mu'^1 R(m) S (1 - m) dm],
@@ -563,27 +570,22 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     below = (1.0 - ior**-3) / 3.0
     near, far = 0.5 * share * S, 0.5 * share * S * (1.0 / nonzero(m) - 1.0)
     m_curve = refracted_cosine(mu, ior)
-    turned = (1.0 - m_curve) * (below + xp.tensordot(to_curves, near, axes=1))
-    turned = turned + m_curve * (xp.sum(total * far) - xp.tensordot(to_curves, far, axes=1))
-    turn = xp.sum(weight * sine * (1.0 / nonzero(beyond) - 1.0) * (1.0 - sine**3)) / 6.0
-    turn = turn + xp.sum(total * far * (below + xp.tensordot(to_nodes[:-1], near, axes=1)))
+    b = (1.0 - m_curve) * (below + xp.tensordot(to_curves, near, axes=1))
+    b = b + m_curve * (xp.sum(total * far) - xp.tensordot(to_curves, far, axes=1))
+    b_R = xp.sum(weight * sine * (1.0 / nonzero(beyond) - 1.0) * (1.0 - sine**3)) / 6.0
+    b_R = b_R + xp.sum(total * far * (below + xp.tensordot(to_nodes[:-1], near, axes=1)))
 
     divisor = nonzero(R)
-    turned = xp.tensordot(matrix, 2.0 / np.pi * turned / divisor, axes=1)[:SMOOTH]
-    means = [
-        xp.sum(total * several * area),
-        1.0 - R,
-        loss / divisor,
-        8.0 / np.pi * turn / divisor**2,
-    ]
-    return [*facets, turned], xp.stack(means)
+    b = xp.tensordot(matrix, 2.0 / np.pi * b / divisor, axes=1)[:SMOOTH]
+    D_avg, b_avg = xp.sum(total * D * area), 8.0 / np.pi * b_R / divisor**2
+    return [*facets, b], xp.stack([D_avg, 1.0 - R, H / divisor, b_avg])
 
 
 @lru_cache(maxsize=KEPT)
 def constant_varnish(alpha: float, ior: float) -> Varnish:
     """A cached interface with constant inputs."""
     curves, means = varnish_curves(np.asarray(alpha), np.asarray(ior))
-    return Varnish(alpha, ior, [each.tolist() for each in curves], means.tolist())
+    return Varnish(alpha, ior, [each.tolist() for each in curves], Means(*means.tolist()))
 
 
 @any_array
@@ -593,7 +595,7 @@ def varnish_of(alpha: float, ior: float) -> Varnish:
     if not arrays.library(alpha):
         return constant_varnish(float(alpha), float(ior))
     curves, means = varnish_curves(cast(Array, alpha), cast(Array, ior))
-    return Varnish(alpha, ior, curves, list(means))
+    return Varnish(alpha, ior, curves, Means(*means))
 
 
 @of_one_coat
@@ -617,13 +619,11 @@ def varnished_brdf(
 
     def base(wo: Array, wi: Array, color: Array, r: Array) -> Array:
         mu_o, mu_i, s = formulas.cosines(wo, wi)
-        single_o, several_o, turned_o = nonnegative(varnish.at(mu_o))
-        single_i, several_i, turned_i = nonnegative(varnish.at(mu_i))
-        passed = (1.0 - single_o - several_o) * (1.0 - single_i - several_i) / n**2
-        several = several_o * several_i / (np.pi * nonzero(means[0]))
-        return several + passed * base_under_varnish(
-            (mu_o, mu_i), s, (turned_o, turned_i), n, means, color, r
-        )
+        E_o, D_o, b_o = nonnegative(varnish.at(mu_o))
+        E_i, D_i, b_i = nonnegative(varnish.at(mu_i))
+        T_T = (1.0 - E_o - D_o) * (1.0 - E_i - D_i)
+        below = base_under_varnish((mu_o, mu_i), s, (b_o, b_i), n, means, color, r)
+        return D_o * D_i / (np.pi * nonzero(means.D)) + T_T / n**2 * below
 
     facets = dielectric_brdf(wo, wi, 1.0, alpha, ior, compensate=False)
     return facets + any_array(evaluate)(base, wo, wi, rho, roughness=roughness)
@@ -656,11 +656,10 @@ def varnished_albedo_avg(rho: ArrayLike, roughness: ArrayLike, alpha: float, ior
     """
     (color,), (r,) = any_array(checked_colors)({"rho": rho}, roughness=roughness)
     varnish = varnish_of(alpha, ior)
-    _, exits, loss, _ = varnish.means
-    lost = absorbed_share(varnish.means, color, r)
-    mean, within = eon_albedo(C1 - C2, color, r), eon_albedo(loss, color, r)
-    again = (1.0 - exits) * (within - 1.0 + lost) * (1.0 - within) / lost
-    return 1.0 - varnish.ior**2 * (exits - mean + (1.0 - exits) * within + again)
+    passed, lost = varnish.means.passed, absorbed_share(varnish.means, color, r)
+    E_b, E_R = eon_albedo(C1 - C2, color, r), eon_albedo(varnish.means.H, color, r)
+    again = (1.0 - passed) * (E_R - 1.0 + lost) * (1.0 - E_R) / lost
+    return 1.0 - varnish.ior**2 * (passed - E_b + (1.0 - passed) * E_R + again)
 
 
 @of_one_coat
@@ -714,7 +713,7 @@ def _albedo(
     (color,), (r, height) = checked_colors({"rho": rho}, roughness=roughness, mu=mu)
     varnish = varnish_of(alpha, ior)
     curves = nonnegative(varnish.at(height))
-    return curves[0], varnish_albedo(height, curves, varnish.ior, varnish.means, color, r)
+    return curves.E_single, varnish_albedo(height, curves, varnish.ior, varnish.means, color, r)
 
 
 def _share(wo: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float) -> Array:
