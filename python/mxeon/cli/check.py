@@ -10,12 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mxeon import survey
-from mxeon.cli import arguments
-from mxeon.cli.output import Progress, fail
+from mxeon.cli import arguments, output
 from mxeon.errors import MISUSE, PASSED, InputError
 from mxeon.hosts import host_names, register
-from mxeon.jobs import WAIT
-from mxeon.jobs.signals import SignalExit, block_signals
+from mxeon.jobs import WAIT, signals
 
 if TYPE_CHECKING:
     from mxeon.report.diff import Report
@@ -99,7 +97,7 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Check hosts and libraries; return the exit status."""
-    progress = Progress("mxeon check", _label)
+    progress = output.Progress("mxeon check", _label)
     progress.show("reads the documents" if options.files else "reads the library")
     from mxeon.cli.answer import show_run
     from mxeon.conformance.run import check
@@ -126,7 +124,7 @@ def run(options: argparse.Namespace) -> int:
 
     def refuse(error: str) -> None:
         refused.append(error)
-        fail(MISUSE, error)
+        output.fail(MISUSE, error)
 
     try:
         result = check(
@@ -148,7 +146,7 @@ def run(options: argparse.Namespace) -> int:
             seed=options.seed,
             methods=arguments.methods(options),
         )
-    except SignalExit as end:
+    except signals.SignalExit as end:
         if options.report and Path(options.report, JOURNAL).exists():
             remedy = (
                 f"--resume continues, `mxeon report make {options.report}` reports what is done"
@@ -172,14 +170,14 @@ def _baseline(options: argparse.Namespace) -> Report:
         raise
 
 
-def _importing(progress: Progress) -> Callable[[Iterable[T], int], Iterator[T]]:
+def _importing(progress: output.Progress) -> Callable[[Iterable[T], int], Iterator[T]]:
     """A progress display that imports the report's packages while the workers are busy."""
 
     def steps(outcomes: Iterable[T], total: int) -> Iterator[T]:
         for outcome in progress(outcomes, total):
             yield outcome
             # A missing package is reported when the page is made. An import would swallow a signal.
-            with block_signals(), suppress(ImportError):
+            with signals.block_signals(), suppress(ImportError):
                 import mxeon.report.page as _  # noqa: F401
 
     return steps

@@ -5,9 +5,7 @@ import argparse
 import os
 from functools import partial
 
-from mxeon.cli import arguments
-from mxeon.cli.batch import picture, run_batch
-from mxeon.cli.output import show, warn
+from mxeon.cli import arguments, batch, output
 from mxeon.errors import PASSED, InputError
 from mxeon.hosts import HOSTS
 from mxeon.shaders.scene import Paths
@@ -96,15 +94,15 @@ def run(options: argparse.Namespace) -> int:
         raise InputError(f"--integrator path: the host must be gl; got {options.host}")
     known["host"] = "path" if options.integrator == "path" else options.host
     paths = Paths(options.samples, options.bounces)
-    work = partial(picture, policy=arguments.policy(options), paths=paths, **known)
-    [result] = run_batch(work, [options.file], options.workers, options.timeout)
+    work = partial(batch.picture, policy=arguments.policy(options), paths=paths, **known)
+    [result] = batch.run_batch(work, [options.file], options.workers, options.timeout)
     for warning in result.warnings:
-        warn(warning)
+        output.warn(warning)
     if result.error:
         raise result.error
     image, metadata = result.value
     if options.output.lower().endswith(".png") and metadata["scene"] in TONED:
         image = pbr_neutral(image)
     write_picture(options.output, image, metadata)
-    show(options.output)
+    output.show(options.output)
     return PASSED

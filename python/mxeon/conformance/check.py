@@ -14,12 +14,9 @@ from typing import TypeAlias, TypeVar
 
 import numpy as np
 
-from mxeon.conformance import results
-from mxeon.conformance.backends import Backend
+from mxeon.conformance import backends, controls, results
 from mxeon.conformance.case import Case
-from mxeon.conformance.controls import Control
-from mxeon.conformance.diagnosis import UNTOLD, Comparison, searched
-from mxeon.conformance.diagnosis.regions import errors
+from mxeon.conformance.diagnosis import UNTOLD, Comparison, regions, searched
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Result
 from mxeon.conformance.spec import NO_ABILITY, Ability, LobeSpec, Spec, ValueSpec
 from mxeon.conformance.tolerance import Compared, Measurement, Tolerance, worst_of
@@ -76,7 +73,7 @@ class Check:
     applies: Specs
     measure: Measure  # comparisons, judged by their worst row, or a single number
     tolerance: str | Tolerance  # name of one of the spec's errors, or a fixed tolerance
-    control: Control
+    control: controls.Control
     explain: Explain
     requires: Ability = NO_ABILITY  # what a backend must support to be judged
     # Profile of the generated text, if not the rasterizer's; only judged for nodes that the user names.
@@ -96,7 +93,7 @@ class Check:
         worst = worst_of(tolerance.metric, compared)
         if case.control or worst.error <= tolerance.value:
             return worst
-        return Measurement(worst.error, worst.worst, *errors(compared, tolerance))
+        return Measurement(worst.error, worst.worst, *regions.errors(compared, tolerance))
 
     def gives(self, case: Case, title: str, tolerance: Tolerance) -> bool:
         """Whether a permitted function reproduces the engine's values on the check's samples.
@@ -120,7 +117,7 @@ class Check:
         )
 
     def applies_to(
-        self, spec: Spec, backend: type[Backend], host: str, methods: Methods = GENERATED
+        self, spec: Spec, backend: type[backends.Backend], host: str, methods: Methods = GENERATED
     ) -> bool:
         """Whether it judges a node on a host, by one of its backends, with a client's methods."""
         if not (self.applies(spec) and self.hosts(spec, host) and self.methods(spec, methods)):

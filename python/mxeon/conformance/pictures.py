@@ -33,15 +33,12 @@ from mxeon.conformance.results import (
     quoted,
 )
 from mxeon.conformance.samples import Batch, Values, arrays
-from mxeon.conformance.specs import microfacets
+from mxeon.conformance.specs import hair, microfacets, subsurface, utilities
 from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
-from mxeon.conformance.specs.hair import lobe_terms
 from mxeon.conformance.specs.microfacets import ANISOTROPIC, FILM_ALBEDO, FILM_TRAPPED, LEAST_FILM
 from mxeon.conformance.specs.microfacets import ERRORS as FACET_ERRORS
 from mxeon.conformance.specs.sheen import ZELTNER_ALBEDO, ZELTNER_VALUE
-from mxeon.conformance.specs.subsurface import RINGS
-from mxeon.conformance.specs.utilities import BLACKBODY
 from mxeon.conformance.tolerance import (
     Measurement,
     Metric,
@@ -111,9 +108,9 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tole
         tolerance = ENCODED if encoded else TEXTURED
     else:
         tolerance = PLAIN
-    rings = RINGS.term("subsurface scattering in six circles")
+    rings = subsurface.RINGS.term("subsurface scattering in six circles")
     others = [rings] * (SUBSURFACE in inner_lobes(shader))
-    others += BLACKBODY.terms * ("blackbody" in categories(nodes))
+    others += utilities.BLACKBODY.terms * ("blackbody" in categories(nodes))
     sheens = [ZELTNER_VALUE.term("Zeltner's sheens"), ZELTNER_ALBEDO.term("their albedos")]
     others += sheens * zeltner
     others += _others(lobes)
@@ -142,7 +139,7 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
     hairs = [np.reshape(inputs[name], (-1, 2)).min(axis=0) for inputs, name in fibers]
     others += [ANISOTROPIC] * _stretched(lobes)
     if hairs:
-        others += lobe_terms(*np.min(hairs, axis=0))
+        others += hair.lobe_terms(*np.min(hairs, axis=0))
     sheens = (lobe for lobe in lobes if lobe.inputs.get("mode") == "conty_kulla")
     narrow = [np.ravel(lobe.inputs["roughness"]).min() for lobe in sheens]
     if narrow:

@@ -23,19 +23,16 @@ from mxeon.conformance.reference.nodes import OPERATIONS
 from mxeon.conformance.results import NOT_RUN, Cause, Diagnosis, Kind, Quantity, Result
 from mxeon.conformance.samples import Array, float32, generator, sky_map
 from mxeon.conformance.spec import POWER
-from mxeon.conformance.specs import ALL
-from mxeon.conformance.specs.utilities import UtilitySpec
+from mxeon.conformance.specs import ALL, utilities
 from mxeon.conformance.tolerance import Measurement, Term, Tolerance, count_of, roundings, sum_of
 from mxeon.errors import DocumentError, MxeonError, NotRun, ShaderError
 from mxeon.hosts.base import Host
 from mxeon.hosts.calls import GRAPH
 from mxeon.io.images import write_exr
-from mxeon.shaders import texts
+from mxeon.shaders import generation, generators, texts
 from mxeon.shaders.document.drawn_values import CLOSURES
 from mxeon.shaders.document.graphs import inner_nodes
 from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.generation import Shader
-from mxeon.shaders.generators import GENERATORS
 from mxeon.shaders.library import load_library
 from mxeon.shaders.library_tree import search_path
 from mxeon.shaders.released_graphs import (
@@ -75,7 +72,7 @@ ZEROS = {"float": "0", "integer": "0", "boolean": "false"}
 ZEROS |= {"vector2": "0, 0", "color3": "0, 0, 0", "vector3": "0, 0, 1"}
 TANGENT = "1, 0, 0"
 PROBE = "mxeon_probe"
-MODELLED = {(each.node, isinstance(each, UtilitySpec)) for each in ALL}
+MODELLED = {(each.node, isinstance(each, utilities.UtilitySpec)) for each in ALL}
 Place: TypeAlias = tuple[mx.GraphElement, mx.PortElement]  # a graph and one of its ports
 
 
@@ -229,7 +226,7 @@ class Comparison:
     def __init__(self, host: Host, library: str, release: mx.Document, image: str) -> None:
         self._host, self._library, self._release, self._image = host, library, release, image
         self._document = load_library(library)
-        self._target = GENERATORS[host.target].create().getTarget()
+        self._target = generators.GENERATORS[host.target].create().getTarget()
         self.unjudged: list[tuple[str, str]] = []
 
     def definitions(self, changed: bool = False) -> list[Cause]:
@@ -409,7 +406,7 @@ class Comparison:
 
     def _pictures_apart(self, *subjects: Subject) -> float:
         """The largest difference between pictures of a node, alpha included; infinity without pictures."""
-        shaders: list[Shader] = []
+        shaders: list[generation.Shader] = []
         try:
             for each in subjects:
                 document = mx.createDocument()
@@ -438,7 +435,7 @@ class Comparison:
 
     def _compiled(
         self, document: mx.Document, node: mx.Node, library: str, client: tuple[str, ...] = ()
-    ) -> Shader:
+    ) -> generation.Shader:
         """Shader of a node, completed to a material."""
         if node.getType() != "surfaceshader":
             surface = document.addNode("surface", "shading", "surfaceshader")

@@ -20,26 +20,20 @@ from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.release import released
 from mxeon.conformance.results import NOT_RUN, SOURCE, Cause, Diagnosis, Kind, Quantity, Result
 from mxeon.conformance.samples import generator
-from mxeon.conformance.specs import PLAIN_LOBES
-from mxeon.conformance.specs.diffuse import DiffuseSpec
-from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
+from mxeon.conformance.specs import PLAIN_LOBES, diffuse, lobes
 from mxeon.conformance.tolerance import Measurement, count_of
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import HOSTS
 from mxeon.models import diffuse as formulas
-from mxeon.shaders import texts
+from mxeon.shaders import expressions, generation, library_tree, nodes, texts
 from mxeon.shaders.closure_calls import COMMENT
-from mxeon.shaders.expressions import Array, evaluate
 from mxeon.shaders.functions import LANGUAGES, has_functions, parts, twins
-from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
 from mxeon.shaders.library import load_library
-from mxeon.shaders.library_tree import search_path
-from mxeon.shaders.nodes import FLAG
 
 # --- checks --------------------------------------------------------------------------------------
 
 Faults: TypeAlias = tuple[list[Cause], int]  # faults, and the control's count
-Inputs = Mapping[str, Array]
+Inputs = Mapping[str, expressions.Array]
 # Check -> claim, counted quantity, and the control's mistake.
 # fmt: off
 CLAIMS = {
@@ -57,7 +51,7 @@ CLAIMS = {
 # fmt: on
 
 
-def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, ...]:
+def check_texts(subjects: Iterable[diffuse.DiffuseSpec], library: str) -> tuple[Result, ...]:
     """Results of all checks of generated text and of functions, for the nodes of a library."""
     subjects = tuple(subjects)
     results = [
@@ -76,9 +70,9 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
         if release := released(library):
             faults = partial(_arguments, library, release)
             results.append(_judged("arguments", "every node, mdl", library, faults))
-    for each, target in product((*subjects, *PLAIN_LOBES), TARGETS):
+    for each, target in product((*subjects, *PLAIN_LOBES), generation.TARGETS):
         # The check of closures compares every argument of MDL's rough diffuse nodes.
-        if target in TEXT_ONLY and (target != "mdl" or isinstance(each, PbrSpec)):
+        if target in TEXT_ONLY and (target != "mdl" or isinstance(each, lobes.PbrSpec)):
             faults = partial(_dropped, each, target, library)
             results.append(_judged("source", f"{each.title}, {target}", library, faults))
     return tuple(results)
@@ -107,7 +101,7 @@ def _clashes(library: str) -> Faults:
     """Names that two nodes of a library define, except those in the installed MaterialX."""
 
     def found(name: str, target: str, twice: bool = False) -> dict[texts.Clash, str]:
-        search = search_path(name)
+        search = library_tree.search_path(name)
         clashes = texts.clashes(load_library(name), target, search, twice)
         return dict.fromkeys(clashes, target)
 
@@ -154,13 +148,13 @@ ASSIGNED = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
 CALLEE = re.compile(r"(?:\w+::)*\w+(?=\()")
 
 
-def source(subject: ScatteringSpec, target: str, library: str) -> str:
+def source(subject: lobes.ScatteringSpec, target: str, library: str) -> str:
     """Pixel stage of a subject; variables of inputs are named `lobe_` and the input's name."""
     frame = {"normal": (0.0, 0.6, 0.8), "tangent": (1.0, 0.0, 0.0)}
     document = subject.document({name: frame[name] for name in frame if name in subject.names})
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ApproximationWarning)
-        return generate(document, target, library=library)[0].stages["pixel"]
+        warnings.simplefilter("ignore", generation.ApproximationWarning)
+        return generation.generate(document, target, library=library)[0].stages["pixel"]
 
 
 def _expression(text: str) -> str:
@@ -173,17 +167,17 @@ def _expression(text: str) -> str:
 
 def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object]) -> object:
     variables = {f"lobe_{name}": value for name, value in inputs.items()}
-    return evaluate(expression, {"closureData": (), **variables, **functions})
+    return expressions.evaluate(expression, {"closureData": (), **variables, **functions})
 
 
-def _dropped(subject: ScatteringSpec, target: str, library: str) -> Faults:
+def _dropped(subject: lobes.ScatteringSpec, target: str, library: str) -> Faults:
     """Inputs whose unique values do not occur as arguments of a call."""
     expression = _expression(source(subject, target, library))
-    names = tuple(subject.types) if isinstance(subject, PbrSpec) else subject.names
+    names = tuple(subject.types) if isinstance(subject, lobes.PbrSpec) else subject.names
     inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}
 
     def missing(given: Inputs) -> list[str]:
-        seen: list[Array] = []
+        seen: list[expressions.Array] = []
 
         def called(*values: ArrayLike, **named: ArrayLike) -> tuple[()]:
             seen.extend(np.ravel(each) for each in (*values, *named.values()))
@@ -238,7 +232,7 @@ FUNCTIONS: Mapping[str, object] = {
 # fmt: on
 
 
-def _closure_faults(subject: DiffuseSpec, library: str) -> Faults:
+def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
     """Arguments of the closure that differ from the node's inputs; the count ignores the weight."""
     expression = _expression(source(subject, "mdl", library))
     rng = generator()
@@ -251,7 +245,7 @@ def _closure_faults(subject: DiffuseSpec, library: str) -> Faults:
     average = (1.0 + formulas.C2 * r) / (1.0 + formulas.C1 * r)
     tint = rho**2 * average / (1.0 - rho * (1.0 - average))
     expected = {**rows, TINT: tint if subject.model == "eon" else np.zeros((DRAWS, 3))}
-    flag = {FLAG: np.array([[int(subject.flag is not False)]])}
+    flag = {nodes.FLAG: np.array([[int(subject.flag is not False)]])}
 
     def faults(given: Inputs) -> Iterator[Cause]:
         closure = _evaluated(expression, {**given, **flag}, FUNCTIONS)

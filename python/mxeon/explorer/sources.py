@@ -11,12 +11,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance import words
-from mxeon.conformance.backends import Evaluating
+from mxeon.conformance import backends, words
 from mxeon.conformance.case import Case, make_case
 from mxeon.conformance.diagnosis import ALBEDO, INEXACT, VALUE
-from mxeon.conformance.results import FAILED, Result
-from mxeon.conformance.results.known_issues import issues
+from mxeon.conformance.results import FAILED, Result, known_issues
 from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.conformance.specs.diffuse import VALUE as VALUE_ERROR
 from mxeon.errors import NotRun
@@ -68,7 +66,7 @@ class ComparedMaterial:
         """Pages on defects of this material in MaterialX's GLSL."""
         pages = [
             issue.page
-            for issue in issues().values()
+            for issue in known_issues.issues().values()
             if "webgl" in (issue.host, *issue.also)
             and issue.library == "stock"
             and {subject for _, subject in (*issue.rows, *issue.implied)} & set(self.subjects)
@@ -122,7 +120,7 @@ def measured_models(library: str, node: str) -> Models | None:
     try:
         with open_host("gl") as host:
             names = [
-                _nearest(make_case(Evaluating, host, spec, library))
+                _nearest(make_case(backends.Evaluating, host, spec, library))
                 for spec in DIFFUSE
                 if spec.node == node
             ]

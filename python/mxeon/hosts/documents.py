@@ -19,9 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import NotRun
-from mxeon.hosts import base, raster
-from mxeon.hosts.base import Array, Identity
-from mxeon.hosts.process import Worker
+from mxeon.hosts import base, process, raster
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.methods import UNCHOSEN, Methods
 from mxeon.shaders.scene import Scene, sphere
@@ -95,11 +93,11 @@ class DocumentHost(base.Host):
     def close(self) -> None:
         self.worker.close()
 
-    def identity(self) -> Identity:
+    def identity(self) -> base.Identity:
         self.worker.start()
-        return Identity(self.name, str(self.worker.version), self.worker.device)
+        return base.Identity(self.name, str(self.worker.version), self.worker.device)
 
-    def picture(self, shader: Shader, scene: Scene) -> Array:
+    def picture(self, shader: Shader, scene: Scene) -> base.Array:
         """Picture of the sphere; the worker generates the shader again."""
         self.refuse_paths(scene)
         self.refuse_shape(scene)
@@ -107,7 +105,7 @@ class DocumentHost(base.Host):
             raise NotRun(f"{self.name}: environment must be uniform; got an image")
         return self._shown(shader, scene)
 
-    def _shown(self, shader: Shader, scene: Scene, card: bool = False) -> Array:
+    def _shown(self, shader: Shader, scene: Scene, card: bool = False) -> base.Array:
         folders = (shader.root, *shader.folders)
         if folders != self._folders:
             self.worker.close()
@@ -136,9 +134,9 @@ class DocumentHost(base.Host):
         """Whether one triangle must cover the block of pixels around each pixel, which takes longer."""
         return False
 
-    def _worker(self) -> Worker:
+    def _worker(self) -> process.Worker:
         script = Path(inspect.getfile(type(self))).with_name("worker.py")
-        return Worker(self.name, self._python, script, self._limit, *self._folders)
+        return process.Worker(self.name, self._python, script, self._limit, *self._folders)
 
     def _drawn(
         self,
@@ -149,7 +147,7 @@ class DocumentHost(base.Host):
         blocks: bool,
         methods: Methods,
         card: bool,
-    ) -> Array:
+    ) -> base.Array:
         # Each document needs its own name: OpenUSD caches files.
         folder = self.worker.folder
         document = folder / f"{sha256(text.encode()).hexdigest()}.mtlx"

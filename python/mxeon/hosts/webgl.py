@@ -23,10 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import NotRun, install, refused
-from mxeon.hosts import fragment, points, raster
+from mxeon.hosts import calls, fragment, points, raster
 from mxeon.hosts.base import Array, Identity
-from mxeon.hosts.calls import PLACED
-from mxeon.hosts.raster import FragmentHost
 from mxeon.jobs.signals import Temporary
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import VisiblePoints
@@ -119,7 +117,7 @@ class Chromium:
         self._stack.close()
 
 
-class WebGlHost(Chromium, FragmentHost):
+class WebGlHost(Chromium, raster.FragmentHost):
     """WebGL2 in a browser; a frame may take `limit` seconds."""
 
     name = "webgl"
@@ -151,7 +149,7 @@ class WebGlHost(Chromium, FragmentHost):
         captured, frame = points.outputs(shader), points.frame(seen)
         pattern = r"^uniform vec2 (\w+(_uv_scale|_uv_offset));"
         images = re.findall(pattern, shader.stages["pixel"], re.MULTILINE)
-        placed = {name: PLACED[kind] for name, kind in images}
+        placed = {name: calls.PLACED[kind] for name, kind in images}
         if captured:
             textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen)
         pixel = points.pixel_stage(shader)

@@ -21,9 +21,7 @@ from typing import Any
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
 from mxeon.errors import InputError, MxeonError, NotRun
-from mxeon.jobs import check_timeout
-from mxeon.jobs.processes import Context, safe_path
-from mxeon.jobs.signals import block_signals, temporary_folder
+from mxeon.jobs import check_timeout, processes, signals
 
 
 @dataclass(frozen=True)
@@ -139,7 +137,7 @@ def run(
         raise NotRun(f"{rule}; it was deleted") from None
     workers = min(workers, len(items))
     waiting = Queue([Attempt(index, item, group(item)) for index, item in enumerate(items)])
-    with temporary_folder("mxeon-pool-") as logs:
+    with signals.temporary_folder("mxeon-pool-") as logs:
         breaks = 0
         while waiting and breaks < BREAKS:
             breaks += 1
@@ -168,7 +166,7 @@ def _serve(
 
     Each worker is its own pool, so items can be assigned to it.
     """
-    context: Any = Context()
+    context: Any = processes.Context()
     pools = [ProcessPool(1, initializer=_prepare, context=context) for _ in range(workers)]
     running: list[dict[Future[Any], Attempt]] = [{} for _ in pools]
     try:
@@ -201,7 +199,7 @@ def _serve(
         for own in running:
             for attempt in own.values():
                 waiting.put(attempt)
-        with block_signals():
+        with signals.block_signals():
             for pool in pools:
                 pool.stop()
             for pool in pools:
@@ -211,12 +209,12 @@ def _serve(
 def _start(pool: ProcessPool) -> bool:
     """Start the threads and processes of a pool; return whether it is active."""
     try:
-        with block_signals(), safe_path():
+        with signals.block_signals(), processes.safe_path():
             if QUIET not in sys.warnoptions:
                 sys.warnoptions.append(QUIET)  # the tracker's process inherits it
             if sys.platform != "win32":
                 resource_tracker.ensure_running()  # otherwise the first process starts it, and unblocks signals
-        with block_signals():
+        with signals.block_signals():
             return bool(pool.active)
     except (OSError, RuntimeError) as error:
         cause = error.__cause__ or error  # pebble's own error has no message

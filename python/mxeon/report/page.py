@@ -30,15 +30,8 @@ from mxeon.conformance.results.quantities import Quantity
 from mxeon.io.images import difference, difference_scale
 from mxeon.io.srgb import srgb_encoded
 from mxeon.io.tone import pbr_neutral
-from mxeon.report import in_threads
+from mxeon.report import in_threads, pieces
 from mxeon.report.formats import causes_of, linked, nearest, vector
-from mxeon.report.pieces import (
-    SHOWN_SIZE,
-    difference_gradient,
-    difference_pixels,
-    generate_page,
-    picture_uri,
-)
 from mxeon.shaders.scene import STUDIO
 
 # Materials with pictures inside the page, about a megabyte each; further ones are linked.
@@ -205,7 +198,7 @@ def _pair(pictures: Sequence[Picture]) -> dict[str, Any]:
     if len(shown) == 2:
         apart = np.abs(difference(*(np.asarray(one.image) for one in pictures[:2])))
         scale = max(scale, difference_scale(apart))
-        pixels = difference_pixels(apart, scale)
+        pixels = pieces.difference_pixels(apart, scale)
         shown.append(_figure("difference", "Difference of the two", "", pixels, LARGE))
     return {"figures": shown, "scale": scale}
 
@@ -235,7 +228,7 @@ def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
         note = words.size(one.difference) if one.difference else ""
         if one.judged is not None:
             note += f" at the {np.count_nonzero(one.judged):,} pixels that were compared"
-        pixels = difference_pixels(values, scale)
+        pixels = pieces.difference_pixels(values, scale)
         shown.append(_figure("difference", f"Difference, {one.library}", note, pixels))
     scene = words.LIGHTS.get(pictures[0].scene, pictures[0].scene)
     common = {"host": pictures[0].host, "scene": scene}
@@ -247,9 +240,9 @@ def title_of(library: str) -> str:
 
 
 def _figure(
-    kind: str, title: str, note: str, pixels: NDArray[np.uint8], size: int = SHOWN_SIZE
+    kind: str, title: str, note: str, pixels: NDArray[np.uint8], size: int = pieces.SHOWN_SIZE
 ) -> dict[str, Any]:
-    return {"kind": kind, "title": title, "note": note, "image": picture_uri(pixels, size)}
+    return {"kind": kind, "title": title, "note": note, "image": pieces.picture_uri(pixels, size)}
 
 
 def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, None]:
@@ -281,7 +274,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
     filters |= {"nearest": nearest}
     filters |= {"title": title_of, "worst": worst, "nodes": nodes_of}
     with in_threads(partial(material, verdicts), shown) as drawn:
-        yield from generate_page(
+        yield from pieces.generate_page(
             "mxeon.report",
             "report",
             filters,
@@ -312,7 +305,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
             counted=words.counted,
             sentences=words,
             VISIBLE=VISIBLE,
-            gradient=Markup(difference_gradient()),
+            gradient=Markup(pieces.difference_gradient()),
             FAILED=FAILED,
             PASSED=PASSED,
             DIFFERS=DIFFERS,

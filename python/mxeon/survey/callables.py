@@ -14,13 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import mxeon
-from mxeon.conformance import samples, words
-from mxeon.conformance.backends import Backend
-from mxeon.conformance.cache import parts
+from mxeon.conformance import backends, cache, checks, diagnosis, samples, words
 from mxeon.conformance.case import Case, edge_values
 from mxeon.conformance.check import Check, compared_of
-from mxeon.conformance.checks import CHECKS
-from mxeon.conformance.diagnosis import VALUE
 from mxeon.conformance.diagnosis.regions import EXACT, correct_except, smallest, unbounded
 from mxeon.conformance.results import PASSED, Diagnosis, Kind, Run
 from mxeon.conformance.samples import PAIRS, Array, Batch
@@ -65,7 +61,7 @@ class ClaimedModel(DiffuseModelSpec):
         return Batch(wo, wi, self.random_inputs(rng, PAIRS)), special
 
 
-class Function(Backend):
+class Function(backends.Backend):
     """A function evaluated for pairs."""
 
     host: CallableHost
@@ -101,7 +97,7 @@ class Function(Backend):
             finite = np.isfinite(values).all(axis=1, keepdims=True)
             return np.pi * (np.where(finite, values, np.nan) * batch.wi[:, 2:])
 
-        return self._evaluations.value(parts(batch), evaluated)
+        return self._evaluations.value(cache.parts(batch), evaluated)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
         """Empty, (N, 0): a function has no environment branch."""
@@ -123,7 +119,7 @@ def _finite_rows(found: Compared | Iterable[Compared]) -> Iterator[Compared]:
         yield kept if rows.any() else each
 
 
-VALUE_OF_REST = replace(VALUE, compared=lambda case: _finite_rows(VALUE(case)))
+VALUE_OF_REST = replace(diagnosis.VALUE, compared=lambda case: _finite_rows(diagnosis.VALUE(case)))
 
 
 def _explain_not_finite(case: Case) -> Diagnosis:
@@ -221,6 +217,6 @@ def _checks(model: str) -> tuple[Check, ...]:
         )
     return tuple(
         _of_rest(check)
-        for check in CHECKS
+        for check in checks.CHECKS
         if check.key in KEYS and (check.key != "integral" or row.albedo_dir)
     )

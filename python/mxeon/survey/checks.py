@@ -6,12 +6,10 @@ from typing import cast
 
 import numpy as np
 
-from mxeon.conformance import controls
+from mxeon.conformance import controls, diagnosis
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import Check, always, family
-from mxeon.conformance.checks import CHECKS
-from mxeon.conformance.checks.paths import deviation
-from mxeon.conformance.diagnosis import defect
+from mxeon.conformance.checks import CHECKS, paths
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, generator
 from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
@@ -68,7 +66,7 @@ def _deviation(case: Case, mu: float) -> float:
         batch = Batch(np.broadcast_to(wo, w.shape), w, {"roughness": np.array(ROUGHNESS)})
         return np.where(w[:, 2] > 0.0, _density(case, batch), 0.0)
 
-    return deviation(np.where(wi[:, 2:] > 0.0, wi, 0.0), density, pole, pole)
+    return paths.deviation(np.where(wi[:, 2:] > 0.0, wi, 0.0), density, pole, pole)
 
 
 # fmt: off
@@ -76,10 +74,10 @@ CHECKS += (
     Check(key="density", claim="The sampling density is the paper's.",
           applies=SAMPLED, measure=density, tolerance=OWN_DENSITY,
           control=controls.with_inputs("roughness is dropped", roughness=0.0),
-          explain=always(defect("density_differs"))),
+          explain=always(diagnosis.defect("density_differs"))),
     Check(key="samples", claim="Samples follow the density that is returned with them.",
           applies=SAMPLED, measure=samples, tolerance=CHI_SQUARE,
           control=controls.with_inputs("the density is that of roughness 0", roughness=0.0),
-          explain=always(defect("samples_differ"))),
+          explain=always(diagnosis.defect("samples_differ"))),
 )
 # fmt: on

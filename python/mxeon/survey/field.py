@@ -8,8 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
-from mxeon.conformance import words
-from mxeon.conformance.backends import own_nodes
+from mxeon.conformance import backends, words
 from mxeon.conformance.results import (
     DIRECT,
     FAILED,
@@ -28,8 +27,7 @@ from mxeon.errors import InputError
 from mxeon.io.files import AnyPath
 from mxeon.models import table as reference
 from mxeon.report.diff import Report, read_results
-from mxeon.survey import ROWS
-from mxeon.survey.specs import RendererSpec
+from mxeon.survey import ROWS, specs
 
 Place: TypeAlias = tuple[str, str, str]  # host, library and node
 
@@ -153,7 +151,7 @@ def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
 
 
 def _entries(report: Report, folder: Path) -> Iterator[Entry]:
-    own = (spec for row in ROWS for spec in own_nodes(row.name))
+    own = (spec for row in ROWS for spec in backends.own_nodes(row.name))
     claims = {each.title: claim(each) for each in (*DIFFUSE, *SURFACE_LOBES, *own)}
     places: dict[Place, dict[str, Result]] = {}
     for result in report.results:
@@ -184,7 +182,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
 
 def claim(spec: Spec) -> str:
     """Title of the claimed model, or of its first published form."""
-    forms = spec.forms if isinstance(spec, RendererSpec) else ()
+    forms = spec.forms if isinstance(spec, specs.RendererSpec) else ()
     return reference.diffuse_model((*forms, spec.model)[0]).title
 
 

@@ -7,28 +7,25 @@ from itertools import product
 
 import numpy as np
 
-from mxeon.conformance import controls
-from mxeon.conformance.backends import implementation
+from mxeon.conformance import backends, controls
 from mxeon.conformance.case import LIGHT, Case
 from mxeon.conformance.check import Check, family
 from mxeon.conformance.diagnosis import BACK, OUTPUT, TRANSMITTANCE, VALUE, defect
 from mxeon.conformance.diagnosis.regions import EXACT, correct_except, span, unbounded
 from mxeon.conformance.results import Diagnosis, Kind, Quantity
 from mxeon.conformance.spec import Ability
-from mxeon.conformance.specs import emission
-from mxeon.conformance.specs.emission import OPACITY, UNIMPLEMENTED, AbsentSpec, EmissionSpec
-from mxeon.conformance.specs.utilities import UtilitySpec
+from mxeon.conformance.specs import emission, utilities
 from mxeon.conformance.tolerance import Compared, Measurement, count_not_finite, count_of
 
-EMISSIONS, MEDIA = family(EmissionSpec), family(emission.MediumSpec)
+EMISSIONS, MEDIA = family(emission.EmissionSpec), family(emission.MediumSpec)
 
 
 def diagnose_opacity(case: Case) -> Diagnosis:
     full = max(
-        OPACITY.metric(each.measured, case.expected(each.batch.altered(opacity=1.0))).max()
+        emission.OPACITY.metric(each.measured, case.expected(each.batch.altered(opacity=1.0))).max()
         for each in VALUE(case)
     )
-    return defect("input_ignored", "opacity") if full <= OPACITY.value else Diagnosis()
+    return defect("input_ignored", "opacity") if full <= emission.OPACITY.value else Diagnosis()
 
 
 def above(case: Case) -> Iterator[Compared]:
@@ -50,7 +47,7 @@ def between(case: Case) -> Iterator[Compared]:
 
 
 def outside(case: Case) -> Compared:
-    batch = case.backend.take(case.of(UtilitySpec).outside)
+    batch = case.backend.take(case.of(utilities.UtilitySpec).outside)
     return Compared(batch, case.direct(batch), np.zeros((1, 3)))
 
 
@@ -64,12 +61,12 @@ def explained_finite(case: Case) -> Diagnosis:
 # fmt: off
 ROWS = (
     Check(key="implemented", claim="The target implements the node.",
-          applies=EMISSIONS | MEDIA | family(AbsentSpec),
+          applies=EMISSIONS | MEDIA | family(emission.AbsentSpec),
           measure=lambda case: Measurement(
-              float(implementation(case.host, case.spec.document(), case.library) is None), {}),
+              float(backends.implementation(case.host, case.spec.document(), case.library) is None), {}),
           tolerance=count_of(Quantity.NODES),
           control=controls.Control(
-              "the node is one that nothing implements", lambda case: case.another(UNIMPLEMENTED)),
+              "the node is one that nothing implements", lambda case: case.another(emission.UNIMPLEMENTED)),
           explain=lambda case: defect("not_implemented", case.host.target, case.spec.title)),
     Check(key="radiance",
           claim="The radiance matches the node's equation for every view from the front.",
@@ -98,11 +95,11 @@ ROWS = (
           applies=family(emission.EmittingSurface), measure=VALUE, tolerance="value",
           control=controls.with_inputs("the opacity is 1", opacity=1.0), explain=diagnose_opacity),
     Check(key="output", claim="The output of the utility node matches its equations.",
-          applies=family(UtilitySpec), measure=OUTPUT, tolerance="value", control=controls.shifted,
+          applies=family(utilities.UtilitySpec), measure=OUTPUT, tolerance="value", control=controls.shifted,
           explain=OUTPUT.diagnose, open=True),
     Check(key="output_finite",
           claim="Every output is finite, at the ends of the ranges and beyond.",
-          applies=family(UtilitySpec, lambda spec: not spec.libraries),
+          applies=family(utilities.UtilitySpec, lambda spec: not spec.libraries),
           measure=lambda case: count_not_finite(outside(case)),
           tolerance=count_of(Quantity.VALUES), control=controls.no_number, explain=explained_finite,
           requires=Ability.PAIRS),

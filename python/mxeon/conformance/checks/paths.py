@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance import controls
-from mxeon.conformance.cache import Recent, contents
+from mxeon.conformance import cache, controls
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import Check, Specs, always, family
 from mxeon.conformance.checks.lobes import BELOW, CLEAR, DARK, TRANSMITTING
@@ -31,8 +30,7 @@ from mxeon.conformance.specs.emission import EmissionSpec
 from mxeon.conformance.specs.microfacets import PASSING, THROUGHPUT, FacetSpec, TransmissionSpec
 from mxeon.conformance.specs.surface_shaders import ALBEDO, SurfaceShaderSpec
 from mxeon.conformance.tolerance import Compared, Measurement, Term, given, roundings, sum_of
-from mxeon.hosts import host_row
-from mxeon.hosts.base import Host
+from mxeon.hosts import base, host_row
 from mxeon.hosts.calls import NORMAL, TANGENT
 
 if TYPE_CHECKING:  # the import loads MaterialX
@@ -74,7 +72,7 @@ FUNCTIONS = {
 }
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # targets of mxeon.shaders.path_tracing
 DRAWS = 1 << 15
-ANSWERS = Recent[Array](64)  # a check and its control need the same values
+ANSWERS = cache.Recent[Array](64)  # a check and its control need the same values
 # Two views that see many and few facets below the critical angle, and one from which a smooth solid
 # transmits no light out.
 VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
@@ -139,7 +137,7 @@ DRAWN_SUM = Term(5e-3, "a sum of 4096 draws")
 class Paths:
     """The path-tracing text of a document's only material, on a host."""
 
-    host: Host
+    host: base.Host
     text: str
     ports: "tuple[Port, ...]" = ()  # inputs that are variables, set for each row
 
@@ -182,14 +180,14 @@ class Paths:
             answer=answer,
         )
         return ANSWERS.value(
-            (self, *map(contents, rows)),
+            (self, *map(cache.contents, rows)),
             lambda: self.host.execute(text, "path_tracer", *rows).astype(np.float64),
         )
 
 
 @lru_cache(maxsize=4)
 def paths(
-    host: Host, document: str, library: str = "eonlib", varied: tuple[str, ...] = ()
+    host: base.Host, document: str, library: str = "eonlib", varied: tuple[str, ...] = ()
 ) -> Paths:
     """The text of a document; inputs with these names or paths are variables, all others constants."""
     from mxeon.shaders.generation import generate

@@ -15,13 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance import controls, samples
-from mxeon.conformance.backends import Backend, joined
+from mxeon.conformance import backends, check, controls, diagnosis, results, samples
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import Check, family
 from mxeon.conformance.checks.lobes import DARK
-from mxeon.conformance.diagnosis import not_finite
-from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.samples import (
     SKY_ROWS,
     Array,
@@ -283,7 +279,7 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
 
 
 @lru_cache(maxsize=1)  # a control has the same
-def pixels_of(backend: Backend) -> tuple[Pixels, ...]:
+def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
     """Pixels with combinations of the states that the node and the engine support."""
     lobe, rng = backend.lobe, samples.generator()
     plain = {*lobe.plain, *backend.plain}
@@ -343,7 +339,7 @@ def states(case: Case) -> Iterator[Compared]:
         file = Path(folder, "inputs.exr")
         from_image = partial(imaged, case, cache(partial(compile_imaged, case, file)), file)
         for (two, uneven, client, image, _), numbers in frames.items():
-            batch = joined([batch_of(groups[number]) for number in numbers])
+            batch = backends.joined([batch_of(groups[number]) for number in numbers])
             ask = partial(
                 from_image if image else case.evaluating.together,
                 irradiance=sky_map() if uneven else None,
@@ -454,7 +450,7 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
                 part = in_turn(own if pixels.sky == "uneven" else flat, pixels.client)
                 parts.setdefault(pixels.sky, []).append((number, part))
     for kind, rows in parts.items():
-        batch = joined([each for _, each in rows])
+        batch = backends.joined([each for _, each in rows])
         if kind == "light":
             values = drawn(batch, case.backend.direct, layout)
         else:
@@ -485,14 +481,14 @@ def in_turn(batch: Batch, client: Client) -> Batch:
     return replace(batch.altered(**axes), frame=ROTATION @ frame)
 
 
-def diagnose(case: Case) -> Diagnosis:
+def diagnose(case: Case) -> results.Diagnosis:
     tolerance, compared = case.tolerance("states"), list(states(case))
     bad = np.concatenate(list(map(tolerance.wrong, compared)))
     pixels = [words for each in pixels_of(case.backend) for words in _words(each)]
-    return Diagnosis((shared(bad, pixels), *not_finite(compared)))
+    return results.Diagnosis((shared(bad, pixels), *diagnosis.not_finite(compared)))
 
 
-def shared(bad: Mask, pixels: Sequence[set[str]]) -> Cause:
+def shared(bad: Mask, pixels: Sequence[set[str]]) -> results.Cause:
     """The states that all wrong pixels share: one, a pair that meets, or either of two."""
     names = sorted(set().union(*pixels))
     found: dict[tuple[str, ...], Mask] = {
@@ -517,7 +513,7 @@ def shared(bad: Mask, pixels: Sequence[set[str]]) -> Cause:
         key, common = "both_states", both[1]
     elif either < one:
         key, common = "either_state", either[1]
-    return Cause(Kind.DEFECT, key, common, wrong=int(bad.sum()), of=len(bad))
+    return results.Cause(results.Kind.DEFECT, key, common, wrong=int(bad.sum()), of=len(bad))
 
 
 def _words(pixels: Pixels) -> Iterator[set[str]]:
@@ -536,9 +532,9 @@ def named(states: Iterable[str], axes: Mapping[str, Mapping[str, object]]) -> se
 
 # fmt: off
 ROWS = (
-    Check(key="states",
+    check.Check(key="states",
           claim="Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not.",
-          applies=family(LobeSpec), measure=states, tolerance="states", control=exchanged,
+          applies=check.family(LobeSpec), measure=states, tolerance="states", control=exchanged,
           explain=diagnose, requires=Ability.PAIRS,
           # As opacity, such a lobe equals its tint: a control could not detect a wrong view.
           methods=lambda spec, methods: methods.transmission != "opacity" or not DARK(spec)),

@@ -7,16 +7,13 @@ from functools import partial
 
 import numpy as np
 
-from mxeon.conformance import controls
-from mxeon.conformance.backends import joined
+from mxeon.conformance import backends, controls, samples, specs
 from mxeon.conformance.case import SCATTERING, Case
 from mxeon.conformance.check import Check, always, family
 from mxeon.conformance.checks.lobes import LAYERS, finds_albedo
 from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
-from mxeon.conformance.samples import arrays
 from mxeon.conformance.spec import Ability
-from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.surface_shaders import STRETCHED_FIT, SurfaceShaderSpec, stretched
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
 from mxeon.conformance.tolerance import Compared, count_named, count_of, scaled
@@ -61,7 +58,7 @@ def wrong_layers(case: Case) -> list[str]:
     from mxeon.shaders.document.graphs import categories, inner_nodes
 
     used, found = categories(inner_nodes(case.evaluating.shader.document)), []
-    for spec in filter(LAYERS, PLAIN_LOBES):
+    for spec in filter(LAYERS, specs.PLAIN_LOBES):
         if spec.node in used:
             lobe = case.another(spec)
             if any(lobe.tolerance("throughput").wrong(each).any() for each in THROUGHPUT(lobe)):
@@ -100,7 +97,7 @@ def lobes_mean(case: Case) -> Iterator[Compared]:
 
 
 def lobes_furnace(case: Case) -> Compared:
-    white = replace(case.backend.views[0], inputs=arrays(case.of(SurfaceShaderSpec).white))
+    white = replace(case.backend.views[0], inputs=samples.arrays(case.of(SurfaceShaderSpec).white))
     return Compared(white, case.albedo(white), np.ones((1, 3)))
 
 
@@ -146,7 +143,7 @@ def without_effect(case: Case) -> list[str]:
         raise NotRun(f"{spec.node} of this MaterialX lacks an input that is varied: {names_lost}")
     inputs = {name: np.asarray(given[name]) for name in names}
     few = replace(case.backend.batches[0].first(CHANGED), inputs=inputs)
-    batch = joined([few.altered(**row) for row in rows])
+    batch = backends.joined([few.altered(**row) for row in rows])
     effective = np.zeros(len(spec.names), bool)
     for branch, output in (*((each, "response") for each in SCATTERING), ("emission", "radiance")):
         ask = partial(evaluating.evaluate, branch=branch, output=output)

@@ -3,16 +3,14 @@
 
 import numpy as np
 
-from mxeon.conformance import controls
+from mxeon.conformance import check, controls, diagnosis
 from mxeon.conformance.case import Case, values
-from mxeon.conformance.check import Check, family
-from mxeon.conformance.diagnosis import Comparison
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.spec import broadcast_inputs
 from mxeon.conformance.specs.surface_texts import EMITTED, SentenceSpec
 from mxeon.errors import NotRun
 
-SENTENCE = Comparison("value", values, lambda case: case.valued.value_candidates)
+SENTENCE = diagnosis.Comparison("value", values, lambda case: case.valued.value_candidates)
 LOBES, LOBES_TOO = (Cause(Kind.DEFECT, key) for key in ("lobes_of_graph", "lobes_too"))
 
 
@@ -43,8 +41,8 @@ def diagnose(case: Case) -> Diagnosis:
 
 # fmt: off
 ROWS = (
-    Check(key="specification", claim="The surface shader does what this sentence of its specification says.",
-          applies=family(SentenceSpec), measure=SENTENCE, tolerance="value", control=controls.shifted,
+    check.Check(key="specification", claim="The surface shader does what this sentence of its specification says.",
+          applies=check.family(SentenceSpec), measure=SENTENCE, tolerance="value", control=controls.shifted,
           explain=diagnose, open=True),
 )
 # fmt: on

@@ -17,15 +17,12 @@ from mxeon.errors import OutsideModel, ShaderError
 from mxeon.hosts.base import Query
 from mxeon.hosts.osl.carriers import LAYER, MIX, OPERATIONS, SUM
 from mxeon.hosts.osl.trees import ClosureTree, TreeRows
-from mxeon.models import table
+from mxeon.models import hair, table
 from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf
-from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.media import transmittance
-from mxeon.models.nodes import node
+from mxeon.models.nodes import media, microfacets, node
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
-from mxeon.models.nodes.media import METER
-from mxeon.models.nodes.microfacets import TRANSMISSIONS
 from mxeon.models.nodes.node import PbrNode
 from mxeon.models.shading_model import ALONG, UP
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR
@@ -78,7 +75,7 @@ class Views:
             if medium is None or not _only_medium(second):
                 return layering.layer(self.bsdf(first, True), self.bsdf(second, layered))
             # A medium attenuates light that passes the surface.
-            passed, surface = transmittance(medium, 0.0, METER), self.bsdf(first, layered)
+            passed, surface = transmittance(medium, 0.0, media.METER), self.bsdf(first, layered)
             value = surface.value * (passed if self.branch == THROUGH else 1.0)
             return Bsdf(value, surface.throughput * passed)
         if tree.name == MIX:
@@ -116,9 +113,9 @@ class Views:
             if self.branch != THROUGH:
                 shade = ONE if wi is None or row.transmits else self.occlusion
                 value = tint * shade * self.points.scattered(row, wo, wi, inputs)
-            elif closure.name in TRANSMISSIONS:
+            elif closure.name in microfacets.TRANSMISSIONS:
                 white = {**inputs, "tint": np.ones((1, 3))}
-                passed = TRANSMISSIONS[closure.name].passed(wo, white, True)
+                passed = microfacets.TRANSMISSIONS[closure.name].passed(wo, white, True)
                 value = np.asarray(closure.arguments["transmission_tint"] * passed)
             else:
                 value = np.zeros(wo.shape)
@@ -167,7 +164,7 @@ def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
     if closure.name == OREN_NAYAR:
         given["roughness"] = np.minimum(given["roughness"], table.diffuse_model(row.name).largest)
     if closure.name == HAIR:
-        for name in ROUGHNESSES:
+        for name in hair.ROUGHNESSES:
             lobe = name.removeprefix("roughness_")
             rough = np.stack([given[f"variance_{lobe}"], given[f"scale_{lobe}"]], axis=-1)
             given[name] = np.clip(rough, LEAST_HAIR, None)

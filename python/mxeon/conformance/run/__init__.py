@@ -13,8 +13,7 @@ from itertools import chain, product
 from pathlib import Path
 from typing import cast
 
-from mxeon.conformance.results import NOT_RUN, REPORT, Run, Scope
-from mxeon.conformance.results.known_issues import repaired
+from mxeon.conformance.results import NOT_RUN, REPORT, Run, Scope, known_issues
 from mxeon.conformance.run import plan
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, one_result
@@ -23,7 +22,6 @@ from mxeon.errors import InputError, InterfaceError, NotRun
 from mxeon.hosts import HOSTS, Row, host_names, host_row, register, registered
 from mxeon.io.files import AnyPath, Names, check_output, names_of, one_name
 from mxeon.jobs import TIMEOUT, WAIT, check_timeout, dask, pool
-from mxeon.jobs.pool import by_group
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.references import documents_in, files_read
 from mxeon.shaders.generation import TARGETS, check_generator
@@ -214,7 +212,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     for document, library in product(planned.contents, planned.compared):
         lines = refused.pop(f"{document} with {library}", ())
         notes += tuple((line, document) for line in lines)
-    notes += repaired(results, planned.software)
+    notes += known_issues.repaired(results, planned.software)
     version = planned.software.get("MaterialX")
     if version and (warning := untested(version)):
         notes += ((warning, "every result"),)
@@ -276,5 +274,5 @@ def _subject(task: Task) -> tuple[str, str, str]:
 
 def _run_inline(policy: Policy, tasks: Sequence[Task]) -> Iterator[tuple[int, pool.Outcome]]:
     with closing(Judge(policy)) as judge:
-        for position in by_group(list(map(_subject, tasks))):
+        for position in pool.by_group(list(map(_subject, tasks))):
             yield position, pool.Outcome(work_or_not_run(judge.work, tasks[position]))

@@ -9,20 +9,14 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from mxeon.conformance import pictures, results
+from mxeon.conformance import checks, pictures, reference, release, results, shader_functions, text
 from mxeon.conformance.backends import Evaluating, backend_of, own_nodes
 from mxeon.conformance.case import Case, make_case
-from mxeon.conformance.checks import CHECKS
-from mxeon.conformance.reference import Reference
-from mxeon.conformance.release import CLAIM, check_release, redefined
 from mxeon.conformance.results.known_issues import with_pages
 from mxeon.conformance.run import plan
 from mxeon.conformance.run.plan import DOCUMENT, FUNCTIONS, HOST, Findings, Task
 from mxeon.conformance.samples import SEED
-from mxeon.conformance.shader_functions import judge_functions
-from mxeon.conformance.specs import ALL
-from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
-from mxeon.conformance.text import check_texts
+from mxeon.conformance.specs import ALL, surface_shaders
 from mxeon.errors import DocumentError, ImageError, InterfaceError, MxeonError, NotRun, ShaderError
 from mxeon.hosts import open_engine
 from mxeon.hosts.base import Engine, Host
@@ -36,7 +30,7 @@ CLAIMS = {
     results.SOURCE: "The generated text was checked.",
     DOCUMENT: pictures.DOCUMENT_CLAIM,
     FUNCTIONS: "The shader functions match NumPy's.",
-    plan.RELEASE: CLAIM,
+    plan.RELEASE: release.CLAIM,
     plan.PICTURE: pictures.MATCH,
 }
 
@@ -50,7 +44,7 @@ def one_result(
     """Findings of a task without a measurement, from the reason or the diagnosis."""
     if not (claim := CLAIMS.get(task.check)):
         own_nodes(task.host)  # adds the checks of a renderer
-        claim = next(each.claim for each in CHECKS if each.key == task.check)
+        claim = next(each.claim for each in checks.CHECKS if each.key == task.check)
     place = (task.check, claim, task.subject, task.host, task.library)
     return Findings((results.Result(*place, verdict, reason=reason, diagnosis=diagnosis),))
 
@@ -61,7 +55,7 @@ class Judge:
     def __init__(self, policy: Policy, opened: Callable[[str], Engine] = open_engine) -> None:
         self._policy, self._opened = policy, opened
         self._hosts: dict[str, Engine | NotRun] = {}  # hosts, or why they cannot run
-        self._reference = Reference()
+        self._reference = reference.Reference()
         self._case = lru_cache(maxsize=1)(_case)  # pairs take much memory
 
     def work(self, task: Task) -> Findings:
@@ -102,7 +96,7 @@ class Judge:
 
     def _findings(self, task: Task) -> Findings:
         if task.check == results.SOURCE:
-            return Findings(check_texts(plan.diffuse_specs(task.library), task.library))
+            return Findings(text.check_texts(plan.diffuse_specs(task.library), task.library))
         if task.check == DOCUMENT:
             return self._document(task)
         host = self._host(task.host)
@@ -123,19 +117,19 @@ class Judge:
                     return Findings((), stills)
                 return Findings(())
             if task.check == plan.RELEASE:
-                found, unjudged = check_release(host, task.library)
+                found, unjudged = release.check_release(host, task.library)
                 return Findings(found, unjudged=unjudged)
             if task.check == FUNCTIONS:
-                return Findings(judge_functions(host, task.library))
+                return Findings(shader_functions.judge_functions(host, task.library))
         case = self._case(host, task.subject, task.library, task.seed, task.methods)
-        check = next(each for each in CHECKS if each.key == task.check)
+        check = next(each for each in checks.CHECKS if each.key == task.check)
         result = check.judge(case)
-        surface = isinstance(case.spec, SurfaceShaderSpec)
+        surface = isinstance(case.spec, surface_shaders.SurfaceShaderSpec)
         known = not surface and with_pages(result, _copy(task)).pages
         if result.verdict == results.FAILED and not known and isinstance(case.backend, Evaluating):
             # Checks of a lobe set all inputs except the surface's own vectors.
             keys = ("value", "defaultgeomprop")[not surface :]
-            if causes := redefined(case.evaluating.shader.document, task.library, keys):
+            if causes := release.redefined(case.evaluating.shader.document, task.library, keys):
                 unknown, known_causes = results.Kind.UNKNOWN, result.diagnosis.causes
                 told = (each for each in known_causes if each.kind is not unknown)
                 own = () if surface else tuple(told)

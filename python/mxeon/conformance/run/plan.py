@@ -32,14 +32,9 @@ from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs import ALL as ALL_SPECS
 from mxeon.conformance.specs import COMMON as COMMON_SPECS
-from mxeon.conformance.specs import PBRLIB
-from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES, DiffuseSpec
-from mxeon.conformance.specs.emission import EmittingSurface
-from mxeon.conformance.specs.microfacets import FilmSpec
-from mxeon.conformance.specs.surface_texts import SENTENCES
+from mxeon.conformance.specs import PBRLIB, diffuse, emission, microfacets, surface_texts
 from mxeon.errors import DocumentError, InputError, MxeonError, assert_known
-from mxeon.hosts import HOSTS, host_names, host_row
-from mxeon.hosts.base import Identity
+from mxeon.hosts import HOSTS, base, host_names, host_row
 from mxeon.jobs import pool
 from mxeon.shaders.contents import ShownNode, document_nodes, node_of
 from mxeon.shaders.document.drawn_values import LIT
@@ -92,9 +87,9 @@ def read_documents(
             else:
                 for (spec, mode), node in product(_modes(), answer or ()):
                     has_bsdf = "bsdf" in dict(node.inputs)
-                    if isinstance(spec, EmittingSurface) and spec.has_bsdf != has_bsdf:
+                    if isinstance(spec, emission.EmittingSurface) and spec.has_bsdf != has_bsdf:
                         continue
-                    if node.has(mode) and (node.film or not isinstance(spec, FilmSpec)):
+                    if node.has(mode) and (node.film or not isinstance(spec, microfacets.FilmSpec)):
                         regions = set(unreached(dict(node.values)))
                         titles[file].setdefault(spec.title, regions).intersection_update(regions)
     refused: dict[str, tuple[str, ...]] = {}
@@ -129,7 +124,7 @@ def _answers(
 @cache
 def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
     """Every judged node, in its judged mode; sentences only run if the user names them."""
-    rows = (row for row in ALL_SPECS if row not in SENTENCES)
+    rows = (row for row in ALL_SPECS if row not in surface_texts.SENTENCES)
     return tuple((row, node_of(row.document(), row.node)) for row in rows)
 
 
@@ -180,7 +175,7 @@ class Findings:
     pictures: tuple[Picture, ...] = ()
     notes: tuple[tuple[str, str], ...] = ()
     errors: tuple[str, ...] = ()
-    hosts: tuple[Identity, ...] = ()
+    hosts: tuple[base.Identity, ...] = ()
     unjudged: tuple[tuple[str, str], ...] = ()
 
     def answer(self, task: Task) -> bool:
@@ -220,7 +215,7 @@ def _selected(
     Raise InputError if none of the nodes is judged.
     """
     titles = _titles(*nodes)
-    texts = {each.title for each in SENTENCES}
+    texts = {each.title for each in surface_texts.SENTENCES}
     rare = {each.title for each in PBRLIB} - {each.title for each in COMMON_SPECS} | texts
     audit = COMMON in nodes or not (nodes or files)
     by_name = {each.key for each in CHECKS if each.profile}
@@ -362,9 +357,9 @@ def unjudged(library: str) -> tuple[tuple[str, str], ...]:
     return tuple((name, f"no model of a node that {library} adds") for name in sorted(names))
 
 
-def diffuse_specs(library: str) -> list[DiffuseSpec]:
+def diffuse_specs(library: str) -> list[diffuse.DiffuseSpec]:
     data = load_library(library)
-    return [spec for spec in DIFFUSE if data.getMatchingNodeDefs(spec.node)]
+    return [spec for spec in diffuse.DIFFUSE if data.getMatchingNodeDefs(spec.node)]
 
 
 def _on_host(
@@ -390,7 +385,7 @@ def _on_host(
     for spec in diffuse_specs(library):
         yield from _checks_of(spec, host, library, methods)
     defines = load_library(library).getMatchingNodeDefs
-    for each in (*PBRLIB, *SENTENCES):
+    for each in (*PBRLIB, *surface_texts.SENTENCES):
         # If pictures show a renderer's own closures, they are only judged with the stock library.
         own = row.target == "osl" and kind in ("eonlib", "diffuse")
         left = each.closure and row.way == "pictures" and own
@@ -401,7 +396,7 @@ def _on_host(
         ):
             yield from _checks_of(each, host, library, methods)
     if row.surfaces:
-        for lobe in SURFACE_LOBES:
+        for lobe in diffuse.SURFACE_LOBES:
             listed = lobe.libraries or LIBRARIES
             if everywhere or ("eonlib" if kind == OVERLAY else kind) in listed:
                 yield from _checks_of(lobe, host, library, methods)
@@ -435,5 +430,5 @@ def _software() -> dict[str, str]:
 def _examples(library: str) -> list[Path]:
     """The bundled documents, except those with a node that the library lacks."""
     files = sorted(examples_folder().glob("*.mtlx"))
-    missing = [spec.node for spec in DIFFUSE if spec not in diffuse_specs(library)]
+    missing = [spec.node for spec in diffuse.DIFFUSE if spec not in diffuse_specs(library)]
     return [file for file in files if not any(node in file.read_text("utf-8") for node in missing)]

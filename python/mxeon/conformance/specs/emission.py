@@ -13,26 +13,24 @@ from mxeon.conformance.spec import ARGUMENTS, Ability, EngineError, Input, color
 from mxeon.conformance.tolerance import ROUNDING, Compared, roundings, sum_of
 from mxeon.models.media import cone_cosine, cone_width, surface_radiance
 from mxeon.models.nodes import emissions, media
-from mxeon.models.nodes.emissions import Emission
 from mxeon.models.nodes.media import Medium
-from mxeon.shaders import nodes
-from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
+from mxeon.shaders import nodes, scene
 
 
-def title_of(row: Emission | Medium, kind: str) -> str:
+def title_of(row: emissions.Emission | Medium, kind: str) -> str:
     """Title of a row; nodes that combine others share their names with nodes of other types."""
     factor = f", in2 {row.name.rpartition('_')[2]}" if row.category == "multiply" else ""
     return f"{row.category}, {kind}{factor}" if "/" in next(iter(row.inputs)) else row.category
 
 
-def inputs_of(row: Emission | Medium) -> tuple[Input, ...]:
+def inputs_of(row: emissions.Emission | Medium) -> tuple[Input, ...]:
     """The inputs of the row's functions; a factor has the type in the last word of the row's name."""
     kind = row.name.rpartition("_")[2]
     return tuple(INPUTS.get(name) or FACTORS[name, kind] for name in row.inputs)
 
 
 def chained(
-    row: Emission | Medium, kind: str, source: str, name: str, text: str = ""
+    row: emissions.Emission | Medium, kind: str, source: str, name: str, text: str = ""
 ) -> dict[str, nodes.Node]:
     """A node with its source nodes, whose names are in the paths of its inputs."""
     paths = (each.rpartition("/")[0] for each in row.inputs)
@@ -84,7 +82,7 @@ FACTORS = {
 
 # Closer to a hard edge than this cosine, the engine's rounding decides; half of 1 - cos for narrow cones.
 EDGE = 1e-3
-SMALL = Scene("dark", size=8)
+SMALL = scene.Scene("dark", size=8)
 OPACITIES = (0.0, 0.25, 1.0)
 
 
@@ -120,7 +118,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
     requires = Ability.EMISSION
     coarse = 4  # all pixels of a view are equivalent
 
-    row: Emission
+    row: emissions.Emission
 
     def document(self, inputs: Values | None = None) -> str:
         axis = turned = ""
@@ -257,8 +255,8 @@ class EmittingSurface(spec.ValueSpec):
         return nodes.document_text((BLACK_LOBE if self.has_bsdf else "") + emission + surface)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        points = sphere(SMALL.size)
-        wo = local_directions(points.normal[points.mask], VIEW)
+        points = scene.sphere(SMALL.size)
+        wo = scene.local_directions(points.normal[points.mask], scene.VIEW)
         return tuple(Batch(wo, wo, {"opacity": np.array(each)}, SMALL) for each in OPACITIES)
 
     def value(self, batch: Batch) -> Array:
@@ -275,7 +273,7 @@ EMITTING_SURFACES = (
 )
 
 
-def _spec(row: Emission) -> EmissionSpec:
+def _spec(row: emissions.Emission) -> EmissionSpec:
     drawn, cone = inputs_of(row), row.name == "conical"
     power = (EngineError("the engine's pow()", power_error),)
     return (ConeSpec if cone else EmissionSpec)(

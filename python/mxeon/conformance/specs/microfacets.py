@@ -12,13 +12,11 @@ import numpy as np
 from mxeon.conformance import samples, spec, tolerance
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, generator, rounded
-from mxeon.conformance.specs import lobes
+from mxeon.conformance.specs import lobes, sheen
 from mxeon.conformance.specs.lobes import BURLEY_VALUE, WEIGHT, PbrSpec, named_mode
-from mxeon.conformance.specs.sheen import FIT_COSINE
 from mxeon.conformance.tolerance import Term, Tolerance, given, roundings, sum_in, sum_of
-from mxeon.models.microfacet import Lobe, node_albedo, uncompensated
+from mxeon.models.microfacet import Lobe, fresnel, node_albedo, uncompensated
 from mxeon.models.microfacet.defects import MEAN_ALPHA
-from mxeon.models.microfacet.fresnel import fresnel_schlick
 from mxeon.models.microfacet.ggx import smith_g1, smith_g2, smith_g2_anisotropic
 from mxeon.models.nodes import microfacets
 from mxeon.models.nodes.microfacets import FILM_NODES, LOBES, MICROFACET_NODES, TRANSMISSION_NODES
@@ -207,7 +205,7 @@ class FacetSpec(PbrSpec):
     """A microfacet node, with large values near the mirror direction."""
 
     counts: Counts = COUNTS
-    least_cosine: float = FIT_COSINE
+    least_cosine: float = sheen.FIT_COSINE
     outside_errors: Mapping[tuple[str, str, float], Tolerance] = field(
         default_factory=lambda: OUTSIDE_ERRORS
     )
@@ -371,7 +369,7 @@ def _below_0(batch: Batch, cosine: Array) -> samples.Mask:
     if "color82" not in batch.inputs:
         return np.zeros(len(batch.wo), bool)
     color0, color82, color90 = (batch.inputs[name] for name in ("color0", "color82", "color90"))
-    F = fresnel_schlick(cosine, color0, color82, color90, batch.inputs["exponent"])
+    F = fresnel.fresnel_schlick(cosine, color0, color82, color90, batch.inputs["exponent"])
     return np.asarray((F < 0.0).any(axis=1))
 
 

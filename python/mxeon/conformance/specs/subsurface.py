@@ -7,12 +7,10 @@ from functools import lru_cache, partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance import samples
+from mxeon.conformance import samples, spec, tolerance
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values
-from mxeon.conformance.spec import ZERO, Ability, Input, broadcast_inputs
 from mxeon.conformance.specs.lobes import COLOR, FLAT_ERRORS, NORMAL, WEIGHT, PbrSpec, named_mode
-from mxeon.conformance.tolerance import given, mean_error
 from mxeon.models.media import FAR, blur_to
 from mxeon.models.nodes.lobes import SUBSURFACE_NODE, circle_blur
 from mxeon.shaders.scene import BACK, SIDE, VIEW, Scene, local_directions, sphere
@@ -31,21 +29,21 @@ EVEN = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
 FARTHER = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 6.0, 9.0, 12.0)
 
 # Straight towards or away from the light, a whole circle becomes lit at once: 9.3e-3 at most.
-RINGS = given(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
+RINGS = tolerance.given(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
 MEAN_OF_CIRCLES = "twice the mean over a sphere of the errors of six circles"
-RINGS_MEAN = given(0.003, Quantity.MEAN, MEAN_OF_CIRCLES, mean_error)
+RINGS_MEAN = tolerance.given(0.003, Quantity.MEAN, MEAN_OF_CIRCLES, tolerance.mean_error)
 
 
 class SubsurfaceSpec(PbrSpec):
     """The node on a plane, where radius and anisotropy have no effect, and on a sphere."""
 
-    requires = Ability.LOBE | Ability.SUBSURFACE
+    requires = spec.Ability.LOBE | spec.Ability.SUBSURFACE
     curved = True
 
     @property
     def others(self) -> tuple[Candidate, ...]:
         """Zero, and MaterialX's implementation."""
-        return ZERO, Candidate("MaterialX's blur along a circle of radius 100", _blurred)
+        return spec.ZERO, Candidate("MaterialX's blur along a circle of radius 100", _blurred)
 
     def spheres(self, counts: Counts) -> tuple[Batch, ...]:
         return tuple(_points(scene, inputs) for scene in SCENES for inputs in MATERIALS)
@@ -59,7 +57,7 @@ def _blurred(batch: Batch) -> Array:
     mu = batch.wi[:, 2]
     shadow = 1.0 - np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
     lit = 1.0 - shadow * np.clip(mu, LEAST_COSINE, 1.0)[:, np.newaxis]
-    inputs = broadcast_inputs(batch)
+    inputs = spec.broadcast_inputs(batch)
     light = np.where(mu[:, np.newaxis] > 1.0, 0.0, circle_blur(mu, inputs["radius"]))
     return np.asarray(batch.strength * inputs["color"] * light * lit)
 
@@ -67,7 +65,7 @@ def _blurred(batch: Batch) -> Array:
 SUBSURFACE = SubsurfaceSpec(
     **named_mode(SUBSURFACE_NODE),
     row=SUBSURFACE_NODE,
-    inputs=(WEIGHT, COLOR, Input("radius", "color3", high=2.0), NORMAL),
+    inputs=(WEIGHT, COLOR, spec.Input("radius", "color3", high=2.0), NORMAL),
     errors={**FLAT_ERRORS, "sphere": RINGS, "sphere_mean": RINGS_MEAN},
     flat=True,
 )

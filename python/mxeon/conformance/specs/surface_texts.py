@@ -14,12 +14,10 @@ from types import ModuleType
 
 import numpy as np
 
-from mxeon.conformance import samples
+from mxeon.conformance import samples, tolerance
 from mxeon.conformance.samples import WHITE, Array, Batch, Candidate, Counts, Values, generator
 from mxeon.conformance.spec import ZERO, Ability, Input, ValueSpec, draw
-from mxeon.conformance.specs import surface_shaders
-from mxeon.conformance.specs.microfacets import FILM_ERRORS
-from mxeon.conformance.tolerance import Term, roundings, sum_of
+from mxeon.conformance.specs import microfacets, surface_shaders
 from mxeon.models.surfaces import gltf, open_pbr, standard_surface, usd_preview
 from mxeon.models.surfaces.lobes import Light
 from mxeon.shaders.nodes import document_text, node_text
@@ -34,10 +32,10 @@ ERRORS = {
     DIRECT: surface_shaders.VALUE,
     ENVIRONMENT: surface_shaders.ALBEDO,
     THROUGH: surface_shaders.GLASS,
-    EMITTED: sum_of(roundings(64, "of a color and two factors")),
+    EMITTED: tolerance.sum_of(tolerance.roundings(64, "of a color and two factors")),
 }
-STRETCHED = Term(surface_shaders.STRETCHED_FIT, "the fits for two alphas")
-FILMED = FILM_ERRORS["value"].term("a film")
+STRETCHED = tolerance.Term(surface_shaders.STRETCHED_FIT, "the fits for two alphas")
+FILMED = microfacets.FILM_ERRORS["value"].term("a film")
 
 
 @dataclass(frozen=True)
@@ -110,7 +108,7 @@ class Says:
     fixed: Values = field(default_factory=dict)
     permitted: tuple[str | Forms, ...] = ()
     wrong: tuple[str | Forms, ...] = ()
-    terms: tuple[Term, ...] = ()  # additional terms of its tolerance
+    terms: tuple[tolerance.Term, ...] = ()  # additional terms of its tolerance
     inputs: tuple[Input, ...] = ()
 
     def spec(self, text: Text) -> SentenceSpec:

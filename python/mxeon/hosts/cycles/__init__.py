@@ -20,16 +20,13 @@ from mxeon.errors import ImageError, InputError, NotRun, ShaderError
 from mxeon.hosts.base import Array, Identity, Inputs, Query
 from mxeon.hosts.calls import GRAPH
 from mxeon.hosts.cycles import process
-from mxeon.hosts.cycles.process import interpreter
 from mxeon.hosts.osl import points
 from mxeon.hosts.osl.points import side, statements, with_header
 from mxeon.hosts.pairs import DISTANCE, HEIGHT, LAMP, SKY, PairHost, tilted_triangles
 from mxeon.hosts.process import Worker
 from mxeon.io.images import read_image
-from mxeon.shaders import functions
-from mxeon.shaders.generation import Shader
+from mxeon.shaders import functions, generation, library
 from mxeon.shaders.inner_lobes import inner_lobes
-from mxeon.shaders.library import source_folder
 from mxeon.shaders.scene import Scene, sphere
 
 Socket: TypeAlias = float | Sequence[float]  # value of a Blender node's input
@@ -60,9 +57,9 @@ class CyclesHost(PairHost):
     profile = "cycles"
 
     def __init__(self, sources: Path | None = None, limit: float = 300.0) -> None:
-        self._sources = Path(sources or source_folder("eonlib") / "genosl").resolve()
+        self._sources = Path(sources or library.source_folder("eonlib") / "genosl").resolve()
         script = Path(__file__).with_name("worker.py")
-        self.worker = Worker(self.name, interpreter(), script, limit)
+        self.worker = Worker(self.name, process.interpreter(), script, limit)
         self._picture = lru_cache(maxsize=PICTURES)(self._rendered)
 
     def close(self) -> None:
@@ -72,7 +69,7 @@ class CyclesHost(PairHost):
         self.worker.start()
         return Identity(self.name, f"Blender {self.worker.version}", "CPU, OSL")
 
-    def picture(self, shader: Shader, scene: Scene) -> Array:
+    def picture(self, shader: generation.Shader, scene: Scene) -> Array:
         """Picture of the sphere with an OSL shader, float32; the only environment is a uniform one.
 
         Under a distant light it is exact up to float32. Under an environment a pixel is a mean of
@@ -87,7 +84,7 @@ class CyclesHost(PairHost):
         text = f"{head}{brace}{TEXCOORD}{body}}}"
         return self._picture(scene, inner_lobes(shader), text=text)
 
-    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
+    def approximations(self, shader: generation.Shader, scene: Scene) -> tuple[str, ...]:
         return process.approximations(scene, inner_lobes(shader))
 
     def _values(self, query: Query) -> Array:
@@ -97,7 +94,7 @@ class CyclesHost(PairHost):
         return self.execute(with_header(source, query.shader), GRAPH_FUNCTION, *arguments)
 
     def _pixels(
-        self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
+        self, shader: generation.Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
         scene = tilted_triangles(wo, wi, side(len(wo)))
         columns = points.columns_of(shader, inputs, scene.turned)
@@ -176,7 +173,7 @@ class CyclesHost(PairHost):
             raise NotRun(f"cycles: Blender wrote no picture that can be read; {error}") from None
 
 
-def _graph_function(shader: Shader, inputs: Inputs) -> tuple[str, list[ArrayLike]]:
+def _graph_function(shader: generation.Shader, inputs: Inputs) -> tuple[str, list[ArrayLike]]:
     """Text that defines GRAPH_FUNCTION, and the values of its arguments.
 
     `inputs` override the document's values by path or name. InputError without a uniform EDF.

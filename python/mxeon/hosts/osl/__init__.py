@@ -21,9 +21,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.errors import NotRun
 from mxeon.hosts import base
-from mxeon.hosts.base import Array, Identity, Inputs
-from mxeon.hosts.osl import points
-from mxeon.hosts.osl.carriers import prelude
+from mxeon.hosts.osl import carriers, points
 from mxeon.hosts.osl.engines import VARIABLES, Blender, Testshade
 from mxeon.hosts.osl.points import Column, row
 from mxeon.hosts.osl.trees import KeptTrees, TreeRows, keys_of, read_trees, whole_label, with_roots
@@ -59,15 +57,15 @@ class OslHost(base.Host):
     def close(self) -> None:
         self._engine.close()
 
-    def identity(self) -> Identity:
-        return Identity(self.name, f"{self._version} in {self._engine.version}", "CPU")
+    def identity(self) -> base.Identity:
+        return base.Identity(self.name, f"{self._version} in {self._engine.version}", "CPU")
 
     @cached_property
     def _version(self) -> str:
         number = int(self.execute(VERSION, "version", 0.0)[0, 0])
         return f"OSL {number // 10000}.{number // 100 % 100}.{number % 100}"
 
-    def trees(self, shader: Shader, wo: Array, inputs: Inputs) -> tuple[TreeRows, ...]:
+    def trees(self, shader: Shader, wo: base.Array, inputs: base.Inputs) -> tuple[TreeRows, ...]:
         """Trees of a shader's closures, with their arguments and weights.
 
         `wo`, shape (N, 3), and `inputs` are as in `evaluate`. Points whose closures differ only in numbers share a tree.
@@ -100,7 +98,7 @@ class OslHost(base.Host):
             return found
         return tuple(replace(each, tree=with_roots(each.tree)) for each in found)
 
-    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> base.Array:
         with self._engine.folder() as name:
             place, output = (
                 (Path(name, points.IMAGE), self._engine.place),
@@ -114,7 +112,7 @@ class OslHost(base.Host):
         """Lines that a shader prints at each point, by label."""
         rows: list[dict[str, str]] = [{} for _ in range(count)]
         engine = self._engine
-        head = f"{row(count, engine.place)}{prelude(text, engine.carrier)}"
+        head = f"{row(count, engine.place)}{carriers.prelude(text, engine.carrier)}"
         lines = engine.printed(folder, f"{head}{text}", count)
         for match in map(LINE.match, lines):
             if match and int(match[1]) < count:

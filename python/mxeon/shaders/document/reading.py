@@ -19,20 +19,10 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 from mxeon.errors import DocumentError
 from mxeon.io.files import AnyPath
 from mxeon.names import meant
-from mxeon.shaders.document import graphs
+from mxeon.shaders.document import graphs, references, words, xml
 from mxeon.shaders.document.notes import DocumentWarning, numbers, warn_of_elements
 from mxeon.shaders.document.policy import DEFAULT, Policy
-from mxeon.shaders.document.references import (
-    check_inside,
-    code_faults,
-    file_fault,
-    files,
-    folder,
-    missing_fault,
-)
 from mxeon.shaders.document.values import NUMERIC, TEXT, label, location
-from mxeon.shaders.document.words import word_faults
-from mxeon.shaders.document.xml import XmlChecker, decode, strict
 from mxeon.shaders.library import load_library
 
 __all__ = ["Document", "DocumentError", "DocumentWarning", "read_document"]
@@ -88,12 +78,18 @@ def read_document(
                 f"{location(each)} must not have the type {each.getType()}, which crashes "
                 "MaterialX: give it the type string"
             )
-    _resolve_files(content, elements, [folder(content), *map(Path, policy.path)])
+    _resolve_files(content, elements, [references.folder(content), *map(Path, policy.path)])
     content.setDataLibrary(data)
     _check_version(content, label(content))
     graphs.check_inheritance(content, policy)
     graphs.check_interfaces(content, elements, policy)
-    _raise([*code_faults(content, policy), *word_faults(content, elements), *_types(content)])
+    _raise(
+        [
+            *references.code_faults(content, policy),
+            *words.word_faults(content, elements),
+            *_types(content),
+        ]
+    )
     faults = list(_faults(content, elements, policy))
     renderables = _renderables(content)
     shown = graphs.upstream(content, elements, renderables)
@@ -127,7 +123,7 @@ def _resolve_files(
     for element in elements:
         name = element.getValueString() if element.isA(mx.ValueElement) else ""
         if "<" in name and element.getType() == "filename":
-            sets = (each / name for each in folders if files(each / name))
+            sets = (each / name for each in folders if references.files(each / name))
             element.setValueString(str(next(sets, name)))
 
 
@@ -136,7 +132,7 @@ class _Reader:
 
     def __init__(self, policy: Policy, home: Path) -> None:
         self._policy, self._home = policy, home
-        self._checker = XmlChecker(policy)
+        self._checker = xml.XmlChecker(policy)
         self._open: list[str] = []  # stack of the files being read
 
     def read_file(self, document: mx.Document, name: str) -> None:
@@ -144,7 +140,7 @@ class _Reader:
         data = self._checker.read(name)
         self._checker.check_size(data, name)
         self._open.append(os.path.realpath(name))
-        self._parse(document, decode(data, name), name)
+        self._parse(document, xml.decode(data, name), name)
         self._open.pop()
         document.setSourceUri(name)
 
@@ -155,7 +151,7 @@ class _Reader:
         self._parse(document, data.decode().removeprefix("\ufeff"), TEXT)
 
     def _parse(self, document: mx.Document, text: str, title: str) -> None:
-        text = strict(text)
+        text = xml.strict(text)
         self._checker.check(text, title)
 
         def include(part: mx.Document, name: mx.FilePath, *_: object) -> None:
@@ -176,7 +172,7 @@ class _Reader:
         folders = [base, self._home, *map(Path, self._policy.path)]
         paths = [os.path.realpath(each / name) for each in folders]
         path, rule = next(filter(os.path.isfile, paths), paths[0]), f"{title}: include must"
-        check_inside(path, self._home, self._policy, f"{title}: include")
+        references.check_inside(path, self._home, self._policy, f"{title}: include")
         if path in self._open:
             raise DocumentError(f"{rule} not lead back to the same document; got {name}")
         self._policy.check_limit("includes", len(self._open), f"{rule} be", "in a row")
@@ -249,7 +245,7 @@ def _value_fault(element: mx.ValueElement, policy: Policy) -> str:
         read = numbers(element)
         if not read or not all(map(math.isfinite, read)):
             return f"{location(element)} must be a valid {kind} of finite numbers; got {text}"
-    return file_fault(element, policy) if kind == "filename" else ""
+    return references.file_fault(element, policy) if kind == "filename" else ""
 
 
 def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
@@ -292,8 +288,8 @@ def _missing(nodes: Iterable[mx.Node], policy: Policy) -> Iterator[str]:
     for each in (port for node in nodes for port in node.getInputs()):
         port = each.getInterfaceInput() if each.hasInterfaceName() else each
         if port and port.getType() == "filename" and (name := port.getValueString()):
-            missing = missing_fault(port.getDocument(), port.getNamePath(), name)
-            if missing and not file_fault(port, policy):
+            missing = references.missing_fault(port.getDocument(), port.getNamePath(), name)
+            if missing and not references.file_fault(port, policy):
                 yield missing
 
 

@@ -21,9 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import NotRun
-from mxeon.hosts import webgl
-from mxeon.hosts.base import Array, Engine, Identity
-from mxeon.hosts.webgl import Answer, Page
+from mxeon.hosts import base, webgl
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import Scene
 from mxeon.survey.specs import Material
@@ -63,7 +61,7 @@ def modules_folder(package: str, host: str) -> Path:
     return folder
 
 
-def pixels(answer: Answer, size: int) -> NDArray[np.float32]:
+def pixels(answer: webgl.Answer, size: int) -> NDArray[np.float32]:
     """Picture of an answer, (size, size, 3), row 0 at the top."""
     values = np.frombuffer(base64.b64decode(answer["pixels"]), dtype=np.float32)
     return values.reshape(size, size, 4)[..., :3]
@@ -74,7 +72,7 @@ def material(backend: str, **more: str) -> Material:
     return {"color": "{color}", "roughness": "{roughness}", "backend": backend, **more}
 
 
-class PackageHost(webgl.Chromium, Engine):
+class PackageHost(webgl.Chromium, base.Engine):
     """The materials of an npm package, drawn by the page next to a host's module, each in `limit` seconds.
 
     The page is an ES module that exports `draw(job)`, which returns `pixels` or `failed`. `imports` maps names in the
@@ -96,13 +94,13 @@ class PackageHost(webgl.Chromium, Engine):
             lambda job, size: pixels(self.ask(json.loads(job)), size)
         )
 
-    def identity(self) -> Identity:
+    def identity(self) -> base.Identity:
         answers = [self.ask({"backend": backend}) for backend in self.backends]
         known = json.loads((self._modules / self.package / "package.json").read_text("utf-8"))
         version = f"{self.title} {known['version']}, Chromium {answers[0]['browser']}"
-        return Identity(self.name, version, "; ".join(answer["device"] for answer in answers))
+        return base.Identity(self.name, version, "; ".join(answer["device"] for answer in answers))
 
-    def node(self, material: Material, scene: Scene) -> Array:
+    def node(self, material: Material, scene: Scene) -> base.Array:
         self.refuse_paths(scene)
         job = {
             "size": scene.size,
@@ -113,7 +111,7 @@ class PackageHost(webgl.Chromium, Engine):
         }
         return self._picture(json.dumps(job), scene.size)
 
-    def ask(self, job: Mapping[str, object]) -> Answer:
+    def ask(self, job: Mapping[str, object]) -> webgl.Answer:
         """The page's answer to a job."""
         return self._ask("job => answer(job)", dict(job))
 
@@ -123,7 +121,7 @@ class PackageHost(webgl.Chromium, Engine):
         self._page.goto(ORIGIN)
         self._page.wait_for_function("window.answer")
 
-    def _serve(self, route: Page) -> None:
+    def _serve(self, route: webgl.Page) -> None:
         if route.request.url in self.assets:
             body = self.assets[route.request.url]
             route.fulfill(body=body, content_type="image/png", headers=SHARED)
