@@ -60,10 +60,6 @@ def compared_of(found: Compared | Iterable[Compared] | Measurement) -> list[Comp
     return [found] if isinstance(found, Compared) else list(found)
 
 
-def always(diagnosis: Diagnosis) -> Explain:
-    return lambda case: diagnosis
-
-
 @dataclass(frozen=True, kw_only=True)
 class Check:
     """A claim about nodes."""
@@ -74,7 +70,7 @@ class Check:
     measure: Measure  # comparisons, judged by their worst row, or a single number
     tolerance: str | Tolerance  # name of one of the spec's errors, or a fixed tolerance
     control: controls.Control
-    explain: Explain
+    explain: Explain | Diagnosis
     requires: Ability = NO_ABILITY  # what a backend must support to be judged
     # Profile of the generated text, if not the rasterizer's; only judged for nodes that the user names.
     profile: str = ""
@@ -138,10 +134,12 @@ class Check:
         tolerance = self.allowed(case)
 
         def explain() -> Diagnosis:
-            diagnosis = self.explain(case)  # permitted functions only excuse open checks
+            explained = self.explain
+            diagnosis = explained if isinstance(explained, Diagnosis) else explained(case)
             causes = diagnosis.causes
             if diagnosis.first in UNTOLD and (compared := compared_of(self.measure(case))):
                 causes = (searched(diagnosis.first, compared, tolerance),)
+            # Permitted functions only excuse open checks.
             permitted = self.open and diagnosis.permitted
             if permitted and not isinstance(self.measure, Comparison) and diagnosis.distances:
                 permitted = self.gives(case, diagnosis.first.key, tolerance)

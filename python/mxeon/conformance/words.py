@@ -355,7 +355,8 @@ def _region(cause: Cause) -> str:
     if not cause.point:
         return f"{begins} {wrong} of {count} pairs"
     joint = ", worst" if cause.key == "wrong" else "; worst"
-    return f"{begins} {_percent(wrong / count)} % of view/light pairs{joint} {_point(cause.point)}"
+    percent = _short(100.0 * wrong / count, 2 if wrong < 0.995 * count else 3)
+    return f"{begins} {percent} % of view/light pairs{joint} {_point(cause.point)}"
 
 
 def _point(point: Mapping[str, Sequence[float]]) -> str:
@@ -364,10 +365,6 @@ def _point(point: Mapping[str, Sequence[float]]) -> str:
         return f"with the view at {_degrees(point['wo'])}{light} degrees"
     numbers = (f"{name} {' '.join(f'{x:.3g}' for x in each)}" for name, each in point.items())
     return f"with {', '.join(numbers)}"
-
-
-def _percent(share: float) -> str:
-    return _short(100.0 * share, 2 if share < 0.995 else 3)
 
 
 def _degrees(direction: Sequence[float]) -> str:

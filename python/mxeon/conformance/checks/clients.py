@@ -194,10 +194,6 @@ def light(client: Client, methods: Methods, normal: Array) -> Array:
     return total
 
 
-def alpha_of(covered: float) -> float:
-    return 1.0 - 3.0 * TRANSPARENT * (1.0 - covered)
-
-
 def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
     """Measured and expected colors and alphas of each frame, with the words of its states."""
     from mxeon.shaders.generators import CLIENT_OPTIONS
@@ -224,7 +220,11 @@ def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
         for alpha in (False, True):
             scene = Scene("client", size=SIZE, client=replace(client, alpha=alpha))
             measured = case.host.picture(shader, scene)[points.mask].astype(np.float64)
-            expected = np.full_like(color, alpha_of(front + back)) if alpha else color
+            expected = (
+                np.full_like(color, 1.0 - 3.0 * TRANSPARENT * (1.0 - front - back))
+                if alpha
+                else color
+            )
             found = Compared(batch, case.outputs(batch, measured), expected).where(judged)
             yield words | {"alpha"} if alpha else words, found
 

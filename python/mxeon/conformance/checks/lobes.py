@@ -11,7 +11,7 @@ import numpy as np
 
 from mxeon.conformance import backends, controls, diagnosis, samples
 from mxeon.conformance.case import BRANCHES, Case, dead_inputs, edge_values, frames
-from mxeon.conformance.check import Check, Specs, always, family
+from mxeon.conformance.check import Check, Specs, family
 from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, TRANSMISSION, VALUE, Comparison, defect
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
@@ -492,7 +492,7 @@ ROWS = (
           applies=(VALUED | COMBINED | TRANSMITTING) & family(LobeSpec, lambda spec: bool(colored(spec))),
           measure=negative, tolerance=sum_of(roundings(64, "of two values")),
           control=controls.with_batch("signs are dropped", unsigned),
-          explain=always(defect("negative_color")), requires=Ability.PAIRS | Ability.LIGHT,
+          explain=defect("negative_color"), requires=Ability.PAIRS | Ability.LIGHT,
           methods=lambda spec, methods: methods.transmission != "opacity" or not UNTINTED(spec)),
     Check(key="finite", claim="Every value at the edges of the domain is finite.",
           applies=LOBES | MODES | FILMS, measure=lambda case: count_not_finite(edge_values(case)),
@@ -544,7 +544,7 @@ ROWS = (
           control=controls.with_values(
               "values are multiplied twice",
               lambda batch, values: values * np.reshape(batch.inputs[FACTOR], (len(values), -1))),
-          explain=always(replace(defect("factor_not_clamped"), permitted=True)),
+          explain=replace(defect("factor_not_clamped"), permitted=True),
           requires=Ability.PAIRS, open=True),
     *(
         Check(key=key, claim=row.claim, applies=family(HairSpec),

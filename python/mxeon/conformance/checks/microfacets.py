@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance import backends, controls, diagnosis, samples
 from mxeon.conformance.case import SCATTERING, Case, dead_inputs, remembered
-from mxeon.conformance.check import Check, always, family
+from mxeon.conformance.check import Check, family
 from mxeon.conformance.checks import lobes
 from mxeon.conformance.checks.lobes import CLEAR, FILMS, TRANSMITTING
 from mxeon.conformance.checks.states import TURNING, in_turn
@@ -657,7 +657,7 @@ ROWS = (
           claim="Where the printed curve of dark colors is below 0, nothing is reflected.",
           applies=FACETS & family(FacetSpec, lambda spec: "color82" in spec.row.inputs), measure=dark,
           tolerance="value", control=controls.with_inputs("color82 is 1", color82=(1.0, 1.0, 1.0)),
-          explain=always(replace(defect("curve_below_0"), permitted=True)), requires=Ability.PAIRS,
+          explain=replace(defect("curve_below_0"), permitted=True), requires=Ability.PAIRS,
           open=True),
     Check(key="shape",
           claim="For one view, the values for two lights have the same ratio as the products D F G2.",
@@ -684,7 +684,7 @@ ROWS = (
     Check(key="anisotropic_albedo",
           claim="The environment branch of an anisotropic lobe returns MaterialX's sum of its values, masked by the mean alpha; with the library's own sum, all that the lobe reflects.",
           applies=FACETS, measure=anisotropic_albedo, tolerance="anisotropic_albedo",
-          control=isotropic, explain=always(Diagnosis((UNKNOWN,))),
+          control=isotropic, explain=Diagnosis((UNKNOWN,)),
           requires=Ability.PAIRS | Ability.LIGHT,
           methods=lambda spec, methods: with_directions(spec, methods) or bool(methods.searched)),
     Check(key="anisotropic_value", claim="The value of a lobe with two alphas matches the model.",
@@ -694,7 +694,7 @@ ROWS = (
           claim="A lobe with two alphas passes to its base what it does not reflect.",
           applies=family(FacetSpec, lambda spec: spec.row.layerable),
           measure=anisotropic_throughput, tolerance="anisotropic_throughput", control=controls.pass_all,
-          explain=always(Diagnosis((UNKNOWN,))), requires=Ability.PAIRS | Ability.LIGHT),
+          explain=Diagnosis((UNKNOWN,)), requires=Ability.PAIRS | Ability.LIGHT),
     Check(key="transmitted",
           claim="In a uniform environment, the light that passes lies between the BTDF's share and all that is not reflected.",
           applies=TRANSMITTING, measure=transmitted, tolerance="value",
@@ -729,12 +729,12 @@ ROWS = (
     Check(key="refraction",
           claim="An uneven environment is looked up along the ray that a solid sphere refracts.",
           applies=TRANSMITTING, measure=refraction, tolerance=REFRACTED, control=DENSER,
-          explain=always(Diagnosis((UNKNOWN,))), requires=Ability.LIGHT,
+          explain=Diagnosis((UNKNOWN,)), requires=Ability.LIGHT,
           methods=lambda spec, methods: methods.transmission == "refraction"),
     Check(key="rough_refraction",
           claim="Rough glass of two alphas looks an uneven environment up where its visible facets refract to.",
           applies=TRANSMITTING, measure=rough_refraction, tolerance="rough_refraction", control=isotropic,
-          explain=always(defect("other_refraction")), requires=Ability.PAIRS | Ability.LIGHT,
+          explain=defect("other_refraction"), requires=Ability.PAIRS | Ability.LIGHT,
           methods=lambda spec, methods: methods == GENERATED),
     Check(key="transmitted_finite",
           claim="All light through the surface is finite at the edges of the domain.",
@@ -779,7 +779,7 @@ ROWS = (
     Check(key="film_brushed",
           claim="In an environment, a lobe of two alphas under a film reflects the film's share of what a mirror does.",
           applies=FILMS, measure=film_brushed, tolerance="anisotropic_throughput", control=dropped,
-          explain=always(Diagnosis((UNKNOWN,))), requires=Ability.PAIRS | Ability.LIGHT, methods=with_directions),
+          explain=Diagnosis((UNKNOWN,)), requires=Ability.PAIRS | Ability.LIGHT, methods=with_directions),
     Check(key="film_glossy",
           claim="On glossy lobes, too, the albedo averages the film's reflectance over the visible facets.",
           applies=FILMS, measure=partial(visible, microfacets.GLOSSY), tolerance="film_glossy", control=dropped,

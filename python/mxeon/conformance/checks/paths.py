@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance import cache, controls
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import Check, Specs, always, family
+from mxeon.conformance.check import Check, Specs, family
 from mxeon.conformance.checks.lobes import BELOW, CLEAR, DARK, TRANSMITTING
 from mxeon.conformance.checks.microfacets import with_directions
 from mxeon.conformance.checks.surface_shaders import SURFACES
@@ -689,43 +689,43 @@ ROWS = (
           tolerance=sum_of(roundings(
               64, "of two directions and their frame, times 1 + the inverse of the lobe's own alpha")),
           control=controls.scale("values are 0.1 % too large", 1.001),
-          explain=always(defect("other_path_value")),
+          explain=defect("other_path_value"),
           methods=lambda spec, methods: not methods.distributed),  # distributed layers change sums above 1
     PATHS(key="path_emission",
           claim="A path tracer's emission is the node's equation, from both sides of surfaces along each axis.",
           applies=family(EmissionSpec), measure=path_emission, tolerance="value",
           control=controls.scale("values are 0.1 % too large", 1.001),
-          explain=always(defect("other_path_emission")), requires=NO_ABILITY),
+          explain=defect("other_path_emission"), requires=NO_ABILITY),
     PATHS(key="path_random",
           claim="The random numbers of a tracer's text are those of pcg4d.",
           applies=family(LobeSpec, lambda spec: spec.node == "eon_diffuse_bsdf"), measure=path_random,
           tolerance=given(0.0, Quantity.VALUE, "the same bits"),
           control=controls.scale("numbers are half as large", 0.5),
-          explain=always(defect("other_random_numbers"))),
+          explain=defect("other_random_numbers")),
     PATHS(key="path_inside",
           claim="Light inside a solid is reflected and refracted as outside of one of the inverse index.",
           applies=GLASSY & Specs(lambda spec: spec.node in GLASS), measure=path_inside,
           tolerance=sum_of(roundings(
               256, "of an index that OpenPBR takes from its reflectance, near a critical angle")),
           control=controls.scale("values are 0.1 % too large", 1.001),
-          explain=always(defect("inside_is_not_outside"))),
+          explain=defect("inside_is_not_outside")),
     PATHS(key="path_albedo",
           claim="Draws from outside carry the light that a rasterizer reflects and transmits.",
           applies=SURFACES, measure=path_albedo,
           tolerance=ALBEDO.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
-          explain=always(defect("other_path_albedo")),
+          explain=defect("other_path_albedo"),
           methods=lambda spec, methods: (
               with_directions(spec, methods) and methods.transmission == "refraction")),
     PATHS(key="path_energy",
           claim="Draws at a clear solid carry all light, from outside and from inside.",
           applies=CLEAR, measure=path_energy, tolerance=PASSING.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
-          explain=always(defect("light_from_inside"))),
+          explain=defect("light_from_inside")),
     PATHS(key="path_leaving",
           claim="From inside a clear solid, draws that leave it carry what enters by the same paths.",
           applies=CLEAR, measure=path_leaving, tolerance=THROUGHPUT.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
-          explain=always(defect("light_from_inside"))),
+          explain=defect("light_from_inside")),
 )
 # fmt: on

@@ -24,7 +24,8 @@ from mxeon.shaders.nodes import document_text, node_text
 
 Forms = tuple[str, ...]  # formulas that replace the text's, by their names in a model
 PAIRS = 24  # each albedo takes a millisecond
-GRAZING = 0.05  # least cosine of a direction
+GRAZING = 0.05  # least cosine of a direction; others are replaced by SLANTED
+SLANTED = samples.float32([0.6, 0.0, 0.8])
 TILTED = (0.48, 0.36, 0.8)
 DIRECT, ENVIRONMENT = ("direct", "response", np.pi), ("environment", "response", 1.0)
 THROUGH, EMITTED = ("transmission", "response", 1.0), ("emission", "radiance", 1.0)
@@ -89,12 +90,9 @@ class SentenceSpec(ValueSpec):
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         rng = generator()
-        wo, wi = (_above(samples.directions(rng, PAIRS)) for _ in range(2))
+        pairs = (samples.directions(rng, PAIRS) for _ in range(2))
+        wo, wi = (np.where(each[:, 2:] < GRAZING, SLANTED, each) for each in pairs)
         return (Batch(wo, wi, draw(rng, PAIRS, self.inputs)),)
-
-
-def _above(directions: Array) -> Array:
-    return samples.float32(np.where(directions[:, 2:] < GRAZING, [0.6, 0.0, 0.8], directions))
 
 
 @dataclass(frozen=True)
