@@ -182,8 +182,9 @@ def frames(case: Case) -> Iterator[Compared]:
     # An albedo sums over the environment, which is slow: every fifth pair covers both sides.
     some = turned.where(slice(None, None, 5))
     shown = [(case.direct, turned), (case.albedo, some)]
-    if "retroreflective" in case.changes:
-        shown.append((case.direct, some.altered(retroreflective=True)))
+    for each in case.spec.inputs:
+        if each.type == "boolean" and each.name in case.changes.keys() - case.spec.fixed.keys():
+            shown.append((case.direct, some.altered(**{each.name: True})))
     for output, batch in shown:
         local = replace(batch.altered(normal=(0.0, 0.0, 1.0), tangent=(1.0, 0.0, 0.0)), frame=None)
         yield Compared(batch, output(batch), output(local))
