@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes every generated file that needs no engine and no other version of MaterialX: `python -m tools.site`.
 
-These are the OSL twins, the explorer, the ledger's index, and the tables of other pages. What is measured on hosts
+These are the OSL twins, the ledger's index, and the tables of other pages. What is measured on hosts
 (`specification`, `field`, `versions`, `ledger.measure`, pictures) has its own command.
 """
 
 from pathlib import Path
 
-from mxeon.explorer import page, page_data
 from mxeon.io.files import write_text
-from tools.site import arrays, brushed, explorer, gallery, note, research, twins, versions
+from tools.site import arrays, brushed, gallery, note, research, twins, versions
 from tools.site.ledger import pages
 
 
@@ -20,7 +19,6 @@ def made() -> dict[Path, str]:
         **{twins.path(stem): twins.osl_text(stem) for stem in twins.STEMS},
         **{path: of(path.read_text(encoding="utf-8")) for path, of in tables.items()},
         gallery.PAGE: gallery.page(),
-        explorer.PAGE: page(page_data(pages=explorer.PAGES)),
     }
 
 

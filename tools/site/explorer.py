@@ -1,27 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Make `docs/explore.html`, and its picture on the page about it: `python -m tools.site.explorer`."""
+"""The explorer on the site; `python -m tools.site.explorer` draws the picture of the page about it."""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from mxeon.explorer import page, page_data
 from mxeon.hosts.webgl import FLAGS, is_root, program
 from mxeon.io.files import write_text
 from tools.site import DOCS
 
-PAGE = DOCS / "explore.html"
 PICTURE = DOCS / "images" / "explorer.png"
 PAGES = "upstream/{}.html"  # relative to the page in the built site
 SIZE = {"width": 1280, "height": 900}
 
 
+def text() -> str:
+    """The explorer, whose links lead to the site's pages of the ledger."""
+    return page(page_data(pages=PAGES))
+
+
 def main() -> None:
     from playwright.sync_api import sync_playwright
 
-    write_text(PAGE, page(page_data(pages=PAGES)))
-    with sync_playwright() as playwright:
+    with TemporaryDirectory() as folder, sync_playwright() as playwright:
+        file = Path(folder, "explore.html")
+        write_text(file, text())
         browser = playwright.chromium.launch(
             executable_path=program(), args=FLAGS, chromium_sandbox=not is_root()
         )
         sheet = browser.new_page(viewport=SIZE)
-        sheet.goto(PAGE.as_uri())
+        sheet.goto(file.as_uri())
         sheet.get_by_text("shader, float32").first.wait_for()
         sheet.wait_for_timeout(5000)  # until the edges of the picture are smooth
         sheet.screenshot(path=PICTURE)

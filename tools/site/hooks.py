@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Add pages from outside `docs/` to the site, adapt pages to the site, and fill in the ledger's figures."""
+"""Add the explorer and pages from outside `docs/`, adapt pages to the site, fill in the ledger's figures."""
 
 import re
 from pathlib import Path
 
 from mkdocs.structure.files import File
 
+from tools.site import explorer
 from tools.site.ledger.pages import filled
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -18,10 +19,11 @@ OUTSIDE = {
 
 
 def on_files(files, config):
-    """Add the home page, the changelog and contributing."""
+    """Add the home page, the changelog, contributing and the explorer."""
     pages = {page: ROOT / name for page, name in OUTSIDE.items()}
     for page, path in pages.items():
         files.append(File.generated(config, page, abs_src_path=str(path)))
+    files.append(File.generated(config, "explore.html", content=explorer.text()))
     return files
 
 
