@@ -76,7 +76,6 @@ OSL = ("generate", "--target", "osl", "--outputPath", "out")
         (["check", PLASTER, "--host", "abacus"], "host must be one of gl"),
         (["check", PLASTER, "--library", "mine"], "library must be one of eonlib, diffuse, stock"),
         (["render", CLAY, "--output", "out.exr"], "--element must name one of"),
-        (["render", PLASTER, "--output", "out.gif"], "output must end in .exr or .png"),
         (
             ["render", PLASTER, "--output", "none/out.exr"],
             "must lie in a folder that exists; got none/",

@@ -86,12 +86,6 @@ def test_eon_returns_all_energy_at_unit_reflectance(r):
     assert abs(eon_albedo_avg(1.0, r) - 1.0) <= tolerances.ONE_ROUNDING
 
 
-@pytest.mark.parametrize("r", FRACTIONS)
-@pytest.mark.parametrize("mu", [0.0, 1e-6, 0.1, 0.7, 1.0])
-def test_white_furnace_of_the_value_of_eon_is_white(mu, r):
-    assert abs(albedo_dir_quadrature(eon_brdf, mu, 1.0, r) - 1.0) <= tolerances.QUADRATURE
-
-
 def test_fon_and_eon_never_reflect_more_than_they_receive():
     mu, r = MU[:, np.newaxis], np.linspace(0.0, 1.0, 11)
     fon = fon_albedo_dir(mu, r)
@@ -202,10 +196,3 @@ def test_albedos_broadcast_as_documented():
     assert eon_albedo_dir(mu, rho, r).shape == eon_albedo_avg(rho, r).shape == (4, 5, 3)
     assert eon_albedo_dir(0.5, 0.5, 0.5).shape == (1,)
     assert albedo_dir_quadrature(eon_brdf, mu, rho, r, nodes=2).shape == (4, 5, 3)
-
-
-@named(CLOSED)
-def test_albedos_of_a_row_have_a_channel_axis(row):
-    extra = parameter(row, 0.5)
-    assert row.albedo_dir(MU, RHO, *extra).shape == (MU.size, RHO.size)
-    assert row.albedo_avg(RHO, *extra).shape == RHO.shape
