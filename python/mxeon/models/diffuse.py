@@ -681,7 +681,7 @@ def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arra
         f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1)
 
     Result (..., C): in 1/sr; too bright where rho lies between 0 and 0.1, and correct elsewhere.
-    Babylon.js 9.34.0 divides EON by the reflectance, which it keeps above 0.1; its albedo is the
+    Babylon.js 9.35.0 divides EON by the reflectance, which it keeps above 0.1; its albedo is the
     paper's quartic.
     """
 
