@@ -28,7 +28,9 @@ ROW = """#define MXEON_AT(x, y) ((int) floor({size} * (y)) * {size} + (int) floo
 #define MXEON_ROW MXEON_AT({place})
 """
 FILTER = '0.0, 0.0, 0.0, 0.0, "interp", "closest"'
-READ = f'texture("{{image}}", {{place}}, {FILTER}, "firstchannel", {{first}})'
+# Blender 5.3 ignores "firstchannel" and "closest" and turns images upside down: columns stand side by
+# side in an image of three channels that is the same either way up, with 2 x 2 equal pixels per point.
+READ = f'texture("{{image}}", ({{column}} + {{x}}) / {{columns}}, 0.5 * ({{y}}), {FILTER})'
 NO_WARNING = "#pragma osl nowarn"  # oslc warns if a surface shader sets a global
 IMAGE = "points.tif"  # EXR would sort more than ten channels by their names
 
@@ -63,28 +65,26 @@ def statements(columns: Mapping[str, Column], image: Path, count: int, place: st
 
     `place` has the OSL expressions of the coordinates at which a point reads its pixel, unfiltered.
     """
-    lines, values = [], [np.zeros((count, 0), np.float32)]
-    for name, column in columns.items():
-        rows = np.broadcast_to(column.rows, (count, column.rows.shape[1]))
-        first = sum(each.shape[1] for each in values)
-        values.append(rows)
-        x, y = (READ.format(image=image.as_posix(), place=place, first=first + n) for n in (0, 1))
-        # Textures have no vector2 and int: make them from floats.
+    lines, size, (x, y) = [], side(count), place.split(", ")
+    pixels = np.zeros((size * size, len(columns), 3), np.float32)
+    for number, (name, column) in enumerate(columns.items()):
+        pixels[:count, number, : column.rows.shape[1]] = column.rows
+        read = READ.format(image=image.as_posix(), column=number, columns=len(columns), x=x, y=y)
+        # Textures have no normals, vector2 and int.
         if column.kind == "vector2":
-            lines += [f"float {name}_x = {x};", f"float {name}_y = {y};"]
-            lines += [f"vector2 {name} = vector2({name}_x, {name}_y);"]
+            lines += [f"color {name}_xy = {read};"]
+            lines += [f"vector2 {name} = vector2({name}_xy[0], {name}_xy[1]);"]
         elif column.kind == "int":
-            lines += [f"float {name}_float = {x};", f"int {name} = (int) {name}_float;"]
+            lines += [f"float {name}_float = {read};", f"int {name} = (int) {name}_float;"]
         elif column.declared:
-            kind = "vector" if column.kind == "normal" else column.kind  # textures have no normals
-            lines.append(f"{kind} {name} = {x};")
+            kind = "vector" if column.kind == "normal" else column.kind
+            lines.append(f"{kind} {name} = {read};")
         else:
-            lines += [NO_WARNING, f"{name} = {x};"]
+            lines += [NO_WARNING, f"{name} = {read};"]
     if columns:
-        size, channels = side(count), sum(each.shape[1] for each in values)
-        pixels = np.zeros((size * size, channels), np.float32)
-        pixels[:count] = np.concatenate(values, axis=1)
-        write_image(image, pixels.reshape(size, size, channels), {"compression": "none"})
+        upright = pixels.reshape(size, size, -1, 3).swapaxes(1, 2).reshape(size, -1, 3)
+        mirrored = np.concatenate([upright, upright[::-1]]).repeat(2, axis=0).repeat(2, axis=1)
+        write_image(image, mirrored, {"compression": "none"})
     return lines
 
 
