@@ -6,7 +6,7 @@ import itertools
 import os
 import sys
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from importlib import import_module
 from typing import Any, NoReturn
@@ -30,7 +30,6 @@ MATERIALX = "MXEON_MATERIALX"  # names the folder of --materialx to processes of
 
 Commands = Any  # what `add_subparsers` returns; argparse keeps its type private
 Run = Callable[[argparse.Namespace], int]
-Group = argparse._ActionsContainer  # a parser, or a group of its options
 
 
 class _Format(argparse.RawDescriptionHelpFormatter):
@@ -127,41 +126,46 @@ def _folder(name: str) -> str:
     return name
 
 
-def add(group: Group, names: str, help: str, **settings: Any) -> None:
-    """Add an argument. `names` ends in the name of its value, such as "--output FILE"; flags have none."""
-    *options, last = names.split()
-    if last.startswith("--"):
-        group.add_argument(*options, last, action="store_true", help=help)
-    else:
-        group.add_argument(*options, metavar=last, help=help, **settings)
+# Options that several commands have.
+SHARED: Mapping[str, Mapping[str, Any]] = {
+    "--json": {"action": "store_true", "help": "print JSON"},
+    "--report": {
+        "metavar": "DIR",
+        "help": "write an HTML page, JSON, JUnit XML and pictures to DIR",
+    },
+    "--full": {"action": "store_true", "help": "print every check, not a summary"},
+    "--library": {"default": "eonlib", "metavar": "NAME", "help": LIBRARY},
+    "--materialx": {
+        "type": _folder,
+        "metavar": "FOLDER",
+        "help": "use your own build of MaterialX; FOLDER holds its Python package, MaterialX/",
+    },
+    "--workers": {
+        "type": int,
+        "default": os.cpu_count(),
+        "metavar": "N",
+        "help": "number of worker processes (default: one per core; 0: none, run in this process)",
+    },
+    "--timeout": {
+        "type": float,
+        "default": TIMEOUT,
+        "metavar": "SECONDS",
+        "help": "stop a worker that takes longer than this for one item (default: %(default)g)",
+    },
+    "--definitions": {
+        "action": "append",
+        "type": _folder,
+        "default": [],
+        "metavar": "FOLDER",
+        "help": "load the MaterialX definitions in FOLDER in addition to the library; they are "
+        "trusted like the library; repeatable",
+    },
+}
 
 
-# Options that several commands have: names, help and settings.
-# fmt: off
-SHARED: tuple[tuple[str, str, dict[str, Any]], ...] = (
-    ("--json", "print JSON", {}),
-    ("--report DIR", "write an HTML page, JSON, JUnit XML and pictures to DIR", {}),
-    ("--full", "print every check, not a summary", {}),
-    ("--library NAME", LIBRARY, {"default": "eonlib"}),
-    ("--materialx FOLDER",
-     "use your own build of MaterialX; FOLDER holds its Python package, MaterialX/", {"type": _folder}),
-    ("--workers N", "number of worker processes (default: one per core; 0: none, run in this process)",
-     {"type": int, "default": os.cpu_count()}),
-    ("--timeout SECONDS",
-     "stop a worker that takes longer than this for one item (default: %(default)g)",
-     {"type": float, "default": TIMEOUT}),
-    ("--definitions FOLDER",
-     "load the MaterialX definitions in FOLDER in addition to the library; they are trusted like the "
-     "library; repeatable", {"action": "append", "type": _folder, "default": []}),
-)
-# fmt: on
-
-
-def add_shared(command: Group, *names: str) -> None:
-    rows = {each[0].split()[0]: each for each in SHARED}
+def add_shared(command: argparse.ArgumentParser, *names: str) -> None:
     for name in names:
-        option, help, settings = rows[name]
-        add(command, option, help, **settings)
+        command.add_argument(name, **SHARED[name])
 
 
 def use_materialx(folder: str | None) -> None:
@@ -200,14 +204,14 @@ def inputs(
 
 def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defaults: int) -> None:
     """Add the options of `mxeon.shaders.document.policy`; --allowCode for commands that run shaders."""
-    add(
-        command,
-        "--path FOLDER",
-        "also look here for images and includes, after the document's own folder and "
-        f"before those in ${SEARCH_PATH}; repeatable",
+    command.add_argument(
+        "--path",
         action="append",
         type=_folder,
         default=[],
+        metavar="FOLDER",
+        help="also look here for images and includes, after the document's own folder and "
+        f"before those in ${SEARCH_PATH}; repeatable",
     )
     add_shared(command, "--definitions")
     command.add_argument(
@@ -217,13 +221,15 @@ def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defa
         help="list the options for documents you do not trust: permissions and size limits",
     )
     group = command.add_argument_group(UNTRUSTED)
-    add(
-        group,
+    group.add_argument(
         "--allowOutside",
-        "let documents read files outside their folder, the search path and the libraries",
+        action="store_true",
+        help="let documents read files outside their folder, the search path and the libraries",
     )
     if runs_code:
-        add(group, "--allowCode", "run shader code that documents contain")
+        group.add_argument(
+            "--allowCode", action="store_true", help="run shader code that documents contain"
+        )
     for name, meaning in LIMITS.items():
         group.add_argument(
             f"--max{name.capitalize()}",

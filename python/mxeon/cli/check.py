@@ -34,61 +34,63 @@ def add_parser(commands: arguments.Commands) -> None:
         "check --library ./libraries --node all  # every node of your copy of MaterialX",
         "check --library ./libraries --baseline accepted  # what got worse since a run",
     )
-    arguments.add(
-        command,
-        "files FILE",
-        "MaterialX documents, or folders of them; without any, check the library's common "
-        "nodes and the bundled examples",
+    command.add_argument(
+        "files",
         nargs="*",
+        metavar="FILE",
+        help="MaterialX documents, or folders of them; without any, check the library's common "
+        "nodes and the bundled examples",
     )
-    arguments.add(
-        command,
-        "--host NAME",
-        f"where to run the shaders: {default} (default), {', '.join(others)}, or all; repeatable",
+    command.add_argument(
+        "--host",
         action="append",
+        metavar="NAME",
+        help=f"where to run the shaders: {default} (default), {', '.join(others)}, or all; repeatable",
     )
-    arguments.add(
-        command,
-        "--library NAME",
-        f"{arguments.LIBRARY}. Repeatable. Without it, FILEs are checked with stock too, "
+    command.add_argument(
+        "--library",
+        action="append",
+        metavar="NAME",
+        help=f"{arguments.LIBRARY}. Repeatable. Without it, FILEs are checked with stock too, "
         "for comparison; only eonlib sets the exit status",
-        action="append",
     )
-    arguments.add(
-        command,
-        "--node NAME",
-        "check the nodes of this category (such as sheen_bsdf), or 'common' or 'all' nodes, "
-        "even if no document uses them; repeatable. 'list' prints the names",
+    command.add_argument(
+        "--node",
         action="append",
+        metavar="NAME",
+        help="check the nodes of this category (such as sheen_bsdf), or 'common' or 'all' nodes, "
+        "even if no document uses them; repeatable. 'list' prints the names",
     )
     arguments.add_shared(command, "--report")
-    arguments.add(
-        command,
-        "--baseline FILE",
-        "results.json, or the report's folder, of an accepted run: the exit status is 1 only "
+    command.add_argument(
+        "--baseline",
+        metavar="FILE",
+        help="results.json, or the report's folder, of an accepted run: the exit status is 1 only "
         "if something got worse, 3 if a check no longer runs",
     )
-    arguments.add(
-        command,
+    command.add_argument(
         "--annotations",
-        "also print failures, or what got worse, as commands to GitHub's log",
+        action="store_true",
+        help="also print failures, or what got worse, as commands to GitHub's log",
     )
-    arguments.add(command, "--resume", "continue an interrupted run in the --report folder")
+    command.add_argument(
+        "--resume", action="store_true", help="continue an interrupted run in the --report folder"
+    )
     arguments.add_shared(command, "--full", "--json", "--workers", "--timeout")
-    arguments.add(
-        command,
-        "--seed N",
-        "random seed; also varies the number of samples (default: %(default)s)",
+    command.add_argument(
+        "--seed",
         type=int,
         default=1,
+        metavar="N",
+        help="random seed; also varies the number of samples (default: %(default)s)",
     )
-    arguments.add(command, "--scheduler ADDRESS", "run on this Dask cluster")
-    arguments.add(
-        command,
-        "--waitForWorkers SECONDS",
-        "how long to wait for a worker of the cluster (default: %(default)g)",
+    command.add_argument("--scheduler", metavar="ADDRESS", help="run on this Dask cluster")
+    command.add_argument(
+        "--waitForWorkers",
         type=float,
         default=WAIT,
+        metavar="SECONDS",
+        help="how long to wait for a worker of the cluster (default: %(default)g)",
     )
     arguments.add_methods(command)
     arguments.add_shared(command, "--materialx")

@@ -20,18 +20,24 @@ def add_parser(commands: arguments.Commands) -> None:
         "doc template.md --output nodes.md",
         "doc MaterialX.PBRSpec.md --compare",
     )
-    arguments.add(
-        command, "file FILE", "Markdown, in which @MX_TABLE_node@ becomes that node's table"
+    command.add_argument(
+        "file", metavar="FILE", help="Markdown, in which @MX_TABLE_node@ becomes that node's table"
     )
-    arguments.add(command, "--compare", "compare the tables of FILE with the node definitions")
-    arguments.add(command, "--output FILE", "file to write to (default: standard output)")
-    arguments.add(
-        command,
-        "--library NAME",
-        "stock (default), eonlib, or a folder of MaterialX documents to load first",
+    command.add_argument(
+        "--compare",
+        action="store_true",
+        help="compare the tables of FILE with the node definitions",
+    )
+    command.add_argument(
+        "--output", metavar="FILE", help="file to write to (default: standard output)"
+    )
+    command.add_argument(
+        "--library",
         default="stock",
+        metavar="NAME",
+        help="stock (default), eonlib, or a folder of MaterialX documents to load first",
     )
-    arguments.add(command, "--json", "print the differences as JSON")
+    command.add_argument("--json", action="store_true", help="print the differences as JSON")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -27,21 +27,23 @@ def add_parser(commands: arguments.Commands) -> None:
         "explore my.mtlx --output page.html  # a page to send to somebody",
         "explore --report out  # adds what `mxeon check --report out` found",
     )
-    arguments.add(command, "files FILE", "MaterialX documents to add", nargs="*")
-    arguments.add(
-        command,
-        "--output OUT",
-        "write a self-contained .html file (default: show the page until Ctrl-C)",
+    command.add_argument("files", nargs="*", metavar="FILE", help="MaterialX documents to add")
+    command.add_argument(
+        "--output",
+        metavar="OUT",
+        help="write a self-contained .html file (default: show the page until Ctrl-C)",
     )
-    arguments.add(
-        command, "--environment IMAGE", "latitude-longitude image to light materials with"
+    command.add_argument(
+        "--environment", metavar="IMAGE", help="latitude-longitude image to light materials with"
     )
-    arguments.add(command, "--report RUN", "add the diagnoses of a run: its report folder")
-    arguments.add(
-        command,
-        "--library NAME",
-        "what to compare eonlib with: stock (default), or a folder",
+    command.add_argument(
+        "--report", metavar="RUN", help="add the diagnoses of a run: its report folder"
+    )
+    command.add_argument(
+        "--library",
         default="stock",
+        metavar="NAME",
+        help="what to compare eonlib with: stock (default), or a folder",
     )
     arguments.add_shared(command, "--materialx", "--workers", "--timeout")
     arguments.add_policy(command, runs_code=True, shaders=DOCUMENT_LIMIT)

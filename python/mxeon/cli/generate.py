@@ -25,20 +25,25 @@ def add_parser(commands: arguments.Commands) -> None:
         "generate my.mtlx --target osl --profile cycles --outputPath out  # for Blender",
         "generate my.mtlx --target glsl --closures path --outputPath out  # for a path tracer",
     )
-    arguments.add(command, "files FILE", "MaterialX documents", nargs="+")
-    arguments.add(
-        command,
-        "--target NAME",
-        f"shading language: {', '.join(CLASSES)}; repeatable",
+    command.add_argument("files", nargs="+", metavar="FILE", help="MaterialX documents")
+    command.add_argument(
+        "--target",
         action="append",
         required=True,
+        metavar="NAME",
+        help=f"shading language: {', '.join(CLASSES)}; repeatable",
     )
-    arguments.add(command, "--outputPath DIR", "folder to write the shaders to", required=True)
-    arguments.add(command, "--element NAME", "generate this material only (default: all)")
-    arguments.add(
-        command,
-        "--profile --closures NAME",
-        "variant of a target: cycles, the OSL of Blender's Cycles; or path, GLSL that a path tracer includes",
+    command.add_argument(
+        "--outputPath", metavar="DIR", required=True, help="folder to write the shaders to"
+    )
+    command.add_argument(
+        "--element", metavar="NAME", help="generate this material only (default: all)"
+    )
+    command.add_argument(
+        "--profile",
+        "--closures",
+        metavar="NAME",
+        help="variant of a target: cycles, the OSL of Blender's Cycles; or path, GLSL that a path tracer includes",
     )
     names = "--library", "--materialx", "--json", "--workers", "--timeout"
     arguments.add_shared(command, *names)

@@ -23,8 +23,10 @@ def add_parser(commands: arguments.Commands) -> None:
             channel, type=float, help="albedo to reach, linear (not sRGB), in [0, 1]"
         )
     command.add_argument("--roughness", type=float, required=True, help="in [0, 1]")
-    arguments.add(
-        command, "--average", "R G B is the average over all views, not the albedo seen head-on"
+    command.add_argument(
+        "--average",
+        action="store_true",
+        help="R G B is the average over all views, not the albedo seen head-on",
     )
 
 

@@ -21,33 +21,33 @@ def add_parser(commands: arguments.Commands) -> None:
     actions = group.add_subparsers(required=True, title="commands", metavar="ACTION")
     summary = "write scenes, materials and instructions"
     export = arguments.add_command(actions, "export", summary, run_export, examples[0])
-    arguments.add(export, "folder DIR", "folder to write to")
-    arguments.add(
-        export,
-        "--size N",
-        "width and height in pixels, 64 to 2048 (default: %(default)s)",
+    export.add_argument("folder", metavar="DIR", help="folder to write to")
+    export.add_argument(
+        "--size",
         type=int,
         default=128,
+        metavar="N",
+        help="width and height in pixels, 64 to 2048 (default: %(default)s)",
     )
-    arguments.add(
-        export,
-        "--node NAME",
-        "BSDF node of the materials, with inputs color and roughness (default: %(default)s)",
+    export.add_argument(
+        "--node",
         default=OREN_NAYAR,
+        metavar="NAME",
+        help="BSDF node of the materials, with inputs color and roughness (default: %(default)s)",
     )
     arguments.add_shared(export, "--definitions", "--library", "--materialx")
     summary = "check the images in DIR/renders"
     check = arguments.add_command(actions, "check", summary, run_check, *examples[1:])
-    arguments.add(check, "folder DIR", "the folder of the kit")
-    arguments.add(
-        check, "--renderer NAME", "name of the renderer in the report", default="renderer"
+    check.add_argument("folder", metavar="DIR", help="the folder of the kit")
+    check.add_argument(
+        "--renderer", default="renderer", metavar="NAME", help="name of the renderer in the report"
     )
-    arguments.add(
-        check,
-        "--claims MODEL",
-        "the one model that the renderer claims: eon, qon, fon or lambert (default: EON and QON, "
-        "chosen by energy_compensation)",
+    check.add_argument(
+        "--claims",
         default="",
+        metavar="MODEL",
+        help="the one model that the renderer claims: eon, qon, fon or lambert (default: EON and QON, "
+        "chosen by energy_compensation)",
     )
     arguments.add_shared(check, "--report", "--full", "--json")
 

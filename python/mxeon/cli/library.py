@@ -19,9 +19,13 @@ def add_parser(commands: arguments.Commands) -> None:
         "library --export eonlib.zip  # a copy for machines without Python",
         "library --verify  # which implementation each target uses",
     )
-    arguments.add(command, "--folder", "print the folder only")
-    arguments.add(command, "--verify", "list the implementation that each target uses")
-    arguments.add(command, "--export DIR", "write a copy to the new folder DIR, or to DIR.zip")
+    command.add_argument("--folder", action="store_true", help="print the folder only")
+    command.add_argument(
+        "--verify", action="store_true", help="list the implementation that each target uses"
+    )
+    command.add_argument(
+        "--export", metavar="DIR", help="write a copy to the new folder DIR, or to DIR.zip"
+    )
 
 
 def run(options: argparse.Namespace) -> int:

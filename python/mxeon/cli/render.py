@@ -27,31 +27,38 @@ def add_parser(commands: arguments.Commands) -> None:
         "render my.mtlx --output my.png --geometry teapot.obj",
         "render my.mtlx --output my.png --integrator path --samples 256",
     )
-    arguments.add(command, "file FILE", "a MaterialX document")
-    arguments.add(command, "--output OUT", "the image: .png (sRGB) or .exr (linear)", required=True)
-    arguments.add(command, "--element NAME", "the material, if the document has several")
-    arguments.add(command, "--host NAME", f"renderer: gl (default), {hosts}", default="gl")
-    arguments.add(
-        command,
-        "--scene NAME",
-        "light: studio, front, side, back, furnace (default: studio, or side where the host cannot draw it)",
+    command.add_argument("file", metavar="FILE", help="a MaterialX document")
+    command.add_argument(
+        "--output", metavar="OUT", required=True, help="the image: .png (sRGB) or .exr (linear)"
     )
-    arguments.add(
-        command,
-        "--environment IMAGE",
-        "light it with this latitude-longitude image; with --scene, use both lights",
+    command.add_argument(
+        "--element", metavar="NAME", help="the material, if the document has several"
     )
-    arguments.add(
-        command,
-        "--shape --geometry NAME",
-        "ball, a shader ball (default in the studio), sphere (default in other light), or an .obj or .glb file",
+    command.add_argument(
+        "--host", default="gl", metavar="NAME", help=f"renderer: gl (default), {hosts}"
     )
-    arguments.add(
-        command,
-        "--size N",
-        "width and height in pixels (default: %(default)s)",
+    command.add_argument(
+        "--scene",
+        metavar="NAME",
+        help="light: studio, front, side, back, furnace (default: studio, or side where the host cannot draw it)",
+    )
+    command.add_argument(
+        "--environment",
+        metavar="IMAGE",
+        help="light it with this latitude-longitude image; with --scene, use both lights",
+    )
+    command.add_argument(
+        "--shape",
+        "--geometry",
+        metavar="NAME",
+        help="ball, a shader ball (default in the studio), sphere (default in other light), or an .obj or .glb file",
+    )
+    command.add_argument(
+        "--size",
         type=int,
         default=512,
+        metavar="N",
+        help="width and height in pixels (default: %(default)s)",
     )
     command.add_argument(
         "--integrator",
@@ -59,17 +66,17 @@ def add_parser(commands: arguments.Commands) -> None:
         default="raster",
         help="path: on gl, trace paths of light, with shadows and reflections of the object itself",
     )
-    arguments.add(
-        command,
-        "--samples N",
-        "paths per pixel, for cycles and --integrator path (default: automatic)",
+    command.add_argument(
+        "--samples",
         type=int,
+        metavar="N",
+        help="paths per pixel, for cycles and --integrator path (default: automatic)",
     )
-    arguments.add(
-        command,
-        "--bounces N",
-        "bounces per path, for cycles and --integrator path (default: automatic)",
+    command.add_argument(
+        "--bounces",
         type=int,
+        metavar="N",
+        help="bounces per path, for cycles and --integrator path (default: automatic)",
     )
     arguments.add_shared(command, "--library", "--materialx", "--workers", "--timeout")
     arguments.add_policy(command, runs_code=True)

@@ -22,17 +22,21 @@ def add_parser(commands: arguments.Commands) -> None:
     actions = group.add_subparsers(required=True, title="commands", metavar="ACTION")
     summary = "write the report of a run, finished or not"
     make = arguments.add_command(actions, "make", summary, run_make, examples[0])
-    arguments.add(make, "report DIR", "the folder of the run")
+    make.add_argument("report", metavar="DIR", help="the folder of the run")
     arguments.add_shared(make, "--full", "--json")
     summary = "list what changed between two runs; the exit status is 1 if something got worse, 3 if a check no longer runs"
     diff = arguments.add_command(actions, "diff", summary, run_diff, examples[1])
-    arguments.add(diff, "before BEFORE", "folder of a report, or its results.json")
-    arguments.add(diff, "after AFTER", "the same of a later run")
+    diff.add_argument("before", metavar="BEFORE", help="folder of a report, or its results.json")
+    diff.add_argument("after", metavar="AFTER", help="the same of a later run")
     arguments.add_shared(diff, "--json")
     summary = "show the renderers of many reports on one page"
     field = arguments.add_command(actions, "field", summary, run_field, examples[2])
-    arguments.add(field, "reports DIR", "folder of a report, or of several reports", nargs="+")
-    arguments.add(field, "--output FILE", "the page (default: %(default)s)", default="field.html")
+    field.add_argument(
+        "reports", metavar="DIR", nargs="+", help="folder of a report, or of several reports"
+    )
+    field.add_argument(
+        "--output", metavar="FILE", default="field.html", help="the page (default: %(default)s)"
+    )
     summary = "print the JSON Schema of the results of a report"
     arguments.add_command(actions, "schema", summary, run_schema, examples[3])
 
