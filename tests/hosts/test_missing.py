@@ -36,6 +36,11 @@ MODULES = [  # host, a module that imports a package, the package, and the expec
     ("webgl", "webgl.sync_api", r"Playwright is not installed; pip install '\.\[webgl\]'"),
     ("vulkan", "vulkan.wgpu", r"wgpu is not installed; pip install '\.\[vulkan\]'"),
     ("wgsl", "vulkan.wgpu", "wgpu is not installed"),
+    (
+        "shadewire",
+        "shadewire.mtlx",
+        r"the package is not installed; pip install '\.\[shadewire\]'",
+    ),
     ("slang", "slang.slangpy", r"slangpy is not installed; pip install '\.\[slang\]'"),
 ]
 

@@ -38,7 +38,7 @@ from mxeon.hosts.testrender_scene import EYE, NEAREST
 from mxeon.models.nodes.node import Scattering, Variant
 from mxeon.models.nodes.renderers import BSDL_VARIANTS, CYCLES_VARIANTS
 from mxeon.models.shading_model import ALONG, UP
-from mxeon.shaders.methods import Methods
+from mxeon.shaders.methods import UNCHOSEN, Methods
 from mxeon.shaders.scene import (
     BACK,
     CLIENT,
@@ -83,6 +83,7 @@ class Backend(ABC):
     whole: ClassVar[bool] = False  # whether controls and expensive checks use all samples
     fewer: ClassVar[Counts | None] = None  # upper limits of a spec's sample counts
     own_errors: ClassVar[Errors | None] = None  # replace the spec's errors
+    methods: ClassVar[Methods] = UNCHOSEN  # the methods of an engine that has no choice
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
         self.host, self.spec, self.library = host, spec, library
@@ -428,6 +429,37 @@ class Closures(Evaluating):
         """Frames of a surface shader's lobes, which its text takes from the surface instead of an input."""
         names = self.spec.names if Ability.MATERIAL in self.spec.requires else ()
         return tuple(each for each in names if each.endswith(("normal", "tangent")))
+
+
+class Functions(Evaluating):
+    """A compiler whose functions return values and MaterialX's fit of albedos, but no transmitted light."""
+
+    abilities = Evaluating.abilities & ~(
+        Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.TRANSMISSION
+    )
+    plain = Closures.plain
+    methods = Methods("prefilter")
+
+    @classmethod
+    def errors(cls, spec: Spec) -> Errors:
+        return {**super().errors(spec), "color_space": None, "glass": None}
+
+    @property
+    def unset(self) -> tuple[str, ...]:
+        return tuple(name for name in self.spec.names if name.startswith("transmission"))
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """Samples without occlusion, which is the renderer's."""
+        return tuple(
+            each.altered(**dict.fromkeys({"occlusion"} & each.inputs.keys(), 1.0))
+            for each in super().batches
+        )
+
+    def together(
+        self, batch: Batch, irradiance: NDArray[np.float32] | None, client: Client, two: bool
+    ) -> Array:
+        return np.pi * self.evaluate(batch, "direct", shader=self.two if two else self.shader)
 
 
 # Renderers whose camera and light show one pair per pixel.
@@ -863,6 +895,7 @@ class UtilityOsl(Evaluating):
 BACKENDS: dict[str, tuple[type[Backend], ...]] = {
     "pairs": (Evaluating, LobesBelow, DarkPictures, Frames),
     "closures": (Closures,),
+    "functions": (Functions,),
     "rendered": (Rendered, RenderedLobes),
     "pictures": (CyclesPictures, Traced, EmissionPictures, InTheDark, DarkPictures, UtilityOsl),
     "drawn pictures": (Drawn,),

@@ -116,6 +116,7 @@ class Check:
         self, spec: Spec, backend: type[backends.Backend], host: str, methods: Methods = GENERATED
     ) -> bool:
         """Whether it judges a node on a host, by one of its backends, with a client's methods."""
+        methods = backend.methods.over(methods)
         if not (self.applies(spec) and self.hosts(spec, host) and self.methods(spec, methods)):
             return False
         own = self.tolerance

@@ -48,6 +48,10 @@ def start(name: str) -> Engine:
             from mxeon.hosts.storm import StormHost
 
             return StormHost()
+        case "shadewire":
+            from mxeon.hosts.shadewire import ShadewireHost
+
+            return ShadewireHost()
         case "cycles":
             from mxeon.hosts.cycles import CyclesHost
 
@@ -103,6 +107,7 @@ HOSTS = (
         surfaces=True,
         rounding=2.0**-10,  # half floats, truncated
     ),
+    Row("shadewire", "glsl", "functions"),
     # Its environment has noise. No closure of Cycles is QON for s < 0.
     Row("cycles", "osl", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
     Row("testrender", "osl", "rendered", surfaces=True),

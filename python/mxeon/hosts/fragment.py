@@ -140,12 +140,20 @@ def function_evaluation(
     source: str, function: str, arguments: Sequence[ArrayLike], target: str
 ) -> tuple[str, Columns]:
     """A pixel stage that evaluates a function of `source`, and its texels as in `bsdf_evaluation`."""
-    dialect, parameters = DIALECTS[target], functions.parameters(source, function)
+    parameters = functions.parameters(source, function)
     values = {
         name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
     }
     store = f"mxeon_out = vec4(vec3({function}({', '.join(values)})), 1.0);"
-    main, texels = _main(dialect, values, [store])
+    return evaluation(source, values, [store], target)
+
+
+def evaluation(
+    source: str, arguments: Mapping[str, tuple[str, ArrayLike]], body: Sequence[str], target: str
+) -> tuple[str, Columns]:
+    """A pixel stage whose main reads arguments and executes `body`, and its texels as in `bsdf_evaluation`."""
+    dialect = DIALECTS[target]
+    main, texels = _main(dialect, arguments, body)
     return dialect.version + dialect.prelude + dialect.output + source + main, texels
 
 

@@ -220,7 +220,10 @@ class FragmentHost(base.Host):
         return texels.reshape(TABLE_SIZE, TABLE_SIZE, 3)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        pixel, texels = fragment.function_evaluation(source, function, arguments, self.target)
+        return self.drawn(*fragment.function_evaluation(source, function, arguments, self.target))
+
+    def drawn(self, pixel: str, texels: Mapping[str, Array]) -> Array:
+        """Values of a pixel stage that needs no vertex stage, one pixel per row of its texels."""
         vertex = fragment.DIALECTS[self.target].vertex
         return self._in_parts(Frame(vertex, pixel, texels, environment(None)))
 

@@ -660,7 +660,7 @@ PATHS = partial(
     Check,
     requires=Ability.PAIRS,
     profile="path",
-    hosts=lambda spec, host: host_row(host).target in TARGETS,
+    hosts=lambda spec, host: host_row(host).way == "pairs" and host_row(host).target in TARGETS,
 )
 
 

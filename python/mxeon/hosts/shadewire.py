@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""shadewire, a MaterialX compiler in Rust with closures of its own: its GLSL, executed as on the host `gl`.
+
+It reads a document and returns a library of GLSL functions for a renderer to call. Inputs that vary are connected to
+geometric properties, whose functions the renderer has to define, so the text is unchanged.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import TypeAlias
+
+import MaterialX as mx
+from numpy.typing import ArrayLike
+
+from mxeon.errors import NotRun, install
+from mxeon.hosts import base, fragment
+from mxeon.hosts.base import Array, Identity, Query, RendererWarning
+from mxeon.hosts.calls import GRAPH, NORMAL, SURFACE, TANGENT
+from mxeon.hosts.gl import GlHost
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.methods import Methods
+from mxeon.shaders.nodes import FRAME_INPUTS
+
+try:
+    from shadewire import ShadewireError, glsl, mtlx, version
+except ImportError:
+    mtlx = None
+
+MODELS = ("surface", "surface_unlit")  # a tree of closures, or emission alone
+SKIPPED = ": not evaluated"  # ends the comment behind a black lobe
+EMITTED = "shadewire_eval_emission(surface, V, N)"
+BSDF = "shadewire_eval_bsdf(surface, L, V, N)"
+# Responses by branch: nothing is transmitted, and nothing scattered is emitted.
+RESPONSES = {
+    "direct": f"{BSDF}.response",
+    "environment": "shadewire_eval_albedo(surface, V, N)",
+    "transmission": "vec3(0.0)",
+    "emission": "vec3(0.0)",
+    GRAPH: EMITTED,
+}
+OUTPUTS = {"throughput": f"{BSDF}.throughput", "radiance": EMITTED}  # every branch has the same
+FRAME = """vec3 host_normal, host_tangent;
+vec3 shadewire_host_normal_world() { return host_normal; }
+vec3 shadewire_host_tangent_world() { return host_tangent; }
+vec3 shadewire_host_bitangent_world() { return cross(host_normal, host_tangent); }
+"""
+PROPERTY = "{0} host_{1};\n{0} shadewire_host_geomprop_{1}() {{ return host_{1}; }}\n"
+TYPES = {"float": "float", "boolean": "bool", "integer": "int", "vector2": "vec2"}  # others: vec3
+
+Properties: TypeAlias = Mapping[str, tuple[str, str]]  # key of the given inputs, and type
+
+
+class ShadewireHost(base.Host):
+    name = "shadewire"
+    target = "glsl"
+    default, fixed = Methods("prefilter"), True  # its albedos are MaterialX's fit
+
+    def __init__(self) -> None:
+        if mtlx is None:
+            raise NotRun(f"shadewire: the package is not installed; {install('shadewire')}")
+        self._gl = GlHost()
+
+    def identity(self) -> Identity:
+        gl = self._gl.identity()
+        return Identity(self.name, f"shadewire {version()}, OpenGL {gl.version}", gl.device)
+
+    def close(self) -> None:
+        self._gl.close()
+
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
+        return self._gl.execute(source, function, *arguments)
+
+    def _values(self, query: Query) -> Array:
+        shader, wo, wi, inputs, branch, output, irradiance, _ = query
+        value = OUTPUTS.get(output) or RESPONSES.get(branch)
+        if value is None or irradiance is not None:
+            raise self._unsupported("lookups of an environment, only albedos", "gl")
+        document, properties = _connected(shader, inputs.keys())
+        tangent = inputs.get("tangent", inputs.get("curve_direction", TANGENT))
+        arguments: dict[str, tuple[str, ArrayLike]] = {
+            "V": ("vector3", wo),
+            "L": ("vector3", wi),
+            "N": ("vector3", inputs.get(SURFACE, NORMAL)),
+            "normal": ("vector3", inputs.get("normal", NORMAL)),
+            "tangent": ("vector3", tangent),
+            **{name: (kind, inputs[key]) for name, (key, kind) in properties.items()},
+        }
+        text = _compiled(document) + FRAME
+        for name, (_, kind) in properties.items():
+            text += PROPERTY.format(TYPES.get(kind, "vec3"), name)
+        body = [f"host_{name} = {name};" for name in [*arguments][3:]]
+        body.append("Surface surface = shadewire_eval_surface();")
+        body.append(f"mxeon_out = vec4({value}, 1.0);")
+        return self._gl.drawn(*fragment.evaluation(text, arguments, body, self.target))
+
+
+def _connected(shader: Shader, given: Collection[str]) -> tuple[str, Properties]:
+    """Text of a shader's document with the library's definitions, whose given inputs are geometric properties.
+
+    The frame of the surface is the renderer's.
+    """
+    document = mx.createDocument()
+    document.copyContentFrom(shader.document)
+    document.setDataLibrary(shader.document.getDataLibrary())
+    properties: dict[str, tuple[str, str]] = {}
+    nodes = [each for each in document.traverseTree() if each.isA(mx.Node)]
+    for node in nodes:
+        definition = node.getNodeDef()
+        for port in definition.getActiveInputs() if definition else ():
+            name, kind = port.getName(), port.getType()
+            keys = [key for key in (f"{node.getNamePath()}/{name}", name) if key in given]
+            own = node.getInput(name)
+            linked = own is not None and own.getValue() is None
+            if keys and kind in fragment.FETCH and name not in FRAME_INPUTS and not linked:
+                title = f"own_{len(properties)}"
+                properties[title] = keys[0], kind
+                node.removeInput(name)
+                source = node.getParent().addNode("geompropvalue", f"mxeon_{title}", kind)
+                source.setInputValue("geomprop", title)
+                node.addInput(name, kind).setConnectedNode(source)
+    for folder in shader.folders:
+        for file in sorted(Path(folder).rglob("*.mtlx")):
+            mx.prependXInclude(document, str(file))
+    return mx.writeToXmlString(document), properties
+
+
+def _compiled(document: str) -> str:
+    """shadewire's text for a document, without its first line.
+
+    Raises NotRun if shadewire refuses the document; warns of a lobe that it replaces by black.
+    """
+    try:
+        ir = mtlx.to_ir(document, "", models=MODELS, values_as_uniforms=False)
+        _, text = glsl.compile(ir, 430).code.split("\n", 1)
+    except ShadewireError as error:
+        raise NotRun(f"shadewire: {error}") from None
+    for line in text.splitlines():
+        if line.endswith(SKIPPED):
+            warnings.warn(RendererWarning(f"its text says {line.strip()!r}"), stacklevel=2)
+    return str(text)
