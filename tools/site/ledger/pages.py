@@ -37,6 +37,7 @@ GROUPS = {
     "babylon": "Babylon.js",
     "pathtracer": "three-gpu-pathtracer",
     "luxcore": "LuxCoreRender",
+    "shadewire": "shadewire",
     "testrender": "OSL's testrender",
     "printed": "Printed specifications",
 }

@@ -14,6 +14,7 @@ import cattrs
 
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Cause, Kind, Quantity, Result
 from mxeon.errors import CheckError
+from mxeon.hosts import HOSTS
 from mxeon.io.records import UNREADABLE, strict_converter
 from mxeon.shaders.library import data_folder
 
@@ -129,7 +130,9 @@ def _pairs(table: Table) -> tuple[Row, ...]:
 
 
 RENDERERS = {"cycles": "this Blender", "three": "this three.js", "babylon": "this Babylon.js"}
-RENDERERS |= {"three-gpu-pathtracer": "this three-gpu-pathtracer"}
+RENDERERS |= {name: f"this {name}" for name in ("shadewire", "three-gpu-pathtracer")}
+# Hosts whose closures are their own, with every library.
+OWN_CLOSURES = tuple(row.name for row in HOSTS if row.way == "functions")
 LEFT = 30.0  # smaller errors of the correct model have a different cause than the issue
 SPREAD = 1.5  # engines, drivers and versions of MaterialX may exceed an issue's size by this factor
 
@@ -166,7 +169,7 @@ def with_pages(result: Result, materialx: str = "") -> Result:
     found = [
         issue
         for issue in issues().values()
-        if (library == issue.library or issue.unavoidable)
+        if (library == issue.library or issue.unavoidable or result.host in OWN_CLOSURES)
         and result.host in (issue.host, *issue.also)
         and (result.check, result.subject) in (*issue.rows, *issue.implied)
         and _explains(issue, result, materialx)
