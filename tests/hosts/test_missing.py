@@ -36,6 +36,7 @@ MODULES = [  # host, a module that imports a package, the package, and the expec
     ("webgl", "webgl.sync_api", r"Playwright is not installed; pip install '\.\[webgl\]'"),
     ("vulkan", "vulkan.wgpu", r"wgpu is not installed; pip install '\.\[vulkan\]'"),
     ("wgsl", "vulkan.wgpu", "wgpu is not installed"),
+    ("hlsl", "vulkan.wgpu", "wgpu is not installed"),
     (
         "shadewire",
         "shadewire.mtlx",

@@ -28,6 +28,10 @@ def start(name: str) -> Engine:
             from mxeon.hosts.vulkan import VulkanHost
 
             return VulkanHost()
+        case "hlsl":
+            from mxeon.hosts.hlsl import HlslHost
+
+            return HlslHost()
         case "wgsl":
             from mxeon.hosts.wgsl import WgslHost
 
@@ -88,6 +92,7 @@ HOSTS = (
     Row("gl", "glsl", "pairs", scenes=(SIDE, BACK, WHITE_LIGHT), surfaces=True),
     Row("webgl", "essl", "pairs", scenes=(SIDE, BACK, WHITE_LIGHT)),
     Row("vulkan", "vulkan", "pairs"),
+    Row("hlsl", "vulkan", "pairs"),
     Row("wgsl", "wgsl", "pairs"),
     Row("slang", "slang", "pairs"),
     Row("osl", "osl", "closures"),

@@ -67,16 +67,20 @@ class VulkanHost(FragmentHost):
     name = "vulkan"
     target = "vulkan"
     path: ClassVar[str] = ""  # name of the converter
-    programs: ClassVar[tuple[str, ...]] = (COMPILER[0], REMOVER[0])
+    # Debian's packages of the programs that it runs.
+    programs: ClassVar[tuple[tuple[str, str], ...]] = (
+        (COMPILER[0], "glslang-tools"),
+        (REMOVER[0], "spirv-tools"),
+    )
     interfaces: ClassVar[tuple[str, ...]] = ("Vulkan",)  # wgpu's names of driver interfaces
 
     def __init__(self) -> None:
         if wgpu is None:
             raise NotRun(f"{self.name}: wgpu is not installed; {install('vulkan')}")
-        for program in self.programs:
+        for program, package in self.programs:
             if shutil.which(program) is None:
                 raise NotRun(
-                    f"{self.name}: no program {program!r}; on Debian: apt-get install glslang-tools"
+                    f"{self.name}: no program {program!r}; on Debian: apt-get install {package}"
                 )
         adapters = wgpu.gpu.enumerate_adapters_sync()
         found = [each for each in adapters if each.info["backend_type"] in self.interfaces]
@@ -181,7 +185,7 @@ class VulkanHost(FragmentHost):
         return fragment.DIALECTS[self.target].vertex
 
     def _code(self, stage: str, text: str) -> bytes | str:
-        return _spirv(stage, text)
+        return spirv(stage, text)
 
     def _generated(self, frame: raster.Frame) -> Bindings:
         """Bindings of a generated text: textures, white by default, and blocks."""
@@ -219,15 +223,15 @@ class VulkanHost(FragmentHost):
 
 
 @lru_cache(maxsize=8)  # the vertex stage is always the same
-def _spirv(stage: str, text: str) -> bytes:
+def spirv(stage: str, text: str) -> bytes:
     with Temporary("mxeon-vulkan-") as folder:
         whole, used = str(Path(folder, "whole")), Path(folder, "used")
-        _run([*COMPILER, "-S", stage, "-o", whole], text)
-        _run([*REMOVER, whole, "-o", str(used)])
+        run([*COMPILER, "-S", stage, "-o", whole], text)
+        run([*REMOVER, whole, "-o", str(used)])
         return used.read_bytes()
 
 
-def _run(command: Sequence[str], text: str = "") -> None:
+def run(command: Sequence[str], text: str = "") -> None:
     try:
         process = subprocess.run(
             command, input=text, capture_output=True, text=True, timeout=TIMEOUT, errors="replace"
