@@ -108,18 +108,7 @@ float ltc_density(vec3 wo, vec3 wi, float roughness, float d)
     return ratio * ratio * max(wh_z, 0.0) / EON_PI;
 }
 
-// The transformed cosine without the coefficient d.
-vec3 ltc0_sample(vec3 wo, float u1, float u2, float roughness)
-{
-    return ltc_transformed(wo, cosine_sample(u1, u2), roughness, 0.0);
-}
-
-float ltc0_pdf(vec3 wo, vec3 wi, float roughness)
-{
-    return ltc_density(wo, wi, roughness, 0.0);
-}
-
-// The general transformed cosine, whose samples below the horizon are wasted.
+// The transformed cosine, whose samples below the horizon are wasted.
 vec3 ltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
     return ltc_transformed(wo, cosine_sample(u1, u2), roughness, ltc_md(wo.z, roughness));

@@ -173,7 +173,7 @@ def test_the_expression_of_a_lobe_is_bounded_and_is_never_executed(
     "file, old, new, words",
     [
         ("ltc_sampling", "0.303392", "0.303695",
-         {"samples": "ltc_ma is off by", "densities": "with it ltc_density, ltc0_pdf, ltc_pdf"}),
+         {"samples": "ltc_ma is off by", "densities": "with it ltc_density, ltc_pdf, cltc_pdf"}),
         ("eon_sampling", "return mu_i * parts", "return parts", {"densities": "eon_pdf is off by"}),
         ("eon_sampling", "* (1.0 / upper)", "* upper", {"samples": "eon_draw is off by"}),
         ("oren_nayar_family", "0.0571085289", "0.0571656374",

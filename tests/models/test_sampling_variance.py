@@ -18,7 +18,7 @@ from tests.support import tolerances
 from tests.support.hemispheres import every_scene, hemisphere, view
 from tools.paper.samplers import BY_NAME
 
-UNBIASED = [BY_NAME[name] for name in ("uniform", "cosine", "ltc0", "eon_cltc", "eon")]
+UNBIASED = [BY_NAME[name] for name in ("uniform", "cosine", "eon_cltc", "eon")]
 ANGLES = (0.0, 1e-3, 0.03, 0.1, 0.3, 0.6, 0.9, 1.0)
 # Down to where cosine sampling is nearly exact.
 ROUGHNESS = (1e-9, 1e-6, 1e-3, 0.05, 0.25, 0.5, 0.75, 1.0)

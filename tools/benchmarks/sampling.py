@@ -35,7 +35,7 @@ from tools.paper.samplers import BY_NAME, moments
 COSINES = np.linspace(0.01, 1.0, 100)
 ROUGHNESSES = (0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 1.0)
 VIEWS = (1.0, 0.7, 0.3, 0.1)
-PRINTED = ("uniform", "cosine", "ltc0", "eon_cltc", "eon")
+PRINTED = ("uniform", "cosine", "eon_cltc", "eon")
 
 
 def lobe(polar, sharpness):

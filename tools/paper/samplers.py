@@ -39,7 +39,6 @@ SAMPLERS = (
         lambda wo, wi, roughness: sampling.cosine_pdf(wi),
         "cosine",
     ),
-    Sampler("ltc0", sampling.ltc0_sample, sampling.ltc0_pdf, "LTC, d = 0"),
     Sampler("ltc", sampling.ltc_sample, sampling.ltc_pdf, "LTC"),
     Sampler("cltc", sampling.cltc_sample, sampling.cltc_pdf, "CLTC"),
     Sampler("eon_cltc", sampling.eon_cltc_sample, sampling.eon_cltc_pdf, "CLTC + uniform"),

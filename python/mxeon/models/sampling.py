@@ -373,33 +373,6 @@ def eon_flat_direction(
 
 
 @any_array
-def ltc0_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled by the transformed cosine without the coefficient d, and its density.
-
-    `wi` (..., 3): Unit vectors above the horizon. `pdf` (...): 1/sr. The paper fits a, b and c
-    again for d = 0 and prints no result. Here the general fit's values are used. [Portsmouth2025],
-    Section 4, Eqs. (22) to (25), Listing 2.
-
-        >>> wi, pdf = ltc0_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
-        >>> wi.round(6), round(float(pdf), 6)
-        (array([-0.310077,  0.      ,  0.950711]), 0.227343)
-    """
-    wo, u, roughness = checked_draw(wo, u, roughness=roughness)
-    return ltc_transformed(wo, cosine_sample(u)[0], roughness, 0.0)
-
-
-@any_array
-def ltc0_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `ltc0_sample` at `wi`: [Portsmouth2025], Eqs. (23) and (24).
-
-    >>> round(float(ltc0_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
-    0.31831
-    """
-    wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
-    return ltc_density(wo, wi, roughness, 0.0)
-
-
-@any_array
 def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the transformed cosine, possibly below the horizon, and its density.
 
@@ -453,9 +426,7 @@ def ltc_md(mu: Array, roughness: Array | float) -> Array:
     return roughness * d / (-1.0743 + (0.0725628 + mu) * mu)
 
 
-def ltc_transformed(
-    wo: Array, wh: Array, roughness: Array, d: Array | float
-) -> tuple[Array, Array]:
+def ltc_transformed(wo: Array, wh: Array, roughness: Array, d: Array) -> tuple[Array, Array]:
     """Unit M wh in the local frame of the surface, and its density under the clamped cosine."""
     a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_ma, ltc_mb, ltc_mc))
     x, y, z = wh[..., 0], wh[..., 1], wh[..., 2]
@@ -466,7 +437,7 @@ def ltc_transformed(
     return rotate_z(wi / length[..., np.newaxis], cosine, sine), pdf
 
 
-def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array | float) -> Array:
+def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array) -> Array:
     """Density at `wi` of M wh / |M wh| for `wh` under the clamped cosine."""
     a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_ma, ltc_mb, ltc_mc))
     cosine, sine, _ = azimuth_frame(wo)
@@ -727,8 +698,6 @@ __all__ = [
     "eon_sample",
     "ggx_pdf",
     "ggx_sample",
-    "ltc0_pdf",
-    "ltc0_sample",
     "ltc_pdf",
     "ltc_sample",
     "uniform_pdf",
