@@ -106,9 +106,9 @@ PDF = 20.0 * ROUNDING
 # weights: 56; a length moves by half of that and is taken twice.
 DIRECTION = 72.0 * ROUNDING
 
-# The same directions with the view turned, whose sine is rounded anew: as in float32 stretching
-# takes that beyond a factor of 10 for a thousandth of the samples, one of 1000. More than 10 are so
-# with a probability of 1e-8.
+# Directions sampled for a turned view, whose sine is rounded anew. As in float32, stretching makes the
+# difference more than 10 times larger for a thousandth of the samples: for one of 1000 on average, and
+# for more than 10 with a probability of 1e-8.
 TURNED_DIRECTION = 10.0 * DIRECTION
 TURNED_SHARE = 10 / 1000
 

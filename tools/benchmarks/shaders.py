@@ -36,7 +36,8 @@ QUARTIC = 1.25e-3
 WEIGHT = 2e-4
 # Share of samples close to a border between parts, which may fall on its other side.
 SHARE = 2e-3
-# Largest weights without that share, which scale the tolerances of values: cosine, and transformed.
+# Largest weights of samples away from borders, of the cosine and of transformed cosines; the tolerance
+# of a value is in proportion.
 LARGEST, LARGEST_LTC = 20.0, 4.0
 
 KERNEL = """#version 430

@@ -60,7 +60,7 @@ def shader_curve(category, material, mu, width=0.0):
     opd = film.path_difference(mu, thickness, n)
     spread = (2.0 * film.METERS * thickness) ** 2 * width * mu / np.maximum(opd, LEAST_PATH)
     interfaces = SUBSTRATES[category](mu, n, TEXT, **substrate(material))
-    # Their mean over all phases, and the weight of orders and the amplitude of the first.
+    # Reflectance averaged over all phases; weight of the orders, and amplitude of the first.
     pairs = [np.broadcast_arrays(r12**2, R23) for r12, _, R23 in interfaces]
     lost = [np.maximum(1.0 - first * second, LEAST_LOST) for first, second in pairs]
     means = [R + (1.0 - R) ** 2 * S / each for (R, S), each in zip(pairs, lost, strict=True)]

@@ -147,7 +147,7 @@ def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     yield Region("mirror"), (wo * [-1.0, -1.0, 1.0] == wi).all(axis=1)
     yield Region("half_vector_upright"), upright
     yield Region("viewer_along_tangent"), (np.abs(wo) == [1.0, 0.0, 0.0]).all(axis=1)
-    # One cosine, then both.
+    # The cosine of the view or of the light, then both cosines.
     for name, mu in (("viewer", mu_o), ("light", mu_i)):
         yield Region(f"{name}_along_normal"), mu >= 1.0
         yield Region(f"{name}_cosine_above", low=0.99), mu > 0.99

@@ -59,7 +59,7 @@ def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Ter
 
 
 VALUE = sum_of(*lobe_terms(LEAST_VARIANCE, LEAST_SCALE), quantity=Quantity.FULL_SPHERE)
-# Two values; turned vectors add five roundings per product to those of an angle.
+# A turned value is compared with an unturned one; turning adds five roundings to those of each angle.
 TWO_LOBES = lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5))
 FRAME = sum_of(*TWO_LOBES, quantity=Quantity.FULL_SPHERE)
 # Mean slopes of the logarithms of a Gaussian and of a logistic density.

@@ -606,7 +606,7 @@ class FilmSpec(FacetSpec):
     few = spec.ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views of the random pairs, and as many for which few facets are least representative."""
+        """Views of the random pairs, and views for which a film's average over few facets is least exact."""
         batch = batches[0].where(batches[0].wo[:, 2] >= self.least_cosine)
         easy = batch.first(counts.albedos)
         easy = replace(easy, inputs=simple(easy.inputs))
