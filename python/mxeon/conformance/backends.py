@@ -441,6 +441,10 @@ class Functions(Evaluating):
     methods = Methods("prefilter")
 
     @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return super().supports(spec) and spec.evaluated[0] != "transmission"
+
+    @classmethod
     def errors(cls, spec: Spec) -> Errors:
         return {**super().errors(spec), "color_space": None, "glass": None}
 
