@@ -8,10 +8,10 @@ import signal
 import subprocess
 import sys
 from base64 import b64encode
+from html import unescape
 from urllib.error import HTTPError
 from urllib.request import Request, urlopen
 
-import MaterialX as mx
 import numpy as np
 import pytest
 from pytest import approx
@@ -35,7 +35,7 @@ from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from mxeon.shaders.scene import sphere
 from tests.explorer.browser import judged, opened, until
 from tests.support.availability import package
-from tests.support.documents import textured
+from tests.support.documents import ARTISTS, from_artist, textured
 from tests.support.results import Diagnosis, Result, kept
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 
@@ -190,45 +190,53 @@ def test_a_document_is_shown_with_its_own_values_and_inputs(browser, tmp_path):
         judged(page, "left", "material")
 
 
-def test_one_difference_is_shown_everywhere(browser, tmp_path):
-    out, brick = tmp_path / "page.html", str(examples_folder() / "brick.mtlx")
-    assert main(["explore", brick, "--workers", "0", "--output", str(out)]) == PASSED_STATUS
-    run = check([brick], ["gl"], "eonlib", compared="stock", workers=0)
-    stock = next(
-        each for each in run.results if each.check == "picture" and each.library == "stock"
-    )
-    # The worst pixel of the worst picture, computed from the definition.
-    sizes = {}
-    for each in run.pictures:
-        if each.library == "stock" and each.document == "brick.mtlx":
-            image, reference = np.float64(each.image), np.float64(each.reference)
-            apart = np.abs(image - reference) / np.maximum(1.0, np.abs(reference))
-            seen = np.mean(apart[sphere(len(image)).mask].max(axis=-1) > VISIBLE)
-            sizes[each.scene] = apart.max(), seen
-    worst = max(sizes, key=lambda scene: sizes[scene][0])
-    found = stock.difference
-    assert (found.scene, abs(found.largest), found.visible) == (worst, *map(approx, sizes[worst]))
-    sentence = words.difference(found)
-    assert f"up to {100.0 * sizes[worst][0]:.2g} % of white" in sentence
-    # All reports take the sentence from there: terminal, page, table, JUnit, JSON and explorer.
-    assert f"with stock MaterialX {mx.getVersionString()}, {sentence}." in answer(run)[0]
-    report = "".join(html(run))
-    assert f"<b>Stock MaterialX</b> on gl: {sentence}." in report
-    assert f"<td>{words.size(found)}</td>" in report
-    assert sentence in to_junit(run)
-    [entry] = [
-        each for each in json.loads(to_json(run))["results"]
-        if (each["check"], each["library"]) == ("picture", "stock")
-    ]  # fmt: skip
-    assert entry["difference"] == vars(found)
+@pytest.mark.parametrize(
+    "name", ["brick", *(pytest.param(each, marks=pytest.mark.whole) for each in ARTISTS)]
+)
+def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
+    out, example = tmp_path / "page.html", examples_folder() / "brick.mtlx"
+    document = str(example if name == "brick" else from_artist(tmp_path, name))
+    assert main(["explore", document, "--workers", "0", "--output", str(out)]) == PASSED_STATUS
+    run = check([document], ["gl"], "eonlib", compared="stock", workers=0)
+    terminal, report, junit = " ".join(answer(run)), unescape("".join(html(run))), to_junit(run)
+    entries = {
+        each["library"]: each for each in json.loads(to_json(run))["results"]
+        if each["check"] == "picture"
+    }  # fmt: skip
+    found = [each for each in run.results if each.check == "picture"]
     own = [each for each in data_of(out.read_text())["sources"] if each["id"][:9] == "document/"]
-    looks = ("correct", words.AS_SPECIFIED), ("wrong", sentence)
-    for source, (kind, look) in zip(own, looks, strict=True):
-        assert source["checked"] == {"kind": kind, "text": f"mxeon check: {look}."}
-        assert bool(source["pages"]) == (kind == "wrong")
+    titles = "With eonlib", "Stock MaterialX"
+    for result, title, source in zip(found, titles, own, strict=True):
+        # The worst pixel of the worst picture, computed from the definition.
+        sizes = {}
+        for each in run.pictures:
+            if (each.library, each.document) == (result.library, f"{name}.mtlx") and (
+                each.reference is not None
+            ):
+                image, reference = np.float64(each.image), np.float64(each.reference)
+                apart = np.abs(image - reference) / np.maximum(1.0, np.abs(reference))
+                seen = np.mean(apart[sphere(len(image)).mask].max(axis=-1) > VISIBLE)
+                sizes[each.scene] = apart.max(), seen
+        worst, size = max(sizes, key=lambda scene: sizes[scene][0]), result.difference
+        assert (size.scene, abs(size.largest), size.visible) == (worst, *map(approx, sizes[worst]))
+        # All reports take the sentence from there: terminal, page, table, JUnit, JSON and explorer.
+        sentence, look = words.difference(size), words.look(result)
+        assert entries[result.library]["difference"] == vars(size)
+        assert f"<b>{title}</b> on gl: {look}" in report
+        wrong = result.verdict == FAILED
+        assert source["checked"] == {
+            "kind": "wrong" if wrong else "correct",
+            "text": f"mxeon check: {look}.",
+        }
+        assert bool(source["pages"]) == wrong
+        if size.is_visible:
+            assert f"{100.0 * sizes[worst][0]:.2g} %" in sentence
+            assert all(sentence in place for place in (terminal, look))
+        if wrong:
+            assert f"<td>{words.size(size)}</td>" in report and sentence in junit
     with opened(browser, out.as_uri(), drawn=False) as page:
-        judged(page, "left", "correct")
-        judged(page, "right", "wrong")
+        for side, result in zip(("left", "right"), found, strict=True):
+            judged(page, side, "wrong" if result.verdict == FAILED else "correct")
 
 
 def test_more_materials_than_a_page_may_hold_are_refused(tmp_path, capsys):
