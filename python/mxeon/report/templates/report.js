@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sliders that lay the reference over a picture, and links into folded parts. The page is complete without them.
+// Sliders that lay the reference, or stock's picture, over another, and links into folded parts. The page is complete without them.
 "use strict";
 
 document.documentElement.classList.add("scripted");
 
-for (const panels of document.querySelectorAll(".panels.referenced")) {
-  const reference = panels.querySelector(".reference img");
-  for (const figure of panels.querySelectorAll(".image")) {
-    const over = reference.cloneNode();
+for (const panels of document.querySelectorAll(".panels")) {
+  const source = panels.querySelector(".reference img, .pair .image img");
+  for (const figure of source ? panels.querySelectorAll(".image") : []) {
+    if (figure.contains(source)) continue;
+    const over = source.cloneNode();
     const slider = document.createElement("input");
+    const label = document.createElement("label");
     over.className = "over";
     Object.assign(slider, { type: "range", min: 0, max: 100, value: 0 });
-    slider.setAttribute("aria-label", "share of the picture that the reference covers");
     slider.addEventListener("input", () => {
       over.style.clipPath = `inset(0 ${100 - slider.value}% 0 0)`;
     });
     over.style.clipPath = "inset(0 100% 0 0)";
+    label.append(`Wipe to ${source.closest("figure").querySelector("b").textContent}`, slider);
     figure.querySelector(".frame").append(over);
-    figure.append(slider);
+    figure.append(label);
   }
 }
 
