@@ -118,9 +118,12 @@ def model_of(result: Result, expected: str) -> str:
         return expected
     if result.verdict == NOT_RUN:
         return "not run"
-    models = (each.key for each in result.diagnosis.causes if each.kind is Kind.MODEL)
-    first = Diagnosis((result.diagnosis.first,), result.diagnosis.distances)
-    return next(models, "") or words.diagnosis(first)
+    first = result.diagnosis.first
+    return (
+        first.key
+        if first.kind is Kind.MODEL
+        else words.diagnosis(Diagnosis((first,), result.diagnosis.distances))
+    )
 
 
 def reports_in(folder: AnyPath) -> list[Path]:

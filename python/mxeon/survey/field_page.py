@@ -32,20 +32,22 @@ SCENES = {"side": "light from the side", "back": "light from behind"}
 INPUTS = ("color", "roughness", "wo", "wi", "measured", "expected")
 
 
-def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:
+def write_field(
+    entries: Sequence[Entry], file: str | PathLike[str], pages: str = "", note: str = ""
+) -> Path:
     """Write the page that compares renderers, and return its path; see `render`."""
     read = (each for entry in entries for each in report_files(entry.report))
     check_output(file, read, [".html"])
     with replacing(Path(file)) as beside, open(beside, "w", encoding="utf-8") as page:
-        page.writelines(render(entries, pages))
+        page.writelines(render(entries, pages, note))
     return Path(file)
 
 
-def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
+def render(entries: Sequence[Entry], pages: str = "", note: str = "") -> Iterator[str]:
     """Pieces of the page; a picture is read when its piece is due.
 
-    `pages` is the address of a page of the ledger with `{}` for its name, "" for no links. The page loads
-    nothing, runs only its own script, and is complete without it. Text of the reports is escaped.
+    `pages` is the address of a page of the ledger with `{}` for its name, "" for no links; `note` follows the counts. The
+    page loads nothing, runs only its own script, and is complete without it. Text of the reports is escaped.
     """
     counts = Counter(entry.verdict for entry in entries)
     rows = by_harm(entries)
@@ -66,6 +68,7 @@ def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
         order=order,
         address=pages.format,
         linked=bool(pages),
+        note=note,
         gradient=Markup(difference_gradient()),
     )
 
