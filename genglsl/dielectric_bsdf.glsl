@@ -18,12 +18,17 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     F.value = vec3(eonlib_fresnel_dielectric(lobe.mu_h, ior));
     F.average = vec3(eonlib_fresnel_dielectric_avg(ior));
     F.visible = vec3(eonlib_fresnel_dielectric_visible(lobe.visible.x, lobe.visible.y, ior));
+    vec2 passing = vec2(0.0);
+    if (ior < 1.0)
+    {
+        passing = eonlib_dielectric_passing(lobe.visible.x, lobe.visible.y, ior);
+        F.visible = vec3(1.0 - passing.x);
+    }
     microfacet_film(lobe, fd, F);
     if (ior < 1.0 && scatter_mode != 0 && !fd.airy)
     {
         // What does not pass returns, the rest by facets that reflect everything.
-        float rest = (1.0 - eonlib_dielectric_passing(lobe.visible.x, lobe.visible.y, ior, 1.0)) / lobe.albedo;
-        rest = max(rest - F.visible.x, 0.0);
+        float rest = max((1.0 - passing.y) / lobe.albedo - F.visible.x, 0.0);
         F.value += rest;
         F.visible += rest;
         F.average = vec3(0.0);

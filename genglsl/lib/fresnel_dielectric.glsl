@@ -47,48 +47,49 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 
-// Light that passes to the less dense side (index below 1): the mean of 1 - F over the visible facets; reversed (1), the
-// share by reversed paths from that side. tau, the cotangent of the angle to a facet, is tau_c at the critical angle and
-// tau_m near the median:
-//   share below the critical angle: t^-p, t = 1 + exp(g asinh(k ln(tau_c^2 / tau_m^2)))
-//   their reflectance: F(tau), with 0.7213 of them above tau: 1 / 0.7213 = exp(0.326707)
+// Light that passes to the less dense side (index below 1): x is the mean of 1 - F over the visible facets, y the share
+// by reversed paths from that side, which lacks what facets send up again.
 // Source and derivation: tools/fits/ggx_inside.py.
-// Domain: mu and alpha in [1e-4, 1], index in [0.33, 0.98]. Largest absolute error of the albedo: 2.8e-2; reversed, from
-// mu 0.01 on: 3.6e-2.
-float eonlib_dielectric_passing(float mu, float alpha, float ior, float reversed)
+// Domain: mu and alpha in [1e-4, 1], index in [0.33, 0.98].
+// Largest absolute error of the albedo by x: 2.8e-2; of y: 3.4e-2.
+vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
 {
-    float s2 = 1.0 - mu * mu;
+    float mu2 = mu * mu;
+    float s2 = 1.0 - mu2;
     float alpha2 = alpha * alpha;
+    float bent = 1.0 - ior * ior;
     float x = mu / (mu + alpha);
     float y = sqrt(alpha);
     float z = sqrt(s2) / (sqrt(s2) + alpha);
-    vec3 a_b_k0 = exp(mix(vec3(0.57832, 3.8455, -12.129), vec3(-25.163, -5.6857, -9.8286), reversed)
-                      + x * mix(vec3(-1.0501, -0.97191, -2.2817), vec3(-3.263, 5.8209, 12.063), reversed)
-                      + z * mix(vec3(0.58237, -0.54814, 10.885), vec3(19.954, 0.9032, -6.3576), reversed)
-                      + y * (mix(vec3(-0.1491, -2.3176, -1.0809), vec3(12.468, 5.6708, 12.907), reversed)
-                             + x * mix(vec3(1.1587, -1.5649, 7.7815), vec3(13.305, -6.5546, -25.022), reversed)));
-    vec3 k1_p_g = exp(mix(vec3(-11.175, -1.1887, 6.9511), vec3(-10.586, 0.98278, 9.0803), reversed)
-                      + x * mix(vec3(-2.49, -0.20226, 0.41509), vec3(14.551, 0.10551, -8.7017), reversed)
-                      + z * mix(vec3(11.808, 1.1983, -6.4646), vec3(-4.3803, -1.3063, 0.023203), reversed)
-                      + y * (mix(vec3(-2.918, -0.0033244, 0.40729), vec3(14.04, -1.3351, -7.8286), reversed)
-                             + x * mix(vec3(7.0708, -0.19455, -2.4622), vec3(-22.556, 1.1153, 9.5757), reversed)));
-    float median2 = (mu * mu + a_b_k0.x * alpha2) / (s2 + a_b_k0.y * alpha2);
-    float k = sqrt(a_b_k0.z + k1_p_g.x * mu * mu * s2 / alpha2);
-    float t = k * log((1.0 - ior * ior) / max(ior * ior * median2, 1e-30));  // k ln(tau_c^2 / tau_m^2)
-    t = 1.0 + exp(min(k1_p_g.z * sign(t) * log(abs(t) + sqrt(t * t + 1.0)), 60.0));  // HLSL has no asinh
-    float typical = sinh(log(t * exp(0.326707 / k1_p_g.y) - 1.0) / k1_p_g.z) / k;  // ln(tau^2 / tau_m^2)
-    return (1.0 - eonlib_fresnel_dielectric(1.0 / sqrt(1.0 + exp(-typical) / median2), ior)) / pow(t, k1_p_g.y);
+    float muy = mu * y;
+    float xy = x * y;
+    float zy = z * y;
+    vec2 a = vec2(2.4147 + 0.3797 * muy, exp(-3.79563 + 6.57486 * zy + 3.15967 * xy));
+    vec2 b = vec2(1.3886 + 2.8723 * mu - 0.7683 * ior - 5.2357 * xy, 0.2895 + 1.23639 * muy);
+    vec2 k2 = vec2(0.5612 - 0.4144 * z + 0.5352 * muy, 0.34195) + vec2(0.374, 0.32674) * (mu2 * s2 / alpha2);
+    vec2 part = vec2(0.609 + 0.7028 * zy, 0.50203);
+    vec2 power = vec2(0.8025 - 0.3416 * muy, 0.52381 + 0.43633 * x);
+    float risen = exp(1.80744 + 0.85484 * ior - 3.06595 * alpha - 3.09838 * x) * alpha * bent / mu;
+    vec2 r2 = max((1.0 - bent) * (mu2 + a * alpha2) / (bent * (s2 + b * alpha2)), 1e-30);
+    vec2 e2 = k2 / r2;
+    vec2 v = clamp((r2 - 1.0) * sqrt(e2), -1e6, 1e6);
+    vec2 h = sqrt(1.0 + v * v);
+    vec2 tail = 0.5 / (h * (h + abs(v)));
+    vec2 S = mix(tail, 1.0 - tail, step(vec2(0.0), v));
+    vec2 Q = part * S;
+    vec2 q = 4.0 * Q * (1.0 - Q);
+    vec2 t = sqrt(1.0 + (4.0 * k2 - 1.0) * q) + 1.0 - 2.0 * Q;
+    vec2 g = ior * sqrt(max(1.0 - 4.0 * e2 * q / (t * t), 0.0));  // g / cosine
+    vec2 s = 1.0 / (1.0 + g);
+    vec2 p = ior / max(ior * ior + g, 1e-30);
+    return min(pow(S, power) * 2.0 * g * (s * s + p * p), 1.0) / vec2(1.0, 1.0 + risen);
 }
 
-// Average over the visible facets. Near index 1 the curve only depends on the cosine over sqrt(n^2 - 1): an index below
-// 1.03 uses the average of 1.03 at k mu and k alpha, at most 1. If k mu exceeds 1, the cosine grows with mu.
-// Largest absolute error of the albedo below index 1.03, where k alpha exceeds 1: 9.3e-3.
+// Average over the visible facets for indices from 1 on. Near 1 the curve only depends on the cosine over
+// sqrt(n^2 - 1): an index below 1.03 uses the average of 1.03 at k mu and k alpha, at most 1. If k mu exceeds 1, the
+// cosine grows with mu. Largest absolute error of the albedo below index 1.03, where k alpha exceeds 1: 9.3e-3.
 float eonlib_fresnel_dielectric_visible(float mu, float alpha, float ior)
 {
-    if (ior < 1.0)
-    {
-        return 1.0 - eonlib_dielectric_passing(mu, alpha, ior, 0.0);
-    }
     float k = sqrt(max(0.0609 / max((ior - 1.0) * (ior + 1.0), 1e-9), 1.0));
     return eonlib_fresnel_dielectric(
         ggx_cosine_dielectric(min(k * mu, 1.0), min(k * alpha, 1.0), ior) * max(mu, 1.0 / k), ior);

@@ -106,8 +106,8 @@ void path_turn_outside(ClosureData closureData, inout MicrofacetLobe lobe)
     MicrofacetLobe outer = microfacet_lobe(closureData, lobe.N, lobe.X, lobe.roughness, false);
     float masking = 1.0 + microfacet_stretched(lobe, lobe.wo) / lobe.mu_o;
     path_reversed = leaves ? masking / (1.0 + microfacet_stretched(outer, outer.wo) / outer.mu_o) : 0.0;
-    path_inner = vec3(eonlib_dielectric_passing(lobe.visible.x, lobe.visible.y, path_eta, 1.0), lobe.albedo,
-                      1.0 - eonlib_dielectric_passing(lobe.visible.x, lobe.visible.y, path_eta, 0.0));
+    vec2 passing = eonlib_dielectric_passing(lobe.visible.x, lobe.visible.y, path_eta);
+    path_inner = vec3(passing.y, lobe.albedo, 1.0 - passing.x);
     lobe.visible = outer.visible;
     lobe.albedo = outer.albedo;
 }

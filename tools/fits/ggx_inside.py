@@ -1,30 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fit of a dielectric's reflectance over the visible facets of GGX for indices n below 1.
+"""Fit of the light that passes the visible facets of GGX to the less dense side, for indices n below 1.
 
 Facets beyond the critical angle reflect everything, so no single cosine stands for all of them. With
 tau the cotangent of the angle between view and facet and tau_c^2 = (1 - n^2) / n^2 the critical one, the
 share of facets below the critical angle is
 
-    S = t^-p,  t = 1 + exp(g asinh(k ln(tau_c^2 / tau_m^2))),
+    S = (1 + v / sqrt(1 + v^2)) / 2,  v = k (tau_m / tau_c - tau_c / tau_m),
 
-and their mean reflectance is F at the tau that a share REST of them exceeds:
+and what passes is S^p (1 - F) at the tau that a part of S exceeds. This tau follows from the same
+distribution in closed form: if a share Q exceeds tau,
 
-    F = 1 - S (1 - F(tau)),  ln(tau^2 / tau_m^2) = sinh(ln(t REST^(-1/p) - 1) / g) / k.
+    k (tau_m / tau - tau / tau_m) = w = (Q - 1/2) / sqrt(Q (1 - Q)),  2 k tau / tau_m = sqrt(w^2 + 4 k^2) - w.
 
-Along the normal, GGX's share is 1 / (1 + alpha^2 tau_c^2), which corresponds to p = 1 and g k = 1
-with small k. For a smooth surface, g = 2 gives the marginal distribution of a slope. With mu the
-cosine of the view and s its sine,
+Along the normal, GGX's share 1 / (1 + alpha^2 tau_c^2) is this S with k = 1/2. For a smooth surface, S is
+the distribution of GGX's slopes in one direction, with 2 k = mu s / alpha. With mu the cosine of the
+view and s its sine,
 
-    tau_m^2 = (mu^2 + a alpha^2) / (s^2 + b alpha^2),  k^2 = k_0 + k_1 mu^2 s^2 / alpha^2,
+    tau_m^2 = (mu^2 + a alpha^2) / (s^2 + b alpha^2),  k^2 = k_0 + k_1 mu^2 s^2 / alpha^2.
 
-and the logarithms of a, b, k_0, k_1, p and g are linear in 1, x = mu / (mu + alpha), s / (s +
-alpha), y = sqrt(alpha) and x y. The fit minimizes the largest error of the albedo with its
-compensation. The search is in float64 and need not be repeatable; the errors are those of the
-coefficients in the shader.
+a, b, k_0, p and the part are linear, or exponentials of linear forms, in products of mu, x = mu / (mu +
+alpha), y = sqrt(alpha), z = s / (s + alpha) and n, which a greedy search chose.
 
 The share of transmitted light according to the reversed paths from outside
-(`mxeon.models.transmission`) has the form S (1 - F(tau)) with other coefficients. It differs
-because of facets that send light up again: less light passes at grazing.
+(`mxeon.models.transmission`) has this form with other coefficients and a factor
+1 / (1 + r alpha (1 - n^2) / mu), because facets send light up again: less light passes at grazing.
+
+The search minimizes the largest error of the albedo with its compensation and of the share. It is in
+float64, starts from the coefficients in the shader, and need not be repeatable.
 
     python -m tools.fits.ggx_inside
 """
@@ -38,14 +40,11 @@ from mxeon.models import dielectric_albedo_dir, fresnel_dielectric, fresnel_diel
 from mxeon.models.transmission import reversed_transmittance
 from mxeon.shaders.functions import source_file
 
-SEED, COUNT = 5, 3000  # views
+SEED, COUNT = 5, 2500  # views
 LEAST = 1e-4  # smallest cosine and roughness
 INDICES = (0.33, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.93, 0.95, 0.98)
-START = (1.6, 0.0, -3.1, -3.8, 0.0, 0.9)  # constants of the logarithms
-REST = 0.7213
-POWERS = (1, 2, 3, 5, 8, 12, 16)  # half the exponents of the norms, which approach the maximum norm
-SCALE = 45.0  # makes errors about 1
-DIGITS = 5
+POWERS = (4, 8, 16)  # half the exponents of the norms, which approach the maximum norm
+SCALE = 30.0  # makes errors about 1
 
 
 def points(seed=SEED, count=COUNT):
@@ -67,24 +66,41 @@ def albedo(mu, alpha, ior):
     return np.ravel(dielectric_albedo_dir(wo, 1.0, roughness, ior, compensate=False))
 
 
-def passing(mu, alpha, ior, coefficients):
-    """S (1 - F), from 30 coefficients: five for each logarithm."""
-    s = np.sqrt(1.0 - mu * mu)
-    x, y = mu / (mu + alpha), np.sqrt(alpha)
-    terms = np.stack([np.ones_like(x), x, s / (s + alpha), y, x * y])
-    a, b, k0, k1, p, g = np.exp(np.clip(np.reshape(coefficients, (6, 5)) @ terms, -16.0, 12.0))
-    median2 = (mu * mu + a * alpha * alpha) / (s * s + b * alpha * alpha)
-    k = np.sqrt(k0 + k1 * (mu * s / alpha) ** 2)
-    critical2 = (1.0 - ior * ior) / (ior * ior)
-    t = 1.0 + np.exp(np.minimum(g * np.arcsinh(k * np.log(critical2 / median2)), 60.0))
-    v = np.sinh(np.clip(np.log(t * REST ** (-1.0 / p) - 1.0) / g, -40.0, 40.0)) / k
-    c = 1.0 / np.sqrt(1.0 + np.exp(-np.clip(v, -40.0, 40.0)) / median2)
-    return t**-p * (1.0 - fresnel_dielectric(c, ior))
+def passing(mu, alpha, ior, c):
+    """Mean of 1 - F over the visible facets, and the share by reversed paths, from the coefficients."""
+    s2, bent = 1.0 - mu * mu, 1.0 - ior * ior
+    x, y, z = mu / (mu + alpha), np.sqrt(alpha), np.sqrt(s2) / (np.sqrt(s2) + alpha)
+    ratio = mu * mu * s2 / alpha**2
+    facets = (
+        c[0] + c[1] * mu * y,
+        c[5] + c[6] * mu + c[7] * ior + c[8] * x * y,
+        c[11] + c[12] * z + c[13] * mu * y + c[15] * ratio,
+        c[17] + c[18] * z * y,
+        c[20] + c[21] * mu * y,
+    )
+    reversed_paths = (
+        np.exp(c[2] + c[3] * z * y + c[4] * x * y),
+        c[9] + c[10] * mu * y,
+        c[14] + c[16] * ratio,
+        c[19],
+        c[22] + c[23] * x,
+    )
+    risen = np.exp(c[24] + c[25] * ior + c[26] * alpha + c[27] * x) * alpha * bent / mu
 
+    def passed(a, b, k2, part, p):
+        median2 = (mu * mu + a * alpha**2) / (s2 + b * alpha**2)
+        critical2 = bent / (ior * ior * median2)
+        v = np.clip(np.sqrt(k2 / critical2) * (1.0 - critical2), -1e6, 1e6)
+        h = np.sqrt(1.0 + v * v)
+        tail = 0.5 / (h * (h + np.abs(v)))
+        below = np.where(v < 0.0, tail, 1.0 - tail)
+        above = part * below
+        w = (above - 0.5) / np.sqrt(above * (1.0 - above))
+        t = np.sqrt(w * w + 4.0 * k2) - w
+        cosine = 1.0 / np.sqrt(1.0 + 4.0 * k2 / (median2 * t * t))
+        return below**p * (1.0 - fresnel_dielectric(cosine, ior))
 
-def reflectance(mu, alpha, ior, coefficients):
-    """Mean reflectance of the visible facets."""
-    return 1.0 - passing(mu, alpha, ior, coefficients)
+    return passed(*facets), passed(*reversed_paths) / (1.0 + risen)
 
 
 def passed(mu, alpha, ior):
@@ -101,19 +117,6 @@ def passed(mu, alpha, ior):
     )
 
 
-def fit_passed(mu, alpha, ior, exact):
-    """Coefficients of the share that passes, starting from the reflectance's."""
-    found = shipped()
-
-    def powers(coefficients, power):
-        error = SCALE * (passing(mu, alpha, ior, coefficients) - exact)
-        return np.sign(error) * np.abs(error) ** power
-
-    for power in POWERS[:-2]:
-        found = least_squares(powers, found, args=(power,), max_nfev=80, x_scale=0.1).x
-    return found
-
-
 def sample(mu, alpha):
     """E_ss, and albedos of all indices."""
     return albedo(mu, alpha, 0.0), np.stack([albedo(mu, alpha, n) for n in INDICES])
@@ -121,45 +124,44 @@ def sample(mu, alpha):
 
 def errors(coefficients, mu, alpha, ess, albedos):
     """Errors of the albedo with its compensation, (I, N)."""
-    fitted = np.stack([reflectance(mu, alpha, n, coefficients) for n in INDICES])
+    fitted = np.stack([1.0 - passing(mu, alpha, n, coefficients)[0] for n in INDICES])
     average = np.array([float(fresnel_dielectric_avg(n)) for n in INDICES])[:, np.newaxis]
     return (ess * fitted - albedos) * (1.0 + average * (1.0 - ess) / ess)
 
 
-def fit(sampled):
-    found = np.zeros((6, 5))
-    found[:, 0] = START
+def fit(mu, alpha, ior, sampled, exact):
+    """Coefficients: `sampled` for all indices, `exact` shares of reversed paths for `ior`."""
 
     def powers(coefficients, power):
-        error = SCALE * errors(coefficients, *sampled).ravel()
+        share = passing(mu, alpha, ior, coefficients)[1] - exact
+        error = SCALE * np.append(errors(coefficients, mu, alpha, *sampled), share)
         return np.sign(error) * np.abs(error) ** power
 
+    found = shipped()
     for power in POWERS:
-        found = least_squares(powers, np.ravel(found), args=(power,), max_nfev=80, x_scale=0.1).x
+        found = least_squares(powers, found, args=(power,), max_nfev=30, x_scale=0.1).x
     return found
 
 
-def shipped(reversed_paths=False):
-    """Coefficients in the shader."""
+def shipped():
+    """Coefficients in the shader, in the order of the text."""
     text = source_file("glsl", "fresnel_dielectric").read_text(encoding="utf-8")
-    pairs = re.findall(r"mix\(vec3\(([-\d., ]+)\), vec3\(([-\d., ]+)\), reversed\)", text)
-    rows = np.array([each[reversed_paths].split(",") for each in pairs], float)
-    return rows.reshape(2, 5, 3).transpose(0, 2, 1).ravel()
+    lines = re.search(r"vec2 a = .*?risen =[^;]*", text, re.DOTALL)
+    assert lines
+    return np.array([float(x.replace(" ", "")) for x in re.findall(r"(?:- )?-?\d+\.\d+", lines[0])])
 
 
 def main():
-    """Print the vectors found by a search, and the error of the shader's vectors on other views."""
+    """Print the coefficients found by a search, and the errors of the shader's on other views."""
     mu, alpha = points()
     ior = np.random.default_rng(SEED).uniform(INDICES[0], INDICES[-1], len(mu))
-    reversed_paths = fit_passed(mu, alpha, ior, passed(mu, alpha, ior))
-    for found in (fit((mu, alpha, *sample(mu, alpha))), reversed_paths):
-        for row in np.reshape(found, (2, 3, 5)).transpose(0, 2, 1).reshape(10, 3):
-            print(f"vec3({', '.join(f'{x:.{DIGITS}g}' for x in row)})")
+    print(fit(mu, alpha, ior, sample(mu, alpha), passed(mu, alpha, ior)).round(5).tolist())
     mu, alpha = points(SEED + 2)
-    for n, row in zip(
-        INDICES, np.abs(errors(shipped(), mu, alpha, *sample(mu, alpha))), strict=True
-    ):
-        print(f"largest absolute error of the albedo at {n}: {row.max():.3g}")
+    found = np.abs(errors(shipped(), mu, alpha, *sample(mu, alpha))).max(axis=1)
+    for n, largest in zip(INDICES, found, strict=True):
+        print(f"largest absolute error of the albedo at {n}: {largest:.3g}")
+    share = passing(mu, alpha, ior, shipped())[1] - passed(mu, alpha, ior)
+    print(f"largest absolute error of the share by reversed paths: {np.abs(share).max():.3g}")
 
 
 if __name__ == "__main__":

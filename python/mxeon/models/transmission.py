@@ -291,7 +291,8 @@ def _nodes(axes: int) -> tuple[Array, Array, Array]:
     return height.reshape(shape), turn.reshape(shape), weight.reshape(shape)
 
 
-PASSED_NODES = 40  # nodes of the share passed from outside, in the cube root of mu / (mu + alpha)
+PASSED_NODES = 40  # nodes of the share passed from outside, in the cube root of mu / (mu + scale)
+LEAST_SCALE = 0.05  # smallest scale, otherwise alpha; near 0 all nodes would be at grazing
 
 
 def reversed_transmittance(
@@ -308,12 +309,12 @@ def reversed_transmittance(
     - `ior`: Index of the far side relative to that of the view, below 1.
     - `reflected`: Albedo from outside, 1 - P, of cosines (M,), (M, C).
     """
-    s = chebyshev_nodes(PASSED_NODES) ** 3
-    passed = 1.0 - reflected(s * alpha / (1.0 + alpha - s))
+    s, scale = chebyshev_nodes(PASSED_NODES) ** 3, max(alpha, LEAST_SCALE)
+    passed = 1.0 - reflected(s * scale / (1.0 + scale - s))
     wo, roughness = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu]), np.full((2, len(mu)), alpha)
     squared = np.full(len(mu), (1.0 - ior) * (1.0 + ior))
     _, mu_t, length, weight = refracting_nodes(wo, roughness, squared)
-    x = np.cbrt(np.minimum(mu_t * (1.0 + alpha) / (mu_t + alpha), 1.0))
+    x = np.cbrt(np.minimum(mu_t * (1.0 + scale) / (mu_t + scale), 1.0))
     stretched = ggx.stretched_length(wo, roughness)
     weight = weight * mu_t * (mu + stretched) / (mu * (mu_t + length))
     axes = tuple(range(weight.ndim - 1))

@@ -86,7 +86,7 @@ METAL_FIT = 4.6e-4  # fresnel_average.py: F_ss of a metal
 COMPENSATED = 0.6
 LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
 INSIDE_FIT = 2.8e-2  # ggx_inside.py: albedo of a dielectric of index below 1
-PASSING_FIT = 3.6e-2  # ggx_inside.py: share of light from the denser side that passes
+PASSING_FIT = 3.4e-2  # ggx_inside.py: share of light from the denser side that passes
 DIP_FIT = 5.9e-3  # ggx_cosine.py: additional error of a full dip at 82 degrees
 LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
 
