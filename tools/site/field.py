@@ -44,8 +44,10 @@ def write(folder: str) -> None:
     kept = {row[1]: row[0] for row in ROW.finditer(old) if host_of(row[0]) not in measured}
     version = old.partition("measured by mxeon ")[2].partition("<")[0]
     hosts = dict.fromkeys(map(host_of, kept.values()))
+    absent = (row for row in host_rows() if row.name not in {*measured, *hosts})
     texts = [
-        f"{row.name} needs {row.needs}, so it was not measured." for row in host_rows() if row.needs
+        f"{row.name} was not measured{f': it needs {row.needs}' * bool(row.needs)}."
+        for row in absent
     ]
     if kept:
         texts += [
