@@ -20,7 +20,7 @@ float burley_albedo_dir(float mu, float roughness)
 void burley_diffuse_bsdf(ClosureData closureData, float weight, vec3 color, float roughness, vec3 N,
                          inout BSDF bsdf)
 {
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // opaque, where it is
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // covers the share `weight` of its base
 
     // A lobe that is switched off costs nothing; a negative weight, never valid, counts as 0.
     if (weight <= 0.0)

@@ -29,7 +29,7 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
         microfacet_film(lobe, fd, F);
         microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, bsdf);
     }
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // opaque, where it is
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // covers the share `weight` of its base
 }
 
 // As MaterialX before 1.39.5 calls it, which has no retroreflection.

@@ -64,8 +64,8 @@ void sheen_bsdf(ClosureData closureData, float weight, vec3 color, float roughne
     float albedo = mode == 0 ? conty_kulla_albedo_dir(mu_o, rough)
                              : mx_zeltner_sheen_dir_albedo(mu_o, rough);
 
-    // Light through the base passes the sheen as well.
-    bsdf.throughput = max(1.0 - albedo * color * weight, 0.0);
+    // Light that the color removes is absorbed; light through the base passes the sheen as well.
+    bsdf.throughput = vec3(max(1.0 - albedo * weight, 0.0));
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {

@@ -9,7 +9,7 @@
 void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 radius,
                      float anisotropy, vec3 N, inout BSDF bsdf)
 {
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // opaque, where it is
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // covers the share `weight` of its base
 
     // The curvature is the surface's: R(r) counts distances between its points, which a normal of the node does not
     // move. Where nothing changes from pixel to pixel, the surface is flat. Derivatives are defined where all pixels

@@ -6,7 +6,7 @@
 
 void translucent_bsdf(ClosureData closureData, float weight, vec3 color, vec3 N, inout BSDF bsdf)
 {
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // opaque, where it is
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // covers the share `weight` of its base
 
     // A lobe that is switched off costs nothing; a negative weight, never valid, counts as 0.
     if (weight <= 0.0)

@@ -108,12 +108,14 @@ vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData f
     return max(mx_environment_radiance(lobe.N, lobe.wo, lobe.X, lobe.roughness, distribution, fd), 0.0);
 }
 
-// Response and throughput. [MaterialX2026], Energy Compensation: 1 + F_ss (1 - E_ss) / E_ss.
+// Response and throughput. [MaterialX2026], Energy Compensation: 1 + F_ss (1 - E_ss) / E_ss. Light that a tint removes
+// is absorbed: [MaterialX2026a], Vertical-Layering Transmittance.
 void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData fd, MicrofacetFresnel F, vec3 tint,
                      float weight, int distribution, inout BSDF bsdf)
 {
-    vec3 scale = tint * (1.0 + F.average * ((1.0 - lobe.albedo) / lobe.albedo)) * weight;
+    vec3 scale = (1.0 + F.average * ((1.0 - lobe.albedo) / lobe.albedo)) * weight;
     bsdf.throughput = max(1.0 - lobe.albedo * F.visible * scale, 0.0);
+    scale *= tint;
 
     if (lobe.closure == CLOSURE_TYPE_REFLECTION)
     {

@@ -12,7 +12,7 @@
 void oren_nayar_lobe(ClosureData closureData, float weight, vec3 color, float roughness,
                      vec3 N, bool energy_compensation, inout BSDF bsdf)
 {
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // opaque, where it is
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // covers the share `weight` of its base
 
     // Disabled lobes cost nothing; negative weights are invalid and count as 0.
     if (weight <= 0.0)

@@ -34,7 +34,7 @@ struct ThinFilmComplex
 
 ThinFilmComplex thin_film_product(ThinFilmComplex a, ThinFilmComplex b)
 {
-    ThinFilmComplex z;  // Metal constructs no structure by a call
+    ThinFilmComplex z;  // Metal has no constructor calls for structures
     z.re = a.re * b.re - a.im * b.im;
     z.im = a.re * b.im + a.im * b.re;
     return z;
@@ -171,7 +171,7 @@ vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
     float n = max(fd.tf_ior, 1.0);
     float g = sqrt((n - 1.0) * (n + 1.0) + mu * mu);
 
-    // First Interface, without a film 0
+    // First Interface; the coefficients are 0 without a film.
     float r21_s = (g - mu) / max(g + mu, THIN_FILM_LEAST);
     float r21_p = (g - n * n * mu) / max(g + n * n * mu, THIN_FILM_LEAST);
 

@@ -9,7 +9,7 @@
 #include "../translucent_bsdf.glsl"
 #include "../sampling/eon_sampling.glsl"
 
-// In proportion to EON of the mean color.
+// Draws directions in proportion to EON with the mean color.
 void path_eon(vec3 color, float roughness, vec3 N, inout BSDF bsdf)
 {
     if (path_asked != PATH_VALUE)

@@ -37,7 +37,7 @@ bool material_sample(Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight, out
     weight = vec3(1.0);
     pdf = 0.0;
 
-    // A loop, so that compilers write the material out once.
+    // In a loop, compilers inline the material only once.
     for (int asked = PATH_DRAW; asked >= PATH_VALUE; --asked)
     {
         path_ask(asked, p, wo, wi, u);

@@ -24,7 +24,7 @@
 // Narrower lobes are lost in the rounding of directions: a smooth surface has this alpha.
 #define PATH_LEAST_ALPHA 1e-4
 
-// An index nearer to 1 leaves facets without a direction to tell them by.
+// With an index nearer to 1, a refracted direction does not determine its facet.
 #define PATH_LEAST_BEND 1e-3
 
 // The index below relative to that above.
@@ -217,7 +217,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     if (scatter_mode != 1)
     {
         // A lobe below draws facets that reflect, too: few may refract the view, and those have to be drawn.
-        bsdf.throughput = path_is_denser() && !valued ? vec3(1.0) : max(1.0 - albedo * scale, 0.0);
+        bsdf.throughput = path_is_denser() && !valued ? vec3(1.0) : max(1.0 - albedo * weight, 0.0);
         bsdf.response = microfacet_lossless(lobe) * F.value * factor * scale;
     }
     through *= scatter_mode == 0 ? 0.0 : 1.0;

@@ -92,8 +92,8 @@ vec3 ltc_transformed(vec3 wo, vec3 wh, float roughness, float d)
     return eon_rotate_z(wi, turn.x, turn.y);
 }
 
-// Density of that for wh under the clamped cosine: [Portsmouth2025], Eqs. (23), (24). wh below is
-// the adjugate of M times wi, as long as the density needs it.
+// Density of wi, the transformed wh of a clamped cosine: [Portsmouth2025], Eqs. (23), (24). The unnormalized wh is the
+// adjugate of M times wi; its length enters the density.
 float ltc_density(vec3 wo, vec3 wi, float roughness, float d)
 {
     float a = ltc_ma(wo.z, roughness);
@@ -156,7 +156,7 @@ float eon_cltc_probability(float mu, float roughness)
     return pow(roughness, 0.1) * P_u;
 }
 
-// [Portsmouth2025], Listing 4, but with u1 < P_u, which a P_u of 0 never meets, for u1 <= P_u.
+// [Portsmouth2025], Listing 4, with u1 < P_u instead of u1 <= P_u, so that nothing is divided by a P_u of 0.
 vec3 eon_cltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
     float P_u = eon_cltc_probability(wo.z, roughness);

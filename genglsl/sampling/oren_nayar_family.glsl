@@ -70,8 +70,8 @@ vec3 lambert_brdf(vec3 wo, vec3 wi, vec3 rho)
 }
 
 // The angle whose sine is y and whose cosine is x, as a fraction of a right angle: four times the arc
-// tangent of a quarter of it (tools/fits/arc_tangent.py). Engines have no better one in common: SwiftShader's
-// cosine is off by 1.9e-4, OSL's arc tangent by 1.2e-5.
+// tangent of a quarter of it (tools/fits/arc_tangent.py). Built-in functions are less accurate: SwiftShader's cosine
+// is off by 1.9e-4, OSL's arc tangent by 1.2e-5.
 float oren_nayar_angle(float y, float x)
 {
     float t_half = y / (1.0 + x);

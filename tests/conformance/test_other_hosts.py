@@ -19,10 +19,10 @@ HAIR = (
 @pytest.mark.parametrize(
     "host, library, check, title, verdict, words",
     [
-        ("webgl", "stock", "layering", ZELTNER, FAILED, "without the color"),
+        ("webgl", "stock", "transmission", ZELTNER, FAILED, "all light passes"),
         ("webgl", "eonlib", "radiance", "conical_edf", PASSED, ""),
-        ("wgsl", "stock", "layering", ZELTNER, FAILED, "without the color"),
-        ("hlsl", "stock", "layering", ZELTNER, FAILED, "without the color"),
+        ("wgsl", "stock", "transmission", ZELTNER, FAILED, "all light passes"),
+        ("hlsl", "stock", "transmission", ZELTNER, FAILED, "all light passes"),
         ("hlsl", "eonlib", "environment", DIELECTRIC, PASSED, ""),
         ("hlsl", "eonlib", "output", HAIR[0], PASSED, ""),
         ("slang", "eonlib", "value", ZELTNER, PASSED, ""),

@@ -38,13 +38,11 @@ HALF = ("model", "compensation with F at the half vector and MaterialX's fit of 
 VIEW = ("model", "compensation with F at the view direction and MaterialX's fit of E_ss")
 MEAN = ("model", "Smith at the geometric mean, and MaterialX's compensation")
 OPEN = {"value": HALF, "integral": HALF, "shape": MEAN, "environment": VIEW}  # values that differ
-UNTINTED = ("model", "MaterialX's fit of its albedo without a tint")
 AVERAGED = ("model", "MaterialX's fit of its albedo, averaged over the channels")
 CLAMPED_TITLE = "EON with clamped dot(wo, wi)"
 CLAMPED = ("model", CLAMPED_TITLE)
 AWAY = ("region", "normal_away")
 ALL_LIGHT = ("model", "all light passes")
-UNCOLORED = ("model", "its albedo without the color")
 FIT_TITLE = "MaterialX's fit of its albedo"
 FIT = ("model", FIT_TITLE)
 NAN = ("not finite",)
@@ -104,15 +102,13 @@ STOCK = {
     "burley_diffuse_bsdf": {"environment": FIT, **HIDING},
     "translucent_bsdf": {"frame": AWAY, "surroundings": AWAY, **HIDING},
     SHEEN: {
-        "value": ("accuracy",), "environment": FIT, "transmission": ALL_LIGHT,
-        **dict.fromkeys(("layering", "layer"), ("model", "MaterialX's fit of its albedo without the color")),
+        "value": ("accuracy",), "transmission": ALL_LIGHT, **dict.fromkeys(("environment", "layering", "layer"), FIT),
     },
     "sheen_bsdf, mode zeltner": {
-        "value": ("region", "viewer_above_1"),
-        "transmission": ALL_LIGHT, **dict.fromkeys(("layering", "layer"), UNCOLORED), **SPHERE,
+        "value": ("region", "viewer_above_1"), "transmission": ALL_LIGHT, **SPHERE,
     },
     "dielectric_bsdf, scatter_mode R": {
-        **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "denser"), UNTINTED),
+        **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "denser"), FIT),
         "finite": NAN, "lossless": HALF, "anisotropic_value": MEAN, "anisotropic_throughput": (),
     },
     "conductor_bsdf": {
@@ -137,10 +133,6 @@ STOCK = {
         "combined_throughput": ("model", "opaque lobes that hide their base at any weight"),
         "inputs": ("inputs_without_effect", "base/roughness"),
     },
-    # Stock's sheen transmits light by its albedo without the color.
-    "layer, under a colored sum": dict.fromkeys(
-        ("combination", "combined_albedo", "combined_throughput"), ()
-    ),
     "chiang_hair_bsdf": {
         **dict.fromkeys(("value", "black", "finite", "integral", "low_index"), NAN),
         "environment": ("no_model", "a GGX lobe of the mean roughness and tint, without absorption"),

@@ -3,6 +3,7 @@
 
 import pytest
 
+from mxeon.models.nodes.node import COLORED
 from tests.support.sharing import DRAWN
 from tests.support.verdicts import FAILED, has
 from tests.support.wrong_libraries import copy_of_stock, replace_text, wrong_library
@@ -104,6 +105,7 @@ WRONG = {
         ("genglsl/conical_edf.glsl", "dot(N, ", "dot(closureData.N, ", "inputs", ("inputs_without_effect", "normal")),
     ),
     "dielectric_bsdf, scatter_mode R": (
+        (FACETS, "F.visible * scale, 0.0)", "F.visible * scale * tint, 0.0)", "layering", ("model", COLORED), "differs"),
         ("mx_dielectric_bsdf.glsl", "(4.0 * NdotV)", "NdotV", "value",
          ("model", "no factor 4 in the denominator, and MaterialX's compensation")),
         ("mx_dielectric_bsdf.glsl", "mx_ggx_smith_G2(NdotL, NdotV, avgAlpha)",
@@ -199,6 +201,8 @@ WRONG = {
         ("mx_sheen_bsdf.glsl", "roughness = clamp(roughness, 0.01, 1.0);", "", "finite",
          ("not finite", "roughness_zero")),
         ("mx_sheen_bsdf.glsl", "1.0 - dirAlbedo * weight", "0.0", "layer", ()),
+        ("genglsl/sheen_bsdf.glsl", "vec3(max(1.0 - albedo * weight, 0.0))", "max(1.0 - albedo * color * weight, 0.0)",
+         "layering", ("model", COLORED), "differs"),
     ),
     "chiang_hair_bsdf": (
         (HAIR, "M = chiang_hair_along(tilted, inclined_o, r.x)",
@@ -275,6 +279,10 @@ WRONG = {
     ),
     "mix, VDF": (
         ("genglsl/mix_vdf.glsl", "vec3(1.0 - share)", "vec3(share)", "transmittance", ()),
+    ),
+    "layer, under a colored sum": (
+        ("genglsl/sheen_bsdf.glsl", "vec3(max(1.0 - albedo * weight, 0.0))", "max(1.0 - albedo * color * weight, 0.0)",
+         "combination", ("model", COLORED), "differs"),
     ),
     "dielectric_bsdf, scatter_mode T": (
         ("genglsl/dielectric_bsdf.glsl", "ior < 1.0 && scatter_mode != 0", "false", "inside", ()),

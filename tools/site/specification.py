@@ -24,11 +24,11 @@ SUMMARY = (
     ("transmitted", "dielectric_bsdf, scatter_mode RT", "a division by the masking G1"),
     ("each_lobe", "chiang_hair_bsdf", "a last lobe that is pi^2 too bright"),
     ("value", "generalized_schlick_bsdf, thin film", "half of the substrate's reflectance"),
-    ("layer", "dielectric_bsdf, scatter_mode R", "a throughput without the tint, by a fit"),
+    ("layer", "dielectric_bsdf, scatter_mode R", "a throughput by a fit"),
     ("lobes_energy", "gltf_pbr, every lobe", "light made by layers"),
     ("frame", "translucent_bsdf", "light of the wrong side, seen from the back"),
     ("lossless", "conductor_bsdf", "energy compensation by a fit"),
-    ("layering", "sheen_bsdf, mode zeltner", "a throughput without the color"),
+    ("transmission", "sheen_bsdf, mode zeltner", "a throughput of 1 for light through the base"),
     ("environment", "sheen_bsdf, mode conty_kulla", "a fit"),
     ("environment", "burley_diffuse_bsdf", "a fit"),
     (

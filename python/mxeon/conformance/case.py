@@ -19,6 +19,7 @@ from mxeon.conformance.cache import Remembered
 from mxeon.conformance.results import Diagnosis
 from mxeon.conformance.samples import Array, Batch, Candidate, Changes
 from mxeon.conformance.spec import LobeSpec, Spec, ValueSpec
+from mxeon.conformance.specs.lobes import ScatteringSpec
 from mxeon.conformance.specs.microfacets import FacetSpec
 from mxeon.conformance.tolerance import Compared, Tolerance
 from mxeon.hosts.base import Engine, Host
@@ -37,6 +38,12 @@ def remembered(spec: Spec, quantity: str) -> Remembered:
 def albedo_candidates(spec: LobeSpec) -> tuple[Candidate, ...]:
     """The candidates for a spec's albedo, cached for several comparisons."""
     candidates = spec.albedo_candidates
+    return tuple(replace(each, values=Remembered(each.values)) for each in candidates)
+
+
+@lru_cache(maxsize=KEPT_SPECS)
+def throughput_candidates(spec: ScatteringSpec) -> tuple[Candidate, ...]:
+    candidates = spec.throughput_candidates
     return tuple(replace(each, values=Remembered(each.values)) for each in candidates)
 
 
@@ -120,6 +127,9 @@ class Case:
     def expected_albedo(self, batch: Batch) -> Array:
         return remembered(self.lobe, "albedo")(batch)
 
+    def expected_throughput(self, batch: Batch) -> Array:
+        return remembered(self.of(ScatteringSpec), "throughput")(batch)
+
     @property
     def changes(self) -> Mapping[str, Changes]:
         """For each input that the engine sets: inputs without and with a change of that input."""
@@ -129,6 +139,10 @@ class Case:
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
         return albedo_candidates(self.lobe)
+
+    @property
+    def throughput_candidates(self) -> tuple[Candidate, ...]:
+        return throughput_candidates(self.of(ScatteringSpec))
 
     def tolerance(self, *quantities: str) -> Tolerance:
         """The spec's error for the first of these quantities that it has, plus the engine's error."""
@@ -172,7 +186,7 @@ def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
     """Throughput of a layer against 1 - E."""
     for branch in branches:
         for batch in case.views:
-            expected = np.maximum(1.0 - case.expected_albedo(batch), 0.0)
+            expected = case.expected_throughput(batch)
             yield Compared(batch, case.throughput(batch, branch), expected)
 
 

@@ -93,13 +93,6 @@ PAGES = {
         _surface("open_pbr_surface", THIN),
     ),
     "genglsl_transmission_masking": ("furnace", _lobe("dielectric_bsdf", GLASS)),
-    "genglsl_sheen_throughput": (
-        "side",
-        _layered(
-            lobe_text("sheen_bsdf", SHEEN, "top"),
-            _operator("layer", "lobe", top="top", base="base"),
-        ),
-    ),
     "genglsl_multiply_throughput": (
         "side",
         _layered(

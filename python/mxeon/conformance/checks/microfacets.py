@@ -193,9 +193,8 @@ STRETCHED = diagnosis.Comparison(
 
 def anisotropic_throughput(case: Case) -> Iterator[Compared]:
     batch = case.backend.take(case.of(FacetSpec).stretched)[0]
-    passed = np.maximum(1.0 - case.of(FacetSpec).integral(batch), 0.0)
     for branch in SCATTERING:
-        yield Compared(batch, case.throughput(batch, branch), passed)
+        yield Compared(batch, case.throughput(batch, branch), case.expected_throughput(batch))
 
 
 # --- light that is transmitted, in the branch that looks up an environment ------------------------

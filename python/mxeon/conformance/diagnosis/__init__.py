@@ -285,17 +285,6 @@ class Comparison:
         return found
 
 
-def _rests(case: Case) -> Sequence[Candidate]:
-    """Candidates for throughputs: 1 - E for each albedo, or all light."""
-    *own, nothing = case.albedo_candidates
-    named = [*own, replace(nothing, title="all light passes", permitted=False)]
-
-    def rest(candidate: Candidate) -> Callable[[Batch], Array]:
-        return lambda batch: np.maximum(1.0 - candidate.values(batch), 0.0)
-
-    return [replace(each, values=rest(each)) for each in named]
-
-
 def _backs(case: Case) -> Iterator[Compared]:
     batch = case.backend.take(case.of(EmissionSpec).backs)
     yield case.valued.alike(Compared(batch, case.direct(batch), case.expected(batch)))
@@ -326,12 +315,13 @@ def _transmittances(case: Case) -> Iterator[Compared]:
 
 
 VALUES, ALBEDOS = attrgetter("valued.value_candidates"), attrgetter("albedo_candidates")
+RESTS = attrgetter("throughput_candidates")
 VALUE = Comparison("value", values, VALUES, DIRECT_FAULTS)
 ALBEDO = Comparison("albedo", albedos, ALBEDOS, ENVIRONMENT_FAULTS)
 # Throughput of a layer, for light from above and for light through the base.
-THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), _rests, EXCHANGES)
+THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), RESTS, EXCHANGES)
 TRANSMISSION = Comparison(
-    "throughput", lambda case: throughputs(case, "transmission"), _rests, EXCHANGES
+    "throughput", lambda case: throughputs(case, "transmission"), RESTS, EXCHANGES
 )
 # Output of a utility node, or emission from the front.
 OUTPUT = Comparison(

@@ -23,7 +23,7 @@ from mxeon.models.core.layering import Bsdf
 from mxeon.models.media import transmittance
 from mxeon.models.nodes import media, microfacets, node
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
-from mxeon.models.nodes.node import PbrNode
+from mxeon.models.nodes.node import PbrNode, white
 from mxeon.models.shading_model import ALONG, UP
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR
 
@@ -89,7 +89,7 @@ class Views:
         return Bsdf(factor * scaled.value, 1.0 - factor * (1.0 - scaled.throughput))
 
     def _lobe(self, closure: ClosureTree, row: PbrNode, layered: bool) -> Bsdf:
-        """A lobe in its frame; by stdosl.h, a layer passes the light that its top does not reflect."""
+        """A lobe in its frame; a layer passes 1 - E of its top, without tints, as in MaterialX's text."""
         if (facets := closure.arguments.get("distribution", GGX)) != GGX:
             rule = f"must be {GGX}, as that of the node; got {facets}"
             raise ShaderError(f"osl: distribution of {closure.name} {rule}")
@@ -114,15 +114,21 @@ class Views:
                 shade = ONE if wi is None or row.transmits else self.occlusion
                 value = tint * shade * self.points.scattered(row, wo, wi, inputs)
             elif closure.name in microfacets.TRANSMISSIONS:
-                white = {**inputs, "tint": np.ones((1, 3))}
-                passed = microfacets.TRANSMISSIONS[closure.name].passed(wo, white, True)
+                passed = microfacets.TRANSMISSIONS[closure.name].passed(wo, white(inputs), True)
                 value = np.asarray(closure.arguments["transmission_tint"] * passed)
             else:
                 value = np.zeros(wo.shape)
-            seen = albedo_at(row.albedo, row, wo, inputs) if layered else None
+            seen = albedo_at(row.albedo, row, wo, white(inputs)) if layered else None
+            if seen is not None and closure.name in microfacets.TRANSMISSIONS:
+                # Mode T has a black tint of its reflection, mode R of its transmission.
+                tints = (
+                    closure.arguments[f"{each}_tint"] for each in ("reflection", "transmission")
+                )
+                reflects, passes = (np.any(each, axis=-1, keepdims=True) for each in tints)
+                seen = np.where(reflects | ~passes, seen, 0.0)
         except ValueError as error:
             raise OutsideModel(f"osl: {closure.name}: {error}") from None
-        return Bsdf(value, NOTHING.throughput if seen is None else 1.0 - tint * seen)
+        return Bsdf(value, NOTHING.throughput if seen is None else 1.0 - seen)
 
 
 def radiance(tree: ClosureTree | None) -> Array:

@@ -31,7 +31,7 @@ from mxeon.models.nodes import PBR_NODES, microfacets
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.media import METER
 from mxeon.models.nodes.microfacets import MICROFACET_NODES, TRANSMISSION_NODES, TRANSMISSIONS
-from mxeon.models.nodes.node import Inputs, PbrNode
+from mxeon.models.nodes.node import Inputs, PbrNode, white
 from mxeon.models.shading_model import ALONG, UP
 from mxeon.models.table import diffuse_model
 from mxeon.models.thin_film import FILM
@@ -178,7 +178,7 @@ class ShadingPoints:
 
         def scattered() -> Bsdf:
             hides = layered and node.layerable
-            left = throughput(self._albedo(node.albedo, node, wo, inputs)) if hides else 0.0
+            left = throughput(self._albedo(node.albedo, node, wo, white(inputs))) if hides else 0.0
             value = self.strength * self.scattered(node, wo, wi, inputs)
             return Bsdf(value, np.broadcast_to(left, wo.shape))
 

@@ -15,7 +15,7 @@ from mxeon.conformance.spec import ZERO, Input
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.models.hair import TINTS
 from mxeon.models.nodes import node
-from mxeon.models.nodes.node import Inputs, PbrNode, Scattering
+from mxeon.models.nodes.node import ABSORBING, COLORED, Inputs, PbrNode, Scattering
 from mxeon.shaders.nodes import material_text
 
 COUNTS = Counts(pairs=1 << 12, few=1 << 10, diagnosed=1 << 11)
@@ -85,6 +85,10 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
     def albedo(self, batch: Batch) -> Array:
         return _albedo(self.row.albedo, batch)
 
+    def throughput(self, batch: Batch) -> Array:
+        """1 - E of the lobe without its color, at least 0, (N, 3)."""
+        return np.maximum(1.0 - _albedo(self.row.taken or self.row.albedo, _white(batch)), 0.0)
+
     def sky(self, batch: Batch) -> Array:
         return samples.sky(self.side * batch.normal)
 
@@ -95,9 +99,29 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
         own = Candidate(self.row.title, self.albedo)
-        rows = ((each, each.albedo) for each in self.row.variants if each.albedo)
+        shown = (each for each in self.row.variants if not each.above)
+        rows = ((each, each.albedo) for each in shown if each.albedo)
         variants = (Candidate(e.title, partial(_albedo, albedo), e.permitted) for e, albedo in rows)
         return (own, *variants, ZERO)
+
+    @property
+    def throughput_candidates(self) -> tuple[Candidate, ...]:
+        """1 - E of each model, or all light."""
+
+        def rest(batch: Batch, albedo: Callable[[Array, Inputs], Array], above: bool) -> Array:
+            return np.maximum(1.0 - _albedo(albedo, batch if above else _white(batch)), 0.0)
+
+        candidates = [Candidate(self.row.title, self.throughput)]
+        if any(name in ABSORBING for name in self.row.inputs):
+            colored = partial(rest, albedo=self.row.albedo, above=True)
+            candidates.append(Candidate(COLORED, colored, permitted=True))
+        variants = (
+            Candidate(e.title, partial(rest, albedo=e.albedo, above=e.above), e.permitted)
+            for e in self.row.variants
+            if e.albedo
+        )
+        all_light = Candidate("all light passes", lambda batch: np.ones_like(batch.wo))
+        return (*candidates, *variants, all_light)
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
         return spec.draw(rng, count, self.drawn, edged)
@@ -203,6 +227,11 @@ class PbrSpec(ScatteringSpec):
         wi = directions_at(self.side * mu[:, np.newaxis], phi).reshape(len(wo), -1, 3)
         weights = np.repeat(slope * 2.0 / count, count)
         return wi, np.broadcast_to(weights, wi.shape[:2])
+
+
+def _white(batch: Batch) -> Batch:
+    """A batch without the colors that only absorb."""
+    return batch.altered(**{each: samples.WHITE for each in ABSORBING if each in batch.inputs})
 
 
 def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:

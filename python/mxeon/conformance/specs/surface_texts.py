@@ -257,6 +257,7 @@ STANDARD_ROWS = (
          inputs=drawn(share="base diffuse_roughness", color="base_color")),
     Says("specular", "Specular reflection",
          "The specular lobe is a dielectric's above the rest, scaled by specular and its color.", fixed=PLASTIC,
+         permitted=("no tint of what specular light leaves",),
          inputs=drawn(share="specular", color="specular_color", index="specular_IOR", rough="specular_roughness")),
     Says("metal", "Metal",
          "Metals reflect base * base_color along the normal; specular * specular_color is Gulbrandsen's edge color.",

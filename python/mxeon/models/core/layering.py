@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Algebra of `layer`, `mix`, `add` and `multiply` on values and throughputs of lobes.
 
-The throughput of a lobe is 1 - E, with its directional albedo E. It is negative where E exceeds 1, so
+The throughput of a lobe is 1 - E, with the directional albedo E of the lobe without color. It is negative where E exceeds 1, so
 that sums keep their E when they are scaled or mixed afterwards. The text does not cover E above 1; only
 `layer` clamps the throughput to the base, at 0. A value may include its cosine
 or not: all four operations are linear in it. Lobes broadcast against each other.
@@ -30,12 +30,12 @@ class Bsdf:
 
 @any_array
 def throughput(albedo: ArrayLike) -> Array:
-    """Throughput T = 1 - E of a lobe with the directional albedo E (..., C), tint and weight included.
+    """Throughput T = 1 - E of a lobe with the directional albedo E (..., C), weight included.
 
-    Negative where the albedo exceeds 1, and above 1 where it is negative, as Zeltner's fit is, by 2.2e-5. The
-    text defines E for the whole lobe, color included, so a tinted sheen passes more light than a white one.
-    Shaders of MaterialX leave the color of `sheen_bsdf` out of E. Raises `ValueError` if an albedo is infinite
-    or NaN. [MaterialX2026], section `layer`.
+    Negative where the albedo exceeds 1, and above 1 where it is negative, as Zeltner's fit is, by 2.2e-5. E is that
+    of a white lobe: what the `color` of `sheen_bsdf` or the `tint` of `dielectric_bsdf` removes is absorbed. In texts
+    before August 2026, E has the color. Raises `ValueError` if an albedo is infinite or NaN. [MaterialX2026] of
+    August 2026, Vertical-Layering Transmittance.
 
         >>> throughput([0.25, 1.5])
         array([ 0.75, -0.5 ])

@@ -17,7 +17,7 @@ import numpy as np
 from mxeon.models.core import layering
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.layering import Bsdf
-from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant, column
+from mxeon.models.nodes.node import COLORED, Inputs, PbrNode, Scattering, Variant, column
 from mxeon.models.sheen import (
     conty_kulla_albedo_dir,
     conty_kulla_brdf,
@@ -32,42 +32,51 @@ AMOUNT_ABOVE = "mixed/mix"  # weight of the sum in a mix that is the top of a la
 FACTOR = "lobe/in2"  # factor of `top` or of the sum
 # A white opaque lobe of the first weight lies over `top`; the second weighs both over another lobe.
 MASKS = ("inner/in1", "outer/in1")
-Sheen = Callable[[Array, Array, Array, Array], Bsdf]  # (wo, wi, roughness, color)
+Albedo = Callable[[Array, Inputs], Array]
+Sheen = tuple[Callable[..., Array], Callable[..., Array]]  # its BRDF and its directional albedo
 Combine = Callable[[Bsdf, Bsdf, Inputs], Bsdf]
 Finish = Callable[[Bsdf], Bsdf]
 
-
-def _zeltner(wo: Array, wi: Array, roughness: Array, color: Array) -> Bsdf:
-    """A Zeltner sheen."""
-    albedo = zeltner_albedo_dir(np.minimum(wo[:, 2], 1.0), roughness)
-    return Bsdf(zeltner_brdf(wo, wi, color, roughness), 1.0 - albedo[:, np.newaxis] * color)
-
-
-def _conty_kulla(wo: Array, wi: Array, roughness: Array, color: Array) -> Bsdf:
-    """A Conty-Kulla sheen with its albedo clamped to 1."""
-    albedo = np.minimum(conty_kulla_albedo_dir(np.minimum(wo[:, 2], 1.0), roughness), 1.0)
-    return Bsdf(conty_kulla_brdf(wo, wi, color, roughness), 1.0 - albedo[:, np.newaxis] * color)
+ZELTNER = zeltner_brdf, zeltner_albedo_dir
+CONTY_KULLA = conty_kulla_brdf, conty_kulla_albedo_dir
 
 
 def _values(
-    combine: Combine, sheen: Sheen = _zeltner
-) -> tuple[Callable[[Array, Array, Inputs], Array], Callable[[Array, Inputs], Array]]:
-    """Value and albedo of a combination of both lobes."""
+    combine: Combine, sheen: Sheen = ZELTNER, colored: bool = False
+) -> tuple[Callable[[Array, Array, Inputs], Array], Albedo, Albedo]:
+    """Value and albedo of a combination of both lobes, and E in its throughput 1 - E.
 
-    def both(wo: Array, wi: Array, inputs: Inputs) -> Bsdf:
-        top, base = (
-            sheen(wo, wi, inputs[rough], inputs.get(color, np.ones(3)))
-            for rough, color in zip(ROUGHNESS, COLORS, strict=True)
-        )
-        return combine(top, base, inputs)
+    Albedos are clamped to 1. `colored`: whether light that a color removes passes. Without colors, use 1 - throughput.
+    """
+    brdf, albedo_dir = sheen
 
-    def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
-        return both(wo, wi, inputs).value
+    def both(wo: Array, wi: Array | None, inputs: Inputs) -> Bsdf:
+        lobes = []
+        for name, color_name in zip(ROUGHNESS, COLORS, strict=True):
+            rough, color = inputs[name], inputs.get(color_name, np.ones(3))
+            E = np.minimum(albedo_dir(np.minimum(wo[:, 2], 1.0), rough), 1.0)[:, np.newaxis]
+            value = E * color if wi is None else brdf(wo, wi, color, rough)
+            lobes.append(Bsdf(value, 1.0 - E * (color if colored else np.ones(3))))
+        return combine(lobes[0], lobes[1], inputs)
 
-    def albedo(wo: Array, inputs: Inputs) -> Array:
-        return 1.0 - both(wo, wo, inputs).throughput
+    return (
+        lambda wo, wi, inputs: both(wo, wi, inputs).value,
+        lambda wo, inputs: both(wo, None, inputs).value,
+        lambda wo, inputs: 1.0 - both(wo, None, inputs).throughput,
+    )
 
-    return value, albedo
+
+def _variant(
+    title: str,
+    combine: Combine,
+    sheen: Sheen = ZELTNER,
+    colored: bool = False,
+    layered: bool = True,
+    permitted: bool = False,
+) -> Variant[Scattering]:
+    """A variant of a combination; without `layered`, only its throughput differs."""
+    value, _, taken = _values(combine, sheen, colored)
+    return Variant(title, value if layered else None, taken, permitted)
 
 
 def _combined(
@@ -79,8 +88,12 @@ def _combined(
     variants: tuple[Variant[Scattering], ...] = (),
 ) -> PbrNode:
     """Row of a node that combines both lobes."""
-    value, albedo = _values(combine)
-    other = Variant("Conty-Kulla sheens in the lobes' place", *_values(combine, _conty_kulla))
+    value, albedo, taken = _values(combine)
+    other = _variant("Conty-Kulla sheens in the lobes' place", combine, CONTY_KULLA)
+    if COLORS[0] not in inputs:
+        albedo = taken
+    else:
+        variants = (*variants, _variant(COLORED, combine, colored=True, permitted=True))
     return PbrNode(
         name,
         title,
@@ -88,6 +101,7 @@ def _combined(
         (*ROUGHNESS, *inputs),
         value,
         albedo,
+        taken=taken,
         layerable=True,
         reciprocal=False,
         variants=(*variants, other),
@@ -121,13 +135,13 @@ def _masked(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe:
 def _hiding() -> tuple[Variant[Scattering], ...]:
     """Opaque lobes that hide their base regardless of their weight, as in MaterialX."""
     hidden = partial(_masked, finish=lambda lobe: replace(lobe, throughput=0.0 * lobe.throughput))
-    return (Variant("opaque lobes that hide their base at any weight", *_values(hidden)),)
+    return (_variant("opaque lobes that hide their base at any weight", hidden),)
 
 
 def _unscaled(combine: Combine) -> tuple[Variant[Scattering], ...]:
     """A scaled lobe that keeps its unscaled throughput, which the text leaves open."""
     title = "the throughput of the lobe before it is scaled"
-    return (Variant(title, albedo=_values(combine)[1], permitted=True),)
+    return (_variant(title, combine, layered=False, permitted=True),)
 
 
 def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant[Scattering], ...]:
@@ -135,12 +149,10 @@ def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant[Scatt
 
     MaterialX's `add` clamps the throughput to at least 0.
     """
-    value, albedo = _values(
-        partial(
-            combine, finish=lambda lobe: replace(lobe, throughput=np.maximum(lobe.throughput, 0.0))
-        )
+    clamped = partial(
+        combine, finish=lambda lobe: replace(lobe, throughput=np.maximum(lobe.throughput, 0.0))
     )
-    return (Variant("a sum whose throughput is clamped at 0", value if layered else None, albedo),)
+    return (_variant("a sum whose throughput is clamped at 0", clamped, layered=layered),)
 
 
 COMBINATIONS = (

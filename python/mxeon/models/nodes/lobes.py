@@ -87,12 +87,6 @@ def _tinted(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Inputs]
     return lambda wo, i: albedo(cosine(wo[:, 2]), i["roughness"])[..., np.newaxis] * i["color"]
 
 
-def untinted(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Inputs], Array]:
-    """Albedo of a lobe with one roughness, without its color."""
-    white = _tinted(albedo)
-    return lambda wo, inputs: white(wo, {**inputs, "color": np.ones(3)})
-
-
 def _sheen(brdf: Callable[..., Array]) -> Callable[[Array, Array, Inputs], Array]:
     """Values of a lobe with a color and a roughness."""
     return lambda wo, wi, inputs: brdf(wo, wi, inputs["color"], inputs["roughness"])
@@ -141,17 +135,10 @@ LOBE_NODES = (
         variants=(
             Variant("Zeltner sheen", _sheen(sheen.zeltner_brdf), _tinted(zeltner_albedo_dir)),
             Variant(
-                "its albedo without the color", albedo=untinted(_bounded(conty_kulla_albedo_dir))
-            ),
-            Variant(
                 "MaterialX's fit of its albedo",
                 albedo=lambda wo, inputs: np.asarray(
                     defects.conty_kulla_albedo(wo, inputs) * inputs["color"]
                 ),
-            ),
-            Variant(
-                "MaterialX's fit of its albedo without the color",
-                albedo=defects.conty_kulla_albedo,
             ),
         ),
     ),
@@ -171,7 +158,6 @@ LOBE_NODES = (
                 _sheen(sheen.conty_kulla_brdf),
                 _tinted(_bounded(conty_kulla_albedo_dir)),
             ),
-            Variant("its albedo without the color", albedo=untinted(zeltner_albedo_dir)),
         ),
     ),
 )

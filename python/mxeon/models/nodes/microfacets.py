@@ -20,7 +20,7 @@ from mxeon.models.core.colorimetry import XYZ_TO_REC709
 from mxeon.models.microfacet import CATEGORIES, Lobe, defects, node_albedo, node_brdf, uncompensated
 from mxeon.models.microfacet.defects import UNCOMPENSATED, averaged_channels, layer_albedo
 from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
-from mxeon.models.nodes.node import BLACK, WHITE, Inputs, PbrNode, Scattering, Variant
+from mxeon.models.nodes.node import BLACK, WHITE, Inputs, PbrNode, Scattering, Variant, white
 from mxeon.models.thin_film import FILM, Form, film_albedo_dir
 
 # The text leaves the form of the energy compensation open. MaterialX's masking of anisotropic facets is mentioned in
@@ -54,8 +54,9 @@ class MicrofacetLobe:
         return self.fresnel(np.ones(len(wo)), inputs), inputs[self.edge] if self.edge else 1.0
 
     def fitted(self, wo: Array, inputs: Inputs) -> Array:
-        """Albedo as in MaterialX's throughput, per channel and without a tint."""
-        return layer_albedo(wo, inputs, *self.ends(wo, inputs), self._at_view(wo, inputs))
+        """Albedo as in MaterialX's throughput, per channel."""
+        fit = layer_albedo(wo, inputs, *self.ends(wo, inputs), self._at_view(wo, inputs))
+        return np.asarray(fit * inputs.get("tint", np.ones(3)))
 
     def prefiltered(self, wo: Array, inputs: Inputs) -> Array:
         """Albedo by MaterialX's fit, as in its prefiltered environment, with the exact compensation."""
@@ -84,11 +85,6 @@ def isotropic(inputs: Inputs) -> dict[str, Array]:
     """Inputs with both roughnesses replaced by their geometric mean."""
     mean = np.sqrt(inputs["roughness"].prod(axis=-1, keepdims=True))
     return {**inputs, "roughness": np.repeat(mean, 2, axis=-1)}
-
-
-def white(inputs: Inputs) -> dict[str, Array]:
-    """Inputs without the tint."""
-    return {**inputs, "tint": np.ones(3)}
 
 
 def undipped(inputs: Inputs) -> dict[str, Array]:
@@ -163,7 +159,7 @@ def _row(
                 albedo=lobe.averaged,
                 permitted=True,
             ),
-            Variant("MaterialX's fit of its albedo without a tint", albedo=lobe.fitted),
+            Variant("MaterialX's fit of its albedo", albedo=lobe.fitted),
             *variants,
         ),
     )
@@ -174,10 +170,6 @@ MICROFACET_NODES = (
         "dielectric",
         "dielectric microfacets",
         DIELECTRIC_LOBE,
-        Variant(
-            "its albedo without the tint",
-            albedo=lambda wo, inputs: DIELECTRIC_LOBE.albedo(wo, white(inputs)),
-        ),
         fixed=REFLECTION,
         mirror={"ior": 0.0, "tint": WHITE},
     ),

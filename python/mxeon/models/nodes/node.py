@@ -98,6 +98,9 @@ class Variant(Generic[Function]):
     value: Function | None = None  # None if the values are the node's own
     albedo: Callable[[Array, Inputs], Array] | None = None
     permitted: bool = False  # whether the specification permits it
+    above: bool = (
+        False  # whether its albedo is only what a layer takes from its base, colors included
+    )
 
 
 @dataclass(frozen=True)
@@ -120,8 +123,9 @@ class PbrNode(Node[Scattering]):
     - `albedo`: Directional albedo E for weight 1, tints included; clamped to 1.
     - `integral`: The integral of its values, if it differs from `albedo` for some inputs.
     - `fixed`: Inputs that select the mode.
-    - `layerable`: Whether it passes 1 - E to the layer below; an opaque node of weight 1
-      passes nothing.
+    - `layerable`: Whether it passes 1 - E to the layer below, with E at `white` inputs; an opaque
+      node of weight 1 passes nothing.
+    - `taken`: E in 1 - E, if it is not `albedo` at `white` inputs.
     - `transmits`: Whether it scatters light from below the horizon instead of light from above.
     - `mirror`: Inputs with which it reflects all light; empty if there are none.
     - `parameters`: Its inputs, if they or their quantities differ from the category's.
@@ -132,12 +136,24 @@ class PbrNode(Node[Scattering]):
     integral: Callable[[Array, Inputs], Array] | None = None
     fixed: Mapping[str, str] = field(default_factory=dict, hash=False)
     layerable: bool = False
+    taken: Callable[[Array, Inputs], Array] | None = None
     transmits: bool = False
     fitted: bool = False  # whether a shader needs a fit for its albedo
     reciprocal: bool = True  # whether exchanging the directions does not change the value
     mirror: Mapping[str, ArrayLike] = field(default_factory=dict, hash=False)
     parameters: tuple[Parameter, ...] = ()
     average: Callable[[Inputs], Array] | None = None
+
+
+# Colors of a layer that absorb light: [MaterialX2026] of August 2026, Vertical-Layering Transmittance. Texts before
+# take them from the base, too.
+ABSORBING = ("color", "tint")
+COLORED = "the color in the light that passes, as in texts before August 2026"
+
+
+def white(inputs: Inputs) -> dict[str, Array]:
+    """Inputs with white ABSORBING colors."""
+    return {**inputs, **{name: np.ones((1, 3)) for name in ABSORBING if name in inputs}}
 
 
 def column(inputs: Inputs, name: str) -> Array:

@@ -11,11 +11,9 @@ import numpy as np
 from mxeon.models.core.arrays import Array
 from mxeon.models.microfacet.defects import BSDL, SINGLE, conty_kulla_albedo
 from mxeon.models.microfacet.ggx import missing_light
-from mxeon.models.nodes import microfacets
-from mxeon.models.nodes.lobes import untinted
+from mxeon.models.nodes import microfacets, node
 from mxeon.models.nodes.microfacets import CONDUCTOR_LOBE, DIELECTRIC_LOBE, SCHLICK_LOBE, undipped
-from mxeon.models.nodes.node import Inputs, Scattering, Variant
-from mxeon.models.sheen import zeltner_albedo_dir
+from mxeon.models.nodes.node import Inputs, Scattering, Variant, white
 
 INDEX = (1.001, 5.0)  # range to which BSDL clamps the index of a dielectric
 
@@ -29,7 +27,7 @@ def _dielectric_albedo(wo: Array, inputs: Inputs) -> Array:
     """Albedo of a dielectric without tint, at the arithmetic mean of both alphas."""
     mean = inputs["roughness"].mean(axis=-1, keepdims=True)
     alphas = np.repeat(mean, 2, axis=-1)
-    return DIELECTRIC_LOBE.albedo(wo, {**microfacets.white(_indexed(inputs)), "roughness": alphas})
+    return DIELECTRIC_LOBE.albedo(wo, {**_indexed(inputs), "tint": np.ones(3), "roughness": alphas})
 
 
 def _schlick_albedo(wo: Array, inputs: Inputs) -> Array:
@@ -42,6 +40,11 @@ def gray(albedo: Callable[[Array, Inputs], Array], wo: Array, inputs: Inputs) ->
     """An albedo times the largest channel of the color, in every channel."""
     largest = np.max(np.broadcast_to(inputs["color"], wo.shape), axis=-1, keepdims=True)
     return np.asarray(np.minimum(albedo(wo, inputs) * largest, 1.0))
+
+
+def _zeltner(wo: Array, inputs: Inputs) -> Array:
+    """Albedo of a white Zeltner sheen."""
+    return node("zeltner").albedo(wo, white(inputs))
 
 
 CONTY_KULLA = partial(gray, conty_kulla_albedo)
@@ -69,16 +72,19 @@ BSDL_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
         Variant(
             "MaterialX's fit of its albedo, times the largest channel of the color",
             albedo=CONTY_KULLA,
+            above=True,
         ),
     ),
     "zeltner": (
         Variant(
             "its albedo times the largest channel of the color",
-            albedo=partial(gray, untinted(zeltner_albedo_dir)),
+            albedo=partial(gray, _zeltner),
+            above=True,
         ),
         Variant(
             "MaterialX's fit of the Conty-Kulla albedo, times the largest channel of the color",
             albedo=CONTY_KULLA,
+            above=True,
         ),
     ),
 }
@@ -113,9 +119,8 @@ def _lossless_dielectric(wo: Array, inputs: Inputs) -> Array:
 
 SHEEN: Variant[Scattering] = Variant(
     "the largest channel of the Zeltner sheen's albedo, with the color squared",
-    albedo=lambda wo, i: gray(
-        untinted(zeltner_albedo_dir), wo, {**i, "color": np.square(i["color"])}
-    ),
+    albedo=lambda wo, i: gray(_zeltner, wo, {**i, "color": np.square(i["color"])}),
+    above=True,
 )
 # By the name of the node's row.
 CYCLES_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
@@ -125,7 +130,7 @@ CYCLES_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
             partial(DIELECTRIC_LOBE.value, terms=SINGLE.lobe),
             partial(_single, DIELECTRIC_LOBE),
         ),
-        Variant(LOSSLESS, albedo=_lossless_dielectric),
+        Variant(LOSSLESS, albedo=_lossless_dielectric, above=True),
     ),
     "conductor": (
         Variant(

@@ -138,7 +138,8 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     f_specular, E_specular = (
         find(DIELECTRIC, frame, **glass, **film) for find in (light.response, light.albedo)
     )
-    f_reflection = edge * f_specular + (1.0 - edge * E_specular) * f_transmission
+    kept = p["specular"] if "no tint of what specular light leaves" in but else edge
+    f_reflection = edge * f_specular + (1.0 - kept * E_specular) * f_transmission
 
     f_mixture = lerp(f_reflection, f_metal, metalness)
     if not np.any(coat):
