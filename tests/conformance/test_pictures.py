@@ -280,3 +280,8 @@ def test_a_value_outside_its_model_is_not_judged(shown, name, value, high):
     rule = f"must lie in [0, {high}], where its model is defined; got {value}"
     assert result.reason == f'input "lobe/{name}" {rule}' and not notes
     assert has(result, "input", f"lobe/{name}")
+
+
+def test_a_picture_of_hair_has_a_result_that_a_report_can_store(shown):
+    result, _, _ = shown(material(lobe("chiang_hair_bsdf")))
+    assert type(result.tolerance) is float and type(result.control.caught) is bool

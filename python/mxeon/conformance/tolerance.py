@@ -160,7 +160,7 @@ class Tolerance:
 
     @property
     def value(self) -> float:
-        total = sum(term.value for term in self.terms)
+        total = float(sum(term.value for term in self.terms))  # results are plain numbers
         return total if self.exact or not total else rounded_up(total)
 
     @property
