@@ -35,10 +35,10 @@ from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, Transmissio
 from mxeon.conformance.tolerance import Compared, count_named, count_not_finite, count_of, roundings
 from mxeon.errors import Implied
 from mxeon.models.microfacet.defects import UNCOMPENSATED, schlick_average
-from mxeon.models.microfacet.ggx import smith_g1, smith_lambda
+from mxeon.models.microfacet.ggx import ggx_albedo_dir, smith_g1, smith_lambda
 from mxeon.models.sampling import ggx_sample
 from mxeon.models.transmission import refraction_direction
-from mxeon.shaders.methods import GENERATED, UNTABLED, Methods
+from mxeon.shaders.methods import GENERATED, TABLE_SIZE, UNTABLED, Methods
 from mxeon.shaders.scene import Client
 
 if TYPE_CHECKING:  # the import loads MaterialX
@@ -106,7 +106,7 @@ def retroreflection(case: Case) -> Iterator[Compared]:
 
 
 def anisotropy(case: Case) -> Compared:
-    batch = case.backend.mirrored[0].first(PAIRS)
+    batch = microfacets.denser(case.backend.mirrored[0].first(PAIRS))
     height = np.minimum(batch.wo[:, 2], batch.wi[:, 2])
     batch = batch.where(height >= microfacets.LEAST_TANGENT_COSINE)
     alpha = np.maximum(batch.inputs["roughness"], microfacets.LEAST_TANGENT_ALPHA)
@@ -276,6 +276,7 @@ def clear(case: Case) -> Iterator[Compared]:
 OTHERS = (Methods("prefilter", "opacity"), Methods("prefilter", "refraction"))
 SAMPLED = Methods("prefilter", "refraction", "monteCarlo")
 BOUND = Client(turn=TURNING, intensity=0.5, two_sided=True)
+SIDES = np.floor, np.ceil  # texels on both sides of a place
 MIRROR = family(FacetSpec, lambda spec: spec.model == "schlick")
 
 
@@ -295,7 +296,7 @@ def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
     transmits = TRANSMITTING(case.spec)
     for methods in others(case):
         ask = partial(case.evaluating.evaluate, shader=generated(case, methods))
-        found = shares(case, ask, methods) if transmits else mirrored(case, ask)
+        found = (shares if transmits else mirrored)(case, ask, methods)
         yield from ((methods, each) for each in found)
 
 
@@ -311,10 +312,10 @@ def shares(case: Case, ask: Callable[..., Array], methods: Methods) -> Iterator[
         yield limited(case.of(TransmissionSpec), tinted, found, opaque)
 
 
-def mirrored(case: Case, ask: Callable[..., Array]) -> Iterator[Compared]:
+def mirrored(case: Case, ask: Callable[..., Array], methods: Methods) -> Iterator[Compared]:
     """Light through a mirror by default, reflection of a white mirror, and reflection of turned surroundings.
 
-    A white mirror reflects everything, or MaterialX's fit of it over the albedo.
+    A white mirror reflects everything, or what the text sums or tabulates over the albedo.
     """
     white = {name: np.ones(3) for name in ("color0", "color82", "color90")}
     for batch in case.views:
@@ -323,12 +324,27 @@ def mirrored(case: Case, ask: Callable[..., Array]) -> Iterator[Compared]:
         yield Compared(batch, passed, case.throughput(batch, "direct"))
         plain, seen = (backends.isotropic(each).altered(**white) for each in (batch, views))
         found = case.outputs(plain, ask(seen, "environment", client=BOUND)) / BOUND.intensity
-        ends = plain.strength * ONE, case.of(FacetSpec).prefiltered(plain)
-        yield Compared(plain, found, np.clip(found, np.minimum(*ends), np.maximum(*ends)))
+        ends = np.ones((1, len(found)))
+        if methods.albedo == "table":
+            ends = np.append(ends, tabulated(plain.wo[:, 2], plain.rough), axis=0)
+        low, high = (plain.strength * end(axis=0)[:, np.newaxis] for end in (ends.min, ends.max))
+        yield Compared(plain, found, np.clip(found, low, high))
         seen = seen.first(SEEN)
         found = ask(seen, "environment", irradiance=sky_map(), client=BOUND) / BOUND.intensity
         turned = ask(in_turn(seen, BOUND), "environment", irradiance=sky_map())
         yield Compared(seen, found, turned)
+
+
+def tabulated(mu: Array, alpha: Array) -> Array:
+    """E_ss at the four texels of MaterialX's table nearest to (mu, alpha), over E_ss there, (4, N).
+
+    In the first rows and columns, the table does not resolve the dip of E_ss to 0.89 near mu = alpha.
+    """
+    x, y = (TABLE_SIZE * each - 0.5 for each in (mu, alpha))
+    corners = ((round_x(x), round_y(y)) for round_x in SIDES for round_y in SIDES)
+    texels = (np.clip(corner, 0, TABLE_SIZE - 1) + 0.5 for corner in corners)
+    found = np.stack([ggx_albedo_dir(*each / TABLE_SIZE) for each in texels])
+    return np.asarray(found / ggx_albedo_dir(mu, alpha))
 
 
 def diagnose_methods(case: Case) -> Diagnosis:
@@ -374,7 +390,7 @@ def critical(case: Case) -> Compared:
     functions = case.of(TransmissionSpec).functions
     index, mu = functions.ior(batch.inputs), np.minimum(batch.wo[:, 2], 1.0)
     away = np.abs(mu - np.sqrt(np.maximum(1.0 - index * index, 0.0))) > CRITICAL
-    away &= ~microfacets.falls_below_0(batch)
+    away &= ~microfacets.falls_below_0(batch.inputs)
     batch, mu = batch.where(away), mu[away]
     passed = functions.tint(batch.inputs) * (1.0 - functions.fresnel(mu, batch.inputs))
     return Compared(batch, case.transmitted(batch), batch.strength * passed)

@@ -33,6 +33,7 @@ COSINE_STEP = 2.0**-18  # difference between the cosines of a half vector with t
 RIM_COLOR = 0.05  # least color90 in some channel, or |wo + wi|
 LEAST_TANGENT_ALPHA = 0.05  # least alpha with turned tangents, as roundings are divided by it
 LEAST_TANGENT_COSINE = 0.1  # least cosine with turned tangents
+COSINES = np.linspace(0.0, 1.0, 65)  # samples of a curve that may be below 0
 
 # fmt: off
 # The first material's index is bright enough for the controls of pictures.
@@ -245,7 +246,10 @@ class FacetSpec(PbrSpec):
         for _, inputs in rows:
             inputs["roughness"][inputs["roughness"] < LEAST_ALPHA] = 0.0
         changed = (replace(batch, inputs=inputs) for batch, inputs in rows)
-        return tuple(batch.where(~falls_below_0(batch)) for batch in changed)
+        return tuple(
+            batch.where(~np.broadcast_to(falls_below_0(batch.inputs), len(batch.wo)))
+            for batch in changed
+        )
 
     def mirrored(self, counts: Counts) -> tuple[Batch, Batch]:
         """Two lights near the mirror direction of each view, from normals that the view sees."""
@@ -287,19 +291,17 @@ class FacetSpec(PbrSpec):
         return np.asarray(self.single(pairs) * weight[:, np.newaxis])
 
     def turned(self, counts: Counts) -> Batch:
-        """Pairs with individual frames, without sharp lobes, whose position would be uncertain.
-
-        Dielectrics are denser than air, because curves have an infinite slope at a critical angle.
-        """
+        """Pairs with individual frames, without sharp lobes, whose position would be uncertain."""
         batch = super().turned(counts)
-        changes = {"roughness": np.maximum(batch.inputs["roughness"], samples.LEAST_TURNED)}
-        if "tint" in batch.inputs:
-            index = np.maximum(batch.inputs["ior"], LEAST_INVERTED)
-            changes["ior"] = np.maximum(index, 1.0 / index)
-        return batch.altered(**changes)
+        rough = np.maximum(batch.inputs["roughness"], samples.LEAST_TURNED)
+        return denser(batch.altered(roughness=rough))
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        return simple(inputs)
+        """No curve falls below 0: values clamp it, but the fit of the albedo averages the printed curve."""
+        changed = simple(inputs)
+        if "color82" in changed:
+            changed["color82"][falls_below_0(changed)] = 1.0
+        return changed
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
         # Gauss nodes for the height of the normals that each view sees, and uniform azimuths.
@@ -313,6 +315,14 @@ class FacetSpec(PbrSpec):
         density = np.where(lit, ggx_pdf(views, wi, alpha), np.inf)
         weights = np.tile(np.meshgrid(0.5 * w, np.ones(count))[0].ravel() / count, len(wo))
         return wi.reshape(len(wo), size, 3), (weights / (np.pi * density)).reshape(len(wo), size)
+
+
+def denser(batch: Batch) -> Batch:
+    """Dielectrics denser than air: curves have an infinite slope at a critical angle."""
+    if "tint" not in batch.inputs:
+        return batch
+    index = np.maximum(batch.inputs["ior"], LEAST_INVERTED)
+    return batch.altered(ior=np.maximum(index, 1.0 / index))
 
 
 def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
@@ -355,22 +365,21 @@ def _has_curve(batch: Batch) -> samples.Mask:
 
 def is_below_0(batch: Batch) -> samples.Mask:
     """Pairs with a printed curve below 0 in some channel, as for dark colors with a small color82."""
-    return _below_0(batch, np.minimum(0.5 * np.linalg.norm(batch.wo + batch.wi, axis=1), 1.0))
+    cosines = np.minimum(0.5 * np.linalg.norm(batch.wo + batch.wi, axis=1), 1.0)
+    return _below_0(batch.inputs, cosines)
 
 
-def falls_below_0(batch: Batch) -> samples.Mask:
+def falls_below_0(inputs: Mapping[str, Array]) -> samples.Mask:
     """Materials with a printed curve that is below 0 at some cosine."""
-    cosines = np.linspace(0.0, 1.0, 65)
-    found = (_below_0(batch, np.full(len(batch.wo), each)) for each in cosines)
-    return np.asarray(np.any([*found], axis=0))
+    return np.asarray(np.any([_below_0(inputs, each) for each in COSINES], axis=0))
 
 
-def _below_0(batch: Batch, cosine: Array) -> samples.Mask:
-    if "color82" not in batch.inputs:
-        return np.zeros(len(batch.wo), bool)
-    color0, color82, color90 = (batch.inputs[name] for name in ("color0", "color82", "color90"))
-    F = fresnel.fresnel_schlick(cosine, color0, color82, color90, batch.inputs["exponent"])
-    return np.asarray((F < 0.0).any(axis=1))
+def _below_0(inputs: Mapping[str, Array], cosine: Array | float) -> samples.Mask:
+    if "color82" not in inputs:
+        return np.zeros(1, bool)
+    color0, color82, color90 = (inputs[name] for name in ("color0", "color82", "color90"))
+    F = fresnel.fresnel_schlick(cosine, color0, color82, color90, inputs["exponent"])
+    return np.asarray((F < 0.0).any(axis=-1))
 
 
 def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:

@@ -222,13 +222,9 @@ class SurfaceShaderSpec(spec.LobeSpec):
         if "base_metalness" in self.names:  # only OpenPBR's metal has a color at 82 degrees
             color0 = batch.inputs["base_color"] * batch.inputs["base_weight"][:, np.newaxis]
             color82, color90 = batch.inputs["specular_color"], np.ones((1, 3))
-            curve: Values = {
-                "color0": color0,
-                "color82": color82,
-                "color90": color90,
-                "exponent": 5.0,
-            }
-            batch = batch.where(~microfacets.falls_below_0(batch.altered(**curve)))
+            curve = {"color0": color0, "color82": color82, "color90": color90}
+            curve["exponent"] = np.full(1, 5.0)
+            batch = batch.where(~microfacets.falls_below_0(curve))
         return (batch,)
 
     def edges(self, counts: Counts) -> Batch:
