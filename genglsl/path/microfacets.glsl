@@ -27,6 +27,9 @@
 // With an index nearer to 1, a refracted direction does not determine its facet.
 #define PATH_LEAST_BEND 1e-3
 
+// A fitted albedo may be 0 where some facets still reflect: the lobe is drawn as if it reflected this share.
+#define PATH_LEAST_SHARE 1e-3
+
 // The index below relative to that above.
 float path_eta_of(float ior)
 {
@@ -236,7 +239,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
         path_u.z = drawn ? (below ? path_u.z - reflects : path_u.z) / part : path_u.z;
         float draws = path_is_denser() && path_is_lost(lobe, path_partner(lobe)) ? 2.0 : 1.0;
         bool turned = distance(lobe.wo, closureData.V) > 0.0;
-        bsdf.response = path_answer(path_mean((scatter_mode == 0 ? albedo : vec3(1.0)) * scale),
+        bsdf.response = path_answer(path_mean((scatter_mode == 0 ? max(albedo, PATH_LEAST_SHARE) : vec3(1.0)) * scale),
                                     drawn ? path_facet_draw(lobe, below, turned) : PATH_WASTED,
                                     part * draws * path_facet_pdf(lobe, below));
     }

@@ -51,6 +51,27 @@ def test_every_check_of_every_node_has_the_same_verdict_with_another_seed(
     assert set(rest.values()) <= {("passed", True)}
 
 
+SCHLICK, DIELECTRIC = (
+    f"{name}_bsdf, scatter_mode R" for name in ("generalized_schlick", "dielectric")
+)
+# Checks, subjects and seeds with a pair at the end of a domain: the first cells of a table of albedos, Schlick curves
+# below 0, a critical angle, shares near 0, and lobes with a fitted albedo of 0.
+RARE = (
+    ("methods", SCHLICK, 4),
+    ("layer", SCHLICK, 12),
+    ("domain", SCHLICK, 9),
+    ("anisotropy", DIELECTRIC, 9),
+    ("sample", "layer, under a colored sum", 7),
+    ("sample", "generalized_schlick_bsdf, thin film", 7),
+)
+
+
+@pytest.mark.parametrize(("check", "title", "seed"), RARE)
+def test_no_seed_accuses_eonlib_at_the_end_of_a_domain(gl, check, title, seed):
+    result = Verdicts(lambda name: gl)(check, title, seed=seed)
+    assert result.verdict == "passed", result.worst
+
+
 class Counting(GlHost):
     """A host that counts the pairs requested at once."""
 

@@ -23,7 +23,7 @@ from mxeon.conformance.checks.microfacets import with_directions
 from mxeon.conformance.checks.surface_shaders import SURFACES
 from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
-from mxeon.conformance.samples import Array, Batch, Values, float32, generator
+from mxeon.conformance.samples import GRAZING, Array, Batch, Values, float32, generator
 from mxeon.conformance.spec import NO_ABILITY, Ability, LobeSpec, Spec, draw, materials
 from mxeon.conformance.specs.combinations import CombinedSpec
 from mxeon.conformance.specs.emission import EmissionSpec
@@ -81,6 +81,8 @@ MATERIALS_DRAWN = 6  # materials with counted samples, each at one view
 # Minimum value that samples must find: a sheen's fitted albedo may be 0 where 3e-6 is left.
 LEAST_LIGHT = 1e-5
 LEAST_DRAWN = 1e-5  # density over value, below which light is never sampled in practice
+# Below this weight of a draw, an albedo, shares of lobes have few digits: a sheen's fit passes 0.
+LEAST_ALBEDO = 1e-3
 LEAST_COUNTED = 0.2  # minimum roughness of lobes with counted samples: the cells are coarse
 # An input as a shader parameter: a float or a vector of three numbers.
 GIVEN = {"boolean": "{} > 0.5", "integer": "int({})", "vector2": "{}.xy"}
@@ -369,7 +371,11 @@ def parts(case: Case) -> Iterator[tuple[str, bool, Compared]]:
             stated = stated[:, :1]
             size = value.max(axis=1, keepdims=True)
             size[size <= 0.0] = 1.0
-            steep = steepness(stated)
+            normal = rows.inputs.get("lobe_normal/value", rows.inputs["normal"])
+            cosine = np.abs(np.sum(rows.wi * normal, axis=1, keepdims=True))
+            returned = np.maximum(weight[kept], value / np.maximum(stated, 1e-30))
+            few = LEAST_ALBEDO / np.maximum(returned.max(axis=1, keepdims=True), LEAST_LIGHT)
+            steep = steepness(stated) + 1.0 / np.maximum(cosine, GRAZING) + few
             found = case.outputs(rows, (weight * density)[kept]) / size
             right, one = value / size, np.ones_like(stated)
             ratio = density[kept, :1] / np.maximum(stated, 1e-30)
@@ -379,7 +385,10 @@ def parts(case: Case) -> Iterator[tuple[str, bool, Compared]]:
 
 
 SAMPLE = sum_of(
-    roundings(16, "of a weight and a density, times 1 + the inverse of the lobe's own alpha"),
+    roundings(
+        16,
+        "of a weight and a density, times 1 + the inverses of the lobe's own alpha, its cosine and 1000 weights",
+    ),
     quantity=Quantity.DRAWN,
 )
 
