@@ -220,7 +220,16 @@ class SlangHost(base.Host):
         return self._device.create_buffer(data=data, struct_size=4, usage=usage)
 
     def _texture(self, texels: Array) -> Resource:
-        """A texture of float32 texels (height, width, 3)."""
+        """A texture of float32 texels (height, width, 3).
+
+        A CPU device reads the nearest texel, and places the first and the last at 0 and 1: texels in between
+        keep the others in the middle of their own area.
+        """
+        if self._device.info.type == slangpy.DeviceType.cpu:
+            for axis in (0, 1):
+                twice = np.repeat(texels, 2, axis)
+                means = 0.5 * (np.delete(twice, 0, axis) + np.delete(twice, -1, axis))
+                texels = np.pad(means, [(int(each == axis),) * 2 for each in range(3)], "edge")
         height, width, _ = texels.shape
         texture = self._device.create_texture(
             type=slangpy.TextureType.texture_2d,
