@@ -146,7 +146,7 @@ BEYOND: tuple[tuple[str, str, float, float, str], ...] = (
     ("throughput", "ior", 4.0, 0.03, f"{A_COSINE} ends at index 3"),
     ("throughput", "ior", 10.0, 0.1, f"{A_COSINE} ends at index 3"),
     ("throughput", "ior", 100.0, 0.17, f"{A_COSINE} ends at index 3"),
-    ("throughput", "ior", 0.2, 0.05, "the fit from inside, which ends at index 0.33"),
+    ("throughput", "ior", 0.2, 0.07, "the fit from inside, which ends at index 0.33"),
     ("throughput", "exponent", 20.0, 0.09, f"{A_COSINE} ends at exponent 10"),
     ("throughput", "exponent", 100.0, 0.23, f"{A_COSINE} ends at exponent 10"),
     ("throughput", "exponent", 0.5, 0.05, f"{A_COSINE} begins at exponent 1"),
