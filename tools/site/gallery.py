@@ -40,7 +40,8 @@ PICTURES = DOCS / "images" / "gallery"
 DIFFERENCES = (
     PICTURES / "differences.json"
 )  # words on stock, and its largest difference, by material
-SIZE, INSET = 512, 128  # pixels
+SIZE = 512  # pixels of a picture
+INSET, EDGE = 112, 8  # pixels of the difference in a picture, and its distance from the rim
 QUALITY = 85  # WebP quality
 ROWS = 96  # rows of the studio's picture
 BOXES = (  # soft boxes of the studio: azimuth from the viewer and elevation, half of both widths, in degrees; radiance
@@ -58,8 +59,8 @@ HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
 
 The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX on the left,
 eonlib on the right, the largest difference first. The inset shows the pictures' difference, a share of white, or of
-eonlib's picture where that is brighter. Furnace documents show a sphere in a white environment, where
-it vanishes if no energy is lost or gained. The floor has the ball's contact shadow; the ball reflects itself in the
+eonlib's picture where that is brighter, from black to the share in its label. Furnace documents show a sphere in a
+white environment, where it vanishes if no energy is lost or gained. The floor has the ball's contact shadow; the ball reflects itself in the
 [path-traced pictures](#path-traced) alone.
 Below each pair stands what `mxeon check` says of stock, in its own scenes. To draw one yourself:
 
@@ -76,15 +77,15 @@ TRACED = """
 ## Path traced
 
 Three of [MaterialX's examples](https://github.com/AcademySoftwareFoundation/MaterialX/tree/main/resources/Materials/Examples).
-Each picture shows a sphere under a light and an even environment, drawn by the rasterizer, the float64 reference and
-[path tracing](path_tracing.md) with {} paths a pixel, and beside it the path-traced shader ball in the studio, with shadows
-and reflections of itself, at the default of 64 paths and denoised.
+Each picture shows the [path-traced](path_tracing.md) shader ball in the studio, with shadows and reflections of itself, at
+the default of 64 paths a pixel and denoised; the float64 reference has no floor and no studio, so the small spheres
+compare three engines under a light and an even environment, path tracing with {} paths a pixel.
 
 {}
-    mxeon render standard_surface_glass.mtlx --integrator path --size 192 --output glass.png
+    mxeon render standard_surface_glass.mtlx --integrator path --output glass.png
 """
 NOISE = PICTURES / "traced.json"  # sentences of the path tracer, by document
-TRACED_SIZE, SAMPLES = 192, 400  # pixels, and paths of each on the sphere
+TRACED_SIZE, SAMPLES = SIZE // 3, 400  # pixels of a sphere, and its paths per pixel
 
 
 def studio():
@@ -110,11 +111,13 @@ def materials(document):
 
 
 def pictures(host, document):
-    """A document's materials, each with its sRGB codes and the pictures' differences from eonlib's.
+    """A document's materials, each with its pictures and their differences from eonlib's.
 
     With stock first, if stock can generate the material, then with eonlib.
     """
-    shaders, scene = [], replace(FURNACE if "furnace" in document.stem else STUDIO, size=SIZE)
+    shaders, scene = [], replace(STUDIO, size=SIZE)
+    if "furnace" in document.stem:
+        scene = replace(FURNACE, size=2 * SIZE)
     for library in ("stock", "eonlib"):
         with suppress(DocumentError):
             shaders.append(host.compile(document, library=library))
@@ -122,30 +125,48 @@ def pictures(host, document):
         images = [still(host, each, scene) for each in pair]
         apart = np.abs(difference(images[0], images[-1]))
         if scene.name == STUDIO.name:
-            codes = [srgb_encoded(pbr_neutral(each)) for each in images]
+            shown = [Image.fromarray(srgb_encoded(pbr_neutral(each))) for each in images]
         else:
-            mask = visible(SIZE, scene.shape).mask[..., None]
-            codes = [np.where(mask, srgb_encoded(each), np.uint8(BACKGROUND)) for each in images]
-        yield pair[0].element, codes, apart
+            shown = [sphere_picture(each, SIZE) for each in images]
+        yield pair[0].element, shown, apart
+
+
+def sphere_picture(image, size):
+    """A sphere of twice the size, with smooth edges and a rim of background."""
+    mask = visible(len(image), "sphere").mask[..., None]
+    codes = np.where(mask, srgb_encoded(image), np.uint8(BACKGROUND))
+    inner = size - size // 8
+    shown = Image.new("RGB", (size, size), (BACKGROUND,) * 3)
+    reduced = Image.fromarray(codes).resize((inner, inner), Image.Resampling.BOX)
+    shown.paste(reduced, (size // 16, size // 16))
+    return shown
 
 
 def label(image, place, text, size=22, anchor="ls"):
-    """Write white, outlined text on a picture."""
-    style = {"font": ImageFont.load_default(size), "anchor": anchor, "stroke_fill": "black"}
-    ImageDraw.Draw(image).text(place, text, fill="white", stroke_width=2, **style)
+    """Write white text with a thin dark outline on a picture."""
+    style = {"font": ImageFont.load_default(size), "anchor": anchor, "stroke_fill": (0, 0, 0)}
+    ImageDraw.Draw(image).text(place, text, fill="white", stroke_width=1, **style)
 
 
-def save(path, codes, apart=None):
+def save(path, shown, apart=None):
     """Write pictures side by side, each with its label if there are several, and the difference as an inset."""
-    image = Image.fromarray(np.hstack(codes))
-    for number, text in enumerate(("stock", "eonlib") if len(codes) == 2 else ()):
-        label(image, (codes[0].shape[1] * number + 14, codes[0].shape[0] - 12), text)
+    image = Image.new("RGB", (sum(each.width for each in shown), shown[0].height))
+    for number, each in enumerate(shown):
+        image.paste(each, (number * each.width, 0))
+        if len(shown) == 2:
+            label(image, (number * each.width + 14, each.height - 14), ("stock", "eonlib")[number])
     if apart is not None and apart.max() > VISIBLE:
         scale = difference_scale(apart)
-        left, top = image.width - INSET, image.height - INSET
+        left, top = image.width - INSET - EDGE, image.height - INSET - EDGE
         inset = Image.fromarray(difference_pixels(apart, scale))
         image.paste(inset.resize((INSET, INSET), Image.Resampling.LANCZOS), (left, top))
-        label(image, (image.width - 6, top - 6), f"difference up to {scale:.0%}", 14, "rs")
+        label(
+            image,
+            (left + INSET // 2, top - 6),
+            f"difference, {100.0 * scale:.0f} %",
+            14,
+            "ms",
+        )
     image.save(path, quality=QUALITY, method=6)
 
 
@@ -158,8 +179,8 @@ def render():
 
     with open_host("gl") as host:
         for document in sorted(EXAMPLES.glob("*.mtlx")):
-            for name, codes, apart in pictures(host, document):
-                save(PICTURES / f"{name}.webp", codes, apart)
+            for name, shown, apart in pictures(host, document):
+                save(PICTURES / f"{name}.webp", shown, apart)
         [(_, balls, apart)] = pictures(host, TITANIUM)
     save(TITANIUM.with_suffix(".webp"), balls, apart)
 
@@ -176,8 +197,8 @@ def judge():
 
 def trace(folder):
     """Write the path-traced pictures of a folder's documents, and the sentences on their noise."""
-    said, paths = {}, Paths(SAMPLES)
-    even, ball = Scene("even", SIDE.light, 0.5, TRACED_SIZE), replace(STUDIO, size=TRACED_SIZE)
+    said, paths = {}, Paths(SAMPLES // 4)  # four pixels are reduced to one
+    even, ball = Scene("even", SIDE.light, 0.5, 2 * TRACED_SIZE), replace(STUDIO, size=SIZE)
     with open_host("gl") as host, closing(path_tracer.PathTracerHost()) as tracer:
         for document in sorted(folder.glob("*.mtlx")):
             [flat], [path] = host.compile(document), tracer.compile(document)
@@ -193,19 +214,19 @@ def trace(folder):
                     "paths": tracer.picture(path, replace(even, paths=paths)),
                 }
                 traced = still(tracer, path, ball)
-            mask = visible(TRACED_SIZE, "sphere").mask
-            shown = [
-                np.where(mask[..., None], srgb_encoded(each), np.uint8(BACKGROUND))
-                for each in spheres.values()
-            ]
-            shown.append(srgb_encoded(pbr_neutral(traced)))
-            save(PICTURES / f"traced_{document.stem}.webp", shown)
+            image = Image.new("RGB", (TRACED_SIZE + SIZE, SIZE), (BACKGROUND,) * 3)
+            for number, (name, each) in enumerate(spheres.items()):
+                image.paste(sphere_picture(each, TRACED_SIZE), (0, number * TRACED_SIZE))
+                label(image, (8, (number + 1) * TRACED_SIZE - 8), name, 14)
+            image.paste(Image.fromarray(srgb_encoded(pbr_neutral(traced))), (TRACED_SIZE, 0))
+            image.save(PICTURES / f"traced_{document.stem}.webp", quality=QUALITY, method=6)
+            mask = visible(even.size, "sphere").mask
             means = ", ".join(f"{name} {each[mask].mean():.4f}" for name, each in spheres.items())
             noises = [
                 str(each.message).partition("noise of ")[2].partition(",")[0] for each in notes
             ]
             said[document.stem] = (
-                f"mean radiance of the sphere: {means}; noise of the sphere {noises[0]}, removed from the ball {noises[1]}"
+                f"mean radiance of the sphere: {means}; noise removed from the ball: {noises[-1]}"
             )
     NOISE.write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
 
