@@ -53,6 +53,14 @@ def test_textures_are_those_of_the_reference(host, reference):
     assert np.abs(difference * facing).max() <= TEXTURED + HALF
 
 
+def test_subsurface_scattering_on_flat_quads_is_not_judged(host, judged, tmp_path):
+    path = tmp_path / "wax.mtlx"
+    path.write_text(material(lobe("subsurface_bsdf", radius=(0.3, 0.1, 0.05))))
+    [result] = judged.document(path, host.name).results
+    assert result.check == "finite" and result.verdict == PASSED
+    assert "curvature" in result.diagnosis.first.text
+
+
 @pytest.mark.parametrize("environment", ["fis", "prefilter"])
 @pytest.mark.parametrize("node", ["dielectric_bsdf, scatter_mode R", "conductor_bsdf"])
 def test_an_environment_of_microfacets_is_judged_on_pictures(judged, node, environment):

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from mxeon.errors import NotRun
 from mxeon.hosts import base, process, raster
 from mxeon.shaders.generation import Shader
+from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
 from mxeon.shaders.methods import UNCHOSEN, Methods
 from mxeon.shaders.scene import Scene, sphere
 
@@ -117,6 +118,14 @@ class DocumentHost(base.Host):
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
         return (*raster.approximations(shader), *filter(None, [self.unread(shader)]))
+
+    def unread(self, shader: Shader) -> str:
+        """Subsurface lobes, which need a curvature: each quad has one normal."""
+        if SUBSURFACE in inner_lobes(shader):
+            return (
+                f"subsurface scattering depends on the curvature, and {self.name} draws flat quads"
+            )
+        return ""
 
     @abstractmethod
     def _interpreter(self) -> Path:

@@ -46,7 +46,9 @@ class StormHost(DocumentHost):
         return super()._shown(replace(shader, folders=folders), scene, card)
 
     def unread(self, shader: Shader) -> str:
-        """The enumerated inputs of closures: Storm takes their defaults."""
+        """Subsurface lobes, or the enumerated inputs of closures: Storm takes their defaults."""
+        if reason := super().unread(shader):
+            return reason
         nodes = (each for each in shader.document.traverseTree() if each.isA(mx.Node))
         names = ", ".join(name for node in nodes for name in _enumerated(node))
         return names and f"Storm takes the default of an enumerated input, here of {names}"
