@@ -455,12 +455,12 @@ def difference(apart: Difference) -> str:
 
     >>> difference(Difference("back", 0.2035, False, 0.124))
     'up to 20 % of white too bright in light from behind, visible on 12 % of its pixels'
-    >>> difference(Difference("side", -0.5, True, 0.01))
-    'highlights up to 50 % too dark in light from the side, visible on 1 % of its pixels'
+    >>> difference(Difference("side", -0.5, True, 0.997))
+    'highlights up to 50 % too dark in light from the side, visible on 100 % of its pixels'
     """
     if not math.isfinite(apart.largest):
         return appearance(apart)
-    share = f"{100.0 * apart.visible:.2g}"
+    share = in_words(100.0 * apart.visible)
     seen = f", visible on {share} % of its pixels" if apart.visible else ""
     return f"{size(apart)} {appearance(apart)}{seen}"
 
