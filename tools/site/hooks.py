@@ -42,10 +42,12 @@ def on_page_markdown(markdown, page, **_):
 
 
 def on_page_content(html, page, **_):
-    """Split each gallery picture into two halves, which a phone shows below each other."""
+    """Split each gallery picture into two halves, which a phone shows below each other; link the wall to the ledger."""
+    if page.file.src_uri == "wall.md":
+        return html.replace('href="upstream/README.md"', 'href="upstream/index.html"')
     if page.file.src_uri != "gallery.md":
         return html
-    picture = r'<p><img alt="(.*?)" src="(.*?)" ?/?></p>'
+    picture = r'<p><img alt="(.*?)" src="((?!images/gallery/traced_).*?)" ?/?></p>'
     whole = r"(?!\n<p><em>[^<]*: stock MaterialX cannot)"  # only eonlib's picture
     half = r'<span data-library="{0}"><img alt="\1, {0}" src="\2" loading="lazy"></span>'
     halves = half.format("stock") + half.format("eonlib")

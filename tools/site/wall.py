@@ -13,8 +13,7 @@ import numpy as np
 from PIL import Image
 
 from mxeon.conformance import words
-from mxeon.conformance.results import FAILED, Kind
-from mxeon.conformance.results.known_issues import issues_of
+from mxeon.conformance.results import FAILED, PORTRAIT, Kind
 from mxeon.io.images import read_image
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report.diff import Report, ShownPicture, read_results
@@ -29,7 +28,8 @@ HEAD = """<!-- Made by `python -m tools.site.wall`. -->
 
 Materials as each renderer draws them, in the same light and from the same place, next to the float64 reference. The
 light is the one in which the worst renderer is most wrong. Tiles are sorted by their largest difference, which is given as
-in `mxeon check`, and the cause stands below.
+in `mxeon check`; below stand the lobes of the material that cause it, whose defects [the ledger](upstream/README.md) lists.
+*Not judged*: subsurface scattering needs a curved surface, which only gl has here, and Storm reads no enumerated inputs.
 
     mxeon check MATERIAL.mtlx --host gl --host storm --report out
 
@@ -44,26 +44,18 @@ def largest(picture: ShownPicture) -> float:
 
 
 def causes(report: Report, picture: ShownPicture) -> str:
-    """Links to the known issues behind a wrong picture, or else its diagnosis; "" for a right one."""
+    """The lobes that make a picture wrong, or else its diagnosis; "" for a right one."""
     subject, place = f"{picture.document}: {picture.element}", (picture.host, picture.library)
-    failed = [
+    own = [
         each
         for each in report.results
-        if each.verdict == FAILED and (each.host, each.library) == place
+        if (each.check, each.subject, each.host, each.library) == ("picture", subject, *place)
+        and each.verdict == FAILED
     ]
-    own = [each for each in failed if each.check == "picture" and each.subject == subject]
-    lobes = {
-        name
-        for each in own
-        for cause in each.diagnosis.causes
-        if cause.kind is Kind.FOLLOWS
-        for name in cause.names
-    }
-    nodes = [each for each in failed if each.subject.partition(",")[0] in lobes]
-    pages = dict.fromkeys(issue for each in (*own, *nodes) for issue in issues_of(each))
-    links = [f'<a href="upstream/{each.page}.md">{escape(each.title)}</a>' for each in pages]
-    said = dict.fromkeys(words.diagnosis(each.diagnosis) for each in (*own, *nodes))
-    return "; ".join(links or filter(None, map(escape, said)))
+    found = [cause for each in own for cause in each.diagnosis.causes if cause.kind is Kind.FOLLOWS]
+    if names := dict.fromkeys(name for cause in found for name in cause.names):
+        return f'<a href="upstream/README.md">{", ".join(names)}</a>'
+    return "; ".join(escape(words.diagnosis(each.diagnosis)) for each in own)
 
 
 def tile(path: Path, name: str, title: str, caption: str) -> str:
@@ -79,16 +71,18 @@ def tile(path: Path, name: str, title: str, caption: str) -> str:
 
 
 def page(folders: list[Path]) -> str:
-    """The wall as Markdown, the material with the largest difference first."""
-    hosts, found = {}, defaultdict(list)
+    """The wall as Markdown, the material with the largest difference first; later reports replace earlier ones."""
+    hosts, found = {}, defaultdict(dict)
     for folder in folders:
         report = read_results(folder)
         hosts |= {each.name: f"{each.name}: {each.version}, {each.device}" for each in report.hosts}
         for each in report.pictures:
-            if each.reference:
-                found[each.document, each.element].append((folder, report, each))
+            if each.reference and each.document != PORTRAIT:
+                place = each.host, each.library, each.scene
+                found[each.document, each.element][place] = folder, report, each
     sections = {}
-    for (document, element), pictures in found.items():
+    for (document, element), places in found.items():
+        pictures = list(places.values())
         _, _, worst = max(pictures, key=lambda each: largest(each[2]))
         lit = [each for each in pictures if each[2].scene == worst.scene]
         lit.sort(key=lambda each: largest(each[2]))
@@ -97,7 +91,8 @@ def page(folders: list[Path]) -> str:
         text = [tile(folder / first.reference, name, "reference", "float64")]
         for folder, report, each in lit:
             title = f"{each.host}, {each.library}"
-            caption = escape(words.difference(each.difference))
+            apart = each.difference
+            caption = escape(words.difference(apart)) if apart else "not judged"
             cause = causes(report, each)
             text.append(
                 tile(
