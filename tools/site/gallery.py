@@ -60,8 +60,8 @@ HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
 The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX on the left,
 eonlib on the right, the largest difference first. The inset shows the pictures' difference, a share of white, or of
 eonlib's picture where that is brighter, from black to the share in its label. Furnace documents show a sphere in a
-white environment, where it vanishes if no energy is lost or gained. The floor has the ball's contact shadow; the ball reflects itself in the
-[path-traced pictures](#path-traced) alone.
+white environment, where it vanishes if no energy is lost or gained. The floor has the ball's contact shadow; the ball
+reflects itself in the [path-traced pictures](#path-traced) alone.
 Below each pair stands what `mxeon check` says of stock, in its own scenes. To draw one yourself:
 
     mxeon render examples/roughness_wedge.mtlx --element wedge_eon_100 --output wedge_eon_100.png
