@@ -70,6 +70,8 @@ vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
     vec2 part = vec2(0.609 + 0.7028 * zy, 0.50203);
     vec2 power = vec2(0.8025 - 0.3416 * muy, 0.52381 + 0.43633 * x);
     float risen = exp(1.80744 + 0.85484 * ior - 3.06595 * alpha - 3.09838 * x) * alpha * bent / mu;
+
+    // r is tau_m / tau_c. At index 0 both r2 and the denominator of p would be 0; float32 cannot square a v above 1e19.
     vec2 r2 = max((1.0 - bent) * (mu2 + a * alpha2) / (bent * (s2 + b * alpha2)), 1e-30);
     vec2 e2 = k2 / r2;
     vec2 v = clamp((r2 - 1.0) * sqrt(e2), -1e6, 1e6);
@@ -82,6 +84,7 @@ vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
     vec2 g = ior * sqrt(max(1.0 - 4.0 * e2 * q / (t * t), 0.0));  // g / cosine
     vec2 s = 1.0 / (1.0 + g);
     vec2 p = ior / max(ior * ior + g, 1e-30);
+    // 1 - F may round above 1.
     return min(pow(S, power) * 2.0 * g * (s * s + p * p), 1.0) / vec2(1.0, 1.0 + risen);
 }
 
