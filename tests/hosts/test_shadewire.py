@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """shadewire: its closures are those of stock GLSL, so its failures are, too; `test_upstream.py` has its own two."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mxeon.errors import NotRun, Unsupported
 from mxeon.hosts.base import RendererWarning
+from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import document_text
+from mxeon.shaders.scene import BACK, SIDE
 from tests.support.cases import pairs
 from tests.support.documents import lobe, material
 from tests.support.verdicts import DIFFERS, FAILED, PASSED
@@ -52,6 +56,24 @@ def test_values_and_throughputs_of_pairs_are_those_of_stock_glsl(shadewire, gl, 
             [shader] = host.compile(text, library="stock")
             values.append(host.evaluate(shader, WO, WI, inputs, "direct", output=output))
         np.testing.assert_allclose(*values, rtol=0.0, atol=SAME)
+
+
+@pytest.mark.parametrize("name", ["clay", "velvet", "brushed_metal_wedge", "openpbr_rough_base"])
+@pytest.mark.parametrize("scene", [SIDE, BACK])
+def test_pictures_in_direct_light_are_those_of_stock_glsl(shadewire, gl, name, scene):
+    scene = replace(scene, size=32)
+    file = examples_folder() / f"{name}.mtlx"
+    for own, stock in zip(
+        *(each.compile(file, library="stock") for each in (shadewire, gl)), strict=True
+    ):
+        expected = gl.picture(stock, scene)
+        np.testing.assert_allclose(shadewire.picture(own, scene), expected, rtol=SAME, atol=SAME)
+
+
+def test_a_picture_with_an_image_is_refused(shadewire):
+    [shader] = shadewire.compile(examples_folder() / "brick.mtlx")
+    with pytest.raises(NotRun, match="texcoord"):
+        shadewire.picture(shader, SIDE)
 
 
 @pytest.mark.parametrize(

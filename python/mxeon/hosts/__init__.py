@@ -112,7 +112,7 @@ HOSTS = (
         surfaces=True,
         rounding=2.0**-10,  # half floats, truncated
     ),
-    Row("shadewire", "glsl", "functions"),
+    Row("shadewire", "glsl", "functions", scenes=(SIDE, BACK)),
     # Its environment has noise. No closure of Cycles is QON for s < 0.
     Row("cycles", "osl", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
     Row("testrender", "osl", "rendered", surfaces=True),

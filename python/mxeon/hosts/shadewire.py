@@ -7,12 +7,14 @@ geometric properties, whose functions the renderer has to define, so the text is
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TypeAlias
 
 import MaterialX as mx
+import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.errors import NotRun, install
@@ -21,8 +23,10 @@ from mxeon.hosts.base import Array, Identity, Query, RendererWarning
 from mxeon.hosts.calls import GRAPH, NORMAL, SURFACE, TANGENT
 from mxeon.hosts.gl import GlHost
 from mxeon.shaders.generation import Shader
+from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
 from mxeon.shaders.methods import Methods
 from mxeon.shaders.nodes import FRAME_INPUTS
+from mxeon.shaders.scene import CLIENT, VIEW, Scene, sphere, tangents
 
 try:
     from shadewire import ShadewireError, glsl, mtlx, version
@@ -73,11 +77,35 @@ class ShadewireHost(base.Host):
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         return self._gl.execute(source, function, *arguments)
 
+    def picture(self, shader: Shader, scene: Scene) -> Array:
+        self.refuse_paths(scene)
+        self.refuse_shape(scene)
+        if scene.environment is not None or scene.client is not CLIENT:
+            raise NotRun("shadewire: light must be distant; it has no lookups of an environment")
+        points = sphere(scene.size)
+        normal = points.normal[points.mask]
+        frame = {SURFACE: normal, "normal": normal, "tangent": tangents(normal)}
+        value = f"{EMITTED} + {np.pi} * {RESPONSES['direct']}" if scene.light else EMITTED
+        directions = np.array([VIEW]), np.array([scene.light or VIEW])
+        image = np.zeros((*points.mask.shape, 3), np.float32)
+        image[points.mask] = self._evaluated(shader, *directions, frame, value)
+        return image
+
+    def unread(self, shader: Shader) -> str:
+        if SUBSURFACE in inner_lobes(shader):
+            return "subsurface scattering is Lambertian, as its text says"
+        return ""
+
     def _values(self, query: Query) -> Array:
         shader, wo, wi, inputs, branch, output, irradiance, _ = query
         value = OUTPUTS.get(output) or RESPONSES.get(branch)
         if value is None or irradiance is not None:
             raise self._unsupported("lookups of an environment, only albedos", "gl")
+        return self._evaluated(shader, wo, wi, inputs, value)
+
+    def _evaluated(
+        self, shader: Shader, wo: Array, wi: Array, inputs: base.Inputs, value: str
+    ) -> Array:
         document, properties = _connected(shader, inputs.keys())
         tangent = inputs.get("tangent", inputs.get("curve_direction", TANGENT))
         arguments: dict[str, tuple[str, ArrayLike]] = {
@@ -88,9 +116,15 @@ class ShadewireHost(base.Host):
             "tangent": ("vector3", tangent),
             **{name: (kind, inputs[key]) for name, (key, kind) in properties.items()},
         }
-        text = _compiled(document) + FRAME
+        material = shader.element if shader.document.getMaterialNodes() else ""
+        text = _compiled(document, material) + FRAME
         for name, (_, kind) in properties.items():
             text += PROPERTY.format(TYPES.get(kind, "vec3"), name)
+        needed = set(re.findall(r"shadewire_host_\w+(?=\(\);)", text))
+        if missing := needed - set(re.findall(r"shadewire_host_\w+(?=\(\) \{)", text)):
+            raise NotRun(
+                f"shadewire: its text calls {', '.join(sorted(missing))}, which mxeon does not define"
+            )
         body = [f"host_{name} = {name};" for name in [*arguments][3:]]
         body.append("Surface surface = shadewire_eval_surface();")
         body.append(f"mxeon_out = vec4({value}, 1.0);")
@@ -127,13 +161,13 @@ def _connected(shader: Shader, given: Collection[str]) -> tuple[str, Properties]
     return mx.writeToXmlString(document), properties
 
 
-def _compiled(document: str) -> str:
-    """shadewire's text for a document, without its first line.
+def _compiled(document: str, material: str) -> str:
+    """shadewire's text for a document's material, or its only one for "", without its first line.
 
     Raises NotRun if shadewire refuses the document; warns of a lobe that it replaces by black.
     """
     try:
-        ir = mtlx.to_ir(document, "", models=MODELS, values_as_uniforms=False)
+        ir = mtlx.to_ir(document, "", material or None, models=MODELS, values_as_uniforms=False)
         _, text = glsl.compile(ir, 430).code.split("\n", 1)
     except ShadewireError as error:
         raise NotRun(f"shadewire: {error}") from None
