@@ -17,14 +17,9 @@ from mxeon.models.diffuse import (
 )
 from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS, diffuse_model
 from tests.support import oracle, tolerances
-from tests.support.cases import direction, pairs, parameter
+from tests.support.cases import direction, named, pairs, parameter
 
 ALL = DIFFUSE_MODELS + KNOWN_DEFECTS
-
-
-def named(rows):
-    """Parametrize a test by rows of the reference."""
-    return pytest.mark.parametrize("row", rows, ids=lambda row: row.name)
 
 
 def digits(numbers):
@@ -240,23 +235,13 @@ def test_a_number_is_one_channel():
 @named([row for row in DIFFUSE_MODELS if row.parameter])
 def test_row_knows_the_interval_of_its_parameter(row):
     wo = [0, 0, 1]
+    assert row.largest == row.interval[1]
     for end in row.interval:
         row.brdf(wo, wo, 1.0, end)
     with pytest.raises(ValueError, match=row.parameter):
         row.brdf(wo, wo, 1.0, row.interval[1] + 1e-6)
     beyond = row.brdf(wo, wo, 1.0, np.nextafter(row.interval[1], 2.0))
     assert beyond == row.brdf(wo, wo, 1.0, row.interval[1])
-
-
-def test_lambert_has_no_interval():
-    assert diffuse_model("lambert").interval is None
-    assert diffuse_model("lambert").largest == 1.0
-
-
-def test_a_model_gives_the_closed_form_of_its_albedo_or_refuses():
-    assert diffuse_model("eon").closed_albedo_dir is diffuse_model("eon").albedo_dir
-    with pytest.raises(ValueError, match="closed form of its albedo; got 'oren_nayar'"):
-        _ = diffuse_model("oren_nayar").closed_albedo_dir
 
 
 # --- known wrong variants --------------------------------------------------------------------

@@ -60,6 +60,16 @@ def of_cosines(formula: Callable[..., Array]) -> Callable[..., Array]:
     return lambda wo, wi, *material: formula(*cosines(wo, wi), *material)
 
 
+def checked_brdf(formula: Callable[..., Array], parameter: str) -> Callable[..., Array]:
+    """A formula in mu_o, mu_i, s, rho and a parameter, as a function that checks its arguments."""
+
+    @any_array
+    def brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, value: ArrayLike) -> Array:
+        return evaluate(of_cosines(formula), wo, wi, rho, **{parameter: value})
+
+    return brdf
+
+
 def fon_loss_mu(mu: Array) -> Array:
     """H(mu) = c1 - G_F(mu) / pi: [Portsmouth2025], Eq. (13); FON loses r A_F H(mu).
 
@@ -596,100 +606,74 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
     return scaled / (scaled + (1.0 + C2 * r) * (1.0 - color))
 
 
-# Wrong variants that renderers implement, so that they can be recognized.
+# Wrong variants that renderers implement, so that they can be recognized. Formulas of cosines have no checks.
 FLOOR = 0.1  # least reflectance that Babylon.js passes to EON
 
 
-@any_array
-def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Reflection of EON with dot(wo, wi) clamped to at least 1e-8 before s is computed.
+def eon_clamped_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+    """EON with dot(wo, wi) clamped to at least 1e-8 before s is computed.
 
         s = max(dot(wo, wi), 1e-8) - mu_o mu_i
 
-    Result (..., C): in 1/sr; too bright where dot(wo, wi) < 0, and correct elsewhere. MaterialX's
-    GLSL node clamps the product because other nodes need it, and passes it on.
+    Too bright where dot(wo, wi) < 0, and correct elsewhere. MaterialX's GLSL node clamps the product because other
+    nodes need it, and passes it on.
     """
-
-    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
-        s = array_namespace(s).maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i
-        return eon_brdf_mu(mu_o, mu_i, s, rho, roughness)
-
-    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
+    s = array_namespace(s).maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i
+    return eon_brdf_mu(mu_o, mu_i, s, rho, roughness)
 
 
-@any_array
-def burley_schlick_brdf(
-    wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike
+def burley_schlick_brdf_mu(
+    mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array
 ) -> Array:
-    """Reflection of Burley's diffuse model with wrong retro-reflection.
+    """Burley's diffuse model with wrong retro-reflection.
 
         f = rho / pi ((1 - F_o / 2) (1 - F_i / 2) + R (F_o + F_i + F_o F_i (R - 1))),
         R = 1/2 + 2 roughness F_i^2,  F = (1 - mu)^5
 
-    Result (..., C): in 1/sr; not reciprocal. It is Lambert at roughness 0, and Burley where mu_o
-    and mu_i are 1. The GLSL of three-gpu-pathtracer. Burley's R is 2 roughness (wi . wh)^2.
+    Not reciprocal. It is Lambert at roughness 0, and Burley where mu_o and mu_i are 1. The GLSL of three-gpu-pathtracer.
+    Burley's R is 2 roughness (wi . wh)^2.
     """
-
-    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
-        F_o, F_i = (1.0 - mu_o) ** 5, (1.0 - mu_i) ** 5
-        smooth = (1.0 - 0.5 * F_o) * (1.0 - 0.5 * F_i)
-        R = 0.5 + 2.0 * roughness * F_i**2
-        return rho / np.pi * (smooth + R * (F_o + F_i + F_o * F_i * (R - 1.0)))
-
-    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
+    F_o, F_i = (1.0 - mu_o) ** 5, (1.0 - mu_i) ** 5
+    smooth = (1.0 - 0.5 * F_o) * (1.0 - 0.5 * F_i)
+    R = 0.5 + 2.0 * roughness * F_i**2
+    return rho / np.pi * (smooth + R * (F_o + F_i + F_o * F_i * (R - 1.0)))
 
 
-@any_array
-def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Reflection of EON whose multiple-scattering lobe has rho^3 instead of rho^2.
-
-    Result (..., C): in 1/sr; too dark, and correct where rho is 0 or 1. The OSL closure of
-    Blender's Cycles applies its albedo weight to the lobe once too often.
-    """
-
-    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
-        single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
-        weight = rho * eon_multiple_ratio(rho, roughness)
-        multi_scatter = weight * (fon_loss_mu(mu_o) * fon_loss_mu(mu_i))
-        return fon_lambert(rho, roughness) * (single_scatter + multi_scatter)
-
-    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
-
-
-@any_array
-def fon_white_lobe_brdf(
-    wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike
+def eon_rho_cubed_brdf_mu(
+    mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array
 ) -> Array:
-    """Reflection of FON plus the multiple-scattering lobe of a white surface.
+    """EON whose multiple-scattering lobe has rho^3 instead of rho^2.
 
-    Result (..., C): in 1/sr; too bright, and correct where rho is 1. The MDL target forgets to tint
-    the lobe: a black surface reflects 0.22 at roughness 1.
+    Too dark, and correct where rho is 0 or 1. The OSL closure of Blender's Cycles applies its albedo weight to the lobe
+    once too often.
     """
-
-    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
-        losses = fon_loss_mu(mu_o) * fon_loss_mu(mu_i)
-        white = roughness * fon_af(roughness) / (np.pi * (C1 - C2)) * losses
-        return fon_brdf_mu(mu_o, mu_i, s, rho, roughness) + white
-
-    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
+    single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
+    weight = rho * eon_multiple_ratio(rho, roughness)
+    multi_scatter = weight * (fon_loss_mu(mu_o) * fon_loss_mu(mu_i))
+    return fon_lambert(rho, roughness) * (single_scatter + multi_scatter)
 
 
-@any_array
-def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Reflection of EON with the shape for a reflectance of at least 0.1.
+def fon_white_lobe_brdf_mu(
+    mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array
+) -> Array:
+    """FON plus the multiple-scattering lobe of a white surface.
 
-        f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1)
-
-    Result (..., C): in 1/sr; too bright where rho lies between 0 and 0.1, and correct elsewhere.
-    Babylon.js 9.35.0 divides EON by the reflectance, which it keeps above 0.1; its albedo is the
-    paper's quartic.
+    Too bright, and correct where rho is 1. The MDL target forgets to tint the lobe: a black surface reflects 0.22 at
+    roughness 1.
     """
+    losses = fon_loss_mu(mu_o) * fon_loss_mu(mu_i)
+    white = roughness * fon_af(roughness) / (np.pi * (C1 - C2)) * losses
+    return fon_brdf_mu(mu_o, mu_i, s, rho, roughness) + white
 
-    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
-        floor = array_namespace(rho).maximum(rho, FLOOR)
-        return rho / floor * eon_brdf_approx_mu(mu_o, mu_i, s, floor, roughness)
 
-    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
+def eon_floor_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+    """EON with the shape for a reflectance of at least 0.1: f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1).
+
+    Too bright where rho lies between 0 and 0.1, and correct elsewhere. Babylon.js 9.35.0 divides EON by the
+    reflectance, which it keeps above 0.1; its albedo is the paper's quartic.
+    """
+    floor = array_namespace(rho).maximum(rho, FLOOR)
+    return rho / floor * eon_brdf_approx_mu(mu_o, mu_i, s, floor, roughness)
 
 
 @any_array

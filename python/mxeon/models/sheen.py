@@ -23,7 +23,6 @@ l >= pi/2 - delta, and for tan(phi / 2)^2 <= sin(2 (l - delta)) / sin(2 (l + del
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
@@ -57,7 +56,7 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
         >>> conty_kulla_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.017299, 0.069198])
     """
-    return _tinted(_conty_kulla_formula, wo, wi, color, roughness)
+    return evaluate(_conty_kulla_formula, wo, wi, color, "color", roughness=roughness)
 
 
 @any_array
@@ -74,7 +73,7 @@ def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: Arra
         >>> zeltner_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.002916, 0.011662])
     """
-    return _tinted(_zeltner_formula, wo, wi, color, roughness)
+    return evaluate(_zeltner_formula, wo, wi, color, "color", roughness=roughness)
 
 
 @any_array
@@ -100,24 +99,6 @@ def zeltner_matrix(mu: Array, roughness: Array) -> tuple[Array, Array]:
     a = (2.58126 * x + 0.813703 * y) * y / (1.0 + 0.310327 * x**2 + 2.60994 * x * y)
     slope = 0.0000254053 + 1.71228 * x - 1.71506 * x * y + 1.34174 * y**2
     return a, root(1.0 - x) * (y - 1.0) * y**3 / slope
-
-
-def _tinted(
-    lobe: Callable[[Array, Array, Array, Array], Array],
-    wo: ArrayLike,
-    wi: ArrayLike,
-    color: ArrayLike,
-    roughness: ArrayLike,
-) -> Array:
-    """Values of a lobe over broadcast arguments, times the tint."""
-    color = arguments.checked_vector("color", color)
-    vectors = {
-        "wo": arguments.checked_triples("wo", wo),
-        "wi": arguments.checked_triples("wi", wi),
-        "color": color,
-    }
-    arguments.lead_shape(vectors, {"roughness": arguments.checked("roughness", roughness)})
-    return evaluate(lobe, wo, wi, color, roughness=roughness)
 
 
 def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:

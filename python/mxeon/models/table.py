@@ -42,13 +42,6 @@ class Model(PbrNode):
         """Largest value of the parameter; 1 without one."""
         return self.interval[1] if self.interval else 1.0
 
-    @property
-    def closed_albedo_dir(self) -> Callable[..., Array]:
-        """`albedo_dir` of a model that must have one."""
-        if self.albedo_dir is None:
-            raise ValueError(f"model must have a closed form of its albedo; got {self.name!r}")
-        return self.albedo_dir
-
 
 def row(
     name: str,
@@ -135,7 +128,7 @@ def _named(name: str, title: str, parameter: str, at_white: bool = False) -> Mod
     """
     functions = (f"{name}_{each}" for each in ("brdf", "albedo_dir", "albedo_avg"))
     brdf, albedo_dir, albedo_avg = (getattr(diffuse, each, None) for each in functions)
-    assert brdf, f"{name}_brdf is not in mxeon.models.diffuse"
+    brdf = brdf or diffuse.checked_brdf(getattr(diffuse, f"{name}_brdf_mu"), parameter)
     if at_white:
         albedo_dir, albedo_avg = map(_tinted, filter(None, (albedo_dir, albedo_avg)))
     return row(name, title, brdf, parameter, albedo_dir, albedo_avg)
@@ -200,6 +193,7 @@ def _reparametrized(
 ) -> Model:
     """A model as a function of another roughness that determines its own parameter."""
     base_model = next(each for each in DIFFUSE_MODELS if each.name == base)
+    closed = base_model.albedo_dir
 
     @any_array
     def brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
@@ -207,9 +201,10 @@ def _reparametrized(
 
     @any_array
     def albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-        return base_model.closed_albedo_dir(mu, rho, parameter(checked("roughness", roughness)))
+        assert closed is not None
+        return closed(mu, rho, parameter(checked("roughness", roughness)))
 
-    return row(name, title, brdf, "roughness", albedo_dir if base_model.albedo_dir else None)
+    return row(name, title, brdf, "roughness", albedo_dir if closed else None)
 
 
 def _square(roughness: Numbers) -> Numbers:

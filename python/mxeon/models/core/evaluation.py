@@ -30,6 +30,8 @@ def evaluate(
     wo: ArrayLike,
     wi: ArrayLike,
     rho: ArrayLike,
+    name: str = "rho",
+    /,
     **parameter: ArrayLike,
 ) -> Array:
     """Values (..., C) of a reflection formula over broadcast arguments, block by block.
@@ -38,11 +40,12 @@ def evaluate(
       components, `rho` (C, ...), the parameter (...), all float64; returns (C, ...). Axes of length 1 stay
       so, which keeps everything that only depends on the material small.
     - `rho` (..., C): A list of N numbers for N directions is rejected, unless it is red, green and blue.
+    - `name`: Name of `rho` in `RANGES` and in messages.
     - `**parameter` (...): At most one, named as in `RANGES`.
     """
     pair = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi)}
-    color, numbers = checked_vector("rho", rho), checked_all(parameter)
-    refuse_ambiguous("rho", color, lead_shape(pair | {"rho": color}, numbers))
+    color, numbers = checked_vector(name, rho), checked_all(parameter)
+    refuse_ambiguous(name, color, lead_shape(pair | {name: color}, numbers))
     xp = array_namespace(*pair.values(), color, *numbers.values())
     if xp is not NUMPY:
         pair = {name: checked_directions(name, w) for name, w in pair.items()}
