@@ -20,7 +20,7 @@ from mxeon.models.diffuse import (
 )
 from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS, diffuse_model
 from tests.support import oracle, tolerances
-from tests.support.cases import parameter
+from tests.support.cases import named, parameter
 
 # The closed range, dense at both ends.
 MU = np.unique(
@@ -35,11 +35,6 @@ MU = np.unique(
 RHO = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
 FRACTIONS = (0.0, 0.1, 0.5, 1.0)
 CLOSED = [row for row in DIFFUSE_MODELS if row.albedo_dir]
-
-
-def named(rows):
-    """Parametrize a test by rows of the reference."""
-    return pytest.mark.parametrize("row", rows, ids=lambda row: row.name)
 
 
 # --- results ---------------------------------------------------------------------------------
@@ -104,7 +99,7 @@ def test_qon_exceeds_one_near_grazing_as_documented():
 # --- agreement -------------------------------------------------------------------------------
 
 
-@named(CLOSED)
+@named([*CLOSED, *map(diffuse_model, ("eon_rho_cubed", "fon_white_lobe", "qon_tinted_twice"))])
 @pytest.mark.parametrize("fraction", FRACTIONS)
 def test_directional_albedo_agrees_with_quadrature_of_the_value(row, fraction):
     mu = np.array([0.0, 1e-6, 1e-3, 0.05, 0.3, 0.7, 0.99, 1.0])
@@ -132,20 +127,6 @@ def test_quadrature_has_converged(row):
     fewer = albedo_dir_quadrature(row.brdf, mu, RHO, *extra)
     more = albedo_dir_quadrature(row.brdf, mu, RHO, *extra, nodes=100)
     assert np.abs(fewer - more).max() <= tolerances.QUADRATURE
-
-
-@named(
-    [
-        row
-        for row in KNOWN_DEFECTS
-        if row.name in ("eon_rho_cubed", "fon_white_lobe", "qon_tinted_twice")
-    ]
-)
-@pytest.mark.parametrize("fraction", FRACTIONS)
-def test_albedo_of_a_defect_agrees_with_quadrature(row, fraction):
-    mu, extra = np.array([0.0, 1e-3, 0.1, 0.9]), parameter(row, fraction)
-    numerical = albedo_dir_quadrature(row.brdf, mu, RHO, *extra)
-    assert np.abs(row.albedo_dir(mu, RHO, *extra) - numerical).max() <= tolerances.QUADRATURE
 
 
 def test_loss_keeps_its_digits_down_to_grazing():

@@ -16,6 +16,7 @@ from mxeon.models.nodes import PBR_NODES
 from mxeon.models.nodes.node import DEFAULTS
 from mxeon.shaders.library import load_library
 from tests.support import tolerances
+from tests.support.hemispheres import hemisphere
 
 WO, WI = np.array([0.6, 0.0, 0.8]), np.array([-0.36, 0.48, 0.8])
 MANY = np.array([[0.6, 0.0, 0.8], [0.0, 0.8, 0.6], [0.0, 0.0, 1.0], [0.0, 0.6, 0.8], WI])
@@ -66,17 +67,6 @@ def test_a_model_has_the_functions_that_it_names(name):
         assert_array_equal(row.brdf(WO, light), value)
 
 
-def sphere(low, high, count=96):
-    """Directions with cosines in an interval, and weights of their solid angles."""
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    z, phi = np.meshgrid(
-        0.5 * (low + high + (high - low) * nodes), 2.0 * np.pi * (np.arange(count) + 0.5) / count
-    )
-    S = np.sqrt(1.0 - z * z)
-    w = np.stack([S * np.cos(phi), S * np.sin(phi), z], axis=-1).reshape(-1, 3)
-    return w, np.tile(weights, count) * (high - low) * np.pi / count
-
-
 @pytest.mark.parametrize("name", SAMPLED)
 def test_every_drawn_direction_has_a_value_and_its_density(name):
     row, wo = mxeon.model(name), np.array([np.sqrt(0.84), 0.0, 0.4])
@@ -95,7 +85,7 @@ def test_every_drawn_direction_has_a_value_and_its_density(name):
     weights = value * cosine / pdf[:, np.newaxis]
     error = np.abs(weights.mean(axis=0) - row.albedo_dir(0.4, **inputs))
     assert name in OTHER_ALBEDO or (error <= weights.std(axis=0) / count + 1e-9).all()
-    up, solid_angle = sphere(0.0, 1.0)
+    up, solid_angle = hemisphere(0.4, 48)
     assert row.pdf(wo, up, **inputs) @ solid_angle + below.mean() == pytest.approx(1.0, abs=MASS)
 
 

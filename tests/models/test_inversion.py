@@ -43,14 +43,13 @@ def test_rho_is_in_range_and_grows_with_the_color_and_the_roughness(function):
     assert (np.diff(smooth, axis=0) >= -tolerances.RHO).all()
 
 
-def test_albedo_at_normal_incidence_returns_to_the_color():
-    albedo = eon_albedo_dir(1.0, on_grid(NORMAL), EDGES)
-    np.testing.assert_allclose(albedo, np.tile(EDGES, (len(EDGES), 1)), rtol=tolerances.ROUND_TRIP)
-
-
-def test_average_albedo_returns_to_the_color():
-    albedo = eon_albedo_avg(on_grid(AVERAGE), EDGES)
-    np.testing.assert_allclose(albedo, np.tile(EDGES, (len(EDGES), 1)), rtol=tolerances.ROUND_TRIP)
+def test_albedos_return_to_the_color():
+    color = np.tile(EDGES, (len(EDGES), 1))
+    for albedo in (
+        eon_albedo_dir(1.0, on_grid(NORMAL), EDGES),
+        eon_albedo_avg(on_grid(AVERAGE), EDGES),
+    ):
+        np.testing.assert_allclose(albedo, color, rtol=tolerances.ROUND_TRIP)
 
 
 def exact_normal(color, r):

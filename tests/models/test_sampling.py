@@ -31,14 +31,6 @@ def test_without_roughness_every_sampler_but_uniform_is_cosine(sampler, mu):
     np.testing.assert_allclose(pdf, cosine_pdf(wi), rtol=tolerances.SAMPLE_PDF, atol=0.0)
 
 
-@every_scene
-def test_eon_pdf_is_the_brdf_times_the_cosine(mu, roughness):
-    wi, _ = hemisphere(mu, 8)
-    value = eon_brdf(view(mu), wi, 1.0, roughness)[..., 0] * wi[..., 2]
-    pdf = eon_pdf(view(mu), wi, roughness)
-    np.testing.assert_allclose(pdf, value, rtol=tolerances.PDF, atol=0.0)
-
-
 @pytest.mark.parametrize("rho", [1e-9, 0.18, 0.8, 1.0])
 @every_scene
 def test_gray_eon_pdf_is_the_brdf_times_the_cosine_over_the_albedo(mu, roughness, rho):
@@ -122,19 +114,11 @@ def test_edges_give_unit_directions_above_the_horizon_and_finite_pdf(sampler):
     edges = np.array([0.0, 5e-324, 1e-200, 2.0**-53, 1e-9, 0.25, 0.5, 0.75, 1.0 - 2.0**-53])
     u = np.stack(np.meshgrid(edges, edges), axis=-1)
     for mu in (*edges, 1.0):
-        for roughness in (*edges, 1.0):
+        for roughness in (*edges, 1e-308, 1e-307, 1e-306, 1e-300, 1.0):
             wi, pdf = sampler.sample(view(mu, 1.0), u, roughness)
             assert np.isfinite(wi).all() and np.isfinite(pdf).all() and (pdf >= 0.0).all()
             assert (np.abs(np.sum(wi * wi, axis=-1) - 1.0) < tolerances.DIRECTION).all()
             assert sampler.name == "ltc" or (wi[..., 2] >= 0.0).all()
-
-
-@pytest.mark.parametrize("roughness", [1e-300, 1e-306, 1e-307, 1e-308, 5e-324])
-@every_sampler
-def test_the_least_roughness_overflows_nothing(sampler, roughness):
-    for mu in (0.0, 1e-20, 0.3, 0.999999, 1.0):
-        wi, pdf = sampler.sample(view(mu), uniforms(1000, 5), roughness)
-        assert np.isfinite(wi).all() and np.isfinite(pdf).all()
 
 
 def test_eon_samples_always_have_a_weight():

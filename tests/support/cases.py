@@ -2,6 +2,12 @@
 """Directions for tests: fixed seeds, grazing included."""
 
 import numpy as np
+import pytest
+
+
+def named(rows):
+    """Parametrize a test by rows of a table."""
+    return pytest.mark.parametrize("row", rows, ids=lambda row: row.name)
 
 
 def direction(mu, phi=0.0):

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from scipy import special  # scipy.stats is slow to import
 
-from tests.support.cases import direction as view
+from tests.support.cases import direction
 from tools.paper.samplers import SAMPLERS
+
+view = direction
 
 COSINES = (1.0, 0.9, 0.5, 0.1, 1e-3, 0.0)
 ROUGHNESS = (0.0, 0.01, 0.4, 1.0)
@@ -66,15 +68,6 @@ def binned(wi, edges, count):
     column = np.floor((np.arctan2(wi[:, 1], wi[:, 0]) / (2.0 * np.pi) % 1.0) * count).astype(int)
     bins = np.where(wi[:, 2] < 0.0, 0, 1 + row * count + np.minimum(column, count - 1))
     return np.bincount(bins, minlength=1 + count * (len(edges) - 1))
-
-
-def expected(sampler, mu, roughness, edges, count):
-    """Probability of each bin of `binned`, by quadrature."""
-    theta, dtheta = rule(edges, 16)
-    phi, dphi = rule(2.0 * np.pi * np.arange(count + 1) / count, 16)
-    pdf = sampler.pdf(view(mu), directions(theta, phi), roughness)
-    bins = np.einsum("ikjl,ik,jl->ij", pdf, dtheta * np.sin(theta), dphi)
-    return np.append(max(0.0, 1.0 - bins.sum()), bins)
 
 
 def probability(sample, pdf, wo, u, count=12, nodes=24):
