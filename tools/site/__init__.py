@@ -6,7 +6,7 @@
 | `python -m tools.site` | OSL twins, the ledger's index, and tables of pages that need no engine; a minute |
 | `... specification` | table of results.md, from gl; some seconds |
 | `... surface_texts` | tables of surfaces.md; some minutes |
-| `... field` | field.html, from every host that runs here |
+| `... field` | measurements behind field.html, from every host that runs here |
 | `... versions` | versions.md and ledger/versions.json; a quarter of an hour |
 | `... gallery`, `... brushed`, `... explorer`, `... note` | pictures of these pages |
 | `... wall REPORT...` | wall.md and its tiles, from reports of `mxeon check` |

@@ -1,85 +1,162 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Make `docs/field.html`: `python -m tools.site.field` checks every available host in sequence.
+"""The comparison of renderers on the site, and the measurements behind it.
 
-`python -m tools.site.field DIR` makes it from the reports in a folder instead.
+`python -m tools.site.field` measures every available host in sequence; `python -m tools.site.field DIR` takes the
+reports in a folder instead. Hosts without a new report keep their measurements.
 """
 
-import re
+import base64
+import io
+import json
 import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
 from mxeon import check, report
-from mxeon.conformance.results import NOT_RUN
+from mxeon.conformance.results import NOT_RUN, Diagnosis
+from mxeon.conformance.results.records import make_converter
 from mxeon.conformance.specs.diffuse import DIFFUSE as DIFFUSE_SPECS
 from mxeon.conformance.specs.diffuse import SURFACE_LOBES
 from mxeon.hosts import host_rows
 from mxeon.io.files import write_text
+from mxeon.report.pieces import picture_uri
 from mxeon.shaders.library import examples_folder
-from mxeon.survey.field import read_field
-from mxeon.survey.field_page import write_field
+from mxeon.survey.field import Entry, by_harm, read_field
+from mxeon.survey.field_page import INPUTS, SCENES, Frame, frames, render
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "field.html"
-PAGES = "upstream/{}.md"  # links into the checkout; hooks.py replaces them on the site
+DATA = Path(__file__).with_name("field.json")
+PICTURES = DATA.with_suffix(".webp")  # all portraits and difference maps, ACROSS in a line
+SIZE, ACROSS = 96, 8
+PAGES = "upstream/{}.html"  # relative to the page in the built site
 EXAMPLE = examples_folder() / "clay.mtlx"
 DIFFUSE = tuple(dict.fromkeys(row.node for row in (*DIFFUSE_SPECS, *SURFACE_LOBES)))
 LIBRARIES = ("eonlib", "stock")
 TIMEOUT = 600.0
-ROW, FIGURE = (
-    re.compile(f'<{tag} {name}="([^"]+)".*?</{tag}>', re.DOTALL)
-    for tag, name in (("tr", "id"), ("figure", "data-row"))
-)
-STRIP = '<div class="strip">'
 
 
-def host_of(row: str) -> str:
-    return row.partition("<b>")[2].partition("</b>")[0]
+@dataclass(frozen=True)
+class Row:
+    """A row of the page without its pictures.
+
+    - `entry`: The entry with the largest error.
+    - `same`: Library and node of each entry with the same cause.
+    - `frames`: Scale of the difference map and largest difference, by scene.
+    """
+
+    entry: Entry
+    same: tuple[tuple[str, str], ...]
+    frames: dict[str, tuple[float, float]]
 
 
-def write(folder: str) -> None:
-    """Write the page; keep the rows of hosts that no report in a folder has, with their version."""
-    old = PAGE.read_text(encoding="utf-8")
-    entries = read_field([folder])
-    measured = {each.host for each in entries}
-    kept = {row[1]: row[0] for row in ROW.finditer(old) if host_of(row[0]) not in measured}
-    version = old.partition("measured by mxeon ")[2].partition("<")[0]
-    hosts = dict.fromkeys(map(host_of, kept.values()))
-    absent = (row for row in host_rows() if row.name not in {*measured, *hosts})
-    texts = [
-        f"{row.name} was not measured{f': it needs {row.needs}' * bool(row.needs)}."
-        for row in absent
-    ]
-    if kept:
-        texts += [
-            f"{', '.join(hosts)}: not measured again, so the rows name the older version of mxeon, and are not counted."
-        ]
-    write_field(entries, PAGE, PAGES, " ".join(texts))
-    table, *strips = PAGE.read_text(encoding="utf-8").split(STRIP)
-    rows = "".join(marked(row, name, version) for name, row in kept.items())
-    table = table.replace("</tbody>", f"{rows}</tbody>")
-    older = (part.partition("</main>")[0] for part in old.split(STRIP)[1:])
-    for number, part in enumerate(older):
-        figures = "".join(
-            marked(each[0], each[1], version) for each in FIGURE.finditer(part) if each[1] in kept
+def read() -> tuple[list[Row], Iterator[NDArray[np.uint8]]]:
+    """The kept rows, and their pictures: portrait and difference map of each scene of each row."""
+    rows = make_converter().structure(json.loads(DATA.read_text(encoding="utf-8")), list[Row])
+    lines = np.asarray(Image.open(PICTURES)).reshape(-1, SIZE, ACROSS, SIZE, 3)
+    return rows, iter(lines.swapaxes(1, 2).reshape(-1, SIZE, SIZE, 3))
+
+
+def text() -> str:
+    """The page, whose links lead to the site's pages of the ledger."""
+    rows, pictures = read()
+    shown = {
+        (row.entry.host, row.entry.library, row.entry.node, scene): (
+            picture_uri(next(pictures)),
+            picture_uri(next(pictures)),
+            *numbers,
         )
-        strips[number] = strips[number].replace("</div>", f"{figures}</div>", 1)
-    write_text(PAGE, STRIP.join([table, *strips]))
+        for row in rows
+        for scene, numbers in row.frames.items()
+    }
 
+    def kept_frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
+        for row, entry in enumerate(entries):
+            if frame := shown.get((entry.host, entry.library, entry.node, scene)):
+                yield row, entry, *frame
 
-def marked(text: str, name: str, version: str) -> str:
-    """A row or figure of an older page; its name and first line tell the version that measured it."""
-    if name.startswith("by-"):
-        return text + "\n"
-    text = re.sub(r'(id="|data-row="|href="#)row-', rf"\1by-{version}-row-", text)
-    return (
-        text.replace('<div class="quiet">', f'<div class="quiet">measured by mxeon {version}: ', 1)
-        + "\n"
+    entries = [
+        replace(row.entry, library=library, node=node)
+        for row in rows
+        for library, node in ((row.entry.library, row.entry.node), *row.same)
+    ]
+    hosts = {each.host for each in entries}
+    absent = " ".join(
+        f"{row.name} was not measured{f': it needs {row.needs}' * bool(row.needs)}."
+        for row in host_rows()
+        if row.name not in hosts
     )
+    return "".join(render(entries, PAGES, absent, kept_frames))
+
+
+def keep(folder: str) -> None:
+    """Replace the rows of the hosts that have reports in a folder."""
+    groups = by_harm(read_field([folder]))
+    measured = {group[0].host for group in groups if group[0].verdict != NOT_RUN}
+    old, old_pictures = read()
+    rows, pictures = [], []
+    for row in old:
+        own = [next(old_pictures) for _ in range(2 * len(row.frames))]
+        if row.entry.host not in measured:
+            rows.append(row)
+            pictures += own
+    for group in (group for group in groups if group[0].host in measured):
+        numbers = {}
+        for scene in SCENES:
+            for _, _, *uris, scale, largest in frames(group[:1], scene):
+                numbers[scene] = (scale, largest)
+                pictures += [pixels(uri) for uri in uris]
+        same = tuple((each.library, each.node) for each in group[1:])
+        rows.append(Row(essential(group[0]), same, numbers))
+    write(rows, pictures)
+
+
+def write(rows: list[Row], pictures: list[NDArray[np.uint8]]) -> None:
+    records = make_converter().unstructure(rows)
+    for cell in (cell for record in records for cell in record["entry"]["cells"].values()):
+        for key in [key for key, value in cell.items() if value in (None, "", [], {})]:
+            del cell[key]  # the default
+    write_text(DATA, "[\n" + ",\n".join(map(json.dumps, records)) + "\n]\n")
+    blank = np.zeros((-len(pictures) % ACROSS, SIZE, SIZE, 3), np.uint8)
+    lines = np.concatenate([pictures, blank]).reshape(-1, ACROSS, SIZE, SIZE, 3)
+    tiles = Image.fromarray(lines.swapaxes(1, 2).reshape(-1, ACROSS * SIZE, 3))
+    tiles.save(PICTURES, lossless=True, quality=100, method=6)
+
+
+def pixels(uri: str) -> NDArray[np.uint8]:
+    data = base64.b64decode(uri.partition(",")[2])
+    return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))
+
+
+def essential(entry: Entry) -> Entry:
+    """An entry without what the page does not show."""
+    cells = {
+        column: replace(
+            cell,
+            claim=column,
+            quantity=None,
+            derivation="",
+            worst={name: cell.worst[name] for name in INPUTS if name in cell.worst},
+            errors=(),
+            samples="",
+            diagnosis=Diagnosis(cell.diagnosis.causes[:1]),
+            difference=None,
+            control=None,
+            measured=(),
+            seconds=None,
+        )
+        for column, cell in entry.cells.items()
+    }
+    return replace(entry, cells=cells, portraits={}, report=Path())
 
 
 def main(folder: str = "") -> None:
     if folder:
-        write(folder)
+        keep(folder)
         return
     with TemporaryDirectory(prefix="mxeon-field-") as new:
         for row in host_rows():
@@ -91,7 +168,7 @@ def main(folder: str = "") -> None:
                 if any(e.host == row.name and e.verdict != NOT_RUN for e in run.results):
                     report.write(run, Path(new, row.name))
                 print(row.name, run.sentence, flush=True)
-        write(new)
+        keep(new)
 
 
 if __name__ == "__main__":

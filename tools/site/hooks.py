@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Add the explorer and pages from outside `docs/`, adapt pages to the site, fill in the ledger's figures."""
+"""Add built pages and pages from outside `docs/`, adapt pages to the site, fill in the ledger's figures."""
 
 import re
 from pathlib import Path
 
 from mkdocs.structure.files import File
 
-from tools.site import explorer
+from tools.site import explorer, field
 from tools.site.ledger.pages import filled
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -19,11 +19,12 @@ OUTSIDE = {
 
 
 def on_files(files, config):
-    """Add the home page, the changelog, contributing and the explorer."""
+    """Add the home page, the changelog, contributing, the explorer and the comparison of renderers."""
     pages = {page: ROOT / name for page, name in OUTSIDE.items()}
     for page, path in pages.items():
         files.append(File.generated(config, page, abs_src_path=str(path)))
-    files.append(File.generated(config, "explore.html", content=explorer.text()))
+    for page, made in (("explore.html", explorer), ("field.html", field)):
+        files.append(File.generated(config, page, content=made.text()))
     return files
 
 
@@ -52,10 +53,3 @@ def on_page_content(html, page, **_):
     half = r'<span data-library="{0}"><img alt="\1, {0}" src="\2" loading="lazy"></span>'
     halves = half.format("stock") + half.format("eonlib")
     return re.sub(picture + whole, f'<p class="halves">{halves}</p>', html)
-
-
-def on_post_build(config):
-    """Redirect the field page's links from files of the checkout to pages of the site."""
-    page = Path(config.site_dir, "field.html")
-    text = page.read_text(encoding="utf-8")
-    page.write_text(re.sub(r'href="(upstream/\w+)\.md"', r'href="\1.html"', text), encoding="utf-8")

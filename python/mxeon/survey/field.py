@@ -57,6 +57,7 @@ class Portrait:
 class Entry:
     """A node of a renderer in one run."""
 
+    mxeon: str  # its version
     host: str
     library: str
     node: str
@@ -180,7 +181,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
             pages = tuple(dict.fromkeys(page for each in results.values() for page in each.pages))
             hosts = {each.name: (each.version, each.device) for each in report.hosts}
             names = (*place, *hosts.get(direct.host, ("", "")), claimed, direct.model)
-            yield Entry(*names, cells, pages, portraits, folder)
+            yield Entry(report.version, *names, cells, pages, portraits, folder)
 
 
 def claim(spec: Spec) -> str:

@@ -3,9 +3,10 @@
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from os import PathLike
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 from markupsafe import Markup
@@ -29,25 +30,45 @@ HEADINGS = {
     "back": ("Back-lit", "worst error of the portrait in light from behind"),
 }
 SCENES = {"side": "light from the side", "back": "light from behind"}
+# Row, entry, image, difference map, its scale, and the largest difference.
+Frame: TypeAlias = tuple[int, Entry, str, str, float, float]
 INPUTS = ("color", "roughness", "wo", "wi", "measured", "expected")
 
 
-def write_field(
-    entries: Sequence[Entry], file: str | PathLike[str], pages: str = "", note: str = ""
-) -> Path:
+def write_field(entries: Sequence[Entry], file: str | PathLike[str]) -> Path:
     """Write the page that compares renderers, and return its path; see `render`."""
     read = (each for entry in entries for each in report_files(entry.report))
     check_output(file, read, [".html"])
     with replacing(Path(file)) as beside, open(beside, "w", encoding="utf-8") as page:
-        page.writelines(render(entries, pages, note))
+        page.writelines(render(entries))
     return Path(file)
 
 
-def render(entries: Sequence[Entry], pages: str = "", note: str = "") -> Iterator[str]:
+def frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
+    """Portraits of a scene, from their files; the tolerance is dark in the map."""
+    for row, entry in enumerate(entries):
+        portrait = entry.portraits.get(scene)
+        if portrait is None:
+            continue
+        image, model = read_image(portrait.image), read_image(portrait.reference)
+        apart = np.abs(difference(image, model))
+        scale = max(difference_scale(apart), entry.cells["direct"].tolerance or 0.0)
+        shown, apart = srgb_encoded(image), difference_pixels(apart, scale)
+        uris = picture_uri(shown), picture_uri(apart)
+        yield row, entry, *uris, scale, portrait.difference
+
+
+def render(
+    entries: Sequence[Entry],
+    pages: str = "",
+    note: str = "",
+    frames: Callable[[Sequence[Entry], str], Iterator[Frame]] = frames,
+) -> Iterator[str]:
     """Pieces of the page; a picture is read when its piece is due.
 
-    `pages` is the address of a page of the ledger with `{}` for its name, "" for no links; `note` follows the counts. The
-    page loads nothing, runs only its own script, and is complete without it. Text of the reports is escaped.
+    `pages` is the address of a page of the ledger with `{}` for its name, "" for no links; `note` follows the counts;
+    `frames` returns the portraits of the rows' first entries. The page loads nothing, runs only its own script, and is
+    complete without it. Text of the reports is escaped.
     """
     counts = Counter(entry.verdict for entry in entries)
     rows = by_harm(entries)
@@ -87,22 +108,3 @@ def breakable(name: str) -> Markup:
 def where(cell: Result) -> dict[str, str]:
     """The inputs and values at the worst point, in words."""
     return {name: vector(cell.worst[name]) for name in INPUTS if name in cell.worst}
-
-
-def frames(
-    entries: Sequence[Entry], scene: str
-) -> Iterator[tuple[int, Entry, str, str, float, float]]:
-    """Portraits of a scene: row, entry, image, difference map, its scale, and the largest difference.
-
-    In the map the tolerance is dark.
-    """
-    for row, entry in enumerate(entries):
-        portrait = entry.portraits.get(scene)
-        if portrait is None:
-            continue
-        image, model = read_image(portrait.image), read_image(portrait.reference)
-        apart = np.abs(difference(image, model))
-        scale = max(difference_scale(apart), entry.cells["direct"].tolerance or 0.0)
-        shown, apart = srgb_encoded(image), difference_pixels(apart, scale)
-        uris = picture_uri(shown), picture_uri(apart)
-        yield row, entry, *uris, scale, portrait.difference
