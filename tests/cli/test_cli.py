@@ -12,14 +12,16 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
+from mxeon import check
 from mxeon.cli import main, parser
 from mxeon.errors import FAILED, PASSED
 from mxeon.models.diffuse import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
+from mxeon.report import write
 from mxeon.shaders.document.policy import LIMITS
 from mxeon.shaders.library import eonlib_folder
 from tests.support.command import CLAY, PLASTER, one_line
 from tests.support.documents import material
-from tests.support.plans import keep_checks
+from tests.support.plans import keep, keep_checks
 
 MIRROR = """<generalized_schlick_bsdf name="lobe" type="BSDF">
   <input name="roughness" type="vector2" value="0, 0"/></generalized_schlick_bsdf>"""
@@ -67,6 +69,16 @@ def test_check_passes_writes_a_report_and_answers_as_the_pages_show(tmp_path, ca
     assert main(["report", "make", str(tmp_path / "report")]) == PASSED
     kept = json.loads((tmp_path / "report" / "results.json").read_text())
     assert [each["seconds"] for each in kept["results"]] == times
+
+
+def test_a_report_made_by_the_api_equals_the_commands(tmp_path, monkeypatch, capsys):
+    keep(monkeypatch, lambda task: task.check in ("picture", "studio"))
+    main(["check", PLASTER, "--report", str(tmp_path / "command"), "--workers", "0"])
+    made = [tmp_path / "command" / "report.html"]
+    made.append(write(check(PLASTER, compared="stock"), tmp_path / "api"))
+    pages = [re.sub(r"Finished in [\d.]+", "", page.read_text(encoding="utf-8")) for page in made]
+    assert "Difference of the two" in pages[0]
+    assert pages[0] == pages[1]
 
 
 def test_check_of_stock_fails_and_names_the_defects(capsys, monkeypatch):

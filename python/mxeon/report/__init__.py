@@ -135,13 +135,18 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     """Write report.html, results.json, junit.xml and pictures/ into `folder`.
 
     Pictures and their references are EXR and PNG files; upstream/ has pages on the defects that explain failures. Each
-    file is written completely or not at all, the page last.
+    file is written completely or not at all, the page last. Draws the documents in the studio first if `check` had no
+    folder.
 
     Returns the page, report.html. Raises InputError if it would replace a document, a library or the journal of the run;
     OSError if a file cannot be written; ImportError without the `report` extra, jinja2 and matplotlib.
     """
     folder = Path(one_name("folder", folder))
     check_output(folder, _inputs(run), replaced=REPORT)
+    if run.policy:
+        from mxeon.conformance.run import with_studio  # loads engines
+
+        run = with_studio(run, run.policy)
     write_text(below(folder, RESULTS), to_json(run))
     write_text(below(folder, JUNIT), to_junit(run))
     pictures = _with_references(run.pictures)

@@ -24,6 +24,7 @@ from mxeon.errors import CheckError, InputError
 from mxeon.hosts.base import Identity
 from mxeon.io.files import AnyPath
 from mxeon.io.images import difference
+from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.scene import sphere
 
 Verdict: TypeAlias = Literal["passed", "differs", "failed", "not run"]
@@ -422,6 +423,7 @@ class Run(Scope):
     - `notes`: Warnings for readers, e.g. about features that a host cannot render.
     - `missing`: Unfinished tasks of an interrupted run.
     - `seconds`: Time from the first document to the last result; None for a run that is read.
+    - `policy`: That of the documents, if a report still has to draw them in the studio.
     """
 
     hosts: tuple[Identity, ...]
@@ -430,6 +432,7 @@ class Run(Scope):
     notes: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
     seconds: float | None = field(default=None, compare=False)
+    policy: Policy | None = field(default=None, compare=False)
 
     def __repr__(self) -> str:
         return f"<Run: {self.summary}>"

@@ -158,7 +158,19 @@ def check(
                         journal.add(numbers[position], findings)  # writes its pictures to disk
                     else:
                         done[numbers[position]] = findings
-            return replace(to_run(planned, done), seconds=round(time.monotonic() - begin, 3))
+            seconds = round(time.monotonic() - begin, 3)
+            left = None if journal else policy  # a journal has the studio's pictures
+            return replace(to_run(planned, done), seconds=seconds, policy=left)
+
+
+def with_studio(run: Run, policy: Policy) -> Run:
+    """A run with its documents' pictures in the studio, which `check` itself only draws for a folder."""
+    libraries = dict.fromkeys(each.library for each in run.results if each.host == "gl")
+    subjects = product(libraries, list(run.contents)[: plan.STUDIED])
+    tasks = [Task(plan.STUDIO, file, "gl", library) for library, file in subjects]
+    drawn = [cast(Findings, each.value) for _, each in _run_inline(policy, tasks)]
+    pictures = chain.from_iterable(each.pictures for each in drawn)
+    return replace(run, policy=None, pictures=(*run.pictures, *pictures))
 
 
 def _inputs(files: Sequence[AnyPath], libraries: Iterable[str], policy: Policy) -> Iterator[str]:
