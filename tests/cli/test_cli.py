@@ -81,6 +81,13 @@ def test_a_report_made_by_the_api_equals_the_commands(tmp_path, monkeypatch, cap
     assert pages[0] == pages[1]
 
 
+def test_a_picture_for_the_report_that_takes_too_long_is_a_note(tmp_path, monkeypatch):
+    keep(monkeypatch, lambda task: task.check == "studio")
+    run = check(PLASTER, folder=tmp_path, workers=1, timeout=1e-3)
+    [note] = [each for each in run.notes if "in the studio" in each]
+    assert "timed out" in note and Path(PLASTER).name in note
+
+
 def test_check_of_stock_fails_and_names_the_defects(capsys, monkeypatch):
     keep_checks(monkeypatch, "value")
     stock = ["check", PLASTER, "--library", "stock", "--workers", "0"]

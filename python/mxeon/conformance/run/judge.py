@@ -42,6 +42,8 @@ def one_result(
     diagnosis: results.Diagnosis = results.NO_DIAGNOSIS,
 ) -> Findings:
     """Findings of a task without a measurement, from the reason or the diagnosis."""
+    if task.check == plan.STUDIO:  # judges nothing
+        return Findings(notes=((f"not drawn in the studio: {reason}", Path(task.subject).name),))
     if not (claim := CLAIMS.get(task.check)):
         own_nodes(task.host)  # adds the checks of a renderer
         claim = next(each.claim for each in checks.CHECKS if each.key == task.check)
