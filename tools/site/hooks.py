@@ -6,6 +6,7 @@ from pathlib import Path
 
 from mkdocs.structure.files import File
 
+from mxeon.report.formats import unbroken
 from tools.site import explorer, field
 from tools.site.ledger.pages import filled
 
@@ -43,7 +44,8 @@ def on_page_markdown(markdown, page, **_):
 
 
 def on_page_content(html, page, **_):
-    """Split each gallery picture into two halves, which a phone shows below each other; link the wall to the ledger."""
+    """Join numbers and units; split gallery pictures into halves for phones; link the wall to the ledger."""
+    html = unbroken(html)
     if page.file.src_uri == "wall.md":
         return html.replace('href="upstream/README.md"', 'href="upstream/index.html"')
     if page.file.src_uri != "gallery.md":

@@ -24,6 +24,22 @@ LOOKS = {
     NOT_RUN: ("not-run", "–"),
 }
 
+# A space between a number and its unit; matches the whole of source text, where spaces stay as they are.
+SPACES = re.compile(
+    r"<(pre|code|script|style)\b.*?</\1>"
+    r"|(?<=\d) (?=(?:%|px|[nµm]m|[µm]?s|[kKMG]i?B|degrees|times|codes|paths)(?!\w))",
+    re.DOTALL,
+)
+
+
+def unbroken(html: str) -> str:
+    """HTML in which a number and its unit stay on one line.
+
+    >>> unbroken("12 % in 3 s of <code>12 % 3 s</code>")
+    '12\\xa0% in 3\\xa0s of <code>12 % 3 s</code>'
+    """
+    return SPACES.sub(lambda found: found[0] if found[1] else "\xa0", html)
+
 
 def share(result: Result) -> float:
     """Error over tolerance; infinite if the error is missing or not finite."""

@@ -37,6 +37,7 @@ from mxeon.shaders.scene import STUDIO
 # Materials with pictures inside the page, about a megabyte each; further ones are linked.
 SHOWN_MATERIALS = 60
 LARGE = 512  # pixels on a side of a picture in the studio
+LEAST_SCALE = 1e-3  # smallest scale of a difference map: 0.1 % of white
 OPEN_MATERIALS = 8  # further materials open on a click
 OPEN_ROWS = 20  # maximum failed rows of checks that are shown open
 WORST_FIRST = (FAILED, NOT_RUN, DIFFERS, PASSED)
@@ -222,7 +223,7 @@ def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
         partly = ", at the pixels to compare" if any(p.judged is not None for p in pictures) else ""
         shown.append(_figure("reference", "Reference", f"NumPy, float64{partly}", pixels))
     largest = [abs(one.difference.largest) for one, _ in apart if one.difference]
-    scale = max([tolerance, *(difference_scale(values) for _, values in apart)])
+    scale = max([LEAST_SCALE, tolerance, *(difference_scale(values) for _, values in apart)])
     scale = max([scale, *(top for top in largest if top < 2.0 * scale)])
     for one, values in apart:
         note = words.size(one.difference) if one.difference else ""

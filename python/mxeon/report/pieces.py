@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from mxeon.io.srgb import NOT_FINITE
-from mxeon.report.formats import LOOKS, number, share
+from mxeon.report.formats import LOOKS, number, share, unbroken
 
 # Larger pictures show every second, third, ... pixel; the files have all pixels.
 SHOWN_SIZE = 256
@@ -41,7 +41,8 @@ def generate_page(
     template = environment.get_template(f"{name}.html.jinja")
     script = files(package).joinpath(f"templates/{name}.js").read_text(encoding="utf-8")
     digest = base64.b64encode(sha256(script.encode()).digest()).decode()
-    yield from template.generate(script=Markup(script), script_hash=digest, **values)
+    whole = template.generate(script=Markup(script), script_hash=digest, **values)
+    yield from map(unbroken, whole)
 
 
 def picture_uri(pixels: NDArray[np.uint8], largest: int = SHOWN_SIZE) -> str:
