@@ -215,6 +215,11 @@ def test_control_characters_are_refused(character):
     assert "surfacematerial must have no control characters in 'name'" in refusal(text)
 
 
+def test_an_element_that_materialx_would_ignore_is_refused():
+    twice = SMALL.replace("</materialx>", '<nodegraph name="look"/></materialx>')
+    assert "nodegraph must have another name than its siblings; got 'look'" in refusal(twice)
+
+
 @pytest.mark.parametrize("name", ["../look", "/look", "look.", "lo ok", "l" * 200, "..", "ng/look"])
 def test_names_are_no_paths(name):
     message = refusal(SMALL.replace('"look"', f'"{name}"'))

@@ -91,6 +91,7 @@ class XmlChecker:
     def check(self, text: str, location: str) -> None:
         """Check the text of a document."""
         self._location, self._depth = location, 0
+        self._names: list[set[str]] = [set()]  # names of siblings at each level
         parser = expat.ParserCreate()
         parser.StartDoctypeDeclHandler = self._refuse_type
         parser.StartElementHandler = self._start
@@ -122,9 +123,15 @@ class XmlChecker:
         if len(name := attributes.get("name", "")) > LONGEST_NAME:
             rule = f"must have a name of at most {LONGEST_NAME} characters"
             self._refuse(f"{category} {rule}; got {name}")
+        if name in self._names[-1]:
+            rule = "must have another name than its siblings"
+            self._refuse(f"{category} {rule}; got {name!r}, which MaterialX ignores")
+        self._names[-1] |= {name} - {""}
+        self._names.append(set())
 
     def _end(self, _: str) -> None:
         self._depth -= 1
+        self._names.pop()
 
     def _refuse_type(self, name: str, *_: object) -> None:
         self._refuse(f"must have no document type, which may define entities; got DOCTYPE {name}")
