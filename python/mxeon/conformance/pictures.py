@@ -3,6 +3,7 @@
 
 import warnings
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from itertools import compress, product
@@ -32,6 +33,7 @@ from mxeon.conformance.results import (
     Result,
     quoted,
 )
+from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.conformance.samples import Batch, Values, arrays
 from mxeon.conformance.specs import hair, microfacets, subsurface, utilities
 from mxeon.conformance.specs import surface_shaders as surfaces
@@ -55,13 +57,14 @@ from mxeon.errors import DocumentError, NotRun, OutsideModel, ShaderError
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
 from mxeon.hosts.still import still
+from mxeon.io.images import difference
 from mxeon.io.srgb import SLOPE
 from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.nodes import PBR_NODES
 from mxeon.models.nodes.microfacets import LOBES as MICROFACETS
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders.document import notes
-from mxeon.shaders.document.graphs import categories, inner_nodes
+from mxeon.shaders.document.graphs import categories, inner_nodes, surface_shader
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, CodeWarning, Shader, generate
 from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
@@ -275,6 +278,8 @@ def _judge_material(
     def diagnose() -> Diagnosis:
         if known := _known(shader):
             return known
+        if library == RENDERER_NODES:
+            return _input_at_fault(shader, host, judge, scenes)
         if names := judge.other_node(shader, values):
             return Diagnosis((Cause(Kind.DEFECT, "other_node", names),))
         follows = tuple({lobe.category: None for lobe in lobes})
@@ -285,6 +290,33 @@ def _judge_material(
     apart = filter(None, (each.difference for each in pictures))
     worst = max(apart, key=lambda each: abs(each.largest))
     return replace(result, difference=worst), pictures
+
+
+SMALL = 64  # pixels; wide enough to tell which input is at fault
+
+
+def _input_at_fault(
+    shader: Shader, host: Host, judge: Reference, scenes: Sequence[Scene]
+) -> Diagnosis:
+    """The input of a surface shader without which a renderer's own material is closest to the reference."""
+    small = [replace(scene, size=SMALL) for scene in scenes]
+    names = [each.getName() for each in surface_shader(shader.document, shader.element).getInputs()]
+    left: dict[str, float] = {}
+    for name in ("", *names):
+        document = mx.createDocument()
+        document.copyContentFrom(shader.document)
+        surface_shader(document, shader.element).removeInput(name)
+        with suppress(NotRun, DocumentError):
+            [other] = host.compile(document, shader.element)
+            shown = ((host.picture(other, each), judge.picture(other, each)) for each in small)
+            left[name] = max(float(np.abs(difference(*each)).max()) for each in shown)
+    nearest = min(left, key=left.__getitem__, default="")
+    if not nearest or left[nearest] > 0.5 * left.get("", np.inf):
+        return quoted("no input alone is at fault")
+    return quoted(
+        f"mostly its {nearest}: without it, the largest difference is {left[nearest]:.2g} "
+        f"instead of {left['']:.2g}"
+    )
 
 
 def _known(shader: Shader) -> Diagnosis | None:

@@ -26,7 +26,7 @@ from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
 from mxeon.shaders.methods import Methods
 from mxeon.shaders.nodes import FRAME_INPUTS
-from mxeon.shaders.scene import CLIENT, VIEW, Scene, sphere, tangents
+from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
 
 try:
     from shadewire import ShadewireError, glsl, mtlx, version
@@ -80,7 +80,7 @@ class ShadewireHost(base.Host):
     def picture(self, shader: Shader, scene: Scene) -> Array:
         self.refuse_paths(scene)
         self.refuse_shape(scene)
-        if scene.environment is not None or scene.client is not CLIENT:
+        if scene.environment is not None:
             raise NotRun("shadewire: light must be distant; it has no lookups of an environment")
         points = sphere(scene.size)
         normal = points.normal[points.mask]

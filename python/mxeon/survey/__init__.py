@@ -10,6 +10,7 @@ from typing import Any
 
 from mxeon.hosts import Row
 from mxeon.hosts.base import Engine
+from mxeon.shaders.scene import BACK, SIDE
 
 
 def start(name: str) -> Engine:
@@ -61,8 +62,8 @@ def nodes(name: str) -> Sequence[Any]:
 _row = partial(Row, target="", start=start, nodes=nodes)
 ROWS = (
     _row("cycles-native", way="native"),
-    _row("three", way="exact"),
-    _row("babylon", way="exact"),
+    _row("three", way="exact", scenes=(SIDE, BACK)),
+    _row("babylon", way="exact", scenes=(SIDE, BACK)),
     _row("three-gpu-pathtracer", way="facet pairs"),
     _row("mitsuba", way="facet pairs"),
     _row("eevee", way="coarse facets"),

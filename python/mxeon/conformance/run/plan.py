@@ -289,9 +289,11 @@ def make_plan(
             tasks += _on_host(host, library, paths, everywhere, methods.over(GENERATED))
             if resumable and host == "gl":  # shown in a report
                 tasks += [Task(STUDIO, file, host, library) for file in readable[:STUDIED]]
-    for host in hosts:  # a renderer's own nodes use none of our libraries
+    for host in hosts:  # a renderer's own nodes and materials use none of our libraries
         for spec in own_nodes(host):
             tasks += _checks_of(spec, host, RENDERER_NODES)
+        if files and host_row(host).scenes and not host_row(host).target:
+            tasks += [Task(PICTURE, file, host, RENDERER_NODES) for file in readable]
     tasks = _selected(tasks, list(map(str, files)), nodes, reading)
     # Report hosts that measure nothing; for hosts that read no documents, the document's task does
     # this.

@@ -183,3 +183,9 @@ def _definition(element: mx.Element) -> str:
 def _inputs(element: mx.Element | None) -> int:
     """Number of an element's inputs; 0 if it cannot have any."""
     return element.getInputCount() if element and element.isA(mx.InterfaceElement) else 0
+
+
+def surface_shader(document: mx.Document, path: str) -> mx.Node:
+    """The surface shader of a material, or the node itself, by its name path."""
+    element = document.getDescendant(path)
+    return next(iter(mx.getShaderNodes(element)), element)

@@ -12,18 +12,25 @@ import inspect
 import json
 import math
 import os
-from collections.abc import Mapping
+from abc import abstractmethod
+from collections.abc import Collection, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import ClassVar
 
+import MaterialX as mx
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import NotRun
 from mxeon.hosts import base, webgl
+from mxeon.io.files import AnyPath
+from mxeon.shaders.document.graphs import surface_shader
+from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.generation import Shader
 from mxeon.shaders.library import data_folder
-from mxeon.shaders.scene import Scene
+from mxeon.shaders.methods import UNCHOSEN, Methods
+from mxeon.shaders.scene import Scene, sphere
 from mxeon.survey.specs import Material
 
 MODULES = "MXEON_NODE_MODULES"  # environment variable that names another node_modules
@@ -138,3 +145,52 @@ class PackageHost(webgl.Chromium, base.Engine):
             route.fulfill(path=file, content_type=TYPES[file.suffix])
         else:
             route.fulfill(status=404, body="")
+
+
+class ReadingHost(PackageHost, base.Host):
+    """A package that turns documents into its own materials: `mxeon check FILE --host three`.
+
+    The GLSL that `compile` makes is not executed. Light is distant, because the packages prefilter their environments.
+    """
+
+    target, fixed = "glsl", True
+
+    def compile(
+        self,
+        document: AnyPath | mx.Document,
+        element: str | None = None,
+        *,
+        library: str = "stock",
+        methods: Methods = UNCHOSEN,
+        policy: Policy = DEFAULT,
+        client: Collection[str] = (),
+    ) -> tuple[Shader, ...]:
+        """As for any host, with MaterialX's own definitions: the package uses no library."""
+        return super().compile(document, element, library="stock", policy=policy, client=client)
+
+    def picture(self, shader: Shader, scene: Scene) -> base.Array:
+        self.refuse_shape(scene)
+        if scene.environment is not None:
+            raise NotRun(f"{self.name}: light must be distant")
+        if not shader.document.getDescendant(shader.element).isA(mx.Node):
+            raise NotRun(f"{self.name}: element must be a material; got {shader.element}")
+        image = self.node(self.read(shader), scene)
+        return np.where(sphere(scene.size).mask[..., None], image, np.float32(0.0))
+
+    def unread(self, shader: Shader) -> str:
+        """Inputs that the package says it ignores, and other warnings; inputs with their default are left out."""
+        surface = surface_shader(shader.document, shader.element)
+        defaults = {
+            each.getName(): each.getValueString() for each in surface.getNodeDef().getActiveInputs()
+        }
+        given = {each.getName(): each.getValueString() for each in surface.getInputs()}
+        ignored = [
+            each
+            for each in self.ask(self.read(shader))["ignored"]
+            if each not in given or given[each] != defaults[each]
+        ]
+        return f"it ignores {', '.join(ignored)}" if ignored else ""
+
+    @abstractmethod
+    def read(self, shader: Shader) -> Material:
+        """The page's job for the material of a shader's document."""

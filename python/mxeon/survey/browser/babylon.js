@@ -68,6 +68,7 @@ async function start(backend) {
     scene.useRightHandedSystem = true;
     scene.clearColor = new Color4(0, 0, 0, 0);
     scene.imageProcessingConfiguration.applyByPostProcess = true; // leaves colors linear
+    scene.imageProcessingConfiguration.skipFinalColorClamp = true;
     const camera = new FreeCamera("camera", new Vector3(0, 0, FAR), scene);
     camera.setTarget(Vector3.Zero());
     camera.mode = Camera.ORTHOGRAPHIC_CAMERA;
@@ -106,6 +107,16 @@ function openPbrMaterial(scene, { color, roughness }) {
     return material;
 }
 
+// OpenPBRMaterial with values of open_pbr_surface, and the inputs that it lacks.
+function readMaterial(scene, inputs) {
+    const material = new OpenPBRMaterial("material", scene), ignored = [];
+    for (const [name, value] of Object.entries(inputs)) {
+        if (name in material) material[name] = value.length ? new Color3(...value) : Number(value);
+        else ignored.push(name);
+    }
+    return { material, ignored };
+}
+
 // Radiance 1 from everywhere, with the polynomial that Babylon.js makes of it.
 async function surroundings(stage) {
     if (!stage.map) {
@@ -125,7 +136,8 @@ async function surroundings(stage) {
 export async function draw(job) {
     const stage = await start(job.backend);
     const { device, scene, light } = stage;
-    if (!job.size) return { device };
+    const read = job.inputs && readMaterial(scene, job.inputs);
+    if (!job.size) return { device, ignored: read?.ignored };
     light.setEnabled(Boolean(job.light));
     if (job.light) {
         light.direction = new Vector3(...job.light).scale(-1);
@@ -134,7 +146,7 @@ export async function draw(job) {
     scene.environmentTexture = job.environment ? await surroundings(stage) : null;
     scene.environmentIntensity = job.environment ?? 0;
     const mesh = meshOf(stage, job.size);
-    mesh.material = job.model ? pbrMaterial(scene, job) : openPbrMaterial(scene, job);
+    mesh.material = read ? read.material : job.model ? pbrMaterial(scene, job) : openPbrMaterial(scene, job);
     mesh.material.backFaceCulling = false;
     if (job.filtering) mesh.material.realTimeFiltering = true;
     const pixels = await frame(stage, mesh, job.size);

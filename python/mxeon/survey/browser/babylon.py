@@ -5,10 +5,13 @@ from __future__ import annotations
 
 import base64
 
+from mxeon.errors import NotRun
+from mxeon.shaders.document.graphs import surface_shader
+from mxeon.shaders.generation import Shader
 from mxeon.survey import browser
-from mxeon.survey.specs import BOTH, COLOR, PUBLISHED, node
+from mxeon.survey.specs import BOTH, COLOR, PUBLISHED, Material, node
 
-PACKAGE = "@babylonjs/core"
+PACKAGE, OPEN_PBR = "@babylonjs/core", "open_pbr_surface"
 IMPORTS = {"@babylonjs/core/": "@babylonjs/core/"}
 BACKENDS = {"WebGL2": "webgl", "WebGPU": "webgpu"}
 
@@ -34,6 +37,22 @@ NODES = tuple(
 )
 
 
-class BabylonHost(browser.PackageHost):
+class BabylonHost(browser.ReadingHost):
     name, title, package = "babylon", "Babylon.js", PACKAGE
     imports, assets = IMPORTS, ASSETS
+
+    def read(self, shader: Shader) -> Material:
+        """OpenPBRMaterial has the inputs of `open_pbr_surface`, in camel case, with their meaning."""
+        surface = surface_shader(shader.document, shader.element)
+        if surface.getCategory() != OPEN_PBR:
+            raise NotRun(f"babylon: it has no {surface.getCategory()}, only {OPEN_PBR}")
+        values: dict[str, object] = {}
+        for port in surface.getNodeDef().getActiveInputs():
+            name, own = port.getName(), surface.getInput(port.getName())
+            if own and own.getValue() is None:
+                raise NotRun(f"babylon: {name} must be a value; it is connected")
+            if (value := (own or port).getValue()) is not None:
+                parts = name.split("_")
+                key = parts[0] + "".join(map(str.title, parts[1:]))
+                values[key] = tuple(value) if port.getType() in ("color3", "vector3") else value
+        return {"backend": "webgl", "inputs": values}

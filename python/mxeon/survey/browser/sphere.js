@@ -5,16 +5,19 @@
 // under the pixel's center. So every pixel has an exact normal, whatever the rasterizer interpolates.
 
 export function sphere(size) {
-    const positions = [], normals = [], indices = [];
+    const positions = [], normals = [], tangents = [], indices = [];
     for (let row = 0; row < size; ++row) {
         for (let column = 0; column < size; ++column) {
             const x = (2 * column + 1) / size - 1, y = 1 - (2 * row + 1) / size;
             if (x * x + y * y >= 1) continue;
             const normal = [x, y, Math.sqrt(1 - x * x - y * y)], half = 1 / size;
+            const across = Math.hypot(normal[0], normal[2]); // tangents point eastward
+            const tangent = [normal[2] / across, 0, -normal[0] / across, 1];
             const first = positions.length / 3;
             for (const [dx, dy] of [[-half, -half], [half, -half], [half, half], [-half, half]]) {
                 positions.push(x + dx, y + dy, 0);
                 normals.push(...normal);
+                tangents.push(...tangent);
             }
             indices.push(first, first + 1, first + 2, first, first + 2, first + 3);
         }
@@ -22,6 +25,7 @@ export function sphere(size) {
     return {
         positions: new Float32Array(positions),
         normals: new Float32Array(normals),
+        tangents: new Float32Array(tangents),
         indices: new Uint32Array(indices),
     };
 }

@@ -30,10 +30,11 @@ const geometries = new Map(); // by library and size
 function geometryOf(three, size) {
     const key = `${three === GL} ${size}`;
     if (!geometries.has(key)) {
-        const { positions, normals, indices } = sphere(size);
+        const { positions, normals, tangents, indices } = sphere(size);
         const geometry = new three.BufferGeometry();
         geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
         geometry.setAttribute("normal", new three.BufferAttribute(normals, 3));
+        geometry.setAttribute("tangent", new three.BufferAttribute(tangents, 4));
         geometry.setIndex(new three.BufferAttribute(indices, 1));
         geometries.set(key, geometry);
     }
@@ -47,11 +48,18 @@ function physicalMaterial(three, { color, roughness }) {
     return material;
 }
 
-function loadedMaterial(text) {
-    const { materials, log } = new MaterialXLoader().parse(text);
+function loadedMaterial({ document: text, element }) {
+    let materials, log;
+    try {
+        ({ materials, log } = new MaterialXLoader().parse(text));
+    } catch ({ message }) {
+        throw new Error(message.replace(/^.*error\(s\)\. /, "MaterialXLoader: "));
+    }
     const errors = log.filter(({ severity }) => severity === "error");
     if (errors.length) throw new Error(`MaterialXLoader: ${errors[0].code}: ${errors[0].message}`);
-    return Object.values(materials)[0];
+    const material = materials[element] ?? Object.values(materials)[0];
+    const ignored = log.map(({ message }) => message.match(/input "(\w+)" is/)?.[1] ?? message);
+    return { material, ignored };
 }
 
 const maps = new Map(); // by library: filtering one takes seconds on a software driver
@@ -83,8 +91,11 @@ function stage(three, job) {
 
 export async function draw(job) {
     const { renderer, device, three } = await start(job.backend);
-    if (!job.size) return { device, revision: three.REVISION };
-    const material = job.document ? loadedMaterial(job.document) : physicalMaterial(three, job);
+    if (!job.size && !job.document) return { device, revision: three.REVISION };
+    const { material, ignored } = job.document
+        ? loadedMaterial(job)
+        : { material: physicalMaterial(three, job) };
+    if (!job.size) return { device, ignored };
     const scene = stage(three, job);
     const mesh = new three.Mesh(geometryOf(three, job.size), material);
     mesh.frustumCulled = false;

@@ -5,7 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import MaterialX as mx
+
 from mxeon.hosts.base import Array
+from mxeon.shaders.generation import Shader
 from mxeon.shaders.nodes import document_text, input_text, node_text
 from mxeon.shaders.scene import Scene
 from mxeon.survey import browser
@@ -44,9 +47,13 @@ NODES = (
 )
 
 
-class ThreeHost(browser.PackageHost):
+class ThreeHost(browser.ReadingHost):
     name = title = package = PACKAGE
     imports = IMPORTS
+
+    def read(self, shader: Shader) -> Material:
+        text = mx.writeToXmlString(shader.document)
+        return {"backend": "webgpu", "document": text, "element": shader.element}
 
     def node(self, material: Material, scene: Scene) -> Array:
         if "category" not in material:
