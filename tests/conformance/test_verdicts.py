@@ -177,7 +177,7 @@ FREE = {
     *((title, key) for title in STOCK if "value" in STOCK[title] for key in OPEN if STOCK[title].get(key) == OPEN[key]),
     *((title, key) for title in ("dielectric_bsdf, thin film", "conductor_bsdf, thin film") for key in film("")),
     *(("generalized_schlick_bsdf, thin film", key) for key in ("film_average", "film_smooth")),
-    *((title, "combined_throughput") for title in STOCK if title.startswith("multiply, ")),
+    *((title, "combined_throughput") for title in STOCK if title.startswith(("multiply, ", "mix, of "))),
     *((f"{name}_bsdf{mode}", "anisotropic_value") for name, mode in (
         ("conductor", ""), ("dielectric", ", scatter_mode R"), ("generalized_schlick", ", scatter_mode R"))),
     ("generalized_schlick_bsdf, scatter_mode R", "dark"),

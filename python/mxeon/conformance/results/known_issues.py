@@ -46,7 +46,7 @@ class Issue:
     unavoidable: bool = False  # every library has it: no text, or none of ours, can repair it
     differs: bool = False  # the specification permits both
     rows: tuple[Row, ...] = ()  # results that all fail: the page's table
-    # Other results that fail, or may fail, because of it on those hosts.
+    # Other results that fail or differ, or may, because of it on those hosts.
     implied: tuple[Row, ...] = ()
     # Results that pass with its patch: by default `rows`, except for `remains`.
     repaired: tuple[Row, ...] = ()

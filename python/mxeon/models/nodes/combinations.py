@@ -147,12 +147,14 @@ def _unscaled(combine: Combine) -> tuple[Variant[Scattering], ...]:
 def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant[Scattering], ...]:
     """A combination of a sum whose albedo is clamped to 1, over a base or not.
 
-    MaterialX's `add` clamps the throughput to at least 0.
+    MaterialX's `add` clamps the throughput to at least 0. The text leaves the throughput of a sum open, but not a
+    layer that reflects more light than it receives.
     """
     clamped = partial(
         combine, finish=lambda lobe: replace(lobe, throughput=np.maximum(lobe.throughput, 0.0))
     )
-    return (_variant("a sum whose throughput is clamped at 0", clamped, layered=layered),)
+    title = "a sum whose throughput is clamped at 0"
+    return (_variant(title, clamped, layered=layered, permitted=not layered),)
 
 
 COMBINATIONS = (
