@@ -16,6 +16,7 @@ from mxeon.fit import MeasuredBrdf, fit_brdf, merl_directions, read_merl
 from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
 from mxeon.models import eon_brdf
 from tests.support.availability import available, package
+from tests.support.cases import directions
 from tools.site import research
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "fit_measured.py"
@@ -29,15 +30,9 @@ NOISE = 0.05
 LARGEST_DEVIATE, FITS, SPREAD = 4.5, 24, (0.7, 1.3)
 
 
-def directions(rng, count):
-    w = rng.normal(size=(count, 3))
-    w[:, 2] = np.abs(w[:, 2]) + 0.05
-    return w / np.linalg.norm(w, axis=1, keepdims=True)
-
-
 def noisy(rng, model, parameters, count=200, known=True):
     """A measured BRDF of a model, with normal noise; the measurement may know its size."""
-    wo, wi = directions(rng, count), directions(rng, count)
+    wo, wi = directions((2, count), rng, least=0.05)
     value = mxeon.model(model).brdf(wo, wi, **parameters)
     error = NOISE * (value if known else np.full_like(value, 0.2))
     return MeasuredBrdf(

@@ -11,7 +11,7 @@ from mxeon.conformance.reference.closures import evaluate
 from mxeon.hosts.base import Query
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
-from tests.support.cases import directions_32
+from tests.support.cases import pairs
 from tests.support.verdicts import FAILED, PASSED, Verdicts, said
 
 # Bundled documents without images, which the reference can only read on a sphere.
@@ -125,7 +125,7 @@ def test_the_repair_on_its_page_gives_a_sheen_its_mode(judged, changed):
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_an_example_is_what_its_document_says(hosts, reference, name):
     file, host = examples_folder() / f"{name}.mtlx", hosts("osl")
-    wo, wi = (directions_32(np.random.default_rng(seed), 16) for seed in (1, 2))
+    wo, wi = np.float32(pairs(16, seed=1)[:2])
     for osl, other in zip(generate(file, "osl"), generate(file, "glsl"), strict=True):
         expected = np.pi * reference.evaluate(other, wo, wi, {}, "direct")
         query = Query(osl, wo, wi, {}, "direct", "response", None)

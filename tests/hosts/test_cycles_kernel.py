@@ -11,6 +11,7 @@ from mxeon.errors import NotRun
 from mxeon.models import eon_brdf
 from tests import support
 from tests.support.availability import available, program
+from tests.support.cases import directions
 from tools.site.ledger import ROOT, apply, patches_of
 
 PROGRAM = Path(support.__file__).with_name("oren_nayar.cpp")
@@ -34,9 +35,7 @@ def values(tmp_path_factory):
     with available("cycles"):
         folder = kernel()
     rng = np.random.default_rng(5)
-    mu, phi = rng.uniform(0.01, 1.0, (2, PAIRS)), rng.uniform(0.0, 2.0 * np.pi, (2, PAIRS))
-    sine = np.sqrt(1.0 - mu * mu)
-    wo, wi = np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=-1)
+    wo, wi = directions((2, PAIRS), rng, least=0.01)
     rho, roughness = rng.uniform(size=(PAIRS, 3)), rng.uniform(size=(PAIRS, 1))
     lines = "\n".join(" ".join(map(str, row)) for row in np.hstack([wo, wi, rho, roughness]))
     right = np.pi * wi[:, 2:] * eon_brdf(wo, wi, rho, roughness[:, 0])

@@ -12,6 +12,7 @@ from mxeon.shaders.library import examples_folder
 from mxeon.shaders.methods import Methods
 from mxeon.shaders.nodes import OREN_NAYAR, document_text, input_text, material_text, node_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, sphere
+from tests.support.cases import direction
 from tests.support.documents import lobe, material
 from tests.support.verdicts import FAILED, PASSED, has
 from tests.support.wrong_libraries import wrong_copy
@@ -206,8 +207,7 @@ def test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo(
     """The host only brightens the dome for diffuse lobes, by 1 / 0.984."""
     points = sphere(16)
     facing = points.mask & (points.normal[..., 2] > 0.05)
-    mu = points.normal[facing][:, 2]
-    view = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], 1)
+    view = direction(points.normal[facing][:, 2])
     [shader] = gl.compile(material(text))
     expected = gl.evaluate(shader, view, view, {}, "environment")
 

@@ -18,7 +18,7 @@ from mxeon.models import table as reference
 from mxeon.shaders.generation import generate
 from mxeon.shaders.methods import UNTABLED, Methods
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
-from tests.support.cases import pairs
+from tests.support.cases import direction, pairs
 from tests.support.documents import lobe, material
 from tests.support.tolerances import SUMMED_DIRECTIONS, TWIN_ALBEDO, TWIN_VALUE
 from tests.support.wrong_libraries import GLSL, copy_of_stock, replace_text
@@ -178,8 +178,7 @@ def test_a_table_of_albedos_is_the_model_and_is_read_as_it_was_drawn(hosts, tmp_
     [sampled] = host.compile(
         shader.document, library=str(library), methods=Methods("prefilter", albedo="monteCarlo")
     )
-    mu = np.linspace(0.0, 1.0, 64)
-    wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=1)
+    wo = direction(np.linspace(0.0, 1.0, 64))
     found, expected = (host.evaluate(e, wo, wo, {}, "environment") for e in (shader, sampled))
     assert np.abs(found - expected).max() <= BETWEEN_TEXELS[name == "slang"]
 

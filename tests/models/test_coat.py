@@ -21,7 +21,8 @@ from mxeon.models.coat import constant_coat
 from mxeon.models.microfacet import slopes
 from mxeon.models.microfacet.fresnel import dielectric
 from tests.support.availability import package
-from tests.support.hemispheres import gauss_legendre, hemisphere, uniforms, view
+from tests.support.cases import direction
+from tests.support.hemispheres import gauss_legendre, hemisphere, uniforms
 from tests.support.tolerances import COAT, COAT_INTEGRAL
 
 CLAY = {"rho": np.array([0.7, 0.35, 0.12]), "roughness": 0.6}
@@ -67,7 +68,7 @@ def test_the_directional_albedo_is_the_integral_of_the_value(interface, mu, alph
     brdf, albedo_dir, *_ = interface
     wi, weights = hemisphere(mu)
     inputs = CLAY | {"rho": np.array([0.7, 0.12, 1.0]), "alpha": alpha, "ior": ior}
-    value, albedo = brdf(view(mu), wi, **inputs), albedo_dir(mu, **inputs)
+    value, albedo = brdf(direction(mu), wi, **inputs), albedo_dir(mu, **inputs)
     assert np.abs((weights * wi[:, 2]) @ value - albedo).max() < COAT_INTEGRAL
 
 
@@ -92,19 +93,19 @@ def test_a_white_base_returns_all_light_and_an_index_of_1_hides_nothing():
 
 def test_a_black_base_and_no_interface_reflect_nothing_and_are_sampled():
     inputs = {"rho": 0.0, "roughness": 0.5, "alpha": 0.3, "ior": 1.0}
-    wi, pdf = dielectric_over_eon_sample(view(0.5), uniforms(100, 1), **inputs)
+    wi, pdf = dielectric_over_eon_sample(direction(0.5), uniforms(100, 1), **inputs)
     assert (wi[:, 2] > 0.0).all() and (pdf > 0.0).all()
-    assert not dielectric_over_eon_brdf(view(0.5), wi, **inputs).any()
+    assert not dielectric_over_eon_brdf(direction(0.5), wi, **inputs).any()
 
 
 def test_the_model_by_name_has_a_coat_for_each_row():
     row = mxeon.model("dielectric_over_eon")
-    wo, alpha = np.stack([view(0.5), view(0.9), view(0.1)]), [0.1, 0.3, 0.1]
-    value = row.brdf(wo, view(0.7), **CLAY, alpha=alpha, ior=1.5)
+    wo, alpha = np.stack([direction(0.5), direction(0.9), direction(0.1)]), [0.1, 0.3, 0.1]
+    value = row.brdf(wo, direction(0.7), **CLAY, alpha=alpha, ior=1.5)
     wi, pdf = row.sample(wo, [0.3, 0.6], **CLAY, alpha=alpha)
     for k in range(3):
         own = CLAY | {"alpha": alpha[k], "ior": 1.5}
-        assert np.array_equal(value[k], dielectric_over_eon_brdf(wo[k], view(0.7), **own))
+        assert np.array_equal(value[k], dielectric_over_eon_brdf(wo[k], direction(0.7), **own))
         one, density = dielectric_over_eon_sample(wo[k], [0.3, 0.6], **own)
         assert np.array_equal(wi[k], one) and pdf[k] == density
 
@@ -113,4 +114,4 @@ def test_a_coat_each_is_refused_for_other_arrays():
     torch = package("torch")
     row, alpha = mxeon.model("dielectric_over_eon"), torch.tensor([0.1, 0.3])
     with pytest.raises(ValueError, match="^alpha must be one number"):
-        row.brdf(view(0.5), view(0.7), alpha=alpha)
+        row.brdf(direction(0.5), direction(0.7), alpha=alpha)

@@ -8,7 +8,7 @@ import pytest
 
 from mxeon.models import media as emission
 from mxeon.models.nodes.emissions import COMBINED_EMISSIONS, EMISSIONS
-from tests.support.cases import direction as view
+from tests.support.cases import direction
 
 UP = [0.0, 0.0, 1.0]
 ROWS = (*EMISSIONS, *COMBINED_EMISSIONS)
@@ -25,7 +25,7 @@ def exitance(radiance, *edges):
     total = 0.0
     for low, high in pairwise(stops):
         mu = low + 0.5 * (high - low) * (x + 1.0)
-        total += 0.5 * (high - low) * (w * mu) @ radiance(view(mu))
+        total += 0.5 * (high - low) * (w * mu) @ radiance(direction(mu))
     return 2.0 * np.pi * total
 
 
@@ -47,7 +47,7 @@ def test_the_exitance_of_a_schlick_curve_is_the_integral_of_its_radiance(exponen
     factors = [0.2, 0.9], [0.7, 0.1], exponent
     x, w = np.polynomial.legendre.leggauss(64)
     t = 0.5 * (x + 1.0)  # 1 - mu = t^2 makes its square root smooth
-    values = emission.generalized_schlick_edf(view(1.0 - t * t), [2.0, 3.0], *factors)
+    values = emission.generalized_schlick_edf(direction(1.0 - t * t), [2.0, 3.0], *factors)
     measured = 2.0 * np.pi * (0.5 * w * 2.0 * t * (1.0 - t * t)) @ values
     closed = emission.generalized_schlick_exitance([2.0, 3.0], *factors)
     assert np.abs(measured - closed).max() <= QUADRATURE
@@ -55,15 +55,17 @@ def test_the_exitance_of_a_schlick_curve_is_the_integral_of_its_radiance(exponen
 
 def test_a_cone_without_falloff_is_hard_and_one_with_it_smooth():
     cosines = np.cos(np.radians([29.9, 30.1, 44.9, 45.1]))
-    hard = emission.conical_edf(view(cosines), [1.0], 60.0, 0.0)[:, 0]
-    soft = emission.conical_edf(view(cosines), [1.0], 60.0, 90.0)[:, 0]
+    hard = emission.conical_edf(direction(cosines), [1.0], 60.0, 0.0)[:, 0]
+    soft = emission.conical_edf(direction(cosines), [1.0], 60.0, 90.0)[:, 0]
     assert hard.tolist() == [1.0, 0.0, 0.0, 0.0]
     assert soft[0] == 1.0 and soft[3] == 0.0 and 0.0 < soft[2] < 1e-3 and soft[1] > 0.999
 
 
 def test_a_narrow_falloff_nears_the_hard_edge():
     mu = np.linspace(0.0, 1.0, 999)
-    hard, narrow = (emission.conical_edf(view(mu), [1.0], 60.0, 60.0 + more) for more in (0, 1e-9))
+    hard, narrow = (
+        emission.conical_edf(direction(mu), [1.0], 60.0, 60.0 + more) for more in (0, 1e-9)
+    )
     assert np.array_equal(hard, narrow)
 
 
@@ -93,9 +95,9 @@ def test_the_rows_integrate_to_their_exitance(row):
     measured = exitance(radiance, *edges)
     # The integrand has a root at the normal.
     assert np.abs(measured - row.exitance(inputs)).max() <= 1e-6
-    values = row.value(view([0.75]), inputs)
+    values = row.value(direction([0.75]), inputs)
     assert all(
-        np.abs(each.value(view([0.75]), inputs) - values).max() > 1e-3
+        np.abs(each.value(direction([0.75]), inputs) - values).max() > 1e-3
         for each in row.variants
         if not each.permitted
     )

@@ -21,7 +21,7 @@ from mxeon.models.microfacet.defects import MICROFACET_DEFECTS
 from mxeon.models.microfacet.ggx import ggx_albedo_dir, ndf
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
 from tests.support import tolerances
-from tests.support.cases import direction as unit
+from tests.support.cases import direction, directions
 from tests.support.hemispheres import hemisphere
 
 GOLD = [0.183, 0.421, 1.373], [3.424, 2.346, 1.77]
@@ -47,8 +47,7 @@ every_node = pytest.mark.parametrize("name", BRDFS)
 def pairs(count, seed=1):
     """Random directions and roughness, alpha >= 0.05."""
     rng = np.random.default_rng(seed)
-    wo, wi = (unit(rng.random(count), 2.0 * np.pi * rng.random(count)) for _ in range(2))
-    return wo, wi, 0.05 + 0.95 * rng.random((count, 2))
+    return *directions((2, count), rng), 0.05 + 0.95 * rng.random((count, 2))
 
 
 def fresnel_exact(name, c, channel):
@@ -139,8 +138,8 @@ def test_anisotropy_turns_with_the_tangent(name):
 def test_values_are_finite_on_the_closed_domain(name):
     mu = np.array([0.0, 5e-324, 1e-160, 1e-8, 0.5, 1.0 - 1e-16, 1.0])
     ends = np.array([0.0, 5e-324, 1e-160, 1e-4, 0.5, 1.0])
-    wo = unit(mu, 0.0)[:, None, None, None, None]
-    wi = unit(mu[:, None], np.array([0.0, 2.0, np.pi]))[:, :, None, None]
+    wo = direction(mu, 0.0)[:, None, None, None, None]
+    wi = direction(mu[:, None], np.array([0.0, 2.0, np.pi]))[:, :, None, None]
     alpha = np.stack(np.meshgrid(ends, ends), axis=-1)
     values = BRDFS[name](wo, wi, alpha)
     assert np.isfinite(values).all()

@@ -24,7 +24,7 @@ from mxeon.models.microfacet import ggx as missing
 from mxeon.models.microfacet.ggx import missing_light
 from mxeon.models.sampling import ggx_sample
 from tests.support import tolerances
-from tests.support.cases import direction as unit
+from tests.support.cases import direction
 from tests.support.hemispheres import hemisphere
 
 ALPHA = np.geomspace(1e-4, 1.0, 9)
@@ -66,7 +66,7 @@ def test_the_albedo_agrees_with_a_quadrature_over_slopes(monkeypatch):
     monkeypatch.setattr(slopes, "SLOPE_NODES", 32)
     monkeypatch.setattr(slopes, "QUADRANT", 48)
     alpha, mu = np.array([0.03, 0.1, 0.3, 1.0]), np.array([1e-3, 0.1, 0.7])[:, None]
-    E = ggx_albedo_dir_anisotropic(unit(mu), np.stack([alpha, alpha], axis=-1))
+    E = ggx_albedo_dir_anisotropic(direction(mu), np.stack([alpha, alpha], axis=-1))
     assert np.abs(E - ggx_albedo_dir(mu, alpha)).max() < tolerances.E_SS
 
 
@@ -134,7 +134,7 @@ def test_at_small_alpha_the_albedo_is_a_function_of_mu_over_alpha():
 def test_the_albedo_is_the_integral_of_the_value(name, alpha):
     brdf, albedo = NODES[name]
     for mu, phi in ((0.9, 0.0), (0.3, 1.0)):
-        wo = unit(mu, phi)
+        wo = direction(mu, phi)
         wi, weights = hemisphere(mu, 64)
         for retroreflective in (False, True):
             value = brdf(wo, wi, alpha, retroreflective)
@@ -145,7 +145,7 @@ def test_the_albedo_is_the_integral_of_the_value(name, alpha):
 @every_node
 def test_the_albedo_is_converged_over_slopes(name, monkeypatch):
     albedo = NODES[name][1]
-    wo = unit(np.array([1e-4, 1e-2, 0.5, 1.0]), 0.7)[:, None]
+    wo = direction(np.array([1e-4, 1e-2, 0.5, 1.0]), 0.7)[:, None]
     alpha = np.array(
         [[1e-4, 1e-4], [1e-3, 1e-3], [0.02, 0.02], [0.3, 0.3], [1.0, 1.0], [0.05, 0.6]]
     )
@@ -158,7 +158,7 @@ def test_the_albedo_is_converged_over_slopes(name, monkeypatch):
 
 @pytest.mark.parametrize("ior", [0.3, 1.0 / 1.5, 0.95])
 def test_the_albedo_is_converged_at_a_critical_angle(ior, monkeypatch):
-    wo = unit(np.array([1e-4, 0.1, 0.5, 0.72, 0.75, 0.9, 1.0]), 0.7)[:, None]
+    wo = direction(np.array([1e-4, 0.1, 0.5, 0.72, 0.75, 0.9, 1.0]), 0.7)[:, None]
     alpha = np.array([[1e-4, 1e-4], [0.02, 0.02], [0.3, 0.3], [1.0, 1.0], [0.05, 0.6], [1.0, 0.1]])
     values = dielectric_albedo_dir(wo, 1.0, alpha, ior)[..., 0]
     monkeypatch.setattr(slopes, "SPLIT_NODES", 64)
@@ -195,12 +195,12 @@ def test_the_albedo_agrees_with_a_quadrature_around_the_view_at_a_critical_angle
     bends = [np.cos(0.5 * (quarter + theta)), np.cos(0.5 * (quarter - theta))]
     parts = pairwise(sorted([1e-9, np.sqrt(1.0 - ior**2), *bends, 1.0 - 1e-15]))
     expected = sum(quad(share, 0.0, 1.0, part, **EXACT)[0] for part in parts)
-    E = dielectric_albedo_dir(unit(mu), 1.0, [alpha, alpha], ior, compensate=False)[0]
+    E = dielectric_albedo_dir(direction(mu), 1.0, [alpha, alpha], ior, compensate=False)[0]
     assert abs(E - expected) < tolerances.SPLIT
 
 
 def test_a_critical_angle_that_is_not_split_would_be_seen():
-    wo, alpha, ior = unit(0.3), np.array([1.0, 1.0]), 1.0 / 1.5
+    wo, alpha, ior = direction(0.3), np.array([1.0, 1.0]), 1.0 / 1.5
     c, weight = slopes.slope_nodes(wo, alpha)
     unsplit = np.sum(fresnel_dielectric(c, ior) * weight)
     E = dielectric_albedo_dir(wo, 1.0, alpha, ior, compensate=False)[0]
@@ -212,28 +212,28 @@ def test_a_white_surface_returns_all_light():
     alpha = np.array([0.0, 1e-4, 0.01, 0.3, 1.0])
     pairs = np.stack([alpha, alpha], axis=-1)
     for E in (
-        generalized_schlick_albedo_dir(unit(mu), 1.0, 1.0, 1.0, pairs, 5.0),
-        dielectric_albedo_dir(unit(mu), 1.0, pairs, 0.0),
-        conductor_albedo_dir(unit(mu), pairs, 0.0, 3.0),
+        generalized_schlick_albedo_dir(direction(mu), 1.0, 1.0, 1.0, pairs, 5.0),
+        dielectric_albedo_dir(direction(mu), 1.0, pairs, 0.0),
+        conductor_albedo_dir(direction(mu), pairs, 0.0, 3.0),
     ):
         assert np.abs(E - 1.0).max() < tolerances.SLOPES
 
 
 def test_without_compensation_light_is_lost():
-    E = dielectric_albedo_dir(unit(0.5), 1.0, [1.0, 1.0], 0.0, compensate=False)
+    E = dielectric_albedo_dir(direction(0.5), 1.0, [1.0, 1.0], 0.0, compensate=False)
     assert abs(E[0] - ggx_albedo_dir(0.5, 1.0)) < tolerances.SLOPES
 
 
 def test_a_mirror_has_the_albedo_of_its_fresnel_reflectance():
     mu = np.array([0.01, 0.3, 1.0])
-    E = dielectric_albedo_dir(unit(mu), 1.0, [0.0, 0.0], 1.5)[:, 0]
+    E = dielectric_albedo_dir(direction(mu), 1.0, [0.0, 0.0], 1.5)[:, 0]
     assert np.abs(E - fresnel_dielectric(mu, 1.5)).max() < tolerances.SLOPES
 
 
 def test_anisotropic_facets_gain_no_energy():
     mu, phi = np.meshgrid([1e-3, 0.01, 0.3, 1.0], np.linspace(0.0, 0.5 * np.pi, 7))
     for roughness in ([0.001, 1.0], [0.02, 1.0], [0.18, 0.35], [0.9, 0.1]):
-        E = ggx_albedo_dir_anisotropic(unit(mu.ravel(), phi.ravel()), roughness)
+        E = ggx_albedo_dir_anisotropic(direction(mu.ravel(), phi.ravel()), roughness)
         assert (E > 0.3).all() and (E < 1.0 + tolerances.SLOPES).all()
 
 
@@ -241,14 +241,14 @@ def test_anisotropic_facets_gain_no_energy():
 def test_albedos_are_finite_on_the_closed_domain(name):
     mu = np.array([0.0, 5e-324, 1e-8, 1.0 - 1e-16, 1.0])
     ends = np.array([0.0, 5e-324, 1e-160, 1e-4, 1.0])
-    E = NODES[name][1](unit(mu)[:, None, None], np.stack(np.meshgrid(ends, ends), axis=-1))
+    E = NODES[name][1](direction(mu)[:, None, None], np.stack(np.meshgrid(ends, ends), axis=-1))
     assert np.isfinite(E).all() and (E >= 0.0).all()
 
 
 @pytest.mark.parametrize("alpha", [(0.3, 0.12), (0.3, 0.6), (0.01, 0.004), (0.02, 1.0)])
 def test_many_views_of_two_alphas_share_a_polynomial_that_follows_the_quadrature(alpha):
     mu, phi = np.random.default_rng(3).random((2, 600)) * [[1.0], [2.0 * np.pi]]
-    wo = np.concatenate([unit(mu**2, phi), unit(np.array([1e-4, 1.0]), 0.0)])
+    wo = np.concatenate([direction(mu**2, phi), direction(np.array([1e-4, 1.0]), 0.0)])
     few = wo[::10]
     shared, own = (
         conductor_brdf(each, each, alpha, 0.0, 3.0)
@@ -260,7 +260,7 @@ def test_many_views_of_two_alphas_share_a_polynomial_that_follows_the_quadrature
 
 def test_a_sum_over_visible_normals_is_the_albedo_but_for_its_masking():
     rng, count = np.random.default_rng(7), 1 << 18
-    wo, same, other = np.array(unit(0.4, 0.7)), np.array([0.3, 0.3]), np.array([0.2, 0.6])
+    wo, same, other = np.array(direction(0.4, 0.7)), np.array([0.3, 0.3]), np.array([0.2, 0.6])
     for alpha in (same, other):
         wi, _ = ggx_sample(np.broadcast_to(wo, (count, 3)), rng.random((count, 2)), alpha)
         mean = np.full(2, np.sqrt(alpha.prod()))

@@ -5,18 +5,9 @@ import numpy as np
 import pytest
 
 from mxeon.models.table import OTHERS, PARAMETRIZATIONS, diffuse_model
+from tests.support.cases import directions
 
-
-def directions(seed):
-    rng = np.random.default_rng(seed)
-    mu, azimuth = 0.05 + 0.95 * rng.random(1000), 2.0 * np.pi * rng.random(1000)
-    radius = np.sqrt(1.0 - mu * mu)
-    return np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), mu], axis=-1)
-
-
-WO, WI = directions(1), directions(2)
-
-
+WO, WI = directions((2, 1000), seed=1, least=0.05)
 # Converts a roughness to the model's parameter, by the last word of its name.
 PARAMETERS = {"half_pi": 0.3 * np.pi, "slope": 0.6 / np.sqrt(2.0), "squared": 0.36}
 

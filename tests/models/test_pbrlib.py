@@ -16,8 +16,10 @@ from mxeon.models.nodes.combinations import COMBINATIONS, NESTED, ROUGHNESS
 from mxeon.models.nodes.microfacets import FILM_NODES, LOBES, MICROFACET_NODES
 from mxeon.models.nodes.renderers import BSDL_VARIANTS, CYCLES_VARIANTS
 from mxeon.models.sheen import conty_kulla_albedo_dir
+from tests.support.cases import direction, directions
 
 COUNT = 6
+WO = directions(COUNT, seed=2, least=0.2)
 ROWS = PBR_NODES + COMBINATIONS
 RENDERERS = BSDL_VARIANTS, CYCLES_VARIANTS
 VECTORS = ("color", "tint", "color0", "color82", "color90", "extinction")
@@ -47,13 +49,6 @@ def inputs(row, count=COUNT):
     return values
 
 
-def directions(count=COUNT):
-    rng = np.random.default_rng(2)
-    mu, phi = 0.2 + 0.7 * rng.random(count), 2.0 * np.pi * rng.random(count)
-    radius = np.sqrt(1.0 - mu * mu)
-    return np.stack([radius * np.cos(phi), radius * np.sin(phi), mu], axis=-1)
-
-
 def test_an_unknown_node_lists_the_known_ones():
     assert node("burley") is PBR_NODES[0]
     with pytest.raises(ValueError, match="^node must be one of burley, .*, schlick; got 'hair'$"):
@@ -62,10 +57,10 @@ def test_an_unknown_node_lists_the_known_ones():
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
 def test_values_integrate_to_the_albedo(row):
-    wo, values = directions(), inputs(row)
+    wo, values = WO, inputs(row)
     expected = (row.integral or row.albedo)(wo, values)
     for number in range(COUNT):
-        view = np.array([[np.hypot(*wo[number, :2]), 0.0, wo[number, 2]]])
+        view = direction(wo[number : number + 1, 2])
         _, wi, weights = hemisphere_nodes(float(wo[number, 2]), 48)
         wi = wi * [1.0, 1.0, -1.0 if row.transmits else 1.0]
         one = {
@@ -81,7 +76,7 @@ def test_values_integrate_to_the_albedo(row):
     "row", [row for row in ROWS if not row.transmits], ids=lambda row: row.name
 )
 def test_a_node_is_reciprocal_if_its_row_says_so(row):
-    wo, wi, values = directions(), directions()[::-1], inputs(row)
+    wo, wi, values = WO, WO[::-1], inputs(row)
     forth, back = row.value(wo, wi, values), row.value(wi, wo, values)
     assert np.allclose(forth, back, rtol=1e-13) == row.reciprocal
 
@@ -89,7 +84,7 @@ def test_a_node_is_reciprocal_if_its_row_says_so(row):
 @pytest.mark.parametrize("row", ROWS + FILM_NODES, ids=lambda row: row.name)
 def test_each_variant_has_another_value_or_another_albedo(row):
     """The variants of the row, and those of OSL's library and of Cycles."""
-    wo, wi, values = directions(), directions()[::-1], inputs(row)
+    wo, wi, values = WO, WO[::-1], inputs(row)
     others = (each.get(row.name, ()) for each in RENDERERS)
     for variant in chain(row.variants, *others):
         if variant.value:
@@ -105,7 +100,7 @@ def test_each_variant_has_another_value_or_another_albedo(row):
 
 @pytest.mark.parametrize("variants", RENDERERS, ids=["BSDL", "Cycles"])
 def test_color82_counts_as_1_in_renderers_of_osl(variants):
-    wo, wi, values = directions(), directions()[::-1], inputs(node("schlick"))
+    wo, wi, values = WO, WO[::-1], inputs(node("schlick"))
     both = values, values | {"color82": np.full((COUNT, 3), 0.9)}
     for each in variants["schlick"]:
         assert not each.value or np.array_equal(*(each.value(wo, wi, given) for given in both))
@@ -114,7 +109,7 @@ def test_color82_counts_as_1_in_renderers_of_osl(variants):
 
 @pytest.mark.parametrize("row", MICROFACET_NODES, ids=lambda row: row.name)
 def test_a_mirror_reflects_all_light_and_prefiltered_what_the_fit_says(row):
-    wo, values = directions(), inputs(row)
+    wo, values = WO, inputs(row)
     for name, value in row.mirror.items():
         values[name] = np.broadcast_to(value, values[name].shape)
     np.testing.assert_allclose(row.albedo(wo, values), 1.0, atol=1e-5)
@@ -133,9 +128,7 @@ def test_the_fits_of_materialx_have_the_values_of_its_shaders():
     np.testing.assert_allclose(materialx_fits.burley_albedo(grazing, rough), 1.55754, rtol=PRINTED)
     # With F = F0 = F90 = 1 the compensation removes the loss that the fit itself predicts.
     lobe = {"roughness": np.full((COUNT, 2), 0.4)}
-    white = materialx_fits.layer_albedo(
-        directions(), lobe, np.ones((COUNT, 1)), 1.0, np.ones((COUNT, 1))
-    )
+    white = materialx_fits.layer_albedo(WO, lobe, np.ones((COUNT, 1)), 1.0, np.ones((COUNT, 1)))
     np.testing.assert_allclose(white, 1.0, rtol=1e-12)
 
 

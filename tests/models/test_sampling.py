@@ -10,14 +10,8 @@ from mxeon.models import sampling as ltc
 from mxeon.models.diffuse import C1, eon_albedo_dir, eon_brdf, fon_brdf
 from mxeon.models.sampling import cosine_pdf, eon_cltc_sample, eon_pdf, eon_sample
 from tests.support import tolerances
-from tests.support.hemispheres import (
-    COSINES,
-    every_sampler,
-    every_scene,
-    hemisphere,
-    uniforms,
-    view,
-)
+from tests.support.cases import direction
+from tests.support.hemispheres import COSINES, every_sampler, every_scene, hemisphere, uniforms
 from tools.paper.samplers import BY_NAME, SAMPLERS
 
 
@@ -27,7 +21,7 @@ from tools.paper.samplers import BY_NAME, SAMPLERS
 @pytest.mark.parametrize("mu", COSINES)
 def test_without_roughness_every_sampler_but_uniform_is_cosine(sampler, mu):
     wi, _ = hemisphere(mu, 8)
-    pdf = sampler.pdf(view(mu), wi, 0.0)
+    pdf = sampler.pdf(direction(mu), wi, 0.0)
     np.testing.assert_allclose(pdf, cosine_pdf(wi), rtol=tolerances.SAMPLE_PDF, atol=0.0)
 
 
@@ -35,16 +29,16 @@ def test_without_roughness_every_sampler_but_uniform_is_cosine(sampler, mu):
 @every_scene
 def test_gray_eon_pdf_is_the_brdf_times_the_cosine_over_the_albedo(mu, roughness, rho):
     wi, _ = hemisphere(mu, 8)
-    value = eon_brdf(view(mu), wi, rho, roughness)[..., 0] * wi[..., 2]
+    value = eon_brdf(direction(mu), wi, rho, roughness)[..., 0] * wi[..., 2]
     value = value / eon_albedo_dir(mu, rho, roughness)
-    pdf = eon_pdf(view(mu), wi, roughness, rho=rho)
+    pdf = eon_pdf(direction(mu), wi, roughness, rho=rho)
     np.testing.assert_allclose(pdf, value, rtol=tolerances.PDF, atol=0.0)
 
 
 def test_eon_pdf_of_a_black_surface_is_that_of_fon():
     wi, weights = hemisphere(0.3)
-    value = fon_brdf(view(0.3), wi, 1.0, 1.0)[..., 0] * wi[..., 2]
-    pdf = eon_pdf(view(0.3), wi, 1.0, rho=0.0)
+    value = fon_brdf(direction(0.3), wi, 1.0, 1.0)[..., 0] * wi[..., 2]
+    pdf = eon_pdf(direction(0.3), wi, 1.0, rho=0.0)
     np.testing.assert_allclose(pdf, value / (value @ weights), rtol=tolerances.QUADRATURE)
 
 
@@ -57,7 +51,7 @@ def test_pdf_integrates_to_what_is_not_wasted(sampler, mu, roughness):
         kept = cltc.cltc_kept_fraction(ltc.ltc_md(mu, roughness))
     clipped = sampler.name in ("ltc", "cltc", "eon_cltc")
     bound = tolerances.KINK_QUADRATURE if clipped else tolerances.QUADRATURE
-    assert abs(sampler.pdf(view(mu), wi, roughness) @ weights - kept) < bound
+    assert abs(sampler.pdf(direction(mu), wi, roughness) @ weights - kept) < bound
 
 
 @pytest.mark.parametrize("mu", [0.0, 1e-9, 0.3, 1.0 - 1e-9, 1.0])
@@ -83,14 +77,14 @@ def turned(w, angle):
 @every_sampler
 def test_turning_both_directions_leaves_the_pdf(sampler):
     wi, _ = hemisphere(0.3, 8)
-    pdf = sampler.pdf(view(0.3, 2.0), turned(wi, 2.0), 1.0)
-    assert_same_density(pdf, sampler.pdf(view(0.3), wi, 1.0))
+    pdf = sampler.pdf(direction(0.3, 2.0), turned(wi, 2.0), 1.0)
+    assert_same_density(pdf, sampler.pdf(direction(0.3), wi, 1.0))
 
 
 @pytest.mark.parametrize("name", ["ltc", "cltc", "eon"])
 def test_turning_the_view_turns_the_samples(name):
-    wi, pdf = BY_NAME[name].sample(view(0.3), uniforms(1000, 1), 1.0)
-    again, again_pdf = BY_NAME[name].sample(view(0.3, 2.0), uniforms(1000, 1), 1.0)
+    wi, pdf = BY_NAME[name].sample(direction(0.3), uniforms(1000, 1), 1.0)
+    again, again_pdf = BY_NAME[name].sample(direction(0.3, 2.0), uniforms(1000, 1), 1.0)
     same = np.abs(again - turned(wi, 2.0)).max(axis=-1) <= tolerances.TURNED_DIRECTION
     assert np.mean(~same) <= tolerances.TURNED_SHARE
     moved = again_pdf[same] - pdf[same]
@@ -99,7 +93,7 @@ def test_turning_the_view_turns_the_samples(name):
 
 @pytest.mark.parametrize("name", ["ltc", "cltc", "eon_cltc", "eon"])
 def test_arguments_broadcast(name):
-    wo = np.stack([view(mu) for mu in COSINES])[:, np.newaxis]
+    wo = np.stack([direction(mu) for mu in COSINES])[:, np.newaxis]
     u, roughness = uniforms(7, 4), np.linspace(0.0, 1.0, 7)
     wi, pdf = BY_NAME[name].sample(wo, u, roughness)
     assert wi.shape == (len(COSINES), 7, 3) and pdf.shape == (len(COSINES), 7)
@@ -115,7 +109,7 @@ def test_edges_give_unit_directions_above_the_horizon_and_finite_pdf(sampler):
     u = np.stack(np.meshgrid(edges, edges), axis=-1)
     for mu in (*edges, 1.0):
         for roughness in (*edges, 1e-308, 1e-307, 1e-306, 1e-300, 1.0):
-            wi, pdf = sampler.sample(view(mu, 1.0), u, roughness)
+            wi, pdf = sampler.sample(direction(mu, 1.0), u, roughness)
             assert np.isfinite(wi).all() and np.isfinite(pdf).all() and (pdf >= 0.0).all()
             assert (np.abs(np.sum(wi * wi, axis=-1) - 1.0) < tolerances.DIRECTION).all()
             assert sampler.name == "ltc" or (wi[..., 2] >= 0.0).all()
@@ -126,13 +120,13 @@ def test_eon_samples_always_have_a_weight():
     u = np.stack(np.meshgrid(edges, edges), axis=-1)
     for mu in (*edges, 1.0):
         for roughness in (*edges, 1.0):
-            wi, pdf = eon_sample(view(mu), u, roughness)
-            weight = eon_brdf(view(mu), wi, 1.0, roughness)[..., 0] * wi[..., 2] / pdf
+            wi, pdf = eon_sample(direction(mu), u, roughness)
+            weight = eon_brdf(direction(mu), wi, 1.0, roughness)[..., 0] * wi[..., 2] / pdf
             np.testing.assert_allclose(weight, 1.0, rtol=tolerances.PDF)
 
 
 def test_the_mixture_has_a_density_where_listing_4_has_none():
-    wi, pdf = eon_cltc_sample(view(0.5), [0.0, 0.5], 0.0)
+    wi, pdf = eon_cltc_sample(direction(0.5), [0.0, 0.5], 0.0)
     assert wi.tolist() == [0.0, 0.0, 1.0] and pdf == 1.0 / np.pi
 
 
@@ -151,14 +145,14 @@ def test_clipped_cosine_keeps_its_digits_on_the_rim():
 
 @every_sampler
 def test_a_density_of_one_direction_is_a_number(sampler):
-    wi, pdf = sampler.sample(view(0.5), [0.25, 0.5], 0.5)
-    assert type(pdf) is np.float64 and type(sampler.pdf(view(0.5), wi, 0.5)) is np.float64
+    wi, pdf = sampler.sample(direction(0.5), [0.25, 0.5], 0.5)
+    assert type(pdf) is np.float64 and type(sampler.pdf(direction(0.5), wi, 0.5)) is np.float64
 
 
 @every_sampler
 @every_scene
 def test_the_density_of_a_sample_is_the_pdf(sampler, mu, roughness):
-    wi, pdf = sampler.sample(view(mu), uniforms(1000, 3), roughness)
+    wi, pdf = sampler.sample(direction(mu), uniforms(1000, 3), roughness)
     above = wi[..., 2] >= 0.0
-    again = sampler.pdf(view(mu), wi[above], roughness)
+    again = sampler.pdf(direction(mu), wi[above], roughness)
     assert_same_density(pdf[above], again)

@@ -23,7 +23,8 @@ from mxeon.models import (
     zeltner_brdf,
     zeltner_sample,
 )
-from tests.support.hemispheres import probability, uniforms, view
+from tests.support.cases import direction
+from tests.support.hemispheres import probability, uniforms
 
 FALSE_ALARM = 1e-4
 FACETS = [(1.0, (0.3, 0.3)), (0.5, (0.2, 0.7)), (0.1, (0.5, 0.5)), (0.0, (1.0, 0.4))]
@@ -53,14 +54,14 @@ def test_samples_pass_the_chi_square_test_against_their_density_and_others_fail(
     model, u = mxeon.model(name), uniforms(100_000, [scene, 7])
     for sampled in (inputs, others):
         sample, pdf = partial(model.sample, **sampled), partial(model.pdf, **inputs)
-        p = probability(sample, pdf, view(mu, 0.4), u, nodes=32)
+        p = probability(sample, pdf, direction(mu, 0.4), u, nodes=32)
         assert p > FALSE_ALARM / len(SCENES) if sampled is inputs else p < FALSE_ALARM
 
 
 @every_scene
 def test_the_weight_is_fresnel_times_the_quotient_of_maskings(mu, alpha):
     mu = max(mu, 1e-3)
-    wo = view(mu, 0.4)
+    wo = direction(mu, 0.4)
     wi, pdf = ggx_sample(wo, uniforms(200, 5), alpha)
     wi, pdf = wi[wi[:, 2] > 1e-3], pdf[wi[:, 2] > 1e-3]
     value = dielectric_brdf(wo, wi, 1.0, alpha, 1.5, False, False)[:, 0]
@@ -72,17 +73,17 @@ def test_the_weight_is_fresnel_times_the_quotient_of_maskings(mu, alpha):
 
 def test_a_mirror_reflects_in_the_mirror_direction():
     for alpha in ([0.0, 0.0], [0.0, 0.5]):
-        wi, pdf = ggx_sample(view(0.5), [0.3, 0.6], alpha)
+        wi, pdf = ggx_sample(direction(0.5), [0.3, 0.6], alpha)
         assert np.isfinite(wi).all() and pdf == 0.0
-    assert np.allclose(ggx_sample(view(0.5), [0.3, 0.6], [0.0, 0.0])[0], view(0.5, np.pi))
-    assert np.allclose(ggx_sample(view(0.0), [0.3, 0.6], [0.0, 0.0])[0], view(0.0, np.pi))
-    assert ggx_pdf(view(0.0), view(0.0, np.pi), [0.5, 0.5]) > 0.0
+    assert np.allclose(ggx_sample(direction(0.5), [0.3, 0.6], [0.0, 0.0])[0], direction(0.5, np.pi))
+    assert np.allclose(ggx_sample(direction(0.0), [0.3, 0.6], [0.0, 0.0])[0], direction(0.0, np.pi))
+    assert ggx_pdf(direction(0.0), direction(0.0, np.pi), [0.5, 0.5]) > 0.0
 
 
 @pytest.mark.parametrize("roughness", (0.0, 0.05, 0.3, 1.0))
 @pytest.mark.parametrize("mu", (1.0, 0.5, 1e-3, 0.0))
 def test_every_sample_of_sheen_weighs_the_albedo(mu, roughness):
-    wo = view(mu, 2.0)
+    wo = direction(mu, 2.0)
     wi, pdf = zeltner_sample(wo, uniforms(200, 3), roughness)
     weight = zeltner_brdf(wo, wi, 1.0, roughness)[:, 0] * wi[:, 2] / pdf
     assert np.allclose(weight, zeltner_albedo_dir(mu, roughness), rtol=1e-9, atol=0.0)

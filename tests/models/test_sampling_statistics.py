@@ -10,7 +10,8 @@ from functools import partial
 import pytest
 
 from mxeon.models.sampling import eon_pdf, eon_sample
-from tests.support.hemispheres import COSINES, SCENES, every_scene, probability, uniforms, view
+from tests.support.cases import direction
+from tests.support.hemispheres import COSINES, SCENES, every_scene, probability, uniforms
 from tools.paper.samplers import BY_NAME, SAMPLERS, Sampler
 
 FALSE_ALARM = 1e-4
@@ -31,7 +32,7 @@ def chi_square(sampler, density, mu, roughness):
     """p-value of samples of one sampler against the density of another, with a seed for each comparison."""
     u = uniforms(100_000, [ALL.index(sampler), SCENES.index((mu, roughness))])
     sample, pdf = (partial(each, roughness=roughness) for each in (sampler.sample, density.pdf))
-    return probability(sample, pdf, view(mu), u)
+    return probability(sample, pdf, direction(mu), u)
 
 
 @every_sampler

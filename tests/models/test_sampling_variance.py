@@ -15,7 +15,8 @@ from mxeon.models.diffuse import C1, C2, eon_brdf, fon_quotient
 from mxeon.models.diffuse import fon_loss_mu as fon_loss
 from mxeon.models.sampling import eon_pdf
 from tests.support import tolerances
-from tests.support.hemispheres import every_scene, hemisphere, view
+from tests.support.cases import direction
+from tests.support.hemispheres import every_scene, hemisphere
 from tools.paper.samplers import BY_NAME
 
 UNBIASED = [BY_NAME[name] for name in ("uniform", "cosine", "eon_cltc", "eon")]
@@ -29,9 +30,9 @@ ROOTS = np.sin(0.5 * np.pi * (np.arange(4001) + 0.5) / 4001) ** 2
 def weights_of(sampler, mu, roughness):
     """Throughput weights over the hemisphere where the pdf is positive, and probabilities."""
     wi, solid_angle = hemisphere(mu, 32)
-    pdf = sampler.pdf(view(mu), wi, roughness)
+    pdf = sampler.pdf(direction(mu), wi, roughness)
     wi, pdf, solid_angle = wi[pdf > 0.0], pdf[pdf > 0.0], solid_angle[pdf > 0.0]
-    value = eon_brdf(view(mu), wi, 1.0, roughness)[..., 0] * wi[..., 2]
+    value = eon_brdf(direction(mu), wi, 1.0, roughness)[..., 0] * wi[..., 2]
     return value / pdf, pdf * solid_angle
 
 
@@ -85,14 +86,14 @@ def upper_error(mu_o):
 def excess(mu, roughness):
     """Relative excess of the density of exact samples over `eon_pdf`, with its probabilities."""
     wi, solid_angle = hemisphere(mu, 32)
-    mu_i, s = wi[:, 2], view(mu)[0] * wi[:, 0]
+    mu_i, s = wi[:, 2], direction(mu)[0] * wi[:, 0]
     multiple = roughness * fon_loss(mu_i) * fon_loss(mu) / (C1 - C2)
     upper = np.where(mu_i >= mu, roughness * np.maximum(s, 0.0) * (1.0 / mu_i - 1.0), 0.0)
     total = 1.0 + roughness * fon_quotient(mu, mu_i, s) + multiple
     extra = multiple * np.interp(mu_i, *(row[::-1] for row in multiple_error()))
     if mu < 1.0:
         extra += upper * np.interp(mu_i, *(row[::-1] for row in upper_error(mu)))
-    return extra / total, eon_pdf(view(mu), wi, roughness) * solid_angle
+    return extra / total, eon_pdf(direction(mu), wi, roughness) * solid_angle
 
 
 def test_what_the_fits_leave_is_what_the_documentation_states():

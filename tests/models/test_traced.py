@@ -16,6 +16,7 @@ import mxeon
 from mxeon.models import model_names
 from mxeon.models.core.arguments import RANGES
 from tests.support.availability import package
+from tests.support.cases import direction
 from tests.support.tracing import untraced
 
 SEED, ROWS = 5, 3
@@ -44,8 +45,7 @@ OTHER_FILMS = ("conductor_film", "schlick_film")
 def vectors(row, function, ends=False):
     """Arguments before the inputs, one per row: along the normal, at the horizon and between, or inside."""
     rng, mu = np.random.default_rng(SEED), np.array([1.0, 0.0, 0.6] if ends else [0.7, 0.3, 0.9])
-    phi, S = np.array([0.0, 0.3, 2.0]), np.sqrt(1.0 - mu * mu)
-    wo = np.stack([S * np.cos(phi), S * np.sin(phi), mu], axis=-1)
+    wo = direction(mu, [0.0, 0.3, 2.0])
     wi = np.roll(wo, 1, axis=0) * (-1.0, 1.0, 1.0)
     wi[:, 2] *= -1.0 if row.lights == "back" else 1.0
     u = rng.uniform(0.2, 0.8, (ROWS, 2))

@@ -19,7 +19,7 @@ from mxeon.models.transmission import (
 )
 from tests.support import tolerances
 from tests.support.availability import available, package
-from tests.support.hemispheres import view
+from tests.support.cases import direction, directions
 
 INDICES = (0.7, 1.2, 1.5, 3.0)
 DOWN = np.array([1.0, 1.0, -1.0])
@@ -32,15 +32,13 @@ def below():
     x, w = np.polynomial.legendre.leggauss(GRID)
     mu, weight = 0.5 * (1.0 + x), 0.5 * w
     phi = 2.0 * np.pi * (np.arange(GRID) + 0.5) / GRID
-    wi = DOWN * view(mu[:, np.newaxis], phi)
+    wi = DOWN * direction(mu[:, np.newaxis], phi)
     return wi, (weight * mu)[:, np.newaxis] * (2.0 * np.pi / GRID)
 
 
 def pairs(count=500, least=0.05):
     """Random pairs of directions on either side of the surface."""
-    rng = np.random.default_rng(3)
-    shares = (rng.random((count, 2)).T for _ in range(2))
-    wo, wi = (view(least + (1.0 - least) * u, 2.0 * np.pi * v) for u, v in shares)
+    wo, wi = directions((2, count), 3, least)
     return wo, wi * DOWN
 
 
@@ -68,7 +66,7 @@ def test_no_index_bends_nothing_and_has_no_half_vector():
 @pytest.mark.parametrize("alpha", [(0.5, 0.5), (0.3, 0.6)])
 def test_the_density_of_refracted_directions_is_normalized(ior, alpha):
     wi, weight = below()
-    wo = view(0.6, 1.0)
+    wo = direction(0.6, 1.0)
     facet = Facet.of(np.broadcast_to(wo, wi.shape).T, wi.T, np.array(ior))
     x, y, z = facet.normal
     area = alpha[0] * alpha[1]
@@ -90,7 +88,7 @@ def test_the_density_of_refracted_directions_is_normalized(ior, alpha):
 @pytest.mark.parametrize("mu", [0.95, 0.5])
 def test_the_transmittance_is_the_integral_of_the_btdf(ior, alpha, mu):
     wi, weight = below()
-    wo = view(mu, 0.4)
+    wo = direction(mu, 0.4)
     values = dielectric_btdf(wo, wi, 1.0, alpha, ior, radiance=False)[..., 0]
     expected = dielectric_transmittance_dir(wo, 1.0, alpha, ior)[0]
     assert np.sum(values * weight) == pytest.approx(expected, abs=tolerances.REFRACTED_GRID)
@@ -111,7 +109,7 @@ def around(wo, cosine, count):
 @pytest.mark.parametrize("mu", [1.0, 0.9])
 def test_the_transmittance_below_index_1_is_a_sum_over_the_critical_cone(mu, alpha, shadow):
     # Facets that transmit lie within 30 degrees of the view, and send all light down.
-    ior, wo = 0.5, np.array(view(mu, 0.4))
+    ior, wo = 0.5, np.array(direction(mu, 0.4))
     least = np.sqrt(1.0 - ior**2)
     x, w = np.polynomial.legendre.leggauss(64)
     t = 0.5 * (1.0 + x)
@@ -168,7 +166,7 @@ def test_readings_of_schlick_are_reciprocal(reading):
 
 @pytest.mark.parametrize("ior", [1.5, 3.0])
 def test_a_smooth_plane_passes_what_it_does_not_reflect(ior):
-    wo = np.stack([view(mu) for mu in (0.1, 0.5, 1.0)])
+    wo = np.stack([direction(mu) for mu in (0.1, 0.5, 1.0)])
     T = dielectric_transmittance_dir(wo, 1.0, [0.0, 0.0], ior)[:, 0]
     np.testing.assert_allclose(T, 1.0 - fresnel_dielectric(wo[:, 2], ior), rtol=1e-12)
     for alpha in (1e-3, 1e-4):
@@ -179,7 +177,7 @@ def test_a_smooth_plane_passes_what_it_does_not_reflect(ior):
 
 def test_light_is_totally_reflected_inside_beyond_the_critical_angle():
     critical = np.sqrt(1.0 - 1.0 / 1.5**2)
-    wo = np.stack([view(critical - 1e-3), view(critical + 1e-3)])
+    wo = np.stack([direction(critical - 1e-3), direction(critical + 1e-3)])
     T = dielectric_transmittance_dir(wo, 1.0, [0.0, 0.0], 1.0 / 1.5)[:, 0]
     R = dielectric_albedo_dir(wo, 1.0, [0.0, 0.0], 1.0 / 1.5)[:, 0]
     assert T[0] == 0.0
@@ -191,7 +189,7 @@ def test_light_is_totally_reflected_inside_beyond_the_critical_angle():
 @pytest.mark.parametrize("ior", INDICES)
 def test_microfacets_neither_reflect_nor_transmit_more_than_all_light(ior):
     mu, alpha = (each.ravel() for each in np.meshgrid([0.02, 0.2, 0.6, 1.0], [0.01, 0.1, 0.5, 1.0]))
-    wo = np.stack([view(each) for each in mu])
+    wo = np.stack([direction(each) for each in mu])
     roughness = np.repeat(alpha[:, np.newaxis], 2, axis=1)
     T = dielectric_transmittance_dir(wo, 1.0, roughness, ior)
     for compensate in (False, True):
@@ -201,13 +199,13 @@ def test_microfacets_neither_reflect_nor_transmit_more_than_all_light(ior):
 
 def test_no_light_passes_between_directions_that_no_facet_joins():
     # No index bends light below the surface back to the side that it came from.
-    bent = (view(0.3), view(0.3) * DOWN)
+    bent = (direction(0.3), direction(0.3) * DOWN)
     assert dielectric_btdf(*bent, 1.0, [0.5, 0.5], 1.5)[0] == 0.0
 
 
 @pytest.mark.parametrize("reading", READINGS)
 def test_readings_pass_what_they_do_not_reflect_only_where_they_take_the_same_curve(reading):
-    wo = view(0.4)
+    wo = direction(0.4)
     T = generalized_schlick_transmittance_dir(wo, *COLORS, [0.0, 0.0], 5.0, reading)
     R = generalized_schlick_albedo_dir(wo, *COLORS, [0.0, 0.0], 5.0)
     kept = np.abs(R + T - 1.0).max() < tolerances.SLOPES

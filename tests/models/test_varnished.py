@@ -20,7 +20,8 @@ from mxeon.models import (
     varnished_brdf,
     varnished_sample,
 )
-from tests.support.hemispheres import uniforms, view
+from tests.support.cases import direction, directions
+from tests.support.hemispheres import uniforms
 from tools.fits.varnish_walk import RHO, model_bins, walk, walked_bins
 
 FALSE_ALARM = 1e-4
@@ -34,15 +35,8 @@ WALKED, SHAPED = 0.012, 0.21
 PATHS = 1 << 14
 
 
-def pairs(count, seed):
-    """Directions to viewers and lights."""
-    w = np.random.default_rng(seed).normal(size=(2, count, 3))
-    w[..., 2] = np.abs(w[..., 2])
-    return w / np.linalg.norm(w, axis=-1, keepdims=True)
-
-
 def test_index_1_is_eon_to_the_last_bit():
-    (wo, wi), none = pairs(200, 1), {"alpha": 0.3, "ior": 1.0}
+    (wo, wi), none = directions((2, 200), 1), {"alpha": 0.3, "ior": 1.0}
     assert np.array_equal(varnished_brdf(wo, wi, **CLAY, **none), eon_brdf(wo, wi, **CLAY))
     mu = wo[:, 2]
     assert np.array_equal(varnished_albedo_dir(mu, **CLAY, **none), eon_albedo_dir(mu, **CLAY))
@@ -53,7 +47,7 @@ def test_index_1_is_eon_to_the_last_bit():
 @pytest.mark.parametrize("ior", (1.02, 1.5, 4.0))
 @pytest.mark.parametrize("alpha", (0.01, 0.3, 1.0))
 def test_the_value_is_reciprocal_and_a_white_base_loses_nothing(alpha, ior):
-    (wo, wi), inputs = pairs(200, 2), {"alpha": alpha, "ior": ior}
+    (wo, wi), inputs = directions((2, 200), 2), {"alpha": alpha, "ior": ior}
     value, exchanged = (varnished_brdf(*w, **CLAY, **inputs) for w in ((wo, wi), (wi, wo)))
     assert np.allclose(value, exchanged, 1e-12, 0.0)
     mu = np.append([0.0, 1e-8, 1e-3], wo[:, 2])
@@ -80,10 +74,10 @@ def test_light_that_walks_has_the_albedo_and_under_a_layer_another(ior, alpha, r
 
 
 FUNCTIONS = (
-    lambda **inputs: varnished_brdf(view(0.6), view(0.3, 1.0), **inputs),
+    lambda **inputs: varnished_brdf(direction(0.6), direction(0.3, 1.0), **inputs),
     lambda **inputs: varnished_albedo_dir(0.6, **inputs),
     varnished_albedo_avg,
-    lambda **inputs: varnished_sample(view(0.6), uniforms(4, 1), **inputs)[1],
+    lambda **inputs: varnished_sample(direction(0.6), uniforms(4, 1), **inputs)[1],
 )
 
 
@@ -93,7 +87,7 @@ def test_values_are_finite_at_the_edges(function):
 
 
 def test_a_fit_finds_the_pigment_where_the_layer_finds_another():
-    wo, wi = pairs(200, 3)
+    wo, wi = directions((2, 200), 3)
     inputs = CLAY | VARNISH
     value = varnished_brdf(wo, wi, **inputs)
     fit = fit_brdf(MeasuredBrdf(wo, wi, value, 0.01 * value), "varnished")

@@ -17,6 +17,12 @@ def direction(mu, phi=0.0):
     return np.stack([S * np.cos(phi), S * np.sin(phi), mu], axis=-1)
 
 
+def directions(shape, seed, least=0.0):
+    """Random unit vectors whose cosine with the normal is at least this."""
+    share, turn = np.random.default_rng(seed).random((2, *np.atleast_1d(shape)))
+    return direction(least + (1.0 - least) * share, 2.0 * np.pi * turn)
+
+
 def pairs(count, seed):
     """`wo`, `wi`, `rho` of three channels and a number in [0, 1]; half the cosines near grazing."""
     rng = np.random.default_rng(seed)
@@ -33,10 +39,3 @@ def parameter(row, fraction):
         return ()
     low, high = row.interval
     return (low + (high - low) * fraction,)
-
-
-def directions_32(rng, count):
-    """Unit vectors in float32: half uniform, half with log-uniform cosines down to 1e-6."""
-    z = np.where(rng.random(count) < 0.5, rng.random(count), 10.0 ** rng.uniform(-6, 0, count))
-    phi, S = rng.uniform(0, 2 * np.pi, count), np.sqrt(1 - z * z)
-    return np.stack([S * np.cos(phi), S * np.sin(phi), z], axis=-1).astype("f4")

@@ -7,10 +7,7 @@ import numpy as np
 import pytest
 from scipy import special  # scipy.stats is slow to import
 
-from tests.support.cases import direction
 from tools.paper.samplers import SAMPLERS
-
-view = direction
 
 COSINES = (1.0, 0.9, 0.5, 0.1, 1e-3, 0.0)
 ROUGHNESS = (0.0, 0.01, 0.4, 1.0)
