@@ -20,7 +20,7 @@ from mxeon.errors import MISUSE
 from mxeon.errors import NOT_RUN as DID_NOT_RUN
 from mxeon.report import to_json
 from tests.support.command import CLAY, PLASTER
-from tests.support.documents import connected, material
+from tests.support.documents import connected, image, material, textured
 from tests.support.plans import keep_checks
 from tests.support.results import Difference, Identity, Region, Result, Run, caused, quoted
 from tests.support.verdicts import DIFFERS, FAILED, NOT_RUN, PASSED
@@ -259,12 +259,9 @@ def test_unreadable_documents_are_said_before_any_other_work(monkeypatch, capsys
 def test_nothing_says_of_a_refused_document_that_it_passed(tmp_path, monkeypatch, capsys):
     keep_checks(monkeypatch, "value", "picture")
     shutil.copy(PLASTER, tmp_path / "good.mtlx")
-    image = (
-        '<image name="i" type="color3"><input name="file" type="filename" value="no.png"/></image>'
-    )
-    (tmp_path / "bad.mtlx").write_text(material(image + connected(color='nodename="i"')))
+    (tmp_path / "bad.mtlx").write_text(textured(["no.png"]))
     # The texture is inside a definition, so only the picture reads it.
-    inner = f'{image}<output name="out" type="color3" nodename="i"/>'
+    inner = image("no.png") + '<output name="out" type="color3" nodename="image"/>'
     graph = '<nodedef name="ND_t" node="t"><output name="out" type="color3"/></nodedef>'
     graph += f'<nodegraph name="NG_t" nodedef="ND_t">{inner}</nodegraph><t name="t" type="color3"/>'
     (tmp_path / "late.mtlx").write_text(material(graph + connected(color='nodename="t"')))
@@ -331,25 +328,6 @@ def test_progress_is_shown_on_a_terminal_and_not_in_a_pipe(ends, shown, capsys, 
     assert "not run: msl with eonlib, 1 check: msl: running it needs" in capsys.readouterr().out
     shows, leaves = b"mxeon check: 1 of ", b"\r\x1b[K\r\n"
     assert (shows in seen and seen.endswith(leaves)) if shown else seen == b"\n"
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["check", CLAY, "--host", "cycels"], "got 'cycels': did you mean cycles?"),
-        (
-            ["check", CLAY, "--node", "shen_bsdf"],
-            "no node 'shen_bsdf': did you mean sheen_bsdf? see mxeon check --node list",
-        ),
-        (["check", CLAY, "--library", "eonlb"], "got 'eonlb': did you mean eonlib?"),
-        (["chek", CLAY], "got 'chek': did you mean check?"),
-        (["check", CLAY, "--libary", "stock"], "got '--libary': did you mean --library?"),
-    ],
-)
-def test_a_name_that_is_nearly_right_is_answered_with_the_right_one(arguments, words, capsys):
-    assert main(arguments) == MISUSE
-    printed = capsys.readouterr()
-    assert printed.out == "" and words in printed.err
 
 
 @pytest.mark.parametrize("arguments", [[], ["kit"], ["report"]])

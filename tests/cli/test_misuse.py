@@ -9,8 +9,7 @@ from mxeon.cli import generate, library, main
 from mxeon.cli.batch import BatchResult, WorkerCrashed
 from mxeon.errors import FAILED, MISUSE, NOT_RUN, InputError, NotRun, ShaderError
 from tests.support.command import CLAY, PLASTER, one_line
-from tests.support.documents import connected, material
-from tests.support.plans import keep_checks
+from tests.support.documents import material, textured
 
 
 def failing(monkeypatch, error):
@@ -48,75 +47,6 @@ def test_a_bug_shows_its_traceback_and_is_no_failed_check(monkeypatch, capsys, e
     assert printed.startswith("Traceback") and printed.endswith(f"{error}\n")
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ["generate", "\udcff.mtlx", "--target", "osl", "--outputPath", "."],
-        ["render", CLAY, "--output", "\udcff.png"],
-        ["check", CLAY, "--report", "\udcff"],
-    ],
-    ids=lambda arguments: arguments[0],
-)
-def test_a_file_name_that_is_no_text_is_one_line(arguments, capsys):
-    assert main(arguments) == MISUSE
-    rule = "mxeon: arguments must be UTF-8, file names too; got "
-    assert one_line(capsys.readouterr().err).startswith(rule)
-
-
-OSL = ("generate", "--target", "osl", "--outputPath", "out")
-
-
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        ([*OSL, "--element", "loam", CLAY], "element must be one of"),
-        ([*OSL, "nowhere.mtlx"], "must be a readable file"),
-        ([*OSL, "--profile", "arnold", CLAY], "profile must be one of"),
-        (["generate", CLAY, "--outputPath", "out"], "required: --target"),
-        (["check", PLASTER, "--host", "abacus"], "host must be one of gl"),
-        (["check", PLASTER, "--library", "mine"], "library must be one of eonlib, diffuse, stock"),
-        (["render", CLAY, "--output", "out.exr"], "--element must name one of"),
-        (
-            ["render", PLASTER, "--output", "none/out.exr"],
-            "must lie in a folder that exists; got none/",
-        ),
-        (["render", PLASTER, "--output", "out.exr", "--scene", "dusk"], "scene must be one of"),
-        (["render", PLASTER, "--output", "out.exr", "--environment", "sky.hdr"], "sky.hdr"),
-        (["render", PLASTER, "--output", "out.exr", "--size", "0"], "size must lie in [1, 8192]"),
-        (["render", PLASTER, "--output", "out.exr", "--samples", "0"], "samples must lie in [1, "),
-        (
-            ["render", PLASTER, "--output", "out.exr", "--shape", "ball", "--host", "reference"],
-            "reference: shape must be sphere; got ball, which gl and webgl draw",
-        ),
-        (
-            ["render", PLASTER, "--output", "out.exr", "--geometry", "teapot.fbx"],
-            "shape must be one of sphere, ball, a file .obj or .glb; got 'teapot.fbx'",
-        ),
-        (["render", PLASTER, "--output", "out.exr", "--bounces", "-1"], "bounces must lie in [1, "),
-        (
-            ["render", PLASTER, "--output", "out.exr", "--samples", "4"],
-            "gl: samples and bounces can be",
-        ),
-        (["invert", "0.5", "0.5", "--roughness", "1"], "required: B"),
-        (["invert", "1.2", "0", "0", "--roughness", "1"], "color must lie in [0, 1]"),
-        ([*OSL, "--outputPath", "\0", CLAY], "no null character"),
-        (["frobnicate"], "command must be one of check, generate"),
-    ],
-    ids=lambda value: value if isinstance(value, str) else "",
-)
-def test_misuse_is_one_line(arguments, words, tmp_path, monkeypatch, capfd):
-    """Without worker processes, whose errors come back as those of this one."""
-    keep_checks(monkeypatch, "document")
-    monkeypatch.chdir(tmp_path)
-    alone = ["--workers", "0"] if arguments[:1] in (["generate"], ["render"]) else []
-    try:
-        status = main([*arguments, *alone])
-    except SystemExit as ended:
-        status = ended.code
-    assert status == MISUSE and words in one_line(capfd.readouterr().err)
-    assert not list(tmp_path.iterdir())
-
-
 def test_two_documents_of_one_name_do_not_overwrite_each_other(tmp_path, capsys):
     files = [tmp_path / "a.mtlx", tmp_path / "b" / "a.mtlx"]
     files[1].parent.mkdir()
@@ -144,14 +74,11 @@ def test_in_a_batch_the_other_files_are_done(tmp_path, capsys):
 
 def test_every_fault_of_a_document_has_its_line(tmp_path, capsys):
     path = tmp_path / "look.mtlx"
-    image = (
-        '<image name="i" type="color3"><input name="file" type="filename" value="no.png"/></image>'
-    )
-    path.write_text(material(image + connected(color='nodename="i"')).replace('"color"', '"colr"'))
+    path.write_text(textured(["no.png"]).replace('"color"', '"colr"'))
     lines = [
         f"{path}: input \"lobe/colr\" must be an input of oren_nayar_diffuse_bsdf; got 'colr': did "
         "you mean color?",
-        f'{path}: input "i/file" must name a file that exists; got no.png: --path FOLDER says where '
+        f'{path}: input "i0/file" must name a file that exists; got no.png: --path FOLDER says where '
         "it lies",
     ]
     for command in (

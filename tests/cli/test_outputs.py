@@ -15,7 +15,7 @@ from mxeon.errors import MISUSE, PASSED
 from mxeon.kit.export import DESCRIPTION, export_kit, kit_node
 from mxeon.shaders.library_export import export_library
 from mxeon.shaders.nodes import OREN_NAYAR
-from tests.support.command import PLASTER, one_line
+from tests.support.command import CLAY, PLASTER, one_line
 from tests.support.documents import lobe, material, textured
 from tests.support.results import PREVIOUS, Run
 
@@ -108,7 +108,9 @@ def refused(arguments, folder, capsys):
     before = content(folder)
     assert main(arguments) == MISUSE
     assert content(folder) == before
-    return one_line(capsys.readouterr().err)
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    return one_line(printed.err)
 
 
 @pytest.mark.parametrize("command, kind", REPLACING)
@@ -151,8 +153,32 @@ def test_a_report_goes_to_no_folder_that_holds_what_is_read(
 
 
 LOOK = f"{FILES['document']} --workers 0"
+RENDER, OSL = f"render {LOOK} --output a.exr", "generate --target osl --outputPath out --workers 0"
 # Invalid options and outputs that cannot be written are reported before any engine starts.
 WRONG = {
+    f"{OSL} {CLAY} --element loam": "element must be one of",
+    f"{OSL} nowhere.mtlx": "must be a readable file",
+    f"{OSL} {FILES['document']} --profile arnold": "profile must be one of",
+    f"{OSL} '\0'": "no null character",
+    f"{OSL} \udcff.mtlx": "arguments must be UTF-8, file names too; got ",
+    f"generate {LOOK} --outputPath out": "required: --target",
+    f"check {LOOK} --host abacus": "host must be one of gl",
+    f"check {LOOK} --host cycels": "got 'cycels': did you mean cycles?",
+    f"check {LOOK} --library mine": "library must be one of eonlib, diffuse, stock",
+    f"check {LOOK} --library eonlb": "got 'eonlb': did you mean eonlib?",
+    f"check {LOOK} --libary stock": "got '--libary': did you mean --library?",
+    f"check {LOOK} --node shen_bsdf": "did you mean sheen_bsdf? see mxeon check --node list",
+    f"check {LOOK} --report \udcff": "arguments must be UTF-8, file names too; got ",
+    f"render {CLAY} --output a.exr": "--element must name one of",
+    f"render {LOOK} --output none/a.exr": "must lie in a folder that exists; got none/",
+    f"render {LOOK} --output \udcff.png": "arguments must be UTF-8, file names too; got ",
+    f"{RENDER} --scene dusk": "scene must be one of",
+    f"{RENDER} --samples 0": "samples must lie in [1, ",
+    f"{RENDER} --bounces -1": "bounces must lie in [1, ",
+    "invert 0.5 0.5 --roughness 1": "required: B",
+    "invert 1.2 0 0 --roughness 1": "color must lie in [0, 1]",
+    "frobnicate": "command must be one of check, generate",
+    f"chek {LOOK}": "got 'chek': did you mean check?",
     f"render {LOOK} --integrator path --output out.jpg": "output must end in .exr or .png; got",
     f"render {LOOK} --integrator path --output folder.png": "folder.png: must be accessible; not a re",
     f"explore {LOOK} --output out.txt": "output must end in .html; got 'out.txt'",
@@ -178,6 +204,22 @@ WRONG = {
 def test_what_is_wrong_is_said_first(command, words, inputs, capsys):
     (inputs / "folder.png").mkdir()
     assert words in refused(shlex.split(command), inputs, capsys)
+
+
+# What a host says.
+UNDRAWN = {
+    "--environment sky.hdr": "sky.hdr",
+    "--size 0": "size must lie in [1, 8192]",
+    "--samples 4": "gl: samples and bounces can be",
+    "--shape ball --host reference": "shape must be sphere; got ball, which gl and webgl draw",
+    "--geometry teapot.fbx": "shape must be one of sphere, ball, a file .obj or .glb; got 'teapot.fbx'",
+}
+
+
+@pytest.mark.parametrize("options, words", UNDRAWN.items())
+def test_what_a_host_cannot_draw_is_one_line(options, words, tmp_path, capsys):
+    arguments = ["render", PLASTER, "--output", str(tmp_path / "a.exr"), "--workers", "0"]
+    assert words in refused([*arguments, *options.split()], tmp_path, capsys)
 
 
 @pytest.mark.parametrize("package", ["jinja2", "matplotlib"])

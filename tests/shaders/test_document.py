@@ -8,9 +8,16 @@ from mxeon.shaders.document.notes import MissingFileWarning
 from mxeon.shaders.document.reading import DocumentWarning, read_document
 from mxeon.shaders.document.values import INTEROP, LEGACY
 from mxeon.shaders.generation import generate
-from tests.support.documents import COMPENSATED, connected, lobe, material
+from tests.support.documents import (
+    COMPENSATED,
+    connected,
+    image,
+    including,
+    lobe,
+    material,
+    refusal,
+)
 
-INCLUDE = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
 DEFINED = '<nodedef name="ND_{0}" node="{0}"><output name="out" type="BSDF"/></nodedef>'
 INNER = '<{} name="inner" type="BSDF"/><output name="out" type="BSDF" nodename="inner"/>'
 INSIDE = '<nodegraph name="NG_{}" nodedef="ND_{}">' + INNER + "</nodegraph>"
@@ -18,7 +25,6 @@ CYCLE = (
     '<add name="a" type="color3"><input name="in1" type="color3" nodename="b"/></add>'
     '<add name="b" type="color3"><input name="in1" type="color3" nodename="a"/></add>'
 )
-IMAGE = '<image name="image" type="color3"><input name="file" type="filename" value="{}"/></image>'
 A = '<a name="lobe" type="BSDF"/>'
 
 # Contents of a file, and the message.
@@ -33,9 +39,9 @@ FILES = {
     ),
     "future": ('<materialx version="1.99"/>', "MaterialX upgrades to 1.39; got '1.99'"),
     "no version": ('<materialx version="x"/>', "MaterialX upgrades to 1.39; got 'x'"),
-    "no include": (INCLUDE.format('<xi:include href="none.mtlx"/>'), "none.mtlx"),
+    "no include": (including("none.mtlx"), "none.mtlx"),
     "own include": (
-        INCLUDE.format('<xi:include href="bad.mtlx"/>'),
+        including("bad.mtlx"),
         "must not lead back to the same document",
     ),
     "nothing": ('<materialx version="1.39"/>', "must contain a renderable element"),
@@ -92,7 +98,7 @@ NODES = {
         'nodedef "ND_a" must not contain itself',
     ),
     "folder for a texture": (
-        IMAGE.format("/") + connected(color='nodename="image"'),
+        image("/") + connected(color='nodename="image"'),
         'input "image/file" must name a file in ',
     ),
     "unconnected node": (
@@ -112,15 +118,6 @@ NODES = {
         "'name' must be a name of letters, digits, _ and :; got 'l o;b'",
     ),
 }
-
-
-def refusal(source):
-    """The one-line refusal of a document."""
-    with pytest.raises(DocumentError) as refused:
-        generate(source, "glsl")
-    message = str(refused.value)
-    assert message and "\n" not in message
-    return message
 
 
 @pytest.mark.parametrize("content, rule", FILES.values(), ids=FILES)
@@ -192,13 +189,13 @@ def test_a_nodegraph_that_is_connected_as_a_node_is_named():
 
 @pytest.mark.parametrize("name", ["none.png", "n" * 5000, "[token].png", "&lt;a>&lt;a>.png"])
 def test_a_missing_texture_is_named_and_the_shader_written(name):
-    nodes = IMAGE.format(name) + connected(color='nodename="image"')
+    nodes = image(name) + connected(color='nodename="image"')
     with pytest.warns(MissingFileWarning, match='input "image/file" must name a file that exists'):
         assert generate(material(nodes), "glsl")
 
 
 def test_all_faults_of_a_document_are_told_together(tmp_path):
-    nodes = IMAGE.format("none.png") + IMAGE.replace('"image"', '"other"').format("nor.exr")
+    nodes = image("none.png") + image("nor.exr", "other")
     inputs = '<input name="in1" type="color3" nodename="image"/>'
     inputs += '<input name="in2" type="color3" nodename="other"/><input name="inn" type="float"/>'
     nodes += f'<add name="a" type="color3">{inputs}</add><nosuch name="n" type="float"/>'
@@ -228,7 +225,7 @@ def test_all_faults_of_a_document_are_told_together(tmp_path):
 def test_an_included_document_follows_the_rule_of_its_version(tmp_path, version):
     part, look = tmp_path / "part.mtlx", tmp_path / "look.mtlx"
     part.write_text(f'<materialx version="{version}">{lobe()}</materialx>')
-    look.write_text(INCLUDE.format('<xi:include href="part.mtlx"/>'))
+    look.write_text(including("part.mtlx"))
     rule = f"version must be one that MaterialX upgrades to 1.39; got {version!r}"
     assert refusal(look) == f"{part}: {rule}"
 
@@ -241,12 +238,12 @@ def test_an_older_document_is_read_as_todays():
 def test_relative_names_start_at_the_file(tmp_path, monkeypatch):
     (tmp_path / "maps").mkdir()
     (tmp_path / "maps" / "albedo.png").touch()
-    nodes = IMAGE.format("maps/albedo.png") + connected(color='nodename="image"')
+    nodes = image("maps/albedo.png") + connected(color='nodename="image"')
     (tmp_path / "nodes.mtlx").write_text(material(nodes))
     file = tmp_path / "look.mtlx"
-    file.write_text(INCLUDE.format('<xi:include href="nodes.mtlx"/>'))
+    file.write_text(including("nodes.mtlx"))
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     monkeypatch.chdir(elsewhere)
-    image = read_document(file).content.getDescendant("image/file")
-    assert image.getValueString() == str(tmp_path / "maps" / "albedo.png")
+    port = read_document(file).content.getDescendant("image/file")
+    assert port.getValueString() == str(tmp_path / "maps" / "albedo.png")

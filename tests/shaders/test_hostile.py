@@ -9,16 +9,14 @@ import MaterialX as mx
 import pytest
 
 from mxeon import cli
-from mxeon.errors import MISUSE, PASSED, DocumentError
+from mxeon.errors import MISUSE, PASSED
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import CodeWarning, generate
 from tests.fuzz.found import doubled, row
-from tests.support.documents import connected, lobe, material, textured, written
+from tests.support.documents import connected, including, lobe, material, refusal, textured, written
 
 TRUSTED = Policy(outside=True, code=True)
-XI = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
-INCLUDE = XI.format('<xi:include href="{}"/>')
 PART = material(lobe())
 NODEDEF = '<nodedef name="ND_a" node="a"><output name="out" type="BSDF"/></nodedef>'
 BROUGHT = NODEDEF + '<implementation name="IM_a" nodedef="ND_a" {}/><a name="lobe" type="BSDF"/>'
@@ -45,15 +43,6 @@ def home(tmp_path):
     return folder
 
 
-def refusal(source, policy=DEFAULT):
-    """The one-line refusal of a document."""
-    with pytest.raises(DocumentError) as refused:
-        generate(source, "glsl", policy=policy)
-    message = str(refused.value)
-    assert message.isprintable()
-    return message
-
-
 # --- files outside ------------------------------------------------------------------------------
 
 
@@ -75,7 +64,7 @@ def test_a_texture_outside_needs_permission(home, name):
 
 @pytest.mark.parametrize("name", ["../secret.mtlx", "link/secret.mtlx", "{}/secret.mtlx"])
 def test_an_include_outside_needs_permission(home, name):
-    path = written(home, INCLUDE.format(name.format(home.parent)))
+    path = written(home, including(name.format(home.parent)))
     assert "pass --allowOutside to permit it" in refusal(path)
     assert read_document(path, policy=TRUSTED).content.getNode("lobe")
 
@@ -163,7 +152,7 @@ def test_a_limit_is_kept_and_names_its_option(name, text, least):
 
 def test_includes_in_a_row_are_limited(tmp_path):
     for number in range(4):
-        (tmp_path / f"{number}.mtlx").write_text(INCLUDE.format(f"{number + 1}.mtlx"))
+        (tmp_path / f"{number}.mtlx").write_text(including(f"{number + 1}.mtlx"))
     (tmp_path / "4.mtlx").write_text(PART)
     assert read_document(tmp_path / "0.mtlx", policy=Policy(includes=4)).content.getNode("lobe")
     assert "--maxIncludes" in refusal(tmp_path / "0.mtlx", Policy(includes=3))
@@ -171,7 +160,7 @@ def test_includes_in_a_row_are_limited(tmp_path):
 
 def test_a_document_that_includes_itself_is_refused_at_once(tmp_path):
     for one, other in ("ab", "ba"):
-        (tmp_path / f"{one}.mtlx").write_text(INCLUDE.format(f"./../{tmp_path.name}/{other}.mtlx"))
+        (tmp_path / f"{one}.mtlx").write_text(including(f"./../{tmp_path.name}/{other}.mtlx"))
     assert "must not lead back to the same document" in refusal(tmp_path / "a.mtlx")
 
 

@@ -17,7 +17,7 @@ from mxeon.shaders.generation import TARGETS, generate
 from mxeon.shaders.library_export import export_library
 from mxeon.shaders.nodes import EON, NODEDEFS, OREN_NAYAR
 from tests.support.availability import available
-from tests.support.documents import connected, lobe, material
+from tests.support.documents import connected, image, lobe, material
 from tests.support.verdicts import FAILED, PASSED, Verdicts
 from tests.support.wrong_libraries import copy_of_eonlib, replace_text
 
@@ -244,9 +244,8 @@ def test_a_folder_is_loaded_before_the_standard_libraries(tmp_path):
 def test_materials_in_a_folder_do_not_replace_nodes_of_other_documents(tmp_path):
     (tmp_path / "brick.mtlx").write_text(BRICK)
     constant = '<constant name="own" type="color3"><input name="value" type="color3" value="{}"/></constant>'
-    image = '<image name="own" type="color3"><input name="file" type="filename" value="own.png"/></image>'
     own = connected(color='nodename="own"')
-    (tmp_path / "materials.mtlx").write_text(material(image + own))
+    (tmp_path / "materials.mtlx").write_text(material(image("own.png", "own") + own))
     [shader] = generate(material(constant.format("0.7, 0, 0") + own), "glsl", library=tmp_path)
     assert not any(port.type == "filename" for port in shader.inputs)
     assert {type(each) for each in library.load_library(tmp_path).getChildren()}.isdisjoint(

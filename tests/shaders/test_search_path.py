@@ -14,9 +14,8 @@ from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import generate
 from mxeon.shaders.scene import Paths
-from tests.support.documents import lobe, material, textured, written
+from tests.support.documents import including, lobe, material, textured, written
 
-INCLUDE = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
 TINT = (0.25, 0.5, 0.75)
 
 
@@ -56,7 +55,7 @@ def test_a_name_that_leads_out_of_the_path_is_refused(home):
 
 
 def test_an_include_is_looked_for_on_the_path(home):
-    path = written(home, INCLUDE.format('<xi:include href="part.mtlx"/>'))
+    path = written(home, including("part.mtlx"))
     assert read_document(path, policy=searched(home)).content.getNode("lobe")
     with pytest.raises(DocumentError, match="include must name a file that exists; got part.mtlx"):
         read_document(path)

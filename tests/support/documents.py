@@ -2,8 +2,12 @@
 """Small material documents as text, for the tests of the shader chain."""
 
 import numpy as np
+import pytest
 
+from mxeon.errors import DocumentError
 from mxeon.io.images import write_image
+from mxeon.shaders.document.policy import DEFAULT
+from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import (
     FLAG,
     INPUT_TYPES,
@@ -45,16 +49,34 @@ def written(folder, text):
     return path
 
 
+def including(file):
+    """A document that includes another one."""
+    include = f'<xi:include href="{file}"/>'
+    space = "http://www.w3.org/2001/XInclude"
+    return f'<materialx version="1.39" xmlns:xi="{space}">{include}</materialx>'
+
+
+def refusal(source, policy=DEFAULT):
+    """The one-line refusal of a document."""
+    with pytest.raises(DocumentError) as refused:
+        generate(source, "glsl", policy=policy)
+    message = str(refused.value)
+    assert message and message.isprintable()
+    return message
+
+
+def image(file, name="image"):
+    """An image node."""
+    return f'<image name="{name}" type="color3"><input name="file" type="filename" value="{file}"/></image>'
+
+
 def textured(files):
     """A document with a color that is the sum of the images in these files."""
-    image = (
-        '<image name="i{0}" type="color3"><input name="file" type="filename" value="{1}"/></image>'
-    )
     add = (
         '<add name="s{0}" type="color3"><input name="in1" type="color3" nodename="{1}"/>'
         '<input name="in2" type="color3" nodename="i{0}"/></add>'
     )
-    nodes = [image.format(number, file) for number, file in enumerate(files)]
+    nodes = [image(file, f"i{number}") for number, file in enumerate(files)]
     names = ["i0", *(f"s{number}" for number in range(1, len(files)))]
     nodes += [add.format(number, names[number - 1]) for number in range(1, len(files))]
     return material("".join(nodes) + connected(color=f'nodename="{names[-1]}"'))
