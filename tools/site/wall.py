@@ -4,112 +4,244 @@
 python -m tools.site.wall REPORT...    the tiles and wall.md, from folders that `mxeon check --report` wrote
 """
 
+import re
 import sys
-from collections import defaultdict
+from collections import Counter, defaultdict
+from functools import cached_property
 from html import escape
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
 from mxeon.conformance import words
-from mxeon.conformance.results import FAILED, PORTRAIT, Kind
+from mxeon.conformance.results import (
+    FAILED,
+    NOT_RUN,
+    PASSED,
+    PORTRAIT,
+    Difference,
+    Kind,
+    Picture,
+    Result,
+)
+from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.io.images import read_image
 from mxeon.io.srgb import srgb_encoded
-from mxeon.report.diff import Report, ShownPicture, read_results
+from mxeon.report.diff import read_results
+from mxeon.shaders.scene import BACK, FURNACE, SIDE
 from tools.site import DOCS
 
 PAGE = DOCS / "wall.md"
 TILES = DOCS / "images" / "wall"
-SIZE, QUALITY = 160, 85  # pixels, and WebP quality
+SIZE, QUALITY = 192, 85  # pixels, and WebP quality
+LIGHTS = SIDE.name, BACK.name  # every renderer has these two
+BLACK = 1e-3  # mean of a picture that shows nothing
+EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
+OTHER_MODELS = re.compile(
+    "fon|qon|LAMBERT|shorter|compensation false|eon_diffuse|standard_surface|UsdPreview", re.I
+)
+NOT_JUDGED = "not judged"
 
 HEAD = """<!-- Made by `python -m tools.site.wall`. -->
 # A wall of renderers
 
-Materials as each renderer draws them, in the same light and from the same place, next to the float64 reference. The
-light is the one in which the worst renderer is most wrong. Tiles are sorted by their largest difference, which is given as
-in `mxeon check`; below stand the lobes of the material that cause it, whose defects [the ledger](upstream/README.md) lists.
-*Not judged*: subsurface scattering needs a curved surface, which only gl has here, and Storm reads no enumerated inputs.
+Materials as each renderer draws them, in the same light and from the same place, next to the float64 reference. Of two
+lights, from the side and from behind, each material is shown in the one in which more renderers differ visibly; glass, which both
+leave black, in a white environment, which few renderers have here. Tiles are sorted by their largest difference, given as in
+`mxeon check`; failed ones are red. Below stands the cause: the lobes whose defects [the ledger](upstream/README.md) lists, or the
+input without which a renderer's own material is closest to the reference. *Not judged* means that the difference is no
+error of the renderer's code: it has closures of its own, or says that it ignores an input.
 
-    mxeon check MATERIAL.mtlx --host gl --host storm --report out
+    mxeon check MATERIAL.mtlx --host gl --host storm --host cycles --host three --report out
 
-Renderers that evaluate their own materials instead of MaterialX's nodes are judged in
-[Renderers compared](the_field.md).
+"""
+ROUGH = f"""## A rough diffuse surface
+
+EON with color (0.8, 0.4, 0.1) and roughness 1, {words.LIGHTS[BACK.name]}. Renderers whose materials are not read from documents
+are here with their own nodes; [Renderers compared](the_field.md) has their models.
 
 """
 
 
-def largest(picture: ShownPicture) -> float:
-    return abs(picture.difference.largest) if picture.difference else 0.0
+class Tile(NamedTuple):
+    """A picture on the wall."""
+
+    title: str
+    scene: str
+    image: NDArray[np.floating]
+    difference: Difference
+    cause: str  # HTML
+    verdict: str  # class of its figure
+
+    @property
+    def largest(self) -> float:
+        return abs(self.difference.largest)
 
 
-def causes(report: Report, picture: ShownPicture) -> str:
-    """The lobes that make a picture wrong, or else its diagnosis; "" for a right one."""
-    subject, place = f"{picture.document}: {picture.element}", (picture.host, picture.library)
-    own = [
-        each
-        for each in report.results
-        if (each.check, each.subject, each.host, each.library) == ("picture", subject, *place)
-        and each.verdict == FAILED
-    ]
-    found = [cause for each in own for cause in each.diagnosis.causes if cause.kind is Kind.FOLLOWS]
-    if names := dict.fromkeys(name for cause in found for name in cause.names):
-        return f'<a href="upstream/README.md">{", ".join(names)}</a>'
-    return "; ".join(escape(words.diagnosis(each.diagnosis)) for each in own)
+def cause_of(result: Result) -> str:
+    """The lobes that make a picture wrong, the reason why it was not judged, or its diagnosis."""
+    text = wrapped(escape(words.diagnosis(result.diagnosis)))
+    if result.check == "finite":
+        reason = text.partition(": the")[0].removeprefix(f"{result.host}: ")
+        return f"<em>{NOT_JUDGED}</em>: {reason.partition(' for ')[0]}"
+    if result.verdict != FAILED:
+        return ""
+    follows = [each for each in result.diagnosis.causes if each.kind is Kind.FOLLOWS]
+    if names := dict.fromkeys(name for each in follows for name in each.names):
+        return f'<a href="upstream/README.md">{wrapped(", ".join(names))}</a>'
+    return text
 
 
-def tile(path: Path, name: str, title: str, caption: str) -> str:
+def wrapped(text: str) -> str:
+    """A text whose names break at underscores."""
+    return text.replace("_", "_<wbr>")
+
+
+def pixels(path: Path) -> NDArray[np.floating]:
+    return np.asarray(read_image(path))[..., :3]
+
+
+def figure(
+    image: NDArray[np.floating], name: str, title: str, caption: str, verdict: str = "expected"
+) -> str:
     """Write a picture as a tile; returns its figure."""
-    image = Image.fromarray(srgb_encoded(np.asarray(read_image(path))[..., :3]))
-    image.resize((SIZE, SIZE), Image.Resampling.LANCZOS).save(
+    shown = Image.fromarray(srgb_encoded(image.astype(np.float32)))
+    name = re.sub(r"[^\w-]+", "-", name)
+    shown.resize((SIZE, SIZE), Image.Resampling.LANCZOS).save(
         TILES / f"{name}.webp", quality=QUALITY, method=6
     )
     return (
-        f'<figure><img src="images/wall/{name}.webp" alt="{escape(title)}" width="{SIZE}">'
-        f"<figcaption><b>{escape(title)}</b><br>{caption}</figcaption></figure>\n"
+        f'<figure class="{verdict}"><img src="images/wall/{name}.webp" alt="{escape(title)}" width="{SIZE}">'
+        f"<figcaption><b>{wrapped(escape(title))}</b><br>{caption}</figcaption></figure>\n"
     )
 
 
-def page(folders: list[Path]) -> str:
-    """The wall as Markdown, the material with the largest difference first; later reports replace earlier ones."""
-    hosts, found = {}, defaultdict(dict)
-    for folder in folders:
-        report = read_results(folder)
-        hosts |= {each.name: f"{each.name}: {each.version}, {each.device}" for each in report.hosts}
-        for each in report.pictures:
-            if each.reference and each.document != PORTRAIT:
-                place = each.host, each.library, each.scene
-                found[each.document, each.element][place] = folder, report, each
-    sections = {}
-    for (document, element), places in found.items():
-        pictures = list(places.values())
-        _, _, worst = max(pictures, key=lambda each: largest(each[2]))
-        lit = [each for each in pictures if each[2].scene == worst.scene]
-        lit.sort(key=lambda each: largest(each[2]))
-        name = f"{Path(document).stem}-{element}"
-        folder, _, first = lit[0]
-        text = [tile(folder / first.reference, name, "reference", "float64")]
-        for folder, report, each in lit:
-            title = f"{each.host}, {each.library}"
-            apart = each.difference
-            caption = escape(words.difference(apart)) if apart else "not judged"
-            cause = causes(report, each)
-            text.append(
-                tile(
-                    folder / each.exr,
-                    f"{name}-{each.host}-{each.library}",
-                    title,
-                    f"{caption}<br>{cause}" if cause else caption,
-                )
-            )
-        head = f"## {element}\n\n`{document}`, {words.LIGHTS[worst.scene]}\n\n"
-        sections[head + f'<div class="wall">\n{"".join(text)}</div>\n'] = -largest(worst)
-    measured = "".join(f"- {each}\n" for each in hosts.values())
-    return (
-        HEAD + "\n".join(sorted(sections, key=sections.__getitem__)) + f"\n## Hosts\n\n{measured}"
-    )
+def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> str:
+    """The reference, and the tiles by their difference."""
+    text = figure(reference, name, "reference", "float64")
+    for each in sorted(tiles, key=lambda each: each.largest):
+        light = f" in {words.LIGHTS[each.scene]}"
+        caption = escape(words.difference(each.difference).replace(light, ""))
+        caption += f"<br>{each.cause}" if each.cause else ""
+        text += figure(each.image, f"{name}-{each.title}", each.title, caption, each.verdict)
+    return f'<div class="wall">\n{text}</div>\n'
+
+
+def differing(tiles: list[Tile]) -> tuple[int, float]:
+    """How many tiles differ visibly, and the largest share of pixels."""
+    shown = [each.difference for each in tiles]
+    return sum(each.is_visible for each in shown), max(each.visible for each in shown)
+
+
+class Wall:
+    """Pictures and results of reports; later reports replace earlier ones."""
+
+    def __init__(self, folders: list[Path]) -> None:
+        self.hosts: dict[str, str] = {}
+        self.references: dict[tuple[str, str, str], Path] = {}
+        self.images: dict[tuple[str, str, str, str, str], Path] = {}
+        self.results: dict[tuple[str, str, str], Result] = {}
+        for folder in folders:
+            report = read_results(folder)
+            self.hosts |= {
+                each.name: f"{each.name}: {each.version}, {each.device}" for each in report.hosts
+            }
+            for each in report.pictures:
+                shown = each.document, each.element, each.scene
+                self.images[(*shown, each.host, each.library)] = folder / each.exr
+                if each.reference:
+                    self.references.setdefault(shown, folder / each.reference)
+            for result in report.results:
+                if result.check in ("picture", "finite", "value"):
+                    self.results[result.subject, result.host, result.library] = result
+
+    def tile(self, names: tuple[str, str, str, str, str], reference: NDArray[np.floating]) -> Tile:
+        document, element, scene, host, library = names
+        image = pixels(self.images[names])
+        apart = Picture(document, element, host, library, scene, image, reference, {}).difference
+        assert apart is not None
+        if document == PORTRAIT:
+            own = library == RENDERER_NODES
+            result = self.results.get((element, host, library))
+            claim = f"claims {result.claimed}" if result and result.claimed else ""
+            title = f"{host}, {element if own else library}"
+            return Tile(title, scene, image, apart, claim, PASSED)
+        title = host if library == RENDERER_NODES else f"{host}, {library}"
+        judged = self.results[f"{document}: {element}", host, library]
+        return Tile(title, scene, image, apart, cause_of(judged), judged.verdict)
+
+    def section(self, material: tuple[str, str]) -> tuple[float, str]:
+        """Largest difference of a material, and its part of the page."""
+        document, element = material
+        references = {scene: pixels(self.references[(*material, scene)]) for scene in LIGHTS}
+        if max(map(np.mean, references.values())) < BLACK:
+            references = {FURNACE.name: pixels(self.references[(*material, FURNACE.name)])}
+        tiles = [
+            self.tile(each, references[each[2]])
+            for each in self.images
+            if each[:2] == material and each[2] in references
+        ]
+        lit, scene = max(
+            (([each for each in tiles if each.scene == scene], scene) for scene in references),
+            key=lambda each: differing(each[0]),
+        )
+        absent = dict.fromkeys(
+            f"<b>{host}</b> does not draw it: {escape(result.reason.removeprefix(f'{host}: '))}"
+            for (subject, host, _), result in self.results.items()
+            if subject in (": ".join(material), document) and result.verdict == NOT_RUN
+        )
+        name, light = f"{Path(document).stem}-{element}", words.LIGHTS[scene]
+        largest = max(each.largest for each in lit)
+        text = f"## {element}\n\n`{document}`, {light}\n\n"
+        text += figures(name, references[scene], lit)
+        return largest, text + (f"\n<p>{'<br>'.join(absent)}</p>\n" if absent else "")
+
+    def rough(self) -> str:
+        """One rough node of every renderer, with its own material; equal pictures of a renderer are shown once."""
+        reference = pixels(self.references[PORTRAIT, EON, BACK.name])
+        tiles: dict[tuple[str, float], Tile] = {}
+        for each in self.images:
+            document, element, scene, host, _ = each
+            if document == PORTRAIT and scene == BACK.name and not OTHER_MODELS.search(element):
+                tile = self.tile(each, reference)
+                tiles.setdefault((host, round(tile.largest, 3)), tile)
+        return ROUGH + figures("rough", reference, list(tiles.values()))
+
+    def verdicts(self) -> str:
+        """Table of the verdicts of the documents' pictures."""
+        counts: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
+        for (subject, host, library), result in self.results.items():
+            if result.check in ("picture", "finite") and tuple(subject.split(": ")) in self.shown:
+                verdict = NOT_JUDGED if result.check == "finite" else result.verdict
+                counts[host, library][verdict] += 1
+        columns = (PASSED, FAILED, NOT_JUDGED, NOT_RUN)
+        rows = "".join(
+            f"| {', '.join(place)} | {' | '.join(str(found[each]) for each in columns)} |\n"
+            for place, found in sorted(counts.items())
+        )
+        return f"## Verdicts and versions\n\n| materials in | {' | '.join(columns)} |\n|---|---|---|---|---|\n{rows}\n"
+
+    @cached_property
+    def shown(self) -> list[tuple[str, str]]:
+        """The materials that most renderers drew: reports of other pages have pictures, too."""
+        drawn = defaultdict(set)
+        for document, element, _, host, _ in self.images:
+            if document != PORTRAIT:
+                drawn[document, element].add(host)
+        most = max(map(len, drawn.values()))
+        return [each for each, hosts in drawn.items() if 2 * len(hosts) > most]
+
+    def page(self) -> str:
+        sections = [text for _, text in sorted(map(self.section, self.shown), reverse=True)]
+        measured = "".join(f"- {each}\n" for each in self.hosts.values())
+        return HEAD + "\n".join([*sections, self.rough(), self.verdicts() + measured])
 
 
 if __name__ == "__main__":
     TILES.mkdir(parents=True, exist_ok=True)
-    PAGE.write_text(page([Path(each) for each in sys.argv[1:]]), encoding="utf-8")
+    for old in TILES.glob("*.webp"):
+        old.unlink()
+    PAGE.write_text(Wall([Path(each) for each in sys.argv[1:]]).page(), encoding="utf-8")

@@ -33,11 +33,12 @@ Socket: TypeAlias = float | Sequence[float]  # value of a Blender node's input
 
 PICTURES = 64  # cached: the checks of a node request some again
 
-# Cycles has no surface coordinates on a point cloud: this block sets the globals `u` and `v` as in
-# `mxeon.shaders.scene.sphere`.
+# Cycles has no surface coordinates on a point cloud: this block sets the globals `u`, `v` and `dPdu` as in
+# `mxeon.shaders.scene`.
 TEXCOORD = """{
     float u = 0.5 + atan2(N[0], N[2]) / M_2PI;
     float v = 0.5 + atan2(N[1], hypot(N[0], N[2])) / M_PI;
+    vector dPdu = vector(N[2], 0.0, -N[0]);
 """
 
 
