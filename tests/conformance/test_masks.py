@@ -13,6 +13,7 @@ from mxeon.shaders.nodes import (
     input_text,
     network_text,
 )
+from tests.support.cases import direction
 
 MU = np.array([0.05, 0.2, 0.5, 0.9])
 FIT = 5.1e-3  # error of the fitted albedo of a dielectric, docs/loading.md
@@ -74,7 +75,7 @@ def furnace(gl, monkeypatch, library, folded, opaque, nodes):
         document_text(network_text(lobes(opaque) | nodes) + SURFACE), library=library
     )
     assert ("lobe_add" in shader.stages["pixel"] or "mask_add" in shader.stages["pixel"]) == folded
-    wo = np.stack([np.sqrt(1.0 - MU**2), 0.0 * MU, MU], axis=-1)
+    wo = direction(MU)
     return gl.evaluate(shader, wo, wo, {}, "environment")
 
 

@@ -12,6 +12,7 @@ from mxeon.errors import ShaderError
 from mxeon.models.media import conical_edf
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import connection_text, document_text, material_text, node_text
+from tests.support.cases import directions
 
 WO = np.tile([0.6, 0.0, 0.8], (5, 1))
 COLORS = np.linspace(0.0, 1.0, 15).reshape(5, 3).astype(np.float32).astype(np.float64)
@@ -84,12 +85,6 @@ def test_what_no_closure_takes_fails_with_its_words(host, new, message):
 COUNT = 256
 
 
-def sampled(rng, above=True):
-    w = rng.standard_normal((COUNT, 3))
-    w[:, 2] = np.abs(w[:, 2]) if above else w[:, 2]
-    return w / np.linalg.norm(w, axis=1, keepdims=True)
-
-
 def weighed(tree, factor=1.0):
     """The closures that scatter or emit, each with the product of its factors."""
     if tree is None or tree.name == "transparent":
@@ -123,7 +118,7 @@ def for_cycles(host, node, wo, inputs, old="", new=""):
 def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag, model, largest):
     """Cycles' closure is FON plus a lobe with one factor of albedo too many; QON only matches for s >= 0."""
     rng = np.random.default_rng(1)
-    wo, wi = sampled(rng), sampled(rng)
+    wo, wi = directions((2, COUNT), rng)
     wi[:, :2] *= np.where((wo[:, :2] * wi[:, :2]).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
     inputs = {"weight": rng.random(COUNT), "color": rng.random((COUNT, 3))}
     inputs["roughness"] = largest * rng.random(COUNT) ** 2
@@ -146,7 +141,8 @@ def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag
 def test_the_cone_for_cycles_is_the_model_on_both_sides(host, soft):
     """In Cycles, I points to the viewer and the normal faces the viewer, the opposite of OSL's convention."""
     rng = np.random.default_rng(1)
-    wo, inner = sampled(rng, above=False), 170.0 * rng.random(COUNT)
+    wo, inner = directions(COUNT, rng), 170.0 * rng.random(COUNT)
+    wo[::2, 2] *= -1.0
     outer = inner + 60.0 * rng.random(COUNT) + 1.0 if soft else inner * rng.random(COUNT)
     inputs = {"color": rng.random((COUNT, 3)), "inner_angle": inner, "outer_angle": outer}
     inputs = {name: np.float64(np.float32(each)) for name, each in inputs.items()}
@@ -166,8 +162,8 @@ def test_the_walk_for_cycles_has_the_albedo_in_its_weight(host):
     inputs = {"weight": rng.random(COUNT), "color": rng.random((COUNT, 3))}
     inputs |= {"radius": rng.random((COUNT, 3)), "anisotropy": 2.0 * rng.random(COUNT) - 1.0}
     inputs = {name: np.float64(np.float32(each)) for name, each in inputs.items()}
-    inputs["normal"] = np.float64(np.float32(sampled(rng)))
-    [(rows, factor, closure)] = for_cycles(host, "subsurface_bsdf", sampled(rng), inputs)
+    inputs["normal"] = np.float64(np.float32(directions(COUNT, rng)))
+    [(rows, factor, closure)] = for_cycles(host, "subsurface_bsdf", directions(COUNT, rng), inputs)
     assert closure.name == "subsurface_bssrdf" and len(rows) == COUNT
     for name in ("color", "radius", "anisotropy", "normal"):
         assert np.array_equal(closure.arguments[name], inputs[name][rows]), name

@@ -8,7 +8,7 @@ import pytest
 import tmm
 
 from mxeon.models import thin_film as formulas
-from mxeon.models.core.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
+from mxeon.models.core.colorimetry import CIE_1931, WAVELENGTHS, XYZ_TO_REC709, XYZ_TO_REC709_E
 from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
 from mxeon.models.nodes.microfacets import FILM_NODES
 from mxeon.models.thin_film import (
@@ -22,9 +22,8 @@ from mxeon.models.thin_film import (
     film_dielectric,
     film_schlick,
 )
-from tests.models.test_pbrlib import directions, inputs
+from tests.models.test_pbrlib import WO, inputs
 from tests.support.availability import package
-from tests.support.films import film_spectrum, film_spectrum_xyz
 
 MU = np.linspace(0.05, 1.0, 40)
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
@@ -38,6 +37,33 @@ XYZ_ALL, XYZ_TWO = (0.012, 0.017), (0.016, 0.07)
 CURVE = 1e-4  # error of a polynomial of degree 48
 # Index and extinction of substrates: diamond, glass, water, a dark metal and a bright one.
 SUBSTRATES = ((2.4, 0.0), (1.5, 0.0), (1.33, 0.0), (2.9, 3.1), (0.2, 3.4))
+
+VISIBLE = np.arange(360.0, 831.0)  # nm
+
+
+def film_spectrum(wavelength, mu, thickness, n2, n, k):
+    """Reflectance of a thin film on a substrate for unpolarized light of one wavelength, in nm."""
+    sin2, n3 = (1.0 - mu) * (1.0 + mu), n + 1j * k
+    c2 = np.sqrt(1.0 - sin2 / n2**2)
+    w3 = np.sqrt(n3**2 - sin2 + 0j)  # n3 times the cosine in the substrate
+    turn = np.exp(4j * np.pi * n2 * c2 * thickness / wavelength)
+    s = amplitude(mu, n2 * c2), amplitude(n2 * c2, w3)
+    p = amplitude(n2 * mu, c2), amplitude(n3**2 * c2, n2 * w3)
+    both = [(upper + lower * turn) / (1.0 + upper * lower * turn) for upper, lower in (s, p)]
+    return 0.5 * sum(np.abs(each) ** 2 for each in both)
+
+
+def film_spectrum_xyz(*film):
+    """Color of a thin film in CIE XYZ under light of equal energy, by a sum in steps of 1 nm."""
+    spectrum = film_spectrum(VISIBLE, *(np.asarray(each)[..., np.newaxis] for each in film))
+    weights = np.stack([np.interp(VISIBLE, WAVELENGTHS, each) for each in CIE_1931.T], axis=-1)
+    return spectrum @ (weights / weights.sum(axis=0))
+
+
+def amplitude(above, below):
+    """Reflected amplitude by the admittances of both sides; no step reflects none."""
+    total = above + below
+    return (above - below) / np.where(total == 0.0, 1.0, total)
 
 
 def grid():
@@ -198,7 +224,7 @@ def test_an_albedo_takes_a_polynomial_that_is_its_curve(row):
 
 @pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
 def test_a_row_with_a_film_of_thickness_0_is_the_row_without(row):
-    wo, wi, values = directions(), directions()[::-1], inputs(row)
+    wo, wi, values = WO, WO[::-1], inputs(row)
     none = {**values, "thinfilm_thickness": np.zeros(len(wo))}
     plain = next(each for each in row.variants if each.title == "no film")
     np.testing.assert_allclose(row.value(wo, wi, none), plain.value(wo, wi, values), rtol=1e-13)
@@ -207,7 +233,7 @@ def test_a_row_with_a_film_of_thickness_0_is_the_row_without(row):
 
 @pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
 def test_equal_inputs_of_all_directions_have_the_values_of_each(row):
-    wo, wi, values = directions(), directions()[::-1], inputs(row)
+    wo, wi, values = WO, WO[::-1], inputs(row)
     same = {name: np.repeat(value[:1], len(wo), axis=0) for name, value in values.items()}
     one = {name: value[:1] for name, value in values.items()}
     each = [row.value(wo[[k]], wi[[k]], one)[0] for k in range(len(wo))]
