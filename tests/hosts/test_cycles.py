@@ -15,7 +15,7 @@ from mxeon.hosts import cycles
 from mxeon.hosts.cycles import process as cycles_process
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import EON, material_text
-from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Paths, sphere
+from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Paths, sphere, tangents
 from mxeon.survey.cycles_native import NODES
 from tests.support.availability import available
 from tests.support.documents import material
@@ -96,6 +96,15 @@ def test_a_pixel_is_its_point_of_the_sphere(host):
     assert np.abs(error[..., :2]).max() <= CYCLES_NORMAL
     assert np.abs(error[..., 2] * points.normal[..., 2]).max() <= CYCLES_NORMAL
     assert np.array_equal(picture.any(axis=-1), points.mask)
+
+
+def test_tangents_point_eastward(host):
+    points = sphere(SMALL.size)
+    picture = host.picture(emit("out = color(normalize(dPdu)) * emission();"), SMALL)
+    expected = tangents(points.normal[points.mask])
+    error = np.abs(picture[points.mask] - expected).max(axis=1)
+    across = np.linalg.norm(points.normal[points.mask][:, ::2], axis=1)  # small at a pole
+    assert (error * across * points.normal[points.mask][:, 2]).max() <= 2.0 * CYCLES_NORMAL
 
 
 @pytest.mark.parametrize("scene", LIGHTS, ids=lambda scene: scene.name)
