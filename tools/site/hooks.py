@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 from mkdocs.structure.files import File
+from PIL import Image
 
 from mxeon.report.formats import unbroken
 from tools.site import explorer, field
@@ -44,14 +45,20 @@ def on_page_markdown(markdown, page, **_):
 
 
 def on_page_content(html, page, **_):
-    """Join numbers and units; split gallery pictures into halves for phones; link the wall to the ledger."""
+    """Join numbers and units; split pairs of balls into halves for phones; link the wall to the ledger."""
     html = unbroken(html)
     if page.file.src_uri == "wall.md":
         return html.replace('href="upstream/README.md"', 'href="upstream/index.html"')
-    if page.file.src_uri != "gallery.md":
+    if page.file.src_uri not in ("index.md", "gallery.md"):
         return html
-    picture = r'<p><img alt="(.*?)" src="((?!images/gallery/traced_).*?)" ?/?></p>'
-    whole = r"(?!\n<p><em>[^<]*: stock MaterialX cannot)"  # only eonlib's picture
-    half = r'<span data-library="{0}"><img alt="\1, {0}" src="\2" loading="lazy"></span>'
-    halves = half.format("stock") + half.format("eonlib")
-    return re.sub(picture + whole, f'<p class="halves">{halves}</p>', html)
+    return re.sub(r'<p><img alt="([^"]*)" src="(images/[^"]*)" ?/?></p>', _halves, html)
+
+
+def _halves(found):
+    """A picture as the halves stock and eonlib; unchanged unless it is twice as wide as high."""
+    width, height = Image.open(ROOT / "docs" / found[2]).size
+    if width != 2 * height:
+        return found[0]
+    half = '<span><img alt="{}, {}" src="{}" loading="lazy"></span>'
+    halves = (half.format(found[1], each, found[2]) for each in ("stock", "eonlib"))
+    return f'<p class="halves">{"".join(halves)}</p>'
