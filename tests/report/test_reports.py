@@ -547,6 +547,14 @@ def test_a_row_has_the_claimed_model_the_model_that_is_there_and_the_pages(tmp_p
     }  # fmt: skip
 
 
+def test_a_portrait_is_not_judged_if_its_check_did_not_run(tmp_path):
+    stopped = replace(WRONG[0], verdict=NOT_RUN, error=None, tolerance=None, control=None)
+    pixels = np.zeros((96, 96, 3))
+    back = Picture("portrait", EON, "gl", "stock", "back", pixels + 1e-3, pixels, {})
+    entry = of_node(written(tmp_path, results=(stopped, *WRONG[1:]), pictures=(back,)))
+    assert entry.cells["direct"].verdict == NOT_RUN and "back" not in entry.cells
+
+
 def test_rows_are_by_renderer_and_cause_with_the_most_harmful_first(tmp_path):
     entry = of_node(written(tmp_path))
     tiny = {name: replace(cell, error=0.1, verdict=FAILED) for name, cell in entry.cells.items()}

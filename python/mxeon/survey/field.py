@@ -172,8 +172,8 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
                 if any(key in results for key in keys)
             }
             # Judge the largest error of the back-lit portrait with the tolerance of values.
-            if BACK in portraits:
-                error, allowed = portraits[BACK].difference, direct.tolerance or 0.0
+            if BACK in portraits and direct.tolerance is not None:
+                error, allowed = portraits[BACK].difference, direct.tolerance
                 verdict: Verdict = PASSED if error <= allowed else FAILED
                 claim_of_back = PORTRAIT, "Light from behind, at the points of a sphere."
                 about = *claim_of_back, direct.subject, direct.host, direct.library
