@@ -52,10 +52,10 @@ def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> N
         (RangeWarning, lambda each: out_of_range(each) or _beyond(each)),
         (DocumentWarning, _unknown_space),
     ):
-        _warn(kind, [text for text in map(note, values) if text])
-    _warn(DocumentWarning, [text for text in map(_unconnected, elements) if text])
+        warn(kind, [text for text in map(note, values) if text])
+    warn(DocumentWarning, [text for text in map(_unconnected, elements) if text])
     if names := ", ".join(each.getName() for each in foreign_code(document)):
-        _warn(CodeWarning, [f"{label(document)}: contains its own code: {names}"])
+        warn(CodeWarning, [f"{label(document)}: contains its own code: {names}"])
 
 
 def warn_of_files(inputs: Iterable[tuple[str, str]], document: mx.Document) -> None:
@@ -96,13 +96,13 @@ def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None
         return  # names are unique within a graph
     pairs = dict.fromkeys(pair for element in elements for pair in same_names(element))
     rule = "must have different names; MaterialX gives both the values of one"
-    _warn(DocumentWarning, [f"{label(document)}: nodes {pair} {rule}" for pair in pairs])
+    warn(DocumentWarning, [f"{label(document)}: nodes {pair} {rule}" for pair in pairs])
 
 
-def _warn(kind: type[Warning], texts: Sequence[str]) -> None:
+def warn(kind: type[Warning], texts: Sequence[str]) -> None:
     """Warn with the first of similar texts and the number of the rest, which may be thousands.
 
-    The warning points to the caller of the function that calls `warn_of_...`.
+    The warning points to the caller of the function that calls this module.
     """
     if texts:
         also = f"; {len(texts) - 1} more like it" if len(texts) > 1 else ""

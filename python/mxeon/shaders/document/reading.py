@@ -20,7 +20,7 @@ from mxeon.errors import DocumentError
 from mxeon.io.files import AnyPath
 from mxeon.names import meant
 from mxeon.shaders.document import graphs, references, words, xml
-from mxeon.shaders.document.notes import DocumentWarning, numbers, warn_of_elements
+from mxeon.shaders.document.notes import DocumentWarning, numbers, warn, warn_of_elements
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.values import NUMERIC, TEXT, label, location
 from mxeon.shaders.library import load_library
@@ -152,7 +152,7 @@ class _Reader:
 
     def _parse(self, document: mx.Document, text: str, title: str) -> None:
         text = xml.strict(text)
-        self._checker.check(text, title)
+        warn(DocumentWarning, self._checker.check(text, title))
 
         def include(part: mx.Document, name: mx.FilePath, *_: object) -> None:
             self._include(part, name.asString(), title)

@@ -88,10 +88,11 @@ class XmlChecker:
         self._size += len(data)
         self._limit("size", self._size, "bytes, with all that it includes")
 
-    def check(self, text: str, location: str) -> None:
-        """Check the text of a document."""
+    def check(self, text: str, location: str) -> list[str]:
+        """Check the text of a document; the faults of elements that MaterialX ignores."""
         self._location, self._depth = location, 0
         self._names: list[set[str]] = [set()]  # names of siblings at each level
+        self._ignored: list[str] = []
         parser = expat.ParserCreate()
         parser.StartDoctypeDeclHandler = self._refuse_type
         parser.StartElementHandler = self._start
@@ -106,6 +107,7 @@ class XmlChecker:
                 else ""
             )
             self._refuse(f"must be a MaterialX document; XML parse error: {error}{remedy}")
+        return self._ignored
 
     def _start(self, category: str, attributes: Mapping[str, str]) -> None:
         self._depth += 1
@@ -124,8 +126,8 @@ class XmlChecker:
             rule = f"must have a name of at most {LONGEST_NAME} characters"
             self._refuse(f"{category} {rule}; got {name}")
         if name in self._names[-1]:
-            rule = "must have another name than its siblings"
-            self._refuse(f"{category} {rule}; got {name!r}, which MaterialX ignores")
+            rule = "must have another name than its siblings; MaterialX ignores it"
+            self._ignored.append(f"{self._location}: {category} {name!r} {rule}")
         self._names[-1] |= {name} - {""}
         self._names.append(set())
 
