@@ -20,10 +20,6 @@ GLASS = (
     '<dielectric_bsdf name="lobe" type="BSDF">'
     '<input name="scatter_mode" type="string" value="{}"/></dielectric_bsdf>'
 )
-LOOK = (
-    '<surfacematerial name="look" type="material"><input name="surfaceshader" type="surfaceshader" '
-    'nodename="shading"/></surfacematerial>'
-)
 
 
 def number(name, value, kind="float"):
@@ -41,7 +37,7 @@ def mixed(weight):
 
 def surface(category, *inputs):
     shader = f'<{category} name="shading" type="surfaceshader">{"".join(inputs)}</{category}>'
-    return document_text(shader + LOOK)
+    return document_text(shader)
 
 
 @pytest.mark.parametrize(
