@@ -100,7 +100,7 @@ def test_a_black_base_and_no_interface_reflect_nothing_and_are_sampled():
 
 def test_the_model_by_name_has_a_coat_for_each_row():
     row = mxeon.model("dielectric_over_eon")
-    wo, alpha = np.stack([direction(0.5), direction(0.9), direction(0.1)]), [0.1, 0.3, 0.1]
+    wo, alpha = direction([0.5, 0.9, 0.1]), [0.1, 0.3, 0.1]
     value = row.brdf(wo, direction(0.7), **CLAY, alpha=alpha, ior=1.5)
     wi, pdf = row.sample(wo, [0.3, 0.6], **CLAY, alpha=alpha)
     for k in range(3):

@@ -19,8 +19,6 @@ from mxeon.models import (
     ggx_albedo_dir_anisotropic,
 )
 from mxeon.models.microfacet import ggx, slopes
-from mxeon.models.microfacet import ggx as ggx_albedo
-from mxeon.models.microfacet import ggx as missing
 from mxeon.models.microfacet.ggx import missing_light
 from mxeon.models.sampling import ggx_sample
 from tests.support import tolerances
@@ -57,7 +55,7 @@ def test_the_albedo_is_converged(monkeypatch):
     mu = np.append(MU, [0.0, 1e-14, 1e-10, 1e-8, 1e-6])[:, None]
     small = np.geomspace(1e-9, 1e-5, 5)
     values, small_values = ggx_albedo_dir(mu, ALPHA), ggx_albedo_dir(mu, small)
-    monkeypatch.setattr(ggx_albedo, "RULE", np.polynomial.legendre.leggauss(96))
+    monkeypatch.setattr(ggx, "RULE", np.polynomial.legendre.leggauss(96))
     assert np.abs(values - ggx_albedo_dir(mu, ALPHA)).max() < tolerances.E_SS
     assert np.abs(small_values - ggx_albedo_dir(mu, small)).max() < tolerances.E_SS_SMALL
 
@@ -99,21 +97,21 @@ def test_the_table_of_what_facets_miss_agrees_with_the_quadrature():
     small = np.geomspace(1e-9, 1e-4, 6)[:, None]
     mu = np.concatenate([mu, (small * [0.0, 0.1, 1.0, 10.0, 1e3]).ravel(), np.ones(30)])
     alpha = np.concatenate([np.maximum(alpha, small[0]), np.repeat(small, 10)])
-    E = ggx_albedo.quadrature(mu, alpha, refined=4)
+    E = ggx.quadrature(mu, alpha, refined=4)
     assert np.abs(missing_light(mu, alpha) - (1.0 - E) / E).max() < tolerances.E_SS
 
 
 def test_a_mirror_misses_nothing_and_grazing_light_has_a_limit():
     mu = np.array([0.0, 5e-324, 1e-160, 0.5, 1.0, 1.0 + 1e-7])
     assert (missing_light(mu, np.zeros(1)) == 0.0).all()
-    assert (missing_light(np.linspace(0.0, 1.0, missing.MANY), np.zeros(1)) == 0.0).all()
+    assert (missing_light(np.linspace(0.0, 1.0, ggx.MANY), np.zeros(1)) == 0.0).all()
     light = missing_light(mu, np.array([5e-324, 1e-160, 1.0])[:, None])
     assert (light >= 0.0).all() and np.ptp(light[:, 0]) < tolerances.E_SS
 
 
 @pytest.mark.parametrize("alpha", [1e-160, 1e-4, 0.3, 1.0])
 def test_many_cosines_of_one_alpha_share_cubics_that_follow_the_polynomials(alpha):
-    s = np.linspace(0.0, 0.9999, missing.MANY) ** 3
+    s = np.linspace(0.0, 0.9999, ggx.MANY) ** 3
     mu = np.append(s * alpha / (1.0 + alpha - s), [0.0, 5e-324, 1.0, 1.0 + 1e-7, np.nan])
     cubics = missing_light(mu, np.array([alpha]))
     polynomials = [missing_light(part, np.array([alpha])) for part in np.array_split(mu, 2)]

@@ -135,8 +135,7 @@ def test_as_much_light_leaves_a_solid_as_enters(alpha):
     mu, weight = 0.5 * (x + 1.0), 0.5 * w * (x + 1.0)
 
     def reflected(cosines):
-        views = np.stack([np.sqrt(1.0 - cosines**2), 0.0 * cosines, cosines], axis=-1)
-        return dielectric_albedo_dir(views, 1.0, [alpha, alpha], n)
+        return dielectric_albedo_dir(direction(cosines), 1.0, [alpha, alpha], n)
 
     left = reversed_transmittance(mu, alpha, 1.0 / n, reflected)
     entered = 1.0 - reflected(mu)
@@ -166,7 +165,7 @@ def test_readings_of_schlick_are_reciprocal(reading):
 
 @pytest.mark.parametrize("ior", [1.5, 3.0])
 def test_a_smooth_plane_passes_what_it_does_not_reflect(ior):
-    wo = np.stack([direction(mu) for mu in (0.1, 0.5, 1.0)])
+    wo = direction([0.1, 0.5, 1.0])
     T = dielectric_transmittance_dir(wo, 1.0, [0.0, 0.0], ior)[:, 0]
     np.testing.assert_allclose(T, 1.0 - fresnel_dielectric(wo[:, 2], ior), rtol=1e-12)
     for alpha in (1e-3, 1e-4):
@@ -177,7 +176,7 @@ def test_a_smooth_plane_passes_what_it_does_not_reflect(ior):
 
 def test_light_is_totally_reflected_inside_beyond_the_critical_angle():
     critical = np.sqrt(1.0 - 1.0 / 1.5**2)
-    wo = np.stack([direction(critical - 1e-3), direction(critical + 1e-3)])
+    wo = direction([critical - 1e-3, critical + 1e-3])
     T = dielectric_transmittance_dir(wo, 1.0, [0.0, 0.0], 1.0 / 1.5)[:, 0]
     R = dielectric_albedo_dir(wo, 1.0, [0.0, 0.0], 1.0 / 1.5)[:, 0]
     assert T[0] == 0.0
@@ -189,7 +188,7 @@ def test_light_is_totally_reflected_inside_beyond_the_critical_angle():
 @pytest.mark.parametrize("ior", INDICES)
 def test_microfacets_neither_reflect_nor_transmit_more_than_all_light(ior):
     mu, alpha = (each.ravel() for each in np.meshgrid([0.02, 0.2, 0.6, 1.0], [0.01, 0.1, 0.5, 1.0]))
-    wo = np.stack([direction(each) for each in mu])
+    wo = direction(mu)
     roughness = np.repeat(alpha[:, np.newaxis], 2, axis=1)
     T = dielectric_transmittance_dir(wo, 1.0, roughness, ior)
     for compensate in (False, True):

@@ -127,7 +127,6 @@ def _inputs(row: PbrNode) -> tuple[Parameter, ...]:
 
 
 def _of_node(row: PbrNode) -> ShadingModel:
-    """The model of a row of the tables."""
     lights = "back" if row.transmits else "front"
     return ShadingModel(
         row,

@@ -181,7 +181,6 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
 
 def _albedo(mu: Array, roughness: Array) -> Array:
-    """Albedo of a block."""
     xp = array_namespace(mu, roughness)
     if xp is arrays.NUMPY:
         mu, roughness = np.broadcast_arrays(mu, roughness)

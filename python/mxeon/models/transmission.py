@@ -507,5 +507,4 @@ def _by_index(
 
 
 def _reading(name: str) -> Reading:
-    """A row of READINGS."""
     return READINGS[checked_choice("reading", name, READINGS)]

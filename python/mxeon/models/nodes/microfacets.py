@@ -271,9 +271,7 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
             permitted=True,
         ),
     ]
-    lobe = {each.category: each for each in (DIELECTRIC_LOBE, CONDUCTOR_LOBE, SCHLICK_LOBE)}[
-        row.category
-    ]
+    lobe = LOBES[row.category]
     schlick = lobe is SCHLICK_LOBE
     for title, form, permitted in FORMS[: 2 if schlick else 1]:
         for averaged, words in ((False, ""), (True, ", with F averaged from F0 and F90")):
@@ -300,7 +298,6 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
 
 
 def _filmed(row: PbrNode) -> PbrNode:
-    """A row under a film."""
     return replace(
         row,
         name=f"{row.name}_film",
