@@ -246,11 +246,7 @@ def page():
             description = document.read_text(encoding="utf-8").splitlines()[2]
             lines = [description.removeprefix("<!-- ").removesuffix(" -->")]
             for name in names:
-                said = (
-                    f"with stock, {found[name][0]}"
-                    if name in found
-                    else "stock cannot generate its nodes"
-                )
+                said = found[name][0] if name in found else "stock cannot generate its nodes"
                 lines += [f"![{name}](images/gallery/{name}.webp)", f"*{name}: {said}.*"]
             sections["\n\n".join([f"## {document.stem}", *lines]) + "\n"] = largest(names[0])
     same = f"No visible difference: {', '.join(f'`{each}`' for each in sorted(alike))}.\n"
