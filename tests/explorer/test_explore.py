@@ -199,6 +199,7 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
     assert main(["explore", document, "--workers", "0", "--output", str(out)]) == PASSED_STATUS
     run = check([document], ["gl"], "eonlib", compared="stock", workers=0)
     terminal, report, junit = " ".join(answer(run)), unescape("".join(html(run))), to_junit(run)
+    report = report.replace("\N{NO-BREAK SPACE}", " ")
     entries = {
         each["library"]: each for each in json.loads(to_json(run))["results"]
         if each["check"] == "picture"
