@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of a library's shader functions against their NumPy versions, on a host.
 
-The host compiles one program for all functions, with an additional one that calls each by its index. Shader and
-NumPy functions share their parameters' names, which select the columns of arguments.
+The host compiles one program for all functions, with an additional one that calls each by its index. The
+parameters that eonlib's GLSL declares select the columns of arguments, for shaders and for NumPy.
 """
 
-import inspect
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,17 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mxeon.conformance import tolerance
+from mxeon.conformance import results, tolerance
 from mxeon.conformance.check import judge, not_measured
-from mxeon.conformance.results import (
-    NOT_RUN,
-    SHADER_FUNCTIONS,
-    Cause,
-    Diagnosis,
-    Kind,
-    Quantity,
-    Result,
-)
+from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity, Result
 from mxeon.conformance.samples import GRAZING, Array, directions, float32, generator
 from mxeon.conformance.spec import TURN
 from mxeon.conformance.specs.diffuse import LOSS_FIT
@@ -97,18 +88,22 @@ def exact(function: str) -> tuple[Array, Array]:
         brdf = "_brdf" in function
         return values, np.pi * columns["mu_i"][:, np.newaxis] if brdf else np.ones((1, 1))
     total: Array = np.maximum(1.0, np.abs(values).max(axis=1))
-    for kind, parameter in functions.signature("glsl", function):
+    for name in arguments(function):
         # A quotient has a relative error, and is huge next to a divisor of 0.
-        if parameter == "divisor" or (kind != "float" and parameter != "wo"):
+        if name == "divisor" or (columns[name].ndim > 1 and name != "wo"):
             continue
-        name = "gray" if parameter == "rho" else parameter
         # Step towards the middle of the range; only the cosine of wo has a range.
         middle = np.array([0.0, 0.0, 0.5]) if name == "wo" else 0.5
         moves = np.where(columns[name] > middle, -STEP, STEP) * (middle != 0.0)
-        moved = {**columns, name: columns[name] + moves}
-        moved["u"] = np.stack([moved["u1"], moved["u2"]], axis=-1)
-        total = total + np.abs(_expected(function, moved) - values).max(axis=1) / STEP
+        moved = _expected(function, {**columns, name: columns[name] + moves})
+        total = total + np.abs(moved - values).max(axis=1) / STEP
     return values, 1.0 / total[:, np.newaxis]
+
+
+def arguments(function: str) -> list[str]:
+    """The columns that are a shader function's arguments, in order."""
+    gray = {("float", "rho"): "gray"}
+    return [gray.get(each, each[1]) for each in functions.signature("glsl", function)]
 
 
 POINTS = 4096  # points per function
@@ -120,12 +115,14 @@ AXES = tuple((x, 0.0, z) for x, z in ((0, 1), (0, 1 + 2.0**-23), (1, 0), (-1, 0)
 Columns = Mapping[str, Array]
 
 
-# Functions with another name or other parameters in NumPy.
-NAMED: Mapping[str, Callable[..., Array]] = {
+# NumPy versions with another name, or with arguments in another order.
+NAMED: Mapping[str, Callable[..., Array | tuple[Array, ...]]] = {
     "eon_around": sampling.around,
     "eon_azimuth_frame": lambda wo: sampling.stack_xyz(*sampling.azimuth_frame(wo)),
-    "eon_gray_ratio": lambda gray, roughness: diffuse.eon_multiple_ratio(gray, roughness),
-    "eon_rotate_z": lambda wi, cosine, sine: sampling.rotate_z(wi, cosine, sine),
+    "eon_gray_ratio": diffuse.eon_multiple_ratio,
+    "eon_pdf": lambda wo, wi, rho, roughness: sampling.eon_pdf(wo, wi, roughness, rho=rho),
+    "eon_rotate_z": sampling.rotate_z,
+    "eon_sample": lambda wo, u, rho, roughness: sampling.eon_sample(wo, u, roughness, rho=rho),
     # y of the angle with cosine 1 - m, from the exact integral that the shader fits.
     "eon_upper_root": lambda m: sampling.eon_upper_limit(1.0 - m, np.sqrt(m * (2.0 - m))),
     "oren_nayar_s": lambda wo, wi: diffuse.cosines(wo, wi)[2],
@@ -137,19 +134,15 @@ CHANNELS_FIRST = re.compile(r"fon_lambert|eon_(denominator|multiple_ratio)|(qon|
 def _expected(function: str, columns: Columns) -> Array:
     """Values of a shader function in NumPy, (N, 1) or (N, 3)."""
     version = NAMED.get(function) or getattr(sampling, function, None) or getattr(diffuse, function)
-    columns = {**columns, "rho": columns["gray" if _takes_gray(function) else "rho"]}
     channels_first = CHANNELS_FIRST.fullmatch(function)
-    if channels_first:
-        columns["rho"] = columns["rho"].T
-    names = columns.keys() & inspect.signature(version).parameters.keys()
-    values = version(**{name: columns[name] for name in names})
+    names = arguments(function)
+    given = [columns[name].T if channels_first else columns[name] for name in names]
+    if function.endswith("_sample"):  # both random numbers are one argument in NumPy
+        first = names.index("u1")
+        given[first : first + 2] = [np.stack(given[first : first + 2], axis=-1)]
+    values = version(*given)
     values = np.asarray(values[0] if isinstance(values, tuple) else values)
-    values = values.T if channels_first else values
-    return values.reshape(len(columns["mu"]), -1)
-
-
-def _takes_gray(function: str) -> bool:
-    return ("float", "rho") in functions.signature("glsl", function)
+    return (values.T if channels_first else values).reshape(POINTS, -1)
 
 
 @cache
@@ -170,7 +163,7 @@ def random_columns() -> Columns:
     # fmt: off
     columns = {
         **unit, "wo": wo, "wi": wi, "rho": rho, "mu": mu, "value": value, "divisor": divisors,
-        "wh": sampling.around(np.sqrt(1.0 - u1), np.sqrt(u1), u2), "u": np.stack([u1, u2], axis=-1),
+        "wh": sampling.around(np.sqrt(1.0 - u1), np.sqrt(u1), u2),
         "sigma": 1.5707963 * roughness, "d": sampling.ltc_md(mu, roughness),
         "mu_o": np.minimum(wo[:, 2], 1.0), "mu_i": np.minimum(wi[:, 2], 1.0),
         "s": diffuse.cosines(wo, wi)[2], "S": np.sqrt((1.0 - mu) * (1.0 + mu)),
@@ -233,9 +226,7 @@ class FunctionProbe:
         for number, name in enumerate(names):
             rows["which"][number] = number
             own = functions.slot_names([kind for kind, _ in functions.signature(language, name)])
-            gray = {"rho": "gray"} if _takes_gray(name) else {}
-            arguments = (each for _, each in functions.signature("glsl", name))
-            *others, last = (columns[gray.get(each, each)] for each in arguments)
+            *others, last = (columns[each] for each in arguments(name))
             for slot, values in zip(own, [*others, scale * last], strict=True):
                 rows[slot][number] = values.reshape(POINTS, -1)
         columns3 = (each.reshape(-1, widths[name]) for name, each in rows.items())
@@ -250,8 +241,8 @@ def judge_functions(host: Host, library: str) -> tuple[Result, ...]:
 
 
 def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
-    names = check.key, check.claim, SHADER_FUNCTIONS, probe.host.name, probe.library
-    place = Result(*names, NOT_RUN)
+    names = check.key, check.claim, results.SHADER_FUNCTIONS, probe.host.name, probe.library
+    place = Result(*names, results.NOT_RUN)
     try:
         limit = probe.tolerance(check)
     except (NotRun, ShaderError) as error:
