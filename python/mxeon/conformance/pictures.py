@@ -15,24 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 import mxeon
+from mxeon.conformance import results
 from mxeon.conformance.backends import Rendered, picture_pairs
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.reference import ExpectedPicture, HostValues, Reference
 from mxeon.conformance.reference.nodes import ShownLobe
-from mxeon.conformance.results import (
-    NOT_RUN,
-    PORTRAIT,
-    Cause,
-    Diagnosis,
-    Kind,
-    Picture,
-    Quantity,
-    Region,
-    Result,
-    quoted,
-)
+from mxeon.conformance.results import Cause, Diagnosis, Kind, Picture, Quantity, Result
 from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.conformance.samples import Batch, Values, arrays
 from mxeon.conformance.specs import hair, microfacets, subsurface, utilities
@@ -192,13 +182,13 @@ def judge_document(
     """
     make = partial(host.compile, file, library=library, policy=policy)
     shaders, approximations, others = _read(file, make)
-    results: list[Result] = []
+    found: list[Result] = []
     pictures: list[Picture] = []
     for shader in shaders:
         front_lit = shader.element in approximations
         values = HostValues(host, shader, library, policy)
         result, images = _judge_material(file, shader, host, judge, values, front_lit)
-        results.append(result)
+        found.append(result)
         pictures += images
     told = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
     # Reasons why pictures cannot be correct, without duplicates.
@@ -209,10 +199,10 @@ def judge_document(
         for text in host.approximations(shader, scene)
     )
     # Results already name the inputs that are out of range.
-    told_inputs = any(each.diagnosis.kind is Kind.INPUT for each in results)
+    told_inputs = any(each.diagnosis.kind is Kind.INPUT for each in found)
     untold = (each for each in others if not (told_inputs and isinstance(each, notes.RangeWarning)))
     told += [(str(each), file.name) for each in untold]
-    return tuple(results), tuple(pictures), tuple(told)
+    return tuple(found), tuple(pictures), tuple(told)
 
 
 def _scenes(host: Host) -> tuple[Scene, ...]:
@@ -229,7 +219,7 @@ def _judge_material(
     """Judge one material; `front_lit` hosts only have its model for s >= 0."""
     scenes, library = _scenes(host), values.library
     subject = f"{file.name}: {shader.element}"
-    place = Result("picture", MATCH, subject, host.name, library, NOT_RUN)
+    place = Result("picture", MATCH, subject, host.name, library, results.NOT_RUN)
     try:
         images = [host.picture(shader, scene) for scene in scenes]
     except (NotRun, ShaderError) as error:
@@ -312,8 +302,8 @@ def _input_at_fault(
             left[name] = max(float(np.abs(difference(*each)).max()) for each in shown)
     nearest = min(left, key=left.__getitem__, default="")
     if not nearest or left[nearest] > 0.5 * left.get("", np.inf):
-        return quoted("no input alone is at fault")
-    return quoted(
+        return results.quoted("no input alone is at fault")
+    return results.quoted(
         f"mostly its {nearest}: without it, the largest difference is {left[nearest]:.2g} "
         f"instead of {left['']:.2g}"
     )
@@ -352,7 +342,7 @@ def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Resul
     place = replace(place, check="finite", claim="Every pixel is finite.")
     none = count_of(Quantity.PIXELS)
     result = judge(place, none, measure, "one channel is not a number", Diagnosis)
-    return replace(result, diagnosis=quoted(reason))
+    return replace(result, diagnosis=results.quoted(reason))
 
 
 def _judge_match(
@@ -366,7 +356,9 @@ def _judge_match(
     def measure(wrong: bool) -> Measurement:
         if not wrong:
             scenes = zip(cases, pixels, strict=True)
-            parts = [errors_of(each[2], tolerance.value, Region(c[0].name)) for c, each in scenes]
+            parts = [
+                errors_of(each[2], tolerance.value, results.Region(c[0].name)) for c, each in scenes
+            ]
             whole = errors_of(np.concatenate([each[2] for each in pixels]), tolerance.value)
             errors = (whole, *parts) if error > tolerance.value else ()
             return Measurement(error, worst, errors, "pixels")
@@ -453,7 +445,7 @@ def generate_document(
         caught = False
     except DocumentError:
         caught = True
-    place = Result(DOCUMENT_KEY, DOCUMENT_CLAIM, file.name, host, library, NOT_RUN)
+    place = Result(DOCUMENT_KEY, DOCUMENT_CLAIM, file.name, host, library, results.NOT_RUN)
     none, words = count_of(Quantity.DOCUMENTS), "half of the document is cut off"
     faults = {False: not shaders, True: caught}
     result = judge(place, none, lambda x: Measurement(float(faults[x]), {}), words, Diagnosis)
@@ -486,7 +478,7 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
         batch = Batch(wo[judged], wi[judged], arrays(PORTRAYED), scene)
         image, expected = (np.zeros((*where.shape, 3), np.float32) for _ in range(2))
         image[where], expected[where] = case.direct(batch), case.expected(batch)
-        names = (PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)
+        names = (results.PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)
         keys = ("document", "element", "host", "library", "scene")
         metadata = dict(zip(keys, names, strict=True)) | {"version": mxeon.__version__}
         metadata |= {"points": case.host.name}  # a host may only have part of its model

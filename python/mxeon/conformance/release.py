@@ -29,23 +29,13 @@ from mxeon.errors import DocumentError, MxeonError, NotRun, ShaderError
 from mxeon.hosts.base import Host
 from mxeon.hosts.calls import GRAPH
 from mxeon.io.images import write_exr
-from mxeon.shaders import generation, generators, texts
+from mxeon.shaders import generation, generators, released_graphs, texts
 from mxeon.shaders.document.drawn_values import CLOSURES
 from mxeon.shaders.document.graphs import inner_nodes
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.library import load_library
 from mxeon.shaders.library_tree import search_path
-from mxeon.shaders.released_graphs import (
-    RELEASES,
-    differences,
-    digest,
-    facts,
-    hidden,
-    installed,
-    port_text,
-    ports_of,
-    said,
-)
+from mxeon.shaders.released_graphs import differences, hidden, port_text, ports_of
 from mxeon.shaders.scene import CLIENT, FURNACE, SIDE, Client
 
 RELEASE, SUBJECT = "release", "definitions, units, graphs and texts"
@@ -89,7 +79,7 @@ class Subject(NamedTuple):
 def released(library: str) -> mx.Document | None:
     """The installed release, or None if the library lacks some of its nodes."""
     own = {each.getName() for each in load_library(library).getNodeDefs()}
-    for release in (installed(), load_library("stock")):
+    for release in (released_graphs.installed(), load_library("stock")):
         if own.issuperset(each.getName() for each in release.getNodeDefs()):
             return release
     return None
@@ -175,7 +165,12 @@ def versions(document: mx.Document, definition: mx.NodeDef) -> tuple[str, ...]:
         return ()
     scratch = mx.createDocument()
     scratch.setDataLibrary(document)
-    return RELEASES.get(digest(said(scratch.addNodeInstance(definition), OPERATIONS)), ())
+    return released_graphs.RELEASES.get(
+        released_graphs.digest(
+            released_graphs.said(scratch.addNodeInstance(definition), OPERATIONS)
+        ),
+        (),
+    )
 
 
 class Terms:
@@ -322,7 +317,9 @@ class Comparison:
         own, right, ours, theirs = self._pair(name)
         node = right.getNodeString()
         if ours is not None and ours.isA(mx.NodeGraph) and theirs.isA(mx.NodeGraph):
-            rows = differences(dict(facts(ours)), dict(facts(theirs)))
+            rows = differences(
+                dict(released_graphs.facts(ours)), dict(released_graphs.facts(theirs))
+            )
             error = self._graphs_apart(own, ours, theirs)
         else:
             rows = f"{self._target} of {name}", "another text", "the one that MaterialX released"

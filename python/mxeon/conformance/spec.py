@@ -20,15 +20,7 @@ from mxeon.conformance.tolerance import ROUNDING, Compared, Term, Tolerance
 from mxeon.hosts.base import Host
 from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.models.nodes.node import Node as NodeRow
-from mxeon.shaders.nodes import (
-    FRAME_INPUTS,
-    SURFACE,
-    Node,
-    document_text,
-    input_types,
-    lobe_text,
-    network_text,
-)
+from mxeon.shaders import nodes
 
 COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type
 CHANGED_COLOR = (0.9, 0.1, 0.6)
@@ -261,16 +253,16 @@ class LobeSpec(ValueSpec):
 
     @property
     def types(self) -> dict[str, str]:
-        return {**input_types(self.node), **{each.name: each.type for each in self.inputs}}
+        return {**nodes.input_types(self.node), **{each.name: each.type for each in self.inputs}}
 
     def two_lobes(self) -> str:
         """MaterialX text of a material with two such lobes; `second` has its own frame."""
-        own = [name for name in FRAME_INPUTS if name in input_types(self.node)]
+        own = [name for name in nodes.FRAME_INPUTS if name in nodes.input_types(self.node)]
         frame = {name: NORMAL if name == "normal" else TANGENT for name in own}
         modes = {"first": self.mode, "second": {**self.mode, **frame}}
-        lobes = (lobe_text(self.node, mode, name, self.types) for name, mode in modes.items())
-        total = network_text({"lobe": Node("add", "BSDF", ("first", "second"))})
-        return document_text("".join(lobes) + total + SURFACE)
+        lobes = (nodes.lobe_text(self.node, mode, name, self.types) for name, mode in modes.items())
+        total = nodes.network_text({"lobe": nodes.Node("add", "BSDF", ("first", "second"))})
+        return nodes.document_text("".join(lobes) + total + nodes.SURFACE)
 
     @abstractmethod
     def albedo(self, batch: Batch) -> Array:

@@ -6,20 +6,8 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from mxeon.conformance.results import (
-    DIFFERS,
-    FAILED,
-    NOT_RUN,
-    PASSED,
-    Cause,
-    Diagnosis,
-    Difference,
-    Kind,
-    Quantity,
-    Region,
-    Result,
-    Run,
-)
+from mxeon.conformance import results
+from mxeon.conformance.results import Cause, Diagnosis, Difference, Kind, Region, Result, Run
 from mxeon.shaders.nodes import FLAG
 
 NAMED = 3  # names in a list, before the number of the rest
@@ -492,7 +480,7 @@ def excess(result: Result) -> str:
             return difference(result.difference)
         if result.quantity and result.quantity.counted and math.isfinite(result.error):
             return counted(int(result.error), result.unit.removesuffix("s"))
-        if result.quantity is Quantity.KIT:
+        if result.quantity is results.Quantity.KIT:
             return f"the error is {in_words(result.error)} {result.unit}"
         return f"{result.error:.3g} > {result.tolerance:.3g} {result.unit}".rstrip()
     if control and not control.caught:
@@ -502,9 +490,9 @@ def excess(result: Result) -> str:
 
 def look(result: Result) -> str:
     """The appearance of a material in its pictures."""
-    if result.verdict == NOT_RUN:
+    if result.verdict == results.NOT_RUN:
         return f"not judged: {result.reason}"
-    if result.verdict != PASSED:
+    if result.verdict != results.PASSED:
         return explanation(replace(result, pages=()))
     if result.check == "finite":
         return f"no reference ({diagnosis(result.diagnosis)}); every pixel is finite"
@@ -584,36 +572,36 @@ def annotation(level: str, title: str, message: str) -> str:
 
 def sentence(run: Run) -> str:
     """The verdict on all libraries, except those judged for comparison."""
-    results, counts = run.judged, run.counts
-    total = counted(len(results), "check")
+    judged, counts = run.judged, run.counts
+    total = counted(len(judged), "check")
     groups: dict[str, dict[str, None]] = {}  # hosts by library
-    for result in results:
+    for result in judged:
         groups.setdefault(result.library, {})[result.host] = None
     named = (f"{enumerated(list(names))} with {library}" for library, names in groups.items())
     hosts = " and ".join(named)
     differ = ""
-    if counts[DIFFERS]:
-        verb = "differs" if counts[DIFFERS] == 1 else "differ"
-        differ = f"; {counts[DIFFERS]} {verb}, but the specification allows it"
+    if counts[results.DIFFERS]:
+        verb = "differs" if counts[results.DIFFERS] == 1 else "differ"
+        differ = f"; {counts[results.DIFFERS]} {verb}, but the specification allows it"
     # Checks that a failure prevented count as part of it.
-    idle = sum(each.verdict == NOT_RUN and not each.follows for each in results)
+    idle = sum(each.verdict == results.NOT_RUN and not each.follows for each in judged)
     missed = f"; {idle} did not run" if idle else ""
-    if counts[FAILED]:
-        failed = Counter(result.location for result in results if result.verdict == FAILED)
+    if counts[results.FAILED]:
+        failed = Counter(result.location for result in judged if result.verdict == results.FAILED)
         places = [f"{count} on {location}" for location, count in failed.items()]
         where = f": {', '.join(places)}" if len(failed) > 1 else f" on {next(iter(failed))}"
-        text = f"{counts[FAILED]} of {total} failed{where}{missed}{differ}."
-    elif not counts[PASSED] + counts[DIFFERS]:
+        text = f"{counts[results.FAILED]} of {total} failed{where}{missed}{differ}."
+    elif not counts[results.PASSED] + counts[results.DIFFERS]:
         text = "No check ran."
-    elif counts[NOT_RUN]:
-        text = f"Nothing failed, but {counts[NOT_RUN]} of {total} did not run{differ}."
+    elif counts[results.NOT_RUN]:
+        text = f"Nothing failed, but {counts[results.NOT_RUN]} of {total} did not run{differ}."
     elif differ:
-        text = f"{counts[PASSED]} of {total} passed on {hosts}{differ}."
+        text = f"{counts[results.PASSED]} of {total} passed on {hosts}{differ}."
     else:
-        passed = "The check" if len(results) == 1 else f"All {len(results)} checks"
-        some = f"{len(results)} checks passed and none failed on {hosts}."
+        passed = "The check" if len(judged) == 1 else f"All {len(judged)} checks"
+        some = f"{len(judged)} checks passed and none failed on {hosts}."
         text = some if run.unjudged else f"{passed} passed on {hosts}."
-    if elsewhere := sum(map(run.is_elsewhere, results)):
+    if elsewhere := sum(map(run.is_elsewhere, judged)):
         text += f" {elsewhere} of them for inputs that no document uses."
     if run.missing:
         verb = "is" if len(run.missing) == 1 else "are"
@@ -622,15 +610,15 @@ def sentence(run: Run) -> str:
     if run.refused:
         names, faults = tuple(run.refused), counted(len(run.errors), "error")
         checked = "was not checked" if len(names) == 1 else "were not checked"
-        if results and counts[PASSED] + counts[DIFFERS] + counts[FAILED]:
+        if judged and counts[results.PASSED] + counts[results.DIFFERS] + counts[results.FAILED]:
             text = f"{listed(names)} {checked}: {faults}. {text}"
         else:
             verb = "has" if len(names) == 1 else "have"
             text = f"{listed(names)} {verb} {faults}; nothing was checked."
     for library in run.compared:
         other = [each.verdict for each in run.results if each.library == library]
-        ran = len(other) - other.count(NOT_RUN)
-        words = f" For comparison, {other.count(FAILED)} of {ran} failed with {library}."
+        ran = len(other) - other.count(results.NOT_RUN)
+        words = f" For comparison, {other.count(results.FAILED)} of {ran} failed with {library}."
         text += words * bool(ran)
     return text
 

@@ -9,7 +9,7 @@ from itertools import product
 
 import numpy as np
 
-from mxeon.conformance import backends, controls, diagnosis, samples
+from mxeon.conformance import backends, controls, diagnosis, samples, tolerance
 from mxeon.conformance.case import BRANCHES, Case, dead_inputs, edge_values, frames
 from mxeon.conformance.check import Check, Specs, family
 from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, TRANSMISSION, VALUE, Comparison, defect
@@ -26,19 +26,7 @@ from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, Transmissio
 from mxeon.conformance.specs.subsurface import ON_SPHERES, RINGS, SubsurfaceSpec, inner, spread
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.specs.utilities import UtilitySpec
-from mxeon.conformance.tolerance import (
-    Compared,
-    Term,
-    absolute,
-    count_named,
-    count_not_finite,
-    count_of,
-    given,
-    roundings,
-    scaled,
-    sum_in,
-    sum_of,
-)
+from mxeon.conformance.tolerance import Compared, Term, given, roundings, sum_in, sum_of
 from mxeon.errors import Implied
 from mxeon.hosts import HOSTS, front_lit_only
 from mxeon.hosts.calls import NORMAL
@@ -303,8 +291,8 @@ def explain_region(key: str, case: Case) -> Diagnosis:
     compared = region_values(key, case)
     brightest = min(float(compared.expected.max()), 1.0)
     terms = (Term(brightest * REGION.value, "a region"),)
-    tolerance = replace(REGION, terms=terms, metric=scaled, exact=True)
-    return diagnosis.explain(case, [compared], candidates, DIRECT_FAULTS, tolerance)
+    error = replace(REGION, terms=terms, metric=tolerance.scaled, exact=True)
+    return diagnosis.explain(case, [compared], candidates, DIRECT_FAULTS, error)
 
 
 # --- inputs outside the ranges that the other checks draw from, as far as hosts pass them ---------
@@ -339,7 +327,7 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
     wrong = {
         name
         for name, (_, measured, expected) in quantities(plain, views, views)
-        if scaled(measured, expected).max() > case.tolerance(name).value
+        if tolerance.scaled(measured, expected).max() > case.tolerance(name).value
     }
     if len(wrong) == 2 + LAYERS(spec):
         inside = f"{spec.title} already fails inside its inputs' usual ranges"
@@ -356,15 +344,15 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
             for name, compared in quantities(case, lit, right):
                 if name not in wrong:
                     own = spec.outside_errors.get((name, each.name, value))
-                    tolerance = own or case.tolerance(name)
-                    scale = tolerance.value * tolerance.scale(compared.expected)
+                    error = own or case.tolerance(name)
+                    scale = error.value * error.scale(compared.expected)
                     yield name, each.name, value, compared.over(scale).where(known)
 
 
 def diagnose_domain(case: Case) -> Diagnosis:
     wrong: dict[tuple[str, str], list[float]] = {}
     for quantity, name, value, compared in outside(case):
-        if absolute(*compared[1:]).max() > TOLERANCES.value:
+        if tolerance.absolute(*compared[1:]).max() > TOLERANCES.value:
             wrong.setdefault((name, quantity), []).append(value)
     causes = (
         Cause(Kind.DEFECT, f"{quantity}_outside", (name,), tuple(values))
@@ -488,7 +476,7 @@ ROWS = (
     Check(key="inputs", claim="Every input of the node changes the value.",
           applies=(LOBES | ROUGH | LAMBERT) - BELOW
           | COMBINED | family(EmissionSpec) | family(MediumSpec) | family(UtilitySpec),
-          measure=lambda case: count_named(dead_inputs(case)), tolerance=count_of(Quantity.INPUTS),
+          measure=lambda case: tolerance.count_named(dead_inputs(case)), tolerance=tolerance.count_of(Quantity.INPUTS),
           control=controls.drop_changes,
           explain=lambda case: defect("inputs_without_effect", *dead_inputs(case))),
     Check(key="negative",
@@ -499,8 +487,8 @@ ROWS = (
           explain=defect("negative_color"), requires=Ability.PAIRS | Ability.LIGHT,
           methods=lambda spec, methods: methods.transmission != "opacity" or not UNTINTED(spec)),
     Check(key="finite", claim="Every value at the edges of the domain is finite.",
-          applies=LOBES | MODES | FILMS, measure=lambda case: count_not_finite(edge_values(case)),
-          tolerance=count_of(Quantity.VALUES),
+          applies=LOBES | MODES | FILMS, measure=lambda case: tolerance.count_not_finite(edge_values(case)),
+          tolerance=tolerance.count_of(Quantity.VALUES),
           control=controls.scale_cosine("the value is divided by cos(theta_o)", -1),
           explain=lambda case: Diagnosis(diagnosis.not_finite([edge_values(case)])),
           requires=Ability.PAIRS, hosts=shows_exactly),

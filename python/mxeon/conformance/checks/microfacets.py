@@ -17,17 +17,7 @@ from mxeon.conformance.checks.lobes import CLEAR, FILMS, TRANSMITTING
 from mxeon.conformance.checks.states import TURNING, in_turn
 from mxeon.conformance.diagnosis import ALBEDO, NEAR, UNKNOWN, UNMASKED, VALUE, defect, not_finite
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
-from mxeon.conformance.samples import (
-    LEAST_COLOR82,
-    Array,
-    Batch,
-    Values,
-    aimed,
-    directions_at,
-    rounded,
-    sky,
-    sky_map,
-)
+from mxeon.conformance.samples import Array, Batch, Mask, Values, directions_at, rounded
 from mxeon.conformance.spec import Ability, Spec
 from mxeon.conformance.specs import microfacets
 from mxeon.conformance.specs.lobes import PbrSpec
@@ -85,7 +75,9 @@ def dark(case: Case) -> Compared:
     return Compared(batch, case.direct(batch), np.zeros((1, 3)))
 
 
-def _clear(batch: Batch, index: float = LEAST_DIVIDED, least_82: float = LEAST_COLOR82) -> Batch:
+def _clear(
+    batch: Batch, index: float = LEAST_DIVIDED, least_82: float = samples.LEAST_COLOR82
+) -> Batch:
     """A batch without curves that are inaccurate in float32 because their terms cancel.
 
     These are dielectrics with an index near 1, and deep dips at 82 degrees, which make F negative.
@@ -128,11 +120,11 @@ def reflected_sky(case: Case) -> Iterator[Compared]:
     values = value(part).reshape(shape) * weights[:, :, np.newaxis]
     albedo = values.sum(axis=1)
     bright = albedo.min(axis=1) > LEAST_VALUE
-    seen = (values * sky(part.wi).reshape(shape)).sum(axis=1)
+    seen = (values * samples.sky(part.wi).reshape(shape)).sum(axis=1)
     views, mean = views.where(bright), seen[bright] / albedo[bright]
     mirrored = replace(views, wo=views.wo * [-1.0, -1.0, 1.0])
     for each in (views, mirrored.altered(retroreflective=True)):
-        yield Compared(each, case.albedo(each, sky_map()) / case.albedo(each), mean)
+        yield Compared(each, case.albedo(each, samples.sky_map()) / case.albedo(each), mean)
 
 
 def diagnose_sky(case: Case) -> Diagnosis:
@@ -329,10 +321,12 @@ def mirrored(case: Case, ask: Callable[..., Array], methods: Methods) -> Iterato
             ends = np.append(ends, tabulated(plain.wo[:, 2], plain.rough), axis=0)
         low, high = (plain.strength * end(axis=0)[:, np.newaxis] for end in (ends.min, ends.max))
         yield Compared(plain, found, np.clip(found, low, high))
-        seen = seen.first(SEEN)
-        found = ask(seen, "environment", irradiance=sky_map(), client=BOUND) / BOUND.intensity
-        turned = ask(in_turn(seen, BOUND), "environment", irradiance=sky_map())
-        yield Compared(seen, found, turned)
+        seen, uneven = (
+            seen.first(SEEN),
+            partial(ask, branch="environment", irradiance=samples.sky_map()),
+        )
+        turned = uneven(in_turn(seen, BOUND))
+        yield Compared(seen, uneven(seen, client=BOUND) / BOUND.intensity, turned)
 
 
 def tabulated(mu: Array, alpha: Array) -> Array:
@@ -422,15 +416,21 @@ def refraction(case: Case) -> Compared:
     # Views in frames in which a sphere refracts them to the middles of sky texels.
     out = through_sphere(batch.wo, index(batch.inputs))
     place = samples.texel_middles(out)
-    frames = aimed(np.broadcast_to(np.eye(3), (len(out), 3, 3)), out, place)
+    frames = samples.aimed(np.broadcast_to(np.eye(3), (len(out), 3, 3)), out, place)
     axes = {"tangent": rounded(frames[:, :, 0].T), "normal": rounded(frames[:, :, 2].T)}
     batch = replace(batch.altered(**axes), frame=frames)
     slope = (index(batch.inputs) ** 2 / batch.wo[:, 2])[:, np.newaxis]
     condition = np.maximum(1.0, slope / BENT)  # amplification of a cosine's error
+    measured, bright = seen_sky(case, batch)
+    return Compared(batch, measured / condition, samples.sky(place) / condition).where(bright)
+
+
+def seen_sky(case: Case, batch: Batch) -> tuple[Array, Mask]:
+    """Mean of the sky that is seen through the surface, and the pairs that pass enough light to measure it."""
     level = case.transmitted(batch)
     bright = np.asarray(level.min(axis=1) > LEAST_PASSED)
-    measured = case.transmitted(batch, sky_map()) / np.where(bright[:, np.newaxis], level, 1.0)
-    return Compared(batch, measured / condition, sky(place) / condition).where(bright)
+    seen = case.transmitted(batch, samples.sky_map())
+    return seen / np.where(bright[:, np.newaxis], level, 1.0), bright
 
 
 def rough_refraction(case: Case) -> Compared:
@@ -450,9 +450,7 @@ def rough_refraction(case: Case) -> Compared:
     turn = 2.0 * np.pi * rng.random(count)
     tangent = rounded([np.cos(turn), np.sin(turn), 0.0 * turn])
     batch = replace(batch.altered(weight=1.0, roughness=alpha, tangent=tangent), wo=wo)
-    level = case.transmitted(batch)
-    bright = np.asarray(level.min(axis=1) > LEAST_PASSED)
-    measured = case.transmitted(batch, sky_map()) / np.where(bright[:, np.newaxis], level, 1.0)
+    measured, bright = seen_sky(case, batch)
     axes = np.stack([tangent, np.cross(NORMAL, tangent), 0.0 * wo + NORMAL], axis=1)
     middles = (np.arange(FACETS_SEEN) + 0.5) / FACETS_SEEN
     u = np.stack(np.meshgrid(middles, middles), axis=-1).reshape(-1, 2)
@@ -463,7 +461,7 @@ def rough_refraction(case: Case) -> Compared:
     facets = ggx_sample(view, np.tile(u, (count, 1)), alpha)[0] + view
     facets /= np.linalg.norm(facets, axis=1, keepdims=True)
     out = through_sphere(view, index, facets).reshape(count, len(u), 3).mean(axis=1)
-    return Compared(batch, measured, sky((out[:, np.newaxis] @ axes)[:, 0])).where(bright)
+    return Compared(batch, measured, samples.sky((out[:, np.newaxis] @ axes)[:, 0])).where(bright)
 
 
 def through_sphere(wo: Array, index: Array, facet: Array = UPWARD) -> Array:
@@ -502,7 +500,7 @@ def wrong_inputs(case: Case) -> list[str]:
     With every other method, the albedo of two alphas depends on the tangent.
     """
     batch = case.few[0].first(CHANGED_VIEWS)
-    dead = dead_inputs(case, batch, lambda each: case.transmitted(each, sky_map()))
+    dead = dead_inputs(case, batch, lambda each: case.transmitted(each, samples.sky_map()))
     unread = {"retroreflective"}
     if case.opaque and not CLEAR(case.spec):
         unread |= case.changes.keys() - {"weight", "tint"}

@@ -18,17 +18,7 @@ from numpy.typing import NDArray
 from mxeon.conformance import backends, check, controls, diagnosis, results, samples
 from mxeon.conformance.case import Case
 from mxeon.conformance.checks.lobes import DARK
-from mxeon.conformance.samples import (
-    SKY_ROWS,
-    Array,
-    Batch,
-    Mask,
-    Values,
-    aimed,
-    float32,
-    rounded,
-    sky_map,
-)
+from mxeon.conformance.samples import Array, Batch, Mask, Values, aimed, float32, rounded
 from mxeon.conformance.spec import Ability, LobeSpec, broadcast_inputs
 from mxeon.conformance.tolerance import Compared
 from mxeon.hosts.base import TURN
@@ -205,7 +195,7 @@ def in_image(pixels: Pixels, rng: Random) -> Pixels:
 
 TWO_SIDED, TURNED_SKY = "an environment: dim and two-sided", "an environment: turned"
 # A rotation about y that maps the middles of sky texels to each other.
-ANGLE = 37.0 * np.pi / SKY_ROWS
+ANGLE = 37.0 * np.pi / samples.SKY_ROWS
 COSINE, SINE = np.cos(ANGLE), np.sin(ANGLE)
 ROTATION = np.array([[COSINE, 0.0, SINE], [0.0, 1.0, 0.0], [-SINE, 0.0, COSINE]])
 TURNING = tuple((TURN @ np.pad(ROTATION, (0, 1))).T.ravel().tolist())
@@ -342,7 +332,7 @@ def states(case: Case) -> Iterator[Compared]:
             batch = backends.joined([batch_of(groups[number]) for number in numbers])
             ask = partial(
                 from_image if image else case.evaluating.together,
-                irradiance=sky_map() if uneven else None,
+                irradiance=samples.sky_map() if uneven else None,
                 client=client,
                 two=two,
             )
@@ -454,7 +444,7 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
         if kind == "light":
             values = drawn(batch, case.backend.direct, layout)
         else:
-            sky = sky_map() if kind == "uneven" else None
+            sky = samples.sky_map() if kind == "uneven" else None
             values = drawn(batch, partial(case.backend.albedo, irradiance=sky), layout)
             tinted = batch
             if "tint" in batch.inputs and not case.opaque:

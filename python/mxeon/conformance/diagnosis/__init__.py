@@ -11,17 +11,8 @@ import numpy as np
 
 from mxeon.conformance.cache import Remembered
 from mxeon.conformance.case import LIGHT, Case, albedos, dead_inputs, frames, throughputs, values
-from mxeon.conformance.diagnosis import regions
-from mxeon.conformance.diagnosis.faults import (
-    COLOR_FAULTS,
-    DIRECT_FAULTS,
-    ENVIRONMENT_FAULTS,
-    NO_FAULT,
-    Fault,
-    exchanges,
-    normal_ignored,
-    scaled_by,
-)
+from mxeon.conformance.diagnosis import faults, regions
+from mxeon.conformance.diagnosis.faults import NO_FAULT, Fault, exchanges, scaled_by
 from mxeon.conformance.diagnosis.regions import EXACT, correct_except, place_of, smallest, span
 from mxeon.conformance.results import NO_DIAGNOSIS, Cause, Diagnosis, Kind
 from mxeon.conformance.samples import Array, Batch, Candidate, sky
@@ -316,8 +307,8 @@ def _transmittances(case: Case) -> Iterator[Compared]:
 
 VALUES, ALBEDOS = attrgetter("valued.value_candidates"), attrgetter("albedo_candidates")
 RESTS = attrgetter("throughput_candidates")
-VALUE = Comparison("value", values, VALUES, DIRECT_FAULTS)
-ALBEDO = Comparison("albedo", albedos, ALBEDOS, ENVIRONMENT_FAULTS)
+VALUE = Comparison("value", values, VALUES, faults.DIRECT_FAULTS)
+ALBEDO = Comparison("albedo", albedos, ALBEDOS, faults.ENVIRONMENT_FAULTS)
 # Throughput of a layer, for light from above and for light through the base.
 THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), RESTS, EXCHANGES)
 TRANSMISSION = Comparison(
@@ -325,7 +316,7 @@ TRANSMISSION = Comparison(
 )
 # Output of a utility node, or emission from the front.
 OUTPUT = Comparison(
-    "value", lambda case: map(case.valued.alike, values(case)), _alike, COLOR_FAULTS
+    "value", lambda case: map(case.valued.alike, values(case)), _alike, faults.COLOR_FAULTS
 )
 BACK = Comparison("value", _backs, _alike)
 TRANSMITTANCE = Comparison("value", _transmittances, VALUES)
@@ -372,7 +363,7 @@ def diagnose_frame(case: Case) -> Diagnosis:
         if not branch:
             return defect("retroreflective_normal")
         expected = case.expected if branch == "direct" else case.expected_albedo
-        dropped = compared._replace(expected=expected(normal_ignored(compared.batch)))
+        dropped = compared._replace(expected=expected(faults.normal_ignored(compared.batch)))
         if not tolerance.wrong(dropped).any():
             causes = defect("normal_of_surface").causes
         else:

@@ -21,15 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.reference import nodes
-from mxeon.conformance.reference.nodes import (
-    COMBINATIONS,
-    LOBES,
-    WIDTHS,
-    ShadingPoints,
-    Value,
-    plain,
-    same,
-)
+from mxeon.conformance.reference.nodes import LOBES, ShadingPoints, Value, plain, same
 from mxeon.conformance.samples import Array
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.hosts.textures import texels_at
@@ -130,7 +122,7 @@ class Graph(Nodes):
         category, kind = node.getCategory(), node.getType()
         if category in LOBES:
             return self._lobe(path, node)
-        if kind == "BSDF" and category in COMBINATIONS:
+        if kind == "BSDF" and category in nodes.COMBINATIONS:
             return self._combination(path, node)
         if category == "image":
             value = self._image(node)
@@ -186,7 +178,7 @@ class Graph(Nodes):
     def _combination(self, path: Path, node: mx.Node) -> Step:
         """Step of a node that combines lobes; a mix skips lobes without a share."""
         category = node.getCategory()
-        ports, operation = COMBINATIONS[category]
+        ports, operation = nodes.COMBINATIONS[category]
         if category == "mix":
             share = self._evaluate(self._source(path, "mix"))
             for port, none in (("bg", 0.0), ("fg", 1.0)):
@@ -238,7 +230,10 @@ class Graph(Nodes):
         lobe = path in self.elements and self.elements[path].getCategory() in LOBES
         if name not in self._inputs or not (path == self._shader if self._shader else lobe):
             return None
-        value, wide = np.asarray(self._inputs[name]), self._port(path, name).getType() in WIDTHS
+        value, wide = (
+            np.asarray(self._inputs[name]),
+            self._port(path, name).getType() in nodes.WIDTHS,
+        )
         return value if wide else np.reshape(value, (-1, 1))
 
     def _connected(self, around: Path, port: mx.PortElement, shown: str = "") -> Path:

@@ -15,14 +15,7 @@ from mxeon.conformance.tolerance import ROUNDING, Term, sum_of
 from mxeon.models.nodes import combinations
 from mxeon.models.nodes.combinations import AMOUNT, AMOUNT_ABOVE, COLORS, FACTOR, MASKS, ROUGHNESS
 from mxeon.models.nodes.node import PbrNode
-from mxeon.shaders.nodes import (
-    SURFACE,
-    Node,
-    connection_text,
-    document_text,
-    input_text,
-    network_text,
-)
+from mxeon.shaders import nodes
 
 PASSES = ZELTNER_THROUGHPUT.term("a throughput between them")
 VALUE = sum_of(ZELTNER_VALUE.term("two values", 2.0), PASSES)
@@ -40,25 +33,31 @@ ERRORS = {
 }
 
 
-def over(category: str, *lobes: str) -> Node:
-    return Node(category, "BSDF", lobes)
+def over(category: str, *lobes: str) -> nodes.Node:
+    return nodes.Node(category, "BSDF", lobes)
 
 
-SHEEN = Node("sheen_bsdf", "BSDF", text=input_text("mode", "string", "zeltner"))
+SHEEN = nodes.Node("sheen_bsdf", "BSDF", text=nodes.input_text("mode", "string", "zeltner"))
 LOBES = {"top": SHEEN, "base": SHEEN}
 SUM = {"sum": over("add", "top", "base")}
-WHITE_INPUT = input_text("color", "color3", np.ones(3))
+WHITE_INPUT = nodes.input_text("color", "color3", np.ones(3))
 # Connected opaque lobes and mix weights, which MaterialX folds into the weights of the lobes.
 MASKED = {
-    **dict.fromkeys(("white", "other"), Node("oren_nayar_diffuse_bsdf", "BSDF", text=WHITE_INPUT)),
-    **dict.fromkeys(("inner", "outer"), Node("multiply", "float")),
-    "masked": over("mix", "white", "top")._replace(text=connection_text("mix", "float", "inner")),
-    "both": over("mix", "masked", "other")._replace(text=connection_text("mix", "float", "outer")),
+    **dict.fromkeys(
+        ("white", "other"), nodes.Node("oren_nayar_diffuse_bsdf", "BSDF", text=WHITE_INPUT)
+    ),
+    **dict.fromkeys(("inner", "outer"), nodes.Node("multiply", "float")),
+    "masked": over("mix", "white", "top")._replace(
+        text=nodes.connection_text("mix", "float", "inner")
+    ),
+    "both": over("mix", "masked", "other")._replace(
+        text=nodes.connection_text("mix", "float", "outer")
+    ),
     "lobe": over("layer", "both", "base"),
 }
 # Row name -> title, and the nodes that combine both lobes.
 # fmt: off
-NETWORKS: dict[str, tuple[str, dict[str, Node]]] = {
+NETWORKS: dict[str, tuple[str, dict[str, nodes.Node]]] = {
     "layer": ("layer", {"lobe": over("layer", "top", "base")}),
     "mix": ("mix", {"lobe": over("mix", "top", "base")}),
     "add": ("add", {"lobe": over("add", "top", "base")}),
@@ -98,7 +97,9 @@ class CombinedSpec(PbrSpec):
 
     def document(self, inputs: Values | None = None) -> str:
         network = LOBES | NETWORKS[self.model][1]
-        return document_text(network_text(network, ports(self.inputs, inputs)) + SURFACE)
+        return nodes.document_text(
+            nodes.network_text(network, ports(self.inputs, inputs)) + nodes.SURFACE
+        )
 
 
 def _spec(row: PbrNode) -> CombinedSpec:
