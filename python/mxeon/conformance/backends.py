@@ -284,8 +284,10 @@ class Evaluating(Backend):
     def together(
         self, batch: Batch, irradiance: NDArray[np.float32] | None, client: Client, two: bool
     ) -> Array:
-        """Light of several lights and an environment in one pixel, from one or two lobes."""
+        """Light of several lights and an environment in one pixel, or of the only light, from one or two lobes."""
         shader = self.two if two else self.shader
+        if "lights" in self.plain:
+            return np.pi * self.evaluate(batch, "direct", shader=shader)
         return self.evaluate(batch, LIT, irradiance=irradiance, shader=shader, client=client)
 
     def answer(self, query: Query) -> Array:
@@ -419,11 +421,6 @@ class Closures(Evaluating):
         trees = cast("OslHost", self.host).trees(query.shader, query.wo, query.inputs)
         return evaluate(trees, query)
 
-    def together(
-        self, batch: Batch, irradiance: NDArray[np.float32] | None, client: Client, two: bool
-    ) -> Array:
-        return np.pi * self.evaluate(batch, "direct", shader=self.two if two else self.shader)
-
     @property
     def unset(self) -> tuple[str, ...]:
         """Frames of a surface shader's lobes, which its text takes from the surface instead of an input."""
@@ -459,11 +456,6 @@ class Functions(Evaluating):
             each.altered(**dict.fromkeys({"occlusion"} & each.inputs.keys(), 1.0))
             for each in super().batches
         )
-
-    def together(
-        self, batch: Batch, irradiance: NDArray[np.float32] | None, client: Client, two: bool
-    ) -> Array:
-        return np.pi * self.evaluate(batch, "direct", shader=self.two if two else self.shader)
 
 
 # Renderers whose camera and light show one pair per pixel.

@@ -34,17 +34,11 @@ def remembered(spec: Spec, quantity: str) -> Remembered:
     return Remembered(getattr(spec, quantity))
 
 
-@lru_cache(maxsize=KEPT_SPECS)
-def albedo_candidates(spec: LobeSpec) -> tuple[Candidate, ...]:
-    """The candidates for a spec's albedo, cached for several comparisons."""
-    candidates = spec.albedo_candidates
-    return tuple(replace(each, values=Remembered(each.values)) for each in candidates)
-
-
-@lru_cache(maxsize=KEPT_SPECS)
-def throughput_candidates(spec: ScatteringSpec) -> tuple[Candidate, ...]:
-    candidates = spec.throughput_candidates
-    return tuple(replace(each, values=Remembered(each.values)) for each in candidates)
+@lru_cache(maxsize=2 * KEPT_SPECS)
+def candidates(spec: Spec, quantity: str) -> tuple[Candidate, ...]:
+    """The candidates for a spec's albedo or throughput, cached for several comparisons."""
+    found: tuple[Candidate, ...] = getattr(spec, f"{quantity}_candidates")
+    return tuple(replace(each, values=Remembered(each.values)) for each in found)
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,13 +130,8 @@ class Case:
         changes, unset = self.spec.changes, self.backend.unset
         return {name: changes[name] for name in changes if name not in unset}
 
-    @property
-    def albedo_candidates(self) -> tuple[Candidate, ...]:
-        return albedo_candidates(self.lobe)
-
-    @property
-    def throughput_candidates(self) -> tuple[Candidate, ...]:
-        return throughput_candidates(self.of(ScatteringSpec))
+    def candidates(self, quantity: str) -> tuple[Candidate, ...]:
+        return candidates(self.spec, quantity)
 
     def tolerance(self, *quantities: str) -> Tolerance:
         """The spec's error for the first of these quantities that it has, plus the engine's error."""

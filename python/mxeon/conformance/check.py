@@ -99,7 +99,7 @@ class Check:
         model = copy(case.backend)  # returns the function's values
         for name, candidates in (
             ("direct", case.spec.all_candidates if isinstance(case.spec, ValueSpec) else ()),
-            ("albedo", case.albedo_candidates if isinstance(case.spec, LobeSpec) else ()),
+            ("albedo", case.candidates("albedo") if isinstance(case.spec, LobeSpec) else ()),
         ):
             for each in candidates:
                 if each.title == title:

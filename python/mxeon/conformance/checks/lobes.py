@@ -21,7 +21,7 @@ from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
 from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
 from mxeon.conformance.specs.hair import REGION, REGIONS, HairSpec
-from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
+from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec, uncolored
 from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec, falls_below_0
 from mxeon.conformance.specs.subsurface import ON_SPHERES, RINGS, SubsurfaceSpec, inner, spread
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
@@ -34,7 +34,6 @@ from mxeon.io.srgb import srgb_decoded
 from mxeon.models.diffuse import fon_albedo_avg
 from mxeon.models.nodes.combinations import FACTOR
 from mxeon.models.nodes.lobes import FORMS, TILTED
-from mxeon.models.nodes.node import ABSORBING
 from mxeon.shaders.methods import Methods
 
 LEAST_LIGHT = 0.01  # least light of a uniform environment for measurements of an uneven one
@@ -216,8 +215,7 @@ def _passed(case: Case, batch: Batch) -> Compared:
 
 def layer(case: Case) -> Compared:
     batch, weights = case.backend.integrated
-    white = batch.altered(**{name: samples.WHITE for name in ABSORBING if name in batch.inputs})
-    views, albedo = summed(case, white, weights)
+    views, albedo = summed(case, uncolored(batch), weights)
     total = albedo + case.throughput(views, "direct")
     # If the equations themselves gain energy, no throughput can compensate for it.
     own = case.lobe.albedo(batch.where(np.arange(len(weights)) * weights.shape[1]))
@@ -250,12 +248,6 @@ def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
 
 
 # --- two lobes combined ------------------------------------------------------------------------
-
-
-def combined_throughput(case: Case) -> Iterator[Compared]:
-    """Negative throughputs count as 0, as in `layer`."""
-    for compared in THROUGHPUT(case):
-        yield compared._replace(measured=np.maximum(compared.measured, 0.0))
 
 
 def factor(case: Case) -> Iterator[Compared]:
@@ -529,7 +521,11 @@ ROWS = (
           explain=ALBEDO.diagnose, requires=Ability.PAIRS, methods=finds_albedo, open=True),
     Check(key="combined_throughput",
           claim="Two combined lobes pass on what they do not scatter, as the layer equation requires.",
-          applies=COMBINED, measure=combined_throughput, tolerance="throughput",
+          applies=COMBINED,
+          # Negative throughputs count as 0, as in `layer`.
+          measure=lambda case: (
+              each._replace(measured=np.maximum(each.measured, 0.0)) for each in THROUGHPUT(case)),
+          tolerance="throughput",
           control=controls.pass_all, explain=THROUGHPUT.diagnose, open=True),
     Check(key="factor", claim="Factors are clamped to [0, 1].",
           applies=Specs(lambda spec: spec.model in SINGLE), measure=factor, tolerance="factor",

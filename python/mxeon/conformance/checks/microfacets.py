@@ -173,13 +173,13 @@ def generated(case: Case, methods: Methods) -> "Shader":
     return shader
 
 
-def stretched_values(case: Case) -> Iterator[Compared]:
-    for batch in case.chosen or (case.backend.take(case.of(FacetSpec).anisotropic),):
-        yield Compared(batch, case.direct(batch), case.expected(batch))
-
-
 STRETCHED = diagnosis.Comparison(
-    "anisotropic_value", stretched_values, lambda case: case.of(FacetSpec).all_candidates
+    "anisotropic_value",
+    lambda case: (
+        Compared(batch, case.direct(batch), case.expected(batch))
+        for batch in case.chosen or (case.backend.take(case.of(FacetSpec).anisotropic),)
+    ),
+    lambda case: case.of(FacetSpec).all_candidates,
 )
 
 

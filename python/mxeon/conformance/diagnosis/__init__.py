@@ -4,7 +4,7 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from operator import attrgetter
+from operator import attrgetter, methodcaller
 from typing import TypeAlias
 
 import numpy as np
@@ -305,8 +305,8 @@ def _transmittances(case: Case) -> Iterator[Compared]:
     yield Compared(batch, through, expected)
 
 
-VALUES, ALBEDOS = attrgetter("valued.value_candidates"), attrgetter("albedo_candidates")
-RESTS = attrgetter("throughput_candidates")
+VALUES = attrgetter("valued.value_candidates")
+ALBEDOS, RESTS = (methodcaller("candidates", each) for each in ("albedo", "throughput"))
 VALUE = Comparison("value", values, VALUES, faults.DIRECT_FAULTS)
 ALBEDO = Comparison("albedo", albedos, ALBEDOS, faults.ENVIRONMENT_FAULTS)
 # Throughput of a layer, for light from above and for light through the base.

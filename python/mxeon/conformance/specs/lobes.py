@@ -87,7 +87,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
 
     def throughput(self, batch: Batch) -> Array:
         """1 - E of the lobe without its color, at least 0, (N, 3)."""
-        return np.maximum(1.0 - _albedo(self.row.taken or self.row.albedo, _white(batch)), 0.0)
+        return np.maximum(1.0 - _albedo(self.row.taken or self.row.albedo, uncolored(batch)), 0.0)
 
     def sky(self, batch: Batch) -> Array:
         return samples.sky(self.side * batch.normal)
@@ -109,7 +109,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         """1 - E of each model, or all light."""
 
         def rest(batch: Batch, albedo: Callable[[Array, Inputs], Array], above: bool) -> Array:
-            return np.maximum(1.0 - _albedo(albedo, batch if above else _white(batch)), 0.0)
+            return np.maximum(1.0 - _albedo(albedo, batch if above else uncolored(batch)), 0.0)
 
         candidates = [Candidate(self.row.title, self.throughput)]
         if any(name in ABSORBING for name in self.row.inputs):
@@ -229,7 +229,7 @@ class PbrSpec(ScatteringSpec):
         return wi, np.broadcast_to(weights, wi.shape[:2])
 
 
-def _white(batch: Batch) -> Batch:
+def uncolored(batch: Batch) -> Batch:
     """A batch without the colors that only absorb."""
     return batch.altered(**{each: samples.WHITE for each in ABSORBING if each in batch.inputs})
 
