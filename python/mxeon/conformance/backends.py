@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from itertools import product
+from operator import attrgetter
 from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -566,7 +567,7 @@ class Rendered(Shown):
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
         turned = {
-            name: tolerance.largest(spec.errors[name], cls.place or spec.errors[name])
+            name: max(spec.errors[name], cls.place or spec.errors[name], key=attrgetter("value"))
             for name in ("retroreflection", "anisotropy")
             if name in spec.errors
         }

@@ -206,10 +206,6 @@ def count_of(quantity: Quantity) -> Tolerance:
     return given(0.0, quantity, "a count")
 
 
-def largest(*tolerances: Tolerance) -> Tolerance:
-    return max(tolerances, key=lambda each: each.value)
-
-
 def rounded_up(value: float) -> float:
     """The next number with one digit.
 

@@ -131,6 +131,7 @@ SOLIDS: dict[str, tuple[Values, Values, dict[str, Array]]] = {
         },
     ),
 }
+PLACES = ("outside", "inside")  # sides of a solid's surface
 SUMMED = 1 << 12  # samples whose weights are summed
 DRAWN_SUM = Term(5e-3, "a sum of 4096 draws")
 
@@ -290,10 +291,6 @@ def steepness(density: Array) -> Array:
     return 1.0 + np.sqrt(4.0 * np.pi * density)
 
 
-def place(inside: bool) -> str:
-    return "inside" if inside else "outside"
-
-
 def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
     """Deviations of samples from their density, in standard deviations, for materials at views.
 
@@ -395,7 +392,7 @@ SAMPLE = sum_of(
 
 def _wrong_part(case: Case) -> Diagnosis:
     rows = ((key, inside) for key, inside, each in parts(case) if SAMPLE.wrong(each).any())
-    wrong = (Cause(Kind.DEFECT, key, (place(inside),)) for key, inside in dict.fromkeys(rows))
+    wrong = (Cause(Kind.DEFECT, key, (PLACES[inside],)) for key, inside in dict.fromkeys(rows))
     return Diagnosis(tuple(wrong))
 
 
@@ -687,7 +684,7 @@ ROWS = (
           explain=lambda case: defect(
               "drawn_density",
               *dict.fromkeys(
-                  place(inside) for score, inside, _ in scores(case) if score > MOST_DEVIATIONS))),
+                  PLACES[inside] for score, inside, _ in scores(case) if score > MOST_DEVIATIONS))),
     PATHS(key="sample",
           claim="A draw's weight times its density is the value in its direction, and its density that of material_pdf.",
           applies=DRAWN, measure=lambda case: (each for *_, each in parts(case)), tolerance=SAMPLE,

@@ -197,13 +197,7 @@ class Graph(Nodes):
 
                 return dimmed, self._sources(path, ports)
 
-        def combined(*values: Bsdf | Array) -> Bsdf:
-            try:
-                return operation(*values)
-            except ValueError as error:
-                raise OutsideModel(f"reference: node {node.getNamePath()!r}: {error}") from None
-
-        return combined, self._sources(path, ports)
+        return partial(_applied, node, operation), self._sources(path, ports)
 
     def _sources(self, path: Path, names: tuple[str, ...]) -> tuple[Path, ...]:
         return tuple(self._source(path, name) for name in names)
@@ -348,10 +342,7 @@ def _radiance(
     row: Emission, ports: tuple[str, ...], points: ShadingPoints, *values: Array
 ) -> Array:
     wo, _ = points.own
-    try:
-        return row.value(wo, _rows(ports, values, len(wo)))
-    except ValueError as error:
-        raise OutsideModel(f"reference: node {row.category!r}: {error}") from None
+    return row.value(wo, _rows(ports, values, len(wo)))
 
 
 def _utility(row: utilities.UtilityNode, *values: Array) -> Array | Mapping[str, Array]:

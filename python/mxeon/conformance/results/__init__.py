@@ -318,10 +318,9 @@ class Result(BriefRepr):
 
 def assert_verdict(word: object) -> Verdict:
     """Return a verdict; raise InputError for any other word."""
-    for verdict in VERDICTS:
-        if word == verdict:
-            return verdict
-    raise InputError(f"verdict must be one of {', '.join(VERDICTS)}; got {word!r}")
+    if word not in VERDICTS:
+        raise InputError(f"verdict must be one of {', '.join(VERDICTS)}; got {word!r}")
+    return word
 
 
 @dataclass(frozen=True)

@@ -50,9 +50,6 @@ def lobe_errors(
     }
 
 
-EXTINCTIONS = (("extinction", 0, 6), ("extinction", 1, 6))  # edges with index 0 and 1
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
     """A node that scatters light as defined by a row."""
@@ -209,7 +206,9 @@ class PbrSpec(ScatteringSpec):
         rng = samples.generator()
         wo, wi = samples.special_directions(rng)
         inputs = self.random_inputs(rng, len(wo), edged=True)
-        for name, start, step in (("roughness", 0, 4), ("ior", 0, 3), *EXTINCTIONS):
+        # Extinctions of 0 meet indices of 0 and others.
+        zeros = ("roughness", 0, 4), ("ior", 0, 3), ("extinction", 0, 6), ("extinction", 1, 6)
+        for name, start, step in zeros:
             if name in inputs:
                 inputs[name][start::step] = 0.0
         wi = wi * [1.0, 1.0, self.side]
