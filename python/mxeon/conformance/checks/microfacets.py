@@ -467,14 +467,11 @@ def rough_refraction(case: Case) -> Compared:
 def through_sphere(wo: Array, index: Array, facet: Array = UPWARD) -> Array:
     """Direction of a view after a solid sphere refracts it twice, (N, 3), at its normal or at a facet.
 
-    The ray meets the far surface at the same angle, so it turns by the same amount twice.
+    The ray meets the far surface at the same angle, so it turns by the same amount twice: by a half turn about
+    the ray inside.
     """
     inner = refraction_direction(wo, facet, index)
-    far = inner * 2.0 * np.sum(inner * facet, axis=-1, keepdims=True) - facet  # pointing inwards
-    cosine = -np.sum(inner * far, axis=1, keepdims=True)
-    n = index[:, np.newaxis]
-    out = np.sqrt(np.maximum(1.0 - n * n * (1.0 - cosine * cosine), 0.0))
-    return np.asarray(n * inner + (n * cosine - out) * far)
+    return np.asarray(wo - 2.0 * np.sum(wo * inner, axis=1, keepdims=True) * inner)
 
 
 def _smooth(case: Case) -> Batch:
