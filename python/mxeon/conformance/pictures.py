@@ -302,11 +302,9 @@ def _input_at_fault(
             left[name] = max(float(np.abs(difference(*each)).max()) for each in shown)
     nearest = min(left, key=left.__getitem__, default="")
     if not nearest or left[nearest] > 0.5 * left.get("", np.inf):
-        return results.quoted("no input alone is at fault")
-    return results.quoted(
-        f"mostly its {nearest}: without it, the largest difference is {left[nearest]:.2g} "
-        f"instead of {left['']:.2g}"
-    )
+        return Diagnosis((Cause(Kind.UNKNOWN, "no_input"),))
+    sizes = left[nearest], left[""]
+    return Diagnosis((Cause(Kind.DEFECT, "input_at_fault", (nearest,), sizes),))
 
 
 def _known(shader: Shader) -> Diagnosis | None:

@@ -194,6 +194,7 @@ DEFECTS = {
     "wrong_effect": "no effect, or a wrong one: {all}",
     "inputs_without_effect": "inputs without effect: {all}",
     "input_ignored": "{0} is ignored",
+    "input_at_fault": "mostly its {0}: without it, the largest difference is {x:.2g} instead of {whole:.2g}",
     "not_zero": "{0} {constant}{place} (branches: {rest})",
     **dict.fromkeys(STATES, SUMS),
     **dict.fromkeys(FRAMES, "{share} frames are wrong{states}"),
@@ -279,6 +280,7 @@ SAME_FACTOR = 0.005
 UNKNOWN = {
     "unknown": "the cause is unknown",
     "no_model": "it matches no known mistake",
+    "no_input": "no input alone is at fault",
     "singly_right": "each value on its own is within tolerance",
     "other_average": "the compensation uses a different average of the film's reflectance",
     "unmasked": "the visible facets are not weighted by masking and shadowing",
@@ -396,6 +398,7 @@ def _filled(text: str, cause: Cause) -> str:
         * bool(cause.names),
         "constant": f"{cause.values[0]:.3g}" if cause.values else "not 0",
         "times": times,
+        "whole": cause.values[-1] if cause.values else math.nan,
         "also": f" and {times} times as bright" * bool(times),
     }
     return text.format(*cause.names, x=factor, text=cause.text, branch=cause.branch, **several)
