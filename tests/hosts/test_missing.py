@@ -37,6 +37,8 @@ MODULES = [  # host, a module that imports a package, the package, and the expec
     ("vulkan", "vulkan.wgpu", r"wgpu is not installed; pip install '\.\[vulkan\]'"),
     ("wgsl", "vulkan.wgpu", "wgpu is not installed"),
     ("hlsl", "vulkan.wgpu", "wgpu is not installed"),
+    ("naga", "vulkan.wgpu", "wgpu is not installed"),
+    ("dxc", "translated.dxc", r"compushady is not installed; pip install '\.\[dxc\]'"),
     (
         "shadewire",
         "shadewire.mtlx",

@@ -29,9 +29,17 @@ def start(name: str) -> Engine:
 
             return VulkanHost()
         case "hlsl":
-            from mxeon.hosts.hlsl import HlslHost
+            from mxeon.hosts.translated import HlslHost
 
             return HlslHost()
+        case "dxc":
+            from mxeon.hosts.translated import DxcHost
+
+            return DxcHost()
+        case "naga":
+            from mxeon.hosts.translated import NagaHost
+
+            return NagaHost()
         case "wgsl":
             from mxeon.hosts.wgsl import WgslHost
 
@@ -93,6 +101,8 @@ HOSTS = (
     Row("webgl", "essl", "pairs", scenes=(SIDE, BACK, WHITE_LIGHT)),
     Row("vulkan", "vulkan", "pairs"),
     Row("hlsl", "vulkan", "pairs"),
+    Row("dxc", "vulkan", "pairs"),
+    Row("naga", "vulkan", "pairs"),
     Row("wgsl", "wgsl", "pairs"),
     Row("slang", "slang", "pairs"),
     Row("osl", "osl", "closures"),

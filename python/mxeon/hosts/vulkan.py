@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A Vulkan device without a window: generated Vulkan GLSL as SPIR-V, in float32.
 
-glslang generates the SPIR-V, and wgpu passes it to the driver. wgpu rejects interface blocks, so the unused block of an
-evaluation is removed from the SPIR-V.
+glslang generates the SPIR-V; naga, which is part of wgpu, validates it and writes it again for the driver. naga rejects
+interface blocks, so the unused block of an evaluation is removed from the SPIR-V.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ except ImportError:
 
 COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin")
 REMOVER = ("spirv-opt", "--remove-unused-interface-variables")
+APT = "on Debian: apt-get install"
 TIMEOUT = 60.0  # seconds for one run of a compiler
 
 # wgpu's kinds of bindings.
@@ -67,26 +68,24 @@ class VulkanHost(FragmentHost):
     name = "vulkan"
     target = "vulkan"
     path: ClassVar[str] = ""  # name of the converter
-    # Debian's packages of the programs that it runs.
+    # Programs that it runs, and how to install them.
     programs: ClassVar[tuple[tuple[str, str], ...]] = (
-        (COMPILER[0], "glslang-tools"),
-        (REMOVER[0], "spirv-tools"),
+        (COMPILER[0], f"{APT} glslang-tools"),
+        (REMOVER[0], f"{APT} spirv-tools"),
     )
     interfaces: ClassVar[tuple[str, ...]] = ("Vulkan",)  # wgpu's names of driver interfaces
 
     def __init__(self) -> None:
         if wgpu is None:
             raise NotRun(f"{self.name}: wgpu is not installed; {install('vulkan')}")
-        for program, package in self.programs:
+        for program, remedy in self.programs:
             if shutil.which(program) is None:
-                raise NotRun(
-                    f"{self.name}: no program {program!r}; on Debian: apt-get install {package}"
-                )
+                raise NotRun(f"{self.name}: no program {program!r}; {remedy}")
         adapters = wgpu.gpu.enumerate_adapters_sync()
         found = [each for each in adapters if each.info["backend_type"] in self.interfaces]
         if not found:
-            remedy = "on Debian: apt-get install mesa-vulkan-drivers"
-            raise NotRun(f"{self.name}: no {' or '.join(self.interfaces)} device; {remedy}")
+            interfaces = " or ".join(self.interfaces)
+            raise NotRun(f"{self.name}: no {interfaces} device; {APT} mesa-vulkan-drivers")
         self._adapter = found[0]
         self._device = self._adapter.request_device_sync()
         self._programs: dict[str, tuple[tuple[Resource, ...], Resource]] = {}
@@ -231,15 +230,15 @@ def spirv(stage: str, text: str) -> bytes:
         return used.read_bytes()
 
 
-def run(command: Sequence[str], text: str = "") -> None:
+def run(command: Sequence[str], text: str = "", host: str = "vulkan") -> None:
     try:
         process = subprocess.run(
             command, input=text, capture_output=True, text=True, timeout=TIMEOUT, errors="replace"
         )
     except subprocess.TimeoutExpired:
-        raise NotRun(f"vulkan: {command[0]} takes longer than {TIMEOUT:.0f} s") from None
+        raise NotRun(f"{host}: {command[0]} takes longer than {TIMEOUT:.0f} s") from None
     if process.returncode:
-        raise refused("vulkan", process.stdout + process.stderr, text)
+        raise refused(host, process.stdout + process.stderr, text)
 
 
 def _std140(members: str, uniforms: raster.Uniforms) -> bytes:
