@@ -162,6 +162,8 @@ WRONG = {
     f"{OSL} '\0'": "no null character",
     f"{OSL} \udcff.mtlx": "arguments must be UTF-8, file names too; got ",
     f"generate {LOOK} --outputPath out": "required: --target",
+    f"{OSL} look.mtlx --path nowhere": "--path: must name a folder that exists; got 'nowhere'",
+    "check kit": "must hold MaterialX documents",
     f"check {LOOK} --host abacus": "host must be one of gl",
     f"check {LOOK} --host cycels": "got 'cycels': did you mean cycles?",
     f"check {LOOK} --library mine": "library must be one of eonlib, diffuse, stock",
@@ -181,6 +183,11 @@ WRONG = {
     f"chek {LOOK}": "got 'chek': did you mean check?",
     f"render {LOOK} --integrator path --output out.jpg": "output must end in .exr or .png; got",
     f"render {LOOK} --integrator path --output folder.png": "folder.png: must be accessible; not a re",
+    "explore nowhere.mtlx --output out.html": "must be a readable file",
+    "explore --report nowhere --output out.html": "nowhere",
+    f"explore {CLAY} --workers 0 --maxSize 10 --output out.html": "raise it with --maxSize",
+    f"explore {CLAY} --workers 0 --maxShaders 0 --output out.html": "got 2: raise it with --maxShaders",
+    f"explore {CLAY} --workers -1 --output out.html": "workers must be at least 0",
     f"explore {LOOK} --output out.txt": "output must end in .html; got 'out.txt'",
     "report field run --output out.txt": "output must end in .html; got 'out.txt'",
     "doc nodes.md --output kit": "kit: must be accessible; not a regular file",
@@ -188,7 +195,12 @@ WRONG = {
     f"check {LOOK} --report nodes.md/out": "nodes.md: must be a folder; File exists",
     "kit check kit --report nodes.md": "nodes.md: must be a folder; File exists",
     "kit export nodes.md": "nodes.md: must be a folder; File exists",
-    "library --export lib": "lib: must be a new or empty folder",
+    "library --export lib": "lib: must be a new or empty folder, or end in .zip",
+    "library --export nodes.md": "nodes.md: must be a new or empty folder, or end in .zip",
+    "kit export lib": "must be new, empty or a kit",
+    "kit export out --node studio_rough": ": load its definition by --definitions FOLDER",
+    "kit export out --node conductor_bsdf": "got 'conductor_bsdf', which lacks color and roughness",
+    "kit export out --node uniform_edf": ", which lacks roughness",
     f"generate {LOOK} --target osl --outputPath nodes.md": "nodes.md: must be a folder; File exists",
     f"render {LOOK} --integrator path --library nosuch --output out.png": "or a folder that exists; got 'nosuch'",
     f"check {LOOK} --waitForWorkers -1": "waitForWorkers must be positive and at most 1e+06 s; got -1",
@@ -296,14 +308,6 @@ def test_a_second_run_replaces_its_own_outputs(tmp_path, monkeypatch):
     (tmp_path / "t.md").write_text("@MX_TABLE_sheen_bsdf@")
     for _ in range(2):
         assert main(["doc", "t.md", "--library", "lib", "--output", "lib/nodes.md"]) == PASSED
-
-
-def test_a_kit_is_written_over_a_kit_alone(tmp_path, monkeypatch, capsys):
-    (tmp_path / "README.md").write_text("mine")
-    monkeypatch.chdir(tmp_path)
-    assert main(["kit", "export", "."]) == MISUSE
-    assert "must be new, empty or a kit" in capsys.readouterr().err
-    assert [each.name for each in tmp_path.iterdir()] == ["README.md"]
 
 
 def generated(folder):

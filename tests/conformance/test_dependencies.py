@@ -6,7 +6,6 @@ import re
 import pytest
 
 from mxeon import check
-from mxeon.cli import main
 from mxeon.errors import InputError
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.library import examples_folder
@@ -70,19 +69,6 @@ def test_what_a_document_names_is_a_dependency(tmp_path, monkeypatch):
         path.write_text(f"{text}\n")
         assert refusal(folder, [file]) == str(path)
         path.write_text(text)
-
-
-def test_a_texture_that_changed_is_named_and_the_run_not_resumed(run, capsys):
-    folder, file = run
-    (file.parent / "grid.png").write_bytes(b"other")
-    command = ["check", str(file), "--library", "eonlib", "--report", str(folder), "--resume"]
-    command.append("--allowCode")
-    assert main(command) == 2
-    error = capsys.readouterr().err
-    assert (
-        error.endswith(f"run ({file.parent / 'grid.png'}); use a new folder, or omit --resume\n")
-        and error.count("\n") == 1
-    )
 
 
 def test_an_option_that_changed_is_named(run):

@@ -275,21 +275,6 @@ def test_a_kit_may_show_a_node_of_a_studios_own(tmp_path, capsys):
     assert "none of the 8 pictures is there" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    "node, words",
-    [
-        ("studio_rough", ": load its definition by --definitions FOLDER"),
-        ("conductor_bsdf", ", which lacks color and roughness"),
-        ("uniform_edf", ", which lacks roughness"),
-    ],
-)
-def test_a_node_that_has_no_color_and_roughness_is_refused(tmp_path, capsys, node, words):
-    assert main(["kit", "export", str(tmp_path / "kit"), "--node", node]) == 2
-    error = capsys.readouterr().err
-    assert "node must be a BSDF with the inputs color" in error and error.endswith(f"{words}\n")
-    assert not (tmp_path / "kit").exists()
-
-
 def test_a_missing_picture_is_not_run(kit):
     render(kit, "true_back").unlink()
     run = check_kit(kit)

@@ -6,9 +6,8 @@ import re
 import MaterialX as mx
 import pytest
 
-from mxeon.errors import DocumentError
 from mxeon.shaders.document.reading import read_document
-from tests.support.documents import lobe, material
+from tests.support.documents import lobe, material, refusal
 
 TEXT = material(lobe()).split("\n", 1)[1].replace("<surface ", '<surface doc="{}" ')
 WORDS = "löök \N{GREEK SMALL LETTER RHO}"
@@ -49,28 +48,20 @@ def test_an_encoding_is_read_as_materialx_reads_it(tmp_path, name, encoding, wor
 def test_other_encodings_are_refused_in_one_line(tmp_path, encoding):
     text = DECLARED.format(encoding) + TEXT.format("löök")
     for data in (text.encode(encoding), text.encode()):
-        with pytest.raises(DocumentError) as refused:
-            read_document(written(tmp_path, data))
-        assert re.search(
-            "must be (a MaterialX document )?in UTF-8; |XML parse error", str(refused.value)
-        )
-        assert "\n" not in str(refused.value)
+        message = refusal(written(tmp_path, data))
+        assert re.search("must be (a MaterialX document )?in UTF-8; |XML parse error", message)
 
 
 def test_bytes_that_are_no_text_are_refused_with_their_place(tmp_path):
-    data = TEXT.format("löök").encode() + b"\xff\xff\xff"
-    with pytest.raises(DocumentError, match=r"must be a MaterialX document in UTF-8.*byte \d"):
-        read_document(written(tmp_path, data))
+    message = refusal(written(tmp_path, TEXT.format("löök").encode() + b"\xff\xff\xff"))
+    assert re.search(r"must be a MaterialX document in UTF-8.*byte \d", message)
 
 
 @pytest.mark.parametrize("end", ["<!-- open", '<a name="<', "<![CDATA[", "<?open", "<a <b>/>", "&"])
 def test_what_materialx_does_not_read_is_refused(tmp_path, end):
     path = written(tmp_path, TEXT.format("look").replace("</materialx>", end).encode())
-    with pytest.raises(DocumentError, match="must be a MaterialX document; XML parse error"):
-        read_document(path)
+    assert "must be a MaterialX document; XML parse error" in refusal(path)
 
 
 def test_lines_keep_their_numbers(tmp_path):
-    path = written(tmp_path, b"<!-- a\nb -->\n<materialx>\n\n<a")
-    with pytest.raises(DocumentError, match="line 5"):
-        read_document(path)
+    assert "line 5" in refusal(written(tmp_path, b"<!-- a\nb -->\n<materialx>\n\n<a"))

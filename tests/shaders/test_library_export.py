@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 import mxeon
-from mxeon.cli import main
 from mxeon.shaders.library import SOURCE_FOLDERS, TESTED, data_folder
 from mxeon.shaders.library_export import export_library, recipes
 from tests.support.availability import program
@@ -47,19 +46,6 @@ def test_an_archive_is_a_copy_under_its_name_and_the_same_each_time(copy, tmp_pa
     with zipfile.ZipFile(first) as archive:
         archive.extractall(tmp_path)
     assert contents(tmp_path / "eonlib-1.0") == contents(copy)
-
-
-@pytest.mark.parametrize("name", ["full", "file"])
-def test_what_is_in_the_way_is_one_line_and_stays_as_it_is(tmp_path, capsys, name):
-    (tmp_path / "full").mkdir()
-    (tmp_path / "full" / "mine.txt").write_text("mine")
-    (tmp_path / "file").write_text("mine")
-    before = contents(tmp_path)
-    assert main(["library", "--export", str(tmp_path / name)]) == 2
-    assert capsys.readouterr().err == (
-        f"mxeon: {tmp_path / name}: must be a new or empty folder, or end in .zip\n"
-    )
-    assert contents(tmp_path) == before
 
 
 # --- versions of MaterialX ------------------------------------------------------------------------

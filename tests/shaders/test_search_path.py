@@ -76,12 +76,6 @@ def test_the_command_searches_folders(home, workers, capfd, monkeypatch):
     assert str(home.parent / "shared/maps/a.exr") in Path("out/look.look.osl").read_text()
 
 
-def test_a_folder_of_the_path_must_exist(home, capsys):
-    command = ["generate", "look.mtlx", "--target", "osl", "--outputPath", "o"]
-    assert main([*command, "--path", "nowhere"]) == 2
-    assert "--path: must name a folder that exists; got 'nowhere'" in capsys.readouterr().err
-
-
 def test_a_missing_image_is_an_error_to_render_and_check(home, capfd, gl, judged):
     path = written(home, textured(["none.exr"]))
     error = 'input "i0/file" must name a file that exists; got none.exr: --path FOLDER'
