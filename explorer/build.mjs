@@ -7,6 +7,32 @@ import { build } from "esbuild";
 
 const TEMPLATE = "../python/mxeon/explorer/explorer.html";
 
+// GLSL functions whose vec3 is a direction (wo, wi) or a color: as JavaScript, for one channel in float64.
+const float64 = (glsl) =>
+  glsl
+    .replace(/\/\/.*|^#include.*/gm, "")
+    .replace(/^#define (\w+) (.+)/gm, "const $1 = $2;")
+    .replace(/^(?:float|vec3) (?=\w+\()/gm, "export function ")
+    .replace(/\b(?:float|vec3) (?=\w+ =)/g, "let ")
+    .replace(/\b(?:float|vec3) (?=\w)|\bvec3(?=\()/g, "")
+    .replace(/\b(w[io])\.([xyz])/g, (_, direction, axis) => `${direction}[${"xyz".indexOf(axis)}]`)
+    .replace(/\b(abs|max|min|sqrt)(?=\()/g, "Math.$1");
+const MODELS = [
+  "../genglsl/lib/eon.glsl",
+  "../genglsl/sampling/oren_nayar_family.glsl",
+  "src/stage/variants.glsl",
+];
+const models = {
+  name: "models",
+  setup({ onResolve, onLoad }) {
+    onResolve({ filter: /^glsl:models$/ }, ({ path }) => ({ path, namespace: "glsl" }));
+    onLoad({ filter: /.*/, namespace: "glsl" }, async () => {
+      const texts = await Promise.all(MODELS.map((file) => readFile(file, "utf8")));
+      return { contents: texts.map(float64).join("\n") };
+    });
+  },
+};
+
 const { outputFiles } = await build({
   entryPoints: { page: "src/main.tsx" },
   outdir: "out",
@@ -18,6 +44,7 @@ const { outputFiles } = await build({
   charset: "ascii",
   legalComments: "none",
   loader: { ".glsl": "text" },
+  plugins: [models],
 });
 const text = (suffix) => outputFiles.find((file) => file.path.endsWith(suffix)).text.trim();
 const hash = (content) => `'sha256-${createHash("sha256").update(content).digest("base64")}'`;

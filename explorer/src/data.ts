@@ -83,7 +83,7 @@ export interface ShaderSource {
 
 /** Result of `mxeon check` for a material: its pictures on gl compared with the reference. */
 export interface Checked {
-  readonly kind: "correct" | "wrong" | "differs" | "unknown";
+  readonly kind: "correct" | "within" | "wrong" | "differs" | "unknown";
   readonly text: string;
 }
 

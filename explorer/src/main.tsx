@@ -5,9 +5,7 @@ import { render } from "preact";
 import { fromAddress, toAddress } from "./address";
 import { App } from "./app";
 import type { PageData } from "./data";
-import * as albedo from "./models/albedo";
-import * as inversion from "./models/inversion";
-import * as table from "./models/table";
+import { albedoDir, model, rhoFromAlbedo } from "./models/table";
 import type { Stage } from "./stage";
 import type { State } from "./state";
 import { pageData } from "./texts";
@@ -19,7 +17,7 @@ interface Hook {
   state: () => State;
   show: (state: State) => void;
   readonly data: PageData;
-  readonly models: typeof albedo & typeof inversion & typeof table;
+  readonly models: typeof models;
   readonly toAddress: (state: State) => string;
   readonly fromAddress: (address: string) => State;
 }
@@ -28,10 +26,11 @@ declare global {
   var mxeon: Hook | undefined;
 }
 
+const models = { albedoDir, model, rhoFromAlbedo };
 const data = pageData(document.getElementById("data")!.textContent!);
 const hook = {
   data,
-  models: { ...albedo, ...inversion, ...table },
+  models,
   toAddress: (state: State) => toAddress(state, data),
   fromAddress: (address: string) => fromAddress(address, data),
 };

@@ -10,8 +10,11 @@ import { largestApart, worstPoint } from "./probe";
 import type { Side, State } from "./state";
 import { actualModel, hasTable, meantModel, type Sources, sourceOf, valuesOf } from "./view";
 
-/** "differs": from the reference, in a way that the specification permits. */
-export type Kind = "correct" | "wrong" | "differs" | "model" | "unknown" | "measuring";
+/**
+ * "within": a visible difference within the tolerance. "differs": from the reference, in a way that
+ * the specification permits.
+ */
+export type Kind = "correct" | "within" | "wrong" | "differs" | "model" | "unknown" | "measuring";
 
 export interface Verdict {
   readonly kind: Kind;
@@ -40,10 +43,17 @@ export interface Evidence {
   readonly failure: string; // compiler message if the shader does not compile
 }
 
-const BADGES = { correct: "correct", wrong: "wrong", differs: "allowed", unknown: "material" };
-const MEASURING = "Its values are being read back.";
-const UNCHECKED = "Not judged by this page: run mxeon check on a document with these inputs.";
-const UNREAD = "Nothing is measured: this browser draws no shader.";
+const BADGES = {
+  correct: "correct",
+  within: "within tolerance",
+  wrong: "wrong",
+  differs: "allowed",
+  unknown: "material",
+};
+const VISIBLE = 0.01; // approximate smallest visible difference, as a share of white
+const MEASURING = "Reading its values back.";
+const UNCHECKED = "Not judged here: run mxeon check on a document with these inputs.";
+const UNREAD = "Not measured: this browser draws no shader.";
 
 /** The verdict on a side for the colors, roughness and light of a view. */
 export function verdictOn(state: State, sources: Sources, side: Side, evidence: Evidence): Verdict {
@@ -58,8 +68,8 @@ export function verdictOn(state: State, sources: Sources, side: Side, evidence: 
     if (checked) {
       const { kind } = checked;
       // This browser's values may be wrong where `mxeon check` is right.
-      if (own && kind === "correct" && own.kind !== "unknown") {
-        if (own.kind === "correct") return { ...own, text };
+      if (own && isRight(kind) && own.kind !== "unknown") {
+        if (isRight(own.kind)) return { kind, badge: BADGES[kind], text };
         // The page has no permitted forms of layers, so the result of `mxeon check` stands.
         if (own.kind !== "differs" || changed) return own;
         return { kind, badge: BADGES[kind], text: `${text} ${own.text}` };
@@ -78,6 +88,10 @@ export function verdictOn(state: State, sources: Sources, side: Side, evidence: 
     return { kind: "model", badge: actual.short, text: `The model itself: ${actual.title}.` };
   }
   return byModel(actual, evidence);
+}
+
+function isRight(kind: Kind): boolean {
+  return kind === "correct" || kind === "within";
 }
 
 /** Whether the inputs of a document's material have changed since `mxeon check` judged it. */
@@ -109,8 +123,9 @@ function byReference(source: ShaderSource, { able, errors }: Evidence): Verdict 
   ].filter(({ error, bound }) => !(error <= bound));
   if (places.length === 0) {
     const [first, second] = [show(direct.error, 2), show(white.error, 2)];
-    const text = `Within ${first} of float64 in direct light, and ${second} in white surroundings.`;
-    return { kind: "correct", badge: "correct", text };
+    const text = `Within ${first} of float64 in direct light, ${second} in white surroundings.`;
+    const kind = direct.error > VISIBLE || white.error > VISIBLE ? "within" : "correct";
+    return { kind, badge: BADGES[kind], text };
   }
   const parts = places.map(({ error, light }) => `${show(error, 2)} in ${light}`);
   const title = places.find(({ form }) => form)?.form?.title;

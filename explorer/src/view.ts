@@ -64,7 +64,7 @@ export function hasFlag(source: Source): boolean {
 /** A short name for a side. */
 export function shortTitle(source: Source, side: Side): string {
   if (source.kind === "model") return source.title.split(":")[0]!.replace(/.*\((.*)\)$/, "$1");
-  if (hasFlag(source)) return `${source.library}, flag ${side.flag ? "on" : "off"}`;
+  if (hasFlag(source)) return `${source.library}, energy_compensation ${side.flag}`;
   return source.title;
 }
 

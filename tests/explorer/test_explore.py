@@ -216,7 +216,7 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
         assert f"<b>{title}</b> on gl: {look}" in report
         wrong = result.verdict == FAILED
         assert source["checked"] == {
-            "kind": "wrong" if wrong else "correct",
+            "kind": "wrong" if wrong else "within" if size.is_visible else "correct",
             "text": f"mxeon check: {look}.",
         }
         assert bool(source["pages"]) == wrong
@@ -227,7 +227,8 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
             assert f"<td>{words.size(size)}</td>" in report and sentence in junit
     with opened(browser, out.as_uri(), drawn=False) as page:
         for side, result in zip(("left", "right"), found, strict=True):
-            judged(page, side, "wrong" if result.verdict == FAILED else "correct")
+            passed = "within tolerance" if result.difference.is_visible else "correct"
+            judged(page, side, "wrong" if result.verdict == FAILED else passed)
 
 
 def test_the_help_has_the_limit_of_materials_of_a_page(capsys):

@@ -103,10 +103,10 @@ def test_the_color_changes_the_picture_and_the_albedo(page):
 
 def test_the_flag_is_drawn_and_judged(page):
     judged(page, "right", "not EON")
-    page.locator(".side.right").get_by_label("energy_compensation").uncheck()
+    page.locator(".side.right").get_by_role("checkbox", name="energy_compensation").uncheck()
     judged(page, "right", "not QON")
     assert "surroundings" in page.locator(".side.right .verdict").inner_text()
-    page.locator(".side.left").get_by_label("energy_compensation").uncheck()
+    page.locator(".side.left").get_by_role("checkbox", name="energy_compensation").uncheck()
     judged(page, "left", "QON")
 
 
@@ -278,7 +278,7 @@ def test_the_python_line_runs_and_gives_the_value(page):
 
 def test_the_copied_document_is_the_material_in_sight(page):
     show(page, roughness=0.25, color=[0.5, 0.25, 0.125])
-    page.locator(".side.left").get_by_label("energy_compensation").uncheck()
+    page.locator(".side.left").get_by_role("checkbox", name="energy_compensation").uncheck()
     text = copied(page, "A", "MaterialX")
     values = {port.name: port.value for port in mxeon.generate(text, "essl")[0].inputs}
     assert values["lobe_color"] == (0.5, 0.25, 0.125) and values["lobe_roughness"] == 0.25

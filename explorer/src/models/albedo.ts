@@ -1,50 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional and average albedos: the TypeScript version of python/mxeon/models/diffuse.py, and of
-// quadrature.py for models without a closed form.
+// Directional albedos by quadrature, for models without a closed form, and the inverse of albedos.
 
-import type { Triple } from "../data";
-import type { Brdf } from "./brdf";
-import { C1, C2, eonDenominator, fonAf, fonLoss, qonAq, qonBq } from "./formulas";
+import type { Triple, Vec3 } from "../data";
 
 const { PI } = Math;
 
-/** Directional albedo of one channel; `parameter` is roughness, or sigma in radian. */
-export type AlbedoDir = (mu: number, rho: number, parameter: number) => number;
-/** Average albedo of one channel. */
-export type AlbedoAvg = (rho: number, parameter: number) => number;
-
-/** Directional albedo of QON at unit reflectance: [Portsmouth2025], Eqs. (5), (8). */
-export function qonAlbedoDir(mu: number, sigma: number): number {
-  const gOverPi = C1 - fonLoss(mu) + (2.0 / (3.0 * PI)) * Math.sqrt((1.0 - mu) * (1.0 + mu));
-  return qonAq(sigma) + qonBq(sigma) * gOverPi;
-}
-
-/** Average albedo of QON at unit reflectance: [Portsmouth2025], Eq. (9). */
-export function qonAlbedoAvg(sigma: number): number {
-  return qonAq(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * PI)) * qonBq(sigma);
-}
-
-/** Directional albedo of FON at unit reflectance: [Portsmouth2025], Eqs. (12), (13). */
-export function fonAlbedoDir(mu: number, roughness: number): number {
-  return 1.0 - roughness * fonLoss(mu) * fonAf(roughness);
-}
-
-/** Average albedo of FON at unit reflectance: [Portsmouth2025], Eqs. (15), (29). */
-export function fonAlbedoAvg(roughness: number): number {
-  return (1.0 + C2 * roughness) * fonAf(roughness);
-}
-
-/** Directional albedo of EON: [Portsmouth2025], Eq. (28). */
-export const eonAlbedoDir: AlbedoDir = (mu, rho, roughness) =>
-  eonAlbedo(fonLoss(mu), rho, roughness);
-
-/** Average albedo of EON: [Portsmouth2025], Eqs. (15), (28), averaged. */
-export const eonAlbedoAvg: AlbedoAvg = (rho, roughness) => eonAlbedo(C1 - C2, rho, roughness);
-
-/** Albedo of EON where FON loses r A loss. */
-function eonAlbedo(loss: number, rho: number, r: number): number {
-  return rho * (1.0 - ((1.0 - rho) * r * loss) / eonDenominator(rho, r));
-}
+/** Value of one channel for a pair of directions; `parameter` is roughness, or sigma in radian. */
+export type Brdf = (wo: Vec3, wi: Vec3, rho: number, parameter: number) => number;
 
 /**
  * Directional albedo of a model symmetric about the plane of incidence, by Gauss-Legendre rules.
@@ -107,4 +69,20 @@ function unitIntervalRule(nodes: number): [number[], number[]] {
   }
   rules.set(nodes, [x, weight]);
   return [x, weight];
+}
+
+/**
+ * Argument in [0, 1] where an increasing function has this value, or the nearer end of the
+ * interval.
+ */
+export function bisect(growing: (rho: number) => number, value: number): number {
+  if (growing(1.0) <= value) return 1.0;
+  if (growing(0.0) >= value) return 0.0;
+  let [low, high] = [0.0, 1.0];
+  for (let step = 0; step < 48; step++) {
+    const middle = 0.5 * (low + high);
+    if (growing(middle) < value) low = middle;
+    else high = middle;
+  }
+  return 0.5 * (low + high);
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of models and known defects, one row each: the TypeScript version of
-// python/mxeon/models/table.py.
+// The models and known defects, one row each as in python/mxeon/models/table.py; their functions are
+// the GLSL of the page in float64.
 
+import * as glsl from "glsl:models";
 import type { ModelName, Vec3 } from "../data";
-import * as albedo from "./albedo";
-import * as models from "./brdf";
-import type { Brdf } from "./brdf";
-import { bisect, eonRhoFromAlbedoAvg, eonRhoFromAlbedoNormal } from "./inversion";
-import * as defects from "./known_defects";
+import { albedoDirQuadrature, bisect, type Brdf } from "./albedo";
+
+/** Directional albedo of one channel; `parameter` is roughness, or sigma in radian. */
+type AlbedoDir = (mu: number, rho: number, parameter: number) => number;
+/** Average albedo of one channel. */
+type AlbedoAvg = (rho: number, parameter: number) => number;
 
 export interface Model {
   readonly name: ModelName;
@@ -15,8 +17,8 @@ export interface Model {
   readonly short: string; // short title
   readonly brdf: Brdf;
   readonly parameter: "roughness" | "sigma" | null;
-  readonly albedoDir: albedo.AlbedoDir | null; // closed form, if known
-  readonly albedoAvg: albedo.AlbedoAvg | null;
+  readonly albedoDir: AlbedoDir | null; // closed form, if known
+  readonly albedoAvg: AlbedoAvg | null;
   /** Only defects: the intended model, and where the defect differs from it. */
   readonly meant: ModelName | null;
   readonly wrong: string;
@@ -28,11 +30,11 @@ type White = (...of: number[]) => number;
  * Convert `white(..., parameter)`, an albedo at unit reflectance, to a function of rho and the
  * parameter.
  */
-function tintedDir(white: White): albedo.AlbedoDir {
+function tintedDir(white: White): AlbedoDir {
   return (mu, rho, parameter) => rho * white(mu, parameter);
 }
 
-function tintedAvg(white: White): albedo.AlbedoAvg {
+function tintedAvg(white: White): AlbedoAvg {
   return (rho, parameter) => rho * white(parameter);
 }
 
@@ -44,37 +46,37 @@ export const MODELS: readonly Model[] = [
     name: "eon",
     title: "energy-preserving Oren-Nayar (EON)",
     short: "EON",
-    brdf: models.eonBrdf,
+    brdf: glsl.eon_brdf,
     parameter: "roughness",
-    albedoDir: albedo.eonAlbedoDir,
-    albedoAvg: albedo.eonAlbedoAvg,
+    albedoDir: glsl.eon_albedo_dir,
+    albedoAvg: glsl.eon_albedo_avg,
   },
   {
     ...MODEL,
     name: "qon",
     title: "qualitative Oren-Nayar (QON)",
     short: "QON",
-    brdf: models.qonBrdf,
+    brdf: glsl.qon_brdf,
     parameter: "sigma",
-    albedoDir: tintedDir(albedo.qonAlbedoDir),
-    albedoAvg: tintedAvg(albedo.qonAlbedoAvg),
+    albedoDir: tintedDir(glsl.qon_albedo_dir),
+    albedoAvg: tintedAvg(glsl.qon_albedo_avg),
   },
   {
     ...MODEL,
     name: "fon",
     title: "Fujii Oren-Nayar (FON)",
     short: "FON",
-    brdf: models.fonBrdf,
+    brdf: glsl.fon_brdf,
     parameter: "roughness",
-    albedoDir: tintedDir(albedo.fonAlbedoDir),
-    albedoAvg: tintedAvg(albedo.fonAlbedoAvg),
+    albedoDir: tintedDir(glsl.fon_albedo_dir),
+    albedoAvg: tintedAvg(glsl.fon_albedo_avg),
   },
   {
     ...MODEL,
     name: "lambert",
     title: "Lambert",
     short: "Lambert",
-    brdf: models.lambertBrdf,
+    brdf: glsl.lambert_brdf,
     parameter: null,
     albedoDir: (_mu, rho) => rho,
     albedoAvg: (rho) => rho,
@@ -84,7 +86,7 @@ export const MODELS: readonly Model[] = [
     name: "oren_nayar",
     title: "full Oren-Nayar",
     short: "full Oren-Nayar",
-    brdf: models.orenNayarBrdf,
+    brdf: glsl.oren_nayar_brdf,
     parameter: "sigma",
   },
   {
@@ -92,7 +94,7 @@ export const MODELS: readonly Model[] = [
     name: "qon_footnote",
     title: "QON with the footnote's constant",
     short: "QON, footnote",
-    brdf: models.qonFootnoteBrdf,
+    brdf: glsl.qon_footnote_brdf,
     parameter: "sigma",
   },
   {
@@ -100,7 +102,7 @@ export const MODELS: readonly Model[] = [
     name: "qon_fujii",
     title: "QON with Fujii's coefficients",
     short: "QON, Fujii",
-    brdf: models.qonFujiiBrdf,
+    brdf: glsl.qon_fujii_brdf,
     parameter: "sigma",
   },
   {
@@ -108,10 +110,12 @@ export const MODELS: readonly Model[] = [
     name: "eon_approx",
     title: "EON with the paper's quartic",
     short: "EON, quartic",
-    brdf: models.eonBrdfApprox,
+    brdf: glsl.eon_brdf_approx,
     parameter: "roughness",
   },
 ];
+
+const DARK = "too dark where the color is neither 0 nor 1";
 
 export const KNOWN_DEFECTS: readonly Model[] = [
   {
@@ -119,7 +123,7 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     name: "eon_clamped",
     title: "EON with clamped dot(wo, wi)",
     short: "EON, clamped",
-    brdf: defects.eonClampedBrdf,
+    brdf: glsl.eon_clamped_brdf,
     parameter: "roughness",
     meant: "eon",
     wrong: "too bright where the light comes from behind, dot(wo, wi) < 0",
@@ -129,20 +133,20 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     name: "eon_rho_cubed",
     title: "EON with rho^3",
     short: "EON, rho^3",
-    brdf: defects.eonRhoCubedBrdf,
+    brdf: glsl.eon_rho_cubed_brdf,
     parameter: "roughness",
-    albedoDir: defects.eonRhoCubedAlbedoDir,
+    albedoDir: glsl.eon_rho_cubed_albedo_dir,
     meant: "eon",
-    wrong: "too dark where the color is neither 0 nor 1",
+    wrong: DARK,
   },
   {
     ...MODEL,
     name: "fon_white_lobe",
     title: "FON + white lobe",
     short: "FON + white",
-    brdf: defects.fonWhiteLobeBrdf,
+    brdf: glsl.fon_white_lobe_brdf,
     parameter: "roughness",
-    albedoDir: defects.fonWhiteLobeAlbedoDir,
+    albedoDir: glsl.fon_white_lobe_albedo_dir,
     meant: "eon",
     wrong: "too bright wherever the color is below 1; black reflects light",
   },
@@ -151,9 +155,9 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     name: "qon_fitted",
     title: "QON with MaterialX's fit of its albedo",
     short: "QON, fitted albedo",
-    brdf: models.qonBrdf,
+    brdf: glsl.qon_brdf,
     parameter: "sigma",
-    albedoDir: defects.qonFittedAlbedoDir,
+    albedoDir: glsl.qon_fitted_albedo_dir,
     meant: "qon",
     wrong: "wrong in surroundings only: the albedo is off by up to 0.063",
   },
@@ -162,11 +166,11 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     name: "qon_tinted_twice",
     title: "QON tinted twice",
     short: "QON, tinted twice",
-    brdf: defects.qonTintedTwiceBrdf,
+    brdf: glsl.qon_tinted_twice_brdf,
     parameter: "sigma",
-    albedoDir: defects.qonTintedTwiceAlbedoDir,
+    albedoDir: glsl.qon_tinted_twice_albedo_dir,
     meant: "qon",
-    wrong: "too dark where the color is neither 0 nor 1",
+    wrong: DARK,
   },
 ];
 
@@ -191,7 +195,7 @@ export function albedoDir(
   nodes = 64,
 ): number {
   if (of.albedoDir) return of.albedoDir(mu, rho, parameter);
-  return albedo.albedoDirQuadrature(of.brdf, mu, rho, parameter, nodes);
+  return albedoDirQuadrature(of.brdf, mu, rho, parameter, nodes);
 }
 
 /** Average albedo, 2 times the integral of mu E(mu): in closed form, or by Simpson's rule. */
@@ -214,9 +218,6 @@ export function rhoFromAlbedo(
   parameter: number,
   average: boolean,
 ): number {
-  if (of.name === "eon") {
-    return (average ? eonRhoFromAlbedoAvg : eonRhoFromAlbedoNormal)(seen, parameter);
-  }
   const albedoOf = (rho: number): number =>
     average ? albedoAvg(of, rho, parameter) : albedoDir(of, 1.0, rho, parameter, 16);
   return bisect(albedoOf, seen);

@@ -2,6 +2,7 @@
 // Builds the texts of all the stage's programs, in ESSL 3.00.
 
 import type { ModelName, PageData, ShaderSource } from "../data";
+import { model as rowOf } from "../models/table";
 import type { Sampler, Shape } from "../state";
 import albedo from "./albedo.glsl";
 import camera from "./camera.glsl";
@@ -40,15 +41,14 @@ void main() {
 interface Calls {
   readonly value: string;
   readonly albedo: string | null;
-  readonly sigma?: boolean; // the model's parameter is sigma
 }
 
 const MODELS: Record<ModelName, Calls> = {
   lambert: { value: "lambert_brdf(wo, wi, rho)", albedo: "rho" },
-  oren_nayar: { value: "oren_nayar_brdf(wo, wi, rho, r)", albedo: null, sigma: true },
-  qon: { value: "qon_brdf(wo, wi, rho, r)", albedo: "rho * qon_albedo_dir(mu, r)", sigma: true },
-  qon_footnote: { value: "qon_footnote_brdf(wo, wi, rho, r)", albedo: null, sigma: true },
-  qon_fujii: { value: "qon_fujii_brdf(wo, wi, rho, r)", albedo: null, sigma: true },
+  oren_nayar: { value: "oren_nayar_brdf(wo, wi, rho, r)", albedo: null },
+  qon: { value: "qon_brdf(wo, wi, rho, r)", albedo: "rho * qon_albedo_dir(mu, r)" },
+  qon_footnote: { value: "qon_footnote_brdf(wo, wi, rho, r)", albedo: null },
+  qon_fujii: { value: "qon_fujii_brdf(wo, wi, rho, r)", albedo: null },
   fon: { value: "fon_brdf(wo, wi, rho, r)", albedo: "rho * fon_albedo_dir(mu, r)" },
   eon: { value: "eon_brdf(wo, wi, rho, r)", albedo: "eon_albedo_dir(mu, rho, r)" },
   eon_approx: { value: "eon_brdf_approx(wo, wi, rho, r)", albedo: null },
@@ -64,12 +64,10 @@ const MODELS: Record<ModelName, Calls> = {
   qon_fitted: {
     value: "qon_brdf(wo, wi, rho, r)",
     albedo: "qon_fitted_albedo_dir(mu, rho, r)",
-    sigma: true,
   },
   qon_tinted_twice: {
     value: "qon_tinted_twice_brdf(wo, wi, rho, r)",
     albedo: "qon_tinted_twice_albedo_dir(mu, rho, r)",
-    sigma: true,
   },
 };
 
@@ -81,7 +79,7 @@ const SAMPLERS: Record<Sampler, readonly [string, string]> = {
 
 /** Converts a model's parameter to the roughness that samplers take. */
 export function samplerRoughness(model: ModelName, parameter: number): number {
-  return MODELS[model].sigma ? Math.min((2 * parameter) / Math.PI, 1) : parameter;
+  return rowOf(model).parameter === "sigma" ? Math.min((2 * parameter) / Math.PI, 1) : parameter;
 }
 
 export function hasTable(model: ModelName): boolean {

@@ -6,7 +6,7 @@ import { useMemo, useState } from "preact/hooks";
 import type { Triple } from "../data";
 import { copy, materialX, pythonLine, shaderText } from "../copies";
 import type { State } from "../state";
-import { degrees, signed, triple } from "../format";
+import { degrees, show, signed, triple } from "../format";
 import { apart, isOther, type Pair, values } from "../probe";
 import { actualModel, LETTER, meantModel, SIDES, sourceOf, tabled } from "../view";
 import { AlbedoPlot, type Curve, Polar } from "./plots";
@@ -165,7 +165,13 @@ function Values({ sources, calm: state, pair, row, measured, able }: ProbeProps)
             return (
               <strong class={right ? "correct" : "wrong"}>
                 {signed(error, 2)}{" "}
-                {right ? `✓ ${of ? "rounding" : "allowed"}` : error > 0 ? "too bright" : "too dark"}
+                {!right
+                  ? error > 0
+                    ? "too bright"
+                    : "too dark"
+                  : bound === null
+                    ? "✓ rounding"
+                    : `≤ ${show(bound * Math.max(1, ...should), 2)}`}
               </strong>
             );
           })}

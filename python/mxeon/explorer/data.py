@@ -90,7 +90,7 @@ class ReferenceTable:
 class Checked:
     """Verdict of `mxeon check` on gl."""
 
-    kind: str  # "correct", "wrong", "differs" as permitted, or "unknown" without a reference
+    kind: str  # "correct", "within" a tolerance but visibly off, "wrong", "differs" as permitted, or "unknown" without a reference
     text: str
 
 

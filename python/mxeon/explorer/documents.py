@@ -125,7 +125,11 @@ def checked_materials(file: str, library: str, policy: Policy = DEFAULT) -> dict
         return {}
     return {
         each.subject.removeprefix(f"{Path(file).name}: "): data.Checked(
-            "unknown" if each.check == "finite" else KINDS[each.verdict],
+            "unknown"
+            if each.check == "finite"
+            else "within"
+            if each.verdict == PASSED and each.difference and each.difference.is_visible
+            else KINDS[each.verdict],
             f"mxeon check: {words.look(each)}.",
         )
         for each in results

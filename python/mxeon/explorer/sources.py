@@ -152,12 +152,17 @@ FIRST = ("eon", "qon", "fon", "lambert")
 
 # Renderers with a wrong model: title, actual model, intended model, and page of docs/upstream.
 RENDERERS = (
-    ("MaterialX GLSL, flag on", "eon_clamped", "eon", "genglsl_clamped_dot"),
-    ("MaterialX GLSL, flag off, in surroundings", "qon_fitted", "qon", "genglsl_qon_albedo_fit"),
-    ("MaterialX OSL, flag on", "qon", "eon", "genosl_dropped_flag"),
-    ("MaterialX MDL, flag on", "fon_white_lobe", "eon", "genmdl_white_lobe"),
-    ("Blender Cycles, flag on", "eon_rho_cubed", "eon", "cycles_rho_cubed"),
-    ("Blender Cycles, flag off", "eon_rho_cubed", "qon", "cycles_rho_cubed"),
+    (f"MaterialX GLSL, {FLAG} true", "eon_clamped", "eon", "genglsl_clamped_dot"),
+    (
+        f"MaterialX GLSL, {FLAG} false, in surroundings",
+        "qon_fitted",
+        "qon",
+        "genglsl_qon_albedo_fit",
+    ),
+    (f"MaterialX OSL, {FLAG} true", "qon", "eon", "genosl_dropped_flag"),
+    (f"MaterialX MDL, {FLAG} true", "fon_white_lobe", "eon", "genmdl_white_lobe"),
+    (f"Blender Cycles, {FLAG} true", "eon_rho_cubed", "eon", "cycles_rho_cubed"),
+    (f"Blender Cycles, {FLAG} false", "eon_rho_cubed", "qon", "cycles_rho_cubed"),
     ("OpenPBR, thin-walled", "qon_tinted_twice", "eon", "openpbr_thin_walled_tint"),
     ("OpenPBR, thin-walled, tint repaired", "qon", "eon", "openpbr_thin_walled"),
 )
