@@ -28,10 +28,12 @@ from mxeon.conformance.results import (
     Result,
 )
 from mxeon.conformance.results.known_issues import RENDERER_NODES
+from mxeon.hosts import host_row, register
 from mxeon.io.images import read_image
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report.diff import read_results
 from mxeon.shaders.scene import BACK, FURNACE, SIDE
+from mxeon.survey import ROWS
 from tools.site import DOCS
 
 PAGE = DOCS / "wall.md"
@@ -143,6 +145,7 @@ class Wall:
         self.hosts: dict[str, str] = {}
         self.references: dict[tuple[str, str, str], Path] = {}
         self.images: dict[tuple[str, str, str, str, str], Path] = {}
+        self.facets: dict[tuple[str, str, str, str, str], Path] = {}  # references on a polyhedron
         self.results: dict[tuple[str, str, str], Result] = {}
         for folder in folders:
             report = read_results(folder)
@@ -151,8 +154,11 @@ class Wall:
             }
             for each in report.pictures:
                 shown = each.document, each.element, each.scene
-                self.images[(*shown, each.host, each.library)] = folder / each.exr
-                if each.reference:
+                names = (*shown, each.host, each.library)
+                self.images[names] = folder / each.exr
+                if each.reference and host_row(each.host).way == "coarse facets":
+                    self.facets[names] = folder / each.reference
+                elif each.reference:
                     self.references.setdefault(shown, folder / each.reference)
             for result in report.results:
                 if result.check in ("picture", "finite", "value"):
@@ -161,6 +167,7 @@ class Wall:
     def tile(self, names: tuple[str, str, str, str, str], reference: NDArray[np.floating]) -> Tile:
         document, element, scene, host, library = names
         image = pixels(self.images[names])
+        reference = pixels(self.facets[names]) if names in self.facets else reference
         apart = Picture(document, element, host, library, scene, image, reference, {}).difference
         assert apart is not None
         if document == PORTRAIT:
@@ -236,11 +243,13 @@ class Wall:
 
     def page(self) -> str:
         sections = [text for _, text in sorted(map(self.section, self.shown), reverse=True)]
-        measured = "".join(f"- {each}\n" for each in self.hosts.values())
+        drawn = {host for *_, host, _ in self.images}
+        measured = "".join(f"- {each}\n" for host, each in self.hosts.items() if host in drawn)
         return HEAD + "\n".join([*sections, self.rough(), self.verdicts() + measured])
 
 
 if __name__ == "__main__":
+    register(*ROWS)
     TILES.mkdir(parents=True, exist_ok=True)
     for old in TILES.glob("*.webp"):
         old.unlink()
