@@ -3,10 +3,8 @@
 
 import pytest
 
-from mxeon import explorer
-from mxeon.io.files import write_text
 from tests.explorer.browser import launched, opened
-from tests.explorer.stage import model_sources
+from tests.explorer.stage import model_sources, written
 from tests.support.availability import available
 
 
@@ -20,9 +18,7 @@ def browser():
 @pytest.fixture(scope="session")
 def address(tmp_path_factory):
     """URL of the page without documents."""
-    file = tmp_path_factory.mktemp("explorer") / "explorer.html"
-    write_text(file, explorer.page(explorer.page_data()))
-    return file.as_uri()
+    return written(tmp_path_factory.mktemp("explorer") / "explorer.html")
 
 
 @pytest.fixture(scope="package")

@@ -20,6 +20,7 @@ CLOCK = """speed => {
     globalThis.clock ??= performance.now.bind(performance);
     performance.now = () => speed * globalThis.clock();
 }"""
+LISTEN = "globalThis.said = []; mxeon.stage.onStatus(status => globalThis.said.push(status))"
 READ = """side => {
     const bytes = new Uint8Array(mxeon.stage.read(side).buffer);
     let text = "";

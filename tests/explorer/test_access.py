@@ -3,12 +3,9 @@
 
 import pytest
 
-from mxeon import explorer
-from mxeon.explorer.documents import document_sources
-from mxeon.io.files import write_text
-from mxeon.shaders.library import examples_folder
 from tests.explorer.browser import opened, show, started, state, until
 from tests.explorer.build import MODULES, needs_modules
+from tests.explorer.stage import written
 
 # Chromium has no WebGL without a graphics driver.
 NO_GRAPHICS = ("--disable-gpu", "--disable-software-rasterizer", "--no-proxy-server")
@@ -27,11 +24,8 @@ VIEWS = {
 @pytest.fixture(scope="module")
 def documents(tmp_path_factory):
     """URL of a page with two documents."""
-    names = ("clay", "standard_surface_rough_base")
-    sources = [document_sources(str(examples_folder() / f"{name}.mtlx")) for name in names]
     file = tmp_path_factory.mktemp("documents") / "explorer.html"
-    write_text(file, explorer.page(explorer.page_data(sources)))
-    return file.as_uri()
+    return written(file, "clay", "standard_surface_rough_base")
 
 
 def findings(page):

@@ -10,7 +10,7 @@ from PIL import Image
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
 from tests.explorer.browser import until
-from tests.explorer.stage import CLOCK, frame, opened_stage, side, view, written
+from tests.explorer.stage import CLOCK, LISTEN, frame, opened_stage, side, view, written
 from tests.support.tolerances import EON_WEIGHT
 
 SAMPLES = 16
@@ -20,9 +20,7 @@ SAMPLES = 16
 def stage(browser, tmp_path_factory):
     address = written(tmp_path_factory.mktemp("explorer") / "paths.html", "brick")
     with opened_stage(browser, address) as page:
-        page.evaluate(
-            "globalThis.said = []; mxeon.stage.onStatus(status => globalThis.said.push(status))"
-        )
+        page.evaluate(LISTEN)
         page.evaluate(CLOCK, 0)
         yield page
 

@@ -7,7 +7,7 @@ import pytest
 
 from mxeon.io.srgb import srgb_encoded
 from tests.explorer.browser import until
-from tests.explorer.stage import frame, opened_stage, picture, settle, side, view, written
+from tests.explorer.stage import LISTEN, frame, opened_stage, picture, settle, side, view, written
 
 # Half a step of dithering, half a step of rounding, and one for the average of frames.
 STEPS = 2
@@ -15,7 +15,6 @@ STEPS = 2
 ALONE = """.picture > :not(canvas) { display: none !important }
 canvas { position: fixed !important; inset: 0 auto auto 0; z-index: 9;
          width: 140px !important; height: 100px !important }"""
-LISTEN = "globalThis.said = []; mxeon.stage.onStatus(status => globalThis.said.push(status))"
 LOSE = """() => {
     const gl = document.querySelector("canvas").getContext("webgl2");
     globalThis.loss = gl.getExtension("WEBGL_lose_context");
