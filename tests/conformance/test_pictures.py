@@ -71,6 +71,17 @@ def test_a_film_of_the_index_of_its_schlick_substrate_has_one_phase(shown):
     assert result.error < 1e-4  # a film with a different phase would be off by 0.17
 
 
+def test_direct_light_shows_a_wrong_curve_of_a_film_on_metal(shown, tmp_path):
+    metal = FILM.replace("generalized_schlick_bsdf", "conductor_bsdf").splitlines()
+    text = document_text("\n".join(each for each in metal if "color0" not in each) + SURFACE)
+    text = text.replace('"0, 0"', '"0.1, 0.1"').replace('"550"', '"300"')
+    right, *_ = shown(text)
+    position = ("2.2399e6, 1.7953e6", "2.2399e6, 1.8353e6")
+    wrong, *_ = shown(text, wrong_copy(tmp_path, *position, "genglsl/lib/thin_film.glsl"))
+    assert (right.verdict, wrong.verdict) == ("passed", "failed")
+    assert 0.02 < wrong.error < 0.04 and wrong.tolerance < 0.02
+
+
 def test_a_truth_value_is_drawn_white_or_black(shown):
     text = """<materialx version="1.39"><nodegraph name="logic">
       <and name="both" type="boolean">

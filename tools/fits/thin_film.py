@@ -196,6 +196,11 @@ def albedo_errors(category, material, alpha, mu):
     return visible_errors(category, material, alpha, mu) + lost * average_errors(category, material)
 
 
+def seen_errors(category, material, alpha, mu):
+    """The same times the cosine of the view, as pictures count them."""
+    return mu * albedo_errors(category, material, alpha, mu)
+
+
 def visible_average(category, material, alpha, mu):
     """The average over the visible facets, by quadrature of two albedos."""
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
@@ -258,6 +263,7 @@ MEASURED = {
     "visible facets": (visible_errors, FILMS),
     "albedo": (albedo_errors, FILMS),
     "albedo from an index on": (albedo_errors, {**FILMS, "index": (LEAST_FILM, 2.5)}),
+    "albedo in a picture": (seen_errors, {**FILMS, "index": (LEAST_FILM, 2.5)}),
 }
 
 

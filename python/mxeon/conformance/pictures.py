@@ -28,12 +28,11 @@ from mxeon.conformance.samples import Batch, Values, arrays
 from mxeon.conformance.specs import hair, microfacets, subsurface, utilities
 from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
-from mxeon.conformance.specs.microfacets import ANISOTROPIC, FILM_ALBEDO, FILM_TRAPPED, LEAST_FILM
+from mxeon.conformance.specs.microfacets import ANISOTROPIC, FILM_SHOWN, FILM_TRAPPED, LEAST_FILM
 from mxeon.conformance.specs.microfacets import ERRORS as FACET_ERRORS
 from mxeon.conformance.specs.sheen import ZELTNER_ALBEDO, ZELTNER_VALUE
 from mxeon.conformance.tolerance import (
     Measurement,
-    Metric,
     Term,
     Tolerance,
     count_of,
@@ -82,8 +81,8 @@ FITTED, SHADED = (
 )
 
 
-def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tolerance:
-    """Tolerance of a material's pictures: the lobes' fits or the images, and additional errors.
+def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host, scene: Scene) -> Tolerance:
+    """Tolerance of a material's picture: the lobes' fits or the images, and additional errors.
 
     An image is filtered before its color values are decoded.
     """
@@ -106,7 +105,7 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tole
     others += utilities.BLACKBODY.terms * ("blackbody" in categories(nodes))
     sheens = [ZELTNER_VALUE.term("Zeltner's sheens"), ZELTNER_ALBEDO.term("their albedos")]
     others += sheens * zeltner
-    others += _others(lobes)
+    others += _others(lobes, scene.environment is None)
     rounding = host_row(host.name).rounding
     others += [Term(rounding, "the pixels' own rounding")] * bool(rounding)
     if others:
@@ -115,7 +114,7 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tole
     return tolerance
 
 
-def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
+def _others(lobes: tuple[ShownLobe, ...], direct: bool) -> list[Term]:
     """Additional errors due to inputs of lobes: a film, an index below 1, and narrow lobes of hair and sheen."""
 
     def some(name: str, condition: Callable[[np.ndarray], np.ndarray], category: str = "") -> bool:
@@ -123,10 +122,16 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
         own = (each.inputs for each in lobes if category in ("", each.category))
         return any(bool(np.any(condition(each[name]))) for each in own if name in each)
 
-    film, trapped = FILM_ALBEDO.term("a film"), FILM_TRAPPED.term("a film of an index below 1.25")
+    trapped = FILM_TRAPPED.term("a film of an index below 1.25")
     inside = FACET_ERRORS["denser"].term("the throughput of an index below 1")
-    others = [film] * some("thinfilm_thickness", lambda value: value > 0.0)
-    others += [trapped] * some("thinfilm_ior", lambda value: value < LEAST_FILM)
+    others: list[Term] = []
+    films = [each for each in lobes if np.any(each.inputs.get("thinfilm_thickness", 0.0) > 0.0)]
+    # Direct light needs the albedo of a film only for what passes to other lobes, or through it.
+    if films and direct:
+        others += microfacets.film_terms(max(np.max(each.inputs["roughness"]) for each in films))
+    if films and not (direct and {each.category for each in lobes} == {"conductor_bsdf"}):
+        others.append(FILM_SHOWN.term("a film's albedo, times the cosine of the view"))
+        others += [trapped] * some("thinfilm_ior", lambda value: value < LEAST_FILM)
     others += [inside] * some("ior", lambda value: value < 1.0, "dielectric_bsdf")
     fibers = product((lobe.inputs for lobe in lobes if lobe.category == HAIR), ROUGHNESSES)
     hairs = [np.reshape(inputs[name], (-1, 2)).min(axis=0) for inputs, name in fibers]
@@ -150,8 +155,8 @@ def _stretched(lobes: Iterable[ShownLobe]) -> bool:
 
 
 Pixels: TypeAlias = NDArray[np.floating]
-# A scene, the host's picture and the reference.
-Shown: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]
+# A scene, the host's picture, the reference and the tolerance.
+Shown: TypeAlias = tuple[Scene, Pixels, ExpectedPicture, Tolerance]
 Pixel: TypeAlias = tuple[float, dict[str, list[float]], Pixels]
 Note: TypeAlias = tuple[str, str]  # a warning, and its subject
 
@@ -275,8 +280,10 @@ def _judge_material(
         follows = tuple({lobe.category: None for lobe in lobes})
         return Diagnosis((Cause(Kind.FOLLOWS, names=follows),))
 
-    tolerance = tolerance_of(shader, lobes, host)
-    result = _judge_match(place, [*compress(cases, judged)], tolerance, diagnose)
+    shown = [
+        (*case, tolerance_of(shader, lobes, host, case[0])) for case in compress(cases, judged)
+    ]
+    result = _judge_match(place, shown, diagnose)
     apart = filter(None, (each.difference for each in pictures))
     worst = max(apart, key=lambda each: abs(each.largest))
     return replace(result, difference=worst), pictures
@@ -344,37 +351,46 @@ def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Resul
 
 
 def _judge_match(
-    place: Result, cases: Sequence[Shown], tolerance: Tolerance, diagnose: Callable[[], Diagnosis]
+    place: Result, cases: Sequence[Shown], diagnose: Callable[[], Diagnosis]
 ) -> Result:
-    """Result for a material that the models cover: its pixels must match the reference."""
-    pixels = [_worst_pixel(case, tolerance.metric) for case in cases]
-    error, worst, *_ = max(pixels, key=lambda entry: entry[0])
-    first, image, expected = cases[0]
+    """Result for a material that the models cover: its pixels must match the reference.
+
+    It has error and tolerance of the picture whose error is largest relative to its tolerance.
+    """
+    pixels = [_worst_pixel(case) for case in cases]
+    allowed = [case[3].value for case in cases]
+    largest = int(np.argmax([each[0] / most for each, most in zip(pixels, allowed, strict=True)]))
+    error, worst, _ = pixels[largest]
+    scene, image, expected, tolerance = cases[largest]
 
     def measure(wrong: bool) -> Measurement:
         if not wrong:
-            scenes = zip(cases, pixels, strict=True)
-            parts = [
-                errors_of(each[2], tolerance.value, results.Region(c[0].name)) for c, each in scenes
+            scaled_errors = [
+                each[2] * (tolerance.value / most)
+                for each, most in zip(pixels, allowed, strict=True)
             ]
-            whole = errors_of(np.concatenate([each[2] for each in pixels]), tolerance.value)
+            parts = [
+                errors_of(each, tolerance.value, results.Region(case[0].name))
+                for case, each in zip(cases, scaled_errors, strict=True)
+            ]
+            whole = errors_of(np.concatenate(scaled_errors), tolerance.value)
             errors = (whole, *parts) if error > tolerance.value else ()
             return Measurement(error, worst, errors, "pixels")
         brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
-        return Measurement(_worst_pixel((first, brighter, expected), tolerance.metric)[0], {})
+        return Measurement(_worst_pixel((scene, brighter, expected, tolerance))[0], {})
 
     words = "the picture is brighter by three tolerances"
     result = judge(place, tolerance, measure, words, diagnose)
-    measured = dict.fromkeys(name for *_, each in cases for name in each.measured)
+    measured = dict.fromkeys(name for case in cases for name in case[2].measured)
     return replace(result, measured=tuple(measured))
 
 
-def _worst_pixel(case: Shown, metric: Metric) -> Pixel:
+def _worst_pixel(case: Shown) -> Pixel:
     """Largest error times cos(theta_o), its pixel, and all errors."""
     scene, image, (reference, mask) = case[0], case[1], (case[2].image, case[2].judged)
     wo, _ = _directions(scene, mask)
     measured, expected = (each[mask].astype(np.float64) for each in (image, reference))
-    error = metric(measured, expected) * wo[:, 2]
+    error = case[3].metric(measured, expected) * wo[:, 2]
     worst = int(error.argmax())
     row, column = np.argwhere(mask)[worst]
     point = {
