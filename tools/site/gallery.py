@@ -57,8 +57,8 @@ TITANIUM = DOCS / "images" / "titanium.mtlx"  # material in the README
 HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
 # Gallery
 
-The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX on the left,
-eonlib on the right, the largest difference first. The inset shows the pictures' difference, a share of white, or of
+The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX beside
+eonlib, the largest difference first. The inset shows the pictures' difference, a share of white, or of
 eonlib's picture where that is brighter, from black to the share in its label. Furnace documents show a sphere in a
 white environment, where it vanishes if no energy is lost or gained. The floor has the ball's contact shadow; the ball
 reflects itself in the [path-traced pictures](#path-traced) alone.
