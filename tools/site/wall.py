@@ -250,7 +250,8 @@ class Wall:
 
 if __name__ == "__main__":
     register(*ROWS)
+    wall = Wall([Path(each) for each in sys.argv[1:]])
     TILES.mkdir(parents=True, exist_ok=True)
     for old in TILES.glob("*.webp"):
         old.unlink()
-    PAGE.write_text(Wall([Path(each) for each in sys.argv[1:]]).page(), encoding="utf-8")
+    PAGE.write_text(wall.page(), encoding="utf-8")
