@@ -1,0 +1,400 @@
+# SPDX-License-Identifier: Apache-2.0
+"""MaterialX's own tests with its libraries as published, and with eonlib before them.
+
+python -m tools.materialx_suite CHECKOUT BUILD WORK [NAME=VALUE ...]
+
+CHECKOUT is a clone of MaterialX in the version of the installed package, and BUILD a build of it with
+MATERIALX_BUILD_TESTS and the GLSL renderer. Both stay as they are: each library gets a folder in WORK with
+links to them, and its own copy of the suite's `_options.mtlx`, in which NAME=VALUE replaces a value;
+renderGeometry=dome.obj is half a sphere of 60 faces for OpenGL on a CPU. What has been rendered in WORK is
+kept, so a second call only writes docs/materialx_suite.md and its pictures.
+"""
+
+import importlib
+import math
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import MaterialX as mx
+import MaterialX.PyMaterialXGenShader as mx_gen
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from mxeon.conformance import words
+from mxeon.conformance.results import VISIBLE
+from mxeon.conformance.results.known_issues import issues
+from mxeon.hosts.materialx.worker import open_display
+from mxeon.io.images import difference
+from mxeon.io.srgb import srgb_decoded
+from mxeon.shaders.library import SOURCE_FOLDERS, documents_folder, source_folder
+from mxeon.shaders.targets import CLASSES
+from tools.site import DOCS
+
+PAGE, PICTURES = DOCS / "materialx_suite.md", DOCS / "images" / "suite"
+OPTIONS = "resources/Materials/TestSuite/_options.mtlx"
+DOME = "dome.obj"
+NOTE = " (half a sphere of 60 faces, whose normals turn away from the viewer at the rim)"
+STOCK, EONLIB, RENDER_TEST = "stock", "eonlib", "Render: GLSL TestSuite"
+# Group of the ledger's pages -> its name in print, and the nodes that eonlib implements.
+GROUPS = {
+    "rough_diffuse": ("rough diffuse", "oren_nayar|eon"),
+    "diffuse": ("Burley, translucent, subsurface", "burley|translucent_bsdf|subsurface"),
+    "sheen": ("sheen", "sheen"),
+    "combinations": ("layer, add, multiply", "layer_bsdf|add_bsdf|multiply_bsdf"),
+    "microfacets": ("microfacets", "dielectric|conductor|schlick"),
+    "hair": ("hair", "chiang_hair_bsdf"),
+    "emission": ("emission and media", "edf|vdf"),
+    "utilities": ("utility nodes", "blackbody|hair_"),
+}
+# The tests ask MaterialX where its data is; the installed package would name its own.
+PYTHON = """import runpy, sys, MaterialX as mx
+*sys.argv, folder, test = sys.argv
+mx.getDefaultDataSearchPath = lambda: mx.FileSearchPath(folder)
+runpy.run_path(test, run_name="__main__")"""
+SIZE, QUALITY = 128, 80  # pixels of a tile, and WebP quality
+HEAD = """<!-- Made by `python -m tools.materialx_suite`. -->
+# MaterialX's own test suite with eonlib
+
+The C++ and Python tests of MaterialX {version} on its own documents, with its libraries as published (*stock*) and with
+eonlib loaded before them:
+
+| failed | stock | eonlib |
+|---|---|---|
+{table}
+- Failed with both: {both}.
+- Failed with eonlib alone: {ours}.
+- Implementations of eonlib that no document of the suite uses: {untested}. With its option `checkImplCount`, the suite's
+  tests of generated GLSL fail if there are any. They cannot notice [nodes that have no
+  implementation](upstream/genglsl_missing_nodes.md), like all of these but `eon_diffuse_bsdf` in stock GLSL.
+
+Of {drawn} pictures, {visible} change by more than 1 % of white somewhere. The suite writes eight bits, so brighter values
+are cut at white, and one step near white is 0.9 %. Options of the suite that were changed: {options}. Files
+that the checkout lacked, without which some tests fail: {absent}.
+
+To make this page from your checkout and build, which stay as they are:
+
+    python -m tools.materialx_suite CHECKOUT BUILD WORK
+
+## Why pictures change
+
+The list gives the defects of MaterialX's shaders that eonlib's do not have, by groups of nodes, and the largest change of a
+picture that only one group can change. A change of one node is right if the node then agrees with a float64 reference:
+[Results](results.md) judges each node, [the wall](wall.md) shows materials, and
+[`mxeon check`](check.md#materialxs-test-suite) judges these documents.
+
+{reasons}
+## Pictures that change
+
+Stock is on the left, eonlib on the right; below are the largest change, and the nodes of eonlib in the document.
+
+<div class="wall pairs">
+{figures}</div>
+
+## All pictures
+
+*Changed* is the share of a picture's pixels that change by more than 1 % of white.
+
+| document: element | largest change | changed | nodes of eonlib |
+|---|---|---|---|
+{lines}"""
+
+Codes = NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class Change:
+    """The largest change of a picture, signed, as a share of white; and the share of pixels that change visibly."""
+
+    largest: float
+    visible: float
+
+
+def group_of(node: str) -> str:
+    """The group of a node or nodedef; "" for none.
+
+    >>> group_of("ND_multiply_bsdfC"), group_of("ND_multiply_vdfC"), group_of("chiang_hair_bsdf")
+    ('combinations', 'emission', 'hair')
+    """
+    return next((name for name, (_, nodes) in GROUPS.items() if re.search(nodes, node)), "")
+
+
+def groups_of(shader: str) -> set[str]:
+    """Groups of the nodes that eonlib implements in a shader: MaterialX's functions begin with mx_.
+
+    >>> groups_of("void mx_sheen_bsdf(ClosureData c) {" + chr(10) + "void layer_bsdf(ClosureData c) {")
+    {'combinations'}
+    """
+    return {*map(group_of, re.findall(r"^void (?!mx_)([a-z]\w*)\(", shader, re.MULTILINE))} - {""}
+
+
+def slug(text: str) -> str:
+    return re.sub(r"\W+", "_", text)
+
+
+def change(stock: Codes, eonlib: Codes) -> Change:
+    """
+    >>> change(np.uint8([[[188] * 3, [0] * 3]]), np.uint8([[[188] * 3, [255] * 3]]))
+    Change(largest=1.0, visible=0.5)
+    """
+    apart = difference(srgb_decoded(eonlib / 255.0), srgb_decoded(stock / 255.0))
+    largest = apart.flat[np.abs(apart).argmax()]
+    return Change(float(largest), float(np.mean(np.abs(apart) > VISIBLE)))
+
+
+def in_percent(share: float) -> str:
+    """
+    >>> in_percent(-0.1234), in_percent(0.0002)
+    ('-12 %', 'none')
+    """
+    sign = "-" if share < 0.0 else "+"
+    return f"{sign}{words.in_words(100.0 * abs(share))} %" if abs(share) >= 0.001 else "none"
+
+
+def stage(folder: Path, checkout: Path, build: Path) -> None:
+    """Fill a new folder for the suite, named by its library."""
+    if folder.exists():
+        return
+    for name in ("libraries", "resources", "python"):
+        shutil.copytree(checkout / name, folder / name, copy_function=os.symlink)
+    (folder / OPTIONS).unlink()  # `run_tests` writes its own
+    (folder / "bin").mkdir()
+    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # it looks for data from there
+    # MaterialX reads the files of a folder before its subfolders, so these come before its own.
+    for path in documents_folder().rglob("*.mtlx") if folder.name == EONLIB else ():
+        (folder / "libraries" / path.name).symlink_to(path)
+    for name in SOURCE_FOLDERS:  # the documents refer to "../../genglsl"
+        if not (folder.parent / name).exists():
+            (folder.parent / name).symlink_to(source_folder(EONLIB) / name)
+
+
+def shown(value: str) -> str:
+    """An option's value in print.
+
+    >>> shown("a/b/c.hdr"), shown("a/b.mtlx,c.mtlx")
+    ('b/c.hdr', '2 documents')
+    """
+    names = ["/".join(Path(each.strip()).parts[-2:]) for each in value.split(",")]
+    documents = f"{len(names)} documents" if names[0].endswith(".mtlx") else ", ".join(names)
+    return documents + NOTE * (names[0] == DOME)
+
+
+def write_dome(path: Path) -> None:
+    """Write half a sphere of 60 faces as OBJ, which software renders much faster than the suite's 3600."""
+    rings, sectors = 5, 12
+    lines = []
+    for ring, sector in np.ndindex(rings + 1, sectors + 1):
+        theta, phi = 0.999 * ring / rings * math.pi / 2, sector / sectors * math.tau
+        x, y, z = math.sin(theta) * math.cos(phi), math.sin(theta) * math.sin(phi), math.cos(theta)
+        u, v = math.atan2(-x, -z) / math.tau % 1.0, math.acos(-y) / math.pi
+        lines += [f"v {x:f} {y:f} {z:f}", f"vt {u:f} {v:f}", f"vn {x:f} {y:f} {z:f}"]
+    for ring, sector in np.ndindex(rings, sectors):
+        first = ring * (sectors + 1) + sector + 1
+        face = [first, first + sectors + 1, first + sectors + 2, first + 1][: 4 if ring else 3]
+        lines.append(" ".join(["f", *(f"{each}/{each}/{each}" for each in face)]))
+    path.write_text("\n".join(lines) + "\n")
+
+
+def set_options(suite: mx.Document, options: dict[str, str]) -> None:
+    for name, value in options.items():
+        suite.getNodeDef("TestSuiteOptions").getInput(name).setValueString(value)
+
+
+def run_tests(folder: Path, suite: mx.Document, case: str, paths: str) -> None:
+    """Run C++ tests with the documents of some paths, unless the folder has their results."""
+    name = slug(f"{case} {paths}")[:200]
+    if (folder / f"{name}.xml").exists():
+        return
+    set_options(suite, {"outputDirectory": str(folder / slug(case)), "renderTestPaths": paths})
+    mx.writeToXmlFile(suite, str(folder / OPTIONS))
+    program = [str(folder / "bin" / "MaterialXTest"), case, "-r", "xml", "-o", "unfinished"]
+    with (folder / f"{name}.txt").open("w") as printed:
+        subprocess.run(program, cwd=folder, stdout=printed, stderr=printed)
+    (folder / "unfinished").replace(folder / f"{name}.xml")
+
+
+def python_tests(folder: Path) -> tuple[int, int]:
+    """Numbers of MaterialX's Python tests that fail, and of all."""
+    text = ""
+    for path in (
+        folder / "python/MaterialXTest/main.py",
+        folder / "python/MaterialXTest/genshader.py",
+    ):
+        command = [sys.executable, "-c", PYTHON, str(folder), str(path)]
+        text += subprocess.run(command, cwd=path.parent, capture_output=True, text=True).stderr
+    failed, ran = r"(?:failures|errors)=(\d+)", r"Ran (\d+) test"
+    return sum(map(int, re.findall(failed, text))), sum(map(int, re.findall(ran, text)))
+
+
+def generated(folder: Path) -> tuple[int, int]:
+    """Numbers of shaders that MaterialX's Python fails to generate from its documents, and of all."""
+    search, library = mx.FileSearchPath(str(folder)), mx.createDocument()
+    mx.loadLibraries(["libraries"], search, library)
+    failed, count = 0, 0
+    for module, name in CLASSES.values():
+        generator = getattr(importlib.import_module(f"MaterialX.PyMaterialX{module}"), name)
+        for path in (folder / "resources" / "Materials").rglob("*.mtlx"):
+            document = mx.createDocument()
+            mx.readFromXmlFile(document, str(path), search)
+            document.setDataLibrary(library)
+            context = mx_gen.GenContext(generator.create())
+            context.registerSourceCodeSearchPath(search)
+            context.getShaderGenerator().registerTypeDefs(document)
+            for element in mx_gen.findRenderableElements(document):
+                count += 1
+                try:
+                    context.getShaderGenerator().generate("shader", element, context)
+                except (mx.Exception, LookupError):
+                    failed += 1
+    return failed, count
+
+
+def shaders(folder: Path) -> dict[str, Path]:
+    """The fragment shaders of the render test by document and element."""
+    out = folder / slug(RENDER_TEST)
+    return {
+        f"{path.relative_to(out).parts[0]}: {path.stem.removesuffix('_ps')}": path
+        for path in out.rglob("*_ps.glsl")
+    }
+
+
+def picture(shader: Path) -> Path:
+    return shader.with_name(shader.name.replace("_ps.glsl", "_glsl.png"))
+
+
+def codes(shader: Path) -> Codes:
+    return np.asarray(Image.open(picture(shader)).convert("RGB"))
+
+
+def failures(folder: Path) -> dict[str, tuple[int, int]]:
+    """Numbers of failures and of all, by what is counted."""
+    drawn = [picture(each).exists() for each in shaders(folder).values()]
+    tests = failed_tests(folder).values()
+    return {
+        "C++ test cases": (sum(tests), len(tests)),
+        "pictures of the C++ render test": (drawn.count(False), len(drawn)),
+        "Python tests": python_tests(folder),
+        f"shaders from Python for {len(CLASSES)} targets": generated(folder),
+    }
+
+
+def failed_tests(folder: Path) -> dict[str, bool]:
+    """Whether each C++ test case failed, the render test in any of its runs."""
+    tests: dict[str, bool] = {}
+    for path in folder.glob("*.xml"):
+        for case in ElementTree.parse(path).getroot().iter("TestCase"):
+            success = case.find("OverallResult[@success='true']") is not None
+            tests[case.attrib["name"]] = tests.get(case.attrib["name"], False) or not success
+    return tests
+
+
+def untested(folder: Path) -> list[str]:
+    """Implementations that no document of the suite uses, by the log of the test that counts them."""
+    log = folder / slug(f"~{RENDER_TEST}") / "genglsl_glsl_generate_test.txt"
+    return re.findall(r"^\t(\w+)$", log.read_text().partition("Untested: ")[2], re.MULTILINE)
+
+
+def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> None:
+    suite = mx.createDocument()
+    mx.readFromXmlFile(suite, str(checkout / OPTIONS))
+    set_options(suite, options)
+    if options.get("renderGeometry") == DOME:
+        work.mkdir(exist_ok=True)
+        write_dome(work / DOME)
+        set_options(suite, {"renderGeometry": str(work / DOME)})
+    paths = suite.getNodeDef("TestSuiteOptions").getInput("renderTestPaths").getValue()
+    roots = [checkout / each for each in paths.split(",")]
+    files = [
+        each for root in roots for each in (root, *sorted(root.rglob("*.mtlx"))) if each.suffix
+    ]
+    places = {each.stem: str(each.relative_to(checkout)) for each in files}
+
+    def render(name: str, document: str) -> dict[str, Path]:
+        stage(work / name, checkout, build)
+        run_tests(work / name, suite, RENDER_TEST, places[document])
+        return shaders(work / name)
+
+    for each in places:
+        before, after = render(STOCK, each), render(EONLIB, each)
+    for name in (STOCK, EONLIB):
+        run_tests(work / name, suite, f"~{RENDER_TEST}", paths)
+    drawn = [
+        each
+        for each in set(before) & set(after)
+        if picture(before[each]).exists() and picture(after[each]).exists()
+    ]
+    changes = {each: change(codes(before[each]), codes(after[each])) for each in drawn}
+    names = sorted(drawn, key=lambda each: (-abs(changes[each].largest), each))
+    visible = [each for each in names if abs(changes[each].largest) > VISIBLE]
+
+    groups = {each: groups_of(after[each].read_text()) for each in names}
+    shutil.rmtree(PICTURES, ignore_errors=True)
+    PICTURES.mkdir(parents=True)
+    figures, lines, reasons = "", "", ""
+    for each in names:
+        nodes = "; ".join(GROUPS[group][0] for group in GROUPS if group in groups[each])
+        largest, share = in_percent(changes[each].largest), in_percent(changes[each].visible)
+        lines += f"| {each} | {largest} | {share.removeprefix('+')} | {nodes} |\n"
+        if each in visible:
+            file = f"{slug(each)}.webp"
+            both = Image.fromarray(
+                np.concatenate([codes(before[each]), codes(after[each])], axis=1)
+            )
+            both.resize((2 * SIZE, SIZE)).save(PICTURES / file, quality=QUALITY, method=6)
+            figures += (
+                f'<figure><img src="images/suite/{file}" alt="{each}, stock and eonlib" width="{2 * SIZE}">'
+                f"<figcaption><b>{each}</b><br>{largest}: {nodes}</figcaption></figure>\n"
+            )
+    for group, (title, _) in GROUPS.items():
+        if any(group in found for found in groups.values()):
+            alone = next((each for each in names if groups[each] == {group}), None)
+            size = f": {in_percent(changes[alone].largest)} in {alone}" if alone else ""
+            reasons += f"**{title[0].upper()}{title[1:]}**{size}\n\n"
+            reasons += "".join(
+                f"- [{each.title}](upstream/{each.page}.md)\n"
+                for each in issues().values()
+                if each.group == group and each.page.startswith("genglsl")
+            )
+            reasons += "\n"
+    stock, eonlib = failures(work / STOCK), failures(work / EONLIB)
+    rows = (
+        f"| {name} | {stock[name][0]} of {stock[name][1]} | {eonlib[name][0]} of {eonlib[name][1]} |\n"
+        for name in stock
+    )
+    failed = {
+        name: [each for each, value in failed_tests(work / name).items() if value]
+        for name in (STOCK, EONLIB)
+    }
+    ours = [each for each in failed[EONLIB] if each not in failed[STOCK]]
+    git = ["git", "-C", str(checkout), "ls-files", "--deleted"]
+    absent = subprocess.run(git, capture_output=True, text=True).stdout.split()
+    PAGE.write_text(
+        HEAD.format(
+            version=mx.getVersionString(),
+            table="".join(rows),
+            drawn=len(drawn),
+            visible=len(visible),
+            both="; ".join(failed[STOCK]) or "nothing",
+            ours="; ".join(ours) or "nothing",
+            untested=", ".join(f"`{each}`" for each in untested(work / EONLIB)) or "none",
+            reasons=reasons,
+            figures=figures,
+            lines=lines,
+            options="; ".join(f"`{name}` {shown(value)}" for name, value in options.items())
+            or "none",
+            absent=", ".join(Path(each).name for each in absent) or "none",
+        ),
+        encoding="utf-8",
+    )
+
+
+if __name__ == "__main__":
+    open_display()
+    folders, chosen = sys.argv[1:4], sys.argv[4:]
+    main(*(Path(each).resolve() for each in folders), dict(each.split("=", 1) for each in chosen))
