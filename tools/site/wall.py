@@ -55,7 +55,9 @@ lights, from the side and from behind, each material is shown in the one in whic
 leave black, in a white environment, which few renderers have here. Tiles are sorted by their largest difference, given as in
 `mxeon check`; failed ones are red. Below stands the cause: the lobes whose defects [the ledger](upstream/README.md) lists, or the
 input without which a renderer's own material is closest to the reference. *Not judged* means that the difference is no
-error of the renderer's code: it has closures of its own, or says that it ignores an input.
+error of the renderer's code: it has closures of its own, or says that it ignores an input. Renderers for the browser approximate
+OpenPBR on purpose: a failed tile says how far, not that there is a bug. One is known: Babylon.js
+[squares the roughness of anisotropic lobes twice](upstream/babylon_anisotropic_roughness.md).
 
     mxeon check MATERIAL.mtlx --host gl --host storm --host cycles --host three --report out
 
@@ -63,7 +65,8 @@ error of the renderer's code: it has closures of its own, or says that it ignore
 ROUGH = f"""## A rough diffuse surface
 
 EON with color (0.8, 0.4, 0.1) and roughness 1, {words.LIGHTS[BACK.name]}. Renderers whose materials are not read from documents
-are here with their own nodes; [Renderers compared](the_field.md) has their models.
+are here with their own nodes; [Renderers compared](the_field.md) has their models. Red are nodes that fail the check `value`:
+for some inputs they do not have the model that they claim.
 
 """
 
@@ -161,7 +164,9 @@ class Wall:
                 elif each.reference:
                     self.references.setdefault(shown, folder / each.reference)
             for result in report.results:
-                if result.check in ("picture", "finite", "value"):
+                if result.check in (
+                    ("picture", "finite") if ".mtlx" in result.subject else ("value",)
+                ):
                     self.results[result.subject, result.host, result.library] = result
 
     def tile(self, names: tuple[str, str, str, str, str], reference: NDArray[np.floating]) -> Tile:
@@ -175,7 +180,7 @@ class Wall:
             result = self.results.get((element, host, library))
             claim = f"claims {result.claimed}" if result and result.claimed else ""
             title = f"{host}, {element if own else library}"
-            return Tile(title, scene, image, apart, claim, PASSED)
+            return Tile(title, scene, image, apart, claim, result.verdict if result else NOT_RUN)
         title = host if library == RENDERER_NODES else f"{host}, {library}"
         judged = self.results[f"{document}: {element}", host, library]
         return Tile(title, scene, image, apart, cause_of(judged), judged.verdict)
