@@ -308,7 +308,7 @@ def _input_at_fault(
             shown = ((host.picture(other, each), judge.picture(other, each)) for each in small)
             left[name] = max(float(np.abs(difference(*each)).max()) for each in shown)
     nearest = min(left, key=left.__getitem__, default="")
-    if not nearest or left[nearest] > 0.5 * left.get("", np.inf):
+    if not nearest or "" not in left or left[nearest] > 0.5 * left[""]:
         return Diagnosis((Cause(Kind.UNKNOWN, "no_input"),))
     sizes = left[nearest], left[""]
     return Diagnosis((Cause(Kind.DEFECT, "input_at_fault", (nearest,), sizes),))
