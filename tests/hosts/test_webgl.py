@@ -31,6 +31,15 @@ def test_a_browser_that_hangs_is_not_run_and_the_next_one_works():
     host.close()
 
 
+def test_a_lost_context_is_not_run_and_the_next_one_works():
+    host, lose = started(), "gl.getExtension('WEBGL_lose_context').loseContext()"
+    host._thread.submit(lambda: host._page.evaluate(f"{lose}; gl.getError()")).result()
+    with pytest.raises(NotRun, match="webgl: the browser lost its WebGL context"):
+        host.call("fon_albedo_dir", MU, np.array([0.0]))
+    assert host.call("fon_albedo_dir", MU, np.array([0.0])).tolist() == [[1.0, 1.0, 1.0]]
+    host.close()
+
+
 def test_no_name_resolves_in_the_browser(hosts):
     script = """async () => {
         const found = await fetch("https://example.org/").then(() => "found", () => "nothing");

@@ -47,6 +47,16 @@ FLAGS = (
     "--host-resolver-rules=MAP * ~NOTFOUND",
 )
 PAGE = "<input type='file'><script>{}</script>"
+# A lost context draws nothing, and reports its error only once: `lostContext` asks all that a page has made.
+CONTEXTS = """
+const contexts = [], getContext = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (...wanted) {
+    const context = getContext.apply(this, wanted);
+    if (context?.isContextLost) contexts.push(context);
+    return context;
+};
+globalThis.lostContext = () => contexts.some((context) => context.isContextLost());
+"""
 IDENTITY = np.eye(4).ravel().tolist()
 VERTEX = fragment.DIALECTS["essl"].vertex
 POINTS = 4  # cached textures of points: most materials have the same vertex stage
@@ -62,8 +72,8 @@ UNIFORMS: dict[str, object] = {
 class Chromium:
     """A headless browser with a page, started on demand and restarted after a crash.
 
-    Playwright needs one thread without an event loop, so it gets its own. A request that takes `limit` seconds ends the
-    browser.
+    Playwright needs one thread without an event loop, so it gets its own. A request that takes `limit` seconds, or loses
+    a WebGL context, ends the browser.
     """
 
     flags: ClassVar[tuple[str, ...]] = FLAGS
@@ -101,12 +111,17 @@ class Chromium:
                 browser = playwright.chromium.launch(
                     executable_path=self._program, args=self.flags, chromium_sandbox=not is_root()
                 )
-                self._page = self._stack.enter_context(browser).new_page()
+                session = self._stack.enter_context(browser).new_context()
+                session.add_init_script(CONTEXTS)
+                self._page = session.new_page()
                 self._load()
             if file is not None:
                 self._page.set_input_files("input", file)
             handle = self._page.wait_for_function(function, arg=job, timeout=self._limit)
             answer: Answer = handle.json_value()
+            if self._page.evaluate("lostContext()"):
+                self._stop()
+                return {"failed": "the browser lost its WebGL context"}
             return answer | {"browser": self._page.context.browser.version}
         except sync_api.Error as error:
             self._stop()
