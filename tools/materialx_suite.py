@@ -30,7 +30,6 @@ from PIL import Image
 from mxeon.conformance import words
 from mxeon.conformance.results import VISIBLE
 from mxeon.conformance.results.known_issues import issues
-from mxeon.hosts.materialx.worker import open_display
 from mxeon.io.images import difference
 from mxeon.io.srgb import srgb_decoded
 from mxeon.shaders.library import SOURCE_FOLDERS, documents_folder, source_folder
@@ -399,6 +398,8 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
 
 
 if __name__ == "__main__":
+    from mxeon.hosts.materialx.worker import open_display  # it ends a process without X's libraries
+
     open_display()
     folders, chosen = sys.argv[1:4], sys.argv[4:]
     main(*(Path(each).resolve() for each in folders), dict(each.split("=", 1) for each in chosen))
