@@ -88,10 +88,6 @@ picture that only one group can change. A change of one node is right if the nod
 [Results](results.md) judges each node, [the wall](wall.md) shows materials, and
 [`mxeon check`](check.md#materialxs-test-suite) judges these documents.
 
-`lama_add` is not explained: with stock, its conductor has 0.7 of the red that it has alone in `lama_conductor`, although its
-functions have the same text in both shaders. With eonlib the sum is that of its lobes. On the host [gl](hosts.md), which looks up
-environments in another way, both libraries agree to 0.2 %, so the driver may be the cause (Mesa 22.3.6, llvmpipe).
-
 {reasons}
 ## Pictures that change
 
