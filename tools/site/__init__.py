@@ -3,7 +3,7 @@
 
 | command | what it writes |
 |---|---|
-| `python -m tools.site` | OSL twins, the ledger's index, and tables of pages that need no engine; a minute |
+| `python -m tools.site` | OSL twins, and tables of pages that need no engine; a minute |
 | `... specification` | table of results.md, from gl; some seconds |
 | `... surface_texts` | tables of surfaces.md; some minutes |
 | `... field` | measurements behind field.html, from every host that runs here |

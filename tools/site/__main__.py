@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes every generated file that needs no engine and no other version of MaterialX: `python -m tools.site`.
 
-These are the OSL twins, the ledger's index, and the tables of other pages. What is measured on hosts
+These are the OSL twins, and the tables of pages. What is measured on hosts
 (`specification`, `field`, `versions`, `ledger.measure`, pictures) has its own command.
 """
 
@@ -9,12 +9,11 @@ from pathlib import Path
 
 from mxeon.io.files import write_text
 from tools.site import arrays, brushed, gallery, note, research, twins, versions
-from tools.site.ledger import pages
 
 
 def made() -> dict[Path, str]:
     """The text of each file, by its path."""
-    tables = {each.PAGE: each.page for each in (arrays, brushed, research, note, versions, pages)}
+    tables = {each.PAGE: each.page for each in (arrays, brushed, research, note, versions)}
     return {
         **{twins.path(stem): twins.osl_text(stem) for stem in twins.STEMS},
         **{path: of(path.read_text(encoding="utf-8")) for path, of in tables.items()},

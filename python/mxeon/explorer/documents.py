@@ -141,7 +141,7 @@ def _pages(titles: Iterable[str], library: str) -> tuple[str, ...]:
     return tuple(
         issue.page
         for issue in issues().values()
-        if "webgl" in (issue.host, *issue.also)
+        if "webgl" in issue.hosts
         and issue.library == library
         and not (issue.kind or issue.differs)
         and {subject for _, subject in issue.rows}.intersection(titles)

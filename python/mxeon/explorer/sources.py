@@ -67,7 +67,7 @@ class ComparedMaterial:
         pages = [
             issue.page
             for issue in known_issues.issues().values()
-            if "webgl" in (issue.host, *issue.also)
+            if "webgl" in issue.hosts
             and issue.library == "stock"
             and {subject for _, subject in (*issue.rows, *issue.implied)} & set(self.subjects)
         ]

@@ -86,14 +86,14 @@ def fields(cause: Cause) -> dict[str, Any]:
 def main(names: Sequence[str]) -> None:
     """Measure the defects of some hosts; without names, of all hosts, together with the largest errors."""
     found = measured()
-    everywhere = [host for each in issues().values() for host in (each.host, *each.also) if host]
+    everywhere = [host for each in issues().values() for host in each.hosts if host]
     if not names:
         found = {page: each | {"sizes": {}} for page, each in found.items()}
     for host, library in product(names or dict.fromkeys(everywhere), (STOCK, EONLIB)):
         here = [
             each
             for each in issues().values()
-            if host in (each.host, *each.also) and shows(each, each.host, library)
+            if host in each.hosts and shows(each, each.host, library)
         ]
         if not here:
             continue

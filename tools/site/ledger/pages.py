@@ -11,11 +11,9 @@ from mxeon.conformance import words
 from mxeon.conformance.results import Diagnosis
 from mxeon.conformance.results.known_issues import EONLIB, Issue, issues
 from mxeon.conformance.results.quantities import Quantity
-from tools.site import with_block
-from tools.site.ledger import FOLDER, ROOT, measured, patches, patches_of
+from tools.site.ledger import ROOT, measured, patches, patches_of
 
 VERSIONS = Path(__file__).with_name("versions.json")
-PAGE = FOLDER / "README.md"
 PLACE = re.compile(r"<!-- patches (\S+) -->")  # placeholder for a project's table in the index
 WHOLE = 20  # shorter diffs are shown in full
 SHOWN = 8  # lines of a longer diff on a page, unless its first change is longer
@@ -43,26 +41,22 @@ GROUPS = {
 }
 
 
-def page(text: str) -> str:
-    """The index with its list of all pages.
+def entries() -> str:
+    """The list of all pages, by groups.
 
-    Raises ValueError if a page's group is not in the index.
+    Raises KeyError if a page's group is not one of `GROUPS`.
     """
-    groups: dict[str, list[str]] = {name: [] for name in GROUPS}
+    lines = dict.fromkeys(GROUPS, "")
     for issue in issues().values():
-        if issue.group not in groups:
-            raise ValueError(
-                f"group of {issue.page} must be one of {', '.join(GROUPS)}; got {issue.group}"
-            )
         differs = " (*differs*)" * issue.differs
-        groups[issue.group].append(f"- [{issue.title}]({issue.page}.md){differs}\n")
-    parts = (f"{GROUPS[name]}:\n\n{''.join(lines)}" for name, lines in groups.items())
-    return with_block(text, "entries", "\n".join(parts))
+        lines[issue.group] += f"- [{issue.title}]({issue.page}.md){differs}\n"
+    return "\n".join(f"### {GROUPS[name]}\n\n{each}" for name, each in lines.items())
 
 
 def filled(name: str, text: str) -> str:
     """The Markdown of a ledger page, or of the index, with the site's additions."""
-    if name == PAGE.stem:
+    if name == "README":
+        text = text.replace("<!-- entries -->", entries())
         return PLACE.sub(lambda found: patch_table(found[1]), text)
     issue = issues()[name]
     diff, more = short_diff(name)

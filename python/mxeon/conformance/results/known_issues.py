@@ -21,7 +21,8 @@ from mxeon.shaders.library import data_folder
 STOCK, EONLIB = "stock", "eonlib"
 RENDERER_NODES = "its own nodes"  # replaces the library
 Row = tuple[str, str]  # key of a check, and subject
-Table = Mapping[str, Sequence[str]]  # the checks of each subject
+Table = Mapping[str, Sequence[str]]  # the checks of subjects
+GENERATED_GLSL = ("webgl", "vulkan", "wgsl", "slang")  # hosts that draw the same GLSL as "gl"
 # A page begins with its row as TOML in a comment, then its title.
 PAGE = re.compile(r"<!--\n(?P<row>.*?)\n-->\n(?P<text># (?P<title>[^\n]*)\n.*)", re.DOTALL)
 
@@ -31,7 +32,8 @@ class Issue:
     """A defect: the row of its page, whose keys are these fields, and its measurements in
     `measured.json`.
 
-    In a page, `rows`, `implied` and `repaired` are tables: the checks of each subject.
+    In a page, `rows`, `implied` and `repaired` are tables: a subject, or several with `; ` between
+    them, and their checks.
     """
 
     page: str  # the file without suffix
@@ -39,7 +41,7 @@ class Issue:
     text: str = field(repr=False)  # the page without the row
     group: str  # a part of the index, see tools/site/ledger/pages.py
     host: str = ""  # the host that shows it, "source" for generated text; "" if no check does
-    also: tuple[str, ...] = ()  # additional hosts that show it
+    also: tuple[str, ...] = ()  # additional hosts that show it, besides GENERATED_GLSL for "gl"
     # The library whose results show it: EONLIB for graphs, which need correct lobes;
     # RENDERER_NODES.
     library: str = STOCK
@@ -59,6 +61,11 @@ class Issue:
     patch: tuple[str, ...] = ()  # a file of MaterialX, with a text before and after the patch
     # The largest measured errors.
     sizes: Mapping[Row, float] = field(default_factory=dict, hash=False)
+
+    @property
+    def hosts(self) -> tuple[str, ...]:
+        """The hosts that show it."""
+        return (self.host, *self.also, *(GENERATED_GLSL if self.host == "gl" else ()))
 
     @property
     def mended(self) -> set[Row]:
@@ -126,7 +133,12 @@ def _converter() -> cattrs.Converter:
 
 
 def _pairs(table: Table) -> tuple[Row, ...]:
-    return tuple((check, subject) for subject, each in table.items() for check in each)
+    return tuple(
+        (check, subject)
+        for names, each in table.items()
+        for subject in names.split("; ")
+        for check in each
+    )
 
 
 RENDERERS = {"cycles": "this Blender", "three": "this three.js", "babylon": "this Babylon.js"}
@@ -170,7 +182,7 @@ def with_pages(result: Result, materialx: str = "") -> Result:
         issue
         for issue in issues().values()
         if (library == issue.library or issue.unavoidable or result.host in OWN_CLOSURES)
-        and result.host in (issue.host, *issue.also)
+        and result.host in issue.hosts
         and (result.check, result.subject) in (*issue.rows, *issue.implied)
         and _explains(issue, result, materialx)
     ]
