@@ -27,14 +27,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from mxeon.conformance import words
 from mxeon.conformance.results import VISIBLE
-from mxeon.conformance.results.known_issues import issues
 from mxeon.io.images import difference
 from mxeon.io.srgb import srgb_decoded
 from mxeon.shaders.library import SOURCE_FOLDERS, documents_folder, source_folder
 from mxeon.shaders.targets import CLASSES
-from tools.site import DOCS
+from tools.site import DOCS, in_percent
 
 PAGE, PICTURES = DOCS / "materialx_suite.md", DOCS / "images" / "suite"
 OPTIONS = "resources/Materials/TestSuite/_options.mtlx"
@@ -83,26 +81,27 @@ To make this page from your checkout and build, which stay as they are:
 
 ## Why pictures change
 
-The list gives the defects of MaterialX's shaders that eonlib's do not have, by groups of nodes, and the largest change of a
-picture that only one group can change. A change of one node is right if the node then agrees with a float64 reference:
-[Results](results.md) judges each node, [the wall](wall.md) shows materials, and
-[`mxeon check`](check.md#materialxs-test-suite) judges these documents.
+Each group of nodes links to the defects of MaterialX's shaders that eonlib's GLSL does not have. A change of one node is
+right if the node then agrees with a float64 reference: [Results](results.md) judges each node, [the wall](wall.md) shows
+materials, and [`mxeon check`](check.md#materialxs-test-suite) judges these documents.
 
+| nodes | largest change of a picture that they alone can change |
+|---|---|
 {reasons}
 ## Pictures that change
 
-Stock is on the left, eonlib on the right; below are the largest change, and the nodes of eonlib in the document.
+Stock is on the left, eonlib on the right.
 
 <div class="wall pairs">
 {figures}</div>
-
-## All pictures
 
 *Changed* is the share of a picture's pixels that change by more than 1 % of white.
 
 | document: element | largest change | changed | nodes of eonlib |
 |---|---|---|---|
-{lines}"""
+{lines}
+Unchanged: {same}.
+"""
 
 Codes = NDArray[np.uint8]
 
@@ -145,15 +144,6 @@ def change(stock: Codes, eonlib: Codes) -> Change:
     apart = difference(srgb_decoded(eonlib / 255.0), srgb_decoded(stock / 255.0))
     largest = apart.flat[np.abs(apart).argmax()]
     return Change(float(largest), float(np.mean(np.abs(apart) > VISIBLE)))
-
-
-def in_percent(share: float) -> str:
-    """
-    >>> in_percent(-0.1234), in_percent(0.0002)
-    ('-12 %', 'none')
-    """
-    sign = "-" if share < 0.0 else "+"
-    return f"{sign}{words.in_words(100.0 * abs(share))} %" if abs(share) >= 0.001 else "none"
 
 
 def stage(folder: Path, checkout: Path, build: Path) -> None:
@@ -335,11 +325,14 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
     groups = {each: groups_of(after[each].read_text()) for each in names}
     shutil.rmtree(PICTURES, ignore_errors=True)
     PICTURES.mkdir(parents=True)
-    figures, lines, reasons = "", "", ""
+    figures, lines, reasons, same = "", "", "", []
     for each in names:
         nodes = "; ".join(GROUPS[group][0] for group in GROUPS if group in groups[each])
         largest, share = in_percent(changes[each].largest), in_percent(changes[each].visible)
-        lines += f"| {each} | {largest} | {share.removeprefix('+')} | {nodes} |\n"
+        if largest == "none":
+            same.append(each)
+        else:
+            lines += f"| {each} | {largest} | {share.removeprefix('+')} | {nodes} |\n"
         if each in visible:
             file = f"{slug(each)}.webp"
             both = Image.fromarray(
@@ -347,20 +340,14 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
             )
             both.resize((2 * SIZE, SIZE)).save(PICTURES / file, quality=QUALITY, method=6)
             figures += (
-                f'<figure><img src="images/suite/{file}" alt="{each}, stock and eonlib" width="{2 * SIZE}">'
-                f"<figcaption><b>{each}</b><br>{largest}: {nodes}</figcaption></figure>\n"
+                f'<figure><img src="images/suite/{file}" alt="stock and eonlib">'
+                f"<figcaption>{each}</figcaption></figure>\n"
             )
     for group, (title, _) in GROUPS.items():
         if any(group in found for found in groups.values()):
             alone = next((each for each in names if groups[each] == {group}), None)
-            size = f": {in_percent(changes[alone].largest)} in {alone}" if alone else ""
-            reasons += f"**{title[0].upper()}{title[1:]}**{size}\n\n"
-            reasons += "".join(
-                f"- [{each.title}](upstream/{each.page}.md)\n"
-                for each in issues().values()
-                if each.group == group and each.page.startswith("genglsl")
-            )
-            reasons += "\n"
+            size = f"{in_percent(changes[alone].largest)} in {alone}" if alone else ""
+            reasons += f"| [{title}](upstream/README.md#{group}) | {size} |\n"
     stock, eonlib = failures(work / STOCK), failures(work / EONLIB)
     rows = (
         f"| {name} | {stock[name][0]} of {stock[name][1]} | {eonlib[name][0]} of {eonlib[name][1]} |\n"
@@ -385,6 +372,7 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
             reasons=reasons,
             figures=figures,
             lines=lines,
+            same=", ".join(same),
             options="; ".join(f"`{name}` {shown(value)}" for name, value in options.items())
             or "none",
             absent=", ".join(Path(each).name for each in absent) or "none",

@@ -13,15 +13,39 @@
 | `... ledger.measure [HOST ...]`, `... ledger.pictures` | docs/upstream/measured.json; its pictures |
 """
 
+import math
 import re
 from pathlib import Path
 
 from mxeon import survey
+from mxeon.conformance import words
+from mxeon.conformance.results import Difference
 from mxeon.hosts import register
 
 register(*survey.ROWS)
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
+
+
+def in_percent(share: float) -> str:
+    """
+    >>> in_percent(-0.1234), in_percent(0.0002)
+    ('-12 %', 'none')
+    """
+    sign = "-" if share < 0.0 else "+"
+    return f"{sign}{words.in_words(100.0 * abs(share))} %" if abs(share) >= 0.001 else "none"
+
+
+def brief(apart: Difference) -> str:
+    """The largest difference of a picture, and how much of the object differs visibly.
+
+    >>> brief(Difference("back", 0.2035, False, 0.124))
+    '+20 %, visible on 12 %'
+    """
+    if not math.isfinite(apart.largest):
+        return words.appearance(apart)
+    seen = f", visible on {words.in_words(100.0 * apart.visible)} %" if apart.visible else ""
+    return f"{in_percent(apart.largest)}{seen}"
 
 
 def with_block(text: str, name: str, made: str) -> str:

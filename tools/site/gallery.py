@@ -32,7 +32,7 @@ from mxeon.io.srgb import srgb_encoded
 from mxeon.io.tone import pbr_neutral
 from mxeon.report.pieces import difference_pixels
 from mxeon.shaders.scene import FURNACE, SIDE, STUDIO, Paths, Scene
-from tools.site import DOCS
+from tools.site import DOCS, brief
 
 PAGE = DOCS / "gallery.md"
 EXAMPLES = DOCS.parent / "examples"
@@ -57,12 +57,14 @@ TITANIUM = DOCS / "images" / "titanium.mtlx"  # material in the README
 HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
 # Gallery
 
-The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX beside
-eonlib, the largest difference first. The inset shows the pictures' difference, a share of white, or of
-eonlib's picture where that is brighter, from black to the share in its label. Furnace documents show a sphere in a
-white environment, where it vanishes if no energy is lost or gained. The floor has the ball's contact shadow; the ball
-reflects itself in the [path-traced pictures](#path-traced) alone.
-Below each pair stands what `mxeon check` says of stock, in its own scenes. To draw one yourself:
+The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX beside eonlib, the
+largest difference first. The inset shows the pictures' difference, from black to the share in its label. Furnace documents
+show a sphere in a white environment, where it vanishes if no energy is lost or gained. The ball reflects itself in the
+[path-traced pictures](#path-traced) alone.
+
+Below each pair stands what `mxeon check` says of stock: its largest difference from the reference, in percent of white or
+of the reference where that is brighter (*+*: too bright), the share of the sphere on which it is visible, and the light. To
+draw a picture yourself:
 
     mxeon render examples/roughness_wedge.mtlx --element wedge_eon_100 --output wedge_eon_100.png
     mxeon render examples/layered_white_furnace.mtlx --element white_dielectric --scene furnace --output white.png
@@ -190,7 +192,7 @@ def judge():
     found = {}
     for each in mxeon.check(sorted(EXAMPLES.glob("*.mtlx")), ["gl"], ["stock"]).results:
         if each.check == "picture" and (apart := each.difference):
-            said = words.difference(apart) if apart.is_visible else ""
+            said = f"{brief(apart)}, {words.LIGHTS[apart.scene]}" if apart.is_visible else ""
             found[each.subject.partition(": ")[2]] = said, abs(apart.largest)
     DIFFERENCES.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 

@@ -82,7 +82,7 @@ def page(text):
             counts = sum(map(Counter, known["nodes"][library][name].values()), Counter())
             cells = (str(counts[verdict]) for verdict in (PASSED, DIFFERS, FAILED, NOT_RUN))
             nodes.append(f"| {name} | {library} | {' | '.join(cells)} |")
-    left = []
+    left = defaultdict(list)
     for name, found in known["open"].items():
         nodes_of = defaultdict(set)
         for check, subjects in found.items():
@@ -92,9 +92,10 @@ def page(text):
         for node, checks in sorted(nodes_of.items()):
             checks_of[", ".join(sorted(checks))].append(node)
         words = "; ".join(f"{', '.join(each)}: {checks}" for checks, each in checks_of.items())
-        left.append(f"- {name}: {words or 'nothing'}.")
+        left[words or "nothing"].append(name)
+    lines = [f"- {' and '.join(names)}: {words}." for words, names in left.items()]
     text = with_block(text, "nodes", "\n".join([*nodes, ""]))
-    return with_block(text, "open", "\n".join([*left, ""]))
+    return with_block(text, "open", "\n".join([*lines, ""]))
 
 
 if __name__ == "__main__":

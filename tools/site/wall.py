@@ -34,7 +34,7 @@ from mxeon.io.srgb import srgb_encoded
 from mxeon.report.diff import read_results
 from mxeon.shaders.scene import BACK, FURNACE, SIDE
 from mxeon.survey import ROWS
-from tools.site import DOCS
+from tools.site import DOCS, brief
 
 PAGE = DOCS / "wall.md"
 TILES = DOCS / "images" / "wall"
@@ -50,14 +50,17 @@ NOT_JUDGED = "not judged"
 HEAD = """<!-- Made by `python -m tools.site.wall`. -->
 # A wall of renderers
 
-Materials as each renderer draws them, in the same light and from the same place, next to the float64 reference. Of two
-lights, from the side and from behind, each material is shown in the one in which more renderers differ visibly; glass, which both
-leave black, in a white environment, which few renderers have here. Tiles are sorted by their largest difference, given as in
-`mxeon check`; failed ones are red. Below stands the cause: the lobes whose defects [the ledger](upstream/README.md) lists, or the
-input without which a renderer's own material is closest to the reference. *Not judged* means that the difference is no
-error of the renderer's code: it has closures of its own, or says that it ignores an input. Renderers for the browser approximate
-OpenPBR on purpose: a failed tile says how far, not that there is a bug. One is known: Babylon.js
-[squares the roughness of anisotropic lobes twice](upstream/babylon_anisotropic_roughness.md).
+Materials as each renderer draws them, in the same light and from the same place, next to the float64 reference. Each
+material is shown in light from the side or from behind, whichever makes more renderers differ visibly; glass, which both
+leave black, in a white environment, which few renderers have here.
+
+Tiles are sorted by their largest difference in percent of white, or of the reference where that is brighter: *+* is too
+bright, *none* less than 0.1 %. Then comes the share of the object that differs visibly. Renderers with the same figures
+share one picture. Failed tiles are red. Below stands the cause: the lobes whose defects [the
+ledger](upstream/README.md) lists, or the input without which a renderer's own material is closest to the reference. *Not
+judged* means that the difference is no error of the renderer's code: it has closures of its own, or says that it ignores
+an input. Renderers for the browser approximate OpenPBR on purpose: a failed tile says how far, not that there is a bug. One
+is known: Babylon.js [squares the roughness of anisotropic lobes twice](upstream/babylon_anisotropic_roughness.md).
 
     mxeon check MATERIAL.mtlx --host gl --host storm --host cycles --host three --report out
 
@@ -65,8 +68,8 @@ OpenPBR on purpose: a failed tile says how far, not that there is a bug. One is 
 ROUGH = f"""## A rough diffuse surface
 
 EON with color (0.8, 0.4, 0.1) and roughness 1, {words.LIGHTS[BACK.name]}. Renderers whose materials are not read from documents
-are here with their own nodes; [Renderers compared](the_field.md) has their models. Red are nodes that fail the check `value`:
-for some inputs they do not have the model that they claim.
+are here with their own nodes; [Renderers compared](the_field.md) has their models. Nodes in red fail the check `value`: for
+some inputs they do not have the model that they claim.
 
 """
 
@@ -74,7 +77,8 @@ for some inputs they do not have the model that they claim.
 class Tile(NamedTuple):
     """A picture on the wall."""
 
-    title: str
+    host: str
+    variant: str  # library or node; "" for a document in a renderer of its own
     scene: str
     image: NDArray[np.floating]
     difference: Difference
@@ -84,6 +88,21 @@ class Tile(NamedTuple):
     @property
     def largest(self) -> float:
         return abs(self.difference.largest)
+
+    @property
+    def caption(self) -> str:
+        return "<br>".join(each for each in (escape(brief(self.difference)), self.cause) if each)
+
+
+def title(tiles: list[Tile]) -> str:
+    """The hosts of tiles, by what they draw: "gl, storm: stock; cycles: eonlib"."""
+    hosts: dict[str, list[str]] = defaultdict(list)
+    for each in tiles:
+        hosts[each.variant].append(each.host)
+    return "; ".join(
+        f"{', '.join(sorted(set(names)))}: {variant}".removesuffix(": ")
+        for variant, names in hosts.items()
+    )
 
 
 def cause_of(result: Result) -> str:
@@ -110,7 +129,12 @@ def pixels(path: Path) -> NDArray[np.floating]:
 
 
 def figure(
-    image: NDArray[np.floating], name: str, title: str, caption: str, verdict: str = "expected"
+    image: NDArray[np.floating],
+    name: str,
+    alt: str,
+    title: str,
+    caption: str,
+    verdict: str = "expected",
 ) -> str:
     """Write a picture as a tile; returns its figure."""
     shown = Image.fromarray(srgb_encoded(image.astype(np.float32)))
@@ -119,19 +143,21 @@ def figure(
         TILES / f"{name}.webp", quality=QUALITY, method=6
     )
     return (
-        f'<figure class="{verdict}"><img src="images/wall/{name}.webp" alt="{escape(title)}" width="{SIZE}">'
+        f'<figure class="{verdict}"><img src="images/wall/{name}.webp" alt="{alt}">'
         f"<figcaption><b>{wrapped(escape(title))}</b><br>{caption}</figcaption></figure>\n"
     )
 
 
 def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> str:
-    """The reference, and the tiles by their difference."""
-    text = figure(reference, name, "reference", "float64")
+    """The reference, and the tiles by their difference; one picture for equal captions."""
+    text = figure(reference, name, "reference", "reference", "float64")
+    alike: dict[tuple[str, str], list[Tile]] = defaultdict(list)
     for each in sorted(tiles, key=lambda each: each.largest):
-        light = f" in {words.LIGHTS[each.scene]}"
-        caption = escape(words.difference(each.difference).replace(light, ""))
-        caption += f"<br>{each.cause}" if each.cause else ""
-        text += figure(each.image, f"{name}-{each.title}", each.title, caption, each.verdict)
+        alike[each.caption, each.verdict].append(each)
+    for (caption, verdict), drawn in alike.items():
+        first = drawn[0]
+        file = f"{name}-{first.host}-{first.variant}".rstrip("-")
+        text += figure(first.image, file, first.host, title(drawn), caption, verdict)
     return f'<div class="wall">\n{text}</div>\n'
 
 
@@ -179,11 +205,11 @@ class Wall:
             own = library == RENDERER_NODES
             result = self.results.get((element, host, library))
             claim = f"claims {result.claimed}" if result and result.claimed else ""
-            title = f"{host}, {element if own else library}"
-            return Tile(title, scene, image, apart, claim, result.verdict if result else NOT_RUN)
-        title = host if library == RENDERER_NODES else f"{host}, {library}"
+            verdict = result.verdict if result else NOT_RUN
+            return Tile(host, element if own else library, scene, image, apart, claim, verdict)
         judged = self.results[f"{document}: {element}", host, library]
-        return Tile(title, scene, image, apart, cause_of(judged), judged.verdict)
+        variant = "" if library == RENDERER_NODES else library
+        return Tile(host, variant, scene, image, apart, cause_of(judged), judged.verdict)
 
     def section(self, material: tuple[str, str]) -> tuple[float, str]:
         """Largest difference of a material, and its part of the page."""
@@ -200,16 +226,23 @@ class Wall:
             (([each for each in tiles if each.scene == scene], scene) for scene in references),
             key=lambda each: differing(each[0]),
         )
-        absent = dict.fromkeys(
-            f"<b>{host}</b> does not draw it: {escape(result.reason.removeprefix(f'{host}: '))}"
-            for (subject, host, _), result in self.results.items()
-            if subject in (": ".join(material), document) and result.verdict == NOT_RUN
-        )
         name, light = f"{Path(document).stem}-{element}", words.LIGHTS[scene]
         largest = max(each.largest for each in lit)
         text = f"## {element}\n\n`{document}`, {light}\n\n"
-        text += figures(name, references[scene], lit)
-        return largest, text + (f"\n<p>{'<br>'.join(absent)}</p>\n" if absent else "")
+        return largest, text + figures(name, references[scene], lit)
+
+    def not_drawn(self) -> str:
+        """The materials that a renderer does not draw, by its reason without the names of nodes."""
+        materials: dict[tuple[str, str], list[str]] = defaultdict(list)
+        for (subject, host, _), result in self.results.items():
+            for document, element in self.shown:
+                if subject in (f"{document}: {element}", document) and result.verdict == NOT_RUN:
+                    reason = re.sub(r' on "[^"]*"', "", result.reason.removeprefix(f"{host}: "))
+                    materials[host, reason.partition(". ")[0].rstrip(".")].append(element)
+        return "".join(
+            f"- {host} does not draw {', '.join(dict.fromkeys(names))}: {reason}.\n"
+            for (host, reason), names in materials.items()
+        )
 
     def rough(self) -> str:
         """One rough node of every renderer, with its own material; equal pictures of a renderer are shown once."""
@@ -250,7 +283,9 @@ class Wall:
         sections = [text for _, text in sorted(map(self.section, self.shown), reverse=True)]
         drawn = {host for *_, host, _ in self.images}
         measured = "".join(f"- {each}\n" for host, each in self.hosts.items() if host in drawn)
-        return HEAD + "\n".join([*sections, self.rough(), self.verdicts() + measured])
+        return HEAD + "\n".join(
+            [*sections, self.rough(), self.verdicts() + self.not_drawn(), measured]
+        )
 
 
 if __name__ == "__main__":

@@ -50,7 +50,7 @@ def entries() -> str:
     for issue in issues().values():
         differs = " (*differs*)" * issue.differs
         lines[issue.group] += f"- [{issue.title}]({issue.page}.md){differs}\n"
-    return "\n".join(f"### {GROUPS[name]}\n\n{each}" for name, each in lines.items())
+    return "\n".join(f"### {GROUPS[name]} {{#{name}}}\n\n{each}" for name, each in lines.items())
 
 
 def filled(name: str, text: str) -> str:
