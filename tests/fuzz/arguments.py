@@ -67,7 +67,6 @@ PLUMBING = (
         for name in ("coat_of", "checked_", "mixed_", "unpack_", "varnish_of")
     ),
     "mxeon.models.core.evaluation",
-    "mxeon.models.lobe_plot",
     "mxeon.models.microfacet.lobe_albedo",
     "mxeon.models.microfacet.node_",
     "mxeon.models.shading_model",

@@ -2,7 +2,6 @@
 """Models by their names: inputs of MaterialX, shapes, functions, messages."""
 
 import re
-import sys
 
 import MaterialX as mx
 import numpy as np
@@ -92,7 +91,7 @@ def test_every_drawn_direction_has_a_value_and_its_density(name):
 @every_model
 def test_what_a_model_has_is_in_dir_and_what_it_lacks_is_said(name):
     row = mxeon.model(name)
-    verbs = ("brdf", "bsdf", "albedo_dir", "albedo_avg", "sample", "pdf", "plot")
+    verbs = ("brdf", "bsdf", "albedo_dir", "albedo_avg", "sample", "pdf")
     for verb in verbs:
         assert (verb in dir(row)) == (verb in row.functions)
         if verb not in row.functions:
@@ -271,31 +270,3 @@ def test_three_samples_of_one_direction_take_no_color_for_their_reflectances():
     assert len(set(each)) == 3
     _, pdf = mxeon.model("eon").sample(WO, u, color=color[:, np.newaxis], roughness=0.5)
     assert np.allclose(pdf, each)
-
-
-def test_a_plot_names_channels_and_inputs_and_multiplies_all_but_fibers_by_the_cosine():
-    axes = mxeon.model("dielectric_rt").plot(tint=[0.9, 0.5, 0.1], roughness=0.5).get_axes()
-    names = [text.get_text() for text in axes[1].get_legend().get_texts()]
-    assert names == ["red", "green", "blue"]
-    assert axes[0].get_title() == "value times cosine, mean of the channels, 1/sr"
-    figure = mxeon.model("eon").plot(color=[0.8, 0.4, 0.1], roughness=1.0)
-    assert figure.get_suptitle().endswith(", color 0.8 0.4 0.1, roughness 1")
-    fiber = mxeon.model("hair").plot().get_axes()[0]
-    assert fiber.get_title() == "value, mean of the channels, 1/sr"
-
-
-@pytest.mark.parametrize("name", ["eon", "conductor", "translucent", "hair"])
-def test_a_plot_has_a_lobe_an_albedo_and_the_density_of_samples(name, tmp_path):
-    row = mxeon.model(name)
-    figure = row.plot(str(tmp_path / "lobe.png"))
-    assert (tmp_path / "lobe.png").read_bytes().startswith(b"\x89PNG")
-    axes = figure.get_axes()
-    assert len(axes) == (3 if "pdf" in row.functions else 2)
-    _, lobe = axes[0].lines[0].get_data()
-    assert len(lobe) > 500 and np.isfinite(lobe).all() and lobe.max() > 0.0
-
-
-def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch):
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(ImportError, match=re.escape("pip install '.[report]'")):
-        mxeon.model("eon").plot()

@@ -36,7 +36,7 @@ FUNCTIONS = [
     (name, function)
     for name in model_names()
     for function in mxeon.model(name).functions
-    if function not in ("plot", "brdf")  # brdf is another name of bsdf
+    if function != "brdf"  # another name of bsdf
 ]
 # JAX needs seconds to trace the sums of one film; test_arrays.py compiles the curves of the others.
 OTHER_FILMS = ("conductor_film", "schlick_film")

@@ -101,7 +101,7 @@ def model(name: str) -> ShadingModel:
 
         >>> gold = model("conductor")
         >>> gold
-        conductor: conductor microfacets; brdf, bsdf, albedo_dir, sample, pdf, plot
+        conductor: conductor microfacets; brdf, bsdf, albedo_dir, sample, pdf
           ior = (0.183, 0.421, 1.373), in [0, 1e50]
           extinction = (3.424, 2.346, 1.77), in [0, 1e50]
           roughness = (0.05, 0.05), in [0, 1]

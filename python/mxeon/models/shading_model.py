@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model as one object: value, albedos, samples, density, inputs, and a plot.
+"""A model as one object: value, albedos, samples, density and inputs.
 
 Inputs of a call are bound to the model's parameters, checked, and laid out in rows of pairs.
 """
@@ -8,11 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
-from mxeon.models import lobe_plot
 from mxeon.models.core.arguments import (
     ROUNDING,
     UNIT_TOLERANCE,
@@ -33,9 +32,6 @@ from mxeon.models.core.arrays import (
     root,
 )
 from mxeon.models.nodes.node import Inputs, Parameter, PbrNode
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)  # MaterialX's default normal and tangent
 
@@ -144,7 +140,7 @@ def _laid(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) 
 
 # Functions of models, and the reason why a model may lack each of them.
 LACKS = {
-    **dict.fromkeys(("bsdf", "albedo_dir", "plot"), ""),
+    **dict.fromkeys(("bsdf", "albedo_dir"), ""),
     **dict.fromkeys(("sample", "pdf"), ": no density of refracted light is implemented"),
     "brdf": ": light passes through it, so call bsdf",
     "albedo_avg": ": no closed form is known",
@@ -236,7 +232,7 @@ class ShadingModel:
         value = ("brdf", "bsdf") if self.lights == "front" else ("bsdf",)
         average = ("albedo_avg",) if self.row.average else ()
         samples = ("sample", "pdf") if self.sampler else ()
-        return (*value, "albedo_dir", *average, *samples, "plot")
+        return (*value, "albedo_dir", *average, *samples)
 
     def brdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Value of a model that reflects, in 1/sr, without the cosine.
@@ -296,13 +292,6 @@ class ShadingModel:
         assert self.sampler is not None
         call = self._bound({"wo": wo, "wi": wi}, inputs, named)
         return call.shaped(_on_side(self.sampler.side, self.sampler.pdf, call))
-
-    def plot(self, path: str | None = None, **named: ArrayLike) -> Figure:
-        """Plot one material: polar lobe, albedo over the viewer's angle, and density of samples.
-
-        The figure is written to `path`, a .png, .svg or .pdf. Raises ImportError if matplotlib is missing.
-        """
-        return lobe_plot.draw(self, named, path)
 
 
 def _on_side(
