@@ -10,6 +10,7 @@ from numpy.testing import assert_array_equal
 
 import mxeon
 from mxeon import models
+from mxeon.models import sampling
 from mxeon.models.catalog import MODELS
 from mxeon.models.nodes import PBR_NODES
 from mxeon.models.nodes.node import DEFAULTS
@@ -222,7 +223,7 @@ def test_a_list_beside_as_many_directions_is_refused_with_the_remedy(call):
     [
         (models.conductor_brdf, (0.3, 1.5, 2.0)),
         (models.generalized_schlick_brdf, (0.3, 1.0, 1.0, 0.3, 5.0)),
-        (models.ggx_pdf, (0.3,)),
+        (sampling.ggx_pdf, (0.3,)),
         (models.smith_g2_anisotropic, (0.3,)),
     ],
 )
@@ -265,8 +266,8 @@ def test_messages_say_what_there_is(call, error, message):
 def test_three_samples_of_one_direction_take_no_color_for_their_reflectances():
     u, color = np.full((3, 2), 0.4), np.array([0.8, 0.4, 0.1])
     with pytest.raises(ValueError, match=r"^rho of shape \(3,\) beside 3 samples .* rho.mean\(\)"):
-        models.eon_sample(WO, u, 0.5, rho=color)
-    each = models.eon_sample(np.tile(WO, (3, 1)), u, 0.5, rho=color)[1]
+        sampling.eon_sample(WO, u, 0.5, rho=color)
+    each = sampling.eon_sample(np.tile(WO, (3, 1)), u, 0.5, rho=color)[1]
     assert len(set(each)) == 3
     _, pdf = mxeon.model("eon").sample(WO, u, color=color[:, np.newaxis], roughness=0.5)
     assert np.allclose(pdf, each)

@@ -10,9 +10,12 @@ import numpy as np
 import pytest
 
 from mxeon import models
+from mxeon.models import hair, sampling, thin_film
 from mxeon.models.core.layering import Bsdf, multiply
+from mxeon.models.diffuse import translucent_btdf
 from mxeon.models.nodes.utilities import node
 from mxeon.models.table import diffuse_model
+from mxeon.models.transmission import schlick_ior
 
 UP, A = [0.0, 0.0, 1.0], [0.5, 0.5]
 BELOW = [UP, [0.6, 0.0, -0.8]]
@@ -36,13 +39,13 @@ RULES = {
         UP, UP, [[0.5, 2.0, 3.0]], 1.0
     ),
     "rho must lie in [0, 1]; got nan": lambda: models.eon_brdf(UP, UP, np.nan, 1.0),
-    "u must lie in [0, 1); got 1.0 at index (1, 0)": lambda: models.eon_sample(
+    "u must lie in [0, 1); got 1.0 at index (1, 0)": lambda: sampling.eon_sample(
         UP, [[0.0, 0.0], [1.0, 0.0]], 0.5
     ),
     "hair_color must lie in (0, 1]; got 0.0 at index (0,)": (
-        lambda: models.chiang_hair_absorption_from_color([0.0, 1.0, 1.0], 0.5)
+        lambda: hair.chiang_hair_absorption_from_color([0.0, 1.0, 1.0], 0.5)
     ),
-    "thinfilm_thickness must lie in [0, 1e9]; got -1.0": lambda: models.film_brdf(
+    "thinfilm_thickness must lie in [0, 1e9]; got -1.0": lambda: thin_film.film_brdf(
         "dielectric_bsdf", UP, UP, SOAP
     ),
     "weight must lie in [0, inf); got -0.5": lambda: multiply(LOBE, -0.5),
@@ -58,9 +61,9 @@ RULES = {
         UP, [1e200, 0.0, 0.0], 1.0
     ),
     "wi must not point below the horizon (z >= 0); got z = -0.8 at index (1,)": (
-        lambda: models.cosine_pdf(BELOW)
+        lambda: sampling.cosine_pdf(BELOW)
     ),
-    "wi must not point above the horizon (z <= 0); got z = 0.8": lambda: models.translucent_btdf(
+    "wi must not point above the horizon (z <= 0); got z = 0.8": lambda: translucent_btdf(
         UP, [0.6, 0, 0.8], 1.0
     ),
     # Kinds of arguments.
@@ -72,25 +75,25 @@ RULES = {
     "rho must not be a masked array, whose mask would be lost; fill it": (
         lambda: models.lambert_brdf(UP, UP, np.ma.masked_less([0.1, 0.5], 0.2))
     ),
-    "inputs must be a mapping of names to values; got 3": lambda: models.film_brdf(
+    "inputs must be a mapping of names to values; got 3": lambda: thin_film.film_brdf(
         "dielectric_bsdf", UP, UP, 3
     ),
-    "inputs must have ior, roughness, thinfilm_ior, thinfilm_thickness": lambda: models.film_brdf(
-        "dielectric_bsdf", UP, UP, {"tint": 1.0}
+    "inputs must have ior, roughness, thinfilm_ior, thinfilm_thickness": lambda: (
+        thin_film.film_brdf("dielectric_bsdf", UP, UP, {"tint": 1.0})
     ),
-    "form must be a Form; got 'x'": lambda: models.film_dielectric(0.5, 5.0, 1.5, 1.5, form="x"),
-    "reading must be one of text, unclamped": lambda: models.schlick_ior(0.5, "mean"),
+    "form must be a Form; got 'x'": lambda: thin_film.film_dielectric(0.5, 5.0, 1.5, 1.5, form="x"),
+    "reading must be one of text, unclamped": lambda: schlick_ior(0.5, "mean"),
     "no model 'phong'; see mxeon.models.table.DIFFUSE_MODELS": lambda: diffuse_model("phong"),
     "category must be one of roughness_anisotropy, ": lambda: node("nothing"),
     # Shapes.
     "wo must have shape (..., 3); got shape (2,)": lambda: models.lambert_brdf([1.0, 0.0], UP, 1.0),
     "wi must have shape (..., 3); got shape ()": lambda: models.lambert_brdf(UP, 1.0, 1.0),
-    "u must have shape (..., 2); got shape (3,)": lambda: models.cosine_sample([0.1, 0.2, 0.3]),
+    "u must have shape (..., 2); got shape (3,)": lambda: sampling.cosine_sample([0.1, 0.2, 0.3]),
     "roughness must be a number or have shape (..., 2); got shape (3,): write roughness[..., np": (
         lambda: models.smith_g1(UP, [0.5, 0.5, 0.5])
     ),
     "hair_color must have shape (..., 3); got shape ()": (
-        lambda: models.chiang_hair_absorption_from_color(0.5, 0.5)
+        lambda: hair.chiang_hair_absorption_from_color(0.5, 0.5)
     ),
     "ior, extinction must have equal numbers of channels; got 2, 3": (
         lambda: models.fresnel_conductor_avg([1.0, 2.0], [1.0, 2.0, 3.0])
@@ -113,7 +116,7 @@ def test_a_message_names_rule_value_and_place(message):
 
 def test_inputs_of_another_name_are_refused():
     with pytest.raises(TypeError, match=r"^inputs must be among tint_R, .*; got weight$"):
-        models.chiang_hair_bcsdf(UP, UP, weight=1.0)
+        hair.chiang_hair_bcsdf(UP, UP, weight=1.0)
 
 
 def test_the_first_bad_element_of_a_large_array_is_found():

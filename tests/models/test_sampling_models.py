@@ -12,17 +12,9 @@ import numpy as np
 import pytest
 
 import mxeon
-from mxeon.models import (
-    dielectric_brdf,
-    fresnel_dielectric,
-    ggx_pdf,
-    ggx_sample,
-    smith_g1,
-    smith_g2_anisotropic,
-    zeltner_albedo_dir,
-    zeltner_brdf,
-    zeltner_sample,
-)
+from mxeon.models import dielectric_brdf, fresnel_dielectric, smith_g1, smith_g2_anisotropic
+from mxeon.models.sampling import ggx_pdf, ggx_sample, zeltner_sample
+from mxeon.models.sheen import zeltner_albedo_dir, zeltner_brdf
 from tests.support.cases import direction
 from tests.support.hemispheres import probability, uniforms
 

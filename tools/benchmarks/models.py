@@ -24,8 +24,8 @@ from mxeon.models import (
     fresnel_conductor_avg,
     generalized_schlick_brdf,
     ggx_albedo_dir,
-    zeltner_brdf,
 )
+from mxeon.models.sheen import zeltner_brdf
 from tools.benchmarks.rounds import (
     Check,
     Group,

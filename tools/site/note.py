@@ -7,12 +7,12 @@ from matplotlib.figure import Figure
 
 from mxeon import models
 from mxeon.io.files import replacing
+from mxeon.models import hair, sheen, transmission
 from mxeon.models.core.quadrature import albedo_dir_quadrature
-from mxeon.models.diffuse import C1, FON_G, oren_nayar_brdf, qon_albedo_dir
+from mxeon.models.diffuse import C1, FON_G, burley_albedo_dir, oren_nayar_brdf, qon_albedo_dir
 from mxeon.models.diffuse import fon_loss_mu as fon_loss
 from mxeon.models.microfacet import dielectric_albedo_dir
 from mxeon.models.microfacet.defects import fitted_albedo
-from mxeon.models.transmission import READINGS, dielectric_transmittance_dir
 from tools.fits import fon_loss as loss_fit
 from tools.fits import ggx_albedo as albedo_fit
 from tools.fits import ggx_cosine as cosine_fit
@@ -182,7 +182,7 @@ def energy_rows():
     E = models.ggx_albedo_dir(mu, 1.0)
     R, T = (
         function(wo, 1.0, ROUGH, GLASS)[:, 0]
-        for function in (dielectric_albedo_dir, dielectric_transmittance_dir)
+        for function in (dielectric_albedo_dir, transmission.dielectric_transmittance_dir)
     )
     around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # along the tangent, and the bitangent
     yield "Microfacet BRDF, F = 1, alpha 1", "as it is", E
@@ -195,12 +195,14 @@ def energy_rows():
     )
     yield "Microfacet BTDF, rough glass, alpha 1", "R compensated, T as printed", R + T
     single = models.generalized_schlick_albedo_dir(wo, *SCHLICK, (0.0, 0.0), 5.0, compensate=False)
-    for name, reading in READINGS.items():
-        passed = models.generalized_schlick_transmittance_dir(wo, *SCHLICK, (0.0, 0.0), 5.0, name)
+    for name, reading in transmission.READINGS.items():
+        passed = transmission.generalized_schlick_transmittance_dir(
+            wo, *SCHLICK, (0.0, 0.0), 5.0, name
+        )
         head = "Generalized Schlick BTDF, smooth" if name == "text" else ""
         yield head, reading.title, single + passed
-    yield "Burley, roughness 1", "as printed", models.burley_albedo_dir(mu, 1.0, 1.0)
-    yield "Conty-Kulla sheen, roughness 0.05", "as printed", models.conty_kulla_albedo_dir(mu, 0.05)
+    yield "Burley, roughness 1", "as printed", burley_albedo_dir(mu, 1.0, 1.0)
+    yield "Conty-Kulla sheen, roughness 0.05", "as printed", sheen.conty_kulla_albedo_dir(mu, 0.05)
     yield (
         "Oren-Nayar, sigma 0.3",
         "full model",
@@ -212,9 +214,9 @@ def energy_rows():
         "with energy compensation",
         albedo_dir_quadrature(models.eon_brdf, mu, 1.0, 1.0),
     )
-    hair = models.chiang_hair_attenuation(wo, 1.55, 0.0).sum(axis=-1)
-    yield "Chiang hair, white", "with the printed factor 1/pi", hair / np.pi
-    yield "", "without it", hair
+    fiber = hair.chiang_hair_attenuation(wo, 1.55, 0.0).sum(axis=-1)
+    yield "Chiang hair, white", "with the printed factor 1/pi", fiber / np.pi
+    yield "", "without it", fiber
 
 
 def page(text):

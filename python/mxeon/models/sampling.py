@@ -685,23 +685,3 @@ def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     squared = square(a * x + b * z) + square(a * y) + square(z)
     pdf: Array = z / np.pi * square(a / squared)
     return pdf
-
-
-__all__ = [
-    "cltc_pdf",
-    "cltc_sample",
-    "cosine_pdf",
-    "cosine_sample",
-    "eon_cltc_pdf",
-    "eon_cltc_sample",
-    "eon_pdf",
-    "eon_sample",
-    "ggx_pdf",
-    "ggx_sample",
-    "ltc_pdf",
-    "ltc_sample",
-    "uniform_pdf",
-    "uniform_sample",
-    "zeltner_pdf",
-    "zeltner_sample",
-]
