@@ -13,9 +13,8 @@ from typing import cast
 import numpy as np
 
 from mxeon.models import coat, sampling, table
-from mxeon.models.core.arguments import checked_choice, checked_directions
-from mxeon.models.core.arrays import Array, any_array, array_namespace, cosine, library
-from mxeon.models.media import hg_pdf, hg_sample
+from mxeon.models.core.arguments import checked_choice, checked_directions, checked_sphere
+from mxeon.models.core.arrays import Array, array_namespace, cosine, library, root
 from mxeon.models.nodes import PBR_NODES
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.microfacets import FILM_NODES, TRANSMISSION_NODES, TRANSMISSIONS
@@ -25,18 +24,29 @@ from mxeon.models.transmission import LEAST_IOR
 
 
 def _cosine_sample(wo: Array, u: Array, inputs: Inputs) -> tuple[Array, Array]:
-    any_array(checked_directions)("wo", wo)
+    checked_directions("wo", wo)
     return sampling.cosine_sample(u)
 
 
 def _cosine_pdf(wo: Array, wi: Array, inputs: Inputs) -> Array:
-    any_array(checked_directions)("wo", wo)
+    checked_directions("wo", wo)
     return sampling.cosine_pdf(wi)
 
 
 def _back_sample(wo: Array, u: Array, inputs: Inputs) -> tuple[Array, Array]:
     wi, pdf = _cosine_sample(wo, u, inputs)
     return _mirrored(wi), pdf
+
+
+def _sphere_sample(wo: Array, u: Array, inputs: Inputs) -> tuple[Array, Array]:
+    u1, u2 = sampling.unpack_uniforms(u)
+    wi = sampling.around(1.0 - 2.0 * u1, 2.0 * root(u1 * (1.0 - u1)), u2)
+    return wi, _sphere_pdf(wo, wi, inputs)
+
+
+def _sphere_pdf(wo: Array, wi: Array, inputs: Inputs) -> Array:
+    checked_sphere("wo", wo)
+    return 0.25 / np.pi + 0.0 * checked_sphere("wi", wi)[..., 0]
 
 
 def _mirrored(w: Array) -> Array:
@@ -59,9 +69,7 @@ GGX = ModelSampler(
     lambda wo, wi, i: sampling.ggx_pdf(wo, wi, i["roughness"]),
     side=None,
 )
-SPHERE = ModelSampler(
-    lambda wo, u, i: hg_sample(wo, u, 0.0), lambda wo, wi, i: hg_pdf(wo, wi, 0.0), side=None
-)
+SPHERE = ModelSampler(_sphere_sample, _sphere_pdf, side=None)
 FACETS = ("dielectric", "conductor", "schlick")
 # Models that are not listed use COSINE.
 SAMPLERS = {

@@ -22,7 +22,7 @@ not broadcast.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -32,7 +32,6 @@ from mxeon.models.core.arguments import (
     checked,
     checked_colors,
     checked_numbers,
-    checked_pairs,
     checked_sphere,
     lead_shape,
 )
@@ -214,39 +213,8 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
 
 
 @any_array
-def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled by the phase function of Henyey and Greenstein, and its density `hg_pdf`.
-
-        1 - cos = (1 - g)^2 (1 - x) (2 + g (1 + x)) / (2 (1 + g x)^2),  x = 2 u_1 - 1
-
-    The inverse of its distribution, in a form of our own that is 1 - x at g = 0 and does not cancel for any g.
-
-    - `u` (..., 2): Independent uniform random numbers, in [0, 1).
-
-        >>> wi, pdf = hg_sample([0.0, 0.0, 1.0], [0.5, 0.0], 0.0)
-        >>> wi.round(12) + 0.0, round(float(pdf), 6)
-        (array([0., 1., 0.]), 0.079577)
-    """
-    views, pairs, (mean,) = checked_sphere("wo", wo), checked_pairs("u", u), checked_numbers(g=g)
-    shape = lead_shape({"wo": views, "u": pairs}, {"g": mean})
-    views, pairs, mean = broadcastable({"wo": views, "u": pairs}, {"g": mean})
-    xp = array_namespace(views, pairs, mean)
-    x, azimuth = 2.0 * pairs[..., 0] - 1.0, 2.0 * np.pi * pairs[..., 1]
-    # Invert the distribution, as 1 - cos and 1 + cos, which do not cancel.
-    square = 2.0 * (1.0 + mean * x) ** 2
-    less = (1.0 - mean) ** 2 * (1.0 - x) * (2.0 + mean * (1.0 + x)) / square  # 1 - cos
-    more = (1.0 + mean) ** 2 * (1.0 + x) * (2.0 - mean * (1.0 - x)) / square  # 1 + cos
-    sine = arrays.root(at_least_0(less * more))
-    local = sine * xp.cos(azimuth), sine * xp.sin(azimuth), 0.5 * (more - less)
-    parts = _around([-views[..., k] for k in range(3)], local)
-    wi = xp.stack([xp.broadcast_to(each, shape) for each in parts], axis=-1)
-    density = _phase(xp.where(mean < 0.0, more, less), mean)
-    return wi, (0.0 * wi[..., 0] + density)[()]
-
-
-@any_array
 def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
-    """Phase function of Henyey and Greenstein, the density of `hg_sample` at `wi`, in 1/sr.
+    """Phase function of Henyey and Greenstein, a density of `wi`, in 1/sr.
 
         f_p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2)),  cos = -dot(wo, wi)
 
@@ -266,26 +234,6 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
     side = xp.where(mean < 0.0, -1.0, 1.0)[..., np.newaxis]
     difference = 1.0 * views + side * lights  # 0 at the most likely deflection
     return _phase(0.5 * xp.sum(difference**2, axis=-1), mean)[()]
-
-
-def _around(axis: Sequence[Array], local: Sequence[Array]) -> list[Array]:
-    """Components of directions, from a frame with normal +z to one with normal `axis`."""
-    where, aside = array_namespace(*axis).where, abs(axis[0]) < 0.5
-    tangent = _unit(_cross((where(aside, 1.0, 0.0), where(aside, 0.0, 1.0), 0.0 * axis[2]), axis))
-    frame = tangent, _cross(axis, tangent), axis
-    x, y, z = local
-    return _unit([x * t + y * b + z * n for t, b, n in zip(*frame, strict=True)])
-
-
-def _cross(a: Sequence[Array], b: Sequence[Array]) -> list[Array]:
-    """Cross product of components."""
-    return [a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3)]
-
-
-def _unit(w: Sequence[Array]) -> list[Array]:
-    """Components of a vector, normalized."""
-    length = arrays.root(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
-    return [each / length for each in w]
 
 
 def _phase(less: Array, g: Array) -> Array:
