@@ -64,7 +64,7 @@ PLUMBING = (
     "mxeon.models.catalog",
     *(
         f"mxeon.models.coat.{name}"
-        for name in ("coat_of", "checked_", "mixed_", "unpack_", "varnish_of")
+        for name in ("coat_of", "checked_", "mixed_", "varnish_of")
     ),
     "mxeon.models.core.evaluation",
     "mxeon.models.microfacet.lobe_albedo",

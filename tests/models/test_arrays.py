@@ -376,10 +376,9 @@ def test_numpy_gets_its_own_functions_to_the_last_bit():
         (edges.trimmed(x, 0.5), np.minimum(x, 0.5)),
         (edges.at_least_0(x - 0.5), np.maximum(x - 0.5, 0.0)),
         (edges.root(x), np.sqrt(x)),
-        (edges.fractional_power(x, 1.0 / 3.0), x ** (1.0 / 3.0)),
+        (edges.power(x, 1.0 / 3.0), x ** (1.0 / 3.0)),
         (edges.hypot(x, y), np.hypot(x, y)),
         (edges.power(x, y), x**y),
-        (edges.except_at_1(np.cos, x, 0.0), np.cos(x)),
         (edges.guarded(x, x > 0.5, 0.0), x),
     )
     assert all(np.array_equal(ours, plain) for ours, plain in pairs)

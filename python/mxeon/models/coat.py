@@ -65,9 +65,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, wraps
-from inspect import signature
-from typing import NamedTuple, ParamSpec, TypeVar, cast
+from functools import lru_cache
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebint, chebval
@@ -93,9 +92,6 @@ from mxeon.models.microfacet import dielectric_brdf
 from mxeon.models.microfacet.fresnel import dielectric, dielectric_avg
 from mxeon.models.microfacet.slopes import slope_nodes
 from mxeon.models.sampling import unpack_uniforms
-
-P = ParamSpec("P")
-R = TypeVar("R")
 
 CURVE_NODES = 40  # Chebyshev nodes per curve, in `scaled_cosine`
 KEPT = 64  # interfaces in the cache
@@ -130,7 +126,7 @@ def scaled_cosine(mu: Array, alpha: float | Array) -> Array:
     The cube root spreads terms like mu log(mu) at 0.
     """
     extent = array_namespace(alpha).asinh(1.0 / alpha)
-    return arrays.fractional_power(array_namespace(mu, alpha).asinh(mu / alpha) / extent, 1.0 / 3.0)
+    return arrays.power(array_namespace(mu, alpha).asinh(mu / alpha) / extent, 1.0 / 3.0)
 
 
 def coat_curves(alpha: Array, ior: Array) -> Array:
@@ -161,54 +157,27 @@ def constant_coat(alpha: float, ior: float) -> Coat:
 
 
 @any_array
-def coat_of(alpha: float, ior: float) -> Coat:
+def coat_of(alpha: ArrayLike, ior: ArrayLike) -> Coat:
     """Curves of a dielectric, checked. Arrays of other libraries keep gradients and are not cached."""
-    numbers = checked_scalar("alpha", alpha, "coat_alpha"), checked_scalar("ior", ior, "coat_ior")
-    if not arrays.library(numbers[0]):
-        return constant_coat(*map(float, numbers))
-    rows = coat_curves(*numbers)
-    return Coat(numbers[0], dielectric_avg(numbers[1]), rows[:, 0], rows[:, 1])
-
-
-def checked_scalar(name: str, value: ArrayLike, quantity: str = "") -> arrays.Numbers:
-    """Check an argument that must be one number for all pairs."""
-    number = arguments.checked(name, value, quantity)
-    if number.ndim:
-        raise ValueError(
-            f"{name} must be one number, for all pairs; got shape {tuple(number.shape)}"
-        )
-    return number
-
-
-def of_one_coat(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorator: convert arrays of any library to a common one.
-
-    Parameters annotated as `float` are the coat's numbers; plain numbers are passed through.
-    """
-    parameters = signature(function)
-    types = {each.name: each.annotation for each in parameters.parameters.values()}
-    own = [name for name, kind in types.items() if kind in (float, "float")]
-
-    @wraps(function)
-    def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
-        call = parameters.bind(*args, **kwargs).arguments
-        plain = {name: call.pop(name) for name in own if not arrays.library(call[name])}
-        brought = dict(zip(call, any_array(lambda *each: each)(*call.values()), strict=True))
-        return cast(Callable[..., R], function)(**brought, **plain)
-
-    return wrapper
-
-
-@any_array
-def unpack_cosine(wo: ArrayLike) -> Array:
-    """Cosine of directions to the viewer, checked."""
-    return cosine(arrays.at_least_0(checked_directions("wo", wo)[..., 2]))
+    numbers = {
+        name: arguments.checked(name, value, f"coat_{name}")
+        for name, value in (("alpha", alpha), ("ior", ior))
+    }
+    for name, number in numbers.items():
+        if number.ndim:
+            raise ValueError(
+                f"{name} must be one number, for all pairs; got shape {tuple(number.shape)}"
+            )
+    if not arrays.library(numbers["alpha"]):
+        return constant_coat(*map(float, numbers.values()))
+    rows = coat_curves(**numbers)
+    return Coat(numbers["alpha"], dielectric_avg(numbers["ior"]), rows[:, 0], rows[:, 1])
 
 
 AVERAGED = 32  # nodes of the average over the viewer's cosine
 
 
-@of_one_coat
+@any_array
 def dielectric_over_eon_brdf(
     wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
@@ -226,12 +195,13 @@ def dielectric_over_eon_brdf(
     """
     coat = coat_of(alpha, ior)
     bare = dielectric_brdf(wo, wi, 1.0, alpha, ior, compensate=False)
-    missing, reflected = (each[..., np.newaxis] for each in coat.at(unpack_cosine(wo)))
+    mu = cosine(checked_directions("wo", wo)[..., 2])
+    missing, reflected = (each[..., np.newaxis] for each in coat.at(mu))
     base = eon_brdf(wo, wi, rho, roughness)
     return bare * (1.0 + coat.average * missing) + (1.0 - reflected) * base
 
 
-@of_one_coat
+@any_array
 def dielectric_over_eon_albedo_dir(
     mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
@@ -249,7 +219,7 @@ def dielectric_over_eon_albedo_dir(
     return reflected + (1.0 - reflected) * base
 
 
-@of_one_coat
+@any_array
 def dielectric_over_eon_albedo_avg(
     rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
@@ -312,29 +282,19 @@ def checked_draws(
     roughness: ArrayLike,
     u: ArrayLike | None = None,
     wi: ArrayLike | None = None,
-) -> None:
-    """Raise ValueError unless the arguments broadcast."""
-    vectors = {"wo": checked_directions("wo", wo)}
+) -> tuple[Array, Array]:
+    """Cosine of wo and mean of rho's channels; raises ValueError unless all arguments broadcast."""
+    vectors = {"wo": checked_directions("wo", wo), "rho": checked_color("rho", rho)}
     if wi is not None:
         vectors["wi"] = arguments.checked_sphere("wi", wi)
     if u is not None:
-        u1, u2 = unpack_uniforms(u)
-        vectors["u"] = array_namespace(u1).stack([u1, u2], axis=-1)
-    arguments.lead_shape(
-        vectors | {"rho": checked_color("rho", rho)},
-        {"roughness": arguments.checked("roughness", roughness)},
-    )
+        vectors["u"] = arguments.checked_pairs("u", u)
+    arguments.lead_shape(vectors, {"roughness": arguments.checked("roughness", roughness)})
+    color = vectors["rho"]
+    return cosine(vectors["wo"][..., 2]), array_namespace(color).mean(color, axis=-1)
 
 
 @any_array
-def checked_mean(rho: ArrayLike) -> Array:
-    """Mean of the channels, checked."""
-    color = checked_color("rho", rho)
-    mean: Array = array_namespace(color).sum(color, axis=-1) / color.shape[-1]
-    return mean
-
-
-@of_one_coat
 def dielectric_over_eon_sample(
     wo: ArrayLike,
     u: ArrayLike,
@@ -354,8 +314,8 @@ def dielectric_over_eon_sample(
         >>> wi.round(5), round(float(pdf), 5)
         (array([0.08667, 0.64394, 0.76015]), 0.23917)
     """
-    checked_draws(wo, rho, roughness, u=u)
-    share, mean = _facet_share(wo, rho, roughness, coat_of(alpha, ior)), checked_mean(rho)
+    mu, mean = checked_draws(wo, rho, roughness, u=u)
+    share = _facet_share(mu, mean, roughness, coat_of(alpha, ior))
     wi = mixed_sample(
         wo, u, alpha, share, lambda u: sampling.eon_sample(wo, u, roughness, rho=mean)[0]
     )
@@ -364,7 +324,7 @@ def dielectric_over_eon_sample(
     )
 
 
-@of_one_coat
+@any_array
 def dielectric_over_eon_pdf(
     wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
@@ -378,16 +338,15 @@ def dielectric_over_eon_pdf(
         >>> round(float(dielectric_over_eon_pdf(wo, wi, 0.7, 0.5, 0.3, 1.5)), 5)
         0.26516
     """
-    checked_draws(wo, rho, roughness, wi=wi)
-    share, mean = _facet_share(wo, rho, roughness, coat_of(alpha, ior)), checked_mean(rho)
+    mu, mean = checked_draws(wo, rho, roughness, wi=wi)
+    share = _facet_share(mu, mean, roughness, coat_of(alpha, ior))
     return mixed_pdf(wo, wi, alpha, share, lambda wi: sampling.eon_pdf(wo, wi, roughness, rho=mean))
 
 
-def _facet_share(wo: ArrayLike, rho: ArrayLike, roughness: ArrayLike, of: Coat) -> Array:
-    """E_r / E at the mean of rho's channels; 0 where nothing is reflected."""
-    mu = unpack_cosine(wo)
+def _facet_share(mu: Array, rho: Array, roughness: ArrayLike, of: Coat) -> Array:
+    """E_r / E for a gray rho; 0 where nothing is reflected."""
     reflected = of.at(mu)[1]
-    base = eon_albedo_dir(mu, checked_mean(rho)[..., np.newaxis], roughness)[..., 0]
+    base = eon_albedo_dir(mu, rho[..., np.newaxis], roughness)[..., 0]
     return reflected / nonzero(reflected + (1.0 - reflected) * base)
 
 
@@ -589,16 +548,17 @@ def constant_varnish(alpha: float, ior: float) -> Varnish:
 
 
 @any_array
-def varnish_of(alpha: float, ior: float) -> Varnish:
+def varnish_of(alpha: ArrayLike, ior: ArrayLike) -> Varnish:
     """An interface, checked. Arrays of other libraries keep gradients and are not cached."""
     coat_of(alpha, ior)
     if not arrays.library(alpha):
-        return constant_varnish(float(alpha), float(ior))
-    curves, means = varnish_curves(cast(Array, alpha), cast(Array, ior))
-    return Varnish(alpha, ior, curves, Means(*means))
+        return constant_varnish(float(cast(float, alpha)), float(cast(float, ior)))
+    numbers = cast(Array, alpha), cast(Array, ior)
+    curves, means = varnish_curves(*numbers)
+    return Varnish(*numbers, curves, Means(*means))
 
 
-@of_one_coat
+@any_array
 def varnished_brdf(
     wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
@@ -629,7 +589,7 @@ def varnished_brdf(
     return facets + any_array(evaluate)(base, wo, wi, rho, roughness=roughness)
 
 
-@of_one_coat
+@any_array
 def varnished_albedo_dir(
     mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
@@ -644,7 +604,7 @@ def varnished_albedo_dir(
     return _albedo(mu, rho, roughness, alpha, ior)[1]
 
 
-@of_one_coat
+@any_array
 def varnished_albedo_avg(rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float) -> Array:
     """Average of `varnished_albedo_dir` over the viewer's directions, weighted by the cosine.
 
@@ -662,7 +622,7 @@ def varnished_albedo_avg(rho: ArrayLike, roughness: ArrayLike, alpha: float, ior
     return 1.0 - varnish.ior**2 * (passed - E_b + (1.0 - passed) * E_R + again)
 
 
-@of_one_coat
+@any_array
 def varnished_sample(
     wo: ArrayLike, u: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> tuple[Array, Array]:
@@ -675,13 +635,12 @@ def varnished_sample(
         >>> wi.round(5), round(float(pdf), 5)
         (array([0.     , 0.6753 , 0.73755]), 0.22262)
     """
-    checked_draws(wo, rho, roughness, u=u)
-    share = _share(wo, rho, roughness, alpha, ior)
+    share = _share(*checked_draws(wo, rho, roughness, u=u), roughness, alpha, ior)
     wi = mixed_sample(wo, u, alpha, share, lambda _: _by_cosine(u, share))
     return wi, mixed_pdf(wo, wi, alpha, share, sampling.cosine_pdf)
 
 
-@of_one_coat
+@any_array
 def varnished_pdf(
     wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
@@ -693,8 +652,8 @@ def varnished_pdf(
     >>> round(float(varnished_pdf(wo, wi, 0.7, 0.5, 0.3, 1.5)), 5)
     0.32231
     """
-    checked_draws(wo, rho, roughness, wi=wi)
-    return mixed_pdf(wo, wi, alpha, _share(wo, rho, roughness, alpha, ior), sampling.cosine_pdf)
+    share = _share(*checked_draws(wo, rho, roughness, wi=wi), roughness, alpha, ior)
+    return mixed_pdf(wo, wi, alpha, share, sampling.cosine_pdf)
 
 
 @any_array
@@ -716,8 +675,7 @@ def _albedo(
     return curves.E_single, varnish_albedo(height, curves, varnish.ior, varnish.means, color, r)
 
 
-def _share(wo: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float) -> Array:
-    """E_single / E at the mean of rho's channels; 0 where nothing is reflected."""
-    mean = checked_mean(rho)[..., np.newaxis]
-    single, total = _albedo(unpack_cosine(wo), mean, roughness, alpha, ior)
+def _share(mu: Array, rho: Array, roughness: ArrayLike, alpha: float, ior: float) -> Array:
+    """E_single / E for a gray rho; 0 where nothing is reflected."""
+    single, total = _albedo(mu, rho[..., np.newaxis], roughness, alpha, ior)
     return (single / nonzero(total))[..., 0]

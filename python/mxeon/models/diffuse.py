@@ -79,15 +79,14 @@ def fon_loss_mu(mu: Array) -> Array:
     With theta_o = pi / 2 - 2 atan(t) and 1 - S = mu t, there is neither a division by mu nor a
     cancellation. Near the normal H is c1 + O(S^3).
     """
-    return arrays.except_at_1(_fon_loss, mu, C1)
 
+    def loss(mu: Array) -> Array:
+        xp = array_namespace(mu)
+        S = xp.sqrt((1.0 - mu) * (1.0 + mu))
+        t = mu / (1.0 + S)
+        return mu * t * (C1 - S * t * (2.0 + S) / (3.0 * np.pi)) + (2.0 / np.pi) * S * xp.atan(t)
 
-def _fon_loss(mu: Array) -> Array:
-    """H(mu), not differentiable at mu = 1."""
-    xp = array_namespace(mu)
-    S = xp.sqrt((1.0 - mu) * (1.0 + mu))
-    t = mu / (1.0 + S)
-    return mu * t * (C1 - S * t * (2.0 + S) / (3.0 * np.pi)) + (2.0 / np.pi) * S * xp.atan(t)
+    return arrays.except_where(lambda mu: mu >= 1.0, C1, loss, mu, 0.5)
 
 
 def fon_loss_approx(mu: Array) -> Array:

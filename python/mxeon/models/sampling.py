@@ -61,8 +61,8 @@ from mxeon.models.core.arrays import (
     at_least_0,
     at_most,
     below_1,
-    fractional_power,
     hypot,
+    power,
     root,
 )
 from mxeon.models.diffuse import C1, C2, cosines, eon_multiple_ratio, fon_loss_mu, fon_quotient
@@ -264,9 +264,9 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])  # 1 - v of the flat part
     # Draw a cosine from each part and keep the chosen one. The flat part does not start from a cosine.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
-    lower = eon_lower_cosine(x, fractional_power(1.0 - x, 1.0 / 3.0))
-    upper = eon_upper_cosine(fractional_power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
-    multiple = eon_multiple_cosine(fractional_power(v[2], 1.0 / 3.0))
+    lower = eon_lower_cosine(x, power(1.0 - x, 1.0 / 3.0))
+    upper = eon_upper_cosine(power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
+    multiple = eon_multiple_cosine(power(v[2], 1.0 / 3.0))
     mu = xp.where(u1 < ends[0], lower, xp.where(u1 < ends[1], upper, multiple))
     S = root((1.0 - mu) * (1.0 + mu))
     is_towards, is_flat = (u1 < ends[1])[..., np.newaxis], (u1 >= ends[2])[..., np.newaxis]
@@ -319,7 +319,7 @@ def eon_lower_cosine(x: Array, S: Array) -> Array:
 
 def eon_upper_limit(mu: Array, S: Array) -> Array:
     """y = (K / K(pi / 2))^(2/5) of the angle with this cosine and sine."""
-    return fractional_power(eon_segment(mu, S) / (0.25 * np.pi - 1.0 / 3.0), 0.4)
+    return power(eon_segment(mu, S) / (0.25 * np.pi - 1.0 / 3.0), 0.4)
 
 
 def eon_upper_quotient(y: Array) -> Array:
@@ -527,7 +527,7 @@ def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 def eon_cltc_probability(mu: Array, roughness: Array) -> Array:
     """Probability P_u of the uniform lobe."""
     P_u = 0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu
-    return fractional_power(roughness, 0.1) * P_u
+    return power(roughness, 0.1) * P_u
 
 
 def cltc_kept_fraction(d: Array) -> Array:

@@ -125,7 +125,7 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
         log_sine = xp.where(small, xp.log(ratio), xp.log1p(-above))
         lobe = (1.0 + shape) * xp.exp(shape * log_sine) / (4.0 * np.pi * xp.maximum(divisor, least))
     counted = smooth if xp is not arrays.NUMPY else counted
-    return tint * xp.where(counted, arrays.at_most(lobe, arrays.largest(wo)), 0.0)
+    return tint * xp.where(counted, arrays.at_most(lobe, float(arrays.precision(wo).max)), 0.0)
 
 
 def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:

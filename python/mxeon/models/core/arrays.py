@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
 from inspect import signature
-from itertools import chain
+from itertools import chain, repeat
 from typing import Any, ParamSpec, Protocol, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -83,10 +83,12 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
     """Decorator: accept arrays of any library and return arrays of that library.
 
     With NumPy the function is unchanged, to the last bit. Otherwise numbers, lists and NumPy arrays
-    are converted to the library, precision and device of the other arrays.
+    are converted to the library, precision and device of the other arrays, except plain numbers
+    for parameters annotated as `float`.
     """
     parameters = signature(function).parameters.values()
     names = [each.name for each in parameters]
+    plain = {each.name for each in parameters if each.annotation == "float"}
     numbers = {each.name: each.default for each in parameters if type(each.default) is float}
 
     @wraps(function)
@@ -100,8 +102,13 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
             return function(*args, **kwargs)
         convert = _converter(others)
         left = {name: numbers[name] for name in names[len(args) :] if name in numbers} | kwargs
-        named = {name: convert(each) for name, each in left.items()}
-        return cast(Callable[..., R], function)(*map(convert, args), **named)
+
+        def brought(name: str, value: object) -> object:
+            return value if name in plain and not library(value) else convert(value)
+
+        given = map(brought, chain(names, repeat("")), args)
+        named = {name: brought(name, value) for name, value in left.items()}
+        return cast(Callable[..., R], function)(*given, **named)
 
     return wrapper
 
@@ -164,9 +171,6 @@ def host_values(value: object) -> Numbers | None:
         return None
 
 
-INSIDE = 0.5  # a cosine at which every formula is smooth
-
-
 def cosine(z: Array) -> Array:
     """Cosine of a direction from its z, clamped to [0, 1] against rounding.
 
@@ -180,15 +184,10 @@ def cosine(z: Array) -> Array:
 
 def least_normal(x: Array) -> float:
     """Smallest normal number in the precision of x."""
-    return float(_precision(x).tiny)
+    return float(precision(x).tiny)
 
 
-def largest(x: Array) -> float:
-    """Largest number in the precision of x."""
-    return float(_precision(x).max)
-
-
-def _precision(x: Array) -> np.finfo[np.float64]:
+def precision(x: Array) -> np.finfo[np.float64]:
     """Floating-point limits of an array's type; float32 if it does not state its type."""
     return cast("np.finfo[np.float64]", array_namespace(x).finfo(getattr(x, "dtype", np.float32)))
 
@@ -224,25 +223,29 @@ def within(x: Array, low: float = 0.0, high: float = 1.0) -> Array:
 
 
 def except_where(
-    edge: Numbers, value: Array | float, formula: Callable[[Array], Array], x: Array, inside: float
+    edge: Callable[[Array], Numbers],
+    value: Array | float,
+    formula: Callable[[Array], Array],
+    x: Array,
+    inside: float,
 ) -> Array:
     """formula(x); on the edge, `value` with derivative 0 (there the formula is evaluated at `inside`)."""
-    where = array_namespace(x).where
-    return where(edge, value, formula(where(edge, inside, x)))
+    xp = array_namespace(x)
+    if xp is NUMPY:
+        return formula(x)
+    at = edge(x)
+    return xp.where(at, value, formula(xp.where(at, inside, x)))
 
 
 def root(x: Array) -> Array:
     """Square root; at 0 the derivative counts as 0."""
-    xp = array_namespace(x)
-    return xp.sqrt(x) if xp is NUMPY else except_where(~(x > 0.0), 0.0, xp.sqrt, x, 1.0)
+    return except_where(lambda x: ~(x > 0.0), 0.0, array_namespace(x).sqrt, x, 1.0)
 
 
 def hypot(x: Array, y: Array) -> Array:
     """Length of (x, y); at the origin the derivative counts as 0."""
-    xp = array_namespace(x, y)
-    if xp is NUMPY:
-        return xp.hypot(x, y)
-    return except_where((x == 0.0) & (y == 0.0), 0.0, lambda x: xp.hypot(x, y), x, 1.0)
+    length = array_namespace(x, y).hypot
+    return except_where(lambda x: (x == 0.0) & (y == 0.0), 0.0, lambda x: length(x, y), x, 1.0)
 
 
 def arcsine(x: Array) -> Array:
@@ -251,7 +254,8 @@ def arcsine(x: Array) -> Array:
     if xp is NUMPY:
         return xp.asin(xp.minimum(xp.maximum(x, -1.0), 1.0))
     end = like(np.asarray(0.5 * np.pi), x)
-    return except_where(~(xp.abs(x) < 1.0), xp.where(x < 0.0, -end, end), xp.asin, x, 0.0)
+    ends = xp.where(x < 0.0, -end, end)
+    return except_where(lambda x: ~(xp.abs(x) < 1.0), ends, xp.asin, x, 0.0)
 
 
 def arccosine(x: Array) -> Array:
@@ -271,33 +275,16 @@ def angle(y: Array, x: Array) -> Array:
     return xp.atan2(y, xp.where(origin, 1.0, x))
 
 
-def except_at_1(formula: Callable[[Array], Array], x: Array, value: float) -> Array:
-    """formula(x); at 1, or a rounding above, `value` with derivative 0."""
-    xp = array_namespace(x)
-    return formula(x) if xp is NUMPY else except_where(x >= 1.0, value, formula, x, INSIDE)
-
-
-def power(base: Array, exponent: Array) -> Array:
+def power(base: Array, exponent: Array | float) -> Array:
     """base^exponent; infinite derivatives at base 0 count as 0."""
-    xp = array_namespace(base, exponent)
-    if xp is NUMPY:
-        return base**exponent
-    steep = (base == 0.0) & (exponent < 1.0)
-    flat = xp.where(exponent == 0.0, 1.0, 0.0)
-    return except_where(steep, flat, lambda base: base**exponent, base, 1.0)
-
-
-def fractional_power(x: Array, exponent: float) -> Array:
-    """x^exponent with an exponent in (0, 1); at 0 the derivative counts as 0."""
-    xp = array_namespace(x)
-    if xp is NUMPY:
-        return x**exponent
-    return except_where(~(x > 0.0), 0.0, lambda x: x**exponent, x, 1.0)
+    flat = 1.0 * (cast(Array, exponent) == 0.0)
+    steep = exponent < 1.0
+    return except_where(lambda x: (x == 0.0) & steep, flat, lambda x: x**exponent, base, 1.0)
 
 
 def below_1(x: Array) -> float:
     """Largest number below 1 in the precision of x."""
-    return 1.0 - 0.5 * float(_precision(x).eps)
+    return 1.0 - 0.5 * float(precision(x).eps)
 
 
 def guarded(x: Array, valid: Numbers, inside: float) -> Array:

@@ -372,9 +372,7 @@ def _interpolated(mu: Array, alpha: Array) -> Array:
         rows = xp.tensordot(like(table, powers), powers, axes=1)
     rough = alpha > 0.0
     s = mu / xp.where(rough, mu + alpha, 1.0) * (1.0 + alpha)
-    value = chebyshev.chebyshev_sum(
-        rows, arrays.fractional_power(arrays.at_most(s, 1.0), 1.0 / 3.0)
-    )
+    value = chebyshev.chebyshev_sum(rows, arrays.power(arrays.at_most(s, 1.0), 1.0 / 3.0))
     return xp.where(rough, xp.maximum(value, 0.0), 0.0)  # a mirror loses no light
 
 
