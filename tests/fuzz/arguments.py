@@ -62,10 +62,7 @@ CHECKS = ("_", "checked", "unpack")  # prefixes of functions that check argument
 PLUMBING = (
     "mxeon.models.core.arguments",
     "mxeon.models.catalog",
-    *(
-        f"mxeon.models.coat.{name}"
-        for name in ("coat_of", "checked_", "mixed_", "varnish_of")
-    ),
+    *(f"mxeon.models.coat.{name}" for name in ("coat_of", "checked_", "mixed_", "varnish_of")),
     "mxeon.models.core.evaluation",
     "mxeon.models.microfacet.lobe_albedo",
     "mxeon.models.microfacet.node_",

@@ -18,8 +18,9 @@ import mxeon
 from mxeon.models import eon_brdf, fon_albedo_dir, fon_loss, lambert_brdf, smith_g1
 from mxeon.models.core import arrays as edges
 from mxeon.models.core.arguments import RANGES
-from mxeon.models.core.arrays import NUMPY, array_namespace
+from mxeon.models.core.arrays import NUMPY, ArrayLike, array_namespace
 from mxeon.models.sampling import eon_sample
+from mxeon.models.thin_film import PRINTED, film_reflectance
 from tests.fuzz import arguments
 from tests.support.availability import package
 from tests.support.tracing import untraced
@@ -89,6 +90,36 @@ PORTABLE = {
     and function in DOCUMENTED
     and "core.quadrature" not in name
 }
+
+
+# The arguments of `film_reflectance` have only one substrate.
+def film_conductor(
+    mu: "ArrayLike",
+    thickness: "ArrayLike",
+    film_ior: "ArrayLike",
+    ior: "ArrayLike",
+    extinction: "ArrayLike",
+):
+    film = {"thinfilm_thickness": thickness, "thinfilm_ior": film_ior}
+    inputs = {"ior": ior, "extinction": extinction, **film}
+    return film_reflectance("conductor_bsdf", mu, inputs, PRINTED)
+
+
+def film_schlick(
+    mu: "ArrayLike",
+    thickness: "ArrayLike",
+    film_ior: "ArrayLike",
+    color0: "ArrayLike",
+    color82: "ArrayLike",
+    color90: "ArrayLike",
+    exponent: "ArrayLike",
+):
+    film = {"thinfilm_thickness": thickness, "thinfilm_ior": film_ior}
+    curve = {"color0": color0, "color82": color82, "color90": color90, "exponent": exponent}
+    return film_reflectance("generalized_schlick_bsdf", mu, curve | film, PRINTED)
+
+
+PORTABLE |= {each.__name__: each for each in (film_conductor, film_schlick)}
 COMPENSATED = ("dielectric_brdf", "conductor_brdf", "generalized_schlick_brdf")
 # Ends of ranges for tests, if a range has none, or its slopes diverge there.
 LOW = (

@@ -81,7 +81,9 @@ RULES = {
     "inputs must have ior, roughness, thinfilm_ior, thinfilm_thickness": lambda: (
         thin_film.film_brdf("dielectric_bsdf", UP, UP, {"tint": 1.0})
     ),
-    "form must be a Form; got 'x'": lambda: thin_film.film_dielectric(0.5, 5.0, 1.5, 1.5, form="x"),
+    "form must be a Form; got 'x'": lambda: thin_film.film_reflectance(
+        "dielectric_bsdf", 0.5, SOAP, form="x"
+    ),
     "reading must be one of text, unclamped": lambda: schlick_ior(0.5, "mean"),
     "no model 'phong'; see mxeon.models.table.DIFFUSE_MODELS": lambda: diffuse_model("phong"),
     "category must be one of roughness_anisotropy, ": lambda: node("nothing"),

@@ -17,10 +17,8 @@ from mxeon.models.thin_film import (
     Form,
     PolynomialCurve,
     film_brdf,
-    film_conductor,
     film_curve,
-    film_dielectric,
-    film_schlick,
+    film_reflectance,
 )
 from tests.models.test_pbrlib import WO, inputs
 from tests.support.availability import package
@@ -89,13 +87,31 @@ def errors(orders):
     return error[~metal].max(), error[metal].max()
 
 
+def dielectric(mu, thickness, index, ior):
+    film = {"thinfilm_thickness": thickness, "thinfilm_ior": index}
+    return film_reflectance("dielectric_bsdf", mu, {"ior": ior, **film})
+
+
+def conductor(mu, thickness, index, ior, extinction, form=TEXT):
+    film = {"thinfilm_thickness": thickness, "thinfilm_ior": index}
+    inputs = {"ior": ior, "extinction": extinction, **film}
+    return film_reflectance("conductor_bsdf", mu, inputs, form)
+
+
+def schlick(mu, thickness, index, color0, form=TEXT):
+    """A curve with white `color82` and `color90` and exponent 5."""
+    film = {"thinfilm_thickness": thickness, "thinfilm_ior": index}
+    inputs = {"color0": color0, "color82": 1.0, "color90": 1.0, "exponent": 5.0, **film}
+    return film_reflectance("generalized_schlick_bsdf", mu, inputs, form)
+
+
 def bare(thickness):
     """Reflectances of the three substrates with and without a film of the same thickness."""
     return (
-        (film_dielectric(MU, thickness, 1.4, 1.8), fresnel_dielectric(MU, 1.8)[:, np.newaxis]),
-        (film_conductor(MU, thickness, 1.4, *GOLD), fresnel_conductor(MU, *GOLD)),
+        (dielectric(MU, thickness, 1.4, 1.8), fresnel_dielectric(MU, 1.8)[:, np.newaxis]),
+        (conductor(MU, thickness, 1.4, *GOLD), fresnel_conductor(MU, *GOLD)),
         (
-            film_schlick(MU, thickness, 1.4, HALF, WHITE, WHITE, 5.0),
+            schlick(MU, thickness, 1.4, HALF),
             fresnel_schlick(MU, HALF, WHITE, WHITE, 5.0),
         ),
     )
@@ -107,29 +123,26 @@ def test_a_film_of_thickness_0_is_the_plain_curve():
 
 
 def test_a_film_is_continuous_where_its_thickness_vanishes_but_over_schlick():
-    dielectric, conductor, schlick = bare(1e-6)
-    for coated, plain in (dielectric, conductor):
+    *others, jumping = bare(1e-6)
+    for coated, plain in others:
         np.testing.assert_allclose(coated, np.broadcast_to(plain, coated.shape), atol=HEIGHTS)
-    assert np.abs(schlick[0] - schlick[1]).max() > 0.1
+    assert np.abs(jumping[0] - jumping[1]).max() > 0.1
 
 
 def test_a_film_of_index_1_vanishes():
-    ones = (
-        film_conductor(MU, 400.0, 1.0, *GOLD),
-        film_schlick(MU, 400.0, 1.0, HALF, WHITE, WHITE, 5),
-    )
+    ones = conductor(MU, 400.0, 1.0, *GOLD), schlick(MU, 400.0, 1.0, HALF)
     np.testing.assert_allclose(ones[0], fresnel_conductor(MU, *GOLD), rtol=1e-13)
     np.testing.assert_allclose(ones[1], fresnel_schlick(MU, HALF, WHITE, WHITE, 5.0), rtol=1e-13)
 
 
 def test_a_film_of_the_index_of_its_substrate_is_that_substrate():
-    coated = film_dielectric(MU, 400.0, 1.7, 1.7)
+    coated = dielectric(MU, 400.0, 1.7, 1.7)
     plain = fresnel_dielectric(MU, 1.7)[:, np.newaxis]
     np.testing.assert_allclose(coated, np.broadcast_to(plain, coated.shape), rtol=1e-12)
 
 
 def test_a_substrate_that_reflects_everything_does_so_under_a_film():
-    np.testing.assert_allclose(film_dielectric(MU, 400.0, 1.5, 0.0), 1.0, rtol=1e-12)
+    np.testing.assert_allclose(dielectric(MU, 400.0, 1.5, 0.0), 1.0, rtol=1e-12)
 
 
 def test_wavelengths_agree_with_the_transfer_matrix_method():
@@ -186,7 +199,7 @@ def test_the_reflectance_lies_in_0_to_1_and_leaves_it_before_the_clamp():
     rng = np.random.default_rng(1)
     films = 1000.0 * rng.random(500), 1.0 + rng.random(500), 0.2 + 2.0 * rng.random((500, 3))
     metal = rng.random(500), *films, 4.0 * rng.random((500, 3))
-    clamped, free = (film_conductor(*metal, form) for form in (TEXT, replace(TEXT, clamped=False)))
+    clamped, free = (conductor(*metal, form) for form in (TEXT, replace(TEXT, clamped=False)))
     assert clamped.min() >= 0.0 and clamped.max() <= 1.0
     assert free.min() < -0.05 and free.max() > 1.05
     np.testing.assert_array_equal(clamped, np.clip(free, 0.0, 1.0))
@@ -207,9 +220,9 @@ def test_the_matrix_is_the_printed_one_after_a_bradford_adaptation():
 
 
 def test_half_of_a_schlick_substrate_darkens_a_white_metal():
-    white = film_schlick(1.0, 300.0, 1.0001, WHITE, WHITE, WHITE, 5.0, Form(share=0.5))
+    white = schlick(1.0, 300.0, 1.0001, WHITE, Form(share=0.5))
     np.testing.assert_allclose(white, 0.5, atol=1e-3)
-    stock = film_schlick(0.5, 300.0, 1.5, WHITE, WHITE, WHITE, 5.0, MATERIALX)
+    stock = schlick(0.5, 300.0, 1.5, WHITE, MATERIALX)
     assert stock.max() < 0.65
 
 
@@ -249,6 +262,6 @@ def test_the_average_of_a_curve_is_weighted_by_the_cosine(film):
     names = ("thinfilm_thickness", "thinfilm_ior", "ior")
     material = dict(zip(names, map(np.array, film), strict=True)) | {"tint": np.ones(1)}
     mu = (np.arange(2000) + 0.5) / 2000
-    expected = (2.0 * mu[:, np.newaxis] * film_dielectric(mu, *film)).mean(axis=0)
+    expected = (2.0 * mu[:, np.newaxis] * dielectric(mu, *film)).mean(axis=0)
     average = film_curve("dielectric_bsdf").average(**material)
     assert np.allclose(average, expected, rtol=0.0, atol=AVERAGED)

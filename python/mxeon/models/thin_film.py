@@ -6,12 +6,8 @@ Sections are those of [MaterialX2026], appendix Thin-Film Iridescence Model, aft
 
 - `mu` (...): Cosine between direction and microfacet normal, in [0, 1].
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
-- `thickness` (...): Thickness of the film in nm, in [0, 1e9].
-- `film_ior` (...): Index of the film, in [1, 1e50].
-- `ior`, `extinction` (...): Complex index of the substrate, in [0, 1e50], without channels unless a function
-  says otherwise.
-- `category`, `inputs`: Category of the node, and its inputs by the names of its ports, colors with three channels;
-  `thinfilm_thickness` in nm, and `thinfilm_ior`.
+- `category`, `inputs`: Category of the node, and its inputs by the names of its ports, colors with one or three
+  channels; `thinfilm_thickness` (...) in nm, in [0, 1e9], and `thinfilm_ior` (...), in [1, 1e50].
 - `form`: Choices that the text leaves open: the matrix to RGB, the number of orders, how an index per channel enters a sum
   over CIE XYZ, and the treatment of values outside [0, 1], which the text clamps at the very end.
 
@@ -426,108 +422,35 @@ SUBSTRATES: dict[str, Callable[..., Polarizations]] = {
 }
 
 
-PORTS = {"thickness": "thinfilm_thickness", "film_ior": "thinfilm_ior"}  # node inputs
+FILM = ("thinfilm_thickness", "thinfilm_ior")
+DEGREE = 48  # degree of the film's curve in the cosine, for albedos
 
 
 @any_array
-def film_dielectric(
-    mu: ArrayLike,
-    thickness: ArrayLike,
-    film_ior: ArrayLike,
-    ior: ArrayLike,
-    form: Form = TEXT,
+def film_reflectance(
+    category: str, mu: ArrayLike, inputs: Mapping[str, ArrayLike], form: Form = TEXT
 ) -> Array:
-    """Reflectance of a dielectric under a thin film for unpolarized light.
+    """Reflectance of a node's curve under a thin film for unpolarized light; `tint` and `roughness` have no effect.
 
-    Below index 1 the specification's phases of the first interface do not hold: the s polarization has
-    its phase of pi from a film that is denser than the vacuum. Accuracy: the infinite sum is within
-    1e-6, for cosines above 0.01.
+    Accuracy: over a dielectric the infinite sum is within 1e-6 for cosines above 0.01, over a conductor within 1e-4 at
+    grazing angles, where all orders count. Below index 1 the specification's phases of the first interface do not
+    hold: the s polarization has its phase of pi from a film that is denser than the vacuum. The Schlick curve replaces
+    the film's lower interface at the refracted angle, so the value jumps as soon as the thickness is not 0; a negative
+    curve counts as 0, because it has no amplitude.
 
-        >>> film_dielectric(1.0, [0.0, 100.0, 300.0], 1.38, 1.5).round(4)
+        >>> glass = {"ior": 1.5, "thinfilm_thickness": [0.0, 100.0, 300.0], "thinfilm_ior": 1.38}
+        >>> film_reflectance("dielectric_bsdf", 1.0, glass).round(4)
         array([[0.04  , 0.04  , 0.04  ],
                [0.015 , 0.014 , 0.0178],
                [0.0209, 0.0142, 0.0348]])
     """
-    numbers = {"mu": mu, "ior": ior, "thickness": thickness, "film_ior": film_ior}
-    return _reflectance("dielectric_bsdf", form, {}, numbers)
-
-
-@any_array
-def film_conductor(
-    mu: ArrayLike,
-    thickness: ArrayLike,
-    film_ior: ArrayLike,
-    ior: ArrayLike,
-    extinction: ArrayLike,
-    form: Form = TEXT,
-) -> Array:
-    """Reflectance of a conductor under a thin film for unpolarized light.
-
-    - `ior`, `extinction` (..., 3): Complex index of refraction per channel, in [0, 1e50].
-
-    Accuracy: as for `film_dielectric`, but 1e-4 at grazing angles, where all orders count.
-
-        >>> gold = [0.183, 0.421, 1.373], [3.424, 2.346, 1.770]
-        >>> film_conductor(1.0, [0.0, 200.0], 1.5, *gold).round(4)
-        array([[0.9442, 0.7762, 0.3733],
-               [0.9554, 0.7184, 0.1298]])
-    """
-    colors = {"ior": ior, "extinction": extinction}
-    numbers = {"mu": mu, "thickness": thickness, "film_ior": film_ior}
-    return _reflectance("conductor_bsdf", form, colors, numbers)
-
-
-@any_array
-def film_schlick(
-    mu: ArrayLike,
-    thickness: ArrayLike,
-    film_ior: ArrayLike,
-    color0: ArrayLike,
-    color82: ArrayLike,
-    color90: ArrayLike,
-    exponent: ArrayLike,
-    form: Form = TEXT,
-) -> Array:
-    """Reflectance of a generalized Schlick curve under a thin film.
-
-    - `color0`, `color82`, `color90` (..., C): Reflectance r0 along the normal, multiplier at
-      acos(1/7), and reflectance r90 at grazing, per channel, in [0, 1]; a number is one channel.
-    - `exponent` (...): q, in [0, 1e50].
-
-    The curve replaces the film's lower interface at the refracted angle, so the value jumps as soon
-    as the thickness is not 0. A negative curve counts as 0, because it has no amplitude.
-
-        >>> film_schlick(0.5, [0.0, 300.0], 1.5, [1.0, 0.8, 0.1], np.ones(3), np.ones(3), 5.0).round(4)
-        array([[1.    , 0.8062, 0.1281],
-               [1.    , 0.7633, 0.1166]])
-    """
-    colors = {"color0": color0, "color82": color82, "color90": color90}
-    numbers = {"mu": mu, "exponent": exponent, "thickness": thickness, "film_ior": film_ior}
-    return _reflectance("generalized_schlick_bsdf", form, colors, numbers)
-
-
-def _reflectance(
-    category: str, form: Form, colors: dict[str, ArrayLike], numbers: dict[str, ArrayLike]
-) -> Array:
-    """Curve of a node under a film, evaluated over broadcast arguments."""
     if not isinstance(form, Form):
         raise ValueError(f"form must be a Form; got {form!r}")
-    curve = film_curve(category, form)
-
-    def at(mu: Array, **material: Array) -> Array:
-        if category == "dielectric_bsdf":
-            material["tint"] = like(np.ones(1), mu)  # not used by the curve
-        return curve.at(mu, **material)
-
-    vectors = {name: arguments.checked_rgb(name, value) for name, value in colors.items()}
-    values = arguments.checked_all(numbers)
-    arguments.lead_shape(vectors, values)
-    ports = {PORTS.get(name, name): value for name, value in values.items()}
-    return evaluate_material(at, vectors, ports, 3)
-
-
-FILM = ("thinfilm_thickness", "thinfilm_ior")
-DEGREE = 48  # degree of the film's curve in the cosine, for albedos
+    given = {"tint": 1.0, "roughness": 0.0, **inputs} if isinstance(inputs, Mapping) else inputs
+    vectors, numbers = _material(category, given)
+    numbers["mu"] = arguments.checked("mu", mu)
+    arguments.lead_shape(vectors, numbers)
+    return evaluate_material(film_curve(category, form).at, vectors, numbers, 3)
 
 
 @any_array
@@ -578,7 +501,7 @@ def film_albedo_dir(
 
 
 def _material(
-    category: str, inputs: Mapping[str, ArrayLike], wo: ArrayLike
+    category: str, inputs: Mapping[str, ArrayLike], wo: ArrayLike = (0.0, 0.0, 1.0)
 ) -> tuple[dict[str, arrays.Numbers], dict[str, arrays.Numbers]]:
     """Checked inputs with channels and without."""
     _, colors, numbers = CATEGORIES[arguments.checked_choice("category", category, CATEGORIES)]

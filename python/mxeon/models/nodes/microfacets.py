@@ -226,15 +226,7 @@ def _bare(inputs: Inputs) -> dict[str, Array]:
 
 def _reflectance(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
     """F of a film at the view direction, (N, 3)."""
-    mu = np.minimum(wo[:, 2], 1.0)
-    thickness, index = (inputs[name] for name in FILM)
-    if category == "dielectric_bsdf":
-        return thin_film.film_dielectric(mu, thickness, index, inputs["ior"], form)
-    if category == "conductor_bsdf":
-        return thin_film.film_conductor(
-            mu, thickness, index, inputs["ior"], inputs["extinction"], form
-        )
-    return thin_film.film_schlick(mu, thickness, index, *_schlick(inputs), inputs["exponent"], form)
+    return thin_film.film_reflectance(category, np.minimum(wo[:, 2], 1.0), inputs, form)
 
 
 def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: Inputs) -> Array:
