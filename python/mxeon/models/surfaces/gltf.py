@@ -20,21 +20,8 @@ from mxeon.models.core.arrays import Array
 from mxeon.models.microfacet.fresnel import fresnel_schlick
 from mxeon.models.nodes.node import BLACK, WHITE
 from mxeon.models.shading_model import ALONG, UP
-from mxeon.models.surfaces.lobes import (
-    CONTY_KULLA,
-    DIELECTRIC,
-    EON,
-    ONES,
-    SCHLICK,
-    Frame,
-    Light,
-    Parameters,
-    Values,
-    f0_from_ior,
-    filled,
-    lerp,
-    schlick_inputs,
-)
+from mxeon.models.surfaces import lobes
+from mxeon.models.surfaces.lobes import ONES, Frame, Light, Parameters, Values, lerp
 
 INF = np.inf
 FRAME: Values = {"normal": UP, "tangent": ALONG, "clearcoat_normal": UP}
@@ -66,7 +53,7 @@ DEFAULTS: Values = {
     "anisotropy_rotation": 0.0,
     "dispersion": 0.0,
 }
-parameters = partial(filled, {**DEFAULTS, **FRAME})
+parameters = partial(lobes.filled, {**DEFAULTS, **FRAME})
 CLEARCOAT_F0 = 0.04
 
 
@@ -75,12 +62,6 @@ def alphas(p: Parameters) -> Array:
     across = np.square(p["roughness"])
     along = lerp(across, 1.0, np.square(p["anisotropy_strength"]))
     return np.concatenate(np.broadcast_arrays(along, across), axis=1)
-
-
-def coat(p: Parameters) -> dict[str, Array]:
-    """Inputs of the clearcoat's lobe."""
-    alpha = np.repeat(np.square(p["clearcoat_roughness"]), 2, axis=1)
-    return {"ior": np.full((1, 1), 1.5), "roughness": alpha, "tint": ONES}
 
 
 def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
@@ -93,22 +74,21 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
 
     def reflected(f0: Array, f90: Array) -> tuple[Array, Array]:
         """A specular lobe and its albedo, in part below a thin film."""
-        inputs = schlick_inputs(f0, f90, alpha)
-        found = []
-        for find in (light.response, light.albedo):
-            bare = find(SCHLICK, frame, **inputs)
-            wet = find(SCHLICK, frame, **inputs, **film) if np.any(covered) else bare
-            found.append(lerp(bare, wet, covered))
-        return found[0], found[1]
+        inputs = lobes.schlick_inputs(f0, f90, alpha)
+        f, E = light.both(lobes.SCHLICK, frame, **inputs)
+        if not np.any(covered):
+            return f, E
+        f_wet, E_wet = light.both(lobes.SCHLICK, frame, **inputs, **film)
+        return lerp(f, f_wet, covered), lerp(E, E_wet, covered)
 
     f_metal, _ = reflected(p["base_color"], ONES)
-    f0 = np.minimum(f0_from_ior(p["ior"]) * p["specular_color"], 1.0) * p["specular"]
+    f0 = np.minimum(lobes.f0_from_ior(p["ior"]) * p["specular_color"], 1.0) * p["specular"]
     f_specular, E_specular = reflected(f0, p["specular"] * ONES)
     f_btdf = light.through(1.0)
     if "reflection taken twice" in but:
         glass = {"ior": p["ior"], "roughness": alpha, "tint": ONES}
-        f_btdf = f_btdf * (1.0 - light.albedo(DIELECTRIC, frame, **glass))
-    f_diffuse = light.response(EON, plain, color=p["base_color"], roughness=0.0)
+        f_btdf = f_btdf * (1.0 - light.albedo(lobes.DIELECTRIC, frame, **glass))
+    f_diffuse = light.response(lobes.EON, plain, color=p["base_color"], roughness=0.0)
     below = lerp(f_diffuse, p["base_color"] * f_btdf, p["transmission"])
     material = lerp(f_specular + (1.0 - E_specular) * below, f_metal, p["metallic"])
 
@@ -116,13 +96,14 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     if np.any(intensity):
         fibers = {"color": ONES, "roughness": np.square(p["sheen_roughness"])}
         share = p["sheen_color"] if "tinted light below the sheen" in but else intensity
-        E_sheen = share * light.albedo(CONTY_KULLA, plain, **fibers)
-        f_sheen = p["sheen_color"] * light.response(CONTY_KULLA, plain, **fibers)
+        E_sheen = share * light.albedo(lobes.CONTY_KULLA, plain, **fibers)
+        f_sheen = p["sheen_color"] * light.response(lobes.CONTY_KULLA, plain, **fibers)
         material = f_sheen + (1.0 - E_sheen) * material
     if not np.any(p["clearcoat"]):
         return material
     upper = Frame(p["clearcoat_normal"], p["tangent"])
-    f_coat, E_coat = (find(DIELECTRIC, upper, **coat(p)) for find in (light.response, light.albedo))
+    rough = np.repeat(np.square(p["clearcoat_roughness"]), 2, axis=1)
+    f_coat, E_coat = light.both(lobes.DIELECTRIC, upper, ior=1.5, roughness=rough, tint=ONES)
     return p["clearcoat"] * f_coat + (1.0 - p["clearcoat"] * E_coat) * material
 
 

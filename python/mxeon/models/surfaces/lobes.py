@@ -94,6 +94,10 @@ class Light:
         wo = frame.local(self.wo, self.wo)
         return np.broadcast_to(lobe.albedo(wo, self._columns(inputs)), wo.shape)
 
+    def both(self, lobe: PbrNode, frame: Frame = PLAIN, **inputs: ArrayLike) -> tuple[Array, Array]:
+        """`response` and `albedo` of a lobe."""
+        return self.response(lobe, frame, **inputs), self.albedo(lobe, frame, **inputs)
+
     def through(self, share: ArrayLike) -> Array:
         """Light of the environment behind the surface that passes a share of it, (N, 3)."""
         light = 1.0 if self.behind else 0.0

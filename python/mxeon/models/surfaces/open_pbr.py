@@ -26,23 +26,8 @@ import numpy as np
 from mxeon.models.core.arrays import Array
 from mxeon.models.microfacet.fresnel import fresnel_dielectric, fresnel_dielectric_avg
 from mxeon.models.shading_model import ALONG, UP
-from mxeon.models.surfaces.lobes import (
-    DIELECTRIC,
-    EON,
-    ONES,
-    PLAIN,
-    QON,
-    SCHLICK,
-    ZELTNER,
-    Frame,
-    Light,
-    Parameters,
-    Values,
-    f0_from_ior,
-    filled,
-    lerp,
-    schlick_inputs,
-)
+from mxeon.models.surfaces import lobes
+from mxeon.models.surfaces.lobes import ONES, Frame, Light, Parameters, Values, lerp
 
 LIGHT_GRAY = (0.8, 0.8, 0.8)
 FRAME: Values = {
@@ -91,7 +76,7 @@ DEFAULTS: Values = {
     "geometry_thin_walled": False,
 }
 MOST_REFLECTIVE = 1.0 - 1e-5  # the index is infinite at 1; MaterialX's graph has the same limit
-parameters = partial(filled, {**DEFAULTS, **FRAME})
+parameters = partial(lobes.filled, {**DEFAULTS, **FRAME})
 
 
 def alphas(roughness: Array, anisotropy: Array) -> Array:
@@ -117,7 +102,7 @@ def specular_eta(p: Parameters) -> Array:
 def modulated_eta(p: Parameters) -> Array:
     """Relative index of the base whose reflectance is scaled by `specular_weight`."""
     eta = specular_eta(p)
-    scaled = np.minimum(p["specular_weight"] * f0_from_ior(eta), MOST_REFLECTIVE)
+    scaled = np.minimum(p["specular_weight"] * lobes.f0_from_ior(eta), MOST_REFLECTIVE)
     epsilon = np.sign(eta - 1.0) * np.sqrt(scaled)
     return (1.0 + epsilon) / (1.0 - epsilon)
 
@@ -132,11 +117,11 @@ def darkening(light: Light, p: Parameters, but: Collection[str]) -> Array:
     albedo = lerp(dielectric, metal, p["base_metalness"])
     average = fresnel_dielectric_avg(eta)
     if "the Fresnel average at the normal" in but:
-        average = f0_from_ior(eta)
+        average = lobes.f0_from_ior(eta)
     rough = 1.0 - (1.0 - average) / np.square(eta)
     smooth = fresnel_dielectric(light.wo[:, 2:], eta)
     r = p["specular_roughness"]
-    scaled = np.clip(p["specular_weight"] * f0_from_ior(specular_eta(p)), 0.0, 1.0)
+    scaled = np.clip(p["specular_weight"] * lobes.f0_from_ior(specular_eta(p)), 0.0, 1.0)
     blur = lerp(lerp(1.0, r, scaled), r, p["base_metalness"])
     K = rough if "a rough base" in but else lerp(smooth, rough, blur)
     factor = (1.0 - K) / (1.0 - albedo * K)
@@ -168,34 +153,34 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
 
     alpha = base_alphas(p)
     color0 = p["base_weight"] * p["base_color"]
-    metal = schlick_inputs(color0, ONES, alpha, p["specular_color"])
-    f_conductor = p["specular_weight"] * light.response(SCHLICK, frames, **metal)
+    metal = lobes.schlick_inputs(color0, ONES, alpha, p["specular_color"])
+    f_conductor = p["specular_weight"] * light.response(lobes.SCHLICK, frames, **metal)
     if np.any(covered * M):
-        wet = p["specular_weight"] * light.response(SCHLICK, frames, **metal, **film)
+        wet = p["specular_weight"] * light.response(lobes.SCHLICK, frames, **metal, **film)
         f_conductor = lerp(f_conductor, wet, covered)
 
     glass = {"ior": modulated_eta(p), "roughness": alpha, "tint": p["specular_color"]}
-    f_specular, E_specular = light.response(DIELECTRIC, frames, **glass), np.zeros(1)
+    f_specular, E_specular = light.response(lobes.DIELECTRIC, frames, **glass), np.zeros(1)
     if np.any(M < 1.0):
-        E_specular = light.albedo(DIELECTRIC, frames, **glass)
+        E_specular = light.albedo(lobes.DIELECTRIC, frames, **glass)
         if np.any(covered):
-            wet = light.albedo(DIELECTRIC, frames, **glass, **film)
+            wet = light.albedo(lobes.DIELECTRIC, frames, **glass, **film)
             E_specular = lerp(E_specular, wet, covered)
-            wet = light.response(DIELECTRIC, frames, **glass, **film)
+            wet = light.response(lobes.DIELECTRIC, frames, **glass, **film)
             f_specular = lerp(f_specular, wet, covered)
         if "no tint of what specular light leaves" in but:
-            E_specular = light.albedo(DIELECTRIC, frames, **{**glass, "tint": ONES})
+            E_specular = light.albedo(lobes.DIELECTRIC, frames, **{**glass, "tint": ONES})
 
     f_diffuse = p["base_weight"] * light.response(
-        EON, frames, color=p["base_color"], roughness=p["base_diffuse_roughness"]
+        lobes.EON, frames, color=p["base_color"], roughness=p["base_diffuse_roughness"]
     )
-    f_subsurface = light.response(EON, frames, color=p["subsurface_color"], roughness=0.0)
+    f_subsurface = light.response(lobes.EON, frames, color=p["subsurface_color"], roughness=0.0)
     color, g = p["subsurface_color"], p["subsurface_scatter_anisotropy"]
     shares = [0.5 * (1.0 - g) * np.ones(3), 0.5 * (1.0 + g) * np.ones(3)]
     if "the color twice" in but:
         most = 1.0 if "factors clamped to 1" in but else np.inf
         shares = [0.5 * np.minimum(2.0 * share * color, most) for share in shares]
-    diffuse = QON if "Oren-Nayar without compensation" in but else EON
+    diffuse = lobes.QON if "Oren-Nayar without compensation" in but else lobes.EON
     f_wall = light.response(diffuse, frames, color=ONES, roughness=p["base_diffuse_roughness"])
     sheet = color * (shares[0] * f_wall + light.diffused(shares[1]))
     f_subsurface = np.where(thin, sheet, f_subsurface)
@@ -205,7 +190,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     f_transmitted = light.through(tint)
     if "reflection taken twice" in but:
         f_transmitted = f_transmitted * (
-            1.0 - light.albedo(DIELECTRIC, frames, **{**glass, "tint": ONES})
+            1.0 - light.albedo(lobes.DIELECTRIC, frames, **{**glass, "tint": ONES})
         )
     f_below = lerp(lerp(f_diffuse, f_subsurface, S), f_transmitted, T)
     f_dielectric = f_specular + (1.0 - E_specular) * f_below
@@ -219,9 +204,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
             "roughness": alphas(p["coat_roughness"], p["coat_roughness_anisotropy"]),
             "tint": ONES,
         }
-        f_coat, E_coat = (
-            find(DIELECTRIC, coat_frame, **coat) for find in (light.response, light.albedo)
-        )
+        f_coat, E_coat = light.both(lobes.DIELECTRIC, coat_frame, **coat)
         T_coat = coat_transmittance(light, p, but)
         passed = lerp(1.0, T_coat * (1.0 - E_coat), C)
         if "a partial coat as a product" in but:
@@ -233,14 +216,14 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     normal = lerp(p["geometry_normal"], p["geometry_coat_normal"], C)
     if "the fuzz along geometry_normal" in but:
         normal = p["geometry_normal"]
-    fuzz_frame = Frame(normal / np.linalg.norm(normal, axis=1, keepdims=True), PLAIN.tangent)
+    fuzz_frame = Frame(normal / np.linalg.norm(normal, axis=1, keepdims=True), lobes.PLAIN.tangent)
     fuzz = {"color": p["fuzz_color"], "roughness": p["fuzz_roughness"]}
     E_fuzz = light.albedo(
-        ZELTNER,
+        lobes.ZELTNER,
         fuzz_frame,
         **(fuzz if "tinted light below the fuzz" in but else {**fuzz, "color": ONES}),
     )
-    f_fuzz = light.response(ZELTNER, fuzz_frame, **fuzz)
+    f_fuzz = light.response(lobes.ZELTNER, fuzz_frame, **fuzz)
     return F * f_fuzz + lerp(1.0, 1.0 - E_fuzz, F) * f_coated
 
 
@@ -252,9 +235,11 @@ def emission(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     if "a Fresnel factor of the coat" in but:
         T_coat = T_coat * (1.0 - fresnel_dielectric(light.wo[:, 2:], p["coat_ior"]))
     if "Schlick's factor of the coat" in but:
-        T_coat = T_coat * (1.0 - f0_from_ior(p["coat_ior"])) * (1.0 - (1.0 - light.wo[:, 2:]) ** 5)
+        T_coat = (
+            T_coat * (1.0 - lobes.f0_from_ior(p["coat_ior"])) * (1.0 - (1.0 - light.wo[:, 2:]) ** 5)
+        )
     glow = lerp(1.0, T_coat, C) * emitted
     if "no fuzz above" in but or not np.any(F):
         return np.broadcast_to(glow, light.wo.shape)
-    E_fuzz = light.albedo(ZELTNER, color=ONES, roughness=p["fuzz_roughness"])
+    E_fuzz = light.albedo(lobes.ZELTNER, color=ONES, roughness=p["fuzz_roughness"])
     return lerp(1.0, 1.0 - E_fuzz, F) * glow

@@ -23,20 +23,8 @@ from mxeon.models.microfacet.fresnel import artistic_ior, fresnel_dielectric
 from mxeon.models.microfacet.ggx import roughness_anisotropy
 from mxeon.models.nodes.node import WHITE
 from mxeon.models.shading_model import ALONG, UP
-from mxeon.models.surfaces.lobes import (
-    CONDUCTOR,
-    CONTY_KULLA,
-    DIELECTRIC,
-    ONES,
-    QON,
-    Frame,
-    Light,
-    Parameters,
-    Values,
-    f0_from_ior,
-    filled,
-    lerp,
-)
+from mxeon.models.surfaces import lobes
+from mxeon.models.surfaces.lobes import ONES, Frame, Light, Parameters, Values, lerp
 
 FRAME: Values = {"normal": UP, "tangent": ALONG, "coat_normal": UP}
 DEFAULTS: Values = {
@@ -80,7 +68,7 @@ DEFAULTS: Values = {
     "opacity": WHITE,
     "thin_walled": False,
 }
-parameters = partial(filled, {**DEFAULTS, **FRAME})
+parameters = partial(lobes.filled, {**DEFAULTS, **FRAME})
 
 
 def roughened(p: Parameters, roughness: Array) -> Array:
@@ -109,23 +97,23 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     if np.any(metalness):
         n, k = artistic_ior(*np.broadcast_arrays(color, edge))
         metal = {"ior": n, "extinction": k, "roughness": alpha, **film}
-        f_metal = light.response(CONDUCTOR, frame, **metal)
+        f_metal = light.response(lobes.CONDUCTOR, frame, **metal)
 
     gamma = 1.0 + coat * p["coat_affect_color"]
     f_diffuse = p["base"] * light.response(
-        QON, frame, color=p["base_color"] ** gamma, roughness=p["diffuse_roughness"]
+        lobes.QON, frame, color=p["base_color"] ** gamma, roughness=p["diffuse_roughness"]
     )
     below = p["subsurface_color"] ** gamma
     f_subsurface = np.where(
-        thin, light.diffused(below), light.response(QON, frame, color=below, roughness=0.0)
+        thin, light.diffused(below), light.response(lobes.QON, frame, color=below, roughness=0.0)
     )
     f_sheen_layer = lerp(f_diffuse, f_subsurface, p["subsurface"])
     if np.any(p["sheen"]):
         fibers = {"color": ONES, "roughness": p["sheen_roughness"]}
-        E_sheen = light.albedo(CONTY_KULLA, frame, **fibers)
+        E_sheen = light.albedo(lobes.CONTY_KULLA, frame, **fibers)
         if "tinted light below the sheen" in but:
             E_sheen = p["sheen_color"] * E_sheen
-        f_sheen = p["sheen_color"] * light.response(CONTY_KULLA, frame, **fibers)
+        f_sheen = p["sheen_color"] * light.response(lobes.CONTY_KULLA, frame, **fibers)
         f_sheen_layer = p["sheen"] * f_sheen + (1.0 - p["sheen"] * E_sheen) * f_sheen_layer
 
     glass = {"ior": p["specular_IOR"], "roughness": alpha, "tint": ONES}
@@ -133,11 +121,11 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     if "reflection taken twice" in but:
         rough = np.clip(p["specular_roughness"] + p["transmission_extra_roughness"], 0.0, 1.0)
         own = alphas(roughened(p, rough), p["specular_anisotropy"])
-        f_btdf = f_btdf * (1.0 - light.albedo(DIELECTRIC, frame, **{**glass, "roughness": own}))
+        f_btdf = f_btdf * (
+            1.0 - light.albedo(lobes.DIELECTRIC, frame, **{**glass, "roughness": own})
+        )
     f_transmission = lerp(f_sheen_layer, f_btdf, p["transmission"])
-    f_specular, E_specular = (
-        find(DIELECTRIC, frame, **glass, **film) for find in (light.response, light.albedo)
-    )
+    f_specular, E_specular = light.both(lobes.DIELECTRIC, frame, **glass, **film)
     kept = p["specular"] if "no tint of what specular light leaves" in but else edge
     f_reflection = edge * f_specular + (1.0 - kept * E_specular) * f_transmission
 
@@ -149,9 +137,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
         "roughness": alphas(p["coat_roughness"], p["coat_anisotropy"]),
         "tint": ONES,
     }
-    f_coat, E_coat = (
-        find(DIELECTRIC, coat_frame, **layer) for find in (light.response, light.albedo)
-    )
+    f_coat, E_coat = light.both(lobes.DIELECTRIC, coat_frame, **layer)
     passed = lerp(1.0, p["coat_color"] * (1.0 - E_coat), coat)
     if "a partial coat as a product" in but:
         passed = lerp(1.0, p["coat_color"], coat) * (1.0 - coat * E_coat)
@@ -162,10 +148,12 @@ def emission(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     """Emitted radiance toward the viewer, (N, 3)."""
     frame = Frame(p["coat_normal"], p["tangent"])
     alpha = alphas(p["coat_roughness"], p["coat_anisotropy"])
-    passed = 1.0 - light.albedo(DIELECTRIC, frame, ior=p["coat_IOR"], roughness=alpha, tint=ONES)
+    passed = 1.0 - light.albedo(
+        lobes.DIELECTRIC, frame, ior=p["coat_IOR"], roughness=alpha, tint=ONES
+    )
     mu = light.wo[:, 2:]
     if "Schlick's factor of the coat" in but:
-        passed = (1.0 - f0_from_ior(p["coat_IOR"])) * (1.0 - (1.0 - mu) ** 5)
+        passed = (1.0 - lobes.f0_from_ior(p["coat_IOR"])) * (1.0 - (1.0 - mu) ** 5)
     if "a Fresnel factor of the coat" in but:
         passed = 1.0 - fresnel_dielectric(mu, p["coat_IOR"])
     emitted = p["emission"] * p["emission_color"]

@@ -20,21 +20,8 @@ from mxeon.models.core.arrays import Array
 from mxeon.models.microfacet.fresnel import artistic_ior
 from mxeon.models.nodes.node import BLACK, GRAY
 from mxeon.models.shading_model import UP
-from mxeon.models.surfaces.lobes import (
-    CONDUCTOR,
-    DIELECTRIC,
-    EON,
-    ONES,
-    SCHLICK,
-    Frame,
-    Light,
-    Parameters,
-    Values,
-    f0_from_ior,
-    filled,
-    lerp,
-    schlick_inputs,
-)
+from mxeon.models.surfaces import lobes
+from mxeon.models.surfaces.lobes import ONES, Frame, Light, Parameters, Values, lerp
 
 FRAME: Values = {"normal": UP}
 DEFAULTS: Values = {
@@ -52,7 +39,7 @@ DEFAULTS: Values = {
     "displacement": 0.0,
     "occlusion": 1.0,
 }
-parameters = partial(filled, {**DEFAULTS, **FRAME})
+parameters = partial(lobes.filled, {**DEFAULTS, **FRAME})
 
 
 def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
@@ -60,25 +47,27 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     frame = Frame(p["normal"], np.array([[1.0, 0.0, 0.0]]))
     alpha = np.repeat(np.square(p["roughness"]), 2, axis=1)
     metallic, color, specular = p["metallic"], p["diffuseColor"], p["useSpecularWorkflow"] != 0.0
-    r0 = f0_from_ior(p["ior"])
+    r0 = lobes.f0_from_ior(p["ior"])
     diffuse = np.where(specular, 1.0, 1.0 - metallic)
     shown = np.where(p["opacityThreshold"] > 0.0, 1.0, p["opacity"])
     f_clear = light.through(1.0)
     if "reflection taken twice" in but:
         glass = {"ior": p["ior"], "roughness": np.zeros((1, 2)), "tint": ONES}
-        f_clear = f_clear * (1.0 - light.albedo(DIELECTRIC, frame, **glass))
-    f_below = lerp(f_clear, diffuse * light.response(EON, frame, color=color, roughness=0.0), shown)
+        f_clear = f_clear * (1.0 - light.albedo(lobes.DIELECTRIC, frame, **glass))
+    f_below = lerp(
+        f_clear, diffuse * light.response(lobes.EON, frame, color=color, roughness=0.0), shown
+    )
 
     def over(f0: Array, f90: Array) -> Array:
         """A specular lobe over the rest."""
-        inputs = schlick_inputs(f0, f90, alpha)
-        f, E = (find(SCHLICK, frame, **inputs) for find in (light.response, light.albedo))
+        inputs = lobes.schlick_inputs(f0, f90, alpha)
+        f, E = light.both(lobes.SCHLICK, frame, **inputs)
         return f + (1.0 - E) * f_below
 
     f90 = lerp(ONES, color, metallic)
     if "metal by artist-friendly indices" in but:
         n, k = artistic_ior(color, color)
-        f_metal = light.response(CONDUCTOR, frame, ior=n, extinction=k, roughness=alpha)
+        f_metal = light.response(lobes.CONDUCTOR, frame, ior=n, extinction=k, roughness=alpha)
         f_metalness = lerp(over(lerp(f90 * r0, f90, metallic), f90), f_metal, metallic)
     else:
         f_metalness = over(lerp(r0, color, metallic), f90)
@@ -86,8 +75,8 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     if not np.any(p["clearcoat"]):
         return f_base
     rough = np.repeat(np.square(p["clearcoatRoughness"]), 2, axis=1)
-    coat = schlick_inputs(r0 * ONES, ONES, rough)
-    f_coat, E_coat = (find(SCHLICK, frame, **coat) for find in (light.response, light.albedo))
+    coat = lobes.schlick_inputs(r0 * ONES, ONES, rough)
+    f_coat, E_coat = light.both(lobes.SCHLICK, frame, **coat)
     return p["clearcoat"] * f_coat + (1.0 - p["clearcoat"] * E_coat) * f_base
 
 
