@@ -75,15 +75,7 @@ from mxeon.models import diffuse as formulas
 from mxeon.models import sampling
 from mxeon.models.core import arguments, arrays
 from mxeon.models.core.arguments import checked_color, checked_colors, checked_directions
-from mxeon.models.core.arrays import (
-    Array,
-    ArrayLike,
-    any_array,
-    array_namespace,
-    cosine,
-    like,
-    root,
-)
+from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespace, like, root
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.evaluation import evaluate
 from mxeon.models.core.quadrature import unit_rule
@@ -195,7 +187,7 @@ def dielectric_over_eon_brdf(
     """
     coat = coat_of(alpha, ior)
     bare = dielectric_brdf(wo, wi, 1.0, alpha, ior, compensate=False)
-    mu = cosine(checked_directions("wo", wo)[..., 2])
+    mu = arrays.cosine(checked_directions("wo", wo)[..., 2])
     missing, reflected = (each[..., np.newaxis] for each in coat.at(mu))
     base = eon_brdf(wo, wi, rho, roughness)
     return bare * (1.0 + coat.average * missing) + (1.0 - reflected) * base
@@ -215,7 +207,7 @@ def dielectric_over_eon_albedo_dir(
     """
     base = eon_albedo_dir(mu, rho, roughness)
     height = cast(Array, mu) if arrays.library(mu) else np.asarray(mu, np.float64)
-    reflected = coat_of(alpha, ior).at(cosine(arrays.at_least_0(height)))[1][..., np.newaxis]
+    reflected = coat_of(alpha, ior).at(arrays.cosine(arrays.at_least_0(height)))[1][..., np.newaxis]
     return reflected + (1.0 - reflected) * base
 
 
@@ -291,7 +283,7 @@ def checked_draws(
         vectors["u"] = arguments.checked_pairs("u", u)
     arguments.lead_shape(vectors, {"roughness": arguments.checked("roughness", roughness)})
     color = vectors["rho"]
-    return cosine(vectors["wo"][..., 2]), array_namespace(color).mean(color, axis=-1)
+    return arrays.cosine(vectors["wo"][..., 2]), array_namespace(color).mean(color, axis=-1)
 
 
 @any_array

@@ -26,15 +26,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mxeon.models.core import arrays
-from mxeon.models.core.arguments import (
-    broadcastable,
-    checked,
-    checked_colors,
-    checked_numbers,
-    checked_sphere,
-    lead_shape,
-)
+from mxeon.models.core import arguments, arrays
+from mxeon.models.core.arguments import checked, checked_colors, checked_numbers, lead_shape
 from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespace, at_least_0, like
 from mxeon.models.core.colorimetry import CIE_1931, WAVELENGTHS, XYZ_TO_REC709
 from mxeon.models.core.quadrature import unit_rule
@@ -185,12 +178,12 @@ def _checked(
     wo: ArrayLike, colors: Mapping[str, ArrayLike], **numbers: ArrayLike
 ) -> tuple[Array, list[Array], list[Array]]:
     """Cosines of the view, and the result of `checked_colors`; all broadcast."""
-    directions = checked_sphere("wo", wo)
+    directions = arguments.checked_sphere("wo", wo)
     vectors, values = checked_colors(colors, **numbers)
     parts = dict(zip(colors, vectors, strict=True))
     plain = {name: value[..., 0] for name, value in zip(numbers, values, strict=True)}
-    broadcastable({"wo": directions} | parts, plain)
-    (mu,) = broadcastable({}, {"mu": directions[..., 2]})
+    arguments.broadcastable({"wo": directions} | parts, plain)
+    (mu,) = arguments.broadcastable({}, {"mu": directions[..., 2]})
     return -arrays.at_most(-arrays.at_most(mu, 1.0), 1.0), vectors, values
 
 
@@ -225,8 +218,8 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
         0.477465
     """
     views, lights, (mean,) = (
-        checked_sphere("wo", wo),
-        checked_sphere("wi", wi),
+        arguments.checked_sphere("wo", wo),
+        arguments.checked_sphere("wi", wi),
         checked_numbers(g=g),
     )
     lead_shape({"wo": views, "wi": lights}, {"g": mean})
@@ -284,7 +277,7 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
         array([0.0097, 0.074 , 0.9344])
     """
     numbers = {"mu": checked("mu", mu, "cos_theta"), "reach": checked("reach", reach)}
-    cosine, length = broadcastable({}, numbers)
+    cosine, length = arguments.broadcastable({}, numbers)
     return blur_to(cosine, length, FAR)
 
 

@@ -50,21 +50,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core import arguments
+from mxeon.models.core import arguments, arrays
 from mxeon.models.core.arguments import broadcastable, checked_directions
-from mxeon.models.core.arrays import (
-    Array,
-    ArrayLike,
-    Numbers,
-    any_array,
-    array_namespace,
-    at_least_0,
-    at_most,
-    below_1,
-    hypot,
-    power,
-    root,
-)
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers, any_array, array_namespace, root
 from mxeon.models.diffuse import C1, C2, cosines, eon_multiple_ratio, fon_loss_mu, fon_quotient
 from mxeon.models.microfacet import ggx
 from mxeon.models.sheen import zeltner_matrix
@@ -157,7 +145,7 @@ def azimuth_frame(wo: Array) -> tuple[Array, Array, Array]:
 
     The azimuth of a `wo` along the normal counts as 0.
     """
-    xp, sine = array_namespace(wo), hypot(wo[..., 0], wo[..., 1])
+    xp, sine = array_namespace(wo), arrays.hypot(wo[..., 0], wo[..., 1])
     tilted = sine > 0.0
     length = xp.where(tilted, sine, 1.0)
     return xp.where(tilted, wo[..., 0] / length, 1.0), wo[..., 1] / length, sine
@@ -219,7 +207,7 @@ def eon_sample(
         )
     u1, u2 = unpack_uniforms(u)
     cosine, sine, S_o = azimuth_frame(wo)
-    mu_o, S_o = at_most(wo[..., 2], 1.0), at_most(S_o, 1.0)
+    mu_o, S_o = arrays.at_most(wo[..., 2], 1.0), arrays.at_most(S_o, 1.0)
     wi = rotate_z(eon_draw(mu_o, S_o, u1, u2, rho, roughness), cosine, sine)
     # A part may end at the horizon, where the density is 0 and the weight would be 0/0.
     wi = stack_xyz(wi[..., 0], wi[..., 1], array_namespace(wi).maximum(wi[..., 2], LEAST_COSINE))
@@ -264,9 +252,9 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])  # 1 - v of the flat part
     # Draw a cosine from each part and keep the chosen one. The flat part does not start from a cosine.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
-    lower = eon_lower_cosine(x, power(1.0 - x, 1.0 / 3.0))
-    upper = eon_upper_cosine(power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
-    multiple = eon_multiple_cosine(power(v[2], 1.0 / 3.0))
+    lower = eon_lower_cosine(x, arrays.power(1.0 - x, 1.0 / 3.0))
+    upper = eon_upper_cosine(arrays.power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
+    multiple = eon_multiple_cosine(arrays.power(v[2], 1.0 / 3.0))
     mu = xp.where(u1 < ends[0], lower, xp.where(u1 < ends[1], upper, multiple))
     S = root((1.0 - mu) * (1.0 + mu))
     is_towards, is_flat = (u1 < ends[1])[..., np.newaxis], (u1 >= ends[2])[..., np.newaxis]
@@ -304,7 +292,7 @@ def stretched(u: Array, start: Array, end: Array) -> Array:
     xp = array_namespace(u, start, end)
     length = xp.where(end > start, end - start, 1.0)
     inside = xp.minimum(xp.maximum(u, start), end)
-    return xp.minimum((inside - start) / length, below_1(length))
+    return xp.minimum((inside - start) / length, arrays.below_1(length))
 
 
 def eon_towards(mu: Array, S: Array, u2: Array) -> Array:
@@ -319,7 +307,7 @@ def eon_lower_cosine(x: Array, S: Array) -> Array:
 
 def eon_upper_limit(mu: Array, S: Array) -> Array:
     """y = (K / K(pi / 2))^(2/5) of the angle with this cosine and sine."""
-    return power(eon_segment(mu, S) / (0.25 * np.pi - 1.0 / 3.0), 0.4)
+    return arrays.power(eon_segment(mu, S) / (0.25 * np.pi - 1.0 / 3.0), 0.4)
 
 
 def eon_upper_quotient(y: Array) -> Array:
@@ -447,7 +435,7 @@ def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array) -> Array:
     # The adjugate of M times wi: wh up to its length.
     wh_z = c * (a * z - d * x)
     squared = (c * (x - b * z)) ** 2 + ((a - b * d) * y) ** 2 + wh_z**2
-    return (det / squared) ** 2 * at_least_0(wh_z) / np.pi
+    return (det / squared) ** 2 * arrays.at_least_0(wh_z) / np.pi
 
 
 @any_array
@@ -505,7 +493,7 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
     length = xp.where(is_uniform, P_u, 1.0 - P_u)
     v = xp.where(is_uniform, u1, u1 - P_u) / length
     rest = xp.where(is_uniform, P_u - u1, 1.0 - u1) / length
-    v = xp.minimum(v, below_1(v))
+    v = xp.minimum(v, arrays.below_1(v))
     clipped, _ = _draw(wo, v, rest, u2, roughness)
     wi = xp.where(is_uniform[..., np.newaxis], uniform_direction(v, rest, u2), clipped)
     return wi, eon_cltc_pdf(wo, wi, roughness)
@@ -527,7 +515,7 @@ def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 def eon_cltc_probability(mu: Array, roughness: Array) -> Array:
     """Probability P_u of the uniform lobe."""
     P_u = 0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu
-    return power(roughness, 0.1) * P_u
+    return arrays.power(roughness, 0.1) * P_u
 
 
 def cltc_kept_fraction(d: Array) -> Array:
@@ -540,7 +528,7 @@ def _draw(wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array) -> tup
     d = ltc_md(wo[..., 2], roughness)
     wi, pdf = ltc_transformed(wo, cltc_clipped(u1, u2, d, rest), roughness, d)
     # On the edge of the lune, d x + z is zero up to rounding of either sign.
-    wi = stack_xyz(wi[..., 0], wi[..., 1], at_least_0(wi[..., 2]))
+    wi = stack_xyz(wi[..., 0], wi[..., 1], arrays.at_least_0(wi[..., 2]))
     return wi, pdf / cltc_kept_fraction(d)
 
 
@@ -641,7 +629,7 @@ def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
     z, phi = 1.0 - down, 2.0 * np.pi * u2
     S = root(down * (1.0 + z))
     x, y, z = S * xp.cos(phi) + stretched[0], S * xp.sin(phi) + stretched[1], z + stretched[2]
-    normal = [roughness[0] * x, roughness[1] * y, at_least_0(z)]
+    normal = [roughness[0] * x, roughness[1] * y, arrays.at_least_0(z)]
     length = root(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2])
     seen = length > 0.0
     size = xp.where(seen, length, 1.0)
@@ -660,7 +648,7 @@ def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[A
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
     wh = cosine_sample(u)[0]
-    a, b = zeltner_matrix(at_most(wo[..., 2], 1.0), roughness)
+    a, b = zeltner_matrix(arrays.at_most(wo[..., 2], 1.0), roughness)
     x, y, z = (wh[..., 0] - b * wh[..., 2]) / a, wh[..., 1] / a, wh[..., 2]
     wi = stack_xyz(x, y, z)
     length = root(array_namespace(wi).sum(wi * wi, axis=-1))
@@ -677,7 +665,7 @@ def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     0.24421
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
-    a, b = zeltner_matrix(at_most(wo[..., 2], 1.0), roughness)
+    a, b = zeltner_matrix(arrays.at_most(wo[..., 2], 1.0), roughness)
     cosine, sine, _ = azimuth_frame(wo)
     wi = rotate_z(wi, cosine, -sine)
     x, y, z = wi[..., 0], wi[..., 1], wi[..., 2]

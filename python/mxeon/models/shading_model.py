@@ -12,25 +12,8 @@ from typing import cast
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    ROUNDING,
-    UNIT_TOLERANCE,
-    checked,
-    checked_real,
-    lead_shape,
-    refuse_ambiguous,
-    spread_pair,
-)
-from mxeon.models.core.arrays import (
-    NUMPY,
-    Array,
-    ArrayLike,
-    any_array,
-    array_namespace,
-    host_values,
-    library,
-    root,
-)
+from mxeon.models.core import arguments, arrays
+from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespace, library
 from mxeon.models.nodes.node import Inputs, Parameter, PbrNode
 
 UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)  # MaterialX's default normal and tangent
@@ -78,29 +61,27 @@ def bound_inputs(
 
 
 @any_array
-def rows(
-    parameters: Sequence[Parameter], vectors: Collection[str], /, **arguments: ArrayLike
-) -> Rows:
+def rows(parameters: Sequence[Parameter], vectors: Collection[str], /, **given: ArrayLike) -> Rows:
     """Lay out vectors (..., K) and parameter values in rows, all by name."""
-    directions = {name: _floats(checked_real(name, arguments[name])) for name in vectors}
+    directions = {name: _floats(arguments.checked_real(name, given[name])) for name in vectors}
     for name, w in directions.items():  # before reshaping: errors name the caller's elements
         count = 2 if name == "u" else 3
         if w.shape[-1:] != (count,):
             raise ValueError(f"{name} must have shape (..., {count}); got shape {tuple(w.shape)}")
-    lead = lead_shape(directions, {})
-    arrays, colored = {}, False
+    lead = arguments.lead_shape(directions, {})
+    values, colored = {}, False
     for each in parameters:
-        array = _floats(checked(each.name, arguments[each.name], each.quantity))
+        array = _floats(arguments.checked(each.name, given[each.name], each.quantity))
         if each.channels == 3:
-            refuse_ambiguous(each.name, array, lead)
+            arguments.refuse_ambiguous(each.name, array, lead)
             colored = colored or array.ndim > 0
             array = array if array.ndim else array[np.newaxis]
-        arrays[each.name] = spread_pair(each.name, array) if each.channels == 2 else array
+        values[each.name] = arguments.spread_pair(each.name, array) if each.channels == 2 else array
     # Flatten all pairs; a value shared by all pairs keeps length 1.
-    wide = {each.name: arrays[each.name] for each in parameters if each.channels}
-    narrow = {name: array for name, array in arrays.items() if name not in wide}
-    lead = lead_shape(directions | wide, narrow)
-    laid = {name: _laid(array, lead, name in wide) for name, array in arrays.items()}
+    wide = {each.name: values[each.name] for each in parameters if each.channels}
+    narrow = {name: array for name, array in values.items() if name not in wide}
+    lead = arguments.lead_shape(directions | wide, narrow)
+    laid = {name: _laid(array, lead, name in wide) for name, array in values.items()}
     found = [_laid(v, lead, True, whole=True) for v in directions.values()]
     return Rows(lead, found, laid, colored)
 
@@ -108,17 +89,17 @@ def rows(
 @any_array
 def views(mu: ArrayLike, azimuth: ArrayLike) -> Array:
     """Directions with these cosines and azimuths, shape (..., 3)."""
-    cosine, phi = _floats(checked("mu", mu)), _floats(checked("phi", azimuth))
-    given = host_values(cosine)
-    if given is not None and given.size and given.shape[-1:] == (3,):
-        length = np.sum(np.square(given, dtype=np.float64), axis=-1)
-        if np.all(np.abs(length - 1.0) <= UNIT_TOLERANCE):
+    cosine, phi = _floats(arguments.checked("mu", mu)), _floats(arguments.checked("phi", azimuth))
+    known = arrays.host_values(cosine)
+    if known is not None and known.size and known.shape[-1:] == (3,):
+        length = np.sum(np.square(known, dtype=np.float64), axis=-1)
+        if np.all(np.abs(length - 1.0) <= arguments.UNIT_TOLERANCE):
             raise ValueError(
-                f"mu must be cosines; got shape {given.shape} of unit length, a direction: pass its z, "
+                f"mu must be cosines; got shape {known.shape} of unit length, a direction: pass its z, "
                 "or mu[..., np.newaxis] if they are cosines"
             )
     xp = array_namespace(cosine, phi)
-    sine = root((1.0 - cosine) * (1.0 + cosine))
+    sine = arrays.root((1.0 - cosine) * (1.0 + cosine))
     x, y = sine * xp.cos(phi), sine * xp.sin(phi)
     return xp.stack([x, y, xp.broadcast_to(cosine, x.shape)], axis=-1)
 
@@ -302,8 +283,8 @@ def _on_side(
     if side is None:
         return function(wo, wi, call.inputs)
     xp, z = array_namespace(wi), side * wi[:, 2]
-    other = z < -ROUNDING
-    if xp is NUMPY and not other.any():  # takes a third of the time if the values are cheap
+    other = z < -arguments.ROUNDING
+    if xp is arrays.NUMPY and not other.any():  # takes a third of the time if the values are cheap
         return function(wo, wi, call.inputs)
     mirrored = xp.stack([wi[:, 0], wi[:, 1], side * xp.where(other, -z, z)], axis=-1)
     values = function(wo, mirrored, call.inputs)

@@ -37,18 +37,12 @@ from typing import TypeAlias
 
 import numpy as np
 
-from mxeon.models.core import arrays
+from mxeon.models.core import arguments, arrays
 from mxeon.models.core.arguments import (
     channel_count,
     checked,
-    checked_choice,
-    checked_color,
     checked_directions,
     checked_roughness,
-    checked_switch,
-    checked_transmitted,
-    checked_vector,
-    lead_shape,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers, any_array, array_namespace, within
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
@@ -139,7 +133,7 @@ def dielectric_btdf(
         >>> dielectric_btdf(wo, wi, 1.0, [0.3, 0.3], 1.5).round(6)
         array([10.066984])
     """
-    vectors = {"tint": checked_vector("tint", tint)}
+    vectors = {"tint": arguments.checked_vector("tint", tint)}
     return evaluate_btdf(
         DIELECTRIC_CURVE.at, wo, wi, roughness, ior, vectors, {}, radiance=radiance
     )
@@ -160,9 +154,9 @@ def evaluate_btdf(
 
     - `at`: `at(cosine, ior=ior, **material)`, shape (C, ...): F at the cosine on the side of wo.
     """
-    directions = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
+    directions = {"wo": checked_directions("wo", wo), "wi": arguments.checked_transmitted("wi", wi)}
     pairs = {"roughness": checked_roughness(roughness)}
-    checked_switch("radiance", radiance)
+    arguments.checked_switch("radiance", radiance)
 
     def value(wo: Array, wi: Array, roughness: Array, ior: Array, **material: Array) -> Array:
         facet = Facet.of(wo, wi, ior)
@@ -218,7 +212,7 @@ def dielectric_transmittance_dir(
         array([[0.939],
                [0.732]])
     """
-    vectors = {"tint": checked_vector("tint", tint)}
+    vectors = {"tint": arguments.checked_vector("tint", tint)}
     numbers = {"ior": checked("ior", ior)}
 
     return evaluate_transmittance(DIELECTRIC_CURVE.at, wo, roughness, vectors, numbers, shadow)
@@ -235,7 +229,7 @@ def evaluate_transmittance(
     """Transmittance, shape (..., C), for checked inputs; `numbers` includes the index."""
     directions = {"wo": checked_directions("wo", wo)}
     pairs = {"roughness": checked_roughness(roughness)}
-    checked_switch("shadow", shadow)
+    arguments.checked_switch("shadow", shadow)
 
     def total(
         wo: Array, roughness: Array, material: dict[str, Array], nodes: Nodes, axes: int
@@ -262,8 +256,8 @@ def evaluate_transmittance(
             T = array_namespace(T).where(ior < 1.0, total(wo, roughness, material, split, 2), T)
         return T * material["tint"] if "tint" in material else T
 
-    arguments = {**directions, **pairs, **vectors}
-    return evaluate_material(value, arguments, numbers, channel_count(vectors), CAP_BLOCK)
+    given = {**directions, **pairs, **vectors}
+    return evaluate_material(value, given, numbers, channel_count(vectors), CAP_BLOCK)
 
 
 def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
@@ -390,7 +384,7 @@ def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
         (array([2.2299]), array([1.5, 3. ]))
     """
     how = _reading(reading)
-    r = checked_color("color0", color0)
+    r = arguments.checked_color("color0", color0)
     return index_of(_mean(r, -1) if how.index == "average" else r, how.least)
 
 
@@ -430,7 +424,7 @@ def generalized_schlick_btdf(
         >>> generalized_schlick_btdf(*pair, 0.04, 1.0, 1.0, [0.3, 0.3], 5.0).round(4)
         array([10.1048])
     """
-    vectors = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
+    vectors = {"wo": checked_directions("wo", wo), "wi": arguments.checked_transmitted("wi", wi)}
     return _by_index(
         lambda at, ior, material, numbers: evaluate_btdf(
             at, wo, wi, roughness, ior, material, numbers, radiance=radiance
@@ -487,10 +481,10 @@ def _by_index(
 ) -> Array:
     """evaluate(F, index, colors, numbers) for all channels at once, or channel by channel with its own index."""
     how = _reading(reading)
-    checked_switch("inside", inside)
-    colors = {name: checked_color(name, value) for name, value in given.items()}
+    arguments.checked_switch("inside", inside)
+    colors = {name: arguments.checked_color(name, value) for name, value in given.items()}
     count, numbers = channel_count(colors), {"exponent": checked("exponent", exponent)}
-    lead_shape(vectors | colors, numbers)
+    arguments.lead_shape(vectors | colors, numbers)
 
     def index(color0: Array) -> Array:
         outside = index_of(color0, how.least)
@@ -507,4 +501,4 @@ def _by_index(
 
 
 def _reading(name: str) -> Reading:
-    return READINGS[checked_choice("reading", name, READINGS)]
+    return READINGS[arguments.checked_choice("reading", name, READINGS)]

@@ -7,21 +7,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    BLOCK,
-    are_directions,
-    blocks,
-    checked_all,
-    checked_directions,
-    checked_triples,
-    checked_vector,
-    lead_shape,
-    on_horizon,
-    refuse_ambiguous,
-    refuse_direction,
-    tile,
-    with_axes,
-)
+from mxeon.models.core import arguments
 from mxeon.models.core.arrays import NUMPY, Array, ArrayLike, Numbers, array_namespace
 
 
@@ -43,21 +29,21 @@ def evaluate(
     - `name`: Name of `rho` in `RANGES` and in messages.
     - `**parameter` (...): At most one, named as in `RANGES`.
     """
-    pair = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi)}
-    color, numbers = checked_vector(name, rho), checked_all(parameter)
-    refuse_ambiguous(name, color, lead_shape(pair | {name: color}, numbers))
+    pair = {"wo": arguments.checked_triples("wo", wo), "wi": arguments.checked_triples("wi", wi)}
+    color, numbers = arguments.checked_vector(name, rho), arguments.checked_all(parameter)
+    arguments.refuse_ambiguous(name, color, arguments.lead_shape(pair | {name: color}, numbers))
     xp = array_namespace(*pair.values(), color, *numbers.values())
     if xp is not NUMPY:
-        pair = {name: checked_directions(name, w) for name, w in pair.items()}
+        pair = {name: arguments.checked_directions(name, w) for name, w in pair.items()}
 
     # NumPy directions are checked block by block, while they are in the cache.
     def value(rho: Array, wo: Array, wi: Array, **rest: Array) -> Array:
         parts = {"wo": wo, "wi": wi}
         if xp is NUMPY:
             for name, w in parts.items():
-                if not are_directions(w):
-                    refuse_direction(name, pair[name])
-            parts = {name: on_horizon(w) for name, w in parts.items()}
+                if not arguments.are_directions(w):
+                    arguments.refuse_direction(name, pair[name])
+            parts = {name: arguments.on_horizon(w) for name, w in parts.items()}
         order = (*range(1, wo.ndim), 0)  # components last
         last = (xp.permute_dims(w, order) for w in parts.values())
         return formula(*last, rho, *rest.values())
@@ -70,11 +56,11 @@ def evaluate_material(
     vectors: Mapping[str, Numbers],
     numbers: Mapping[str, Numbers],
     channels: int,
-    size: int = BLOCK,
+    size: int = arguments.BLOCK,
 ) -> Array:
     """Values of a formula over checked arguments that broadcast, block by block.
 
-    - `formula`: `formula(**arguments)` for one block: of `vectors` each with its last axis first,
+    - `formula`: `formula(**given)` for one block: of `vectors` each with its last axis first,
       (C, ...), of `numbers` (...), all float64; returns (channels, ...). Axes of length 1 stay so.
     - `vectors`, `numbers`: Directions, colors and pairs, shapes (..., C); the others, shapes (...).
     - `channels`: Channels of the result.
@@ -82,7 +68,7 @@ def evaluate_material(
 
     Result (..., channels).
     """
-    shape = lead_shape(vectors, numbers)
+    shape = arguments.lead_shape(vectors, numbers)
     if array_namespace(*vectors.values(), *numbers.values()) is not NUMPY:
         # The formula takes channels first, the result has them last; a constant may be NumPy's.
         axes, parts = len(shape), dict[str, Array]()
@@ -94,12 +80,12 @@ def evaluate_material(
         return xp.permute_dims(
             xp.broadcast_to(values, (channels, *shape)), (*range(1, axes + 1), 0)
         )
-    arguments = {**vectors, **{name: array[..., np.newaxis] for name, array in numbers.items()}}
-    arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
+    columns = {**vectors, **{name: array[..., np.newaxis] for name, array in numbers.items()}}
+    arrays = {name: arguments.with_axes(array, len(shape) + 1) for name, array in columns.items()}
     out = np.empty((*shape, channels))
 
-    for block in blocks(shape, size):
-        parts = {name: tile(array, block) for name, array in arrays.items()}
+    for block in arguments.blocks(shape, size):
+        parts = {name: arguments.tile(array, block) for name, array in arrays.items()}
         values = formula(
             **{name: parts[name][0] if name in numbers else parts[name] for name in parts}
         )
@@ -113,11 +99,11 @@ def evaluate_number(
     formula: Callable[..., Array],
     vectors: Mapping[str, Numbers],
     numbers: Mapping[str, Numbers],
-    size: int = BLOCK,
+    size: int = arguments.BLOCK,
 ) -> Array:
     """`evaluate_material` of a formula without channels, shape (...)."""
 
-    def one(**arguments: Array) -> Array:
-        return formula(**arguments)[np.newaxis]
-
-    return evaluate_material(one, vectors, numbers, 1, size)[..., 0][()]
+    values = evaluate_material(
+        lambda **given: formula(**given)[np.newaxis], vectors, numbers, 1, size
+    )
+    return values[..., 0][()]

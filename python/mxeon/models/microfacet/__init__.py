@@ -32,16 +32,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from mxeon.models.core import arrays
+from mxeon.models.core import arguments, arrays
 from mxeon.models.core.arguments import (
     channel_count,
-    checked_all,
     checked_directions,
     checked_roughness,
-    checked_switch,
-    checked_vectors,
     lead_shape,
-    refuse_ambiguous,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers, any_array, array_namespace
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
@@ -223,10 +219,10 @@ def evaluate_lobe(
     """Values of a lobe, shape (..., C); `vectors` and `numbers` are checked inputs of the curve."""
     directions = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
     pairs = {"roughness": checked_roughness(roughness)}
-    checked_switch("retroreflective", retroreflective)
+    arguments.checked_switch("retroreflective", retroreflective)
     lead = lead_shape(directions | pairs, numbers)
     for name, color in vectors.items():
-        refuse_ambiguous(name, color, lead)
+        arguments.refuse_ambiguous(name, color, lead)
 
     def value(wo: Array, wi: Array, roughness: Array, **material: Array) -> Array:
         if retroreflective:
@@ -259,8 +255,8 @@ def _material(
 ) -> tuple[Curve, dict[str, Numbers], dict[str, Numbers]]:
     """Curve of a node, its checked inputs with channels, and those without."""
     curve, colors, numbers = CATEGORIES[category]
-    vectors = checked_vectors({name: inputs[name] for name in colors})
-    return curve, vectors, checked_all({name: inputs[name] for name in numbers})
+    vectors = arguments.checked_vectors({name: inputs[name] for name in colors})
+    return curve, vectors, arguments.checked_all({name: inputs[name] for name in numbers})
 
 
 @any_array
@@ -371,7 +367,9 @@ def generalized_schlick_brdf(
 
 def _lobe(compensate: bool) -> Lobe:
     """The lobe of the specification, with or without its energy compensation."""
-    return Lobe() if checked_switch("compensate", compensate) else Lobe(factor=uncompensated)
+    return (
+        Lobe() if arguments.checked_switch("compensate", compensate) else Lobe(factor=uncompensated)
+    )
 
 
 QUADRATURE_BLOCK = 2**3  # elements per block
@@ -466,7 +464,7 @@ def lobe_albedo(
 ) -> Array:
     """Albedo of a lobe with this Fresnel curve; `vectors` and `numbers` are the curve's checked inputs."""
     wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
-    checked_switch("compensate", compensate)
+    arguments.checked_switch("compensate", compensate)
 
     def value(
         wo: Array, roughness: Array, unseen: Array, average: Array, **material: Array
@@ -490,15 +488,15 @@ def lobe_albedo(
         total: Array = E * material["tint"] if "tint" in material else E
         return total
 
-    arguments = {"wo": wo, "roughness": roughness, **vectors}
-    lead_shape(arguments, numbers)  # reports arguments that do not broadcast by name
+    given = {"wo": wo, "roughness": roughness, **vectors}
+    lead_shape(given, numbers)  # reports arguments that do not broadcast by name
     # Compute the multiple scattering per element, before the slope nodes multiply the elements.
     channels = channel_count(vectors)
     unseen, average = np.zeros(()), np.zeros(1)
     if compensate:
         unseen = evaluate_number(missing_of, {"wo": wo, "roughness": roughness}, {})
         average = evaluate_material(curve.average, vectors, numbers, channels)
-    arguments["average"] = average
+    given["average"] = average
     return evaluate_material(
-        value, arguments, {"unseen": unseen, **numbers}, channels, QUADRATURE_BLOCK
+        value, given, {"unseen": unseen, **numbers}, channels, QUADRATURE_BLOCK
     )
