@@ -266,8 +266,8 @@ def test_a_sum_over_visible_normals_is_the_albedo_but_for_its_masking():
         # The density is D G_1 / (4 mu_o); the sum weighs each normal by G_2 / G_1 of the mean alpha.
         weight = np.where(lit, ggx.smith_g2(wo[2], np.abs(wi[:, 2]), mean[0]), 0.0)
         weight = weight / ggx.smith_g1(wo[np.newaxis], mean[np.newaxis])
-        found = slopes.sum_nodes(wo[:, np.newaxis], alpha[:, np.newaxis])[1].sum()
+        found = slopes.slope_nodes(wo[:, np.newaxis], alpha[:, np.newaxis], summed=True)[1].sum()
         assert abs(found - weight.mean()) < 5.0 * weight.std() / np.sqrt(count)
     exact = slopes.slope_nodes(wo[:, np.newaxis], same[:, np.newaxis])[1].sum()
-    found = slopes.sum_nodes(wo[:, np.newaxis], same[:, np.newaxis])[1].sum()
+    found = slopes.slope_nodes(wo[:, np.newaxis], same[:, np.newaxis], summed=True)[1].sum()
     assert abs(found - exact) < 1e-12

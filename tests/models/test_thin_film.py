@@ -15,10 +15,10 @@ from mxeon.models.thin_film import (
     MATERIALX,
     TEXT,
     Form,
-    PolynomialCurve,
     film_brdf,
     film_curve,
     film_reflectance,
+    polynomial_curve,
 )
 from tests.models.test_pbrlib import WO, inputs
 from tests.support.availability import package
@@ -231,7 +231,7 @@ def test_an_albedo_takes_a_polynomial_that_is_its_curve(row):
     values = {name: value[:1] for name, value in inputs(row).items() if name != "roughness"}
     columns = {name: value.T if value.ndim == 2 else value for name, value in values.items()}
     spread = {k: v[:, None, None] if v.ndim == 2 else v for k, v in columns.items()}
-    smooth = PolynomialCurve(row.category, TEXT)(MU[:, None, None], **spread)[:, :, 0, 0]
+    smooth = polynomial_curve(row.category, TEXT)(MU[:, None, None], **spread)[:, :, 0, 0]
     np.testing.assert_allclose(smooth, film_curve(row.category).at(MU, **columns), atol=CURVE)
 
 

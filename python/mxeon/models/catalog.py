@@ -195,7 +195,7 @@ def _over_eon(name: str, title: str) -> ShadingModel:
         average=lambda i: _per_coat(albedo_avg, i)[0],
     )
     sampler = ModelSampler(
-        lambda wo, u, i: _per_coat(sample, i, wo, u),
+        lambda wo, u, i: cast(tuple[Array, Array], _per_coat(sample, i, wo, u)),
         lambda wo, wi, i: _per_coat(pdf, i, wo, wi)[0],
         side=None,
     )
@@ -204,32 +204,30 @@ def _over_eon(name: str, title: str) -> ShadingModel:
 
 def _per_coat(
     function: Callable[..., Array | tuple[Array, Array]], inputs: Inputs, *vectors: Array
-) -> tuple[Array, Array]:
+) -> tuple[Array, ...]:
     """Results (one or two) of a function that takes one coat, for rows that each have their own coat.
 
     The numbers of the coat are the last two inputs.
     """
+
+    def results(*given: Array) -> tuple[Array, ...]:
+        found = function(*given)
+        return found if isinstance(found, tuple) else (found,)
+
     # A single call suffices for one coat, or if the function must reject several.
     *others, alpha, ior = (*vectors, *inputs.values())
-    numbers = [each[0] if len(each) == 1 else each for each in (alpha, ior)]
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
-        return _pair(function(*others, *numbers))
+        numbers = (each[0] if len(each) == 1 else each for each in (alpha, ior))
+        return results(*others, *numbers)
     pairs = np.stack(np.broadcast_arrays(alpha, ior), axis=-1)
     coats, which = np.unique(pairs, axis=0, return_inverse=True)
-    results: list[Array] = []
-    for k, pair in enumerate(coats):
-        rows = np.flatnonzero(which.reshape(-1) == k)
-        own = [each if len(each) == 1 else each[rows] for each in others]
-        for n, part in enumerate(_pair(function(*own, *pair))):
-            if n == len(results):
-                results.append(np.empty((len(pairs), *part.shape[1:])))
-            results[n][rows] = part
-    return cast(tuple[Array, Array], tuple(results))
-
-
-def _pair(result: Array | tuple[Array, Array]) -> tuple[Array, Array]:
-    """The one or two results of a call, as a tuple."""
-    return result if isinstance(result, tuple) else cast(tuple[Array, Array], (result,))
+    rows = [np.flatnonzero(which.reshape(-1) == k) for k in range(len(coats))]
+    parts = [
+        results(*(each if len(each) == 1 else each[own] for each in others), *coat)
+        for own, coat in zip(rows, coats, strict=True)
+    ]
+    order = np.argsort(np.concatenate(rows))
+    return tuple(np.concatenate(each)[order] for each in zip(*parts, strict=True))
 
 
 MODELS = {

@@ -117,15 +117,11 @@ TEXT = HairForm()
 
 @dataclass(frozen=True)
 class Section:
-    """A view of the cross-section of a fiber.
+    """A view of the cross-section of a fiber."""
 
-    - `sin_o`, `cos_o`: Sine and cosine of the viewer's inclination.
-    - `gamma_o`, `gamma_t`: Azimuth of the view from the normal, and that of the refracted ray.
-    """
-
-    sin_o: Array
+    sin_o: Array  # sine and cosine of the viewer's inclination
     cos_o: Array
-    gamma_o: Array
+    gamma_o: Array  # azimuth of the view from the normal, and that of the refracted ray
     gamma_t: Array
 
 

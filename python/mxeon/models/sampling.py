@@ -68,7 +68,7 @@ def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
     """
     u1, u2 = unpack_uniforms(u)
     wi = uniform_direction(u1, 1.0 - u1, u2)
-    return wi, _uniform_density(wi)
+    return wi, 0.5 / np.pi + 0.0 * wi[..., 2]
 
 
 @any_array
@@ -78,7 +78,7 @@ def uniform_pdf(wi: ArrayLike) -> Array:
     >>> round(float(uniform_pdf([0.0, 0.6, 0.8])), 6)
     0.159155
     """
-    return _uniform_density(checked_directions("wi", wi))
+    return 0.5 / np.pi + 0.0 * checked_directions("wi", wi)[..., 2]
 
 
 @any_array
@@ -155,11 +155,6 @@ def rotate_z(w: Array, cosine: Array, sine: Array) -> Array:
     """Vectors rotated about the normal by the angle that has this cosine and sine."""
     x, y = w[..., 0], w[..., 1]
     return stack_xyz(cosine * x - sine * y, sine * x + cosine * y, w[..., 2])
-
-
-def _uniform_density(wi: Numbers) -> Array:
-    """1/(2 pi) in the shape of `wi` without its last axis."""
-    return (0.0 * wi[..., 2] + 0.5 / np.pi)[()]
 
 
 LEAST_COSINE = 2.0**-53  # smallest cosine that `eon_sample` returns

@@ -496,7 +496,7 @@ def film_albedo_dir(
         array([0.0046, 0.0263, 0.0328])
     """
     vectors, numbers = _material(category, inputs, wo)
-    curve = Curve(PolynomialCurve(category, form), film_curve(category, form).average)
+    curve = Curve(polynomial_curve(category, form), film_curve(category, form).average)
     return lobe_albedo(curve, wo, inputs["roughness"], vectors, numbers, compensate)
 
 
@@ -527,24 +527,26 @@ def _short(values: arrays.Numbers, channels: int, wo: ArrayLike) -> arrays.Numbe
     return values[:1] if many and bool((values == values[:1]).all()) else values
 
 
-class PolynomialCurve:
-    """Curve of a film as a polynomial in the cosine for each material."""
+def polynomial_curve(category: str, form: Form) -> Callable[..., Array]:
+    """F of a film as a polynomial in the cosine for each material.
 
-    def __init__(self, category: str, form: Form) -> None:
-        self._bare = CATEGORIES[category][0].at
-        self._curve = film_curve(category, replace(form, clamped=False)).at
+    Cosines have the shape (nodes, nodes, ...), F (3, nodes, nodes, ...).
+    """
+    bare_at = CATEGORIES[category][0].at
+    curve = film_curve(category, replace(form, clamped=False))
 
-    def __call__(self, mu: Array, **material: Array) -> Array:
-        """F at cosines of shape (nodes, nodes, ...), shape (3, nodes, nodes, ...)."""
+    def at(mu: Array, **material: Array) -> Array:
         bare = {k: v for k, v in material.items() if k not in FILM}
         film, xp = material["thinfilm_thickness"] > 0.0, array_namespace(mu)
         if xp is NUMPY and not film.any():
-            return self._bare(mu, **bare)
+            return bare_at(mu, **bare)
         cosines = chebyshev_nodes(DEGREE + 1).reshape(-1, 1, *(1,) * (mu.ndim - 2))
-        sampled = self._curve(like(cosines, mu), **material)
+        sampled = curve.at(like(cosines, mu), **material)
         matrix = like(chebyshev_coefficients(np.eye(DEGREE + 1)), mu)
         series = xp.tensordot(matrix, sampled, axes=((1,), (1,)))
         F = arrays.within(chebyshev_sum(series[:, :, np.newaxis, ...], mu))
         if xp is NUMPY and film.all():
             return F
-        return xp.where(film, F, self._bare(mu, **bare))
+        return xp.where(film, F, bare_at(mu, **bare))
+
+    return at

@@ -31,11 +31,6 @@ _WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # exponents and squares fit
 _LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # products and quotients fit
 
 
-def _each(names: str, ends: tuple[float, float, str]) -> dict[str, tuple[float, float, str]]:
-    """Assign one range to each of these names."""
-    return dict.fromkeys(names.split(), ends)
-
-
 # Ranges that rounding may exceed.
 CLOSED = ("[0, 1]", "[0.01, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]")
 
@@ -48,31 +43,33 @@ class Ranges(dict[str, tuple[float, float, str]]):
 
 
 RANGES = Ranges(
-    {
-        **_each("mu mu_o mu_i", _SHARE),
-        **_each("rho color color0 color82 color90 tint tint_R tint_TT tint_TRT edge_color", _SHARE),
-        **_each("roughness alpha anisotropy glossiness longitudinal azimuthal", _SHARE),
-        **_each("azimuthal_roughness cuticle_angle amount opacity melanin_redness", _SHARE),
-        **_each("reflectance transmittance", _SHARE),
-        **_each("u reflectivity melanin_concentration", (0.0, _BELOW_ONE, "[0, 1)")),
-        **_each("eumelanin_color pheomelanin_color hair_color", (_ABOVE_ZERO, 1.0, "(0, 1]")),
-        **_each("exponent ior extinction absorption scattering absorption_coefficient", _POSITIVE),
-        **_each("radiance base emission scattered light distance", _POSITIVE),
-        **_each("scale_tt scale_trt", _POSITIVE),
-        **_each("coat_alpha", (0.01, 1.0, "[0.01, 1]")),
-        **_each("coat_ior", (1.0, 4.0, "[1, 4]")),
-        **_each("thinfilm_ior film_ior", (1.0, 1e50, "[1, 1e50]")),
-        **_each("thinfilm_thickness thickness", (0.0, 1e9, "[0, 1e9]")),  # nm
-        **_each("temperature", (1.0, 1e9, "[1, 1e9]")),
-        **_each("variance scale roughness_R roughness_TT roughness_TRT", _WIDTH),
-        **_each("radius reach", _LENGTH),
-        **_each("weight x", (0.0, _LARGEST, "[0, inf)")),
-        **_each("albedo phi", (-_LARGEST, _LARGEST, "(-inf, inf)")),
-        **_each("cos_theta", (-1.0, 1.0, "[-1, 1]")),
-        **_each("g", (-_BELOW_ONE, _BELOW_ONE, "(-1, 1)")),
-        **_each("inner_angle outer_angle", (0.0, 360.0, "[0, 360]")),
-        **_each("sigma", (0.0, 0.5 * np.pi, "[0, pi/2]")),
-    }
+    (name, ends)
+    for names, ends in (
+        ("mu mu_o mu_i", _SHARE),
+        ("rho color color0 color82 color90 tint tint_R tint_TT tint_TRT edge_color", _SHARE),
+        ("roughness alpha anisotropy glossiness longitudinal azimuthal", _SHARE),
+        ("azimuthal_roughness cuticle_angle amount opacity melanin_redness", _SHARE),
+        ("reflectance transmittance", _SHARE),
+        ("u reflectivity melanin_concentration", (0.0, _BELOW_ONE, "[0, 1)")),
+        ("eumelanin_color pheomelanin_color hair_color", (_ABOVE_ZERO, 1.0, "(0, 1]")),
+        ("exponent ior extinction absorption scattering absorption_coefficient", _POSITIVE),
+        ("radiance base emission scattered light distance", _POSITIVE),
+        ("scale_tt scale_trt", _POSITIVE),
+        ("coat_alpha", (0.01, 1.0, "[0.01, 1]")),
+        ("coat_ior", (1.0, 4.0, "[1, 4]")),
+        ("thinfilm_ior film_ior", (1.0, 1e50, "[1, 1e50]")),
+        ("thinfilm_thickness thickness", (0.0, 1e9, "[0, 1e9]")),  # nm
+        ("temperature", (1.0, 1e9, "[1, 1e9]")),
+        ("variance scale roughness_R roughness_TT roughness_TRT", _WIDTH),
+        ("radius reach", _LENGTH),
+        ("weight x", (0.0, _LARGEST, "[0, inf)")),
+        ("albedo phi", (-_LARGEST, _LARGEST, "(-inf, inf)")),
+        ("cos_theta", (-1.0, 1.0, "[-1, 1]")),
+        ("g", (-_BELOW_ONE, _BELOW_ONE, "(-1, 1)")),
+        ("inner_angle outer_angle", (0.0, 360.0, "[0, 360]")),
+        ("sigma", (0.0, 0.5 * np.pi, "[0, pi/2]")),
+    )
+    for name in names.split()
 )
 
 
@@ -146,11 +143,7 @@ BLOCK = 2**15
 
 
 def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, ...]]:
-    """Indices that tile an array, each selecting at most about `size` elements.
-
-    - `shape`: Shape of the array.
-    - `size`: Elements per block.
-    """
+    """Indices that tile an array, each selecting at most about `size` elements."""
     # Find the inner axes that fit into a block as a whole.
     axis, inner = len(shape), 1
     while axis > 0 and inner * shape[axis - 1] <= size:

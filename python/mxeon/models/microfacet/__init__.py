@@ -44,7 +44,7 @@ from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes,
 from mxeon.models.core.evaluation import evaluate_material, evaluate_number
 from mxeon.models.microfacet import fresnel, ggx
 from mxeon.models.microfacet.ggx import albedo, missing_light
-from mxeon.models.microfacet.slopes import slope_nodes, sum_nodes, transmitting_nodes
+from mxeon.models.microfacet.slopes import slope_nodes, transmitting_nodes
 
 
 @dataclass(frozen=True)
@@ -283,7 +283,7 @@ def node_albedo(
     compensate: bool = True,
     summed: bool = False,
 ) -> Array:
-    """Directional albedo of `node_brdf`; `summed` uses the weights of `sum_nodes`."""
+    """Directional albedo of `node_brdf`; `summed` as for `slope_nodes`."""
     curve, vectors, numbers = _material(category, inputs)
     return lobe_albedo(curve, wo, inputs["roughness"], vectors, numbers, compensate, summed)
 
@@ -469,7 +469,7 @@ def lobe_albedo(
     def value(
         wo: Array, roughness: Array, unseen: Array, average: Array, **material: Array
     ) -> Array:
-        c, weight = sum_nodes(wo, roughness) if summed else slope_nodes(wo, roughness)
+        c, weight = slope_nodes(wo, roughness, summed=summed)
         spread = {
             k: v[:, np.newaxis, np.newaxis] if k in vectors else v for k, v in material.items()
         }

@@ -66,23 +66,7 @@ def dielectric(mu: Array, ior: Array) -> Array:
 
 
 def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
-    """F: [MaterialX2026], Conductor Fresnel Equations."""
-    return _conductor(mu, ior, extinction, _gap(ior, extinction))
-
-
-def _gap(ior: Array, extinction: Array) -> Array:
-    """|n^2 - 1|, which does not depend on the direction."""
-    return hypot(ior - 1.0, extinction) * hypot(ior + 1.0, extinction)
-
-
-def _conductor(mu: Array, ior: Array, extinction: Array, gap: Array) -> Array:
-    """`conductor` from |n^2 - 1|."""
-    Rp, Rs = polarized(mu, ior, extinction, gap)
-    return arrays.trimmed(0.5 * (Rs + Rp), 1.0)
-
-
-def polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Array, Array]:
-    """R_p and R_s: [MaterialX2026], Conductor Fresnel Equations, without a cancellation; gap is |n^2 - 1|.
+    """F: [MaterialX2026], Conductor Fresnel Equations, without a cancellation.
 
     Printed, with c = mu, S2 = sin^2, n = ior + i extinction and w = a + i b = sqrt(n^2 - S2):
 
@@ -102,11 +86,12 @@ def polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Arr
     larger = root(0.5 * (size + arrays.magnitude(real)))
     smaller = ior * extinction / xp.where(larger > 0.0, larger, 1.0)
     a, b = xp.where(real >= 0.0, larger, smaller), xp.where(real >= 0.0, smaller, larger)
+    gap = hypot(ior - 1.0, extinction) * hypot(ior + 1.0, extinction)  # |n^2 - 1|
     total = (a + mu) ** 2 + b * b
     Rs = arrays.trimmed((gap / xp.where(total > 0.0, total, 1.0)) ** 2, 1.0)
     minus, plus = ((mu * a + sign * S2) ** 2 + (mu * b) ** 2 for sign in (-1.0, 1.0))
     Rp = Rs * xp.where(plus > 0.0, minus / xp.where(plus > 0.0, plus, 1.0), 1.0)
-    return Rp, Rs
+    return arrays.trimmed(0.5 * (Rs + Rp), 1.0)
 
 
 def modulus(real: Array, imaginary: Array) -> Array:
@@ -174,7 +159,7 @@ def _is_smooth(n2: Array) -> Array:
 def _smooth_avg(ior: Array, extinction: Array) -> Array:
     """F_ss of materials (N,) whose F is smooth in the cosine.
 
-    With x = c^2, m = |w|^2 and u = 2 c a of `polarized`, B = x m + (1 - x)^2:
+    With x = c^2, m = |w|^2 and u = 2 c a of `conductor`, B = x m + (1 - x)^2:
     F = (x + m - u) B / ((x + m + u) (B + u (1 - x)))
     """
     real, squared = (ior - 1.0) * (ior + 1.0) - extinction**2, (2.0 * ior * extinction) ** 2
@@ -205,11 +190,10 @@ def _split_avg(ior: Array, extinction: Array) -> Array:
     shape = (-1, *(1,) * split.ndim)
     x = arrays.like((X / (1.0 + X)).reshape(shape), ior)
     weight = arrays.like((STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2).reshape(shape), ior)
-    gap = _gap(ior, extinction)
     total = 0.0 * split
     for low, length in ((0.0, split), (split, 1.0 - split)):
         mu = arrays.at_most(low + length * x, 1.0)
-        total = total + length * xp.sum(weight * mu * _conductor(mu, ior, extinction, gap), axis=0)
+        total = total + length * xp.sum(weight * mu * conductor(mu, ior, extinction), axis=0)
     return arrays.trimmed(2.0 * total, 1.0)
 
 

@@ -99,13 +99,21 @@ class Slopes:
         beyond = ahead / xp.maximum(self.mu_o * g, ahead / LARGEST_R)
         return B, xp.where(B < 0.0, self.mu_o / ahead, beyond), slope
 
-    def facets(self, r: Array, B: Array, slope: tuple[Array, Array]) -> tuple[Array, Array]:
-        """Cosine wo . h, and the integrand without F."""
+    def facets(
+        self, r: Array, B: Array, slope: tuple[Array, Array], alpha: Array | None = None
+    ) -> tuple[Array, Array]:
+        """Cosine wo . h, and the integrand without F; `alpha` replaces the roughness in G_2 / G_1."""
         xp = array_namespace(r, B)
         lean = at_least_0(B * r + self.mu_o)
         stretch = 1.0 + _squared(slope) * r * r
         double = 2.0 * lean / stretch
         mu_i = at_most(at_least_0(double - self.mu_o), 1.0)
+        cosine = at_most(lean / xp.sqrt(stretch), 1.0)
+        if alpha is not None:
+            length_o, length_i = smith_lambda(self.mu_o, alpha), smith_lambda(mu_i, alpha)
+            masking = mu_i * (self.mu_o + length_o) / (length_o * mu_i + length_i * self.mu_o)
+            seen = 2.0 * lean / (self.mu_o + hypot(self.mu_o, self.steepness))
+            return cosine, _density(r) * seen * masking
         # wi = 2 (wo . h) h - wo, stretched along tangent and bitangent as in `ggx.stretched_length`.
         along, across = (
             alpha * double * r * each - of_wo
@@ -113,7 +121,6 @@ class Slopes:
         )
         length_i = xp.sqrt(along * along + across * across + mu_i * mu_i)
         smith = hypot(self.mu_o, self.steepness) * mu_i + length_i * self.mu_o
-        cosine = at_most(lean / xp.sqrt(stretch), 1.0)
         return cosine, _density(r) * 2.0 * mu_i * lean / smith
 
 
@@ -127,41 +134,22 @@ def _density(r: Array) -> Array:
     return r / (np.pi * (1.0 + r * r) ** 2)
 
 
-def slope_nodes(wo: Array, roughness: Array, isotropic: bool = False) -> tuple[Array, Array]:
+def slope_nodes(
+    wo: Array, roughness: Array, isotropic: bool = False, summed: bool = False
+) -> tuple[Array, Array]:
     """Cosine wo . h and weight of every node, shape (nodes of r, nodes of phi, ...).
 
-    For surfaces known to be isotropic, symmetry halves the nodes.
+    - `isotropic`: Whether surfaces are known to be isotropic: symmetry halves the nodes.
+    - `summed`: Whether weights are those of MaterialX's sum of an environment over visible normals, G_2 / G_1 of the
+      geometric mean of both alphas instead of the lobe's own.
     """
     slopes = Slopes.seen(wo, roughness)
     scale = array_namespace(slopes.scale).maximum(slopes.scale, LEAST_SCALE)
     omega, weight_omega = _quadrants(scale, isotropic or slopes.isotropic)
     B, limit, slope = slopes.rays(omega)
     r, weight = _graded(scale, limit)
-    cosine, values = slopes.facets(r, B, slope)
+    cosine, values = slopes.facets(r, B, slope, mean_alpha(roughness) if summed else None)
     return cosine, weight * weight_omega * values
-
-
-def sum_nodes(wo: Array, roughness: Array) -> tuple[Array, Array]:
-    """`slope_nodes` with the weights of MaterialX's sum of an environment over visible normals.
-
-    The weight of a normal is G_2 / G_1 of the geometric mean of both alphas instead of the lobe's own.
-    """
-    slopes = Slopes.seen(wo, roughness)
-    mu_o = slopes.mu_o
-    xp = array_namespace(mu_o)
-    scale = xp.maximum(slopes.scale, LEAST_SCALE)
-    omega, weight_omega = _quadrants(scale, slopes.isotropic)
-    B, limit, slope = slopes.rays(omega)
-    r, weight = _graded(scale, limit)
-    lean = at_least_0(B * r + mu_o)
-    stretch = 1.0 + _squared(slope) * r * r
-    mu_i = at_most(at_least_0(2.0 * lean / stretch - mu_o), 1.0)
-    alpha = mean_alpha(roughness)
-    length_o, length_i = smith_lambda(mu_o, alpha), smith_lambda(mu_i, alpha)
-    masking = mu_i * (mu_o + length_o) / (length_o * mu_i + length_i * mu_o)
-    seen = 2.0 * lean / (mu_o + hypot(mu_o, slopes.steepness))
-    cosine = at_most(lean / xp.sqrt(stretch), 1.0)
-    return cosine, _density(r) * seen * masking * weight * weight_omega
 
 
 def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array, Array]:
