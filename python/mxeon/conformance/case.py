@@ -14,13 +14,10 @@ from typing import TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.backends import Backend, Evaluating
-from mxeon.conformance.cache import Remembered
-from mxeon.conformance.results import Diagnosis
+from mxeon.conformance import backends, cache, results
 from mxeon.conformance.samples import Array, Batch, Candidate, Changes
 from mxeon.conformance.spec import LobeSpec, Spec, ValueSpec
-from mxeon.conformance.specs.lobes import ScatteringSpec
-from mxeon.conformance.specs.microfacets import FacetSpec
+from mxeon.conformance.specs import lobes, microfacets
 from mxeon.conformance.tolerance import Compared, Tolerance
 from mxeon.hosts.base import Engine, Host
 
@@ -30,15 +27,15 @@ KEPT_SPECS = 2  # specs with cached expected values: the case's own and a relate
 
 
 @lru_cache(maxsize=3 * KEPT_SPECS)
-def remembered(spec: Spec, quantity: str) -> Remembered:
-    return Remembered(getattr(spec, quantity))
+def remembered(spec: Spec, quantity: str) -> cache.Remembered:
+    return cache.Remembered(getattr(spec, quantity))
 
 
 @lru_cache(maxsize=2 * KEPT_SPECS)
 def candidates(spec: Spec, quantity: str) -> tuple[Candidate, ...]:
     """The candidates for a spec's albedo or throughput, cached for several comparisons."""
     found: tuple[Candidate, ...] = getattr(spec, f"{quantity}_candidates")
-    return tuple(replace(each, values=Remembered(each.values)) for each in found)
+    return tuple(replace(each, values=cache.Remembered(each.values)) for each in found)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,13 +43,13 @@ class Case:
     """A node on a backend; `inputs`, `outputs` and `throughputs` are a control's mistakes."""
 
     spec: Spec
-    backend: Backend
+    backend: backends.Backend
     inputs: Callable[[Batch], Batch] = lambda batch: batch
     outputs: Change = lambda batch, values: values
     throughputs: Change = lambda batch, values: values
     control: bool = False  # uses a subset: one failing sample is enough
     chosen: tuple[Batch, ...] = ()  # a diagnosis's batches, which replace the samples
-    explained: dict[object, Diagnosis] = field(default_factory=dict, init=False)  # cache
+    explained: dict[object, results.Diagnosis] = field(default_factory=dict, init=False)  # cache
 
     @property
     def host(self) -> Host:
@@ -111,8 +108,8 @@ class Case:
         return self.outputs(batch, evaluate(self.inputs(batch)))
 
     @property
-    def evaluating(self) -> Evaluating:
-        assert isinstance(self.backend, Evaluating), f"{self.host.name} evaluates no pairs"
+    def evaluating(self) -> backends.Evaluating:
+        assert isinstance(self.backend, backends.Evaluating), f"{self.host.name} evaluates no pairs"
         return self.backend
 
     def expected(self, batch: Batch) -> Array:
@@ -122,7 +119,7 @@ class Case:
         return remembered(self.lobe, "albedo")(batch)
 
     def expected_throughput(self, batch: Batch) -> Array:
-        return remembered(self.of(ScatteringSpec), "throughput")(batch)
+        return remembered(self.of(lobes.ScatteringSpec), "throughput")(batch)
 
     @property
     def changes(self) -> Mapping[str, Changes]:
@@ -142,7 +139,7 @@ class Case:
         raise LookupError(f"{self.spec.title} has no {quantities[-1]}")
 
 
-def make_case(backend: type[Backend], host: Engine, spec: Spec, library: str) -> Case:
+def make_case(backend: type[backends.Backend], host: Engine, spec: Spec, library: str) -> Case:
     spec = spec.within(library)
     made = backend(cast(Host, host), spec, library)
     if (form := made.judged()) is not spec:
@@ -164,7 +161,7 @@ def albedos(case: Case) -> Iterator[Compared]:
     """The environment branch compared with the directional albedo, or with MaterialX's fit of it."""
     spec, fitted = case.spec, case.backend.prefiltered
     for batch in case.views:
-        if fitted and isinstance(spec, FacetSpec):
+        if fitted and isinstance(spec, microfacets.FacetSpec):
             expected = spec.prefiltered(batch)
         else:
             expected = case.expected_albedo(batch)

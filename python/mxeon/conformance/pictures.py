@@ -15,21 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 import mxeon
-from mxeon.conformance import results
-from mxeon.conformance.backends import Rendered, picture_pairs
+from mxeon.conformance import backends, diagnosis, results, samples
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import judge, not_measured
-from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.reference import ExpectedPicture, HostValues, Reference
 from mxeon.conformance.reference.nodes import ShownLobe
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Picture, Quantity, Result
 from mxeon.conformance.results.known_issues import RENDERER_NODES
-from mxeon.conformance.samples import Batch, Values, arrays
 from mxeon.conformance.specs import hair, microfacets, subsurface, utilities
 from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
-from mxeon.conformance.specs.microfacets import ANISOTROPIC, FILM_SHOWN, FILM_TRAPPED, LEAST_FILM
-from mxeon.conformance.specs.microfacets import ERRORS as FACET_ERRORS
 from mxeon.conformance.specs.sheen import ZELTNER_ALBEDO, ZELTNER_VALUE
 from mxeon.conformance.tolerance import (
     Measurement,
@@ -122,20 +117,20 @@ def _others(lobes: tuple[ShownLobe, ...], direct: bool) -> list[Term]:
         own = (each.inputs for each in lobes if category in ("", each.category))
         return any(bool(np.any(condition(each[name]))) for each in own if name in each)
 
-    trapped = FILM_TRAPPED.term("a film of an index below 1.25")
-    inside = FACET_ERRORS["denser"].term("the throughput of an index below 1")
+    trapped = microfacets.FILM_TRAPPED.term("a film of an index below 1.25")
+    inside = microfacets.ERRORS["denser"].term("the throughput of an index below 1")
     others: list[Term] = []
     films = [each for each in lobes if np.any(each.inputs.get("thinfilm_thickness", 0.0) > 0.0)]
     # Direct light needs the albedo of a film only for what passes to other lobes, or through it.
     if films and direct:
         others += microfacets.film_terms(max(np.max(each.inputs["roughness"]) for each in films))
     if films and not (direct and {each.category for each in lobes} == {"conductor_bsdf"}):
-        others.append(FILM_SHOWN.term("a film's albedo, times the cosine of the view"))
-        others += [trapped] * some("thinfilm_ior", lambda value: value < LEAST_FILM)
+        others.append(microfacets.FILM_SHOWN.term("a film's albedo, times the cosine of the view"))
+        others += [trapped] * some("thinfilm_ior", lambda value: value < microfacets.LEAST_FILM)
     others += [inside] * some("ior", lambda value: value < 1.0, "dielectric_bsdf")
     fibers = product((lobe.inputs for lobe in lobes if lobe.category == HAIR), ROUGHNESSES)
     hairs = [np.reshape(inputs[name], (-1, 2)).min(axis=0) for inputs, name in fibers]
-    others += [ANISOTROPIC] * _stretched(lobes)
+    others += [microfacets.ANISOTROPIC] * _stretched(lobes)
     if hairs:
         others += hair.lobe_terms(*np.min(hairs, axis=0))
     sheens = (lobe for lobe in lobes if lobe.inputs.get("mode") == "conty_kulla")
@@ -318,10 +313,10 @@ def _known(shader: Shader) -> Diagnosis | None:
     """A known error of MaterialX for documents like this shader's, or None."""
     element = shader.document.getDescendant(shader.element)
     if names := notes.same_names(element):
-        return defect("same_names", names[0])
+        return diagnosis.defect("same_names", names[0])
     graph = element.getImplementation() if element.isA(mx.Node) else None
     defined = element.getType() == "material" and graph and graph.isA(mx.NodeGraph)
-    return defect("material_graph") if defined else None
+    return diagnosis.defect("material_graph") if defined else None
 
 
 def _assert_judged(shader: Shader, host: Host) -> None:
@@ -404,7 +399,7 @@ def _worst_pixel(case: Shown) -> Pixel:
 
 def _directions(scene: Scene, mask: NDArray[np.bool_]) -> tuple[Pixels, Pixels]:
     chosen = mask[sphere(scene.size).mask]
-    wo, wi, _ = picture_pairs(scene)
+    wo, wi, _ = backends.picture_pairs(scene)
     return wo[chosen], wi[chosen]
 
 
@@ -468,7 +463,7 @@ def generate_document(
 
 # --- one material of each node, for the page on which hosts stand together ------------------------
 
-PORTRAYED: Values = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
+PORTRAYED: samples.Values = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
 PORTRAIT_SCENES = tuple(replace(scene, size=96) for scene in (SIDE, BACK))
 
 
@@ -480,7 +475,7 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
     terminator are black in both pictures.
     """
     rough = isinstance(case.spec, DiffuseModelSpec) and not isinstance(case.spec, SurfaceLobe)
-    if not rough or isinstance(case.backend, Rendered):
+    if not rough or isinstance(case.backend, backends.Rendered):
         return ()
     pictures = []
     for scene in PORTRAIT_SCENES:
@@ -489,7 +484,7 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
             continue
         where = mask.copy()
         where[where] = judged
-        batch = Batch(wo[judged], wi[judged], arrays(PORTRAYED), scene)
+        batch = samples.Batch(wo[judged], wi[judged], samples.arrays(PORTRAYED), scene)
         image, expected = (np.zeros((*where.shape, 3), np.float32) for _ in range(2))
         image[where], expected[where] = case.direct(batch), case.expected(batch)
         names = (results.PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)

@@ -18,11 +18,10 @@ from typing import NamedTuple, TypeAlias
 import MaterialX as mx
 import numpy as np
 
-from mxeon.conformance.check import judge
+from mxeon.conformance import check, spec
 from mxeon.conformance.reference.nodes import OPERATIONS
 from mxeon.conformance.results import NOT_RUN, Cause, Diagnosis, Kind, Quantity, Result
 from mxeon.conformance.samples import Array, float32, generator, sky_map
-from mxeon.conformance.spec import POWER
 from mxeon.conformance.specs import ALL, utilities
 from mxeon.conformance.tolerance import Measurement, Term, Tolerance, count_of, roundings, sum_of
 from mxeon.errors import DocumentError, MxeonError, NotRun, ShaderError
@@ -448,7 +447,7 @@ class Comparison:
     def tolerance(self) -> Tolerance:
         """The largest difference between the values of one graph that is written in two ways."""
         base, exponent = float32(np.linspace(0.01, 1.0, SAMPLES)), float32(np.full(SAMPLES, 2.0))
-        power = float(POWER.errors(self._host, base, exponent).max())
+        power = float(spec.POWER.errors(self._host, base, exponent).max())
         engine = Term(8.0 * power, "the engine's pow(), eight times")
         terms = roundings(64, "of the terms of a graph"), engine
         return sum_of(*terms, quantity=Quantity.OUTPUT)
@@ -567,5 +566,5 @@ def check_release(
             return Diagnosis(tuple(causes), permitted=bool(more))
 
         variant = "the version of a node is 1234"
-        result = judge(place, count_of(Quantity.DIFFERENCES), measure, variant, diagnose)
+        result = check.judge(place, count_of(Quantity.DIFFERENCES), measure, variant, diagnose)
     return (result,), tuple(comparison.unjudged)

@@ -15,8 +15,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.hosts.base import TURN
-from mxeon.hosts.textures import latlong_directions
+from mxeon.hosts import base, textures
 from mxeon.models.nodes.node import BLACK as BLACK
 from mxeon.models.nodes.node import WHITE as WHITE
 from mxeon.shaders.scene import Scene
@@ -257,8 +256,8 @@ def sky(normal: Array) -> Array:
 @lru_cache(maxsize=1)
 def sky_map() -> NDArray[np.float32]:
     """The irradiance over pi as a latitude-longitude map, (SKY_ROWS, 2 SKY_ROWS, 3)."""
-    directions, _ = latlong_directions(SKY_ROWS, 2 * SKY_ROWS)
-    return sky(directions @ TURN[:3, :3]).reshape(SKY_ROWS, 2 * SKY_ROWS, 3).astype(np.float32)
+    directions, _ = textures.latlong_directions(SKY_ROWS, 2 * SKY_ROWS)
+    return sky(directions @ base.TURN[:3, :3]).reshape(SKY_ROWS, 2 * SKY_ROWS, 3).astype(np.float32)
 
 
 def texel_middles(near: Array) -> Array:
@@ -270,5 +269,5 @@ def texel_middles(near: Array) -> Array:
     azimuth = np.arctan2(near[:, 0], -near[:, 2]) / (2.0 * np.pi) + 0.5
     row = np.minimum((SKY_ROWS * polar).astype(int), SKY_ROWS - 1)
     column = (2 * SKY_ROWS * azimuth).astype(int) % (2 * SKY_ROWS)
-    middles, _ = latlong_directions(SKY_ROWS, 2 * SKY_ROWS)
+    middles, _ = textures.latlong_directions(SKY_ROWS, 2 * SKY_ROWS)
     return np.asarray(middles[2 * SKY_ROWS * row + column])

@@ -14,11 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mxeon.conformance import results, tolerance
+from mxeon.conformance import results, spec, tolerance
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity, Result
 from mxeon.conformance.samples import GRAZING, Array, directions, float32, generator
-from mxeon.conformance.spec import TURN
 from mxeon.conformance.specs.diffuse import LOSS_FIT
 from mxeon.conformance.specs.diffuse import VALUE as MODEL_VALUE
 from mxeon.errors import NotRun, ShaderError
@@ -207,7 +206,7 @@ class FunctionProbe:
     @cached_property
     def turn(self) -> tolerance.Term:
         """The error of the engine's own cosine and sine over a full turn, used for samples."""
-        error = float(TURN.errors(self.host, random_columns()["u2"]).max())
+        error = float(spec.TURN.errors(self.host, random_columns()["u2"]).max())
         return tolerance.Term(
             4.0 * error, "the engine's sine and cosine, which turn a direction twice"
         )

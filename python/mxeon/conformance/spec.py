@@ -17,8 +17,7 @@ from numpy.typing import ArrayLike
 from mxeon.conformance import samples
 from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values, directions, generator
 from mxeon.conformance.tolerance import ROUNDING, Compared, Term, Tolerance
-from mxeon.hosts.base import Host
-from mxeon.hosts.calls import NORMAL, TANGENT
+from mxeon.hosts import base, calls
 from mxeon.models.nodes.node import Node as NodeRow
 from mxeon.shaders import nodes
 
@@ -128,12 +127,12 @@ class EngineError(NamedTuple):
     """A term for an engine's own function, measured on each engine."""
 
     words: str
-    measure: Callable[[Host], float]
+    measure: Callable[[base.Host], float]
     factor: float = 1.0
 
 
 @lru_cache(maxsize=64)
-def _measured(error: EngineError, host: Host) -> float:
+def _measured(error: EngineError, host: base.Host) -> float:
     return error.factor * error.measure(host)
 
 
@@ -204,7 +203,7 @@ class Spec(ABC):
         """This spec adapted to a library; usually unchanged."""
         return self
 
-    def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
+    def engine(self, quantity: str, host: base.Host) -> tuple[Term, ...]:
         """Errors of an engine's own functions for a quantity."""
         found = ((_measured(each, host), each.words) for each in self.engines.get(quantity, ()))
         return tuple(Term(error, words) for error, words in found if error)
@@ -258,7 +257,7 @@ class LobeSpec(ValueSpec):
     def two_lobes(self) -> str:
         """MaterialX text of a material with two such lobes; `second` has its own frame."""
         own = [name for name in nodes.FRAME_INPUTS if name in nodes.input_types(self.node)]
-        frame = {name: NORMAL if name == "normal" else TANGENT for name in own}
+        frame = {name: calls.NORMAL if name == "normal" else calls.TANGENT for name in own}
         modes = {"first": self.mode, "second": {**self.mode, **frame}}
         lobes = (nodes.lobe_text(self.node, mode, name, self.types) for name, mode in modes.items())
         total = nodes.network_text({"lobe": nodes.Node("add", "BSDF", ("first", "second"))})
@@ -396,7 +395,7 @@ class EngineFunction:
     expression: str
     exact: Callable[..., Array]  # NumPy equivalent
 
-    def errors(self, host: Host, *arguments: Array) -> Array:
+    def errors(self, host: base.Host, *arguments: Array) -> Array:
         """Errors of a host's values for float32 arguments, (N,)."""
         function = f"mxeon_{self.name}"
         parameters = ", ".join(f"float {name}" for name in "xy"[: len(arguments)])
@@ -406,7 +405,7 @@ class EngineFunction:
 
     def error(
         self, arguments: Callable[[], Sequence[Array]], allowed: float = 1.0
-    ) -> Callable[[Host], float]:
+    ) -> Callable[[base.Host], float]:
         """A measurement of a host's largest error on some arguments, beyond a number of roundings of 1."""
         least = allowed * ROUNDING
         return lambda host: max(float(self.errors(host, *arguments()).max()) - least, 0.0)

@@ -16,14 +16,13 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mxeon import errors, hosts
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.release import released
 from mxeon.conformance.results import NOT_RUN, SOURCE, Cause, Diagnosis, Kind, Quantity, Result
 from mxeon.conformance.samples import generator
 from mxeon.conformance.specs import PLAIN_LOBES, diffuse, lobes
 from mxeon.conformance.tolerance import Measurement, count_of
-from mxeon.errors import NotRun, ShaderError
-from mxeon.hosts import HOSTS
 from mxeon.models import diffuse as formulas
 from mxeon.shaders import expressions, generation, library_tree, nodes, texts
 from mxeon.shaders.closure_calls import COMMENT
@@ -83,10 +82,10 @@ def _judged(check: str, subject: str, library: str, faults: Callable[[], Faults]
     place = Result(check, claim, subject, SOURCE, library, NOT_RUN)
     try:
         found, control = faults()
-    except NotRun as error:
+    except errors.NotRun as error:
         return not_measured(place, error)
-    except ShaderError as error:
-        return not_measured(place, ShaderError(f"{subject.rpartition(', ')[2]}: {error}"))
+    except errors.ShaderError as error:
+        return not_measured(place, errors.ShaderError(f"{subject.rpartition(', ')[2]}: {error}"))
 
     def measure(wrong: bool) -> Measurement:
         return Measurement(control if wrong else len(found), {})
@@ -141,7 +140,7 @@ def _arguments(library: str, release: mx.Document) -> Faults:
 # --- generated sources ----------------------------------------------------------------------------
 
 SOURCES = ("genglsl", "genslang", "genmsl", "genosl")  # targets with source files
-TEXT_ONLY = tuple(row.target for row in HOSTS if row.needs)  # targets without a host
+TEXT_ONLY = tuple(row.target for row in hosts.HOSTS if row.needs)  # targets without a host
 # Matches the call that fills a node's lobe, or the lobe's expression.
 FILLED = re.compile(r"\b(\w+\([^;]*), lobe_out\);")
 ASSIGNED = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
@@ -162,7 +161,7 @@ def _expression(text: str) -> str:
         return f"{filled[1]})"
     if assigned := ASSIGNED.search(text):
         return assigned[1]
-    raise NotRun("the expression of the lobe is not supported")
+    raise errors.NotRun("the expression of the lobe is not supported")
 
 
 def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object]) -> object:
@@ -214,7 +213,7 @@ def weighted_layer(
     weight: ArrayLike, layer: Closure, base: Closure | tuple[()] = (), normal: ArrayLike = ()
 ) -> Closure:
     if base:
-        raise NotRun("a base below the layer is not supported")
+        raise errors.NotRun("a base below the layer is not supported")
     return {**layer, "normal": normal, "weight": np.multiply(layer["weight"], weight)}
 
 
@@ -250,7 +249,7 @@ def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
     def faults(given: Inputs) -> Iterator[Cause]:
         closure = _evaluated(expression, {**given, **flag}, FUNCTIONS)
         if not isinstance(closure, dict):
-            raise ShaderError("the lobe is no closure")
+            raise errors.ShaderError("the lobe is no closure")
         for name, value in expected.items():
             if not np.size(closure.get(name, ())):
                 yield Cause(Kind.DEFECT, "not_passed", (name,))

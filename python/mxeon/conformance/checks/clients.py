@@ -16,17 +16,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from mxeon.conformance import check, controls, diagnosis, results
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import Check, family
 from mxeon.conformance.checks.states import covering, named, shared
-from mxeon.conformance.controls import scale
-from mxeon.conformance.diagnosis import not_finite
-from mxeon.conformance.results import Diagnosis
 from mxeon.conformance.samples import RIM, Array, Batch, sky, sky_map
 from mxeon.conformance.specs.clients import BACK, FRONT, INTENSITY, FrameSpec
 from mxeon.conformance.tolerance import Compared
-from mxeon.hosts import host_row
-from mxeon.hosts.base import TURN
+from mxeon.hosts import base, host_row
 from mxeon.shaders.methods import GENERATED, UNCHOSEN, Methods
 from mxeon.shaders.scene import VIEW, Client, Lamp, Matrix, Scene, sphere
 
@@ -85,8 +81,8 @@ def _turned() -> Matrix:
     (cos, sin), (low, high) = ((np.cos(x), np.sin(x)) for x in (0.7, 0.4))
     about_y = np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
     about_x = np.array([[1.0, 0.0, 0.0], [0.0, low, -high], [0.0, high, low]])
-    matrix = np.array(TURN)
-    matrix[:3, :3] = TURN[:3, :3] @ about_y @ about_x
+    matrix = np.array(base.TURN)
+    matrix[:3, :3] = base.TURN[:3, :3] @ about_y @ about_x
     return tuple(matrix.T.ravel().tolist())
 
 
@@ -178,7 +174,7 @@ def environment(client: Client, normal: Array) -> Array:
         return np.zeros_like(normal)
     if client.irradiance.shape[0] == 1:
         return np.broadcast_to(client.intensity * client.irradiance[0, 0], normal.shape)
-    turned = normal @ np.reshape(client.turn, (4, 4))[:3, :3] @ TURN[:3, :3]
+    turned = normal @ np.reshape(client.turn, (4, 4))[:3, :3] @ base.TURN[:3, :3]
     return np.asarray(client.intensity * sky(turned))
 
 
@@ -229,23 +225,23 @@ def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
             yield words | {"alpha"} if alpha else words, found
 
 
-def diagnose(case: Case) -> Diagnosis:
+def diagnose(case: Case) -> results.Diagnosis:
     """The states that all wrong frames share."""
     tolerance, rows = case.tolerance("frame"), list(drawn(case))
     bad = np.array([tolerance.wrong(each).any() for _, each in rows])
     compared = [each for _, each in rows]
     common = shared(bad, [words for words, _ in rows])
     common = replace(common, key=f"{common.key}_of_frames")
-    return Diagnosis((common, *not_finite(compared)))
+    return results.Diagnosis((common, *diagnosis.not_finite(compared)))
 
 
 # fmt: off
 ROWS = (
-    Check(key="client",
+    check.Check(key="client",
           claim="A whole frame shows every light, the environment, shadow and occlusion that a client binds, and alpha.",
-          applies=family(FrameSpec), measure=lambda case: (each for _, each in drawn(case)),
-          tolerance="frame", control=scale("values are 1 % too large", 1.01), explain=diagnose,
-          hosts=lambda spec, host: bool(host_row(host).scenes),
+          applies=check.family(FrameSpec), measure=lambda case: (each for _, each in drawn(case)),
+          tolerance="frame", control=controls.scale("values are 1 % too large", 1.01),
+          explain=diagnose, hosts=lambda spec, host: bool(host_row(host).scenes),
           methods=lambda spec, methods: methods == GENERATED),
 )
 # fmt: on

@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike
 from mxeon.conformance import backends, controls, diagnosis, samples
 from mxeon.conformance.case import SCATTERING, Case, dead_inputs, remembered
 from mxeon.conformance.check import Check, family
-from mxeon.conformance.checks import lobes
+from mxeon.conformance.checks import lobes, states
 from mxeon.conformance.checks.lobes import CLEAR, FILMS, TRANSMITTING
-from mxeon.conformance.checks.states import TURNING, in_turn
 from mxeon.conformance.diagnosis import ALBEDO, NEAR, UNKNOWN, UNMASKED, VALUE, defect, not_finite
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
 from mxeon.conformance.samples import Array, Batch, Mask, Values, directions_at, rounded
@@ -24,10 +23,9 @@ from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec, film_views
 from mxeon.conformance.tolerance import Compared, count_named, count_not_finite, count_of, roundings
 from mxeon.errors import Implied
+from mxeon.models import sampling, transmission
 from mxeon.models.microfacet.defects import UNCOMPENSATED, schlick_average
 from mxeon.models.microfacet.ggx import ggx_albedo_dir, smith_g1, smith_lambda
-from mxeon.models.sampling import ggx_sample
-from mxeon.models.transmission import refraction_direction
 from mxeon.shaders.methods import GENERATED, TABLE_SIZE, UNTABLED, Methods
 from mxeon.shaders.scene import Client
 
@@ -267,7 +265,7 @@ def clear(case: Case) -> Iterator[Compared]:
 # sampled and tabulated albedos. The environment is dim, turned for reflection, and tinted twice for refraction.
 OTHERS = (Methods("prefilter", "opacity"), Methods("prefilter", "refraction"))
 SAMPLED = Methods("prefilter", "refraction", "monteCarlo")
-BOUND = Client(turn=TURNING, intensity=0.5, two_sided=True)
+BOUND = Client(turn=states.TURNING, intensity=0.5, two_sided=True)
 SIDES = np.floor, np.ceil  # texels on both sides of a place
 MIRROR = family(FacetSpec, lambda spec: spec.model == "schlick")
 
@@ -325,7 +323,7 @@ def mirrored(case: Case, ask: Callable[..., Array], methods: Methods) -> Iterato
             seen.first(SEEN),
             partial(ask, branch="environment", irradiance=samples.sky_map()),
         )
-        turned = uneven(in_turn(seen, BOUND))
+        turned = uneven(states.in_turn(seen, BOUND))
         yield Compared(seen, uneven(seen, client=BOUND) / BOUND.intensity, turned)
 
 
@@ -458,7 +456,7 @@ def rough_refraction(case: Case) -> Compared:
         np.repeat(each, len(u), axis=0)
         for each in ((axes @ wo[:, :, np.newaxis])[:, :, 0], functions.ior(batch.inputs), alpha)
     )
-    facets = ggx_sample(view, np.tile(u, (count, 1)), alpha)[0] + view
+    facets = sampling.ggx_sample(view, np.tile(u, (count, 1)), alpha)[0] + view
     facets /= np.linalg.norm(facets, axis=1, keepdims=True)
     out = through_sphere(view, index, facets).reshape(count, len(u), 3).mean(axis=1)
     return Compared(batch, measured, samples.sky((out[:, np.newaxis] @ axes)[:, 0])).where(bright)
@@ -470,7 +468,7 @@ def through_sphere(wo: Array, index: Array, facet: Array = UPWARD) -> Array:
     The ray meets the far surface at the same angle, so it turns by the same amount twice: by a half turn about
     the ray inside.
     """
-    inner = refraction_direction(wo, facet, index)
+    inner = transmission.refraction_direction(wo, facet, index)
     return np.asarray(wo - 2.0 * np.sum(wo * inner, axis=1, keepdims=True) * inner)
 
 

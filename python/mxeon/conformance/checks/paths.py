@@ -15,18 +15,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance import cache, controls
+from mxeon.conformance import cache, check, controls, diagnosis
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import Check, Specs, family
 from mxeon.conformance.checks.lobes import BELOW, CLEAR, DARK, TRANSMITTING
 from mxeon.conformance.checks.microfacets import with_directions
 from mxeon.conformance.checks.surface_shaders import SURFACES
-from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
 from mxeon.conformance.samples import GRAZING, Array, Batch, Values, float32, generator
 from mxeon.conformance.spec import NO_ABILITY, Ability, LobeSpec, Spec, draw, materials
-from mxeon.conformance.specs.combinations import CombinedSpec
-from mxeon.conformance.specs.emission import EmissionSpec
+from mxeon.conformance.specs import combinations, emission
 from mxeon.conformance.specs.microfacets import PASSING, THROUGHPUT, FacetSpec, TransmissionSpec
 from mxeon.conformance.specs.surface_shaders import ALBEDO, SurfaceShaderSpec
 from mxeon.conformance.tolerance import Compared, Measurement, Term, given, roundings, sum_of
@@ -105,13 +102,13 @@ GLASS: dict[str, tuple[str, Values]] = {
     "open_pbr_surface": ("specular_ior", {"transmission_weight": 1.0, "specular_roughness": 0.5}),
 }
 INDEX = 2.0  # its inverse is exact
-DRAWN = family(LobeSpec) - BELOW
+DRAWN = check.family(LobeSpec) - BELOW
 GLASSY = TRANSMITTING | SURFACES  # light enters and leaves a solid
 # Lobes that reflect by an index, which is inverted for light inside.
 UNLIKE_INSIDE = (
     GLASSY
-    | family(CombinedSpec)
-    | family(FacetSpec, lambda spec: "ior" not in spec.types or spec.types["ior"] == "float")
+    | check.family(combinations.CombinedSpec)
+    | check.family(FacetSpec, lambda spec: "ior" not in spec.types or spec.types["ior"] == "float")
 )
 # Glass with this index, a tint, and its curve from outside.
 SOLIDS: dict[str, tuple[Values, Values, dict[str, Array]]] = {
@@ -431,7 +428,7 @@ def path_value(case: Case) -> Iterator[Compared]:
 
 def path_emission(case: Case) -> Iterator[Compared]:
     """Radiance towards views of both sides, in frames with exchanged axes, which is exact."""
-    spec = case.of(EmissionSpec)
+    spec = case.of(emission.EmissionSpec)
     thirds = np.stack([np.roll(np.eye(3), turn, axis=0) for turn in range(3)])
     for batch in (*case.batches, case.backend.take(spec.backs)):
         if "normal" in batch.inputs:  # the axis of a cone comes from a node
@@ -663,7 +660,7 @@ def patches(nodes: int) -> tuple[Array, Array]:
 
 
 PATHS = partial(
-    Check,
+    check.Check,
     requires=Ability.PAIRS,
     profile="path",
     hosts=lambda spec, host: host_row(host).way == "pairs" and host_row(host).target in TARGETS,
@@ -681,7 +678,7 @@ ROWS = (
           control=controls.with_values(
               "a tenth of the density is that of a lobe, even in all directions, that is never drawn",
               lambda batch, values: 0.9 * values + 0.1 / (4.0 * np.pi)),
-          explain=lambda case: defect(
+          explain=lambda case: diagnosis.defect(
               "drawn_density",
               *dict.fromkeys(
                   PLACES[inside] for score, inside, _ in scores(case) if score > MOST_DEVIATIONS))),
@@ -695,43 +692,43 @@ ROWS = (
           tolerance=sum_of(roundings(
               64, "of two directions and their frame, times 1 + the inverse of the lobe's own alpha")),
           control=controls.scale("values are 0.1 % too large", 1.001),
-          explain=defect("other_path_value"),
+          explain=diagnosis.defect("other_path_value"),
           methods=lambda spec, methods: not methods.distributed),  # distributed layers change sums above 1
     PATHS(key="path_emission",
           claim="A path tracer's emission is the node's equation, from both sides of surfaces along each axis.",
-          applies=family(EmissionSpec), measure=path_emission, tolerance="value",
+          applies=check.family(emission.EmissionSpec), measure=path_emission, tolerance="value",
           control=controls.scale("values are 0.1 % too large", 1.001),
-          explain=defect("other_path_emission"), requires=NO_ABILITY),
+          explain=diagnosis.defect("other_path_emission"), requires=NO_ABILITY),
     PATHS(key="path_random",
           claim="The random numbers of a tracer's text are those of pcg4d.",
-          applies=family(LobeSpec, lambda spec: spec.node == "eon_diffuse_bsdf"), measure=path_random,
+          applies=check.family(LobeSpec, lambda spec: spec.node == "eon_diffuse_bsdf"), measure=path_random,
           tolerance=given(0.0, Quantity.VALUE, "the same bits"),
           control=controls.scale("numbers are half as large", 0.5),
-          explain=defect("other_random_numbers")),
+          explain=diagnosis.defect("other_random_numbers")),
     PATHS(key="path_inside",
           claim="Light inside a solid is reflected and refracted as outside of one of the inverse index.",
-          applies=GLASSY & Specs(lambda spec: spec.node in GLASS), measure=path_inside,
+          applies=GLASSY & check.Specs(lambda spec: spec.node in GLASS), measure=path_inside,
           tolerance=sum_of(roundings(
               256, "of an index that OpenPBR takes from its reflectance, near a critical angle")),
           control=controls.scale("values are 0.1 % too large", 1.001),
-          explain=defect("inside_is_not_outside")),
+          explain=diagnosis.defect("inside_is_not_outside")),
     PATHS(key="path_albedo",
           claim="Draws from outside carry the light that a rasterizer reflects and transmits.",
           applies=SURFACES, measure=path_albedo,
           tolerance=ALBEDO.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
-          explain=defect("other_path_albedo"),
+          explain=diagnosis.defect("other_path_albedo"),
           methods=lambda spec, methods: (
               with_directions(spec, methods) and methods.transmission == "refraction")),
     PATHS(key="path_energy",
           claim="Draws at a clear solid carry all light, from outside and from inside.",
           applies=CLEAR, measure=path_energy, tolerance=PASSING.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
-          explain=defect("light_from_inside")),
+          explain=diagnosis.defect("light_from_inside")),
     PATHS(key="path_leaving",
           claim="From inside a clear solid, draws that leave it carry what enters by the same paths.",
           applies=CLEAR, measure=path_leaving, tolerance=THROUGHPUT.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
-          explain=defect("light_from_inside")),
+          explain=diagnosis.defect("light_from_inside")),
 )
 # fmt: on

@@ -21,8 +21,7 @@ from mxeon.conformance.checks.lobes import DARK
 from mxeon.conformance.samples import Array, Batch, Mask, Values, aimed, float32, rounded
 from mxeon.conformance.spec import Ability, LobeSpec, broadcast_inputs
 from mxeon.conformance.tolerance import Compared
-from mxeon.hosts.base import TURN
-from mxeon.hosts.calls import LIGHTS, LIT, NORMAL, SECOND_LIGHT, SKY, SURFACE, TANGENT
+from mxeon.hosts import base, calls
 from mxeon.io.images import FAST_EXR, write_image
 from mxeon.jobs.signals import Temporary
 from mxeon.shaders.document.policy import Policy
@@ -34,8 +33,8 @@ if TYPE_CHECKING:  # the import loads MaterialX
 
 EACH = 12  # pixels per combination of states: three 2 x 2 squares in a frame of two rows
 STEP = 0.05  # radian between pixels of a bent surface with radius 1
-VECTORS = ("normal", "tangent", "position", SURFACE)
-FLAT = NORMAL, TANGENT, (0.0, 0.0, 0.0), NORMAL
+VECTORS = ("normal", "tangent", "position", calls.SURFACE)
+FLAT = calls.NORMAL, calls.TANGENT, (0.0, 0.0, 0.0), calls.NORMAL
 WEIGHTS = (0.0, 0.3, 1.0, 1.0)
 FEW = 6  # combinations in a control
 CLEARER = 0.7  # two states replace one if they have at most this share of its pixels
@@ -95,7 +94,7 @@ def framed(
         length = 10.0 ** rng.uniform(-1.0, 1.0, (len(frame), 1))
         tangent = length * (tangent + rng.uniform(-0.5, 0.5, (len(frame), 1)) * normal)
     axes = {"normal": rounded(normal.T), "tangent": rounded(tangent.T)}
-    wo = np.broadcast_to(NORMAL, batch.wo.shape) if along else batch.wo
+    wo = np.broadcast_to(calls.NORMAL, batch.wo.shape) if along else batch.wo
     # If an axis is a pole of the environment, its azimuth comes from roundings after the
     # environment is turned.
     client = CLIENT if make is on_axes and pixels.sky == "uneven" else pixels.client
@@ -198,7 +197,7 @@ TWO_SIDED, TURNED_SKY = "an environment: dim and two-sided", "an environment: tu
 ANGLE = 37.0 * np.pi / samples.SKY_ROWS
 COSINE, SINE = np.cos(ANGLE), np.sin(ANGLE)
 ROTATION = np.array([[COSINE, 0.0, SINE], [0.0, 1.0, 0.0], [-SINE, 0.0, COSINE]])
-TURNING = tuple((TURN @ np.pad(ROTATION, (0, 1))).T.ravel().tolist())
+TURNING = tuple((base.TURN @ np.pad(ROTATION, (0, 1))).T.ravel().tolist())
 # Other checks use the first state of each axis. States with the same words up to a colon are also
 # diagnosed together.
 AXES: dict[str, dict[str, Build]] = {
@@ -378,7 +377,7 @@ def imaged(
     batch = replace(batch, inputs={name: batch.inputs[name] for name in left} | places)
     shader = compiled(two, last, tuple(names))
     shown = partial(case.evaluating.evaluate, shader=shader, client=client)
-    return shown(batch, LIT, irradiance=irradiance)
+    return shown(batch, calls.LIT, irradiance=irradiance)
 
 
 def compile_imaged(
@@ -393,9 +392,9 @@ def compile_imaged(
 def batch_of(pixels: Pixels) -> Batch:
     batch, count = pixels.batch, len(pixels.batch.wo)
     inputs: Values = {
-        LIGHTS: np.full(count, float(pixels.lights)),
-        SECOND_LIGHT: batch.world(pixels.light),
-        SKY: np.full(count, bool(pixels.sky)),
+        calls.LIGHTS: np.full(count, float(pixels.lights)),
+        calls.SECOND_LIGHT: batch.world(pixels.light),
+        calls.SKY: np.full(count, bool(pixels.sky)),
         **{
             f"second/{name}": each
             for name, each in (pixels.second or {}).items()

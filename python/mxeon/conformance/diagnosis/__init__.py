@@ -17,8 +17,7 @@ from mxeon.conformance.diagnosis.regions import EXACT, correct_except, place_of,
 from mxeon.conformance.results import NO_DIAGNOSIS, Cause, Diagnosis, Kind
 from mxeon.conformance.samples import Array, Batch, Candidate, sky
 from mxeon.conformance.spec import COMPONENTS, Ability
-from mxeon.conformance.specs.diffuse import DIFFUSE
-from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
+from mxeon.conformance.specs import diffuse, emission
 from mxeon.conformance.tolerance import (
     Compared,
     Tolerance,
@@ -153,7 +152,7 @@ def _model(
     if explains and least <= max(tolerance.value, SAME * rival):
         flags = (
             (float(spec.flag),)
-            for spec in DIFFUSE
+            for spec in diffuse.DIFFUSE
             if spec.node == case.spec.node and spec.title != case.spec.title
             if spec.flag is not None and reference.diffuse_model(spec.model).title == first
         )
@@ -277,7 +276,7 @@ class Comparison:
 
 
 def _backs(case: Case) -> Iterator[Compared]:
-    batch = case.backend.take(case.of(EmissionSpec).backs)
+    batch = case.backend.take(case.of(emission.EmissionSpec).backs)
     yield case.valued.alike(Compared(batch, case.direct(batch), case.expected(batch)))
 
 
@@ -293,7 +292,7 @@ def _alike(case: Case) -> Sequence[Candidate]:
 
 def _transmittances(case: Case) -> Iterator[Compared]:
     """Light through a medium, and the throughput of a surface over it, compared with its transmittance."""
-    spec, evaluate = case.of(MediumSpec), case.evaluating.evaluate
+    spec, evaluate = case.of(emission.MediumSpec), case.evaluating.evaluate
     [batch] = case.batches
     expected = case.expected(batch)
     yield Compared(batch, case.direct(batch), expected)

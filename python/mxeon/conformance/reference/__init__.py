@@ -16,7 +16,6 @@ from mxeon.conformance.reference.nodes import ManyMaterialsError, ShadingPoints,
 from mxeon.conformance.samples import Array
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts import Row, base
-from mxeon.hosts.base import Identity, Query
 from mxeon.shaders.document import drawn_values
 from mxeon.shaders.document.drawn_values import LIT, NAME, Elements, emission_document
 from mxeon.shaders.document.policy import Policy
@@ -90,8 +89,8 @@ class Reference(base.Host):
 
     name, target = "reference", "glsl"
 
-    def identity(self) -> Identity:
-        return Identity(self.name, f"NumPy {np.__version__}", "CPU, float64")
+    def identity(self) -> base.Identity:
+        return base.Identity(self.name, f"NumPy {np.__version__}", "CPU, float64")
 
     def picture(self, shader: Shader, scene: Scene) -> NDArray[np.float64]:
         """Picture of the sphere with the shader's document; see `mxeon.hosts.base.Host`.
@@ -161,7 +160,7 @@ class Reference(base.Host):
             pass
         return ()
 
-    def _values(self, query: Query) -> NDArray[np.float64]:
+    def _values(self, query: base.Query) -> NDArray[np.float64]:
         """Values of the document's lobes; see `mxeon.hosts.base.Host.evaluate`.
 
         The branch "opacity" is "transmission" with MaterialX's method of that name. Raise NotRun unless the request is

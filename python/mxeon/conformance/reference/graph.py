@@ -27,17 +27,15 @@ from mxeon.errors import NotRun, OutsideModel
 from mxeon.hosts.textures import texels_at
 from mxeon.io.srgb import srgb_decoded
 from mxeon.models.core.layering import Bsdf
-from mxeon.models.nodes import utilities
-from mxeon.models.nodes.emissions import BASE, EMISSIONS, Emission
-from mxeon.shaders.document.drawn_values import CLOSURES, Elements
-from mxeon.shaders.document.graphs import reachable
+from mxeon.models.nodes import emissions, utilities
+from mxeon.shaders.document import drawn_values, graphs
 from mxeon.shaders.document.values import color_spaces
 from mxeon.shaders.inner_lobes import Nodes, Path
 
 # Types that a generator draws as a color, and their components.
 DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
 # Values of a node, by its type and the name of its output.
-Measure: TypeAlias = Callable[[Elements, str, str], Array]
+Measure: TypeAlias = Callable[[drawn_values.Elements, str, str], Array]
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
 # Values of unconnected inputs: black, and for lobes zero, which passes all light.
@@ -96,7 +94,7 @@ class Graph(Nodes):
         return (self._connected if element.isA(mx.Output) else self.path)(around, element)
 
     def _parts(self, roots: Iterable[Path]) -> dict[Path, tuple[Path, ...]]:
-        return reachable(roots, lambda path: self._step(path)[1])
+        return graphs.reachable(roots, lambda path: self._step(path)[1])
 
     def _evaluate(self, root: Path) -> Value:
         """Value at a path, without recursion or repeated evaluation."""
@@ -139,8 +137,8 @@ class Graph(Nodes):
     def _operations(self) -> dict[str, nodes.Operation]:
         """Nodes that compute numbers or colors, some of them from the points: inputs and function."""
         known = nodes.OPERATIONS | nodes.VOLUMES | {"surfacematerial": (("surfaceshader",), same)}
-        for row in EMISSIONS:
-            ports = tuple("base" if name == BASE else name for name in row.inputs)
+        for row in emissions.EMISSIONS:
+            ports = tuple("base" if name == emissions.BASE else name for name in row.inputs)
             known[row.category] = ports, partial(_radiance, row, ports, self._points)
         for utility in UTILITIES.values():
             known[utility.category] = tuple(utility.inputs), partial(_utility, utility)
@@ -215,7 +213,7 @@ class Graph(Nodes):
         if not port.getConnectedNode():
             return self._constant(path, name, self._written(path, name, port))
         # An input is measured by name if a lobe, or a node around a lobe, uses it.
-        scatters = any(each.getType() in CLOSURES for each in self._along(owner, path))
+        scatters = any(each.getType() in drawn_values.CLOSURES for each in self._along(owner, path))
         shown = f"{port.getParent().getName()}.{name}" if scatters else ""
         return self._connected(path[:-1], port, shown)
 
@@ -339,7 +337,7 @@ def _rows(names: Iterable[str], values: Iterable[Array], count: int = 1) -> dict
 
 
 def _radiance(
-    row: Emission, ports: tuple[str, ...], points: ShadingPoints, *values: Array
+    row: emissions.Emission, ports: tuple[str, ...], points: ShadingPoints, *values: Array
 ) -> Array:
     wo, _ = points.own
     return row.value(wo, _rows(ports, values, len(wo)))

@@ -12,9 +12,8 @@ from pathlib import Path
 
 import cattrs
 
+from mxeon import errors, hosts
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Cause, Kind, Quantity, Result
-from mxeon.errors import CheckError
-from mxeon.hosts import HOSTS
 from mxeon.io.records import UNREADABLE, strict_converter
 from mxeon.shaders.library import data_folder
 
@@ -95,14 +94,14 @@ def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
     """
     parts = PAGE.fullmatch(text)
     if not parts:
-        raise CheckError(f"{page}.md must begin with a row in a comment, and a title")
+        raise errors.CheckError(f"{page}.md must begin with a row in a comment, and a title")
     head = {"page": page, "title": parts["title"], "text": parts["text"]}
     row = tomllib.loads(parts["row"]) | head
     row |= {name: measured[name] for name in ("cause", "patch", "sizes") if name in measured}
     try:
         issue = _converter().structure(row, Issue)
     except UNREADABLE as error:
-        raise CheckError(f"row of {page}.md: {cattrs.transform_error(error)[0]}") from error
+        raise errors.CheckError(f"row of {page}.md: {cattrs.transform_error(error)[0]}") from error
     if issue.patch and not issue.repaired:
         repaired = tuple(pair for pair in issue.rows if pair not in issue.remains)
         return replace(issue, repaired=repaired)
@@ -144,7 +143,7 @@ def _pairs(table: Table) -> tuple[Row, ...]:
 RENDERERS = {"cycles": "this Blender", "three": "this three.js", "babylon": "this Babylon.js"}
 RENDERERS |= {name: f"this {name}" for name in ("shadewire", "three-gpu-pathtracer")}
 # Hosts whose closures are their own, with every library.
-OWN_CLOSURES = tuple(row.name for row in HOSTS if row.way == "functions")
+OWN_CLOSURES = tuple(row.name for row in hosts.HOSTS if row.way == "functions")
 LEFT = 30.0  # smaller errors of the correct model have a different cause than the issue
 SPREAD = 1.5  # engines, drivers and versions of MaterialX may exceed an issue's size by this factor
 

@@ -11,8 +11,7 @@ from cattrs.gen import override
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from mxeon.conformance.results import Picture, Verdict, assert_verdict
-from mxeon.io.files import digest
-from mxeon.io.records import Overrides, strict_converter
+from mxeon.io import files, records
 
 # NumPy parses the header of a file with `ast`, which in Python 3.11 fails at times when two threads use it:
 # https://github.com/python/cpython/issues/106905.
@@ -35,7 +34,7 @@ class StoredImage:
     @property
     def whole(self) -> bool:
         """Whether the file exists, unchanged since it was written."""
-        if digest(self.path) != self.path.stem:
+        if files.digest(self.path) != self.path.stem:
             return False
         try:  # mapped instead of read: a header may declare any number of pixels
             pixels = np.lib.format.open_memmap(self.path, mode="r")
@@ -50,7 +49,7 @@ def make_converter(folder: Path | None = None) -> cattrs.Converter:
     Pictures are written as the names of their files in a folder, if there is one.
     """
     own = {} if folder is None else {Picture: _in_files(folder)}
-    converter = strict_converter(own)
+    converter = records.strict_converter(own)
     # Messages for an invalid verdict list the valid ones.
     converter.register_structure_hook_func(
         lambda kind: kind == Verdict, lambda word, _: assert_verdict(word)
@@ -58,7 +57,7 @@ def make_converter(folder: Path | None = None) -> cattrs.Converter:
     return converter
 
 
-def _in_files(folder: Path) -> Overrides:
+def _in_files(folder: Path) -> records.Overrides:
     def name(image: StoredImage | None) -> str | None:
         return None if image is None else image.path.name
 

@@ -22,11 +22,10 @@ from mxeon.errors import InputError, InterfaceError, NotRun
 from mxeon.hosts import HOSTS, Row, host_names, host_row, register, registered
 from mxeon.io.files import AnyPath, Names, check_output, names_of, one_name
 from mxeon.jobs import TIMEOUT, WAIT, check_timeout, dask, pool
+from mxeon.shaders import generation, library_tree
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.references import documents_in, files_read
-from mxeon.shaders.generation import TARGETS, check_generator
 from mxeon.shaders.library import examples_folder, library_name, untested
-from mxeon.shaders.library_tree import root
 from mxeon.shaders.methods import UNCHOSEN, Methods
 
 __all__ = ["check", "read_run", "to_run", "work"]
@@ -108,10 +107,10 @@ def check(
         if both := [each for each in others if each in judged]:
             raise InputError(f"compared must be other libraries than those judged; got {both[0]!r}")
         loaded = tuple(dict.fromkeys((*judged, *others)))
-        for library in filter(root, loaded):
-            for target in {host_row(host).target for host in engines} & {*TARGETS}:
+        for library in filter(library_tree.root, loaded):
+            for target in {host_row(host).target for host in engines} & {*generation.TARGETS}:
                 try:
-                    check_generator(library, target)
+                    generation.check_generator(library, target)
                 except InterfaceError as reason:  # no task would run
                     raise InputError(str(reason)) from None
         if workers < 0:

@@ -18,8 +18,7 @@ from mxeon.conformance.run.plan import DOCUMENT, FUNCTIONS, HOST, Findings, Task
 from mxeon.conformance.samples import SEED
 from mxeon.conformance.specs import ALL, surface_shaders
 from mxeon.errors import DocumentError, ImageError, InterfaceError, MxeonError, NotRun, ShaderError
-from mxeon.hosts import open_engine
-from mxeon.hosts.base import Engine, Host
+from mxeon.hosts import base, open_engine
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.library_tree import root
@@ -54,9 +53,9 @@ def one_result(
 class Judge:
     """Executes tasks in sequence and keeps its hosts open."""
 
-    def __init__(self, policy: Policy, opened: Callable[[str], Engine] = open_engine) -> None:
+    def __init__(self, policy: Policy, opened: Callable[[str], base.Engine] = open_engine) -> None:
         self._policy, self._opened = policy, opened
-        self._hosts: dict[str, Engine | NotRun] = {}  # hosts, or why they cannot run
+        self._hosts: dict[str, base.Engine | NotRun] = {}  # hosts, or why they cannot run
         self._reference = reference.Reference()
         self._case = lru_cache(maxsize=1)(_case)  # pairs take much memory
 
@@ -84,7 +83,7 @@ class Judge:
             if not isinstance(host, NotRun):
                 host.close()
 
-    def _host(self, name: str) -> Engine:
+    def _host(self, name: str) -> base.Engine:
         """The host of this name, opened once."""
         if name not in self._hosts:
             try:
@@ -108,8 +107,8 @@ class Judge:
             raise NotRun(f"{task.host}: this host judges nothing that was requested{one}")
         return replace(self._on_host(task, host), hosts=(host.identity(),))
 
-    def _on_host(self, task: Task, host: Engine) -> Findings:
-        if isinstance(host, Host):
+    def _on_host(self, task: Task, host: base.Engine) -> Findings:
+        if isinstance(host, base.Host):
             if task.check == plan.PICTURE:
                 return self._document(task, host)
             if task.check == plan.STUDIO:
@@ -143,7 +142,7 @@ class Judge:
                 images = pictures.comparison_pictures(case)
         return Findings(found, images)
 
-    def _document(self, task: Task, host: Host | None = None) -> Findings:
+    def _document(self, task: Task, host: base.Host | None = None) -> Findings:
         """Findings of a document: its pictures on a host, or the generation of its shaders."""
         path = Path(task.subject)
         images: tuple[results.Picture, ...] = ()
@@ -168,7 +167,7 @@ def _copy(task: Task) -> str:
     return root(task.library) if os.path.isabs(task.library) else ""
 
 
-def _case(host: Engine, title: str, library: str, seed: int, methods: Methods) -> Case:
+def _case(host: base.Engine, title: str, library: str, seed: int, methods: Methods) -> Case:
     spec = next(each for each in own_nodes(host.name) or ALL if each.title == title)
     backend = backend_of(host.name, spec)
     assert backend is not None  # otherwise the task would not exist

@@ -23,9 +23,8 @@ import numpy as np
 import OpenImageIO as oiio
 
 import mxeon
+from mxeon.conformance import backends, checks
 from mxeon.conformance import shader_functions as functions
-from mxeon.conformance.backends import backend_of, own_nodes, ways_of
-from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis.regions import unreached
 from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE, Picture, Region, Result, Scope
 from mxeon.conformance.results.known_issues import RENDERER_NODES
@@ -218,7 +217,7 @@ def _selected(
     texts = {each.title for each in surface_texts.SENTENCES}
     rare = {each.title for each in PBRLIB} - {each.title for each in COMMON_SPECS} | texts
     audit = COMMON in nodes or not (nodes or files)
-    by_name = {each.key for each in CHECKS if each.profile}
+    by_name = {each.key for each in checks.CHECKS if each.profile}
     if not nodes:
         titles = {title for file in files for title in reading.contents.get(file, ())}
     chosen = [
@@ -290,7 +289,7 @@ def make_plan(
             if resumable and host == "gl":  # shown in a report
                 tasks += [Task(STUDIO, file, host, library) for file in readable[:STUDIED]]
     for host in hosts:  # a renderer's own nodes and materials use none of our libraries
-        for spec in own_nodes(host):
+        for spec in backends.own_nodes(host):
             tasks += _checks_of(spec, host, RENDERER_NODES)
         if files and host_row(host).scenes and not host_row(host).target:
             tasks += [Task(PICTURE, file, host, RENDERER_NODES) for file in readable]
@@ -372,7 +371,7 @@ def _on_host(
     methods: Methods = GENERATED,
 ) -> Iterator[Task]:
     """Tasks of one host with one library, for files and nodes of pbrlib, or for the nodes that it repairs."""
-    ways, row = ways_of(host), host_row(host)
+    ways, row = backends.ways_of(host), host_row(host)
     if not ways:
         yield Task(HOST, EVERY_NODE, host, library)
     if not ways or not row.target:
@@ -407,8 +406,8 @@ def _on_host(
 
 
 def _checks_of(spec: Spec, host: str, library: str, methods: Methods = GENERATED) -> Iterator[Task]:
-    backend = backend_of(host, spec)
-    for check in CHECKS:
+    backend = backends.backend_of(host, spec)
+    for check in checks.CHECKS:
         if check.profile and not has_profile(library, check.profile):
             continue
         if backend and check.applies_to(spec, backend, host, methods):

@@ -5,9 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.conformance.samples import SKY_ROWS, SLOPE, Values
-from mxeon.conformance.spec import Ability, Spec
-from mxeon.conformance.tolerance import Term, roundings, sum_of
+from mxeon.conformance import samples, spec, tolerance
 from mxeon.shaders import nodes
 
 LOBES = {"first": (0.9, 0.3, 0.1), "second": (0.2, 0.5, 0.8), "behind": (0.3, 0.8, 0.4)}
@@ -17,23 +15,23 @@ BACK = np.array(LOBES["behind"])
 SURFACE_NODE = "surface", "surfaceshader"
 INTENSITY = 1.75  # scale of the environment
 # Uneven light is not linear between texels, and filter weights have 8 bits.
-TEXEL = np.pi / SKY_ROWS
-FILTERED = Term(
-    INTENSITY * SLOPE * 2.0 * (TEXEL**2 / 8.0 + TEXEL / 512.0),
+TEXEL = np.pi / samples.SKY_ROWS
+FILTERED = tolerance.Term(
+    INTENSITY * samples.SLOPE * 2.0 * (TEXEL**2 / 8.0 + TEXEL / 512.0),
     f"a filter of an uneven environment, times {INTENSITY}",
 )
-CLIENT_ERROR = sum_of(
-    roundings(64, "of directions, distances and powers, four lights in all"), FILTERED
+CLIENT_ERROR = tolerance.sum_of(
+    tolerance.roundings(64, "of directions, distances and powers, four lights in all"), FILTERED
 )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class FrameSpec(Spec):
+class FrameSpec(spec.Spec):
     """The node `surface` with all client bindings."""
 
-    requires = Ability.CLIENT
+    requires = spec.Ability.CLIENT
 
-    def document(self, inputs: Values | None = None) -> str:
+    def document(self, inputs: samples.Values | None = None) -> str:
         """The front surface has the opacity `front/opacity` and the mix weight `shading/mix`."""
         make, node = nodes.lobe_text, "oren_nayar_diffuse_bsdf"
         lobes = (make(node, {"color": each}, name) for name, each in LOBES.items())

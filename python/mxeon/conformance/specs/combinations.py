@@ -5,10 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mxeon.conformance import samples
+from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import LEAST_SHEEN, Batch, Counts, Values, directions, generator
-from mxeon.conformance.spec import Ability, Input, color, ports
 from mxeon.conformance.specs.lobes import FLAT_FRAME, PbrSpec, named_mode
 from mxeon.conformance.specs.sheen import ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, ZELTNER_VALUE
 from mxeon.conformance.tolerance import ROUNDING, Term, sum_of
@@ -81,33 +79,33 @@ COLORED = ("multiply_color3", "multiply_sum")  # rows with a color as their fact
 class CombinedSpec(PbrSpec):
     """A node of `mxeon.models.nodes.combinations` with weights 1."""
 
-    requires = Ability.LOBE | Ability.COMBINATION
+    requires = spec.Ability.LOBE | spec.Ability.COMBINATION
     # MaterialX scales a lobe by a connected mix weight wherever the lobe is used.
     plain = ("lobes", "inputs from an image")
 
-    def batches(self, counts: Counts) -> tuple[Batch, ...]:
+    def batches(self, counts: samples.Counts) -> tuple[samples.Batch, ...]:
         """Random and special pairs; pairs outside the domain are judged with the lobes."""
-        rng, count = generator(), counts.pairs
-        wo, wi = directions(rng, count), directions(rng, count)
+        rng, count = samples.generator(), counts.pairs
+        wo, wi = samples.directions(rng, count), samples.directions(rng, count)
         special = samples.special_directions(rng)
         return (
-            Batch(wo, wi, self.random_inputs(rng, count)),
-            Batch(*special, self.random_inputs(rng, len(special[0]))),
+            samples.Batch(wo, wi, self.random_inputs(rng, count)),
+            samples.Batch(*special, self.random_inputs(rng, len(special[0]))),
         )
 
-    def document(self, inputs: Values | None = None) -> str:
+    def document(self, inputs: samples.Values | None = None) -> str:
         network = LOBES | NETWORKS[self.model][1]
         return nodes.document_text(
-            nodes.network_text(network, ports(self.inputs, inputs)) + nodes.SURFACE
+            nodes.network_text(network, spec.ports(self.inputs, inputs)) + nodes.SURFACE
         )
 
 
 def _spec(row: PbrNode) -> CombinedSpec:
     known = (
-        *(Input(name, low=LEAST_SHEEN, change=0.4, default=0.3) for name in ROUGHNESS),
-        *(Input(name, change=0.3, default=0.5) for name in (AMOUNT, AMOUNT_ABOVE, *MASKS)),
-        *(color(name, edges=()) for name in COLORS),
-        color(FACTOR, edges=()) if row.name in COLORED else Input(FACTOR, change=0.3),
+        *(spec.Input(name, low=samples.LEAST_SHEEN, change=0.4, default=0.3) for name in ROUGHNESS),
+        *(spec.Input(name, change=0.3, default=0.5) for name in (AMOUNT, AMOUNT_ABOVE, *MASKS)),
+        *(spec.color(name, edges=()) for name in COLORS),
+        spec.color(FACTOR, edges=()) if row.name in COLORED else spec.Input(FACTOR, change=0.3),
     )
     inputs = {each.name: each for each in known}
     if row.name in SINGLE:  # the functions also read the other lobe

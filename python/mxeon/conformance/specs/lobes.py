@@ -11,7 +11,6 @@ import numpy as np
 from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import TURNED, Array, Batch, Candidate, Counts, Values, directions_at
-from mxeon.conformance.spec import ZERO, Input
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.models.hair import TINTS
 from mxeon.models.nodes import node
@@ -21,13 +20,13 @@ from mxeon.shaders.nodes import material_text
 COUNTS = Counts(pairs=1 << 12, few=1 << 10, diagnosed=1 << 11)
 LEAST_VIEW = 0.02  # least cosine of views with integrated values
 # Weights and normals are not drawn here: samples have their own weights and frames.
-WEIGHT = Input("weight", change=0.5, materials=(1.0, 0.5))
+WEIGHT = spec.Input("weight", change=0.5, materials=(1.0, 0.5))
 # Roughness of lobes other than microfacets.
-ROUGHNESS = Input(
+ROUGHNESS = spec.Input(
     "roughness", low=samples.LEAST_SHEEN, edges=(0.01, 0.05, 1.0), change=0.3, materials=(0.8, 0.4)
 )
 COLOR = spec.color("color", (0.2, 0.5, 0.8), (0.8, 0.4, 0.1))
-NORMAL = Input("normal", "vector3", change=(0.0, 0.6, 0.8))
+NORMAL = spec.Input("normal", "vector3", change=(0.0, 0.6, 0.8))
 
 # Five roundings in each of three cosines, over the smallest of them.
 FLAT_FRAME = sum_of(roundings(15 / TURNED[0], "of three cosines of at least 1/4, five in each"))
@@ -99,7 +98,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         shown = (each for each in self.row.variants if not each.above)
         rows = ((each, each.albedo) for each in shown if each.albedo)
         variants = (Candidate(e.title, partial(_albedo, albedo), e.permitted) for e, albedo in rows)
-        return (own, *variants, ZERO)
+        return (own, *variants, spec.ZERO)
 
     @property
     def throughput_candidates(self) -> tuple[Candidate, ...]:
@@ -173,7 +172,7 @@ class PbrSpec(ScatteringSpec):
     least_cosine: float = 0.0  # least cosine of views with compared albedos
 
     @property
-    def bounded(self) -> tuple[Input, ...]:
+    def bounded(self) -> tuple[spec.Input, ...]:
         """Inputs that are also measured outside their ranges."""
         return tuple(each for each in self.drawn if each.beyond)
 
@@ -185,7 +184,7 @@ class PbrSpec(ScatteringSpec):
     def others(self) -> tuple[Candidate, ...]:
         """A transmitting lobe instead of a reflecting one; and zero."""
         if not self.row.transmits:
-            return (ZERO,)
+            return (spec.ZERO,)
         opaque = replace(self, row=replace(self.row, transmits=False))
 
         def mirrored(wo: Array, wi: Array, inputs: Inputs) -> Array:
@@ -194,7 +193,7 @@ class PbrSpec(ScatteringSpec):
         def reflection(batch: Batch) -> Array:
             return opaque.values(mirrored, batch.altered(occlusion=1.0))  # light from below
 
-        return Candidate("a reflection instead", reflection), ZERO
+        return Candidate("a reflection instead", reflection), spec.ZERO
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         least = self.least_cosine

@@ -13,18 +13,16 @@ from mxeon.conformance import samples, spec, tolerance
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, generator, rounded
 from mxeon.conformance.specs import lobes, sheen
-from mxeon.conformance.specs.lobes import BURLEY_VALUE, WEIGHT, PbrSpec, named_mode
 from mxeon.conformance.tolerance import Term, Tolerance, given, roundings, sum_in, sum_of
+from mxeon.models import sampling, transmission
 from mxeon.models.microfacet import Lobe, fresnel, node_albedo, uncompensated
 from mxeon.models.microfacet.defects import MEAN_ALPHA
 from mxeon.models.microfacet.ggx import ggx_albedo_dir, smith_g1, smith_g2, smith_g2_anisotropic
 from mxeon.models.nodes import microfacets
 from mxeon.models.nodes.microfacets import FILM_NODES, LOBES, MICROFACET_NODES, TRANSMISSION_NODES
 from mxeon.models.nodes.node import Scattering
-from mxeon.models.sampling import ggx_pdf, ggx_sample
-from mxeon.models.transmission import reversed_transmittance
 
-COUNTS = replace(PbrSpec.counts, diagnosed=1 << 8)  # references are slow
+COUNTS = replace(lobes.PbrSpec.counts, diagnosed=1 << 8)  # references are slow
 LEAST_ALPHA = 1e-3  # least alpha of random pairs
 LEAST_STRETCHED = 0.05  # least alpha and cosine of anisotropic albedos, whose sums are coarse
 LEAST_INVERTED = 0.1  # least index of a dielectric that is inverted
@@ -53,9 +51,9 @@ FACETS = (
     spec.Input("tangent", "vector3", change=(0.6, 0.8, 0.0), needs={"roughness": (0.1, 0.4)}),
 )
 INPUTS = {
-    "dielectric_bsdf": (WEIGHT, spec.color("tint", (0.2, 0.5, 0.8), (0.9, 0.6, 0.3)), INDEX, *FACETS),
+    "dielectric_bsdf": (lobes.WEIGHT, spec.color("tint", (0.2, 0.5, 0.8), (0.9, 0.6, 0.3)), INDEX, *FACETS),
     "conductor_bsdf": (
-        WEIGHT,
+        lobes.WEIGHT,
         replace(INDEX, type="color3", change=(0.9, 1.1, 1.6),
                 materials=((0.2, 0.9, 1.1), (1.5, 0.6, 2.0)), beyond=(0.0, 0.05, 0.18, 5.0, 10.0)),
         spec.Input("extinction", "color3", 0.5, 6.0, edges=(0.5, 3.0), change=(0.9, 2.1, 3.6),
@@ -63,7 +61,7 @@ INPUTS = {
         *FACETS,
     ),
     "generalized_schlick_bsdf": (
-        WEIGHT,
+        lobes.WEIGHT,
         spec.color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2)),
         spec.color("color82", (0.5, 0.7, 0.8), (1.0, 1.0, 1.0)),
         spec.color("color90", (0.9, 0.8, 0.6), (1.0, 1.0, 1.0)),
@@ -170,7 +168,7 @@ ERRORS = {
     # Exact directions have an exact half vector.
     "shape": sum_in(Quantity.RELATIVE, roundings(2 * 64, "of two values")),
     # The same function, with numbers that only differ in their signs.
-    "retroreflection": BURLEY_VALUE,
+    "retroreflection": lobes.BURLEY_VALUE,
     "anisotropy": sum_of(roundings(
         2 * 2 * 2 / (2 * LEAST_TANGENT_COSINE * LEAST_TANGENT_ALPHA),
         "of two directions, two each, over twice the least cosine and the least alpha")),
@@ -202,7 +200,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class FacetSpec(PbrSpec):
+class FacetSpec(lobes.PbrSpec):
     """A microfacet node, with large values near the mirror direction."""
 
     counts: Counts = COUNTS
@@ -312,7 +310,7 @@ class FacetSpec(PbrSpec):
         wi = reflected(views, alpha, *(np.tile(each.ravel(), len(wo)) for each in (height, around)))
         lit = wi[:, 2] > 0.0
         wi[~lit] = (0.0, 0.0, 1.0)
-        density = np.where(lit, ggx_pdf(views, wi, alpha), np.inf)
+        density = np.where(lit, sampling.ggx_pdf(views, wi, alpha), np.inf)
         weights = np.tile(np.meshgrid(0.5 * w, np.ones(count))[0].ravel() / count, len(wo))
         return wi.reshape(len(wo), size, 3), (weights / (np.pi * density)).reshape(len(wo), size)
 
@@ -384,12 +382,12 @@ def _below_0(inputs: Mapping[str, Array], cosine: Array | float) -> samples.Mask
 
 def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
     """Mirror images of views at normals that they see, (N, 3)."""
-    return rounded(ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0].T)
+    return rounded(sampling.ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0].T)
 
 
 FACET_SPECS = tuple(
     FacetSpec(
-        **named_mode(row),
+        **lobes.named_mode(row),
         row=row,
         inputs=INPUTS[row.category],
         errors=facet_errors(SCHLICK_THROUGHPUT if row.name == "schlick" else THROUGHPUT),
@@ -410,7 +408,7 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
         "methods": passed.plus(PREFILTERED),
         "value": passed,  # transmitted light
         "light": sum_in(Quantity.LIGHT, reflected, lit),
-        "kept": BURLEY_VALUE,  # the same function of the same numbers
+        "kept": lobes.BURLEY_VALUE,  # the same function of the same numbers
         "inside": PASSING.plus(sum_over(1024)),
         "rough_refraction": sum_in(Quantity.IRRADIANCE, sum_over(1024), TEXEL),
         "states": sum_of(roundings(32, "of the same parts in two programs")),
@@ -449,7 +447,7 @@ class TransmissionSpec(FacetSpec):
             whole["roughness"] = np.full((len(views), 2), alpha)
             return self.functions.reflected(views, whole)
 
-        passed = reversed_transmittance(mu, alpha, 1.0 / index, reflected)
+        passed = transmission.reversed_transmittance(mu, alpha, 1.0 / index, reflected)
         return np.asarray(passed.mean(axis=1))
 
     @property
@@ -458,13 +456,13 @@ class TransmissionSpec(FacetSpec):
         row = replace(self.row, fixed={"scatter_mode": "R"})
         inputs, errors = self.inputs, self.errors
         return FacetSpec(
-            **named_mode(row), row=row, inputs=inputs, errors=errors, counts=self.counts
+            **lobes.named_mode(row), row=row, inputs=inputs, errors=errors, counts=self.counts
         )
 
 
 TRANSMISSION_SPECS = tuple(
     TransmissionSpec(
-        **named_mode(row),
+        **lobes.named_mode(row),
         row=row,
         inputs=INPUTS[row.category],
         errors=transmission_errors(THROUGHPUT if "tint" in row.inputs else SCHLICK_THROUGHPUT),
@@ -537,7 +535,7 @@ FILM_ERRORS = {
     "film_limit": sum_of(Term(4.4e-3 * COMPENSATED, "F_ss in three cosines, times 0.6")),
     # A mirror's share of the compensation differs from a film's.
     "film_energy": VALUE,
-    "retroreflection": BURLEY_VALUE,
+    "retroreflection": lobes.BURLEY_VALUE,
     "film_average": _mean(7e-3, "F_ss in three cosines of films of 50 to 1000 nm"),
     "film_smooth": _mean(1e-5, "F_ss in three cosines, times what a lobe of alpha 0.04 loses"),
     "film_visible": _mean(1.9e-3, "visible facets in three cosines, films of 50 to 100 nm"),
@@ -659,7 +657,7 @@ def _some_special(rng: samples.Rng, count: int) -> tuple[Array, Array]:
     return wo[picked], wi[picked]
 
 
-def film_views(owner: PbrSpec, films: Films) -> Batch:
+def film_views(owner: lobes.PbrSpec, films: Films) -> Batch:
     rng, (count, *ranges) = generator(), films
     alpha, mu, thickness = (low + (high - low) * rng.random(count) for low, high in ranges)
     wo = samples.directions_at(mu, 2.0 * np.pi * rng.random(count))
@@ -688,7 +686,7 @@ WAVE_ERROR = spec.EngineError(
 )
 FILM_SPECS = tuple(
     FilmSpec(
-        **named_mode(row, f"{row.category}, thin film"),
+        **lobes.named_mode(row, f"{row.category}, thin film"),
         row=row,
         inputs=INPUTS[row.category],
         errors=FILM_ERRORS,

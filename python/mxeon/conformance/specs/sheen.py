@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import LEAST_SHEEN, float32, generator
-from mxeon.conformance.spec import ARGUMENTS, POWER, EngineError
 from mxeon.conformance.specs import lobes
 from mxeon.conformance.specs.lobes import FLAT_FRAME
 from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, roundings, sum_in, sum_of
@@ -20,7 +19,7 @@ BOUNDED = (
 )
 INPUTS, ZELTNER_INPUTS = ((lobes.WEIGHT, lobes.COLOR, each, lobes.NORMAL) for each in BOUNDED)
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
-EXPONENT = 1.0 / LEAST_SHEEN  # largest exponent of the sine
+EXPONENT = 1.0 / samples.LEAST_SHEEN  # largest exponent of the sine
 
 ZELTNER_VALUE = sum_of(
     roundings(48, "of the value or 1: an inverse fourth power takes the 8 of a length four times"),
@@ -30,7 +29,7 @@ ZELTNER_VALUE = sum_of(
 CLOSED = roundings(32, "of the albedo or 1: 20 in an exponent, times 0.6, and 20 beside it")
 ZELTNER_ALBEDO = sum_of(CLOSED, quantity=Quantity.ALBEDO)
 ZELTNER_THROUGHPUT = sum_of(CLOSED, quantity=Quantity.ALBEDO)
-LOGARITHM = 4 * 0.5 / LEAST_SHEEN  # four roundings of a logarithm, over twice the roughness
+LOGARITHM = 4 * 0.5 / samples.LEAST_SHEEN  # four roundings of a logarithm, over twice the roughness
 
 
 def conty_kulla_value(logarithm: float) -> Tolerance:
@@ -52,13 +51,13 @@ def power_error(host: Host) -> float:
 
     The sheen, as pi f cos, is at most (2 + n) / 8 times a sine to the power of n, 1 / roughness.
     """
-    rng = generator()
-    exponent = LEAST_SHEEN ** -rng.random(ARGUMENTS)
-    sine = float32(rng.random(ARGUMENTS) ** (1.0 / exponent))  # uniform powers
-    exponent = float32(exponent)
+    rng = samples.generator()
+    exponent = samples.LEAST_SHEEN ** -rng.random(spec.ARGUMENTS)
+    sine = samples.float32(rng.random(spec.ARGUMENTS) ** (1.0 / exponent))  # uniform powers
+    exponent = samples.float32(exponent)
     factor = (2.0 + exponent) / 8.0
     scale = np.maximum(1.0, factor * sine**exponent)
-    error = (factor * POWER.errors(host, sine, exponent) / scale).max()
+    error = (factor * spec.POWER.errors(host, sine, exponent) / scale).max()
     return max(float(error) + (EXPONENT - LOGARITHM) * ROUNDING, 0.0)
 
 
@@ -81,6 +80,6 @@ CONTY_KULLA = lobes.PbrSpec(
         "reciprocity": sum_of(roundings(32)),
     },
     outside_errors={("value", "roughness", x): conty_kulla_value(2.0 / x) for x in (1e-3, 1e-4)},
-    engines={"value": (EngineError("the engine's pow()", power_error),)},
+    engines={"value": (spec.EngineError("the engine's pow()", power_error),)},
     least_cosine=FIT_COSINE,
 )

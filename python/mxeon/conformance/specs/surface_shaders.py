@@ -15,8 +15,7 @@ from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import WHITE, Array, Batch, Counts, Values, generator
 from mxeon.conformance.spec import CHANGED_COLOR, Input, draw
-from mxeon.conformance.specs import microfacets
-from mxeon.conformance.specs.lobes import LEAST_VIEW
+from mxeon.conformance.specs import lobes, microfacets
 from mxeon.conformance.specs.microfacets import FILM_ERRORS, sum_over
 from mxeon.conformance.tolerance import Term, Tolerance, mean_scaled, roundings, sum_in, sum_of
 from mxeon.shaders.nodes import document_text, input_text, node_text
@@ -244,8 +243,8 @@ class SurfaceShaderSpec(spec.LobeSpec):
 def _views(rng: samples.Rng, count: int) -> Array:
     """Random directions, limited to cosines at which the sheen's own equations gain no energy, and one at the limit."""
     wo = samples.directions(rng, count)
-    wo = samples.float32(np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo))
-    wo[0] = samples.directions_at(LEAST_VIEW, 0.0)
+    wo = samples.float32(np.where(wo[:, 2:] < lobes.LEAST_VIEW, [0.6, 0.0, 0.8], wo))
+    wo[0] = samples.directions_at(lobes.LEAST_VIEW, 0.0)
     return wo
 
 

@@ -18,8 +18,7 @@ from mxeon.conformance import samples, tolerance
 from mxeon.conformance.samples import WHITE, Array, Batch, Candidate, Counts, Values, generator
 from mxeon.conformance.spec import ZERO, Ability, Input, ValueSpec, draw
 from mxeon.conformance.specs import microfacets, surface_shaders
-from mxeon.models.surfaces import gltf, open_pbr, standard_surface, usd_preview
-from mxeon.models.surfaces.lobes import Light
+from mxeon.models.surfaces import gltf, lobes, open_pbr, standard_surface, usd_preview
 from mxeon.shaders.nodes import document_text, node_text
 
 Forms = tuple[str, ...]  # formulas that replace the text's, by their names in a model
@@ -73,7 +72,7 @@ class SentenceSpec(ValueSpec):
 
         def values(batch: Batch) -> Array:
             wi = batch.wi if branch == "direct" else None
-            light = Light(batch.wo, wi, branch == "transmission")
+            light = lobes.Light(batch.wo, wi, branch == "transmission")
             given = model.parameters(**{**self.fixed, **batch.inputs})
             return np.asarray(factor * function(light, given, but))
 
