@@ -457,8 +457,6 @@ CLEAR, MIRROR = "dielectric_bsdf, scatter_mode T", "generalized_schlick_bsdf, sc
         ("stdlib/genglsl/mx_mix_surfaceshader.glsl", "mix(bg.transparency, fg.transparency, w)", "mix(fg.transparency, bg.transparency, w)", *FRAME,
          ("an opacity below 1",)),
         ("stdlib/genglsl/mx_mix_surfaceshader.glsl", "mix(bg.color, fg.color, w)", "bg.color", *FRAME, ()),
-        (f"{LIB}mx_microfacet_specular.glsl", "mx_matrix_mul(transform, vec4(dir,0.0))", "mx_matrix_mul(vec4(dir,0.0), transform)", *FRAME,
-         ("an environment: turned",)),
         (f"{LIB}mx_microfacet_specular.glsl", "mx_matrix_mul(transform, vec4(dir,0.0))", "mx_matrix_mul(vec4(dir,0.0), transform)", STATES, "conductor_bsdf",
          ("an environment: turned",)),
         (f"{LIB}mx_environment_fis.glsl", "radiance) * $envLightIntensity", "radiance)", STATES, CLEAR, ("an environment: dim and two-sided",)),

@@ -19,10 +19,10 @@ import numpy as np
 from mxeon.conformance import check, controls, diagnosis, results
 from mxeon.conformance.case import Case
 from mxeon.conformance.checks.states import covering, named, shared
-from mxeon.conformance.samples import RIM, Array, Batch, sky, sky_map
-from mxeon.conformance.specs.clients import BACK, FRONT, INTENSITY, FrameSpec
+from mxeon.conformance.samples import RIM, Array, Batch
+from mxeon.conformance.specs.clients import BACK, FRONT, FrameSpec
 from mxeon.conformance.tolerance import Compared
-from mxeon.hosts import base, host_row
+from mxeon.hosts import host_row
 from mxeon.shaders.methods import GENERATED, UNCHOSEN, Methods
 from mxeon.shaders.scene import VIEW, Client, Lamp, Matrix, Scene, sphere
 
@@ -30,7 +30,6 @@ if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
 SIZE = 16  # pixels on a side of a frame
-POLE = 0.999  # filtering an uneven environment lacks neighbors above this height
 EVERY = 6  # a control draws every sixth frame
 WHITE_MAP = np.ones((1, 1, 3), np.float32)
 NAMES = {"shading/mix": "mix", "front/opacity": "front", "back/opacity": "back"}
@@ -76,16 +75,6 @@ def given(**inputs: float) -> Build:
     return lambda frame: frame._replace(inputs={**frame.inputs, **inputs})
 
 
-def _turned() -> Matrix:
-    """A rotation of the environment that is neither its own inverse nor about an axis."""
-    (cos, sin), (low, high) = ((np.cos(x), np.sin(x)) for x in (0.7, 0.4))
-    about_y = np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
-    about_x = np.array([[1.0, 0.0, 0.0], [0.0, low, -high], [0.0, high, low]])
-    matrix = np.array(base.TURN)
-    matrix[:3, :3] = base.TURN[:3, :3] @ about_y @ about_x
-    return tuple(matrix.T.ravel().tolist())
-
-
 SUN = Lamp(direction=(0.6, 0.0, -0.8), color=(1.0, 0.5, 0.2))
 BULB = Lamp(type=2, position=(1.0, 2.0, 1.5), color=(0.5, 1.0, 0.2), intensity=20.0)
 # fmt: off
@@ -107,12 +96,10 @@ AXES: dict[str, dict[str, Build]] = {
     "environment": {
         "no environment": same,
         "an environment": bound(partial(replace, radiance=WHITE_MAP, irradiance=WHITE_MAP)),
-        "an environment: uneven": bound(partial(replace, radiance=sky_map(), irradiance=sky_map())),
-        "an environment: turned": bound(partial(replace, radiance=sky_map(), irradiance=sky_map(), turn=_turned())),
     },
     "bound": {
         "what the generator sets": same,
-        "another intensity of the environment": bound(partial(replace, intensity=INTENSITY)),
+        "another intensity of the environment": bound(partial(replace, intensity=1.75)),
         "a shadow map": bound(partial(replace, shadow=SHADOW, moments=(0.4, 0.18))),
         "ambient occlusion": bound(partial(replace, ambient=0.4, gain=0.75)),
     },
@@ -168,30 +155,21 @@ def shadow(client: Client, position: Array) -> Array:
     return np.asarray(variance / (variance + behind * behind))
 
 
-def environment(client: Client, normal: Array) -> Array:
-    """Irradiance over pi from the environment; the uneven map is `mxeon.conformance.samples.sky`, (N, 3)."""
-    if client.irradiance is None:
-        return np.zeros_like(normal)
-    if client.irradiance.shape[0] == 1:
-        return np.broadcast_to(client.intensity * client.irradiance[0, 0], normal.shape)
-    turned = normal @ np.reshape(client.turn, (4, 4))[:3, :3] @ base.TURN[:3, :3]
-    return np.asarray(client.intensity * sky(turned))
-
-
 def light(client: Client, methods: Methods, normal: Array) -> Array:
     total = np.zeros_like(normal)
     for number, lamp in enumerate(client.lamps):
         to, irradiance = lamp_light(lamp, normal)
         cosine = np.maximum(np.sum(to * normal, axis=1, keepdims=True), 0.0)
         total += irradiance / np.pi * cosine * (shadow(client, normal) if number == 0 else 1.0)
-    if methods.environment != "none":
+    if methods.environment != "none" and client.irradiance is not None:
         ambient = 1.0 + client.gain * (client.ambient - 1.0)
-        total += ambient * environment(client, normal)
+        total += ambient * client.intensity * client.irradiance[0, 0]
     return total
 
 
 def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
     """Measured and expected colors and alphas of each frame, with the words of its states."""
+    from mxeon.hosts.raster import ALPHA_THRESHOLD  # loads MaterialX
     from mxeon.shaders.generators import CLIENT_OPTIONS
 
     points = sphere(SIZE)
@@ -211,18 +189,13 @@ def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
         share, front, back = (inputs.get(name, 1.0) for name in NAMES.values())
         front, back = share * front, (1.0 - share) * back
         color = (front * FRONT + back * BACK) * light(client, methods.over(GENERATED), normal)
-        turned = normal @ np.reshape(client.turn, (4, 4))[:3, :3]
-        judged = (normal[:, 2] >= RIM) & (np.abs(turned[:, 1]) <= POLE)
-        for alpha in (False, True):
+        opacity = 1.0 - 3.0 * TRANSPARENT * (1.0 - front - back)
+        opacity *= opacity >= ALPHA_THRESHOLD  # other pixels are discarded
+        for alpha, expected in ((False, color), (True, np.full_like(color, opacity))):
             scene = Scene("client", size=SIZE, client=replace(client, alpha=alpha))
             measured = case.host.picture(shader, scene)[points.mask].astype(np.float64)
-            expected = (
-                np.full_like(color, 1.0 - 3.0 * TRANSPARENT * (1.0 - front - back))
-                if alpha
-                else color
-            )
-            found = Compared(batch, case.outputs(batch, measured), expected).where(judged)
-            yield words | {"alpha"} if alpha else words, found
+            found = Compared(batch, case.outputs(batch, measured), expected)
+            yield words | {"alpha"} if alpha else words, found.where(normal[:, 2] >= RIM)
 
 
 def diagnose(case: Case) -> results.Diagnosis:
