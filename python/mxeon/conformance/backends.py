@@ -625,9 +625,7 @@ class LobesBelow(Shown):
 class RenderedLobes(LobesBelow):
     """Lower lobes on testrender."""
 
-    @classmethod
-    def errors(cls, spec: Spec) -> Errors:
-        return {"value": BELOW}
+    own_errors: ClassVar[Errors] = {"value": BELOW}
 
 
 def diffuse_alone(show: Callable[[Batch], Array], batch: Batch) -> Array:

@@ -107,6 +107,10 @@ class Case:
     def measured(self, evaluate: Callable[[Batch], Array], batch: Batch) -> Array:
         return self.outputs(batch, evaluate(self.inputs(batch)))
 
+    def compared(self, batch: Batch) -> Compared:
+        """Values in direct light, and the expected ones."""
+        return Compared(batch, self.direct(batch), self.expected(batch))
+
     @property
     def evaluating(self) -> backends.Evaluating:
         assert isinstance(self.backend, backends.Evaluating), f"{self.host.name} evaluates no pairs"
@@ -153,8 +157,7 @@ LIGHT = ("direct", "environment")  # branches with light from above
 
 
 def values(case: Case) -> Iterator[Compared]:
-    for batch in case.batches:
-        yield Compared(batch, case.direct(batch), case.expected(batch))
+    return map(case.compared, case.batches)
 
 
 def albedos(case: Case) -> Iterator[Compared]:

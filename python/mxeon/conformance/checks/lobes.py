@@ -180,12 +180,6 @@ def reciprocity(case: Case) -> Iterator[Compared]:
         yield Compared(batch, forward, backward)
 
 
-def lambert(case: Case) -> Iterator[Compared]:
-    for batch in case.few:
-        batch = batch.altered(roughness=0.0)
-        yield Compared(batch, case.direct(batch), case.expected(batch))
-
-
 # --- energy: what a lobe scatters in all, what it lets through, and both of two lobes together ----
 
 ROUNDED = 1e-9  # difference between equal albedos
@@ -224,19 +218,14 @@ def layer(case: Case) -> Compared:
 
 
 def integral(case: Case) -> Compared:
-    views, albedo = integrals(case)
+    views, albedo = summed(case, *case.backend.integrated)
     return Compared(views, albedo, case.backend.integrals)
 
 
 def energy(case: Case) -> Compared:
-    views, albedo = integrals(case)
-    allowed = np.maximum(1.0, case.backend.integrals)
+    views, albedo, expected = integral(case)
+    allowed = np.maximum(1.0, expected)
     return Compared(views, np.maximum(albedo, allowed), allowed)
-
-
-def integrals(case: Case) -> tuple[Batch, Array]:
-    """Views of the integrated materials, and albedos from the host's values, (N, 3)."""
-    return summed(case, *case.backend.integrated)
 
 
 def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
@@ -269,8 +258,7 @@ TURN_FIBER = controls.with_inputs("the normal is turned about the fiber by a ten
 
 
 def region_values(key: str, case: Case) -> Compared:
-    batch = case.of(HairSpec).region(key, case.backend.counts.few)
-    return Compared(batch, case.direct(batch), case.expected(batch))
+    return case.compared(case.of(HairSpec).region(key, case.backend.counts.few))
 
 
 def in_region(key: str, case: Case) -> Compared:
@@ -463,7 +451,8 @@ ROWS = (
           control=controls.scale_cosine("the value has an extra factor cos(theta_o)", 1),
           explain=VALUE.diagnose),
     Check(key="lambert", claim="At roughness 0 the node is Lambert.",
-          applies=MODES, measure=lambert, tolerance="lambert",
+          applies=MODES, tolerance="lambert",
+          measure=lambda case: (case.compared(each.altered(roughness=0.0)) for each in case.few),
           control=controls.with_inputs("roughness is 0.1", roughness=0.1), explain=VALUE.diagnose),
     Check(key="inputs", claim="Every input of the node changes the value.",
           applies=(LOBES | ROUGH | LAMBERT) - BELOW

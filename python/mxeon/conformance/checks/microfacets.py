@@ -173,9 +173,8 @@ def generated(case: Case, methods: Methods) -> "Shader":
 
 STRETCHED = diagnosis.Comparison(
     "anisotropic_value",
-    lambda case: (
-        Compared(batch, case.direct(batch), case.expected(batch))
-        for batch in case.chosen or (case.backend.take(case.of(FacetSpec).anisotropic),)
+    lambda case: map(
+        case.compared, case.chosen or (case.backend.take(case.of(FacetSpec).anisotropic),)
     ),
     lambda case: case.of(FacetSpec).all_candidates,
 )
@@ -344,12 +343,6 @@ def diagnose_methods(case: Case) -> Diagnosis:
     found = (str(each) for each, compared in with_methods(case) if tolerance.wrong(compared).any())
     wrong = dict.fromkeys(found)
     return defect("wrong_with_methods", *wrong) if wrong else Diagnosis((UNKNOWN,))
-
-
-def diagnose_kept(case: Case) -> Diagnosis:
-    tolerance = case.tolerance("kept")
-    wrong = (cause for cause, each in modes(case) if tolerance.wrong(each).any())
-    return Diagnosis(tuple(dict.fromkeys(wrong)))
 
 
 def modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
@@ -722,7 +715,8 @@ ROWS = (
     Check(key="kept",
           claim="Modes R and RT reflect, and pass to their base, the same light; mode T reflects nothing; mode R transmits nothing.",
           applies=TRANSMITTING, measure=lambda case: (compared for _, compared in modes(case)),
-          tolerance="kept", control=controls.offset, explain=diagnose_kept),
+          tolerance="kept", control=controls.offset,
+          explain=lambda case: diagnosis.causes_of(modes(case), case.tolerance("kept"))),
     Check(key="critical",
           claim="A smooth surface transmits 1 - F, and nothing beyond the critical angle.",
           applies=TRANSMITTING, measure=critical, tolerance="critical", control=DENSER,

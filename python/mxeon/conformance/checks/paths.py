@@ -20,7 +20,7 @@ from mxeon.conformance.case import Case
 from mxeon.conformance.checks.lobes import BELOW, CLEAR, DARK, TRANSMITTING
 from mxeon.conformance.checks.microfacets import with_directions
 from mxeon.conformance.checks.surface_shaders import SURFACES
-from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
+from mxeon.conformance.results import Cause, Kind, Quantity
 from mxeon.conformance.samples import GRAZING, Array, Batch, Values, float32, generator
 from mxeon.conformance.spec import NO_ABILITY, Ability, LobeSpec, Spec, draw, materials
 from mxeon.conformance.specs import combinations, emission
@@ -337,7 +337,7 @@ def pdf(case: Case) -> Measurement:
     return Measurement(score, {"wo": view.wo[0].tolist(), "inside": [float(inside)]})
 
 
-def parts(case: Case) -> Iterator[tuple[str, bool, Compared]]:
+def parts(case: Case) -> Iterator[tuple[Cause, Compared]]:
     """Weights times densities against values, densities against those of material_pdf, and values without one.
 
     The first two are relative to their expected values.
@@ -345,13 +345,16 @@ def parts(case: Case) -> Iterator[tuple[str, bool, Compared]]:
     for text, batch in subjects(case, False, True):
         u, wo = random(len(batch.wo), generator()), batch.world(batch.wo)
         for inside in (False, True):
-            ask = partial(text.values, inside=inside)
+            ask, wrong = partial(text.values, inside=inside), (PLACES[inside],)
             value, stated = (
                 ask(what, wo, batch.world(batch.wi), inputs=batch.inputs)
                 for what in ("evaluate", "pdf")
             )
             missed = value * ((stated <= LEAST_DRAWN * value) & (value > LEAST_LIGHT))
-            yield "undrawn_light", inside, Compared(batch, missed, np.zeros_like(missed))
+            yield (
+                Cause(Kind.DEFECT, "undrawn_light", wrong),
+                Compared(batch, missed, np.zeros_like(missed)),
+            )
             wi, weight, density = (
                 ask(what, wo, u=u, inputs=batch.inputs) for what in ("wi", "weight", "density")
             )
@@ -374,8 +377,9 @@ def parts(case: Case) -> Iterator[tuple[str, bool, Compared]]:
             right, one = value / size, np.ones_like(stated)
             ratio = density[kept, :1] / np.maximum(stated, 1e-30)
             weights = Compared(rows, right + (found - right) / steep, right)
-            yield "drawn_weight", inside, weights
-            yield "sampled_density", inside, Compared(rows, one + (ratio - one) / steep, one)
+            yield Cause(Kind.DEFECT, "drawn_weight", wrong), weights
+            densities = Compared(rows, one + (ratio - one) / steep, one)
+            yield Cause(Kind.DEFECT, "sampled_density", wrong), densities
 
 
 SAMPLE = sum_of(
@@ -385,12 +389,6 @@ SAMPLE = sum_of(
     ),
     quantity=Quantity.DRAWN,
 )
-
-
-def _wrong_part(case: Case) -> Diagnosis:
-    rows = ((key, inside) for key, inside, each in parts(case) if SAMPLE.wrong(each).any())
-    wrong = (Cause(Kind.DEFECT, key, (PLACES[inside],)) for key, inside in dict.fromkeys(rows))
-    return Diagnosis(tuple(wrong))
 
 
 def path_value(case: Case) -> Iterator[Compared]:
@@ -684,8 +682,9 @@ ROWS = (
                   PLACES[inside] for score, inside, _ in scores(case) if score > MOST_DEVIATIONS))),
     PATHS(key="sample",
           claim="A draw's weight times its density is the value in its direction, and its density that of material_pdf.",
-          applies=DRAWN, measure=lambda case: (each for *_, each in parts(case)), tolerance=SAMPLE,
-          control=controls.scale("weights are 0.01 % too large", 1.0001), explain=_wrong_part),
+          applies=DRAWN, measure=lambda case: (each for _, each in parts(case)), tolerance=SAMPLE,
+          control=controls.scale("weights are 0.01 % too large", 1.0001),
+          explain=lambda case: diagnosis.causes_of(parts(case), SAMPLE)),
     PATHS(key="path_value",
           claim="A path tracer's value, opacity and emission are the rasterizer's, in any frame.",
           applies=DRAWN - DARK, measure=path_value,

@@ -85,11 +85,6 @@ def values(case: Case) -> Compared:
     return Compared(batch, expected + errors * scale, expected)
 
 
-def lobes_film(case: Case) -> Compared:
-    batch = case.backend.take(case.of(SurfaceShaderSpec).films)
-    return Compared(batch, case.direct(batch), case.expected(batch))
-
-
 def lobes_mean(case: Case) -> Iterator[Compared]:
     compared = values(case)
     yield compared.where(~stretched(compared.batch))
@@ -181,7 +176,8 @@ ROWS = (
           applies=SURFACES, measure=values, tolerance="value", control=controls.shifted,
           explain=diagnose_lobes),
     Check(key="lobes_film", claim="Under a thin film, too, the material is the sum of its lobes.",
-          applies=family(SurfaceShaderSpec, lambda spec: bool(spec.film)), measure=lobes_film,
+          applies=family(SurfaceShaderSpec, lambda spec: bool(spec.film)),
+          measure=lambda case: case.compared(case.backend.take(case.of(SurfaceShaderSpec).films)),
           tolerance="lobes_film", control=controls.shifted, explain=SUM, requires=Ability.LIGHT),
     Check(key="lobes_albedo",
           claim="The environment branch returns the albedo of all lobes by the layer equation.",

@@ -56,6 +56,12 @@ def defect(key: str, *names: str) -> Diagnosis:
     return Diagnosis((Cause(Kind.DEFECT, key, names),))
 
 
+def causes_of(parts: Iterable[tuple[Cause, Compared]], tolerance: Tolerance) -> Diagnosis:
+    """The diagnosis with the causes of those parts that are wrong."""
+    wrong = (cause for cause, each in parts if tolerance.wrong(each).any())
+    return Diagnosis(tuple(dict.fromkeys(wrong)))
+
+
 def explain(
     case: Case,
     cases: Sequence[Compared],
@@ -277,7 +283,7 @@ class Comparison:
 
 def _backs(case: Case) -> Iterator[Compared]:
     batch = case.backend.take(case.of(emission.EmissionSpec).backs)
-    yield case.valued.alike(Compared(batch, case.direct(batch), case.expected(batch)))
+    yield case.valued.alike(case.compared(batch))
 
 
 def _alike(case: Case) -> Sequence[Candidate]:
@@ -294,14 +300,13 @@ def _transmittances(case: Case) -> Iterator[Compared]:
     """Light through a medium, and the throughput of a surface over it, compared with its transmittance."""
     spec, evaluate = case.of(emission.MediumSpec), case.evaluating.evaluate
     [batch] = case.batches
-    expected = case.expected(batch)
-    yield Compared(batch, case.direct(batch), expected)
+    yield case.compared(batch)
     lit = batch.altered(**{"top/weight": 1.0})
     coefficients = (each for each in spec.names if np.shape(batch.inputs[each])[1:])
     clear = lit.altered(**dict.fromkeys(coefficients, (0.0, 0.0, 0.0)))
     with np.errstate(divide="ignore", invalid="ignore"):
         through = evaluate(lit, "transmission") / evaluate(clear, "transmission")
-    yield Compared(batch, through, expected)
+    yield Compared(batch, through, case.expected(batch))
 
 
 VALUES = attrgetter("valued.value_candidates")

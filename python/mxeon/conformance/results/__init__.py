@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import KW_ONLY, Field, dataclass, field, fields
+from dataclasses import KW_ONLY, dataclass, field
 from enum import Enum
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
-from typing import Any, ClassVar, Final, Literal, TypeAlias, TypedDict, get_args
+from typing import Final, Literal, TypeAlias, TypedDict, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,22 +94,8 @@ class Region:
     channels: tuple[str, ...] = ()
 
 
-class BriefRepr:
-    """A dataclass whose repr omits fields with default values."""
-
-    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
-
-    def __repr__(self) -> str:
-        set_fields = (
-            f"{each.name}={value!r}"
-            for each in fields(self)
-            if each.repr and (value := getattr(self, each.name)) not in (each.default, {})
-        )
-        return f"{type(self).__name__}({', '.join(set_fields)})"
-
-
-@dataclass(frozen=True, repr=False)
-class Cause(BriefRepr):
+@dataclass(frozen=True)
+class Cause:
     """One fact about wrong values.
 
     - `key`: Title of a model, or key of a row of the tables in `mxeon.conformance.words`.
@@ -144,8 +130,8 @@ class Cause(BriefRepr):
 NO_CAUSE = Cause(Kind.NONE)
 
 
-@dataclass(frozen=True, repr=False)
-class Diagnosis(BriefRepr):
+@dataclass(frozen=True)
+class Diagnosis:
     """The explanation of a failure.
 
     - `causes`: The known causes; the one that explains most comes first.
@@ -230,8 +216,8 @@ class Claims(TypedDict, total=False):
     model: str
 
 
-@dataclass(frozen=True, repr=False)
-class Result(BriefRepr):
+@dataclass(frozen=True)
+class Result:
     """The outcome of one check of one subject on one host.
 
     - `check`, `claim`: Key of the check and the sentence that it tests.

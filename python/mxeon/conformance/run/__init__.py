@@ -13,7 +13,7 @@ from itertools import chain, product
 from pathlib import Path
 from typing import cast
 
-from mxeon.conformance.results import NOT_RUN, REPORT, Run, Scope, known_issues
+from mxeon.conformance.results import NOT_RUN, REPORT, SOURCE, Run, Scope, known_issues
 from mxeon.conformance.run import plan
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, one_result
@@ -231,7 +231,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     for text, place in dict.fromkeys(notes):
         places.setdefault(text, []).append(place)
     hosts = tuple(dict.fromkeys(host for part in done for host in part.hosts))
-    audited = any(map(plan.audits, planned.tasks))
+    audited = any(task.check == SOURCE for task in planned.tasks)
     unjudged = (
         *(texts_not_run({host.name for host in hosts}) if audited else ()),
         *planned.unjudged,

@@ -318,7 +318,11 @@ def make_plan(
         libraries={each: origins(each) for each in libraries if each not in LIBRARIES},
         compared=tuple(compared),
         unjudged=(
-            *((*UNJUDGED, *_untabled(hosts)) if any(map(audits, tasks)) else ()),
+            *(
+                (*UNJUDGED, *_untabled(hosts))
+                if any(task.check == SOURCE for task in tasks)
+                else ()
+            ),
             *(row for each in libraries for row in unjudged(each)),
         ),
         options=policy.options | {"--seed": str(seed)} | methods.options,
@@ -342,11 +346,6 @@ def _untabled(hosts: Iterable[str]) -> Iterator[tuple[str, str]]:
             _, reason, page = UNTABLED[host_row(host).target]
             text = f"MaterialX's text {reason}; see docs/upstream/{page}.md"
             yield f"tables of albedos on {host}", text
-
-
-def audits(task: Task) -> bool:
-    """Whether a task judges the texts of a whole library."""
-    return task.check == SOURCE
 
 
 def unjudged(library: str) -> tuple[tuple[str, str], ...]:
