@@ -104,9 +104,9 @@ def test_another_version_of_a_node_differs(judged, tmp_path):
     assert has(result, "in2 of thin_film_thickness_nm", "100")
 
 
-def test_the_graph_of_another_release_is_recognized(judged, tmp_path):
+def test_the_graph_of_an_older_release_differs(judged, tmp_path):
     file = f"libraries/{FILES['open_pbr_surface']}"
     copy_of_stock(tmp_path, FILES["open_pbr_surface"])
     shutil.copy(wheel("1.39.3") / "MaterialX" / file, tmp_path / FILES["open_pbr_surface"])
-    reason = judged.unjudged("release", str(tmp_path))["open_pbr_surface"]
-    assert reason == "the graph of MaterialX 1.39.3 and 1.39.4"
+    result = judged("release", EVERY_NODE, library=str(tmp_path))
+    assert result.verdict == DIFFERS and has(result, "newer", "open_pbr_surface")

@@ -9,16 +9,7 @@ import pytest
 
 from mxeon import check
 from mxeon.conformance import words
-from mxeon.conformance.results import (
-    DIFFERS,
-    FAILED,
-    NOT_RUN,
-    PASSED,
-    PORTRAIT,
-    Diagnosis,
-    Result,
-    known_issues,
-)
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, PORTRAIT, Diagnosis, Result
 from mxeon.conformance.results.known_issues import STOCK as STOCK_LIBRARY
 from mxeon.conformance.results.known_issues import issues, with_pages
 from mxeon.report import to_json
@@ -258,21 +249,6 @@ def test_the_ledger_has_each_departure_of_stock_and_shows_no_other(title):
     shown = {check for issue in known for check, subject in issue.rows if subject == title}
     implied = {check for issue in known for check, subject in issue.implied if subject == title}
     assert shown <= {*STOCK[title]} <= shown | implied
-
-
-@pytest.mark.whole
-def test_a_defect_that_was_repaired_upstream_is_said_to_be_once_all_its_rows_pass(stock):
-    def noted(*repaired):
-        results = [
-            replace(each, verdict=PASSED) if each.check in repaired else each
-            for each in stock.results
-        ]
-        return dict(map(reversed, known_issues.repaired(results, {"MaterialX": "2.0"})))
-
-    page = "docs/upstream/genglsl_clamped_dot.md"
-    assert noted() == {}
-    assert page not in noted("value", "integral")
-    assert noted("value", "integral", "lobe")[page].startswith("repaired in MaterialX 2.0")
 
 
 CLAMPED_MODEL = caused("model", CLAMPED_TITLE, distances={CLAMPED_TITLE: 0.001, "Lambert": 0.2})

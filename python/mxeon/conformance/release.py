@@ -19,7 +19,6 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.conformance import check, spec
-from mxeon.conformance.reference.nodes import OPERATIONS
 from mxeon.conformance.results import NOT_RUN, Cause, Diagnosis, Kind, Quantity, Result
 from mxeon.conformance.samples import Array, float32, generator, sky_map
 from mxeon.conformance.specs import ALL, utilities
@@ -157,21 +156,6 @@ def one_spelling(text: str) -> str:
     return " ".join(words)
 
 
-def versions(document: mx.Document, definition: mx.NodeDef) -> tuple[str, ...]:
-    """The releases with the graph and the defaults of a surface shader; empty for an unknown graph."""
-    graph = definition.getImplementation()
-    if definition.getType() != "surfaceshader" or not (graph and graph.isA(mx.NodeGraph)):
-        return ()
-    scratch = mx.createDocument()
-    scratch.setDataLibrary(document)
-    return released_graphs.RELEASES.get(
-        released_graphs.digest(
-            released_graphs.said(scratch.addNodeInstance(definition), OPERATIONS)
-        ),
-        (),
-    )
-
-
 class Terms:
     """Numbers the terms of graphs; terms with the same number have the same value."""
 
@@ -234,9 +218,7 @@ class Comparison:
         for number, right in enumerate((*self._release.getNodeDefs(), *ours)):
             name = right.getName()
             own, released = (each.getNodeDef(name) for each in (self._document, self._release))
-            if own is None or (
-                number and (own in (right, released) or versions(self._document, own))
-            ):
+            if own is None or (number and own in (right, released)):
                 continue
             attributes = ATTRIBUTES if released == right else (*ATTRIBUTES, *RANGE)
             found, expected = (definition_facts(each, right, attributes) for each in (own, right))
@@ -294,10 +276,7 @@ class Comparison:
             return None
         graphs = [bool(each) and each.isA(mx.NodeGraph) for each in (ours, theirs)]
         if all(graphs):
-            if other := versions(self._document, own):
-                reason = f"the graph of MaterialX {' and '.join(other)}"
-                self.unjudged.append((right.getNodeString(), reason))
-            return None if other else name
+            return name
         if (right.getNodeString(), right.getType() not in CLOSURES) in MODELLED:
             return None
         if ours is None or any(graphs):

@@ -1,29 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The graphs of surface shaders, and the MaterialX releases that contain them."""
+"""The graphs of the installed MaterialX, and how another one differs."""
 
 import sys
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
-from hashlib import sha256
 from pathlib import Path
 
 import MaterialX as mx
 
-from mxeon.errors import NotRun
 from mxeon.shaders.library import load_library
-
-PARTS = 3  # maximum differences reported between two graphs
-# Digests of released graphs, and the versions with each graph.
-RELEASES: Mapping[str, tuple[str, ...]] = {
-    "14ecabb97635dfa0": ("1.39.3", "1.39.4"),  # open_pbr_surface
-    "1e645305e1b7dc2b": ("1.39.5",),
-    "5568198babe96c17": ("1.39.3", "1.39.4", "1.39.5"),  # standard_surface
-    "1ccbee1d778c54c1": ("1.39.3",),  # gltf_pbr
-    "0a827f2dffe0f4cb": ("1.39.4",),
-    "0e6d434bddbb16ac": ("1.39.5",),
-    "df5c716ed323783b": ("1.39.3", "1.39.4"),  # UsdPreviewSurface
-    "482ef66253eae29d": ("1.39.5",),
-}
 
 
 @cache
@@ -43,18 +28,6 @@ def installed() -> mx.Document:
     return hidden() or load_library("stock")
 
 
-def said(node: mx.Node, known: Container[str]) -> dict[str, str]:
-    """The defaults of a surface shader, and the nodes and connections of its graph and nested graphs.
-
-    Graphs of nodes in the categories `known` are not expanded.
-    """
-    ports, graph = node.getNodeDef().getActiveInputs(), node.getImplementation()
-    if not (graph and graph.isA(mx.NodeGraph)):
-        raise NotRun(f"reference: the library has no graph of {node.getCategory()}")
-    defaults = {f"the default of {each.getName()}": port_text(each) for each in ports}
-    return defaults | dict(_inside(graph, known, {graph.getName()}))
-
-
 def facts(graph: mx.NodeGraph) -> Iterator[tuple[str, str]]:
     """The nodes, inputs and outputs of a graph."""
     for node in graph.getNodes():
@@ -72,17 +45,6 @@ def ports_of(node: mx.Node) -> dict[str, mx.Input]:
     return {each.getName(): each for each in (*ports, *node.getInputs())}
 
 
-def _inside(
-    graph: mx.NodeGraph, known: Container[str], seen: set[str]
-) -> Iterator[tuple[str, str]]:
-    yield from facts(graph)
-    for node in graph.getNodes():
-        inner = None if node.getCategory() in known else node.getImplementation()
-        if inner and inner.isA(mx.NodeGraph) and inner.getName() not in seen:
-            seen.add(inner.getName())
-            yield from _inside(inner, known, seen)
-
-
 def port_text(port: mx.PortElement) -> str:
     """The connection of an input or output, otherwise its value."""
     if node := port.getNodeName():
@@ -94,10 +56,6 @@ def port_text(port: mx.PortElement) -> str:
         return ", ".join(f"{float(each):.7g}" for each in value.split(","))
     except ValueError:
         return value
-
-
-def digest(parts: Mapping[str, str]) -> str:
-    return sha256(repr(sorted(parts.items())).encode()).hexdigest()[:16]
 
 
 def differences(own: Mapping[str, str], right: Mapping[str, str]) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from typing import Any
 import MaterialX as mx
 
 from mxeon.conformance.results import SOURCE, Cause, Kind, Result
-from mxeon.conformance.results.known_issues import EONLIB, RENDERERS, STOCK, Issue, Row, issues
+from mxeon.conformance.results.known_issues import EONLIB, STOCK, Issue, Row, issues
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, make_plan, node_names
 from mxeon.errors import NotRun
@@ -20,6 +20,8 @@ from mxeon.shaders.document.policy import DEFAULT
 from tools.site.ledger import figure, measured, write_measured
 
 CHECKED = [each for each in issues().values() if each.rows]  # their pages have a table of checks
+# Renderers whose own nodes need no MaterialX.
+OWN_NODES = ("three", "babylon", "shadewire", "three-gpu-pathtracer")
 
 
 def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple[list[Result], str]:
@@ -44,7 +46,7 @@ def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple
     with closing(Judge(DEFAULT)) as judge:
         findings = [judge.work(task) for task in chosen]
     devices = [f"{each.device}, {each.version}" for each in findings[0].hosts]
-    own = host in RENDERERS and host != "cycles"  # its nodes need no MaterialX
+    own = host in OWN_NODES
     place = ", ".join([*devices, *([] if own else [f"MaterialX {mx.__version__}"])])
     return [result for each in findings for result in each.results], place
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import cattrs
 
 from mxeon import errors, hosts
-from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Cause, Kind, Quantity, Result
+from mxeon.conformance.results import DIFFERS, FAILED, Cause, Kind, Quantity, Result
 from mxeon.io.records import UNREADABLE, strict_converter
 from mxeon.shaders.library import data_folder
 
@@ -140,8 +140,6 @@ def _pairs(table: Table) -> tuple[Row, ...]:
     )
 
 
-RENDERERS = {"cycles": "this Blender", "three": "this three.js", "babylon": "this Babylon.js"}
-RENDERERS |= {name: f"this {name}" for name in ("shadewire", "three-gpu-pathtracer")}
 # Hosts whose closures are their own, with every library.
 OWN_CLOSURES = tuple(row.name for row in hosts.HOSTS if row.way == "functions")
 LEFT = 30.0  # smaller errors of the correct model have a different cause than the issue
@@ -188,27 +186,6 @@ def with_pages(result: Result, materialx: str = "") -> Result:
     # Points that the text leaves open explain no failure by themselves.
     left_open = result.verdict == FAILED and all(issue.differs for issue in found)
     return replace(result, pages=() if left_open else tuple(issue.page for issue in found))
-
-
-def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    """Notes on repaired issues, whose rows all pass: a text and a page for each."""
-    verdicts = {
-        (result.library, result.host, result.check, result.subject): result.verdict
-        for result in results
-        if result.library in (STOCK, RENDERER_NODES)
-    }
-    if not verdicts:
-        return ()
-    notes = []
-    for issue in issues().values():
-        found = [verdicts.get((issue.library, issue.host, *row)) for row in issue.rows]
-        if {*found} == {PASSED}:
-            own = RENDERERS.get(issue.host)
-            if not own or issue.page.startswith("gen"):  # the name of a generator of MaterialX
-                own = f"MaterialX {software['MaterialX']}"
-            page = f"docs/upstream/{issue.page}.md"
-            notes.append((f"repaired in {own}, so that its page can go", page))
-    return tuple(notes)
 
 
 def _explains(issue: Issue, result: Result, materialx: str) -> bool:

@@ -13,7 +13,7 @@ from itertools import chain, product
 from pathlib import Path
 from typing import cast
 
-from mxeon.conformance.results import NOT_RUN, REPORT, SOURCE, Run, Scope, known_issues
+from mxeon.conformance.results import NOT_RUN, REPORT, SOURCE, Run, Scope
 from mxeon.conformance.run import plan
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, one_result
@@ -223,7 +223,6 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     for document, library in product(planned.contents, planned.compared):
         lines = refused.pop(f"{document} with {library}", ())
         notes += tuple((line, document) for line in lines)
-    notes += known_issues.repaired(results, planned.software)
     version = planned.software.get("MaterialX")
     if version and (warning := untested(version)):
         notes += ((warning, "every result"),)
