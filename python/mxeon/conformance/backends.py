@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from mxeon.conformance import samples, tolerance
 from mxeon.conformance.cache import EVALUATIONS, Recent, contents, parts
-from mxeon.conformance.results import Claims, Quantity
+from mxeon.conformance.results import Quantity
 from mxeon.conformance.samples import RIM, Array, Batch, Counts, Mask, Values
 from mxeon.conformance.spec import POWER, Ability, LobeSpec, Spec, ValueSpec, broadcast_inputs
 from mxeon.conformance.specs.diffuse import LOBE_VALUE, SurfaceLobe
@@ -131,9 +131,9 @@ class Backend(ABC):
         return ()
 
     @property
-    def claims(self) -> Claims:
-        """A result's additional fields for a renderer's own node."""
-        return {}
+    def claims(self) -> tuple[str, str]:
+        """A result's `claimed` and `model`, for a renderer's own node."""
+        return "", ""
 
     def judged(self) -> Spec:
         """The spec with the engine's alternatives to its model, or in the form nearest to the measured values."""

@@ -131,7 +131,8 @@ class Check:
         """The result for a case, with its control and, on failure, a diagnosis."""
         spec, claim = case.spec, case.spec.claim or self.claim
         names = self.key, claim, spec.title, case.host.name, case.library
-        place = Result(*names, results.NOT_RUN, **case.backend.claims)
+        claimed, model = case.backend.claims
+        place = Result(*names, results.NOT_RUN, claimed=claimed, model=model)
         tolerance = self.allowed(case)
 
         def explain() -> Diagnosis:

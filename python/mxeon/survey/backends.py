@@ -13,7 +13,6 @@ import numpy as np
 
 from mxeon.conformance import backends, samples
 from mxeon.conformance.backends import BACKENDS, Errors
-from mxeon.conformance.results import Claims
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Mask
 from mxeon.conformance.spec import Ability, Spec
@@ -87,11 +86,11 @@ class Native(backends.CyclesPictures):
         return self.spec
 
     @property
-    def claims(self) -> Claims:
+    def claims(self) -> tuple[str, str]:
         """Titles of the claimed model and of the form that is checked."""
         claimed, *_ = self.node.forms or (self.node.model,)
         title, own = (reference.diffuse_model(name).title for name in (claimed, self.node.model))
-        return {"claimed": title, "model": own}
+        return title, own
 
     def picture(self, batch: Batch) -> Array:
         scene, inputs = backends.scene_of(batch), batch.inputs

@@ -13,7 +13,7 @@ from enum import Enum
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
-from typing import Final, Literal, TypeAlias, TypedDict, get_args
+from typing import Final, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -207,13 +207,6 @@ class Difference:
 def quoted(text: str) -> Diagnosis:
     """A diagnosis that quotes another program."""
     return Diagnosis((Cause(Kind.TEXT, text=text),))
-
-
-class Claims(TypedDict, total=False):
-    """Additional fields of a result for a renderer's own node; see Result."""
-
-    claimed: str
-    model: str
 
 
 @dataclass(frozen=True)
