@@ -56,7 +56,7 @@ WRONG = {
         (LOBE, "weight <= 0.0", "OLD1", "value", ("weight_within",)),
         (LOBE, "irradiance(N)", "irradiance(-N)", "surroundings",
          ("lookup_opposite",)),
-        (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness = 0.3;\n    OLD", "inputs",
+        (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness = 0.3 + 1e-6 * roughness;\n    OLD", "inputs",
          ("inputs_without_effect", "roughness")),
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness *= roughness;\n    OLD", "environment",
          ("fault", "roughness_squared")),

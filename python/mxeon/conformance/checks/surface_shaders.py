@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from mxeon.conformance import backends, controls, samples, specs
-from mxeon.conformance.case import SCATTERING, Case
+from mxeon.conformance.case import SCATTERING, Case, unchanged
 from mxeon.conformance.check import Check, family
 from mxeon.conformance.checks.lobes import LAYERS, finds_albedo
 from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, defect
@@ -144,7 +144,7 @@ def without_effect(case: Case) -> list[str]:
         ask = partial(evaluating.evaluate, branch=branch, output=output)
         found = case.measured(ask, batch)
         pairs = found.reshape(len(spec.names), 2, -1)
-        effective |= (pairs[:, 0] != pairs[:, 1]).any(axis=1)
+        effective |= ~unchanged(pairs[:, 0], pairs[:, 1]).all(axis=1)
     return [name for name, each in zip(spec.names, effective, strict=True) if not each]
 
 
