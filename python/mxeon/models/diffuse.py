@@ -153,17 +153,6 @@ def fon_quotient(mu_o: Array, mu_i: Array, s: Array) -> Array:
     return qon_quotient(mu_o, mu_i, s) + xp.minimum(s, 0.0)
 
 
-def qon_footnote_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
-    """QON with 0.57 instead of 0.33 in A_q: [Portsmouth2025], footnote 1."""
-    return rho / np.pi * (qon_aq(sigma, 0.57) + qon_bq(sigma) * qon_quotient(mu_o, mu_i, s))
-
-
-def qon_fujii_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
-    """rho / pi (A_q + 0.17 rho k + B_q s / t_F), k = sigma^2 / (sigma^2 + 0.13): [Fujii2013]."""
-    a = qon_aq(sigma) + oren_nayar_interreflection(rho, sigma)
-    return rho / np.pi * (a + qon_bq(sigma) * fon_quotient(mu_o, mu_i, s))
-
-
 def qon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
     """rho / pi (A_q + B_q s / t_q): [Portsmouth2025], Eqs. (1), (3)."""
     return rho / np.pi * (qon_aq(sigma) + qon_bq(sigma) * qon_quotient(mu_o, mu_i, s))
@@ -294,7 +283,11 @@ def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: Array
         >>> qon_footnote_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.066596, 0.266385])
     """
-    return evaluate(of_cosines(qon_footnote_brdf_mu), wo, wi, rho, sigma=sigma)
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
+        return rho / np.pi * (qon_aq(sigma, 0.57) + qon_bq(sigma) * qon_quotient(mu_o, mu_i, s))
+
+    return evaluate(of_cosines(formula), wo, wi, rho, sigma=sigma)
 
 
 @any_array
@@ -309,7 +302,12 @@ def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLik
         >>> qon_fujii_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.064005, 0.273106])
     """
-    return evaluate(of_cosines(qon_fujii_brdf_mu), wo, wi, rho, sigma=sigma)
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
+        a = qon_aq(sigma) + oren_nayar_interreflection(rho, sigma)
+        return rho / np.pi * (a + qon_bq(sigma) * fon_quotient(mu_o, mu_i, s))
+
+    return evaluate(of_cosines(formula), wo, wi, rho, sigma=sigma)
 
 
 @any_array

@@ -368,7 +368,10 @@ def deon_hair_absorption_from_melanin(
     colors = {"eumelanin_color": eumelanin_color, "pheomelanin_color": pheomelanin_color}
     mixed = {"melanin_concentration": melanin_concentration, "melanin_redness": melanin_redness}
     numbers = arguments.checked_all(mixed)
-    vectors = {name: _color(name, value) for name, value in colors.items()}
+    vectors = {
+        name: arguments.checked_triples(name, checked(name, value))
+        for name, value in colors.items()
+    }
     lead_shape(vectors, numbers)
     concentration, redness = (value[..., np.newaxis] for value in numbers.values())
     xp = array_namespace(concentration, redness)
@@ -393,14 +396,9 @@ def chiang_hair_absorption_from_color(
         >>> chiang_hair_absorption_from_color([0.5, 0.2, 0.1], 0.2).round(6)
         array([0.013569, 0.073156, 0.149739])
     """
-    color = _color("hair_color", hair_color)
+    color = arguments.checked_triples("hair_color", checked("hair_color", hair_color))
     roughness = checked("azimuthal_roughness", azimuthal_roughness)
     lead_shape({"hair_color": color}, {"azimuthal_roughness": roughness})
     xp, b = array_namespace(color), roughness[..., np.newaxis]
     fit = 5.969 - b * (0.215 - b * (2.532 - b * (10.73 - b * (5.574 + b * 0.245))))
     return xp.square(xp.log(color) / fit)
-
-
-def _color(name: str, value: ArrayLike) -> arrays.Numbers:
-    """A color, checked against the range for its name."""
-    return arguments.checked_triples(name, checked(name, value))

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Emission, media, subsurface scattering, the shader nodes, and black bodies of [MaterialX2026].
 
-A radiance is per channel, in any unit; the exitance is its integral over the hemisphere times the cosine, pi times
-that unit. Directions leave the surface, normal +z, or the position where light is scattered, so that light that goes
+A radiance is per channel, in any unit. Directions leave the surface, normal +z, or the position where light is scattered, so that light that goes
 straight on has wi = -wo; one below the horizon sees the back of the surface. `measured_edf` has no function here: its
 values come from a file.
 
@@ -50,17 +49,6 @@ def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
 
 
 @any_array
-def uniform_exitance(radiance: ArrayLike) -> Array:
-    """Radiant exitance pi c of a uniform emitter: [MaterialX2026], section `uniform_edf`.
-
-    >>> round(float(uniform_exitance(2.0)), 6)
-    6.283185
-    """
-    (c,) = checked_numbers(radiance=radiance)
-    return (np.pi * c)[()]
-
-
-@any_array
 def conical_edf(
     wo: ArrayLike, radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: ArrayLike
 ) -> Array:
@@ -77,49 +65,11 @@ def conical_edf(
     """
     angles = {"inner_angle": inner_angle, "outer_angle": outer_angle}
     mu, (c,), (inner, outer) = _checked(wo, {"radiance": radiance}, **angles)
-    falloff = conical_falloff(at_least_0(mu)[..., np.newaxis], inner, outer)
-    return c * falloff
-
-
-def conical_falloff(mu: Array, inner: Array, outer: Array) -> Array:
-    """Factor of the radiance at cosines `mu`: 1 in the cone, 0 outside. Arguments are not checked."""
-    xp = array_namespace(mu, inner, outer)
-    soft = outer > inner
+    xp, mu, soft = array_namespace(mu, inner, outer), at_least_0(mu)[..., np.newaxis], outer > inner
     width = xp.where(soft, cone_width(inner, outer), 1.0)
     t = arrays.at_most(at_least_0((mu - cone_cosine(outer)) / width), 1.0)
-    return xp.where(soft, t * t * (3.0 - 2.0 * t), xp.where(mu >= cone_cosine(inner), 1.0, 0.0))
-
-
-@any_array
-def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: ArrayLike) -> Array:
-    """Radiant exitance of a conical emitter, in closed form.
-
-    With a = c_out, b = c_in and h = b - a, the falloff has the integral
-
-        int t^2 (3 - 2 t) mu dmu = h [a (t^3 - t^4 / 2) + h (3 t^4 / 4 - 2 t^5 / 5)]
-
-    between mu = max(a, 0) and b, where mu = a + h t; inside the cone it is (1 - b^2) / 2. The exitance is 2 pi c
-    times both, and pi c where the inner cone holds the hemisphere. h is a product of two sines, so that a narrow
-    falloff does not cancel. The integral is our own.
-
-        >>> conical_exitance([1.0], 90.0, 0.0).round(6)  # pi sin^2 of 45 degrees
-        array([1.570796])
-    """
-    angles = {"inner_angle": inner_angle, "outer_angle": outer_angle}
-    (c,), (inner, outer) = checked_colors({"radiance": radiance}, **angles)
-    a, b = cone_cosine(outer), cone_cosine(inner)
-    xp = array_namespace(inner, outer)
-    h = xp.where(outer > inner, cone_width(inner, outer), 0.0)
-    start = xp.where(h > 0.0, -a / xp.where(h > 0.0, h, 1.0), 1.0)
-    start = arrays.at_most(at_least_0(start), 1.0)
-
-    def antiderivative(t: Array | float) -> Array:
-        return h * (a * t**3 * (1.0 - 0.5 * t) + h * t**4 * (0.75 - 0.4 * t))
-
-    ramp = antiderivative(1.0) - antiderivative(start)
-    cone = 0.5 * xp.sin(HALF_TURN * inner) ** 2
-    share = xp.where(b <= 0.0, 0.5, cone + ramp)
-    return 2.0 * np.pi * c * share
+    hard = xp.where(mu >= cone_cosine(inner), 1.0, 0.0)
+    return c * xp.where(soft, t * t * (3.0 - 2.0 * t), hard)
 
 
 @any_array
@@ -141,25 +91,6 @@ def generalized_schlick_edf(
     mu = mu[..., np.newaxis]
     height = array_namespace(mu).where(mu < 0.0, -mu, mu)
     return c * (r0 + (r90 - r0) * arrays.power(at_least_0(1.0 - height), q))
-
-
-@any_array
-def generalized_schlick_exitance(
-    radiance: ArrayLike, color0: ArrayLike, color90: ArrayLike, exponent: ArrayLike
-) -> Array:
-    """Radiant exitance of a uniform emitter that is scaled by a Schlick curve.
-
-        M = pi c (r_0 + (r_90 - r_0) 2 / ((q + 1) (q + 2)))
-
-    [MaterialX2026], section `generalized_schlick_edf`; the integral is our own.
-
-        >>> generalized_schlick_exitance([1.0], [0.0], [1.0], 0.0).round(6)
-        array([3.141593])
-    """
-    colors = {"radiance": radiance, "color0": color0, "color90": color90}
-    (c, r0, r90), (q,) = checked_colors(colors, exponent=exponent)
-    share = 2.0 / ((q + 1.0) * (q + 2.0))
-    return np.pi * c * (r0 + (r90 - r0) * share)
 
 
 def cone_cosine(angle: Array) -> Array:

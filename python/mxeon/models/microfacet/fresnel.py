@@ -111,11 +111,7 @@ def schlick(mu: Array, color0: Array, color82: Array, color90: Array, exponent: 
 
 
 def dielectric_avg(ior: Array) -> Array:
-    """F_ss of a dielectric: closed form for ior >= 1, and by reciprocity below.
-
-    [Walsh1926] with n = e^t, rearranged so that no large terms cancel, including 1 - e^t. ior^2 (1
-    - F_ss(1 / ior)) = 1 - F_ss(ior) for the same interface from its other side.
-    """
+    """F_ss of a dielectric, in the form of `fresnel_dielectric_avg`."""
     xp = array_namespace(ior)
     inside = ior < 1.0
     gap = xp.where(inside, (1.0 - ior) / xp.maximum(ior, LEAST_IOR), ior - 1.0)

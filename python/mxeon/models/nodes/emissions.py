@@ -30,8 +30,6 @@ class Emission(Node[Value]):
     - `value`: Radiance towards `wo`, normal +z; below the horizon, the radiance of the back.
     """
 
-    exitance: Callable[[Inputs], Array]  # integral over the hemisphere, times the cosine
-
 
 def front_only(value: Value) -> Value:
     """The same radiance in front, none from the back."""
@@ -67,7 +65,6 @@ EMISSIONS = (
         "uniform_edf",
         ("color",),
         _uniform,
-        lambda inputs: media.uniform_exitance(inputs["color"]),
         variants=(
             Variant(ONE_SIDE, front_only(_uniform), permitted=True),
             Variant("the color as an exitance, over pi", lambda wo, i: _uniform(wo, i) / np.pi),
@@ -79,9 +76,6 @@ EMISSIONS = (
         "conical_edf",
         ("color", "inner_angle", "outer_angle"),
         lambda wo, i: media.conical_edf(wo, i["color"], i["inner_angle"], i["outer_angle"]),
-        lambda inputs: media.conical_exitance(
-            inputs["color"], inputs["inner_angle"], inputs["outer_angle"]
-        ),
         variants=(
             Variant("a cone whose angles count from its axis", _halves),
             Variant("uniform emission from the front", front_only(_uniform)),
@@ -93,9 +87,6 @@ EMISSIONS = (
         "generalized_schlick_edf",
         ("color0", "color90", "exponent", BASE),
         _schlick,
-        lambda inputs: media.generalized_schlick_exitance(
-            _radiance(inputs), inputs["color0"], inputs["color90"], inputs["exponent"]
-        ),
         variants=(
             Variant(ONE_SIDE, front_only(_schlick), permitted=True),
             Variant("the base without its curve", lambda wo, i: _radiance(i)),
@@ -118,7 +109,6 @@ def _combined(
         category,
         inputs,
         lambda wo, inputs: media.uniform_edf(wo, color(inputs)),
-        lambda inputs: media.uniform_exitance(color(inputs)),
     )
 
 

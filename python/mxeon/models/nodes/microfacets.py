@@ -213,26 +213,15 @@ FORMS = (
 )
 
 
-def _value(
-    category: str, form: Form, lobe: Lobe | None, wo: Array, wi: Array, inputs: Inputs
-) -> Array:
-    return thin_film.film_brdf(category, wo, wi, inputs, form, lobe)
-
-
 def _bare(inputs: Inputs) -> dict[str, Array]:
     """Inputs with a film of thickness 0."""
     return {**inputs, FILM[0]: np.zeros_like(inputs[FILM[0]])}
 
 
-def _reflectance(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
-    """F of a film at the view direction, (N, 3)."""
-    return thin_film.film_reflectance(category, np.minimum(wo[:, 2], 1.0), inputs, form)
-
-
 def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: Inputs) -> Array:
     """Albedo of MaterialX's environment branch: the film's F in the compensation, at the view or averaged by its ends."""
-    normal = np.broadcast_to([0.0, 0.0, 1.0], wo.shape)
-    F = _reflectance(category, form, normal if averaged else wo, inputs)
+    mu = np.ones(len(wo)) if averaged else np.minimum(wo[:, 2], 1.0)
+    F = thin_film.film_reflectance(category, mu, inputs, form)
     F = defects.schlick_average(F, 1.0) if averaged else F
     single = film_albedo_dir(category, wo, isotropic(inputs), form, compensate=False)
     return np.asarray(single * defects.fitted_compensation(wo, inputs, F))
@@ -240,7 +229,7 @@ def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: I
 
 def _fitted(lobe: MicrofacetLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
     """Albedo of MaterialX's throughput: the bare lobe's fit with the film's F at the view."""
-    F = _reflectance(lobe.category, form, wo, inputs)
+    F = thin_film.film_reflectance(lobe.category, np.minimum(wo[:, 2], 1.0), inputs, form)
     albedo = layer_albedo(wo, inputs, *lobe.ends(wo, inputs), F)
     return averaged_channels(albedo) if lobe.edge else albedo
 
@@ -254,12 +243,12 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         ),
         Variant(
             UNCOMPENSATED,
-            partial(_value, row.category, thin_film.TEXT, Lobe(uncompensated)),
+            partial(thin_film.film_brdf, row.category, lobe=Lobe(uncompensated)),
             partial(film_albedo_dir, row.category, compensate=False),
         ),
         Variant(
             "MaterialX's compensation",
-            partial(_value, row.category, thin_film.TEXT, Lobe(defects.FITTED.factor)),
+            partial(thin_film.film_brdf, row.category, lobe=Lobe(defects.FITTED.factor)),
             permitted=True,
         ),
     ]
@@ -284,7 +273,7 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
             if form in (STOCK, thin_film.MATERIALX):
                 lobes.append((f"{defects.MEAN_ALPHA}, and {title}{words}", terms))
         for name, lobe_terms in lobes:
-            value = partial(_value, row.category, form, lobe_terms)
+            value = partial(thin_film.film_brdf, row.category, form=form, lobe=lobe_terms)
             variants.append(Variant(name, value, permitted=permitted))
     return tuple(variants)
 
@@ -295,7 +284,7 @@ def _filmed(row: PbrNode) -> PbrNode:
         name=f"{row.name}_film",
         title=f"{row.title} under a thin film",
         inputs=(*row.inputs, *FILM),
-        value=partial(_value, row.category, thin_film.TEXT, None),
+        value=partial(thin_film.film_brdf, row.category),
         albedo=partial(film_albedo_dir, row.category),
         integral=partial(film_albedo_dir, row.category),
         variants=_film_variants(row),
