@@ -4,7 +4,7 @@
 BTDFs are in 1/sr and without the cosine. Indices of refraction are those of the side of wi relative to those of wo: a
 view from inside a solid has the inverse of the node's index. alpha 0 is a delta function, which has no value; it
 counts as 0, and so does an index of 1, which bends nothing. Radiance is scaled by the square of the index as light
-enters another medium; light that is counted in energy, or paths that are traced from the view, are not. Shares that
+enters another medium, so values are divided by it; times ior^2 they integrate over wi to the transmitted share. Shares that
 pass are the mean of (1 - F) G2 / G1(wo) over the normals as they are seen; the text has no compensation for what
 transmission loses between facets.
 
@@ -18,8 +18,6 @@ transmission loses between facets.
 - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
 - `reading`: A key of READINGS: the replacement for the index that `generalized_schlick_bsdf` lacks, and
   of 1 - F of a curve that may leave [0, 1].
-- `radiance`: Whether the value is for radiance from wi to wo, as in the specification; otherwise it is times ior^2,
-  the form that is integrated over wi to the transmitted share of the light from wo.
 - `shadow`: Whether light is lost to other facets on the far side, as in the BTDF; otherwise the share is the mean of
   1 - F over the normals that wo sees.
 - `inside`: Whether wo lies inside of the solid, where light is totally reflected beyond an angle.
@@ -118,7 +116,6 @@ def dielectric_btdf(
     tint: ArrayLike,
     roughness: ArrayLike,
     ior: ArrayLike,
-    radiance: bool = True,
 ) -> Array:
     """Transmission of `dielectric_bsdf`, scatter modes T and RT.
 
@@ -134,9 +131,7 @@ def dielectric_btdf(
         array([10.066984])
     """
     vectors = {"tint": arguments.checked_vector("tint", tint)}
-    return evaluate_btdf(
-        DIELECTRIC_CURVE.at, wo, wi, roughness, ior, vectors, {}, radiance=radiance
-    )
+    return evaluate_btdf(DIELECTRIC_CURVE.at, wo, wi, roughness, ior, vectors, {})
 
 
 def evaluate_btdf(
@@ -147,8 +142,6 @@ def evaluate_btdf(
     ior: ArrayLike,
     vectors: dict[str, Numbers],
     numbers: dict[str, Numbers],
-    *,
-    radiance: bool = True,
 ) -> Array:
     """Values of a BTDF, shape (..., C); `vectors` and `numbers` are checked inputs of the curve.
 
@@ -156,19 +149,15 @@ def evaluate_btdf(
     """
     directions = {"wo": checked_directions("wo", wo), "wi": arguments.checked_transmitted("wi", wi)}
     pairs = {"roughness": checked_roughness(roughness)}
-    arguments.checked_switch("radiance", radiance)
 
     def value(wo: Array, wi: Array, roughness: Array, ior: Array, **material: Array) -> Array:
         facet = Facet.of(wo, wi, ior)
         F = at(facet.cosine_o, ior=ior, **material)
         above = array_namespace(wi).stack([wi[0], wi[1], -wi[2]])
         G2 = ggx.visibility_anisotropic(wo, above, roughness)
-        lobe = ggx.ndf(facet.normal, roughness) * G2
-        if radiance:
-            bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # an index of 0 passes nothing
-            lobe = (
-                lobe / arrays.guarded(array_namespace(ior).maximum(ior, LEAST_IOR), bends, 1.0) ** 2
-            )
+        bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # an index of 0 passes nothing
+        index = arrays.guarded(array_namespace(ior).maximum(ior, LEAST_IOR), bends, 1.0)
+        lobe = ggx.ndf(facet.normal, roughness) * G2 / index**2
         f = (1.0 - F) * (4.0 * lobe * facet.cosine_o * facet.jacobian)
         return f * material["tint"] if "tint" in material else f
 
@@ -411,7 +400,6 @@ def generalized_schlick_btdf(
     exponent: ArrayLike,
     reading: str = "text",
     inside: bool = False,
-    radiance: bool = True,
 ) -> Array:
     """Transmission of `generalized_schlick_bsdf`, scatter modes T and RT.
 
@@ -427,7 +415,7 @@ def generalized_schlick_btdf(
     vectors = {"wo": checked_directions("wo", wo), "wi": arguments.checked_transmitted("wi", wi)}
     return _by_index(
         lambda at, ior, material, numbers: evaluate_btdf(
-            at, wo, wi, roughness, ior, material, numbers, radiance=radiance
+            at, wo, wi, roughness, ior, material, numbers
         ),
         vectors | {"roughness": checked_roughness(roughness)},
         {"color0": color0, "color82": color82, "color90": color90},
