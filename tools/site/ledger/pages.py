@@ -29,7 +29,7 @@ GROUPS = {
     "utilities": "Utility nodes",
     "surfaces": "Surface shaders",
     "documents": "Documents and generation",
-    "blender": "Blender",
+    "cycles": "Blender",
     "storm": "OpenUSD's Hydra Storm",
     "three": "three.js",
     "babylon": "Babylon.js",
@@ -37,7 +37,7 @@ GROUPS = {
     "luxcore": "LuxCoreRender",
     "shadewire": "shadewire",
     "testrender": "OSL's testrender",
-    "printed": "Printed specifications",
+    "pbrlib": "Printed specifications",
 }
 
 

@@ -22,8 +22,8 @@ RENDERER_NODES = "its own nodes"  # replaces the library
 Row = tuple[str, str]  # key of a check, and subject
 Table = Mapping[str, Sequence[str]]  # the checks of subjects
 GENERATED_GLSL = ("webgl", "vulkan", "wgsl", "slang")  # hosts that draw the same GLSL as "gl"
-# A page begins with its row as TOML in a comment, then its title.
-PAGE = re.compile(r"<!--\n(?P<row>.*?)\n-->\n(?P<text># (?P<title>[^\n]*)\n.*)", re.DOTALL)
+# A page begins with its row as TOML in a comment, unless that is empty, then its title.
+PAGE = re.compile(r"(?:<!--\n(?P<row>.*?)\n-->\n)?(?P<text># (?P<title>[^\n]*)\n.*)", re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,10 @@ class Issue:
     page: str  # the file without suffix
     title: str  # the heading, which states the defect
     text: str = field(repr=False)  # the page without the row
-    group: str  # a part of the index, see tools/site/ledger/pages.py
-    host: str = ""  # the host that shows it, "source" for generated text; "" if no check does
+    group: (
+        str  # a part of the index, see tools/site/ledger/pages.py; by default the name's first word
+    )
+    host: str = ""  # the host that shows it, by default "gl"; "source" for generated text; "" if no check does
     also: tuple[str, ...] = ()  # additional hosts that show it, besides GENERATED_GLSL for "gl"
     # The library whose results show it: EONLIB for graphs, which need correct lobes;
     # RENDERER_NODES.
@@ -90,14 +92,16 @@ def issues() -> Mapping[str, Issue]:
 def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
     """The defect of a page, with its measurements.
 
-    Raises CheckError if the page has no row and title at its head, or the row an unknown key.
+    Raises CheckError if the page does not begin with a row or a title, or the row has an unknown key.
     """
     parts = PAGE.fullmatch(text)
     if not parts:
-        raise errors.CheckError(f"{page}.md must begin with a row in a comment, and a title")
+        raise errors.CheckError(f"{page}.md must begin with a row in a comment, or a title")
     head = {"page": page, "title": parts["title"], "text": parts["text"]}
-    row = tomllib.loads(parts["row"]) | head
+    row = {"group": page.partition("_")[0]} | tomllib.loads(parts["row"] or "") | head
     row |= {name: measured[name] for name in ("cause", "patch", "sizes") if name in measured}
+    if row.keys() & {"rows", "implied"}:
+        row.setdefault("host", "gl")
     try:
         issue = _converter().structure(row, Issue)
     except UNREADABLE as error:
