@@ -31,7 +31,7 @@ from mxeon.io.images import difference, difference_scale
 from mxeon.io.srgb import srgb_encoded
 from mxeon.io.tone import pbr_neutral
 from mxeon.report.pieces import difference_pixels
-from mxeon.shaders.scene import FURNACE, SIDE, STUDIO, Paths, Scene
+from mxeon.shaders.scene import BACK, FURNACE, SIDE, STUDIO, Paths, Scene
 from tools.site import DOCS, brief
 
 PAGE = DOCS / "gallery.md"
@@ -63,8 +63,8 @@ show a sphere in a white environment, where it vanishes if no energy is lost or 
 [path-traced pictures](#path-traced) alone.
 
 Below each pair stands what `mxeon check` says of stock: its largest difference from the reference, in percent of white or
-of the reference where that is brighter (*+*: too bright), the share of the sphere on which it is visible, and the light. To
-draw a picture yourself:
+of the reference where that is brighter (*+*: too bright), and the share of the sphere on which it is visible; in light from
+behind, unless another light is named. To draw a picture yourself:
 
     mxeon render examples/roughness_wedge.mtlx --element wedge_eon_100 --output wedge_eon_100.png
     mxeon render examples/layered_white_furnace.mtlx --element white_dielectric --scene furnace --output white.png
@@ -192,7 +192,8 @@ def judge():
     found = {}
     for each in mxeon.check(sorted(EXAMPLES.glob("*.mtlx")), ["gl"], ["stock"]).results:
         if each.check == "picture" and (apart := each.difference):
-            said = f"{brief(apart)}, {words.LIGHTS[apart.scene]}" if apart.is_visible else ""
+            light = "" if apart.scene == BACK.name else f", {words.LIGHTS[apart.scene]}"
+            said = f"{brief(apart)}{light}" if apart.is_visible else ""
             found[each.subject.partition(": ")[2]] = said, abs(apart.largest)
     DIFFERENCES.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 

@@ -28,7 +28,7 @@ VERSIONS = (*TESTED[:-1], "main")  # those that are not installed
 Verdicts: TypeAlias = dict[str, dict[str, str]]
 WORDS = {PASSED: "yes", DIFFERS: "left open", FAILED: "**no**", NOT_RUN: "not run"}
 DEFAULTS_HEAD = "| text | parameter | its default | the node's |\n|---|---|---|---|\n"
-HEAD = "| section | the text | verdict | instead, and the largest error |\n|---|---|---|---|\n"
+HEAD = "| section | the text | verdict: what is there instead; largest error |\n|---|---|---|\n"
 NAMES = tuple(name for name, _ in groupby(SENTENCES, lambda spec: spec.node))
 
 TRANSPORT = (
@@ -70,10 +70,10 @@ def rows(
         words = [f"{', '.join(places)}: {verdict}" for verdict, places in others.items()]
         verdict = "; ".join([WORDS[said["gl"]], *words])
         worst = max(found.values(), key=lambda each: each.error or 0.0)
-        yield f"| {spec.section} | {spec.claim} | {verdict} | {instead(worst)} |\n"
+        yield f"| {spec.section} | {spec.claim} | {verdict}{instead(worst)} |\n"
     for where, section, claim, reason in NOT_JUDGED:
         if where is text:
-            yield f"| {section} | {claim} | not judged | {reason} |\n"
+            yield f"| {section} | {claim} | not judged: {reason} |\n"
 
 
 def instead(result: Result) -> str:
@@ -82,7 +82,7 @@ def instead(result: Result) -> str:
     if result.verdict == PASSED:
         return ""
     named = cause.key if cause.kind is Kind.MODEL else "no known form"
-    return f"{named}; {figure(result)}"
+    return f": {named}; {figure(result)}"
 
 
 def defaults(text: Text) -> Iterator[str]:

@@ -55,12 +55,13 @@ material is shown in light from the side or from behind, whichever makes more re
 leave black, in a white environment, which few renderers have here.
 
 Tiles are sorted by their largest difference in percent of white, or of the reference where that is brighter: *+* is too
-bright, *none* less than 0.1 %. Then comes the share of the object that differs visibly. Renderers with the same figures
-share one picture. Failed tiles are red. Below stands the cause: the lobes whose defects [the
-ledger](upstream/README.md) lists, or the input without which a renderer's own material is closest to the reference. *Not
-judged* means that the difference is no error of the renderer's code: it has closures of its own, or says that it ignores
-an input. Renderers for the browser approximate OpenPBR on purpose: a failed tile says how far, not that there is a bug. One
-is known: Babylon.js [squares the roughness of anisotropic lobes twice](upstream/babylon_anisotropic_roughness.md).
+bright. Then comes the share of the object that differs visibly. Renderers with the same figures share one picture, those
+that differ by less than 0.1 % (*none*) that of the reference. Failed tiles are red. Below stands the cause: the lobes whose
+defects [the ledger](upstream/README.md) lists, or the input without which a renderer's own material is closest to the
+reference. *Not judged* means that the difference is no error of the renderer's code: it has closures of its own, or says
+that it ignores an input. Renderers for the browser approximate OpenPBR on purpose: a failed tile says how far, not that
+there is a bug. One is known: Babylon.js [squares the roughness of anisotropic lobes
+twice](upstream/babylon_anisotropic_roughness.md).
 
     mxeon check MATERIAL.mtlx --host gl --host storm --host cycles --host three --report out
 
@@ -150,10 +151,12 @@ def figure(
 
 def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> str:
     """The reference, and the tiles by their difference; one picture for equal captions."""
-    text = figure(reference, name, "reference", "reference", "float64")
     alike: dict[tuple[str, str], list[Tile]] = defaultdict(list)
     for each in sorted(tiles, key=lambda each: each.largest):
         alike[each.caption, each.verdict].append(each)
+    exact = alike.pop(("none", PASSED), [])
+    same = f"the same: {title(exact)}" if exact else "float64"
+    text = figure(reference, name, "reference", "reference", same)
     for (caption, verdict), drawn in alike.items():
         first = drawn[0]
         file = f"{name}-{first.host}-{first.variant}".rstrip("-")

@@ -12,14 +12,13 @@ COLUMNS = ("where", "claim", "measured", "required", "verdict")
 
 HEAD = """# The paper, checked
 
-Does the EON paper say what is true? `python -m tools.paper` measures its claims and writes this page, in float64
-unless stated otherwise. Equations, figures and listings have the numbers of [Portsmouth2025], the JCGT
-2025 edition ([bibliography](bibliography.md)).
+Does the EON paper say what is true? `python -m tools.paper` measures its claims in float64 unless stated otherwise, writes
+this page, and prints the figures of those that hold. Equations, figures and listings have the numbers of [Portsmouth2025],
+the JCGT 2025 edition ([bibliography](bibliography.md)).
 
 A claim *holds* if all of its measured values meet its limit, holds *in part* if some do, and *fails* if none
 does; NaN meets no limit. The tables have the claims that do not hold, with the limit in the column *required*.
 """
-LARGEST = "largest difference "  # begins sentences of claims that hold up to roundings
 TALLY = "{count} claims; verdicts: {holds} holds, {part} holds in part, {fails} fails."
 
 
@@ -93,7 +92,7 @@ def verdict(values: ArrayLike, least: float, most: float) -> str:
 
 
 def page(sections: Sequence[Section]) -> str:
-    """The page as Markdown; measures every claim."""
+    """The page as Markdown; measures every claim, and prints those that hold."""
     parts = [HEAD]
     for section in sections:
         rows = [claim.row() for claim in section.claims]
@@ -108,13 +107,8 @@ def page(sections: Sequence[Section]) -> str:
         lines = [f"| {' | '.join(cells)} |" for cells in (COLUMNS, *wrong)]
         lines.insert(1, "|---" * len(COLUMNS) + "|")
         right = [row for row in rows if row[-1] == HOLDS]
-        exact = [row for row in right if row[2].startswith(LARGEST)]
-        lines += ["", "These hold:", ""]
-        lines += [f"- {row[0]}: {row[1]} ({row[2]})." for row in right if row not in exact]
-        if exact:
-            largest = max(float(row[2].removeprefix(LARGEST)) for row in exact)
-            lines += [
-                f"- Up to roundings ({largest:.1e}): {'; '.join(f'{a}, {b}' for a, b, *_ in exact)}."
-            ]
+        for row in right:
+            print("; ".join(row))
+        lines += ["", f"These hold: {'; '.join(f'{row[0]}, {row[1]}' for row in right)}."]
         parts.append("\n".join([f"## {section.heading}", "", tally, "", *lines, ""]))
     return "\n".join(parts)
