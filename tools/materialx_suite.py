@@ -71,7 +71,7 @@ eonlib loaded before them:
   tests of generated GLSL fail if there are any. They cannot notice [nodes that have no
   implementation](upstream/genglsl_missing_nodes.md), like all of these but `eon_diffuse_bsdf` in stock GLSL.
 
-Of {drawn} pictures, {visible} change by more than 1 % of white somewhere. The suite writes eight bits, so brighter values
+Of {drawn} pictures, {visible} change by more than 1 % of white somewhere: those [below](#pictures-that-change). The suite writes eight bits, so brighter values
 are cut at white, and one step near white is 0.9 %. Options of the suite that were changed: {options}. Files
 that the checkout lacked, without which some tests fail: {absent}.
 
@@ -99,9 +99,7 @@ Stock is on the left, eonlib on the right.
 
 | document: element | largest change | changed | nodes of eonlib |
 |---|---|---|---|
-{lines}
-Unchanged: {same}.
-"""
+{lines}"""
 
 Codes = NDArray[np.uint8]
 
@@ -325,15 +323,12 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
     groups = {each: groups_of(after[each].read_text()) for each in names}
     shutil.rmtree(PICTURES, ignore_errors=True)
     PICTURES.mkdir(parents=True)
-    figures, lines, reasons, same = "", "", "", []
+    figures, lines, reasons = "", "", ""
     for each in names:
         nodes = "; ".join(GROUPS[group][0] for group in GROUPS if group in groups[each])
         largest, share = in_percent(changes[each].largest), in_percent(changes[each].visible)
-        if largest == "none":
-            same.append(each)
-        else:
-            lines += f"| {each} | {largest} | {share.removeprefix('+')} | {nodes} |\n"
         if each in visible:
+            lines += f"| {each} | {largest} | {share.removeprefix('+')} | {nodes} |\n"
             file = f"{slug(each)}.webp"
             both = Image.fromarray(
                 np.concatenate([codes(before[each]), codes(after[each])], axis=1)
@@ -372,7 +367,6 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
             reasons=reasons,
             figures=figures,
             lines=lines,
-            same=", ".join(same),
             options="; ".join(f"`{name}` {shown(value)}" for name, value in options.items())
             or "none",
             absent=", ".join(Path(each).name for each in absent) or "none",

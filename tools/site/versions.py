@@ -84,16 +84,9 @@ def page(text):
             nodes.append(f"| {name} | {library} | {' | '.join(cells)} |")
     left = defaultdict(list)
     for name, found in known["open"].items():
-        nodes_of = defaultdict(set)
-        for check, subjects in found.items():
-            for subject in subjects:
-                nodes_of[subject.split(",")[0]].add(check.split()[0])
-        checks_of = defaultdict(list)
-        for node, checks in sorted(nodes_of.items()):
-            checks_of[", ".join(sorted(checks))].append(node)
-        words = "; ".join(f"{', '.join(each)}: {checks}" for checks, each in checks_of.items())
-        left[words or "nothing"].append(name)
-    lines = [f"- {' and '.join(names)}: {words}." for words, names in left.items()]
+        subjects = {each.split(",")[0] for group in found.values() for each in group}
+        left[", ".join(sorted(subjects)) or "none"].append(name)
+    lines = [f"- {' and '.join(names)}: {subjects}." for subjects, names in left.items()]
     text = with_block(text, "nodes", "\n".join([*nodes, ""]))
     return with_block(text, "open", "\n".join([*lines, ""]))
 

@@ -6,7 +6,7 @@ python -m tools.site.wall REPORT...    the tiles and wall.md, from folders that 
 
 import re
 import sys
-from collections import Counter, defaultdict
+from collections import defaultdict
 from functools import cached_property
 from html import escape
 from pathlib import Path
@@ -258,20 +258,6 @@ class Wall:
                 tiles.setdefault((host, round(tile.largest, 3)), tile)
         return ROUGH + figures("rough", reference, list(tiles.values()))
 
-    def verdicts(self) -> str:
-        """Table of the verdicts of the documents' pictures."""
-        counts: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
-        for (subject, host, library), result in self.results.items():
-            if result.check in ("picture", "finite") and tuple(subject.split(": ")) in self.shown:
-                verdict = NOT_JUDGED if result.check == "finite" else result.verdict
-                counts[host, library][verdict] += 1
-        columns = (PASSED, FAILED, NOT_JUDGED, NOT_RUN)
-        rows = "".join(
-            f"| {', '.join(place)} | {' | '.join(str(found[each]) for each in columns)} |\n"
-            for place, found in sorted(counts.items())
-        )
-        return f"## Verdicts and versions\n\n| materials in | {' | '.join(columns)} |\n|---|---|---|---|---|\n{rows}\n"
-
     @cached_property
     def shown(self) -> list[tuple[str, str]]:
         """The materials that most renderers drew: reports of other pages have pictures, too."""
@@ -287,7 +273,7 @@ class Wall:
         drawn = {host for *_, host, _ in self.images}
         measured = "".join(f"- {each}\n" for host, each in self.hosts.items() if host in drawn)
         return HEAD + "\n".join(
-            [*sections, self.rough(), self.verdicts() + self.not_drawn(), measured]
+            [*sections, self.rough(), "## Not drawn, and versions\n", self.not_drawn(), measured]
         )
 
 
