@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import cattrs
 
@@ -32,7 +33,7 @@ class Issue:
     `measured.json`.
 
     In a page, `rows`, `implied` and `repaired` are tables: a subject, or several with `; ` between
-    them, and their checks.
+    them, and their checks. So may the key of a cause in `remains` be several.
     """
 
     page: str  # the file without suffix
@@ -117,11 +118,12 @@ def _converter() -> cattrs.Converter:
     """A converter that reads rows, whose tables give the checks of each subject."""
     converter = strict_converter({})
 
-    def remains(entries: Sequence[dict[str, Table]]) -> dict[Row, tuple[Cause, ...]]:
+    def remains(entries: Sequence[dict[str, Any]]) -> dict[Row, tuple[Cause, ...]]:
         found: dict[Row, tuple[Cause, ...]] = {}
         for entry in entries:
-            pairs, cause = _pairs(entry.pop("rows")), converter.structure(entry, Cause)
-            found |= {pair: (*found.get(pair, ()), cause) for pair in pairs}
+            pairs, keys = _pairs(entry.pop("rows")), entry.pop("key", "").split("; ")
+            causes = tuple(converter.structure(entry | {"key": key}, Cause) for key in keys)
+            found |= {pair: (*found.get(pair, ()), *causes) for pair in pairs}
         return found
 
     def sizes(table: Mapping[str, Mapping[str, float]]) -> dict[Row, float]:
