@@ -7,7 +7,7 @@ the release is an older version and is not compared. A library with additional n
 documents may be a newer version, so its differences are permitted.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -29,7 +29,6 @@ from mxeon.hosts.calls import GRAPH
 from mxeon.io.images import write_exr
 from mxeon.shaders import generation, generators, released_graphs, texts
 from mxeon.shaders.document.drawn_values import CLOSURES
-from mxeon.shaders.document.graphs import inner_nodes
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.library import load_library
 from mxeon.shaders.library_tree import search_path
@@ -91,27 +90,6 @@ def newer(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
         right, own = release.getNodeDef(each.getName()), Path(each.getActiveSourceUri()).name
         if right.getVersionString() != each.getVersionString() if right else own in known:
             found.append(each.getNodeString())
-    return tuple(found)
-
-
-def redefined(
-    document: mx.Document, library: str, keys: Iterable[str] = ("value", "defaultgeomprop")
-) -> tuple[Cause, ...]:
-    """Defaults of a document's nodes that a library changes from MaterialX's."""
-    found: dict[Cause, None] = {}
-    for node in inner_nodes(document):
-        definition = node.getNodeDef(target="", allowRoughMatch=True) if node.isA(mx.Node) else None
-        right = definition and load_library("stock").getNodeDef(definition.getName())
-        for port in definition.getActiveInputs() if definition and right else ():
-            name, other = port.getName(), right and right.getActiveInput(port.getName())
-            if not other or node.getInput(name):
-                continue
-            for key in keys:
-                own, released = port.getAttribute(key), other.getAttribute(key)
-                if one_spelling(own) != one_spelling(released):
-                    default = f"default of {name} of {node.getCategory()}"
-                    names = default, own or "none", "MaterialX", released or "none"
-                    found[Cause(Kind.DEFECT, "definition", names)] = None
     return tuple(found)
 
 

@@ -249,7 +249,6 @@ DEFECTS = {
     "material_graph": "a material that a nodegraph defines is not generated; see docs/upstream/material_graphs.md",
     "own_document_refused": "the library refuses a document of mxeon's own: {text}",
     "different_in_osl": "{0} is different in OSL",
-    "definition": "{0} is {1}; {2} says {3}",
     "other_node": "nearest to it is {0} {1!r}, whose values are not the reference's",
     "never_passed": "{0} is never passed",
     "not_passed": "{0} is not passed",

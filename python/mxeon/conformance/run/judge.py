@@ -10,13 +10,13 @@ from functools import lru_cache
 from pathlib import Path
 
 from mxeon.conformance import checks, pictures, reference, release, results, shader_functions, text
-from mxeon.conformance.backends import Evaluating, backend_of, own_nodes
+from mxeon.conformance.backends import backend_of, own_nodes
 from mxeon.conformance.case import Case, make_case
 from mxeon.conformance.results.known_issues import with_pages
 from mxeon.conformance.run import plan
 from mxeon.conformance.run.plan import DOCUMENT, FUNCTIONS, HOST, Findings, Task
 from mxeon.conformance.samples import SEED
-from mxeon.conformance.specs import ALL, surface_shaders
+from mxeon.conformance.specs import ALL
 from mxeon.errors import DocumentError, ImageError, InterfaceError, MxeonError, NotRun, ShaderError
 from mxeon.hosts import base, open_engine
 from mxeon.shaders.document.policy import Policy
@@ -124,18 +124,7 @@ class Judge:
                 return Findings(shader_functions.judge_functions(host, task.library))
         case = self._case(host, task.subject, task.library, task.seed, task.methods)
         check = next(each for each in checks.CHECKS if each.key == task.check)
-        result = check.judge(case)
-        surface = isinstance(case.spec, surface_shaders.SurfaceShaderSpec)
-        known = not surface and with_pages(result, _copy(task)).pages
-        if result.verdict == results.FAILED and not known and isinstance(case.backend, Evaluating):
-            # Checks of a lobe set all inputs except the surface's own vectors.
-            keys = ("value", "defaultgeomprop")[not surface :]
-            if causes := release.redefined(case.evaluating.shader.document, task.library, keys):
-                unknown, known_causes = results.Kind.UNKNOWN, result.diagnosis.causes
-                told = (each for each in known_causes if each.kind is not unknown)
-                own = () if surface else tuple(told)
-                result = replace(result, diagnosis=replace(result.diagnosis, causes=causes + own))
-        found = (result,)
+        found = (check.judge(case),)
         images: tuple[results.Picture, ...] = ()
         if task.check in results.DIRECT:
             with suppress(NotRun, ShaderError):  # the check itself reports these
