@@ -1,45 +1,132 @@
 # SPDX-License-Identifier: Apache-2.0
 """Families of cases: each is a product of tables, from which some are drawn.
 
-A family covers its tables evenly: every include, every kind of file name, every argument of the
-models' functions. Only `mutated` draws documents and command lines at random; `found` contains
-faults of earlier runs.
+A family covers its tables evenly: every way to include every file, every kind of file name. Only `mutated` draws
+documents and command lines at random; `found` contains faults of earlier runs.
 """
 
 import random
-from collections.abc import Callable
-from dataclasses import dataclass
+from itertools import product
 
-from tests.fuzz import arguments, includes, names
-from tests.fuzz.cases import case
+from mxeon.shaders.library import examples_folder
+from tests.fuzz.cases import OUT, Case, case
 from tests.fuzz.found import FOUND
-from tests.fuzz.trial import judged
+from tests.support.documents import connected, material
 
 SEED = 1
-
-
-@dataclass(frozen=True)
-class Family:
-    """Cases of one kind."""
-
-    rows: Callable
-    to_case: Callable
-    count: int
-    trial: Callable = judged
-
-
-FAMILIES = {
-    "found": Family(lambda: FOUND, lambda _, found: found, len(FOUND)),
-    "mutated": Family(lambda: range(20_000), lambda _, number: case(SEED, number), 20_000),
-    "arguments": Family(arguments.rows, lambda _, row: row, 10_000, arguments.judged),
-    "includes": Family(includes.rows, includes.to_case, 1000),
-    "names": Family(names.rows, names.to_case, 400),
-}
+COUNTS = {"found": len(FOUND), "mutated": 20_000, "includes": 1000, "names": 400}
 
 
 def cases(family, count=None):
     """All cases of a family, or a sample if there are more than `count`."""
-    row = FAMILIES[family]
-    rng = random.Random(f"{SEED}-{family}")
-    rows = list(row.rows())
-    return [row.to_case(rng, each) for each in rng.sample(rows, min(count or row.count, len(rows)))]
+    rows, to_case = {
+        "found": (FOUND, lambda _, found: found),
+        "mutated": (range(20_000), lambda _, number: case(SEED, number)),
+        "includes": (includes(), including),
+        "names": (product(NAMES, READERS, ENCODINGS), named),
+    }[family]
+    rng, rows = random.Random(f"{SEED}-{family}"), list(rows)
+    drawn = rng.sample(rows, min(count or COUNTS[family], len(rows)))
+    return [to_case(rng, each) for each in drawn]
+
+
+# --- shader sources that include forbidden files, in every way and at every depth --------------------
+
+NODE = """<nodedef name="ND_own" node="own"><output name="out" type="color3"/></nodedef>
+<implementation name="IM_own" nodedef="ND_own" file="{}" {}{}/><own name="own" type="color3"/>"""
+FUNCTIONS = {
+    "glsl": "void own(out vec3 result) { result = vec3(0.5); }",
+    "msl": "void own(thread vec3& result) { result = vec3(0.5); }",
+    "slang": "void own(out vec3 result) { result = vec3(0.5); }",
+    "osl": "void own(output color result) { result = color(0.5); }",
+    "mdl": "color own() { return color(0.5); }",
+}
+WAYS = (
+    '#include "{}"',
+    '  #include"{}" // it',
+    '// #include "{}"',
+    'x#include "{}"y',
+    '#include "{}" "',
+    "#include <{}>",
+    "# include '{}'",
+    '#include "{}"\r',
+    '#include "lib/../{}"',
+    '#include "./{}',
+)
+FILES = (
+    "../secret.glsl", "link/secret.glsl", "/proc/self/cwd/../secret.glsl", "linked.glsl", "pipe.glsl",
+    "zero.glsl", "/dev/zero", "/dev/stdin", "/proc/self/mem", "/etc/hostname", "", ".", "textures",
+    "missing.glsl", "own.glsl", "part0.glsl", "latin.glsl", "empty.glsl", "marked.glsl", "null.glsl",
+    "base.mtlx", "textures/brick_color.png", "$fileTransformUv", "lib/$fileTransformUv", "\x00",
+    "../secret.glsl\x00", "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl", "a" * 300, "~", "$",
+    "libraries/stdlib/genglsl/lib/$fileTransformUv", "libraries/../../../../../../../../../etc/hostname",
+    "file:///etc/hostname", "link/documents/part1.glsl",
+)  # fmt: skip
+DEPTHS = (0, 1, 3, 15, 16, 400)
+BROUGHT = ("own.glsl", *FILES)  # files that the implementation itself names
+
+LINKS = (("linked.glsl", "../secret.glsl"), ("zero.glsl", "/dev/zero"), ("pipe.glsl", ""))
+OTHERS = (
+    ("latin.glsl", b"// caf\xe9\nfloat latin;"),
+    ("empty.glsl", b""),
+    ("marked.glsl", b"\xef\xbb\xbffloat marked;"),
+    ("null.glsl", b"float nothing;\0"),
+)
+
+
+def includes():
+    """The way a source includes, the included file, the depth, the target and the function."""
+    for row in product(WAYS, FILES, DEPTHS, FUNCTIONS):
+        yield "own.glsl", *row, 'function="own" '
+    for name, target in product(BROUGHT, FUNCTIONS):
+        for function in ('function="own" ', 'function="" ', ""):
+            yield name, WAYS[0], "part0.glsl", 1, target, function
+
+
+def including(rng, row):
+    """A document and its chain of sources, each of which includes the next."""
+    name, way, file, depth, target, function = row
+    links = [WAYS[0].format(f"part{number}.glsl") for number in range(depth)]
+    first, *parts = (f"{line}\n" for line in (*links, way.format(file)))
+    sources = [("own.glsl", first + FUNCTIONS[target])]
+    sources += [(f"part{number}.glsl", text + "float x;\n") for number, text in enumerate(parts)]
+    limited = rng.choice(("", f'target="gen{target}" '))
+    node = NODE.format(name.replace("\0", "\1"), function, limited)
+    document = material(node + connected(color='nodename="own"'))
+    files = [("base.mtlx", document), *sources]
+    encoded = tuple((name, text.encode()) for name, text in files)
+    arguments = ("generate", "base.mtlx", "--target", target, "--outputPath", OUT)
+    if rng.random() < 0.1:
+        arguments = ("render", "base.mtlx", "--size", "4", "--host", "reference", "--allowCode")
+        arguments += ("--output", f"{OUT}/a.png")
+    return Case(f"{way} {file} {depth}", encoded + OTHERS, arguments, LINKS)
+
+
+# --- names that confuse a terminal or a runner --------------------------------------------------------
+
+NAMES = (
+    "::error::a", "  ::add-mask::a", "\t::stop-commands::a", "a\n::error::b", "a\r::error::b",
+    "##[error]a", "a ##[add-mask]b", "\u2028::error::a", "::set-output name=a::b", "%0A::error::a",
+    "t\xf6ne", "\u3042", "\U0001f600", "\x1b[31ma", "a\u202eb", "\ufeffa", "-a", "a'b\"c", "<b>a", "|a|",
+)  # fmt: skip
+CLAY = (examples_folder() / "clay.mtlx").read_bytes()
+ENCODINGS = ("utf-8", "ascii", "latin-1", "cp1252", "shift_jis", "utf-16")
+# Commands for a document with such a name.
+READERS = (
+    ("check", "{}", "--host", "msl", "--workers", "0"),
+    ("check", "{}", "--host", "msl", "--workers", "0", "--full"),
+    ("check", "{}", "--host", "msl", "--workers", "0", "--json"),
+    ("check", "{}", "--host", "abacus"),
+    ("generate", "{}", "--target", "osl", "--outputPath", OUT),
+    ("generate", "{}", "--target", "osl", "--json", "--outputPath", OUT),
+    ("generate", "missing {}", "--target", "osl", "--outputPath", OUT),
+    ("render", "{}", "--host", "reference", "--size", "4", "--output", f"{OUT}/a.png"),
+)  # fmt: skip
+
+
+def named(_, row):
+    """A document whose name has this stem, for a command in a terminal of this encoding."""
+    stem, command, encoding = row
+    file = f"./{stem}.mtlx" if stem.startswith("-") else f"{stem}.mtlx"
+    arguments = tuple(each.format(file) if "{}" in each else each for each in command)
+    return Case(f"{stem!r} {command[0]} {encoding}", ((file, CLAY),), arguments, (), encoding)

@@ -3,11 +3,10 @@
 
 from tests.fuzz.cases import OUT, Case
 from tests.fuzz.words import POISON
-from tests.support.documents import material
+from tests.support.documents import connected, material
 
-LOBE = '<oren_nayar_diffuse_bsdf name="lobe" type="BSDF">{}</oren_nayar_diffuse_bsdf>'
-TINTED = LOBE.format('<input name="color" type="color3" nodename="tint"/>')
-ROUGH = LOBE.format('<input name="roughness" type="float" value="0"/>')
+TINTED = connected(color='nodename="tint"')
+ROUGH = connected(roughness='value="0"')
 LEFT = '<mix name="lobe" type="BSDF"><input name="fg" type="BSDF" nodename="a"/></mix>'
 ADD = '<add name="a{}" type="color3">{}</add>'
 IMAGE = '<image name="tint" type="color3"><input name="{}" type="{}" value="{}"/></image>' + TINTED
@@ -27,7 +26,7 @@ def row(count, names):
         ADD.format(number, "".join(port.format(name, number - 1) for name in names if number))
         for number in range(count)
     )
-    return "".join(nodes) + LOBE.format(port.format("color", count - 1))
+    return "".join(nodes) + connected(color=f'nodename="a{count - 1}"')
 
 
 def _generate(target):

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files that MaterialX itself opens while it generates the fuzzer's cases.
 
-    python -m tests.fuzz.opens [--cases N] [--bare]
-
 strace sees every file that a process opens, and Python's audit hook those that Python opens, which
 are mxeon's. MaterialX opened the rest, which must lie in the libraries or among mxeon's copies.
-With --bare, documents keep the names of their sources, as a control that must be detected.
+In a bare run, documents keep the names of their sources: a control that must be detected.
 """
 
-import argparse
 import codecs
 import contextlib
 import os
@@ -40,28 +37,25 @@ COPIES = "/mxeon-sources-"  # part of the path of a copy
 SEED = 3
 
 
-def selected(count, bare=False):
+def selected(count, bare):
     """Cases whose documents are generated: the family of includes, and mutated ones."""
-    rng = random.Random(SEED)
     mutated = (case(SEED, number) for number in range(count))
     tried = [*cases("includes", count), *mutated]
     tried = [each for each in tried if each.arguments[0] == "generate"]
     if bare:
         tried = [replace(each, links=()) for each in tried]
         tried = [each for each in tried if not any(word in str(each).encode() for word in ENDLESS)]
-    return rng.sample(tried, min(count, len(tried)))
+    return random.Random(SEED).sample(tried, min(count, len(tried)))
 
 
 def opens(count, bare=False):
     """Paths that MaterialX itself opened, with counts."""
     with tempfile.TemporaryDirectory(prefix="mxeon-opens-") as folder:
         log, audit = Path(folder, "strace"), Path(folder, "audit")
-        inner = [sys.executable, "-m", "tests.fuzz.opens", "--cases", str(count)]
-        inner += ["--audit", str(audit), *(["--bare"] if bare else [])]
         command = ["strace", "-f", "-qq", "-s", "4096", "-e", "trace=open,openat,openat2"]
-        subprocess.run(
-            [*command, "-o", str(log), *inner], cwd=ROOT, check=True, capture_output=True
-        )
+        code = f"from tests.fuzz import opens; opens.generate({count}, {bare}, {str(audit)!r})"
+        command += ["-o", str(log), sys.executable, "-c", code]
+        subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
         return _traced(log.read_bytes()) - Counter(audit.read_text().splitlines())
 
 
@@ -72,7 +66,7 @@ def strangers(paths):
 
 
 def _traced(log):
-    """Files opened after the start mark, one path per line."""
+    """Files opened between the marks, one path per line."""
     lines = log.split(START.encode())[1].split(END.encode())[0].splitlines()
     found = (OPEN.search(line) for line in lines)
     return Counter(
@@ -86,7 +80,7 @@ def _line(path):
     return ascii(path)[1:-1]
 
 
-def _run(count, audit, bare):
+def generate(count, bare, audit):
     """Generate the cases, and write the files that Python opens meanwhile."""
     paths = []
     for target in generation.TARGETS:  # loads each generator's own files first
@@ -113,26 +107,3 @@ def _run(count, audit, bare):
 def _uncopied(document, context, policy, tokens):
     """Replaces `copied_sources`, so that nothing is copied."""
     yield Sources(document, context, policy, "", tokens)
-
-
-def main():
-    """Print the files that MaterialX opened outside; the exit status is 1 if there are any."""
-    parser = argparse.ArgumentParser(prog="tests.fuzz.opens", description=__doc__.splitlines()[0])
-    parser.add_argument("--cases", type=int, default=400)
-    parser.add_argument("--bare", action="store_true", help="let documents name their own sources")
-    parser.add_argument("--audit", help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    if options.audit:
-        _run(options.cases, options.audit, options.bare)
-        return 0
-    found = opens(options.cases, options.bare)
-    outside = strangers(found)
-    print(*outside, sep="\n")
-    print(
-        f"{options.cases} cases: {found.total()} opens by MaterialX, {len(outside)} files outside"
-    )
-    return 1 if outside else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

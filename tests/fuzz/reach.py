@@ -3,20 +3,15 @@
 
 In a document that uses every kind of element, each attribute gets a unique word; attributes whose
 words occur in a shader reach it. Attributes that name each other are changed together.
-
-    python -m tests.fuzz.reach
 """
 
 import re
-import sys
 import warnings
 from collections import defaultdict
-from contextlib import chdir
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from xml.etree import ElementTree
 
 import MaterialX as mx
@@ -238,28 +233,3 @@ def _word(old, number, place):
         return f"77{number:05}", f"77{number:05}"
     mark = f"mark{number:05}x"
     return (re.sub(r"\bw\b", mark, old), mark) if re.search(r"\bw\b", old) else (mark, mark)
-
-
-def search(targets=TARGETS):
-    """The places that reach source, by document, and those that are not judged."""
-    names, wrong = set(), []
-    for root in documents().values():
-        elements = list(root.iter())
-        found = reached(root, present(root), targets) | reached(root, absent(root), targets)
-        names |= {(elements[place.number].tag, place.attribute) for place in found}
-        wrong += unjudged(root, found, targets)
-    return names, wrong
-
-
-def main():
-    """Print the places that reach source; the exit status is 1 if any is not judged."""
-    with TemporaryDirectory(prefix="mxeon-reach-") as folder, chdir(folder):
-        furnish(folder)
-        names, wrong = search()
-    print(*sorted(f"{tag} {attribute}" for tag, attribute in names), sep="\n")
-    print(*(f"not judged: {row}" for row in wrong), sep="\n")
-    return 1 if wrong else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
