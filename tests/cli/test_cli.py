@@ -20,11 +20,10 @@ from mxeon.report import write
 from mxeon.shaders.document.policy import LIMITS
 from mxeon.shaders.library import eonlib_folder
 from tests.support.command import CLAY, PLASTER, one_line
-from tests.support.documents import material
+from tests.support.documents import lobe, material
 from tests.support.plans import keep, keep_checks
 
-MIRROR = """<generalized_schlick_bsdf name="lobe" type="BSDF">
-  <input name="roughness" type="vector2" value="0, 0"/></generalized_schlick_bsdf>"""
+MIRROR = material(lobe("generalized_schlick_bsdf", roughness=(0.0, 0.0)))
 
 # --- status -------------------------------------------------------------------------------------
 
@@ -149,7 +148,7 @@ def test_generate_writes_a_file_for_each_stage_and_material(tmp_path, capsys):
 def test_an_environment_image_ends_at_its_poles(host, hosts, tmp_path):
     hosts(host)  # skips if it cannot run
     document, sky, output = (str(tmp_path / name) for name in ("a.mtlx", "sky.exr", "a.exr"))
-    Path(document).write_text(material(MIRROR))
+    Path(document).write_text(MIRROR)
     rows = np.linspace(1.0, 0.0, 8, dtype=np.float32)  # white above, black below
     oiio.ImageBuf(np.broadcast_to(rows[:, None, None], (8, 16, 3)).copy()).write(sky)
     options = ["--host", host, "--environment", sky, "--size", "128", "--output", output]

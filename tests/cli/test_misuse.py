@@ -9,7 +9,7 @@ from mxeon.cli import generate, library, main
 from mxeon.cli.batch import BatchResult, WorkerCrashed
 from mxeon.errors import FAILED, MISUSE, NOT_RUN, InputError, NotRun, ShaderError
 from tests.support.command import CLAY, PLASTER, one_line
-from tests.support.documents import material, textured
+from tests.support.documents import material, textured, written
 
 
 def failing(monkeypatch, error):
@@ -61,8 +61,7 @@ def test_two_documents_of_one_name_do_not_overwrite_each_other(tmp_path, capsys)
 
 
 def test_in_a_batch_the_other_files_are_done(tmp_path, capsys):
-    bad = tmp_path / "bad.mtlx"
-    bad.write_text("<materialx")
+    bad = written(tmp_path, "<materialx")
     status = main(
         ["generate", str(bad), PLASTER, "--target", "osl", "--outputPath", str(tmp_path), "--json"]
     )
@@ -73,8 +72,7 @@ def test_in_a_batch_the_other_files_are_done(tmp_path, capsys):
 
 
 def test_every_fault_of_a_document_has_its_line(tmp_path, capsys):
-    path = tmp_path / "look.mtlx"
-    path.write_text(textured(["no.png"]).replace('"color"', '"colr"'))
+    path = written(tmp_path, textured(["no.png"]).replace('"color"', '"colr"'))
     lines = [
         f"{path}: input \"lobe/colr\" must be an input of oren_nayar_diffuse_bsdf; got 'colr': did "
         "you mean color?",

@@ -59,13 +59,6 @@ def test_a_function_without_a_finite_value_fails_every_check_of_them():
     assert failed(run) == every
 
 
-def test_a_control_that_is_not_caught_is_said_to_be():
-    test = mxeon.brdf_test(lambda wo, wi, rho, roughness: rho / np.pi + 0.0 * wo[:, :1])
-    (check,) = [each for each in test.pytestmark[0].args[1] if each.key == "lambert"]
-    with pytest.raises(AssertionError, match="Lambert. the negative control is not caught: "):
-        test(check)
-
-
 def test_values_that_a_check_cannot_tell_from_wrong_ones_are_said_to_be():
     run = mxeon.check_brdf(lambda wo, wi, rho, roughness: rho / np.pi, "eon")
     (result,) = [each for each in run.results if each.check == "lambert"]
@@ -74,29 +67,29 @@ def test_values_that_a_check_cannot_tell_from_wrong_ones_are_said_to_be():
     assert all(each.diagnosis.causes for each in run.results if each.verdict == "failed")
 
 
-def test_a_model_that_is_nearly_named_is_suggested():
-    with pytest.raises(
-        ValueError,
-        match="no model 'eom': did you mean eon[?] see mxeon.models.table.DIFFUSE_MODELS$",
-    ):
-        mxeon.check_brdf(eon_brdf, "eom")
+@pytest.mark.parametrize(
+    "brdf, key, words",
+    [
+        (lambda wo, wi, rho, roughness: rho / np.pi + 0.0 * wo[:, :1], "lambert",
+         "Lambert. the negative control is not caught: "),
+        (reference.diffuse_model("eon_rho_cubed").brdf, "value", "0.0409 > 2e-06 pi f cos; best match: EON"),
+    ],
+)  # fmt: skip
+def test_a_failing_test_says_why(brdf, key, words):
+    test = mxeon.brdf_test(brdf)
+    (check,) = [each for each in test.pytestmark[0].args[1] if each.key == key]
+    with pytest.raises(AssertionError, match=words):
+        test(check)
 
 
-def test_a_failing_test_says_figure_and_nearest_model():
-    test = mxeon.brdf_test(reference.diffuse_model("eon_rho_cubed").brdf)
-    (value,) = [each for each in test.pytestmark[0].args[1] if each.key == "value"]
-    with pytest.raises(AssertionError, match="0.0409 > 2e-06 pi f cos; best match: EON"):
-        test(value)
-
-
-def test_values_of_another_shape_are_refused():
-    with pytest.raises(ValueError, match=r"values of red must have shape \(65536, 3\); got"):
-        mxeon.check_brdf(lambda *arguments: eon_brdf(*arguments)[:, 0], name="red")
-
-
-@pytest.mark.parametrize("model", ["lambert", "none"])
-def test_a_model_without_parameter_or_name_is_refused(model):
-    with pytest.raises(
-        ValueError, match="model must be one of .*; got|no model .*; see mxeon.models.table"
-    ):
-        mxeon.check_brdf(eon_brdf, model)
+@pytest.mark.parametrize(
+    "brdf, model, words",
+    [
+        (eon_brdf, "eom", "no model 'eom': did you mean eon[?] see mxeon.models.table.DIFFUSE_MODELS$"),
+        (eon_brdf, "lambert", "model must be one of .*; got"),
+        (lambda *each: eon_brdf(*each)[:, 0], "eon", r"must have shape \(65536, 3\); got"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_judged_is_refused(brdf, model, words):
+    with pytest.raises(ValueError, match=words):
+        mxeon.check_brdf(brdf, model)

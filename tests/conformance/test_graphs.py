@@ -7,7 +7,7 @@ import pytest
 
 from tests.support.verdicts import DIFFERS, EVERY_NODE, FAILED, PASSED, has, said
 from tests.support.wheels import wheel
-from tests.support.wrong_libraries import copy_of_stock, replace_text
+from tests.support.wrong_libraries import copy_of_stock, wrong_stock
 
 FILES = {
     "open_pbr_surface": "bxdf/open_pbr_surface.mtlx",
@@ -69,17 +69,9 @@ ROWS = [
 ]
 
 
-def changed(folder, node, *changes):
-    """Path of a part of MaterialX's libraries in which texts of the surface shader are replaced."""
-    copy_of_stock(folder, FILES[node])
-    for old, new in changes:
-        replace_text(folder, old, new, FILES[node])
-    return str(folder)
-
-
 @pytest.mark.parametrize(("node", "old", "new", "words"), ROWS)
 def test_a_wrong_part_of_a_graph_is_named(judged, tmp_path, node, old, new, words):
-    result = judged("release", EVERY_NODE, library=changed(tmp_path, node, (old, new)))
+    result = judged("release", EVERY_NODE, library=wrong_stock(tmp_path, FILES[node], (old, new)))
     assert result.verdict == FAILED and result.control.caught
     assert words in said(result)
 
@@ -92,13 +84,13 @@ def test_a_graph_that_is_written_differently_passes(judged, tmp_path):
         '<input name="in2" type="float" value="2.0" /></power>'
         '<absval name="size" type="float"><input name="in" type="float" nodename="R" /></absval>'
     )
-    library = changed(tmp_path, "UsdPreviewSurface", (product, power))
+    library = wrong_stock(tmp_path, FILES["UsdPreviewSurface"], (product, power))
     assert judged("release", EVERY_NODE, library=library).verdict == PASSED
 
 
 def test_another_version_of_a_node_differs(judged, tmp_path):
     changes = (('version="1.1.1"', 'version="1.2"'), ('value="1000.0" />', 'value="100.0" />'))
-    library = changed(tmp_path, "open_pbr_surface", *changes)
+    library = wrong_stock(tmp_path, FILES["open_pbr_surface"], *changes)
     result = judged("release", EVERY_NODE, library=library)
     assert result.verdict == DIFFERS and has(result, "newer", "open_pbr_surface")
     assert has(result, "in2 of thin_film_thickness_nm", "100")

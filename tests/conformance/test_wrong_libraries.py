@@ -21,9 +21,9 @@ from tests.support.verdicts import (
     has,
     said,
 )
-from tests.support.wrong_libraries import copy_of_eonlib, copy_of_stock, place_of, replace_text
+from tests.support.wrong_libraries import copy_of_eonlib, place_of, replace_text, wrong_stock
 
-ON, OFF = (f"oren_nayar_diffuse_bsdf, energy_compensation {flag}" for flag in ("true", "false"))
+ON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 MDL = "libraries/diffuse/eonlib_genmdl_impl.mtlx"
 DEFINITIONS, GRAPHS = "libraries/diffuse/eonlib_defs.mtlx", "libraries/diffuse/eonlib_ng.mtlx"
 FLAG = "{{energy_compensation}}"
@@ -78,9 +78,8 @@ def test_a_wrong_definition_is_named(judged, copy, old, new, words):
     ],
 )  # fmt: skip
 def test_a_wrong_default_fails_or_is_not_run(judged, tmp_path, title, check, old, new, verdict):
-    file = "pbrlib/pbrlib_defs.mtlx"
-    replace_text(copy_of_stock(tmp_path, file), old, new, file)
-    result = judged(check, title, library=str(tmp_path))
+    library = wrong_stock(tmp_path, "pbrlib/pbrlib_defs.mtlx", (old, new))
+    result = judged(check, title, library=library)
     assert result.verdict == verdict
     assert verdict == FAILED or "Tobject" in result.reason
 
@@ -293,8 +292,7 @@ HARMLESS = {
 @pytest.mark.parametrize("name", CHANGED)
 def test_what_differs_from_the_release_is_named_with_its_size(judged, tmp_path, name):
     file, old, new, *wanted = CHANGED[name]
-    replace_text(copy_of_stock(tmp_path, file), old, new, file)
-    result = judged("release", EVERY_NODE, library=str(tmp_path))
+    result = judged("release", EVERY_NODE, library=wrong_stock(tmp_path, file, (old, new)))
     assert result.verdict == FAILED and result.control.caught
     assert has(result, "release", *wanted)
     assert all(each.values[0] > 0.005 for each in result.diagnosis.causes if each.names[0])
@@ -303,19 +301,16 @@ def test_what_differs_from_the_release_is_named_with_its_size(judged, tmp_path, 
 def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):
     """This also happens after more libraries than the cache holds."""
     file, old, new, *wanted = CHANGED["alpha"]
-    replace_text(copy_of_stock(tmp_path, file), old, new, file)
     installed()
     read_library.cache_clear()
-    result = judged("release", EVERY_NODE, library=str(tmp_path))
+    result = judged("release", EVERY_NODE, library=wrong_stock(tmp_path, file, (old, new)))
     assert result.verdict == FAILED and has(result, "release", *wanted)
 
 
 def test_what_is_written_differently_and_has_the_released_values_passes(judged, tmp_path):
     for file, texts in HARMLESS.items():
-        copy_of_stock(tmp_path, file)
-        for old, new in texts.items():
-            replace_text(tmp_path, old, new, file)
-    result = judged("release", EVERY_NODE, library=str(tmp_path))
+        library = wrong_stock(tmp_path, file, *texts.items())
+    result = judged("release", EVERY_NODE, library=library)
     assert result.verdict == PASSED, said(result)
 
 
@@ -380,22 +375,22 @@ def test_an_older_library_and_text_that_nothing_evaluates_are_said_not_to_be_jud
     judged, tmp_path
 ):
     file = "pbrlib/genglsl/mx_displacement_float.glsl"
-    old = tmp_path / "old"
-    replace_text(copy_of_stock(tmp_path / "new", file), "vec3(disp)", "vec3(-disp)", file)
-    definitions = "stdlib/stdlib_defs.mtlx"
-    replace_text(copy_of_stock(old, definitions), "ND_flake2d", "ND_flake", definitions)
-    assert judged("release", EVERY_NODE, library=str(tmp_path / "new")).verdict == PASSED
-    assert "genglsl of ND_displacement_float" in judged.unjudged("release", str(tmp_path / "new"))
-    assert not judged.all("release", EVERY_NODE, "gl", str(old))
-    assert any("definitions" in each for each in judged.unjudged("release", str(old)))
+    new = wrong_stock(tmp_path / "new", file, ("vec3(disp)", "vec3(-disp)"))
+    old = wrong_stock(tmp_path / "old", "stdlib/stdlib_defs.mtlx", ("ND_flake2d", "ND_flake"))
+    assert judged("release", EVERY_NODE, library=new).verdict == PASSED
+    assert "genglsl of ND_displacement_float" in judged.unjudged("release", new)
+    assert not judged.all("release", EVERY_NODE, "gl", old)
+    assert any("definitions" in each for each in judged.unjudged("release", old))
 
 
 def test_differences_of_a_newer_library_are_permitted(judged, tmp_path):
-    file, distance = "stdlib/stdlib_defs.mtlx", '<unittypedef name="distance" />'
-    new = f'<nodedef name="ND_new" node="new" />{distance}'
-    replace_text(copy_of_stock(tmp_path, file), distance, new, file)
-    replace_text(tmp_path, 'scale="0.01"', 'scale="0.1"', file)
-    result = judged("release", EVERY_NODE, library=str(tmp_path))
+    distance = '<unittypedef name="distance" />'
+    changes = (
+        (distance, f'<nodedef name="ND_new" node="new" />{distance}'),
+        ('scale="0.01"', 'scale="0.1"'),
+    )
+    library = wrong_stock(tmp_path, "stdlib/stdlib_defs.mtlx", *changes)
+    result = judged("release", EVERY_NODE, library=library)
     assert result.verdict == DIFFERS and has(result, "newer", "new")
 
 
@@ -415,8 +410,8 @@ def test_two_nodes_that_define_one_function_are_named(judged, copy, guarded):
 def test_exchanged_arguments_of_a_call_in_mdl_are_named(judged, tmp_path):
     file = "pbrlib/genmdl/pbrlib_genmdl_impl.mtlx"
     old, new = "0:{{color0}}, mxp_color90:{{color90}}", "0:{{color90}}, mxp_color90:{{color0}}"
-    replace_text(copy_of_stock(tmp_path, file), old, new, file)
-    result = judged.texts("arguments", str(tmp_path))["every node, mdl"]
+    library = wrong_stock(tmp_path, file, (old, new))
+    result = judged.texts("arguments", library)["every node, mdl"]
     assert result.verdict == FAILED and result.control.caught
     assert has(result, "other_argument", "generalized_schlick_edf", "mxp_color0", "{{color90}}")
 
@@ -468,8 +463,7 @@ CLEAR, MIRROR = "dielectric_bsdf, scatter_mode T", "generalized_schlick_bsdf, sc
 def test_a_wrong_library_is_told_by_what_a_client_binds(
     judged, tmp_path, part, old, new, check, title, words
 ):
-    replace_text(copy_of_stock(tmp_path, part), old, new, part)
-    result = judged(check, title, "gl", str(tmp_path))
+    result = judged(check, title, "gl", wrong_stock(tmp_path, part, (old, new)))
     assert result.verdict == FAILED and has(result, *words)
 
 

@@ -6,7 +6,7 @@ import pytest
 from mxeon.models.nodes.node import COLORED
 from tests.support.sharing import DRAWN
 from tests.support.verdicts import DIFFERS, FAILED, has
-from tests.support.wrong_libraries import copy_of_stock, replace_text, wrong_library
+from tests.support.wrong_libraries import wrong_library, wrong_stock
 
 # Files of eonlib are given by path, those of MaterialX by name.
 LOBE, FACETS = "genglsl/lib/oren_nayar_lobe.glsl", "genglsl/lib/microfacet_lobe.glsl"
@@ -456,19 +456,17 @@ def test_a_wrong_line_fails_the_check_meant_for_it_and_is_named(judged, tmp_path
 def test_an_emission_that_a_surface_shader_drops_is_named(judged, tmp_path):
     graph = "bxdf/open_pbr_surface.mtlx"
     old = 'interfacename="emission_color"'
-    replace_text(copy_of_stock(tmp_path, graph), old, 'value="1.0, 1.0, 1.0"', graph)
-    result = judged("reach", "open_pbr_surface, every lobe", library=str(tmp_path))
+    library = wrong_stock(tmp_path, graph, (old, 'value="1.0, 1.0, 1.0"'))
+    result = judged("reach", "open_pbr_surface, every lobe", library=library)
     assert result.verdict == FAILED and has(result, "changes_nothing", "emission_color")
 
 
 @pytest.mark.parametrize("host", ["gl", "webgl", "vulkan", "slang", "osl"])
 def test_a_color_that_is_not_decoded_from_srgb_is_named(judged, tmp_path, host):
-    graphs = "cmlib/cmlib_ng.mtlx"
-    replace_text(copy_of_stock(tmp_path, graphs), 'value="2.4"', 'value="1.0"', graphs)
-    replace_text(tmp_path, 'value="1.055"', 'value="1.0"', graphs)
-    replace_text(tmp_path, 'value="0.055"', 'value="0.0"', graphs)
-    replace_text(tmp_path, 'value="12.92"', 'value="1.0"', graphs)
-    result = judged("color_space", "burley_diffuse_bsdf", host, str(tmp_path))
+    curve = {"2.4": "1.0", "1.055": "1.0", "0.055": "0.0", "12.92": "1.0"}
+    changes = ((f'value="{old}"', f'value="{new}"') for old, new in curve.items())
+    library = wrong_stock(tmp_path, "cmlib/cmlib_ng.mtlx", *changes)
+    result = judged("color_space", "burley_diffuse_bsdf", host, library)
     assert result.verdict == FAILED and result.control.caught
     assert has(result, "model", "the color, not decoded from sRGB")
 
@@ -489,9 +487,8 @@ def test_a_color_that_is_not_decoded_from_srgb_is_named(judged, tmp_path, host):
 def test_a_color_that_an_image_node_reads_wrongly_is_wrong_in_inputs_from_an_image(
     judged, tmp_path, host, old, new
 ):
-    file = "stdlib/genglsl/mx_image_color3.glsl"
-    replace_text(copy_of_stock(tmp_path, file), old, new, file)
-    result = judged("states", "burley_diffuse_bsdf", host, str(tmp_path))
+    library = wrong_stock(tmp_path, "stdlib/genglsl/mx_image_color3.glsl", (old, new))
+    result = judged("states", "burley_diffuse_bsdf", host, library)
     assert result.verdict == FAILED and result.control.caught
     assert has(result, "state", "inputs from an image")
 

@@ -4,7 +4,7 @@
 import pytest
 
 from tests.explorer.browser import launched, opened
-from tests.explorer.stage import model_sources, written
+from tests.explorer.stage import written
 from tests.support.availability import available
 
 
@@ -46,4 +46,5 @@ def undrawn(browser, address):
 @pytest.fixture(scope="module")
 def sources(stage):
     """A source of each model by its name, on a stage that a module's tests share."""
-    return model_sources(stage)
+    rows = stage.evaluate("mxeon.data.sources.filter(each => each.kind === 'model')")
+    return {row["model"]: row["id"] for row in reversed(rows)}

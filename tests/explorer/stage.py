@@ -100,9 +100,3 @@ def towards(light):
         float(np.sin(elevation)),
         float(np.cos(azimuth) * np.cos(elevation)),
     )
-
-
-def model_sources(stage):
-    """A source of each model, by the model's name."""
-    rows = stage.evaluate("mxeon.data.sources.filter(each => each.kind === 'model')")
-    return {row["model"]: row["id"] for row in reversed(rows)}

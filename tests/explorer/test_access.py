@@ -4,8 +4,8 @@
 import pytest
 
 from tests.explorer.browser import opened, show, started, state, until
-from tests.explorer.build import MODULES, needs_modules
 from tests.explorer.stage import written
+from tests.explorer.test_build import MODULES, needs_modules
 
 # Chromium has no WebGL without a graphics driver.
 NO_GRAPHICS = ("--disable-gpu", "--disable-software-rasterizer", "--no-proxy-server")

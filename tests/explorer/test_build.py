@@ -1,29 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page in the package can be rebuilt from its sources on every machine."""
 
-import subprocess
+import shutil
+import sys
 from importlib.resources import files
+from pathlib import Path
 
-from tests.explorer.build import MODULES, SOURCES, needs_modules, node
+from tests.support.availability import PACKAGES, missing
+from tests.support.command import output
 
+SOURCES = Path(__file__).parents[2] / "explorer"
+MODULES = SOURCES / "node_modules"
+OWN = Path(sys.executable).with_name("node")
+NODE = OWN if OWN.exists() else shutil.which("node")
 TEMPLATE = files("mxeon.explorer").joinpath("explorer.html")
 
 
-def run(*command):
-    done = subprocess.run(
-        [node(), *map(str, command)], cwd=SOURCES, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
+def needs_modules():
+    """Skip the test if Node or the packages are not installed; fail if `./run test --all` should have installed them."""
+    if not NODE or not MODULES.is_dir():
+        missing(PACKAGES, "explorer/node_modules: must be installed; ./run test --all does it")
 
 
 def test_the_template_is_built_from_the_sources(tmp_path):
     needs_modules()
-    run("build.mjs", tmp_path / "explorer.html")
+    output(NODE, "build.mjs", tmp_path / "explorer.html", cwd=SOURCES)
     built = (tmp_path / "explorer.html").read_bytes()
     assert built == TEMPLATE.read_bytes(), "build it again: cd explorer && npm run build"
 
 
 def test_the_sources_pass_the_compiler_and_the_formatter():
     needs_modules()
-    run(MODULES / "typescript" / "bin" / "tsc")
-    run(MODULES / "prettier" / "bin" / "prettier.cjs", "--check", ".")
+    output(NODE, MODULES / "typescript" / "bin" / "tsc", cwd=SOURCES)
+    output(NODE, MODULES / "prettier" / "bin" / "prettier.cjs", "--check", ".", cwd=SOURCES)

@@ -19,7 +19,6 @@ from pytest import approx
 from mxeon import check
 from mxeon.cli import main
 from mxeon.cli.answer import answer
-from mxeon.cli.explore import DOCUMENT_LIMIT
 from mxeon.conformance import words
 from mxeon.conformance.results import VISIBLE
 from mxeon.errors import MISUSE
@@ -36,7 +35,7 @@ from mxeon.shaders.scene import sphere
 from tests.explorer.browser import judged, opened, until
 from tests.support.availability import package
 from tests.support.command import one_line
-from tests.support.documents import ARTISTS, from_artist, textured
+from tests.support.documents import textured, written
 from tests.support.results import Diagnosis, Result, kept
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 
@@ -94,8 +93,7 @@ def test_code_of_a_document_needs_a_permission(tmp_path, capsys):
   <nodedef name="ND_mine" node="mine"><output name="out" type="color3"/></nodedef>
   <implementation name="IM_mine" nodedef="ND_mine" target="essl" sourcecode="vec3(0.5)"/>""",
     )
-    file = tmp_path / "mine.mtlx"
-    file.write_text(text)
+    file = written(tmp_path, text)
     out = str(tmp_path / "page.html")
     assert main(["explore", str(file), "--output", out]) == MISUSE
     assert "--allowCode" in capsys.readouterr().err
@@ -180,12 +178,14 @@ def test_a_document_is_shown_with_its_own_values_and_inputs(browser, tmp_path):
         judged(page, "left", "material")
 
 
+SHOWN = ("brick", "openpbr_rough_base", "standard_surface_rough_base", "tempered_steel")
+
+
 @pytest.mark.parametrize(
-    "name", ["brick", *(pytest.param(each, marks=pytest.mark.whole) for each in ARTISTS)]
+    "name", [SHOWN[0], *(pytest.param(each, marks=pytest.mark.whole) for each in SHOWN[1:])]
 )
 def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
-    out, example = tmp_path / "page.html", examples_folder() / "brick.mtlx"
-    document = str(example if name == "brick" else from_artist(tmp_path, name))
+    out, document = tmp_path / "page.html", str(examples_folder() / f"{name}.mtlx")
     assert main(["explore", document, "--workers", "0", "--output", str(out)]) == PASSED_STATUS
     run = check([document], ["gl"], "eonlib", compared="stock", workers=0)
     terminal, report, junit = " ".join(answer(run)), unescape("".join(html(run))), to_junit(run)
@@ -229,13 +229,6 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
         for side, result in zip(("left", "right"), found, strict=True):
             passed = "within tolerance" if result.difference.is_visible else "correct"
             judged(page, side, "wrong" if result.verdict == FAILED else passed)
-
-
-def test_the_help_has_the_limit_of_materials_of_a_page(capsys):
-    assert main(["explore", "--help-limits"]) == PASSED_STATUS
-    assert f"renderable elements (default: {DOCUMENT_LIMIT})" in " ".join(
-        capsys.readouterr().out.split()
-    )
 
 
 def test_inputs_have_the_ranges_of_their_definitions():

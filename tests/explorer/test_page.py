@@ -2,7 +2,6 @@
 """Using the page: every control works by mouse and by keyboard; the probe; texts to copy."""
 
 import re
-import subprocess
 import sys
 from contextlib import contextmanager
 
@@ -12,6 +11,7 @@ import pytest
 import mxeon
 from mxeon.models import eon_brdf
 from tests.explorer.browser import DRAWN, judged, show, shows, state, until
+from tests.support.command import output
 
 # A checksum of all pixels.
 PIXELS = "mxeon.stage.read().reduce((sum, value, k) => (31 * sum + value * (1 + k)) % 65521, 0)"
@@ -270,9 +270,7 @@ def test_the_python_line_runs_and_gives_the_value(page):
     rows = values_read(page)
     for column, side in enumerate("AB"):
         line = copied(page, side, "Python")
-        command = [sys.executable, "-c", line]
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-        found = [float(word) for word in done.stdout.split()]
+        found = [float(word) for word in output(sys.executable, "-c", line).split()]
         assert np.allclose(found, numbers(rows[0][column]), atol=SHADER)
 
 

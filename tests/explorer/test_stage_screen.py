@@ -7,7 +7,7 @@ import pytest
 
 from mxeon.io.srgb import srgb_encoded
 from tests.explorer.browser import until
-from tests.explorer.stage import LISTEN, frame, opened_stage, picture, settle, side, view, written
+from tests.explorer.stage import LISTEN, frame, opened_stage, picture, settle, side, view
 
 # Half a step of dithering, half a step of rounding, and one for the average of frames.
 STEPS = 2
@@ -20,11 +20,6 @@ LOSE = """() => {
     globalThis.loss = gl.getExtension("WEBGL_lose_context");
     globalThis.loss.loseContext();
 }"""
-
-
-@pytest.fixture(scope="module")
-def address(tmp_path_factory):
-    return written(tmp_path_factory.mktemp("explorer") / "screen.html")
 
 
 @pytest.fixture(scope="module")

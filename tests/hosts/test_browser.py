@@ -6,10 +6,10 @@ import pytest
 from mxeon.errors import NotRun
 from mxeon.hosts import open_engine
 from mxeon.shaders.library import examples_folder
-from mxeon.shaders.nodes import document_text, input_text, node_text
 from mxeon.survey import browser
 from mxeon.survey.browser import babylon, pathtracer, three
 from tests.support.availability import available
+from tests.support.documents import surface, written
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED, RENDERER_NODES, Verdicts, said
 from tests.test_upstream import same_record
 from tools.site import ledger
@@ -133,26 +133,17 @@ def test_pictures_are_not_run_and_say_why(own, tracer):
 
 @pytest.mark.parametrize("name", ["three", "babylon"])
 def test_documents_are_judged_by_the_input_at_fault(judged, tmp_path, name):
-    path = tmp_path / "document.mtlx"
-    rough = input_text("coat_roughness", "float", 0.4)
-    matte = rough + input_text("specular_weight", "float", 0.0)
+    matte = {"coat_roughness": 0.4, "specular_weight": 0.0}
     verdicts = {}
     for weight in (0.0, 1.0):
-        inputs = matte + input_text("coat_weight", "float", weight)
-        path.write_text(
-            document_text(node_text("open_pbr_surface", "surfaceshader", "shading", inputs))
-        )
+        path = written(tmp_path, surface("open_pbr_surface", coat_weight=weight, **matte))
         [verdicts[weight]] = judged.document(path, name, RENDERER_NODES).results
     assert verdicts[0.0].verdict == PASSED
     assert verdicts[1.0].verdict == FAILED and "mostly its coat_weight" in said(verdicts[1.0])
 
 
 def test_a_document_that_a_renderer_ignores_in_part_is_not_judged(judged, tmp_path):
-    path = tmp_path / "document.mtlx"
-    inputs = input_text("subsurface_weight", "float", 0.5)
-    path.write_text(
-        document_text(node_text("open_pbr_surface", "surfaceshader", "shading", inputs))
-    )
+    path = written(tmp_path, surface("open_pbr_surface", subsurface_weight=0.5))
     [result] = judged.document(path, "three", RENDERER_NODES).results
     assert result.check == "finite" and "it ignores subsurface_weight" in said(result)
 

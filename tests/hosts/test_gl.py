@@ -12,20 +12,19 @@ import pytest
 from mxeon.hosts.textures import irradiance, read_latlong
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import generate
-from mxeon.shaders.nodes import EON, OREN_NAYAR
+from mxeon.shaders.nodes import EON
 from mxeon.shaders.scene import FRONT, SCENES, Scene, sphere
 from mxeon.shaders.shader_ball import shader_ball
-from tests.support.documents import material
+from tests.support.documents import connected, lobe, material
+from tests.support.documents import image as image_node
 from tests.support.tolerances import PICTURE
 
 SIZE = 96
-ROUGH = '<input name="roughness" type="float" value="0.9"/>'
-COLOR = '<input name="color" type="color3" value="0.8, 0.4, 0.1"/>'
-TRUE = '<input name="energy_compensation" type="boolean" value="true"/>'
+ROUGH = {"color": (0.8, 0.4, 0.1), "roughness": 0.9}
 LOBES = {
-    "eon": f'<{OREN_NAYAR} name="lobe" type="BSDF">{ROUGH}{COLOR}{TRUE}</{OREN_NAYAR}>',
-    "qon": f'<{OREN_NAYAR} name="lobe" type="BSDF">{ROUGH}{COLOR}</{OREN_NAYAR}>',
-    "node": f'<{EON} name="lobe" type="BSDF">{ROUGH}{COLOR}</{EON}>',
+    "eon": lobe(**ROUGH, energy_compensation=True),
+    "qon": lobe(**ROUGH),
+    "node": lobe(EON, **ROUGH),
 }
 
 
@@ -49,8 +48,7 @@ def test_every_pixel_is_the_models(gl, reference, name, scene):
 
 
 def test_the_shader_ball_is_drawn_at_its_points(gl):
-    lambert = f'<{EON} name="lobe" type="BSDF">{COLOR}</{EON}>'
-    image = picture(gl, lambert, replace(FRONT, shape="ball"))
+    image = picture(gl, lobe(EON, color=ROUGH["color"]), replace(FRONT, shape="ball"))
     points = shader_ball(SIZE)
     cosine = np.where(points.mask, points.normal[..., 2], 0.0)[..., None]
     assert np.abs(image - cosine * [0.8, 0.4, 0.1]).max() <= PICTURE
@@ -60,10 +58,7 @@ def test_a_texture_stands_upright(gl, reference, tmp_path):
     texels = np.zeros((8, 16, 3), dtype=np.float32)
     texels[:4, :, 0], texels[4:, :, 2] = 0.9, 0.6  # red above, blue below
     oiio.ImageBuf(texels).write(str(tmp_path / "flag.exr"))
-    nodes = f"""<image name="flag" type="color3">
-        <input name="file" type="filename" value="{tmp_path / "flag.exr"}"/>
-      </image>
-      <{EON} name="lobe" type="BSDF"><input name="color" type="color3" nodename="flag"/></{EON}>"""
+    nodes = image_node(tmp_path / "flag.exr", "flag") + connected(color='nodename="flag"')
     front = Scene("front", light=(0.0, 0.0, 1.0))
     image, expected = (picture(host, nodes, front) for host in (gl, reference))
     top, bottom = image[SIZE // 4, SIZE // 2], image[3 * SIZE // 4, SIZE // 2]
@@ -76,7 +71,7 @@ def test_an_environment_image_lights_by_its_irradiance(gl, tmp_path):
     sky = np.zeros((32, 64, 3), dtype=np.float32)
     sky[:16] = [0.2, 0.4, 1.0]  # blue from above, nothing from below
     oiio.ImageBuf(sky).write(str(tmp_path / "sky.exr"))
-    white = f'<{EON} name="lobe" type="BSDF">{COLOR.replace("0.8, 0.4, 0.1", "1, 1, 1")}</{EON}>'
+    white = lobe(EON, color=(1.0, 1.0, 1.0))
     image = picture(gl, white, Scene("sky", environment=tmp_path / "sky.exr"))
     top, bottom = image[1, SIZE // 2], image[-2, SIZE // 2]
     assert np.allclose(top, [0.2, 0.4, 1.0], atol=0.02) and bottom.max() < 0.02

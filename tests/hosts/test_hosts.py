@@ -21,7 +21,7 @@ from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
 from tests.support.cases import direction, pairs
 from tests.support.documents import lobe, material
 from tests.support.tolerances import SUMMED_DIRECTIONS, TWIN_ALBEDO, TWIN_VALUE
-from tests.support.wrong_libraries import GLSL, copy_of_stock, replace_text
+from tests.support.wrong_libraries import GLSL, wrong_stock
 
 HOSTS = ("gl", "webgl", "vulkan", "wgsl", "slang")
 COUNT = 20_000
@@ -155,9 +155,7 @@ def test_an_integer_of_the_text_is_the_boolean_that_it_was(hosts):
 def tabled(host, library):
     """A metal whose albedo is read from a table, and that table."""
     text = material(lobe("conductor_bsdf", roughness=(0.6, 0.6)))
-    [shader] = host.compile(
-        text, library=str(library), methods=Methods("prefilter", albedo="table")
-    )
+    [shader] = host.compile(text, library=library, methods=Methods("prefilter", albedo="table"))
     [texels] = host.table(shader).values()
     return shader, texels
 
@@ -169,14 +167,14 @@ DRAWS = f"{GLSL}/lib/mx_generate_albedo_table.glsl"
 @pytest.mark.parametrize("name", TABLED)
 def test_a_table_of_albedos_is_the_model_and_is_read_as_it_was_drawn(hosts, tmp_path, name):
     """On WebGL2, this includes the repair of its page."""
-    host, library = hosts(name), copy_of_stock(tmp_path, DRAWS)
-    replace_text(library, "/ $albedoTableSize", "/ float($albedoTableSize)", DRAWS)
+    host, size = hosts(name), "$albedoTableSize"
+    library = wrong_stock(tmp_path, DRAWS, (f"/ {size}", f"/ float({size})"))
     shader, texels = tabled(host, library)
     places = (np.arange(64) + 0.5) / 64
     albedo = ggx_albedo_dir(*np.meshgrid(places, places))
     assert np.abs(texels[..., :2].sum(axis=-1) - albedo).max() <= SAMPLES_64
     [sampled] = host.compile(
-        shader.document, library=str(library), methods=Methods("prefilter", albedo="monteCarlo")
+        shader.document, library=library, methods=Methods("prefilter", albedo="monteCarlo")
     )
     wo = direction(np.linspace(0.0, 1.0, 64))
     found, expected = (host.evaluate(e, wo, wo, {}, "environment") for e in (shader, sampled))

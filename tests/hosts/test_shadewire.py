@@ -9,17 +9,15 @@ import pytest
 from mxeon.errors import NotRun, Unsupported
 from mxeon.hosts.base import RendererWarning
 from mxeon.shaders.library import examples_folder
-from mxeon.shaders.nodes import document_text
 from mxeon.shaders.scene import BACK, SIDE
 from tests.support.cases import pairs
-from tests.support.documents import lobe, material
+from tests.support.documents import lobe, material, surface
 from tests.support.verdicts import DIFFERS, FAILED, PASSED
 
 SAME = 1e-5  # two texts in float32, of values up to 3
 EON, FITTED = "oren_nayar_diffuse_bsdf, energy_compensation true", "MaterialX's fit of its albedo"
 WO, WI, COLOR, NUMBER = pairs(1000, 3)
 ALPHA = 0.1 + 0.9 * np.stack([NUMBER, COLOR[:, 0]], axis=1)
-SURFACE = '<{0} name="shading" type="surfaceshader"/>'
 CASES = {  # document, and its inputs
     "diffuse": (
         material(lobe(energy_compensation="true")),
@@ -31,11 +29,11 @@ CASES = {  # document, and its inputs
     ),
     "sheen": (material(lobe("sheen_bsdf", mode="zeltner")), {"color": COLOR, "roughness": NUMBER}),
     "standard_surface": (
-        document_text(SURFACE.format("standard_surface")),
+        surface("standard_surface"),
         {"base_color": COLOR, "coat": NUMBER, "sheen": COLOR[:, 0], "metalness": COLOR[:, 1]},
     ),
     "gltf_pbr": (
-        document_text(SURFACE.format("gltf_pbr")),
+        surface("gltf_pbr"),
         {"base_color": COLOR, "metallic": NUMBER, "clearcoat": COLOR[:, 0], "alpha_mode": 2},
     ),
 }

@@ -12,7 +12,7 @@ from mxeon.errors import MISUSE, PASSED, ImageError
 from mxeon.hosts.textures import read_latlong, read_texture
 from mxeon.io.images import ImageWarning, read_image, write_image
 from mxeon.io.srgb import srgb_decoded, srgb_encoded
-from tests.support.documents import textured
+from tests.support.documents import textured, written
 
 PIXELS = np.arange(24.0, dtype=np.float32).reshape(2, 4, 3)
 
@@ -63,12 +63,6 @@ def test_an_environment_that_is_not_finite_is_refused_and_a_texture_is_told(tmp_
         read_texture(path)
 
 
-def written(folder, files):
-    """Path of a document in a folder; its color is the sum of images."""
-    (folder / "a.mtlx").write_text(textured(files))
-    return str(folder / "a.mtlx")
-
-
 # Files of a document with images of 4 x 2 pixels, and their total number of pixels.
 TOGETHER = {"one": (["a.exr"], 8), "two": (["a.exr", "b.exr"], 16), "same": (["a.exr"] * 3, 8)}
 
@@ -78,13 +72,14 @@ TOGETHER = {"one": (["a.exr"], 8), "two": (["a.exr", "b.exr"], 16), "same": (["a
 def test_images_of_a_document_have_a_limit_together(tmp_path, capsys, command, files, texels):
     for name in set(files):
         write_image(tmp_path / name, PIXELS / 96.0, {})
+    document = written(tmp_path, textured(files))
     host = [] if "explore" in command else ["--host", "reference" if "render" in command else "gl"]
     output = ["--output", str(tmp_path / ("o.html" if "explore" in command else "o.exr"))]
-    line = [*command, written(tmp_path, files), "--workers", "0", *host]
+    line = [*command, str(document), "--workers", "0", *host]
     line += output if "check" not in command else []
     assert main([*line, "--maxTexels", str(texels - 1)]) == MISUSE
     assert capsys.readouterr().err == (
-        f"mxeon: {tmp_path / 'a.mtlx'}: images must have at most {texels - 1} pixels together; "
+        f"mxeon: {document}: images must have at most {texels - 1} pixels together; "
         f"got {texels}: raise it with --maxTexels\n"
     )
     if "check" not in command:

@@ -40,6 +40,7 @@ from tests.kit.conftest import (
     write_pictures,
 )
 from tests.support.availability import available
+from tests.support.documents import studio
 from tests.support.tolerances import KIT_FALSE_ALARMS
 from tests.support.verdicts import has, said
 
@@ -244,27 +245,8 @@ def test_cycles_with_the_profile_is_named_eon(tmp_path):
         assert names(run)[f"energy_compensation true, {light}"] == EON
 
 
-STUDIO = """<materialx version="1.39">
-  <nodedef name="ND_studio_rough" node="studio_rough">
-    <input name="color" type="color3" value="0.18, 0.18, 0.18" />
-    <input name="roughness" type="float" value="0.0" />
-    <output name="out" type="BSDF" />
-  </nodedef>
-  <nodegraph name="NG_studio_rough" nodedef="ND_studio_rough">
-    <eon_diffuse_bsdf name="lobe" type="BSDF">
-      <input name="color" type="color3" interfacename="color" />
-      <input name="roughness" type="float" interfacename="roughness" />
-    </eon_diffuse_bsdf>
-    <output name="out" type="BSDF" nodename="lobe" />
-  </nodegraph>
-</materialx>
-"""
-
-
 def test_a_kit_may_show_a_node_of_a_studios_own(tmp_path, capsys):
-    (tmp_path / "studio").mkdir()
-    (tmp_path / "studio" / "rough.mtlx").write_text(STUDIO)
-    kit, definitions = tmp_path / "kit", ["--definitions", str(tmp_path / "studio")]
+    kit, definitions = tmp_path / "kit", ["--definitions", str(studio(tmp_path))]
     assert main(["kit", "export", str(kit), "--node", "studio_rough", *definitions]) == 0
     policy = Policy(definitions=(str(tmp_path / "studio"),))
     (shader,) = generate(kit / "materials" / "true.mtlx", "glsl", policy=policy)

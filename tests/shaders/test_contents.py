@@ -4,11 +4,10 @@
 import pytest
 
 from mxeon import check
-from mxeon.shaders.nodes import document_text, node_text
-from tests.support.documents import lobe, material
+from mxeon.shaders.nodes import connection_text, document_text, input_text, node_text
+from tests.support.documents import lobe, material, surface, written
 from tests.support.plans import keep_checks
 
-SHEEN = '<sheen_bsdf name="lobe" type="BSDF">{}</sheen_bsdf>'
 EON, QON = (f"oren_nayar_diffuse_bsdf, energy_compensation {flag}" for flag in ("true", "false"))
 GRAPH = """<nodegraph name="graph">
     <eon_diffuse_bsdf name="inner" type="BSDF"/>
@@ -20,10 +19,6 @@ GRAPH = """<nodegraph name="graph">
 """
 
 
-def port(name, kind, value):
-    return f'<input name="{name}" type="{kind}" value="{value}"/>'
-
-
 @pytest.fixture(autouse=True)
 def nothing_else(monkeypatch):
     """Documents are read without judging any node."""
@@ -31,8 +26,7 @@ def nothing_else(monkeypatch):
 
 
 def titles(text, tmp_path):
-    file = tmp_path / "look.mtlx"
-    file.write_text(text)
+    file = written(tmp_path, text)
     return check([file], ["msl"]).contents[str(file)]
 
 
@@ -42,8 +36,8 @@ def titles(text, tmp_path):
         (material(lobe(energy_compensation=True)), (EON,)),
         (material(lobe()), (QON,)),
         (material(lobe(weight=0.0)), ()),
-        (material(SHEEN.format("")), ("sheen_bsdf, mode conty_kulla",)),
-        (material(SHEEN.format(port("mode", "string", "zeltner"))), ("sheen_bsdf, mode zeltner",)),
+        (material(lobe("sheen_bsdf")), ("sheen_bsdf, mode conty_kulla",)),
+        (material(lobe("sheen_bsdf", mode="zeltner")), ("sheen_bsdf, mode zeltner",)),
         (document_text(GRAPH), ("eon_diffuse_bsdf",)),
     ],
     ids=["flag", "no flag", "no weight", "default mode", "mode", "nodegraph"],
@@ -54,49 +48,45 @@ def test_a_document_has_its_nodes_in_their_modes(text, expected, tmp_path):
 
 @pytest.mark.parametrize(("thickness", "film"), [(0.0, False), (500.0, True)])
 def test_a_film_is_judged_where_there_is_one(thickness, film, tmp_path):
-    metal = (
-        f'<conductor_bsdf name="lobe" type="BSDF">{port("thinfilm_thickness", "float", thickness)}'
-    )
-    found = titles(material(f"{metal}</conductor_bsdf>"), tmp_path)
+    found = titles(material(lobe("conductor_bsdf", thinfilm_thickness=thickness)), tmp_path)
     assert ("conductor_bsdf, thin film" in found) == film and "conductor_bsdf" in found
 
 
 def test_lobes_inside_a_surface_shader_count_where_they_have_weight(tmp_path):
     for weight in (0.0, 0.5):
-        sheen = port("sheen", "float", weight)
-        shader = node_text("standard_surface", "surfaceshader", "shading", sheen)
-        found = titles(document_text(shader), tmp_path)
+        found = titles(surface("standard_surface", sheen=weight), tmp_path)
         assert {"standard_surface", QON, "dielectric_bsdf, scatter_mode R"} <= set(found)
         assert ("sheen_bsdf, mode conty_kulla" in found) == (weight > 0.0)
 
 
 EMISSIONS = {
-    "standard_surface": ("emission", "float", 1.0),
-    "open_pbr_surface": ("emission_luminance", "float", 1.0),
-    "gltf_pbr": ("emissive", "color3", "1, 0, 0"),
+    "standard_surface": {"emission": 1.0},
+    "open_pbr_surface": {"emission_luminance": 1.0},
+    "gltf_pbr": {"emissive": (1.0, 0.0, 0.0)},
 }
 
 
 @pytest.mark.parametrize("category", EMISSIONS)
 @pytest.mark.parametrize("lit", [False, True])
 def test_an_emission_counts_where_it_is_not_black(category, lit, tmp_path):
-    ports = port(*EMISSIONS[category]) if lit else ""
-    found = titles(document_text(node_text(category, "surfaceshader", "shading", ports)), tmp_path)
+    found = titles(surface(category, **EMISSIONS[category] if lit else {}), tmp_path)
     assert ("surface, a BSDF and an EDF" in found) == ("uniform_edf" in found) == lit
     assert "surface, an EDF alone" not in found
 
 
 @pytest.mark.parametrize(
     "index, reached",
-    [(port("ior", "float", 1.5), False), (port("ior", "float", 0.0), True)]
-    + [('<input name="ior" type="float" nodename="varies"/>', True)],
+    [
+        (input_text("ior", "float", 1.5), False),
+        (input_text("ior", "float", 0.0), True),
+        (connection_text("ior", "float", "varies"), True),
+    ],
     ids=["constant", "zero", "computed"],
 )
 def test_a_constant_input_that_a_document_does_not_have_is_not_reached(index, reached, tmp_path):
     varies = '<texcoord name="uv" type="vector2"/><extract name="varies" type="float"><input name="in" type="vector2" nodename="uv"/></extract>'
-    glass = f'<dielectric_bsdf name="lobe" type="BSDF">{index}</dielectric_bsdf>'
-    file = tmp_path / "glass.mtlx"
-    file.write_text(material(varies + glass))
+    glass = node_text("dielectric_bsdf", "BSDF", "lobe", index)
+    file = written(tmp_path, material(varies + glass))
     found = check([file], ["msl"]).unreached[str(file)]
     regions = {each.name for each in found["dielectric_bsdf, scatter_mode R"]}
     assert ("index_zero" in regions) != reached
@@ -104,8 +94,7 @@ def test_a_constant_input_that_a_document_does_not_have_is_not_reached(index, re
 
 
 def test_what_one_library_lacks_is_told_with_its_name(tmp_path):
-    file = tmp_path / "eon.mtlx"
-    file.write_text(material('<eon_diffuse_bsdf name="lobe" type="BSDF"/>'))
+    file = written(tmp_path, material(lobe("eon_diffuse_bsdf")))
     files = [str(file), str(tmp_path / "nosuch.mtlx")]
     found = check(files, ["msl"], ["eonlib", "stock"])
     assert found.contents[files[0]] == ("eon_diffuse_bsdf",)

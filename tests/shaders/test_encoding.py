@@ -7,7 +7,7 @@ import MaterialX as mx
 import pytest
 
 from mxeon.shaders.document.reading import read_document
-from tests.support.documents import lobe, material, refusal
+from tests.support.documents import lobe, material, refusal, written
 
 TEXT = material(lobe()).split("\n", 1)[1].replace("<surface ", '<surface doc="{}" ')
 WORDS = "löök \N{GREEK SMALL LETTER RHO}"
@@ -27,12 +27,6 @@ def stock(path):
     document = mx.createDocument()
     mx.readFromXmlFile(document, str(path))
     return mx.writeToXmlString(document)
-
-
-def written(folder, data):
-    path = folder / "look.mtlx"
-    path.write_bytes(data)
-    return path
 
 
 @pytest.mark.parametrize("name, encoding, words", READ.values(), ids=READ)

@@ -25,35 +25,18 @@ from mxeon.shaders.methods import Methods
 from mxeon.shaders.nodes import EON, OREN_NAYAR
 from mxeon.shaders.options import unbound_members
 from tests.support.availability import available, program
-from tests.support.documents import COMPENSATED, lobe, material
+from tests.support.command import output
+from tests.support.documents import lobe, material, surface
 
 EXAMPLES = sorted(examples_folder().glob("*.mtlx"))
 RASTERISED = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang")
 SOURCES = sorted((source_folder("eonlib") / "genglsl").rglob("*.glsl"))
 OSL_SOURCES = sorted((source_folder("eonlib") / "genosl").rglob("*.osl"))
-LIBRARIES = ("eonlib", "stock")
 CONSTANT = {"const", "uniform", "struct", "in", "constant", "precision"}
 VALIDATED = {"glsl": (), "essl": (), "vulkan": ("-V",)}
 SURFACES = ("open_pbr_surface", "standard_surface", "gltf_pbr", "UsdPreviewSurface")
 
-# Every input of the nodes, with two different values.
-VALUES = {
-    "weight": ("0.5", "0.25"),
-    "color": ("0.8, 0.4, 0.1", "0.1, 0.4, 0.8"),
-    "roughness": ("0.5", "0.75"),
-    "normal": ("0, 0, 1", "0, 1, 0"),
-    "energy_compensation": ("false", "true"),
-}
-FIRST = {name: first for name, (first, _) in VALUES.items()}
-EON_FIRST = {name: value for name, value in FIRST.items() if name not in COMPENSATED}
-NODES = ((OREN_NAYAR, FIRST), (EON, EON_FIRST))
 
-SURFACE = """<materialx version="1.39">
-  <{0} name="shading" type="surfaceshader"/>
-  <surfacematerial name="look" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
-  </surfacematerial>
-</materialx>"""
 SUM = '<add name="{}" type="BSDF"><input name="in1" type="BSDF" nodename="{}"/>' + (
     '<input name="in2" type="BSDF" nodename="{}"/></add>'
 )
@@ -67,7 +50,6 @@ print(json.dumps([path for path in compiled if not compiled[path]]))
 
 on_each_target = pytest.mark.parametrize("target", TARGETS)
 of_each_example = pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-of_each_node = pytest.mark.parametrize("node, inputs", NODES, ids=[node for node, _ in NODES])
 
 
 def pixel(text, target, **options):
@@ -100,9 +82,7 @@ def validate(shader, target, folder):
     for stage, suffix in (("pixel", "frag"), ("vertex", "vert")):
         files.append(folder / f"{shader.name}.{suffix}")
         files[-1].write_text(shader.stages[stage])
-    command = [program("glslangValidator"), *VALIDATED[target], *files]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout
+    output(program("glslangValidator"), *VALIDATED[target], *files, cwd=folder)
 
 
 def every_lobe():
@@ -125,29 +105,10 @@ def test_every_example_becomes_shaders_on_every_other_target(path, target):
         assert all(shader.stages.values())
 
 
-@pytest.mark.parametrize("surface", SURFACES)
+@pytest.mark.parametrize("category", SURFACES)
 @on_each_target
-def test_the_surfaces_of_materialx_are_made_on_every_target(surface, target):
-    assert pixel(SURFACE.format(surface), target)
-
-
-@of_each_node
-@on_each_target
-def test_every_input_of_the_nodedef_is_used(node, inputs, target):
-    lines = pixel(material(lobe(node, **inputs)), target).splitlines()
-    used = "\n".join(line for line in lines if "lobe_out" in line)
-    ports = load_library().getNodeDef(f"ND_{node}").getInputs()
-    assert {port.getName() for port in ports} == set(inputs)
-    assert [name for name in inputs if not re.search(rf"\blobe_{name}\b", used)] == []
-
-
-@of_each_node
-@pytest.mark.parametrize("target", RASTERISED)
-def test_rasterised_targets_hold_our_function_and_not_the_stock_one(node, inputs, target):
-    source = pixel(material(lobe(node, **inputs)), target)
-    assert re.search(rf"^ *void {node}\(ClosureData closureData,", source, re.MULTILINE)
-    assert re.search(r"^ *(vec3|float3) eon_brdf_mu\(", source, re.MULTILINE)
-    assert "mx_oren_nayar" not in source
+def test_the_surfaces_of_materialx_are_made_on_every_target(category, target):
+    assert pixel(surface(category), target)
 
 
 @pytest.mark.parametrize("target", VALIDATED)
@@ -252,36 +213,6 @@ def test_no_name_in_a_source_is_one_that_materialx_makes_for_a_node():
     assert found == ["thin_film_weight", "hair_scale"]
 
 
-@pytest.mark.parametrize("target", RASTERISED)
-def test_a_generated_shader_keeps_no_state_beside_that_of_materialx(target):
-    text = re.sub(rf"(</?){EON}\b", rf"\1{OREN_NAYAR}", every_lobe()[0])
-    both = [pixel(text, target, library=each) for each in LIBRARIES]
-    eonlib, stock = map(kept, both)
-    assert eonlib <= stock
-    assert {each.split()[-1] for each in kept(both[0] + "vec3 last;")} >= {"last"}
-    statics = [re.findall(r"\bstatic\b(?! const)", each) for each in both]
-    assert len(statics[0]) <= len(statics[1])
-
-
-# Nodes whose names make uniforms that look like functions: `thin_film_weight`, `hair_scale`.
-NAMED = {
-    "thin_film": lobe("dielectric_bsdf", "thin_film", thinfilm_thickness=400.0)
-    + '<multiply name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="thin_film"/></multiply>',
-    "hair": '<deon_hair_absorption_from_melanin name="melanin" type="vector3"/><normalmap name="hair" type="vector3"/>'
-    + '<chiang_hair_bsdf name="lobe" type="BSDF"><input name="absorption_coefficient" type="vector3" nodename="melanin"/>'
-    + '<input name="normal" type="vector3" nodename="hair"/></chiang_hair_bsdf>',
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", NAMED)
-@pytest.mark.parametrize("target", VALIDATED)
-def test_a_node_named_like_our_functions_makes_the_same_shader(name, target, tmp_path):
-    [shader] = generate(material(NAMED[name]), target)
-    validate(shader, target, tmp_path)
-    other = pixel(material(NAMED[name].replace(f'"{name}"', '"zzz"')), target)
-    assert other.replace("zzz_", f"{name}_") == shader.stages["pixel"]
-
-
 # Patterns that C++ does not compile, by title: a structure is not a function, and an array needs an
 # address space.
 NOT_METAL = {
@@ -318,7 +249,7 @@ def test_generated_osl_compiles(tmp_path):
         python = interpreter()
     headers = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include").asString()
     shutil.copytree(headers, tmp_path, dirs_exist_ok=True)
-    sources = [*EXAMPLES, every_lobe()[0], *map(SURFACE.format, SURFACES)]
+    sources = [*EXAMPLES, every_lobe()[0], *map(surface, SURFACES)]
     written = []
     for number, source in enumerate(sources):
         for profile in (None, "cycles"):
@@ -329,9 +260,8 @@ def test_generated_osl_compiles(tmp_path):
                 written[-1].write_text(shader.stages["pixel"])
     wrong = tmp_path / "wrong.osl"
     wrong.write_text("shader wrong() { none(); }")
-    command = [python, "-c", COMPILE, *written, wrong]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert json.loads(done.stdout.splitlines()[-1]) == [str(wrong)], done.stdout
+    *_, refused = output(python, "-c", COMPILE, *written, wrong).splitlines()
+    assert json.loads(refused) == [str(wrong)]
 
 
 @pytest.mark.parametrize("flag", ["false", "true"])

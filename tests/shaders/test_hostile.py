@@ -47,34 +47,26 @@ def home(tmp_path):
 # --- files outside ------------------------------------------------------------------------------
 
 
+NAMES = ("../secret", "link/secret", "{}/secret")
+OUTSIDE = {
+    "texture": (
+        lambda name: textured([name]),
+        (*NAMES, "tile.&lt;UDIM&gt;", "../&lt;UDIM&gt;"),
+        "png",
+    ),
+    "include": (including, NAMES, "mtlx"),
+    "source": (lambda name: material(BROUGHT.format(f'file="{name}" function="a"')), NAMES, "glsl"),
+}
+
+
 @pytest.mark.parametrize(
-    "name",
-    [
-        "../secret.png",
-        "link/secret.png",
-        "{}/secret.png",
-        "tile.&lt;UDIM&gt;.png",
-        "../&lt;UDIM&gt;.png",
-    ],
+    "kind, name", [(kind, name) for kind in OUTSIDE for name in OUTSIDE[kind][1]]
 )
-def test_a_texture_outside_needs_permission(home, name):
-    path = written(home, textured([name.format(home.parent)]))
-    assert "pass --allowOutside to permit it" in refusal(path)
-    assert read_document(path, policy=TRUSTED)
-
-
-@pytest.mark.parametrize("name", ["../secret.mtlx", "link/secret.mtlx", "{}/secret.mtlx"])
-def test_an_include_outside_needs_permission(home, name):
-    path = written(home, including(name.format(home.parent)))
-    assert "pass --allowOutside to permit it" in refusal(path)
-    assert read_document(path, policy=TRUSTED).content.getNode("lobe")
-
-
-@pytest.mark.parametrize("name", ["../secret.glsl", "link/secret.glsl"])
-def test_a_source_outside_needs_permission(home, name):
-    path = written(home, material(BROUGHT.format(f'file="{name}" function="a"')))
+def test_a_file_outside_needs_permission(home, kind, name):
+    make, _, ending = OUTSIDE[kind]
+    path = written(home, make(f"{name.format(home.parent)}.{ending}"))
     assert "pass --allowOutside to permit it" in refusal(path, Policy(code=True))
-    with pytest.warns(CodeWarning):
+    with warnings.catch_warnings(action="ignore", category=CodeWarning):
         assert generate(path, "glsl", policy=TRUSTED)
 
 
@@ -94,13 +86,6 @@ def test_code_of_its_own_needs_permission_and_is_reported(home, how):
     assert 'implementation "IM_a" must not contain its own code' in refusal(path)
     with pytest.warns(CodeWarning, match=r"look.mtlx: contains its own code: IM_a"):
         assert generate(path, "glsl", policy=Policy(code=True))
-
-
-def test_a_nodegraph_is_no_code():
-    graph = '<nodegraph name="NG_a" nodedef="ND_a"><eon_diffuse_bsdf name="x" type="BSDF"/>'
-    graph += '<output name="out" type="BSDF" nodename="x"/></nodegraph><a name="lobe" type="BSDF"/>'
-    with warnings.catch_warnings(action="error"):
-        assert generate(material(NODEDEF + graph), "glsl")
 
 
 def test_generating_reports_code_and_running_it_needs_the_option(home, capsys):

@@ -10,63 +10,36 @@ from mxeon.hosts.base import LobeWarning
 from mxeon.hosts.cycles import process
 from mxeon.shaders.generation import generate
 from mxeon.shaders.inner_lobes import inner_lobes
-from mxeon.shaders.nodes import document_text
+from mxeon.shaders.nodes import connection_text, input_text, node_text
 from mxeon.shaders.scene import SIDE, Paths
-from tests.support.documents import material
+from tests.support.documents import lobe, material, surface, written
 
-LOBE = '<subsurface_bsdf name="{}" type="BSDF">{}</subsurface_bsdf>'
-OPAQUE = '<burley_diffuse_bsdf name="opaque" type="BSDF"/>'
-GLASS = (
-    '<dielectric_bsdf name="lobe" type="BSDF">'
-    '<input name="scatter_mode" type="string" value="{}"/></dielectric_bsdf>'
-)
-
-
-def number(name, value, kind="float"):
-    return f'<input name="{name}" type="{kind}" value="{value}"/>'
+WAX = material(lobe("subsurface_bsdf"))
 
 
 def mixed(weight):
-    sides = "".join(
-        f'<input name="{side}" type="BSDF" nodename="{node}"/>'
-        for side, node in (("fg", "inner"), ("bg", "opaque"))
-    )
-    mix = f'<mix name="lobe" type="BSDF">{sides}{weight}</mix>'
-    return material(LOBE.format("inner", "") + OPAQUE + mix)
-
-
-def surface(category, *inputs):
-    shader = f'<{category} name="shading" type="surfaceshader">{"".join(inputs)}</{category}>'
-    return document_text(shader)
+    sides = connection_text("fg", "BSDF", "inner") + connection_text("bg", "BSDF", "opaque")
+    mix = node_text("mix", "BSDF", "lobe", sides + input_text("mix", "float", weight))
+    return material(lobe("subsurface_bsdf", "inner") + lobe("burley_diffuse_bsdf", "opaque") + mix)
 
 
 @pytest.mark.parametrize(
     "text, kinds",
     [
-        (material(LOBE.format("lobe", "")), ("subsurface",)),
-        (material(LOBE.format("lobe", number("weight", 0.0))), ()),
-        (material(OPAQUE.replace("opaque", "lobe")), ()),
-        (material(GLASS.format("R")), ()),
-        (material(GLASS.format("RT")), ("transmission",)),
-        (mixed(number("mix", 0.5)), ("subsurface",)),
-        (mixed(number("mix", 0.0)), ()),
+        (WAX, ("subsurface",)),
+        (material(lobe("subsurface_bsdf", weight=0.0)), ()),
+        (material(lobe("burley_diffuse_bsdf")), ()),
+        (material(lobe("dielectric_bsdf", scatter_mode="R")), ()),
+        (material(lobe("dielectric_bsdf", scatter_mode="RT")), ("transmission",)),
+        (mixed(0.5), ("subsurface",)),
+        (mixed(0.0), ()),
         (surface("open_pbr_surface"), ()),
-        (surface("open_pbr_surface", number("subsurface_weight", 0.5)), ("subsurface",)),
-        (
-            surface("open_pbr_surface", number("transmission_weight", 0.5)),
-            ("transmission", "volume"),
-        ),
-        (
-            surface(
-                "open_pbr_surface",
-                number("subsurface_weight", 1.0),
-                number("geometry_thin_walled", "true", "boolean"),
-            ),
-            (),
-        ),
-        (surface("standard_surface", number("subsurface", 0.1)), ("subsurface",)),
+        (surface("open_pbr_surface", subsurface_weight=0.5), ("subsurface",)),
+        (surface("open_pbr_surface", transmission_weight=0.5), ("transmission", "volume")),
+        (surface("open_pbr_surface", subsurface_weight=1.0, geometry_thin_walled=True), ()),
+        (surface("standard_surface", subsurface=0.1), ("subsurface",)),
         (surface("UsdPreviewSurface"), ()),
-        (surface("UsdPreviewSurface", number("opacity", 0.5)), ("transmission",)),
+        (surface("UsdPreviewSurface", opacity=0.5), ("transmission",)),
     ],
 )
 def test_the_lobes_below_the_surface_are_those_that_have_an_effect(text, kinds):
@@ -89,11 +62,10 @@ def test_paths_that_are_too_few_are_named(lobes, paths, words):
 
 
 def test_a_rasterized_picture_says_what_it_has_in_place_of_a_lobe(gl, judged, tmp_path):
-    file = tmp_path / "wax.mtlx"
-    file.write_text(material(LOBE.format("lobe", "")))
+    file = written(tmp_path, WAX)
     [reason] = gl.approximations(gl.compile(file)[0], SIDE)
     assert "subsurface_bsdf is rasterized" in reason
-    assert judged.document(file).notes == ((reason, "wax.mtlx: look"),)
+    assert judged.document(file).notes == ((reason, "look.mtlx: look"),)
     assert str(LobeWarning("look", reason)) == f"look: {reason}"
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Copies of eonlib: they are self-contained, and every version of MaterialX can use them."""
 
-import subprocess
+import json
 import zipfile
 from pathlib import Path
 
@@ -11,8 +11,9 @@ import mxeon
 from mxeon.shaders.library import SOURCE_FOLDERS, TESTED, data_folder
 from mxeon.shaders.library_export import export_library, recipes
 from tests.support.availability import program
+from tests.support.command import output
 from tests.support.verdicts import PASSED
-from tests.support.wheels import run_with, verdicts_with
+from tests.support.wheels import run_with
 
 
 @pytest.fixture(scope="module")
@@ -56,8 +57,7 @@ def test_the_shaders_of_every_node_of_a_copy_compile(copy, tmp_path, version):
     run_with(version, "tests.support.client", copy, tmp_path)
     shaders = sorted(tmp_path.glob("*.frag"))
     assert len(shaders) == 23
-    done = subprocess.run([program("glslangValidator"), *shaders], capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout
+    output(program("glslangValidator"), *shaders)
 
 
 # In these versions, GLSL adds a medium's transmission to that of the layer above it.
@@ -67,7 +67,7 @@ MEDIA = dict.fromkeys(TESTED[:-1], "transmittance, ")
 @pytest.mark.whole
 @pytest.mark.parametrize("version", [TESTED[0], "main"])
 def test_every_node_has_the_values_of_the_models(copy, version):
-    verdicts = verdicts_with(version, copy)
+    verdicts = json.loads(run_with(version, "tests.support.every_node", copy))
     wrong = [key for key, verdict in verdicts.items() if verdict != PASSED]
     assert len(verdicts) >= 65
     assert wrong == [key for key in verdicts if key.startswith(MEDIA.get(version, "none"))]

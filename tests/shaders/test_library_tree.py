@@ -131,9 +131,8 @@ def package(folder):
 
 
 def other_generator(folder):
-    replace_text(
-        copy_of_stock(folder), "mx_matrix_mul(", "own_mul(", "stdlib/genglsl/lib/mx_math.glsl"
-    )
+    math = "stdlib/genglsl/lib/mx_math.glsl"
+    replace_text(copy_of_stock(folder), "mx_matrix_mul(", "own_mul(", math)
     return "has no mx_matrix_mul, which glsl calls: name its build with --materialx"
 
 

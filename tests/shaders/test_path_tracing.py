@@ -16,9 +16,10 @@ import pytest
 from mxeon.conformance.checks.paths import deviation, paths, random, refracted
 from mxeon.errors import InputError, InterfaceError
 from mxeon.shaders.generation import generate
-from mxeon.shaders.nodes import connection_text, document_text, input_text, material_text, node_text
+from mxeon.shaders.nodes import connection_text, document_text, material_text, node_text
 from tests.support.availability import program
 from tests.support.cases import direction
+from tests.support.documents import surface
 from tests.support.verdicts import PASSED
 from tests.support.wrong_libraries import copy_of_eonlib
 from tools.benchmarks import glass
@@ -70,7 +71,7 @@ SURFACES = {
         "base_color": BASE, "metallic": 0.3, "roughness": 0.5, "transmission": 0.3, "specular": 0.9,
         "specular_color": WARM, "sheen_color": COOL, "sheen_roughness": 0.5, "clearcoat": 0.5,
         "clearcoat_roughness": 0.4, "emissive": (0.2, 0.1, 0.0), "iridescence": 0.5, "iridescence_thickness": 400.0,
-        "anisotropy_strength": 0.4, "alpha": 0.8, "alpha_mode": 2,
+        "anisotropy_strength": 0.4, "alpha": 0.8, "alpha_mode": "2",
     },
     "UsdPreviewSurface": {
         "diffuseColor": BASE, "emissiveColor": (0.1, 0.1, 0.0), "metallic": 0.3, "roughness": 0.5, "clearcoat": 0.5,
@@ -79,23 +80,8 @@ SURFACES = {
 }  # fmt: skip
 
 
-def kind(value):
-    kinds = {int: "integer", float: "float", tuple: "color3"}
-    return kinds[type(value)]
-
-
-def surface_text(category):
-    """XML of a material whose surface shader uses all its lobes."""
-    inputs = "".join(
-        input_text(name, kind(value), value) for name, value in SURFACES[category].items()
-    )
-    return document_text(
-        node_text(category, "surfaceshader", "shading", inputs.replace('"2.0"', '"2"'))
-    )
-
-
 DOCUMENTS = {name: material_text(*row) for name, row in NODES.items()}
-DOCUMENTS |= {name: surface_text(name) for name in SURFACES}
+DOCUMENTS |= {name: surface(name, **inputs) for name, inputs in SURFACES.items()}
 view = partial(direction, phi=0.3)
 # Drivers take seconds to compile a surface shader's text.
 SURFACE_NAMES = [pytest.param(name, marks=pytest.mark.whole) for name in SURFACES]
@@ -228,7 +214,7 @@ def test_no_edge_of_an_input_is_nan(gl):
 def test_other_text_does_not_change(tmp_path):
     documents = copy_of_eonlib(tmp_path)
     shutil.rmtree(tmp_path / "genglsl" / "path")
-    for document in map(surface_text, SURFACES):
+    for document in map(DOCUMENTS.get, SURFACES):
         [with_path] = generate(document, "glsl")
         [without] = generate(document, "glsl", library=str(documents))
         assert with_path.stages == without.stages
@@ -267,7 +253,7 @@ def validated(folder, text, *options):
 @pytest.mark.parametrize("target", VERSIONS)
 @pytest.mark.parametrize("name", SURFACES)
 def test_the_text_compiles_for_other_targets(tmp_path, target, name):
-    [shader] = generate(surface_text(name), target, profile="path")
+    [shader] = generate(DOCUMENTS[name], target, profile="path")
     options = ["-V", "-o", str(tmp_path / "path.spv")] if target == "vulkan" else []
     assert validated(tmp_path, VERSIONS[target] + shader.stages["pixel"] + MAIN, *options) == ""
 

@@ -9,7 +9,7 @@ import pytest
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import TARGETS, generate
 from mxeon.shaders.scene import FURNACE
-from tests.support.documents import material
+from tests.support.documents import connected, material
 
 STRUCTURES = """<typedef name="pair"><member name="x" type="float" value="0.5"/>
     <member name="y" type="float" value="0.25"/></typedef>
@@ -25,17 +25,15 @@ STRUCTURES += "".join(
 PICK = (
     STRUCTURES
     + """<pick name="pick" type="float">
-    <input name="in" type="nest" value="{{0.75;0.5};2}"/></pick>
-  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
-    <input name="weight" type="float" nodename="pick"/></oren_nayar_diffuse_bsdf>"""
+    <input name="in" type="nest" value="{{0.75;0.5};2}"/></pick>"""
 )
+PICK += connected(weight='nodename="pick"')
 NODE = """<transformmatrix name="t" type="vector{size}">
     <input name="in" type="vector{size}" value="{vector}"/>
     <input name="mat" type="matrix{size}{size}" value="{matrix}"/></transformmatrix>
   <separate{size} name="s" type="multioutput">
-    <input name="in" type="vector{size}" nodename="t"/></separate{size}>
-  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
-    <input name="weight" type="float" nodename="s" output="outy"/></oren_nayar_diffuse_bsdf>"""
+    <input name="in" type="vector{size}" nodename="t"/></separate{size}>"""
+NODE += connected(weight='nodename="s" output="outy"')
 MATRICES = {
     size: NODE.format(
         size=size,

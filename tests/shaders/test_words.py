@@ -9,7 +9,7 @@ import pytest
 from mxeon.shaders import generation
 from mxeon.shaders.document.reading import read_document
 from tests.fuzz import reach
-from tests.support.documents import lobe, material, refusal
+from tests.support.documents import lobe, material, refusal, written
 from tests.support.sharing import shared
 
 SOME = ("glsl", "osl", "mdl")  # one target of each family of generators
@@ -117,6 +117,5 @@ def test_legitimate_text_is_accepted(nodes):
 @pytest.mark.parametrize("name", ["a b (1) #2 &amp; ü.png", "it's, 100%.png"])
 def test_names_of_files_are_free_but_for_what_ends_a_string(tmp_path, name):
     (tmp_path / name.replace("&amp;", "&")).touch()
-    path = tmp_path / "look.mtlx"
-    path.write_text(material(IMAGE.format("file", "filename", name) + lobe()), encoding="utf-8")
+    path = written(tmp_path, material(IMAGE.format("file", "filename", name) + lobe()))
     assert read_document(path)

@@ -22,6 +22,14 @@ def run(*arguments, **environment):
     )
 
 
+def output(*command, **options):
+    """The output of a program, which must succeed."""
+    command = [*map(str, command)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, **options)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
 def wait_for(condition, process):
     """Wait until a condition holds, while a process runs."""
     end = time.monotonic() + DEADLINE

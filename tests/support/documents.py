@@ -1,26 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small material documents as text, for the tests of the shader chain."""
 
-import numpy as np
 import pytest
 
 from mxeon.errors import DocumentError
-from mxeon.io.images import write_image
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.generation import generate
+from mxeon.shaders.library import load_library
 from mxeon.shaders.nodes import (
-    FLAG,
     INPUT_TYPES,
     OREN_NAYAR,
     SURFACE,
-    connection_text,
     document_text,
     input_text,
     lobe_text,
     node_text,
 )
-
-COMPENSATED = {FLAG: True}
 
 
 def material(nodes):
@@ -33,19 +28,29 @@ def lobe(category=OREN_NAYAR, name="lobe", **inputs):
     return lobe_text(category, inputs, name)
 
 
-def connected(**inputs):
+def surface(category, **inputs):
+    """A document with a surface shader and values of its inputs."""
+    definitions = load_library("stock").getMatchingNodeDefs(category)
+    ports = "".join(
+        input_text(name, definitions[0].getActiveInput(name).getType(), value)
+        for name, value in inputs.items()
+    )
+    return document_text(node_text(category, "surfaceshader", "shading", ports))
+
+
+def connected(name="lobe", **inputs):
     """A rough diffuse node with inputs connected by the given attributes."""
     ports = "".join(
         f'<input name="{each}" type="{INPUT_TYPES[each]}" {attributes}/>'
         for each, attributes in inputs.items()
     )
-    return f'<{OREN_NAYAR} name="lobe" type="BSDF">{ports}</{OREN_NAYAR}>'
+    return f'<{OREN_NAYAR} name="{name}" type="BSDF">{ports}</{OREN_NAYAR}>'
 
 
 def written(folder, text):
     """The file of a document in a folder."""
     path = folder / "look.mtlx"
-    path.write_text(text)
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
     return path
 
 
@@ -91,38 +96,37 @@ def _open_pbr(**inputs):
     return node_text("open_pbr_surface", "surfaceshader", "shading", ports)
 
 
-# Materials as artists bring them, by the names of their elements.
-ARTISTS = {
-    "car_paint": _open_pbr(
-        base_color=(0.6, 0.02, 0.02), base_metalness=0.7, specular_roughness=0.35, coat_weight=1.0,
-        coat_roughness=0.05, thin_film_weight=1.0, thin_film_thickness=0.4, thin_film_ior=1.8,
-    ),
-    "brushed_aluminium": lobe_text("conductor_bsdf", {
-        "ior": (1.3, 0.96, 0.6), "extinction": (7.5, 6.4, 5.3), "roughness": (0.1, 0.5),
-    }) + SURFACE,
-    "velvet": lobe_text("sheen_bsdf", {"color": (0.7, 0.3, 0.4), "roughness": 0.4}, "fibers")
-    + lobe_text(OREN_NAYAR, {"color": (0.1, 0.01, 0.03), "roughness": 0.9} | COMPENSATED, "pile")
-    + node_text("layer", "BSDF", "lobe", connection_text("top", "BSDF", "fibers")
-                + connection_text("base", "BSDF", "pile"))
-    + SURFACE,
-    "tiled_floor": node_text("tiledimage", "color3", "tiles",
-                             input_text("file", "filename", "tiles.png")
-                             + input_text("uvtiling", "vector2", (4.0, 4.0)))
-    + node_text(OREN_NAYAR, "BSDF", "lobe", connection_text("color", "color3", "tiles")
-                + input_text("roughness", "float", 0.8) + input_text(FLAG, "boolean", True))
-    + SURFACE,
-    "thin_glass": _open_pbr(
-        transmission_weight=1.0, transmission_color=(0.8, 0.95, 0.9), specular_roughness=0.2,
-        geometry_thin_walled=True,
-    ),
-}  # fmt: skip
+# A rough diffuse node with eonlib's lobe, whose color passes shader code of the studio.
+STUDIO = """<materialx version="1.39">
+  <nodedef name="ND_studio_rough" node="studio_rough">
+    <input name="color" type="color3" value="0.3, 0.1, 0.1"/>
+    <input name="roughness" type="float" value="0.0"/>
+    <output name="out" type="BSDF"/>
+  </nodedef>
+  <nodegraph name="NG_studio_rough" nodedef="ND_studio_rough">
+    <studio_fade name="fade" type="color3">
+      <input name="in" type="color3" interfacename="color"/>
+    </studio_fade>
+    <eon_diffuse_bsdf name="lobe" type="BSDF">
+      <input name="color" type="color3" nodename="fade"/>
+      <input name="roughness" type="float" interfacename="roughness"/>
+    </eon_diffuse_bsdf>
+    <output name="out" type="BSDF" nodename="lobe"/>
+  </nodegraph>
+  <nodedef name="ND_studio_fade" node="studio_fade">
+    <input name="in" type="color3" value="1.0, 1.0, 1.0"/>
+    <output name="out" type="color3"/>
+  </nodedef>
+  <implementation name="IM_studio_fade_glsl" nodedef="ND_studio_fade" target="genglsl"
+                  file="studio_fade.glsl" function="studio_fade"/>
+</materialx>"""
+FADE = "void studio_fade(vec3 color, out vec3 result)\n{\n    result = 0.5 * color;\n}\n"
 
 
-def from_artist(folder, name):
-    """The file of a document of `ARTISTS` in a folder, with the image that it reads."""
-    tiles = np.full((8, 8, 3), (200, 130, 90), np.uint8)
-    tiles[0] = tiles[:, 0] = 40
-    write_image(folder / "tiles.png", tiles, {})
-    path = folder / f"{name}.mtlx"
-    path.write_text(document_text(ARTISTS[name], name))
-    return path
+def studio(folder):
+    """Write a studio's own definitions to a subfolder of a new folder, which is returned."""
+    nodes = folder / "studio" / "nodes"
+    nodes.mkdir(parents=True)
+    (nodes / "rough.mtlx").write_text(STUDIO)
+    (nodes / "studio_fade.glsl").write_text(FADE)
+    return nodes.parent

@@ -14,11 +14,6 @@ def keep_checks(patch, *keys):
     keep(patch, lambda task: task.check in keys and task.subject.split(",")[0] not in others)
 
 
-def keep_host(patch, host):
-    """Restrict the runs that this process plans to one host, without texts."""
-    keep(patch, lambda task: task.host == host)
-
-
 def keep(patch, kept):
     """Restrict plans to tasks for which `kept` is true."""
     whole = run.make_plan

@@ -4,7 +4,6 @@
 A version is downloaded once and kept in `out/materialx`, which git ignores.
 """
 
-import json
 import os
 import re
 import shutil
@@ -108,8 +107,3 @@ def run_with(version, module, *arguments):
     done = run(wheel(version), *map(str, arguments), module=module)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
-
-
-def verdicts_with(version, library, *nodes):
-    """Verdicts on the values of some or all nodes of a library, with a version of MaterialX."""
-    return json.loads(run_with(version, "tests.support.every_node", library, *nodes))

@@ -44,14 +44,21 @@ def copy_of_stock(folder, *parts):
     return folder
 
 
+def wrong_stock(folder, file, *changes):
+    """Path of a part of MaterialX's libraries: one file, with some texts replaced."""
+    copy_of_stock(folder, file)
+    for old, new in changes:
+        replace_text(folder, old, new, file)
+    return str(folder)
+
+
 def wrong_stock_node(folder, name, old, new):
     """Path of a part of MaterialX's libraries: a node's GLSL, by name of the node or file, with one text replaced."""
     file = name if name.endswith(".glsl") else f"mx_{name}.glsl"
     if not (STOCK / GLSL / file).is_file():  # the node shares a file
         rows = (STOCK / GLSL / "pbrlib_genglsl_impl.mtlx").read_text(encoding="utf-8")
         [file] = re.findall(rf'nodedef="ND_{name}" file="([^"]+)"', rows)
-    replace_text(copy_of_stock(folder, f"{GLSL}/{file}"), old, new, f"{GLSL}/{file}")
-    return str(folder)
+    return wrong_stock(folder, f"{GLSL}/{file}", (old, new))
 
 
 def wrong_library(folder, file, old, new):
