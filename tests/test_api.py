@@ -100,35 +100,43 @@ def test_an_argument_that_is_refused_names_the_parameter(short):
 REFUSED = {"refused": {"cut.mtlx": ("cut.mtlx: must be XML",)}}
 
 
-@pytest.mark.parametrize(
-    "results, fields, status, words",
-    [
-        ([made()], {}, 0, ""),
-        ([made(), made(DIFFERS)], {}, 0, ""),
-        ([made(), made(FAILED, library="stock")], {"compared": ("stock",)}, 0, ""),
-        ([], {}, 3, "No check ran."),
-        ([made(library="stock")], {"compared": ("stock",)}, 3, "No check ran."),
-        (
-            [made(FAILED, diagnosis=caused("defect", "other_directions"))],
-            {},
-            1,
-            "failed: gl with eonlib, value, .*in other directions",
-        ),
-        ([made(), made(NOT_RUN, reason="no GPU")], {}, 3, "not run: gl with eonlib, .*: no GPU"),
-        ([made()], {"missing": ("gl, value",)}, 3, "not finished: 1 item is missing"),
-        ([], REFUSED, 2, "cut.mtlx: must be XML"),
-        ([made()], REFUSED, 2, "cut.mtlx: must be XML"),
-        ([made(FAILED)], REFUSED, 2, "cut.mtlx: must be XML"),
-    ],
-)
+STOCK = {"compared": ("stock",)}
+ALLOWED = "1 differs, but the specification allows it."
+DIRECTIONS = caused("defect", "other_directions")
+# Results, other fields of the run, its exit status and sentence, and words of the error.
+RUNS = (
+    ([], {}, 3, "No check ran.", ""),
+    ([made(NOT_RUN)], {}, 3, "No check ran.", ""),
+    ([made(library="stock")], STOCK, 3, "No check ran. For comparison, 0 of 1 failed with stock.", ""),
+    ([made()], {}, 0, "The check passed on gl with eonlib.", ""),
+    ([made(), made(FAILED, library="stock")], STOCK, 0,
+     "The check passed on gl with eonlib. For comparison, 1 of 1 failed with stock.", ""),
+    ([made(), made(host="osl"), made(host="webgl")], {}, 0, "All 3 checks passed on gl, osl and webgl with eonlib.", ""),
+    ([made(), made(DIFFERS)], {}, 0, f"1 of 2 checks passed on gl with eonlib; {ALLOWED}", ""),
+    ([made(FAILED), made(FAILED, host="osl"), made(DIFFERS)], {}, 1,
+     f"2 of 3 checks failed: 1 on gl with eonlib, 1 on osl with eonlib; {ALLOWED}", ""),
+    ([made(FAILED, diagnosis=DIRECTIONS), made()], {}, 1, "1 of 2 checks failed on gl with eonlib.",
+     "failed: gl with eonlib, value, .*in other directions"),
+    ([made(FAILED), made(NOT_RUN), made(NOT_RUN, diagnosis=caused("follows"))], {}, 1,
+     "1 of 3 checks failed on gl with eonlib; 1 did not run.", ""),
+    ([made(), made(NOT_RUN, reason="no GPU")], {}, 3, "Nothing failed, but 1 of 2 checks did not run.",
+     "not run: gl with eonlib, .*: no GPU"),
+    ([made()], {"missing": ("gl, value",)}, 3, "", "not finished: 1 item is missing"),
+    *((each, REFUSED, 2, "", "cut.mtlx: must be XML") for each in ([], [made()], [made(FAILED)])),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("results, fields, status, sentence, words", RUNS)
 def test_a_run_passes_only_if_all_that_was_asked_ran_and_nothing_failed(
-    results, fields, status, words
+    results, fields, status, sentence, words
 ):
     run = made_run(*results, **fields)
     assert (run.passed, run.exit_status) == (status == 0, status)
+    assert sentence in ("", run.sentence)
+    assert status == 2 or run.verdict == {0: PASSED, 1: FAILED, 3: NOT_RUN}[status]
     if run.passed:
         return run.raise_for_failure()
-    with pytest.raises(CheckError, match=words) as failed:
+    with pytest.raises(CheckError, match=words or None) as failed:
         run.raise_for_failure()
     assert str(failed.value).startswith(run.sentence)
     copy = pickle.loads(pickle.dumps(failed.value))
@@ -141,13 +149,6 @@ def test_a_node_that_no_host_judges_has_not_passed_beside_one_that_has(monkeypat
     [lost] = [each for each in run.results if each.subject == "eon_diffuse_bsdf"]
     assert lost.verdict == NOT_RUN and lost.reason.endswith(": eon_diffuse_bsdf with stock")
     assert not run.passed
-
-
-def test_stock_is_judged_for_comparison_without_a_say(monkeypatch):
-    keep_checks(monkeypatch, "value")
-    run = mxeon.check(CLAY.with_name("plaster.mtlx"), compared="stock")
-    verdicts = {(each.library, each.verdict) for each in run.results}
-    assert verdicts == {("eonlib", PASSED), ("stock", FAILED)} and run.passed
 
 
 def test_no_repr_prints_arrays_or_text_of_shaders(monkeypatch):

@@ -4,7 +4,6 @@
 import json
 import os
 import re
-import subprocess
 import sys
 from functools import cache, partial
 from pathlib import Path
@@ -15,6 +14,7 @@ import pytest
 from mxeon.conformance.results.known_issues import issues
 from mxeon.errors import NotRun
 from tests.support.availability import available
+from tests.support.command import output
 from tests.support.sharing import every_node, shared
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED, SOURCE, STOCK
 from tests.support.wheels import MAIN, wheel
@@ -123,10 +123,8 @@ def verdicts(folder, package, files, rows):
     path = [str(folder), str(ledger.ROOT / "python"), str(ledger.ROOT)]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}
     rows = [(*row, LIBRARIES.get(row, STOCK)) for row in rows]
-    command = [sys.executable, "-c", JUDGE, json.dumps(rows)]
-    run = subprocess.run(command, capture_output=True, text=True, env=environment)
-    assert run.returncode == 0, run.stderr
-    return {tuple(key.split("|")): result for key, result in json.loads(run.stdout).items()}
+    found = json.loads(output(sys.executable, "-c", JUDGE, json.dumps(rows), env=environment))
+    return {tuple(key.split("|")): result for key, result in found.items()}
 
 
 @pytest.mark.parametrize(

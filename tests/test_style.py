@@ -2,11 +2,12 @@
 """The style that tools can check: lint, format and types, as pyproject.toml configures them."""
 
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from tests.support.command import output
 
 ROOT = Path(__file__).parents[1]
 TOOLS = {
@@ -26,9 +27,7 @@ TOOLS = {
     ],
 )
 def test_the_code_passes(tool):
-    command = [sys.executable, "-m", *TOOLS[tool]]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
+    output(sys.executable, "-m", *TOOLS[tool], cwd=ROOT)
 
 
 FRAGMENT = re.compile(

@@ -2,7 +2,6 @@
 """The wheel and the sdist: their contents, and that they work outside the checkout."""
 
 import os
-import subprocess
 import sys
 import zipfile
 from pathlib import Path
@@ -13,6 +12,7 @@ import pytest
 import mxeon
 from mxeon.conformance.results.known_issues import issues
 from mxeon.shaders.nodes import EON
+from tests.support.command import output
 from tests.support.documents import lobe, material
 
 pytestmark = pytest.mark.whole
@@ -46,8 +46,7 @@ def built(tmp_path_factory):
     """Folder with the sdist and the wheel built from it."""
     folder = tmp_path_factory.mktemp("dist")
     build = [sys.executable, "-m", "build", "--no-isolation", "--outdir", folder, CHECKOUT]
-    done = subprocess.run(build, cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
+    output(*build, cwd=folder)
     return folder
 
 
@@ -73,11 +72,7 @@ def environment(wheel, tmp_path_factory):
 def run(command, folder):
     """Output of a command, run in a folder without a checkout on its path."""
     clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    done = subprocess.run(
-        command, cwd=folder, env=clean, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
+    return output(*command, cwd=folder, env=clean)
 
 
 def test_the_wheel_holds_the_package_with_the_data_of_the_checkout_and_nothing_else(wheel):

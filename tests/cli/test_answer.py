@@ -23,7 +23,7 @@ from tests.support.command import CLAY, PLASTER
 from tests.support.documents import connected, image, material, textured
 from tests.support.plans import keep_checks
 from tests.support.results import Difference, Identity, Region, Result, Run, caused, quoted
-from tests.support.verdicts import DIFFERS, FAILED, NOT_RUN, PASSED
+from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 from tests.support.wrong_libraries import copy_of_eonlib, copy_of_stock
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
@@ -190,42 +190,6 @@ def test_every_document_appears_those_that_look_wrong_first():
     assert len(lines) <= 10 and lines[0].startswith("7.mtlx: look7: with eonlib, up to 5 %")
     assert "18.mtlx: look1: looks as specified with eonlib" in lines[1]
     assert all(any(each in line for line in lines) for each in documents)
-
-
-@pytest.mark.parametrize(
-    ("results", "verdict", "sentence"),
-    [
-        ([], NOT_RUN, "No check ran."),
-        ([made(NOT_RUN)], NOT_RUN, "No check ran."),
-        ([made()], PASSED, "The check passed on gl with eonlib."),
-        (
-            [made(), made(host="osl"), made(host="webgl")],
-            PASSED,
-            "All 3 checks passed on gl, osl and webgl with eonlib.",
-        ),
-        (
-            [made(), made(DIFFERS)],
-            PASSED,
-            "1 of 2 checks passed on gl with eonlib; 1 differs, but the specification allows it.",
-        ),
-        (
-            [made(FAILED), made(FAILED, host="osl"), made(DIFFERS)],
-            FAILED,
-            "2 of 3 checks failed: 1 on gl with eonlib, 1 on osl with eonlib; "
-            "1 differs, but the specification allows it.",
-        ),
-        ([made(FAILED), made()], FAILED, "1 of 2 checks failed on gl with eonlib."),
-        (
-            [made(FAILED), made(NOT_RUN), made(NOT_RUN, diagnosis=caused("follows"))],
-            FAILED,
-            "1 of 3 checks failed on gl with eonlib; 1 did not run.",
-        ),
-        ([made(), made(NOT_RUN)], NOT_RUN, "Nothing failed, but 1 of 2 checks did not run."),
-    ],
-)
-def test_the_verdict_is_the_worst_and_counts_what_did_not_pass(results, verdict, sentence):
-    run = made_run(*results)
-    assert (run.verdict, run.sentence) == (verdict, sentence)
 
 
 # --- what is judged -------------------------------------------------------------------------------

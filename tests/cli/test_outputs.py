@@ -5,6 +5,7 @@ import os
 import re
 import shlex
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -16,7 +17,7 @@ from mxeon.kit.export import DESCRIPTION, export_kit, kit_node
 from mxeon.shaders.library_export import export_library
 from mxeon.shaders.nodes import OREN_NAYAR
 from tests.support.command import CLAY, PLASTER, one_line
-from tests.support.documents import lobe, material, textured
+from tests.support.documents import textured
 from tests.support.results import PREVIOUS, Run
 
 # The files of `inputs`, by their role in a command.
@@ -310,61 +311,43 @@ def test_a_second_run_replaces_its_own_outputs(tmp_path, monkeypatch):
         assert main(["doc", "t.md", "--library", "lib", "--output", "lib/nodes.md"]) == PASSED
 
 
-def generated(folder):
-    """Generate a shader into a folder; return the exit status."""
-    file = folder.parent / "a.mtlx"
-    file.write_text(material(lobe(roughness=0.5)))
-    return main(
-        ["generate", str(file), "--target", "osl", "--workers", "0", "--outputPath", str(folder)]
-    )
-
-
-def checked(folder):
-    """Check that shader's text with a report in a folder; return the exit status."""
-    file = folder.parent / "a.mtlx"
-    file.write_text(material(lobe(roughness=0.5)))
-    return main(["check", str(file), "--host", "msl", "--workers", "0", "--report", str(folder)])
-
-
-def exported(folder):
-    """Export a kit into a folder; return the exit status."""
-    return main(["kit", "export", str(folder), "--size", "64"])
-
-
-# Functions that write a folder, and names in the folder at which a link may be planted.
+GENERATE = f"generate {PLASTER} --target osl --workers 0 --outputPath out"
+# Commands that write a folder, and names in the folder at which a link may be planted.
 FOLDERS = {
-    "generate": (generated, ("a.look.osl",)),
-    "kit export": (exported, ("kit.json", "README.md", "sphere.obj", "materials", "renders")),
-    "check --report": (
-        checked,
-        ("results.json", "junit.xml", "report.html", "journal", "journal/items.jsonl", ".journal.lock"),
+    GENERATE: ("plaster.ochre_plaster.osl",),
+    "kit export out --size 64": ("kit.json", "README.md", "sphere.obj", "materials", "renders"),
+    f"check {PLASTER} --host msl --workers 0 --report out": (
+        *("results.json", "junit.xml", "report.html"),
+        *("journal", "journal/items.jsonl", ".journal.lock"),
     ),
-}  # fmt: skip
-
-
-LINKS = [(command, name, False) for command, (_, names) in FOLDERS.items() for name in names]
-LINKS += [(command, names[0], True) for command, (_, names) in FOLDERS.items()]
+}
+LINKS = [(command, name, False) for command, names in FOLDERS.items() for name in names]
+LINKS += [(command, names[0], True) for command, names in FOLDERS.items()]
 
 
 @pytest.mark.parametrize("command, name, dangling", LINKS)
-def test_nothing_is_written_through_a_link_in_a_folder(command, name, dangling, tmp_path, capsys):
-    write, _ = FOLDERS[command]
-    other, link, folder = tmp_path / "other", tmp_path / "out" / name, tmp_path / "out"
-    write(folder)
+def test_nothing_is_written_through_a_link_in_a_folder(
+    command, name, dangling, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    other, link = tmp_path / "other", Path("out", name)
+    main(command.split())
     assert link.exists()
-    link.rename(tmp_path / "moved")
+    link.rename("moved")
     link.symlink_to(other)
     if not dangling:
         other.write_text("mine")
     capsys.readouterr()
-    assert write(folder) == MISUSE
+    assert main(command.split()) == MISUSE
     assert capsys.readouterr().err == (
         f"mxeon: {link}: must not be a link, which leads to another file; remove it\n"
     )
     assert other.exists() is not dangling and (dangling or other.read_text() == "mine")
 
 
-def test_a_folder_that_is_a_link_is_written_to(tmp_path):
-    (tmp_path / "there").mkdir()
-    (tmp_path / "out").symlink_to("there")
-    assert generated(tmp_path / "out") == 0 and (tmp_path / "there" / "a.look.osl").exists()
+def test_a_folder_that_is_a_link_is_written_to(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    os.mkdir("there")
+    os.symlink("there", "out")
+    assert main(GENERATE.split()) == PASSED
+    assert Path("there", *FOLDERS[GENERATE]).exists()

@@ -5,11 +5,10 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 
 import pytest
 
-from mxeon.jobs.signals import ENDING, OTHERS, SignalExit, block_signals, raise_signals
+from mxeon.jobs.signals import ENDING, raise_signals
 from tests.support.command import DEADLINE, PLASTER, wait_for
 
 GENERATE = [sys.executable, "-m", "mxeon", "generate", PLASTER, "--target", "osl"]
@@ -104,18 +103,6 @@ def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
             os.kill(os.getpid(), signal.SIGHUP)
     finally:
         signal.signal(signal.SIGHUP, before)
-
-
-@pytest.mark.parametrize("number", (*ENDING, *OTHERS), ids=lambda each: each.name)
-def test_a_blocked_signal_comes_afterwards(number):
-    steps = []
-    with pytest.raises(SignalExit) as ended, raise_signals():
-        with block_signals():
-            # To this thread, so that no other one receives it.
-            signal.pthread_kill(threading.get_ident(), number)
-            steps.append("whole")
-        steps.append("never")
-    assert ended.value.status == 128 + number and steps == ["whole"]
 
 
 def test_handlers_are_as_before_afterwards():

@@ -75,13 +75,6 @@ def test_the_command_compares(tmp_path, capsys):
     assert difference["port"] == "roughness" and difference["library"] == "0.3"
 
 
-def test_the_command_fills_a_template(tmp_path):
-    path, output = tmp_path / "template.md", tmp_path / "filled.md"
-    path.write_text("@MX_TABLE_sheen_bsdf@")
-    assert main(["doc", str(path), "--output", str(output)]) == 0
-    assert output.read_text().startswith("|Port ")
-
-
 UNKNOWN = b"text\n@MX_TABLE_no@", "line 2: @MX_TABLE_no@ must name a node"
 
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The patch for Cycles' kernel: its header, compiled with a few types of ours, is EON once patched."""
 
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,7 @@ from mxeon.models import eon_brdf
 from tests import support
 from tests.support.availability import available, program
 from tests.support.cases import directions
+from tests.support.command import output
 from tools.site.ledger import ROOT, apply, patches_of
 
 PROGRAM = Path(support.__file__).with_name("oren_nayar.cpp")
@@ -49,11 +49,9 @@ def values(tmp_path_factory):
         (target / FILE).write_bytes((folder / FILE).read_bytes())
         apply(target, *patches, strip=4)  # a/intern/cycles/kernel
         command = [program("g++"), "-std=c++17", f"-I{target}", PROGRAM, "-o", target / "program"]
-        subprocess.run(command, check=True)
-        done = subprocess.run(
-            [target / "program"], input=lines, capture_output=True, text=True, check=True
-        )
-        return np.array(done.stdout.split(), float).reshape(PAIRS, 3), right
+        output(*command)
+        found = output(target / "program", input=lines).split()
+        return np.array(found, float).reshape(PAIRS, 3), right
 
     return run
 

@@ -10,6 +10,7 @@ import pytest
 from mxeon import mitsuba as plugins
 from mxeon import models
 from mxeon.errors import NotRun
+from tests.support.availability import available, package
 from tests.support.cases import directions
 from tests.support.tolerances import MITSUBA_COAT, MITSUBA_DENSITY, MITSUBA_EVAL, MITSUBA_WEIGHT
 
@@ -33,6 +34,16 @@ INPUTS = {
     **{key: {"roughness": 0.6, "alpha": 0.3, "ior": 1.5} for key in (COAT, VARNISH)},
 }
 TEXTURES = ("roughness", "sigma")
+
+
+@pytest.fixture
+def mi():
+    """Mitsuba in an LLVM variant, with the plugins."""
+    mitsuba = package("mitsuba")
+    mitsuba.set_variant("llvm_ad_rgb")
+    with available("mitsuba"):
+        plugins.register()
+    return mitsuba
 
 
 def bsdf(name, color=COLOR, **inputs):
