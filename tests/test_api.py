@@ -17,9 +17,8 @@ from mxeon.errors import CheckError
 from mxeon.fit import fit_brdf, read_merl
 from mxeon.models.diffuse import eon_brdf
 from mxeon.shaders.document.policy import Policy
-from tests.cli.test_answer import made, made_run
 from tests.support.plans import keep_checks
-from tests.support.results import caused
+from tests.support.results import caused, made, made_run
 from tests.support.verdicts import DIFFERS, FAILED, NOT_RUN, PASSED
 
 ROOT = Path(__file__).parents[1]

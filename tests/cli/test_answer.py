@@ -22,25 +22,12 @@ from mxeon.report import to_json
 from tests.support.command import CLAY, PLASTER
 from tests.support.documents import connected, image, material, textured
 from tests.support.plans import keep_checks
-from tests.support.results import Difference, Identity, Region, Result, Run, caused, quoted
-from tests.support.verdicts import FAILED, NOT_RUN, PASSED
+from tests.support.results import EON, Difference, Region, Run, caused, made, made_run, quoted
+from tests.support.verdicts import FAILED, NOT_RUN
 from tests.support.wrong_libraries import copy_of_eonlib, copy_of_stock
 
-EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 NAME = "genglsl_clamped_dot"
 PAGE = f"docs/upstream/{NAME}.md"
-
-
-def made(verdict=PASSED, key="value", subject=EON, library="eonlib", host="gl", **fields):
-    error = {PASSED: 1e-7, FAILED: 0.37}.get(verdict)
-    numbers = {"error": error, "tolerance": 2e-6} if error else {}
-    return Result(key, "claim", subject, host, library, verdict, **numbers, **fields)
-
-
-def made_run(*results, documents=("a/clay.mtlx",), **fields):
-    contents = dict.fromkeys(documents, (EON,))
-    software, hosts = {"MaterialX": "1.39.5"}, (Identity("gl", "4.5", "cpu"),)
-    return Run("1", software, hosts, results, contents=contents, **fields)
 
 
 PICTURE = made(key="picture", subject="clay.mtlx: terracotta")

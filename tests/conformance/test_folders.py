@@ -8,30 +8,23 @@ from mxeon.cli import main
 from mxeon.cli.answer import MANY, summary_by_cause
 from mxeon.errors import MISUSE
 from tests.support.command import CLAY
-from tests.support.results import Identity, Result, Run, quoted
-from tests.support.verdicts import FAILED, PASSED
+from tests.support.results import made, made_run, quoted
+from tests.support.verdicts import FAILED
 
 NAMES = ("a/clay.mtlx", "a/glass.mtlx", "b/noise.mtlx", "light.mtlx")
 
 
-def result(name, check="picture", verdict=PASSED, **fields):
-    return Result(check, "claim", name, "gl", "eonlib", verdict, error=0.0, tolerance=1.0, **fields)
-
-
-RUN = Run(
-    "1",
-    {},
-    (Identity("gl", "4.5", "cpu"),),
-    (
-        result("clay.mtlx: look"),
-        result("clay.mtlx: other"),
-        result(
-            "glass.mtlx: look", "finite", diagnosis=quoted("reference: there is no model for 'x/y'")
-        ),
-        result("noise.mtlx: look", measured=("lobe.color",)),
-        result("noise.mtlx: node", "value", verdict=FAILED),
+RUN = made_run(
+    made(key="picture", subject="clay.mtlx: look"),
+    made(key="picture", subject="clay.mtlx: other"),
+    made(
+        key="finite",
+        subject="glass.mtlx: look",
+        diagnosis=quoted("reference: there is no model for 'x/y'"),
     ),
-    contents=dict.fromkeys(NAMES[:3], ()),
+    made(key="picture", subject="noise.mtlx: look", measured=("lobe.color",)),
+    made(FAILED, subject="noise.mtlx: node"),
+    documents=NAMES[:3],
     refused={"light.mtlx": ('light.mtlx: must contain a renderable element; got "a"',)},
 )
 

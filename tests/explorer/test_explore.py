@@ -36,7 +36,7 @@ from tests.explorer.browser import judged, opened, until
 from tests.support.availability import package
 from tests.support.command import one_line
 from tests.support.documents import textured, written
-from tests.support.results import Diagnosis, Result, kept
+from tests.support.results import Diagnosis, kept, made
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 
 Error = package("playwright.sync_api").Error
@@ -103,8 +103,7 @@ def test_code_of_a_document_needs_a_permission(tmp_path, capsys):
 def result(host, subject, verdict, **distances):
     """A result of the check of values with stock MaterialX."""
     titles = {diffuse_model(name).title: distance for name, distance in distances.items()}
-    diagnosis = Diagnosis((), titles)
-    return Result("value", "claim", subject, host, "stock", verdict, diagnosis=diagnosis)
+    return made(verdict, "value", subject, "stock", host, diagnosis=Diagnosis((), titles))
 
 
 def test_the_diagnoses_of_a_run_can_be_chosen(tmp_path):

@@ -9,7 +9,6 @@ import resource
 import shutil
 import tempfile
 import traceback
-from functools import cache
 from pathlib import Path
 
 from mxeon.errors import COMMAND, STEERING
@@ -29,7 +28,7 @@ MEMORY = 6 * 2**30
 
 def judged(tried):
     """Exit status of a case and its fault, in a process with limited memory."""
-    _limit_memory()
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     return trial(tried)
 
 
@@ -53,11 +52,6 @@ def _outputs(arguments):
         return [path for path in arguments[2:3] if "\0" not in path]
     pairs = itertools.pairwise(arguments)
     return [path for option, path in pairs if option in OUTPUTS and "\0" not in path]
-
-
-@cache
-def _limit_memory():
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
 
 def _prepared(root, tried):

@@ -87,15 +87,6 @@ def textured(files):
     return material("".join(nodes) + connected(color=f'nodename="{names[-1]}"'))
 
 
-def _open_pbr(**inputs):
-    kinds = {"geometry_thin_walled": "boolean"}
-    ports = "".join(
-        input_text(name, "color3" if "color" in name else kinds.get(name, "float"), value)
-        for name, value in inputs.items()
-    )
-    return node_text("open_pbr_surface", "surfaceshader", "shading", ports)
-
-
 # A rough diffuse node with eonlib's lobe, whose color passes shader code of the studio.
 STUDIO = """<materialx version="1.39">
   <nodedef name="ND_studio_rough" node="studio_rough">

@@ -23,26 +23,38 @@ from mxeon.conformance.run import read_run, to_run
 from mxeon.conformance.run.journal import JOURNAL, LOCK, PREVIOUS, Journal, read_journal
 from mxeon.conformance.run.plan import Findings, Plan, Task
 from mxeon.hosts.base import Identity
-from tests.support.verdicts import FAILED
+from tests.support.verdicts import FAILED, PASSED
 
 __all__ = ["Control", "Difference", "Identity", "Picture", "Region", "Result", "Run", "quoted"]
 __all__ += ["JOURNAL", "LOCK", "PREVIOUS", "read_journal", "read_run", "to_run"]
 
+EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 TASKS = tuple(Task("value", name, "gl", "eonlib") for name in "abc")
 OPTIONS, FILES = {"--maxSize": "9"}, {"clay.mtlx": "00", "clay.png": "01"}
 PLAN = Plan("1.0", {"Python": "3"}, TASKS, OPTIONS, FILES, documents=(Path("clay.mtlx"),))
 PIXELS = np.linspace(0.0, 1.0, 12, dtype=np.float32).reshape(2, 2, 3)
+
+
+def made(verdict=PASSED, key="value", subject=EON, library="eonlib", host="gl", **fields):
+    """A result of a check on the node EON."""
+    error = {PASSED: 1e-7, FAILED: 0.37}.get(verdict)
+    numbers = {"error": error, "tolerance": 2e-6} if error else {}
+    return Result(key, "claim", subject, host, library, verdict, **numbers | fields)
+
+
+def made_run(*results, documents=("a/clay.mtlx",), **fields):
+    """A run with results on documents."""
+    contents = dict.fromkeys(documents, (EON,))
+    software, hosts = {"MaterialX": "1.39.5"}, (Identity("gl", "4.5", "cpu"),)
+    return Run("1", software, hosts, results, contents=contents, **fields)
+
+
 FINDINGS = Findings(
     results=(
-        Result(
-            "value",
-            "claim",
-            "a",
-            "gl",
-            "eonlib",
+        made(
             FAILED,
+            subject="a",
             error=float("inf"),
-            tolerance=1.0,
             worst={"wo": [0.0, 1.0]},
             control=Control("wrong", 2.0, True),
         ),

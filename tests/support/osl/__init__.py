@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A picture of OSL's real programs, recorded from a build, and programs that replay it.
 
-    python -m tests.support.osl
+    python -c "from tests.support import osl; osl.record()"
 
 records it again with the programs that MXEON_OSLC, MXEON_TESTRENDER and MXEON_TESTSHADE name.
 """
