@@ -184,7 +184,7 @@ WRONG = {
     f"chek {LOOK}": "got 'chek': did you mean check?",
     f"render {LOOK} --integrator path --output out.jpg": "output must end in .exr or .png; got",
     f"render {LOOK} --integrator path --output folder.png": "folder.png: must be accessible; not a re",
-    "explore nowhere.mtlx --output out.html": "must be a readable file",
+    f"explore {CLAY} nowhere.mtlx --output out.html": "must be a readable file",
     "explore --report nowhere --output out.html": "nowhere",
     f"explore {CLAY} --workers 0 --maxSize 10 --output out.html": "raise it with --maxSize",
     f"explore {CLAY} --workers 0 --maxShaders 0 --output out.html": "got 2: raise it with --maxShaders",

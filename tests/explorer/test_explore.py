@@ -34,7 +34,6 @@ from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from mxeon.shaders.scene import sphere
 from tests.explorer.browser import judged, opened, until
 from tests.support.availability import package
-from tests.support.command import one_line
 from tests.support.documents import textured, written
 from tests.support.results import Diagnosis, kept, made
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED
@@ -78,12 +77,6 @@ def test_the_command_writes_documents_of_both_libraries(tmp_path, capsys):
     ]
     for source in sources:
         assert source["actual"]["on"] == ("eon" if "eonlib" in source["id"] else "eon_clamped")
-
-
-def test_there_is_no_page_without_one_of_its_documents(tmp_path, capsys):
-    out = tmp_path / "page.html"
-    assert main(["explore", CLAY, "nowhere.mtlx", "--output", str(out)]) == MISUSE
-    assert "must be a readable file" in one_line(capsys.readouterr().err) and not out.exists()
 
 
 def test_code_of_a_document_needs_a_permission(tmp_path, capsys):

@@ -91,17 +91,3 @@ def test_a_constant_input_that_a_document_does_not_have_is_not_reached(index, re
     regions = {each.name for each in found["dielectric_bsdf, scatter_mode R"]}
     assert ("index_zero" in regions) != reached
     assert "weight_zero" in regions and "occlusion_not_1" not in regions
-
-
-def test_what_one_library_lacks_is_told_with_its_name(tmp_path):
-    file = written(tmp_path, material(lobe("eon_diffuse_bsdf")))
-    files = [str(file), str(tmp_path / "nosuch.mtlx")]
-    found = check(files, ["msl"], ["eonlib", "stock"])
-    assert found.contents[files[0]] == ("eon_diffuse_bsdf",)
-    assert list(found.refused) == [f"{files[0]} with stock", files[1]]
-    [undefined], [missing] = found.refused.values()
-    assert undefined.startswith(
-        f'{files[0]}: node "lobe" must have a definition; got eon_diffuse_bsdf'
-    )
-    assert undefined.endswith("by --definitions FOLDER (with stock)")
-    assert missing == f"document must be a readable file; got {files[1]!r}"

@@ -150,14 +150,6 @@ def test_a_document_that_includes_itself_is_refused_at_once(tmp_path):
     assert "must not lead back to the same document" in refusal(tmp_path / "a.mtlx")
 
 
-def test_an_option_moves_a_limit(tmp_path, capsys):
-    arguments = ["generate", str(written(tmp_path, SMALL)), "--target", "osl", "--workers", "0"]
-    arguments += ["--outputPath", str(tmp_path / "out"), "--maxElements"]
-    assert cli.main([*arguments, "5"]) == MISUSE
-    assert "raise it with --maxElements" in capsys.readouterr().err
-    assert cli.main([*arguments, "6"]) == PASSED
-
-
 @pytest.mark.parametrize("name", LIMITS)
 def test_the_page_on_security_has_every_limit_and_its_default(name):
     page = Path(__file__).parents[2] / "docs" / "security.md"

@@ -76,16 +76,6 @@ def test_the_command_searches_folders(home, workers, capfd, monkeypatch):
     assert str(home.parent / "shared/maps/a.exr") in Path("out/look.look.osl").read_text()
 
 
-def test_a_missing_image_is_an_error_to_render_and_check(home, capfd, gl, judged):
-    path = written(home, textured(["none.exr"]))
-    error = 'input "i0/file" must name a file that exists; got none.exr: --path FOLDER'
-    options = ["--host", "reference", "--output", str(home / "a.exr"), "--workers", "0"]
-    assert main(["render", str(path), *options]) == 2
-    assert error in capfd.readouterr().err
-    [line] = judged.document(path).errors
-    assert "must name a file that exists" in line
-
-
 @pytest.mark.parametrize("name", ["set.&lt;UDIM&gt;.exr", "set.<UDIM>.exr", "tile.<UVTILE>.exr"])
 @pytest.mark.parametrize("host", ["gl", "reference"])
 def test_a_set_of_textures_is_shown_as_its_first_tile(home, host, name):
