@@ -87,15 +87,6 @@ def azimuthal(phi: Array, s: Array) -> Array:
     return value
 
 
-def attenuation(F: Array, T: Array) -> Array:
-    """A_p, (4, ...): Attenuation Factors. For F = T = 1, TRRT+ has the limit 0."""
-    xp = array_namespace(F, T)
-    pass_through = xp.square(1.0 - F)
-    rest = 1.0 - F * T
-    last = pass_through * F**2 * T**3 / xp.where(rest > 0.0, rest, 1.0)
-    return xp.stack([F + 0.0 * T, pass_through * T, pass_through * F * T**2, last])
-
-
 @dataclass(frozen=True)
 class HairForm:
     """The model in the text's form, or in another form that shaders use.
@@ -144,7 +135,7 @@ def section(wo: Array, ior: Array) -> tuple[Section, Array]:
 def attenuations(
     view: Section, effective: Array, ior: Array, absorption: Array, form: HairForm
 ) -> Array:
-    """A_p of a view, (4, C, ...), for absorptions (C, ...)."""
+    """A_p of a view, (4, C, ...), for absorptions (C, ...): Attenuation Factors."""
     xp, least = (
         array_namespace(view.sin_o, ior, absorption),
         max(LEAST_DIVISOR, arrays.least_normal(ior)),
@@ -163,7 +154,12 @@ def attenuations(
     path = xp.where(
         passes, path / xp.maximum(guarded(cos_t, passes, 1.0), LEAST_DIVISOR), path / least
     )
-    return attenuation(F, xp.exp(-absorption * path))
+    T = xp.exp(-absorption * path)
+    pass_through = xp.square(1.0 - F)
+    rest = 1.0 - F * T
+    # For F = T = 1, TRRT+ has the limit 0.
+    last = pass_through * F**2 * T**3 / xp.where(rest > 0.0, rest, 1.0)
+    return xp.stack([F + 0.0 * T, pass_through * T, pass_through * F * T**2, last])
 
 
 def distribution(

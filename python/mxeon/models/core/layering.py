@@ -51,8 +51,7 @@ def layer(top: Bsdf, base: Bsdf) -> Bsdf:
     Result: 1 - T is E_top + (1 - E_top) E_base, the albedo of f, or E_top if E_top exceeds 1.
     [MaterialX2026], section `layer`.
 
-        >>> import numpy as np
-        >>> both = layer(Bsdf(np.array(0.1), np.array(0.75)), Bsdf(np.array(0.2), np.array(0.0)))
+        >>> both = layer(Bsdf(0.1, 0.75), Bsdf(0.2, 0.0))
         >>> float(both.value), float(both.throughput)
         (0.25, 0.0)
     """
@@ -68,8 +67,7 @@ def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
 
     At 0 it is `bg` and at 1 `fg`, to the last bit. [MaterialX2026], section `mix`.
 
-        >>> import numpy as np
-        >>> both = mix(Bsdf(np.array(1.0), np.array(0.0)), Bsdf(np.array(0.0), np.array(1.0)), 0.25)
+        >>> both = mix(Bsdf(1.0, 0.0), Bsdf(0.0, 1.0), 0.25)
         >>> float(both.value), float(both.throughput)
         (0.25, 0.75)
     """
@@ -84,8 +82,7 @@ def add(in1: Bsdf, in2: Bsdf) -> Bsdf:
 
     [MaterialX2026], section `add`.
 
-        >>> import numpy as np
-        >>> both = add(Bsdf(np.array(0.5), np.array(0.75)), Bsdf(np.array(0.25), np.array(0.5)))
+        >>> both = add(Bsdf(0.5, 0.75), Bsdf(0.25, 0.5))
         >>> float(both.value), float(both.throughput)
         (0.75, 0.25)
     """
@@ -100,8 +97,7 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
     MaterialX's shaders keep T_1, so a lobe scaled to 0 still darkens the layer below, and they
     clamp s to [0, 1]. The text does neither. [MaterialX2026], section `multiply`.
 
-        >>> import numpy as np
-        >>> scaled = multiply(Bsdf(np.array(1.0), np.array(0.5)), 0.5)
+        >>> scaled = multiply(Bsdf(1.0, 0.5), 0.5)
         >>> float(scaled.value), float(scaled.throughput)
         (0.5, 0.75)
     """
