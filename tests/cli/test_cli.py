@@ -185,7 +185,7 @@ def test_invert_prints_rho(option, function, capsys):
     assert np.abs(printed - function([0.8, 0.4, 0.1], 0.7)).max() <= 5e-10
 
 
-COMMANDS = ("check", "generate", "render", "explore", "library", "invert", "doc")
+COMMANDS = ("check", "generate", "render", "explore", "library", "invert")
 COMMANDS += ("report make", "report diff", "report field", "report schema")
 COMMANDS += ("kit export", "kit check")
 

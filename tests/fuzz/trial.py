@@ -21,7 +21,7 @@ OUTPUTS = ("--outputPath", "--output", "--report")
 # Commands that use a process per document, which hides crashes; and those that may exit with 1 for
 # a failed check.
 MAKING = ("generate", "render")
-JUDGING = ("check", "doc", "kit", "report", "render", "library")
+JUDGING = ("check", "kit", "report", "render", "library")
 LONGEST_LINE = 1200  # a message of 1000 characters, its prefix, and a path
 MEMORY = 6 * 2**30
 

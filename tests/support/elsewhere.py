@@ -35,8 +35,6 @@ COMMANDS = (
     "library --export copy.zip",
     "generate --target glsl --target osl --target wgsl --outputPath shaders {examples}/plaster.mtlx",
     "invert 0.8 0.4 0.1 --roughness 0.7",
-    "doc template.md --output nodes.md",
-    "doc nodes.md --compare",
     "explore {examples}/clay.mtlx --output clay.html --workers 0",
     "kit export kit",
     "check {examples}/clay.mtlx --host msl --workers 0 --report before",
@@ -98,8 +96,6 @@ def main() -> None:
     from mxeon.cli import main as run
     from mxeon.shaders.library import examples_folder
 
-    with open("template.md", "w", encoding="utf-8") as file:
-        file.write("### `oren_nayar_diffuse_bsdf`\n\n@MX_TABLE_oren_nayar_diffuse_bsdf@\n")
     for command in COMMANDS:
         print(f"$ mxeon {command}", flush=True)
         words = [word.format(examples=examples_folder()) for word in command.split()]

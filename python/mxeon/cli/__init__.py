@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Sequence
 
 import mxeon
-from mxeon.cli import check, doc, explore, generate, invert, kit, library, render, report
+from mxeon.cli import check, explore, generate, invert, kit, library, render, report
 from mxeon.cli.arguments import Parser, use_materialx
 from mxeon.cli.output import discard, fail, flush, open_streams, show_warning, status_of
 from mxeon.errors import NOT_RUN, InputError, MxeonError, NotRun
@@ -28,7 +28,7 @@ EXAMPLES = (
     "library  # how to load eonlib in your renderer",
 )
 LEAST_MEMORY = 2**28  # bytes of address space; with less OpenBLAS aborts the process
-COMMANDS = (check, generate, render, explore, library, invert, report, kit, doc)
+COMMANDS = (check, generate, render, explore, library, invert, report, kit)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
