@@ -13,7 +13,7 @@ if TYPE_CHECKING:  # type checkers and the API reference run no code
     from mxeon.models.catalog import model, model_names
     from mxeon.shaders.generation import Shader, generate
     from mxeon.shaders.library import load_library
-    from mxeon.survey.callables import brdf_test, check_brdf
+    from mxeon.survey.callables import check_brdf
 
 __version__ = "0.2.0"
 
@@ -21,7 +21,6 @@ __version__ = "0.2.0"
 _HOMES = {
     "Run": "mxeon.conformance.results",
     "Shader": "mxeon.shaders.generation",
-    "brdf_test": "mxeon.survey.callables",
     "check": "mxeon.conformance.run",
     "check_brdf": "mxeon.survey.callables",
     "generate": "mxeon.shaders.generation",
@@ -33,7 +32,6 @@ __all__ = [
     "Run",
     "Shader",
     "__version__",
-    "brdf_test",
     "check",
     "check_brdf",
     "generate",

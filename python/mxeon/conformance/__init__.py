@@ -2,7 +2,7 @@
 """Conformance: hosts and libraries judged by the table of checks, documents by their pictures.
 
 The only package that sees both chains, the shaders and the models. The public functions are
-`check` (`mxeon.conformance.run`), `check_brdf` and `brdf_test` (`mxeon.survey.callables`).
+`check` (`mxeon.conformance.run`), `check_brdf` (`mxeon.survey.callables`).
 
 A *spec* defines how a node in one mode is judged: its inputs with their ranges, models, errors and
 samples (`specs`). A *backend* is a way of evaluating a spec on an engine (`backends`), a *case* is

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import mxeon
-from mxeon.conformance import backends, cache, checks, diagnosis, samples, words
+from mxeon.conformance import backends, cache, checks, diagnosis, samples
 from mxeon.conformance.case import Case, edge_values
 from mxeon.conformance.check import Check, compared_of
 from mxeon.conformance.diagnosis.regions import EXACT, correct_except, smallest, unbounded
-from mxeon.conformance.results import PASSED, Diagnosis, Kind, Run
+from mxeon.conformance.results import Diagnosis, Kind, Run
 from mxeon.conformance.samples import PAIRS, Array, Batch
 from mxeon.conformance.spec import Ability
 from mxeon.conformance.specs.diffuse import ERRORS, DiffuseModelSpec, inputs_of, model_row
@@ -153,47 +153,12 @@ def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
     - `name`: Its name in the report; by default the function's own name.
 
     Non-finite values fail one check; the other checks judge the finite values. `mxeon.report.write` writes a report of
-    the run. Raises ValueError for an unknown model or values with a wrong shape.
+    the run; in a test, call its `raise_for_failure`. Raises ValueError for an unknown model or values with a wrong shape.
 
         >>> from mxeon.models import eon_brdf
         >>> {result.verdict for result in check_brdf(eon_brdf).results}
         {'passed'}
     """
-    case = _case(brdf, model, name)
-    results = tuple(check.judge(case) for check in _checks(model))
-    return Run(
-        version=mxeon.__version__,
-        software={"Python": platform.python_version(), "numpy": version("numpy")},
-        hosts=(case.host.identity(),),
-        results=results,
-    )
-
-
-def brdf_test(brdf: Brdf, model: str = "eon", name: str | None = None) -> Callable[..., None]:
-    """Test function for pytest, with one case per check of `check_brdf`.
-
-    Assign it to a name that begins with `test_`:
-
-        from mxeon import brdf_test
-        from my_renderer import my_brdf
-
-        test_my_brdf_is_eon = brdf_test(my_brdf, "eon")
-
-    On failure it shows the error, the tolerance and the best-matching model.
-    """
-    import pytest
-
-    case = _case(brdf, model, name)
-
-    @pytest.mark.parametrize("check", _checks(model), ids=lambda check: check.key)
-    def test_brdf(check: Check) -> None:
-        result = check.judge(case)
-        assert result.verdict == PASSED, f"{check.claim} {words.explanation(result)}"
-
-    return cast(Callable[..., None], test_brdf)
-
-
-def _case(brdf: Brdf, model: str, name: str | None) -> Case:
     title = name or str(getattr(brdf, "__name__", type(brdf).__name__))
     node = "a function"
     spec = ClaimedModel(
@@ -204,8 +169,14 @@ def _case(brdf: Brdf, model: str, name: str | None) -> Case:
         inputs=inputs_of("color", "roughness"),
         errors=ERRORS,
     )
-    function = Function(CallableHost(title, brdf), spec, LIBRARY)
-    return Case(spec, function)
+    case = Case(spec, Function(CallableHost(title, brdf), spec, LIBRARY))
+    results = tuple(check.judge(case) for check in _checks(model))
+    return Run(
+        version=mxeon.__version__,
+        software={"Python": platform.python_version(), "numpy": version("numpy")},
+        hosts=(case.host.identity(),),
+        results=results,
+    )
 
 
 def _checks(model: str) -> tuple[Check, ...]:
