@@ -310,7 +310,7 @@ SPOILED = {  # picture: how it is damaged, and the expected diagnosis
     ),
     "half_side": (write_png, "got uint8"),
     "false_front": (lambda path: path.with_suffix(".csv").write_text(""), "must be one file"),
-    "false_side": (lambda path: path.write_text("nothing"), "must be an EXR or CSV file"),
+    "false_side": (lambda path: path.write_text("nothing"), "must be an EXR file"),
     "false_back": (channels(*"XYZ"), "must hold one R, G and B; got channels X, Y, Z"),
     "false_furnace": (channels(*LAYERS), f"one R, G and B; got channels {', '.join(LAYERS)}"),
     "black_side": (channels(*"RGB", x=5, y=9), r"display window's corner; got \(5, 9\)"),

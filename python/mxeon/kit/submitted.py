@@ -1,23 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reading of the pictures that a renderer submitted."""
 
-import csv
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from mxeon.errors import ImageError
-from mxeon.io.files import regular
 from mxeon.io.images import open_image, words
 from mxeon.kit.views import View
 from mxeon.shaders.scene import sphere
 
-COLUMNS = ["row", "column", "red", "green", "blue"]
 CHANNELS = "RGB"
 LEVELS = 255  # steps of an eight-bit value
 ROUNDED = LEVELS * 2.0**-12  # rounding of a half float up to 1, in steps
@@ -42,7 +38,7 @@ def read_render(folder: str | PathLike[str], view: View) -> NDArray[np.float64]:
     file, size = files[0], view.scene.size
     if len(files) > 1:
         raise Unusable(f"{view.name}: must be one file; got {', '.join(f.name for f in files)}")
-    image = _read_csv(file, size) if file.suffix.lower() == ".csv" else _read_image(file, size)
+    image = _read_image(file, size)
     mask = sphere(size).mask
     bad = ~np.isfinite(image).all(axis=-1) & mask
     if bad.any():
@@ -60,7 +56,7 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
         image = open_image(file)
     except ImageError as error:
         reason = str(error).partition("; ")[2]
-        raise Unusable(f"{file.name}: must be an EXR or CSV file; {reason}") from None
+        raise Unusable(f"{file.name}: must be an EXR file; {reason}") from None
     spec = image.spec()
     if (spec.width, spec.height) != (size, size):
         raise Unusable(
@@ -95,36 +91,6 @@ def _channels(file: Path, names: Sequence[str]) -> list[int]:
     if not chosen:
         raise Unusable(f"{file.name}: must hold one R, G and B; got channels {', '.join(names)}")
     return [chosen[channel] for channel in CHANNELS]
-
-
-def _read_csv(file: Path, size: int) -> NDArray[np.float64]:
-    try:
-        with open(file, newline="", encoding="utf-8-sig", opener=regular) as stream:
-            return _table(file, csv.reader(stream), size)
-    except (OSError, UnicodeError, csv.Error) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise Unusable(f"{file.name}: must be CSV in UTF-8; {reason}") from None
-
-
-def _table(file: Path, lines: Any, size: int) -> NDArray[np.float64]:
-    header: list[str] = next(lines, [])
-    if header != COLUMNS:
-        raise Unusable(f"{file.name}: must begin with {','.join(COLUMNS)}; got {','.join(header)}")
-    image, present = np.full((size, size, 3), np.nan), np.zeros((size, size), dtype=bool)
-    for line in filter(None, lines):
-        try:
-            row, column, *values = int(line[0]), int(line[1]), *map(float, line[2:])
-            fits = min(row, column) >= 0 and len(values) == 3 and not present[row, column]
-        except (ValueError, IndexError):
-            fits = False
-        if not fits:
-            raise Unusable(
-                f"{file.name}: line {lines.line_num} must hold row and column of a pixel, of "
-                f"{size} x {size}, that no line before it has, and three numbers; "
-                f"got {','.join(line)}"
-            )
-        image[row, column], present[row, column] = values, True
-    return image
 
 
 def _check_depth(file: Path, values: NDArray[np.float64]) -> None:
