@@ -1,24 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Types of the data that Python embeds in the page (python/mxeon/explorer/data.py writes them).
 
+import type { ModelName } from "./models/table";
+
 export type Vec3 = readonly [number, number, number];
 export type Triple = [number, number, number];
-
-/** Name of a row in the tables of models and known defects of python/mxeon/models/table.py. */
-export type ModelName =
-  | "lambert"
-  | "oren_nayar"
-  | "qon"
-  | "qon_footnote"
-  | "qon_fujii"
-  | "fon"
-  | "eon"
-  | "eon_approx"
-  | "eon_clamped"
-  | "eon_rho_cubed"
-  | "fon_white_lobe"
-  | "qon_fitted"
-  | "qon_tinted_twice";
 
 /** A node's models with energy_compensation true and false; equal if it has no such flag. */
 export interface Models {
@@ -35,7 +21,6 @@ export interface ModelSource {
   readonly model: ModelName;
   // The intended model: `model` itself, unless this is a renderer's variant.
   readonly meant: ModelName;
-  readonly note: string; // one sentence: what it is, or who implements it; may be ""
   readonly pages: readonly string[]; // names of the pages about its defects
 }
 
@@ -53,7 +38,7 @@ export interface Port {
   readonly shown: boolean; // whether readers may want to change it
 }
 
-/** An image in base64: RGBA, 8 bits per channel, from the bottom row (v = 0) up. */
+/** An image in base64, RGBA: texels have 8 bits per channel, from the bottom row (v = 0) up. */
 export interface Texels {
   readonly width: number;
   readonly height: number;
@@ -66,7 +51,6 @@ export interface ShaderSource {
   readonly id: string; // "shader/eonlib", "shader/stock", "document/0/clay/eonlib", ...
   readonly title: string;
   readonly group: string;
-  readonly note: string;
   readonly library: string; // "eonlib", "stock"
   readonly pixel: string;
   readonly paths: string; // its text for path tracers, or ""
@@ -108,19 +92,6 @@ export interface ShaderForm {
 
 export type Source = ModelSource | ShaderSource;
 
-/** A picture for browsers without WebGL2. */
-export interface Still {
-  readonly title: string;
-  readonly picture: string; // data: URL of a PNG
-}
-
-/** A latitude-longitude map like MaterialX's in base64: RGBA, 32-bit floats, top row first. */
-export interface Sky {
-  readonly width: number;
-  readonly height: number; // a multiple of 32
-  readonly rgba: string;
-}
-
 export interface PageData {
   readonly version: string; // version of mxeon
   readonly materialx: string;
@@ -135,9 +106,9 @@ export interface PageData {
   readonly views: readonly Vec3[];
   /** URL of the pages about defects, with {} for the name; "" if there is none. */
   readonly pages: string;
-  readonly stills: readonly Still[];
   /** Whether `mxeon explore` serves the page, so that it can show dropped files. */
   readonly served: boolean;
   readonly warnings: readonly string[]; // about its documents
-  readonly sky: Sky | null; // surroundings that the reader provided
+  /** Surroundings that the reader provided: like MaterialX's, 32-bit floats, top row first. */
+  readonly sky: Texels | null;
 }

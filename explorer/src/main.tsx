@@ -4,7 +4,6 @@
 import { render } from "preact";
 import { fromAddress, toAddress } from "./address";
 import { App } from "./app";
-import type { PageData } from "./data";
 import { albedoDir, model, rhoFromAlbedo } from "./models/table";
 import type { Stage } from "./stage";
 import type { State } from "./state";
@@ -12,18 +11,8 @@ import { pageData } from "./texts";
 import "./style.css";
 
 /** Access for tests and for the browser's console. */
-interface Hook {
-  stage: Stage | null;
-  state: () => State;
-  show: (state: State) => void;
-  readonly data: PageData;
-  readonly models: typeof models;
-  readonly toAddress: (state: State) => string;
-  readonly fromAddress: (address: string) => State;
-}
-
 declare global {
-  var mxeon: Hook | undefined;
+  var mxeon: unknown;
 }
 
 const models = { albedoDir, model, rhoFromAlbedo };

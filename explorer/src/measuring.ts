@@ -2,7 +2,6 @@
 // Computes and reads back values while a view is at rest, so that pictures are never delayed.
 
 import { useEffect, useMemo, useState } from "preact/hooks";
-import type { ModelName } from "./data";
 import { isOther, type Pair, values } from "./probe";
 import type { Stage } from "./stage";
 import type { SideName, State } from "./state";
@@ -107,7 +106,7 @@ export function useEvidence(
   errors: ErrorsOf,
 ): Readonly<Record<SideName, Evidence>> {
   const [confirmed, setConfirmed] = useState<ReadonlyMap<string, boolean>>(new Map());
-  const key = (side: SideName, of: ModelName): string => `${state[side].source} ${of}`;
+  const key = (side: SideName, of: string): string => `${state[side].source} ${of}`;
   useEffect(() => {
     if (!measured) return;
     const found = new Map(confirmed);

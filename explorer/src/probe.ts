@@ -3,6 +3,7 @@
 
 import type { Triple, Vec3 } from "./data";
 import { piFCos, type Model } from "./models/table";
+import { dot, lightVector, unit } from "./stage/scenes";
 import type { State } from "./state";
 
 const RADIAN = Math.PI / 180;
@@ -11,21 +12,6 @@ const RADIAN = Math.PI / 180;
 export interface Pair {
   readonly wo: Vec3;
   readonly wi: Vec3;
-}
-
-export function dot(a: Vec3, b: Vec3): number {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-function unit(v: Vec3): Triple {
-  const length = Math.hypot(...v);
-  return [v[0] / length, v[1] / length, v[2] / length];
-}
-
-/** Unit vector to the light: x points right, y up, z to the viewer. */
-export function lightOf({ azimuth, elevation }: Pick<State, "azimuth" | "elevation">): Triple {
-  const [a, e] = [azimuth * RADIAN, elevation * RADIAN];
-  return [Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)];
 }
 
 /** The pair for a normal, a viewer and a light, all unit vectors in one frame. */
@@ -74,7 +60,7 @@ const GRID = 96;
 
 /** The point on the sphere where two models differ most in this light. */
 export function worstPoint(first: Model, second: Model, state: State): Point {
-  const light = lightOf(state);
+  const light = lightVector(state);
   let worst: Point | null = null;
   for (let row = 0; row < GRID; row++) {
     for (let column = 0; column < GRID; column++) {
@@ -100,7 +86,7 @@ export function worstPoint(first: Model, second: Model, state: State): Point {
 
 /** A point whose normal is halfway between the viewer's and the light's directions. */
 export function facingPoint(state: State): Point {
-  const light = lightOf(state);
+  const light = lightVector(state);
   const half = unit([light[0], light[1], light[2] + 1.0 + 1e-9]);
   return { ...pairOf(half, [0, 0, 1], light), normal: half, apart: 0 };
 }

@@ -5,7 +5,7 @@ import type { Triple } from "./data";
 
 // "plane": a sphere on a plane
 export const SHAPES = ["sphere", "plane", "cloth", "ball", "fiber"] as const;
-export const SURROUNDINGS = ["none", "uniform", "studio", "sky", "window", "own"] as const;
+export const SURROUNDINGS = ["none", "uniform", "studio", "sky", "own"] as const;
 export const COMPARISONS = ["wipe", "side", "difference", "flicker"] as const;
 export const SAMPLERS = ["exact", "cltc", "cosine"] as const;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Functions of a view and its data: the model on each side, and what follows from it.
 
-import type { ModelName, PageData, ShaderSource, Source, Triple } from "./data";
-import { model, rhoFromAlbedo, type Model } from "./models/table";
+import type { PageData, ShaderSource, Source, Triple } from "./data";
+import { model, rhoFromAlbedo, type Model, type ModelName } from "./models/table";
 import { INITIAL, type Side, type SideName, type State, type Value } from "./state";
 
 export const SIDES = ["left", "right"] as const;

@@ -51,9 +51,9 @@ WRITING = {
         (*MATERIAL, *TRUSTED, "environment"),
     ),
     "explore": (
-        ["explore", "look.mtlx", "--report", "run", *OPTIONS, "--output"],
+        ["explore", "look.mtlx", *OPTIONS, "--output"],
         "out.html",
-        (*MATERIAL, *TRUSTED, *REPORTED),
+        (*MATERIAL, *TRUSTED),
     ),
     "generate": (
         ["generate", "look.mtlx", "--target", "osl", *OPTIONS, "--outputPath"],
@@ -183,7 +183,6 @@ WRONG = {
     f"render {LOOK} --integrator path --output out.jpg": "output must end in .exr or .png; got",
     f"render {LOOK} --integrator path --output folder.png": "folder.png: must be accessible; not a re",
     f"explore {CLAY} nowhere.mtlx --output out.html": "must be a readable file",
-    "explore --report nowhere --output out.html": "nowhere",
     f"explore {CLAY} --workers 0 --maxSize 10 --output out.html": "raise it with --maxSize",
     f"explore {CLAY} --workers 0 --maxShaders 0 --output out.html": "got 2: raise it with --maxShaders",
     f"explore {CLAY} --workers -1 --output out.html": "workers must be at least 0",

@@ -27,16 +27,14 @@ from mxeon.explorer import PARAGRAPH, TEXTS, documents, page, page_data
 from mxeon.explorer.documents import document_sources
 from mxeon.hosts.textures import read_texture
 from mxeon.io.images import write_image, write_picture
-from mxeon.models.table import diffuse_model
 from mxeon.report import html, to_json, to_junit
 from mxeon.shaders.library import examples_folder
-from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
+from mxeon.shaders.nodes import OREN_NAYAR, material_text
 from mxeon.shaders.scene import sphere
 from tests.explorer.browser import judged, opened, until
 from tests.support.availability import package
 from tests.support.documents import textured, written
-from tests.support.results import Diagnosis, kept, made
-from tests.support.verdicts import FAILED, NOT_RUN, PASSED
+from tests.support.verdicts import FAILED
 
 Error = package("playwright.sync_api").Error
 LARGEST = 2 * 2**20  # bytes of the page without documents
@@ -91,31 +89,6 @@ def test_code_of_a_document_needs_a_permission(tmp_path, capsys):
     assert main(["explore", str(file), "--output", out]) == MISUSE
     assert "--allowCode" in capsys.readouterr().err
     assert main(["explore", str(file), "--allowCode", "--output", out]) == PASSED_STATUS
-
-
-def result(host, subject, verdict, **distances):
-    """A result of the check of values with stock MaterialX."""
-    titles = {diffuse_model(name).title: distance for name, distance in distances.items()}
-    return made(verdict, "value", subject, "stock", host, diagnosis=Diagnosis((), titles))
-
-
-def test_the_diagnoses_of_a_run_can_be_chosen(tmp_path):
-    node = f"{OREN_NAYAR}, {FLAG}"
-    results = (
-        result("gl", f"{node} true", FAILED, eon_clamped=1e-7, eon=0.1),
-        result("gl", f"{node} true", FAILED, lambert=0.0),  # a result of another check
-        result("gl", f"{node} false", PASSED, qon=1e-7, eon=0.1),
-        result("cycles", f"{node} false", FAILED, qon=0.2, eon_rho_cubed=1e-5),
-        result("cycles", "a document", NOT_RUN),
-    )
-    run, out = str(kept(tmp_path / "run", *results)), tmp_path / "page.html"
-    assert main(["explore", "--report", run, "--output", str(out)]) == PASSED_STATUS
-    found = [each for each in data_of(out.read_text())["sources"] if each["id"].startswith("run/")]
-    assert [(each["model"], each["meant"]) for each in found] == [
-        ("eon_clamped", "eon"),
-        ("eon_rho_cubed", "qon"),
-    ]
-    assert found[1]["title"].startswith(f"cycles with stock, {node} false: ")
 
 
 @pytest.fixture

@@ -79,7 +79,6 @@ def test_a_slider_changes_the_view_and_the_picture(page, label, field, value, ef
         ("Surroundings", "white", "surroundings", "uniform"),
         ("Surroundings", "black", "surroundings", "none"),
         ("Surroundings", "sky", "surroundings", "sky"),
-        ("Surroundings", "window", "surroundings", "window"),
         ("Compare", "Difference", "comparison", "difference"),
     ],
 )

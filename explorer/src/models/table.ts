@@ -3,7 +3,7 @@
 // the GLSL of the page in float64.
 
 import * as glsl from "glsl:models";
-import type { ModelName, Vec3 } from "../data";
+import type { Vec3 } from "../data";
 import { albedoDirQuadrature, bisect, type Brdf } from "./albedo";
 
 /** Directional albedo of one channel; `parameter` is roughness, or sigma in radian. */
@@ -12,16 +12,16 @@ type AlbedoDir = (mu: number, rho: number, parameter: number) => number;
 type AlbedoAvg = (rho: number, parameter: number) => number;
 
 export interface Model {
-  readonly name: ModelName;
+  readonly name: string;
   readonly title: string;
   readonly short: string; // short title
   readonly brdf: Brdf;
   readonly parameter: "roughness" | "sigma" | null;
-  readonly albedoDir: AlbedoDir | null; // closed form, if known
-  readonly albedoAvg: AlbedoAvg | null;
+  readonly albedoDir?: AlbedoDir; // closed form, if known
+  readonly albedoAvg?: AlbedoAvg;
   /** Only defects: the intended model, and where the defect differs from it. */
-  readonly meant: ModelName | null;
-  readonly wrong: string;
+  readonly meant?: string;
+  readonly wrong?: string;
 }
 
 type White = (...of: number[]) => number;
@@ -38,11 +38,10 @@ function tintedAvg(white: White): AlbedoAvg {
   return (rho, parameter) => rho * white(parameter);
 }
 
-const MODEL = { albedoDir: null, albedoAvg: null, meant: null, wrong: "" } as const;
+const DARK = "too dark where the color is neither 0 nor 1";
 
-export const MODELS: readonly Model[] = [
+const ROWS = [
   {
-    ...MODEL,
     name: "eon",
     title: "energy-preserving Oren-Nayar (EON)",
     short: "EON",
@@ -52,7 +51,6 @@ export const MODELS: readonly Model[] = [
     albedoAvg: glsl.eon_albedo_avg,
   },
   {
-    ...MODEL,
     name: "qon",
     title: "qualitative Oren-Nayar (QON)",
     short: "QON",
@@ -62,7 +60,6 @@ export const MODELS: readonly Model[] = [
     albedoAvg: tintedAvg(glsl.qon_albedo_avg),
   },
   {
-    ...MODEL,
     name: "fon",
     title: "Fujii Oren-Nayar (FON)",
     short: "FON",
@@ -72,7 +69,6 @@ export const MODELS: readonly Model[] = [
     albedoAvg: tintedAvg(glsl.fon_albedo_avg),
   },
   {
-    ...MODEL,
     name: "lambert",
     title: "Lambert",
     short: "Lambert",
@@ -82,7 +78,6 @@ export const MODELS: readonly Model[] = [
     albedoAvg: (rho) => rho,
   },
   {
-    ...MODEL,
     name: "oren_nayar",
     title: "full Oren-Nayar",
     short: "full Oren-Nayar",
@@ -90,7 +85,6 @@ export const MODELS: readonly Model[] = [
     parameter: "sigma",
   },
   {
-    ...MODEL,
     name: "qon_footnote",
     title: "QON with the footnote's constant",
     short: "QON, footnote",
@@ -98,7 +92,6 @@ export const MODELS: readonly Model[] = [
     parameter: "sigma",
   },
   {
-    ...MODEL,
     name: "qon_fujii",
     title: "QON with Fujii's coefficients",
     short: "QON, Fujii",
@@ -106,20 +99,14 @@ export const MODELS: readonly Model[] = [
     parameter: "sigma",
   },
   {
-    ...MODEL,
     name: "eon_approx",
     title: "EON with the paper's quartic",
     short: "EON, quartic",
     brdf: glsl.eon_brdf_approx,
     parameter: "roughness",
   },
-];
-
-const DARK = "too dark where the color is neither 0 nor 1";
-
-export const KNOWN_DEFECTS: readonly Model[] = [
+  // Known defects.
   {
-    ...MODEL,
     name: "eon_clamped",
     title: "EON with clamped dot(wo, wi)",
     short: "EON, clamped",
@@ -129,7 +116,6 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     wrong: "too bright where the light comes from behind, dot(wo, wi) < 0",
   },
   {
-    ...MODEL,
     name: "eon_rho_cubed",
     title: "EON with rho^3",
     short: "EON, rho^3",
@@ -140,7 +126,6 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     wrong: DARK,
   },
   {
-    ...MODEL,
     name: "fon_white_lobe",
     title: "FON + white lobe",
     short: "FON + white",
@@ -151,7 +136,6 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     wrong: "too bright wherever the color is below 1; black reflects light",
   },
   {
-    ...MODEL,
     name: "qon_fitted",
     title: "QON with MaterialX's fit of its albedo",
     short: "QON, fitted albedo",
@@ -162,7 +146,6 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     wrong: "wrong in surroundings only: the albedo is off by up to 0.063",
   },
   {
-    ...MODEL,
     name: "qon_tinted_twice",
     title: "QON tinted twice",
     short: "QON, tinted twice",
@@ -172,13 +155,15 @@ export const KNOWN_DEFECTS: readonly Model[] = [
     meant: "qon",
     wrong: DARK,
   },
-];
+] as const satisfies readonly Model[];
 
-const ROWS = new Map([...MODELS, ...KNOWN_DEFECTS].map((row) => [row.name, row]));
+export type ModelName = (typeof ROWS)[number]["name"];
 
-/** The row of `MODELS` or `KNOWN_DEFECTS` with this name. */
+const NAMED = new Map<ModelName, Model>(ROWS.map((row) => [row.name, row]));
+
+/** The row of a model or known defect. */
 export function model(name: ModelName): Model {
-  return ROWS.get(name)!;
+  return NAMED.get(name)!;
 }
 
 /** pi f cos(theta_i) of one channel; 0 if the light is below the horizon. */

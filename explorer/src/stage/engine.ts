@@ -6,7 +6,7 @@
 import type { PageData, ReferenceTable, ShaderSource, Source, Triple, Vec3 } from "../data";
 import type { SideName, State } from "../state";
 import type { ErrorOf, Errors } from "../verdict";
-import { ownView } from "../view";
+import { ownView, SIDES } from "../view";
 import { DIFFERENCE_COLORS, linear } from "./colors";
 import * as gpu from "./gpu";
 import { modelOf, pathText, shaderUniforms, wanted } from "./materials";
@@ -15,8 +15,6 @@ import { bend, camera, isUnshadowed, lightVector, toView } from "./scenes";
 import { hasTable, samplerRoughness, type Text, Texts } from "./texts";
 import { deleteTargets, layer, makeTargets, type Targets } from "./targets";
 import { Textures } from "./textures";
-
-export const SIDES = ["left", "right"] as const satisfies readonly SideName[];
 
 const ALBEDO_ANGLES = 256; // size of the albedo table of a model without a closed form
 const FAR = 1e8;
@@ -182,7 +180,7 @@ export class Engine {
     const source = this.sources.get(state[side].source);
     if (!source) return false;
     const texts = wanted(this.texts, source, state[side], { ...state, paths: false });
-    const pending = texts.filter(({ text }) => this.isPending(source.id, text));
+    const pending = texts.filter((text) => this.isPending(source.id, text));
     return pending.length === 0 && !this.errors.has(source.id);
   }
 
@@ -227,8 +225,8 @@ export class Engine {
       const source = this.sources.get(state[side].source);
       if (!source) continue;
       try {
-        for (const each of wanted(texts, source, state[side], state)) {
-          if (this.isPending(source.id, each.text)) missing.push(source.id);
+        for (const text of wanted(texts, source, state[side], state)) {
+          if (this.isPending(source.id, text)) missing.push(source.id);
         }
       } catch (error) {
         this.errors.set(source.id, (error as Error).message);

@@ -4,7 +4,8 @@
 import type { PageData, ShaderSource, Triple, Vec3 } from "../data";
 import type { SideName, State } from "../state";
 import type { Errors } from "../verdict";
-import { diameterOf, Engine, SIDES } from "./engine";
+import { SIDES } from "../view";
+import { diameterOf, Engine } from "./engine";
 import { Pace } from "./pace";
 import type { Size } from "./paths";
 import {
@@ -22,7 +23,6 @@ import {
 export interface Pick {
   readonly wo: Triple; // unit vector in the local frame, where the normal is +z, in the x-z plane
   readonly wi: Triple; // unit vector to the light; z may be <= 0
-  readonly position: Triple; // in the viewer's frame
   readonly normal: Triple;
 }
 
@@ -43,38 +43,6 @@ export type Status =
   | { readonly kind: "error"; readonly source: string; readonly message: string }
   | { readonly kind: "lost" }
   | { readonly kind: "restored" };
-
-export interface Stage {
-  /** Show a state soon. `dragging` announces another state and permits a coarser picture. */
-  draw(state: State, dragging?: boolean): void;
-  /**
-   * The surface at a point of the picture, [0, 1]^2 from the top left; null outside the subject.
-   */
-  pick(x: number, y: number, state: State): Pick | null;
-  /**
-   * pi f cos(theta_i) of both shaders for a pair of directions; null while they compile or if they
-   * fail.
-   */
-  evaluate(pair: { wo: Vec3; wi: Vec3 }, state: State): { left: Triple; right: Triple } | null;
-  /** Largest errors of a shader against its reference; null while it compiles or if it fails. */
-  check(source: ShaderSource): Errors | null;
-  /** Error of a source in the latest picture, or "". */
-  failure(source: string): string;
-  /** Convert a point of the picture to the light that it represents, and back. */
-  toLight(x: number, y: number, state: State): { azimuth: number; elevation: number };
-  fromLight(state: State): [number, number];
-  /** Linear RGBA radiance before exposure, bottom row first; without a side, the comparison. */
-  read(side?: SideName): Float32Array;
-  size(): { width: number; height: number };
-  /** Diameter of the sphere in pixels of the canvas. */
-  diameter(state: State): number;
-  /** Whether the picture of a state is final: nothing is drawn until something changes. */
-  isSettled(state: State): boolean;
-  /** Whether a picture of a state was drawn, final or not. */
-  isDrawn(state: State): boolean;
-  onStatus(callback: (status: Status) => void): void;
-  dispose(): void;
-}
 
 const MOST_PIXELS = 1.6e6; // each takes 150 bytes
 const ATTRIBUTES: WebGLContextAttributes = {
@@ -98,7 +66,7 @@ export function createStage(canvas: HTMLCanvasElement, data: PageData): Stage | 
   [canvas.width, canvas.height] = fitted(canvas);
   const gl = canvas.getContext("webgl2", ATTRIBUTES) as WebGL2RenderingContext | null;
   if (!gl?.getExtension("EXT_color_buffer_float")) return null;
-  return new CanvasStage(canvas, gl, data);
+  return new Stage(canvas, gl, data);
 }
 
 /** A frame that the driver is drawing. */
@@ -108,7 +76,7 @@ interface Fence {
   readonly size: Size;
 }
 
-class CanvasStage implements Stage {
+export class Stage {
   private engine: Engine | null;
   private state: State | null = null;
   private readonly listeners: ((status: Status) => void)[] = [];
@@ -133,6 +101,7 @@ class CanvasStage implements Stage {
     this.resizing.observe(canvas);
   }
 
+  /** Show a state soon. `dragging` announces another state and permits a coarser picture. */
   draw(state: State, dragging = false): void {
     this.pace.change(dragging);
     const old = this.state;
@@ -141,6 +110,9 @@ class CanvasStage implements Stage {
     this.restart();
   }
 
+  /**
+   * The surface at a point of the picture, [0, 1]^2 from the top left; null outside the subject.
+   */
   pick(x: number, y: number, state: State): Pick | null {
     const size = this.fit();
     const column = Math.min(Math.floor(fromSide(state, x) * size[0]), size[0] - 1);
@@ -152,9 +124,13 @@ class CanvasStage implements Stage {
     const eye = toView(view, view.eye);
     const viewer = unit([eye[0] - position[0], eye[1] - position[1], eye[2] - position[2]]);
     const [wo, wi] = localPair(normal, viewer, toView(view, lightVector(state)));
-    return { wo, wi, position, normal };
+    return { wo, wi, normal };
   }
 
+  /**
+   * pi f cos(theta_i) of both shaders for a pair of directions; null while they compile or if they
+   * fail.
+   */
   evaluate(
     { wo, wi }: { wo: Vec3; wi: Vec3 },
     state: State,
@@ -163,25 +139,30 @@ class CanvasStage implements Stage {
     return left && right ? { left, right } : null;
   }
 
+  /** Largest errors of a shader against its reference; null while it compiles or if it fails. */
   check(source: ShaderSource): Errors | null {
     return this.engine?.check(source) ?? null;
   }
 
+  /** Error of a source in the latest picture, or "". */
   failure(source: string): string {
     return this.engine?.errors.get(source) ?? "";
   }
 
+  /** Convert a point of the picture to the light that it represents. */
   toLight(x: number, y: number, state: State): { azimuth: number; elevation: number } {
     const [width, height] = this.fit();
     return lightAt(state, fromSide(state, x), y, width / height);
   }
 
+  /** Convert a light to the point of the picture that represents it. */
   fromLight(state: State): [number, number] {
     const [width, height] = this.fit();
     const [x, y] = lightMark(state, width / height);
     return [toSide(state, x), y];
   }
 
+  /** Linear RGBA radiance before exposure, bottom row first; without a side, the comparison. */
   read(side?: SideName): Float32Array {
     const { state } = this;
     if (!state || !this.engine) return new Float32Array(0);
@@ -203,14 +184,17 @@ class CanvasStage implements Stage {
     return { width, height };
   }
 
+  /** Diameter of the sphere in pixels of the canvas. */
   diameter(state: State): number {
     return diameterOf(this.fit(), state);
   }
 
+  /** Whether the picture of a state is final: nothing is drawn until something changes. */
   isSettled(state: State): boolean {
     return this.state === state && this.index > 0 && !this.request && !this.pace.moving;
   }
 
+  /** Whether a picture of a state was drawn, final or not. */
   isDrawn(state: State): boolean {
     return this.state === state && this.index > 0 && !this.fence;
   }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Program texts and uniforms to draw a side of the comparison.
 
-import type { ModelName, ShaderSource, Source, Vec3 } from "../data";
+import type { ShaderSource, Source, Vec3 } from "../data";
+import type { ModelName } from "../models/table";
 import type { Shape, Side, State } from "../state";
+import { valuesOf } from "../view";
 import type { Uniforms, UniformValue } from "./gpu";
 import type { Camera } from "./scenes";
 import { hasTable, type Text, type Texts } from "./texts";
@@ -13,12 +15,6 @@ const SPECULAR_SAMPLES = 16;
 const MIPS = 8; // mip levels of a map with 128 columns
 
 const ATLAS = /^uniform vec2 (\w+_uv_scale);/gm;
-
-/** A program that a side needs, and the source to name in an error message. */
-export interface Wanted {
-  readonly source: string;
-  readonly text: Text;
-}
 
 /** The model of a source; null if it has none. */
 export function modelOf(source: Source, flag: boolean): ModelName | null {
@@ -37,12 +33,11 @@ export function pathText(texts: Texts, source: Source, side: Side, shape: Shape)
 }
 
 /** Programs of a side; throws an error if it cannot be drawn this way. */
-export function wanted(texts: Texts, source: Source, side: Side, state: State): Wanted[] {
-  if (state.paths) return [{ source: source.id, text: pathText(texts, source, side, state.shape) }];
-  if (source.kind === "shader") return [{ source: source.id, text: texts.generated(source) }];
-  const value = { source: source.id, text: texts.model(source.model) };
-  if (!hasTable(source.model)) return [value];
-  return [value, { source: source.id, text: texts.albedo(source.model) }];
+export function wanted(texts: Texts, source: Source, side: Side, state: State): Text[] {
+  if (state.paths) return [pathText(texts, source, side, state.shape)];
+  if (source.kind === "shader") return [texts.generated(source)];
+  const value = texts.model(source.model);
+  return hasTable(source.model) ? [value, texts.albedo(source.model)] : [value];
 }
 
 /**
@@ -58,21 +53,15 @@ export function shaderUniforms(
   light: Vec3,
   eye: Vec3,
 ): Uniforms {
-  const inputs: Record<string, UniformValue> = {};
+  const inputs: Record<string, UniformValue> = Object.fromEntries(valuesOf(source, state, side));
   // Scales of images in an atlas: 1, because none of them is packed into one.
   for (const [, name = ""] of source.pixel.matchAll(ATLAS)) inputs[name] = [1, 1];
-  for (const { name, value, image } of source.inputs) {
+  for (const { name, image } of source.inputs) {
     if (image) inputs[name] = textures.image(image);
-    else if (value !== null) inputs[name] = value;
   }
-  const { color, roughness, flag } = source.controls;
-  if (color) inputs[color] = state.color;
-  if (roughness) inputs[roughness] = state.roughness;
-  if (flag) inputs[flag] = side.flag;
   const even = state.surroundings === "none" || state.surroundings === "uniform";
   return {
     ...inputs,
-    ...state.inputs[source.id],
     "u_lightData[0].type": 1,
     "u_lightData[0].direction": [-light[0], -light[1], -light[2]],
     "u_lightData[0].color": [1, 1, 1],

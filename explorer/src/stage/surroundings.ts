@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Radiance of the surroundings: formulas, rendered to latitude-longitude maps like MaterialX's.
 
-import type { Sky, Triple, Vec3 } from "../data";
+import type { Texels, Triple, Vec3 } from "../data";
 import type { Surroundings } from "../state";
 import { dot, unit } from "./scenes";
 
@@ -73,22 +73,10 @@ function sky(w: Vec3): Triple {
   return mixed(ground, sum(above, sun), inside(-w[1], 0.06));
 }
 
-/** A warm room with one cool, bright window of four panes. */
-function window(w: Vec3): Triple {
-  const walls = mixed([0.17, 0.12, 0.085], [0.3, 0.25, 0.2], 0.5 + 0.5 * w[1]);
-  let panes = 0;
-  for (const across of [-0.28, 0.28]) {
-    for (const up of [0.02, 0.6]) {
-      panes += panel(w, unit([-0.9 + 0.45 * across, up, 0.45 + 0.9 * across]), 0.22, 0.24);
-    }
-  }
-  return sum(walls, scaled([5.4, 6.4, 7.8], panes));
-}
-
-const RADIANCE: Record<"studio" | "sky" | "window", (w: Vec3) => Triple> = { studio, sky, window };
+const RADIANCE: Record<"studio" | "sky", (w: Vec3) => Triple> = { studio, sky };
 
 /** The radiance map of the surroundings; a single pixel if they are uniform. */
-export function radianceMap(name: Surroundings, own: Sky | null): SkyMap {
+export function radianceMap(name: Surroundings, own: Texels | null): SkyMap {
   if (name === "own") {
     // The link comes from a page with custom surroundings.
     if (!own) return radianceMap("studio", null);

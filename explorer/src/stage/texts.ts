@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Builds the texts of all the stage's programs, in ESSL 3.00.
 
-import type { ModelName, PageData, ShaderSource } from "../data";
-import { model as rowOf } from "../models/table";
+import type { PageData, ShaderSource } from "../data";
+import { model as rowOf, type ModelName } from "../models/table";
 import type { Sampler, Shape } from "../state";
 import albedo from "./albedo.glsl";
 import camera from "./camera.glsl";
@@ -37,39 +37,21 @@ void main() {
 }
 `;
 
-/** Macros that call a model's value and, if a closed form is known, its albedo. */
-interface Calls {
-  readonly value: string;
-  readonly albedo: string | null;
+/** GLSL of a model's value. */
+function valueOf(model: ModelName): string {
+  if (model === "lambert") return "lambert_brdf(wo, wi, rho)";
+  if (model === "eon_approx") return "eon_brdf_approx(wo, wi, rho, r)";
+  if (model === "qon_fitted") return "qon_brdf(wo, wi, rho, r)";
+  return `${model}_brdf(wo, wi, rho, r)`;
 }
 
-const MODELS: Record<ModelName, Calls> = {
-  lambert: { value: "lambert_brdf(wo, wi, rho)", albedo: "rho" },
-  oren_nayar: { value: "oren_nayar_brdf(wo, wi, rho, r)", albedo: null },
-  qon: { value: "qon_brdf(wo, wi, rho, r)", albedo: "rho * qon_albedo_dir(mu, r)" },
-  qon_footnote: { value: "qon_footnote_brdf(wo, wi, rho, r)", albedo: null },
-  qon_fujii: { value: "qon_fujii_brdf(wo, wi, rho, r)", albedo: null },
-  fon: { value: "fon_brdf(wo, wi, rho, r)", albedo: "rho * fon_albedo_dir(mu, r)" },
-  eon: { value: "eon_brdf(wo, wi, rho, r)", albedo: "eon_albedo_dir(mu, rho, r)" },
-  eon_approx: { value: "eon_brdf_approx(wo, wi, rho, r)", albedo: null },
-  eon_clamped: { value: "eon_clamped_brdf(wo, wi, rho, r)", albedo: null },
-  eon_rho_cubed: {
-    value: "eon_rho_cubed_brdf(wo, wi, rho, r)",
-    albedo: "eon_rho_cubed_albedo_dir(mu, rho, r)",
-  },
-  fon_white_lobe: {
-    value: "fon_white_lobe_brdf(wo, wi, rho, r)",
-    albedo: "fon_white_lobe_albedo_dir(mu, rho, r)",
-  },
-  qon_fitted: {
-    value: "qon_brdf(wo, wi, rho, r)",
-    albedo: "qon_fitted_albedo_dir(mu, rho, r)",
-  },
-  qon_tinted_twice: {
-    value: "qon_tinted_twice_brdf(wo, wi, rho, r)",
-    albedo: "qon_tinted_twice_albedo_dir(mu, rho, r)",
-  },
-};
+/** GLSL of a model's albedo in closed form; null if it has none. */
+function albedoOf(model: ModelName): string | null {
+  if (!rowOf(model).albedoDir) return null;
+  if (model === "lambert") return "rho";
+  const tinted = model === "qon" || model === "fon";
+  return tinted ? `rho * ${model}_albedo_dir(mu, r)` : `${model}_albedo_dir(mu, rho, r)`;
+}
 
 const SAMPLERS: Record<Sampler, readonly [string, string]> = {
   exact: ["eon_sample(wo, u.x, u.y, rho, r)", "eon_pdf(wo, wi, rho, r)"],
@@ -83,7 +65,7 @@ export function samplerRoughness(model: ModelName, parameter: number): number {
 }
 
 export function hasTable(model: ModelName): boolean {
-  return MODELS[model].albedo === null;
+  return albedoOf(model) === null;
 }
 
 function defined(macros: Record<string, string | number>): string {
@@ -124,14 +106,14 @@ export class Texts {
   }
 
   model(model: ModelName): Text {
-    const { value, albedo: closed } = MODELS[model];
-    const macros = { STAGE_VALUE: value, STAGE_ALBEDO: closed ?? "stage_tabulated(mu)" };
+    const closed = albedoOf(model) ?? "stage_tabulated(mu)";
+    const macros = { STAGE_VALUE: valueOf(model), STAGE_ALBEDO: closed };
     const make = () => HEAD + this.functions + defined(macros) + surroundings + material;
     return { key: `model ${model}`, make };
   }
 
   albedo(model: ModelName): Text {
-    const macros = { STAGE_VALUE: MODELS[model].value };
+    const macros = { STAGE_VALUE: valueOf(model) };
     const make = () => HEAD + this.functions + defined(macros) + albedo;
     return { key: `albedo ${model}`, make };
   }
@@ -139,7 +121,7 @@ export class Texts {
   /** Traces paths with the model of a source. */
   modelPaths(model: ModelName, sampler: Sampler, shape: Shape): Text {
     const [sample, pdf] = SAMPLERS[sampler];
-    const macros = { STAGE_VALUE: MODELS[model].value, STAGE_SAMPLE: sample, STAGE_PDF: pdf };
+    const macros = { STAGE_VALUE: valueOf(model), STAGE_SAMPLE: sample, STAGE_PDF: pdf };
     const make = () => traced(shape, this.functions, defined(macros), modelPaths, random);
     return { key: `paths ${model} ${sampler} ${shape}`, make };
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures of surroundings and of documents' images, created on first use.
 
-import type { Sky, Texels } from "../data";
+import type { Texels } from "../data";
 import type { Surroundings } from "../state";
 import * as gpu from "./gpu";
 import { irradianceMap, radianceMap } from "./surroundings";
@@ -14,7 +14,7 @@ export class Textures {
 
   constructor(
     private readonly gl: WebGL2RenderingContext,
-    private readonly sky: Sky | null,
+    private readonly sky: Texels | null,
   ) {
     this.format = gpu.formats(gl);
     this.white = gpu.makeTexture(gl, this.format.bytes, 1, 1, new Uint8Array([255, 255, 255, 255]));

@@ -3,7 +3,6 @@
 // shaders, which a page cannot do by itself. Any other page shows the command to run.
 
 import { useEffect, useState } from "preact/hooks";
-import { copy } from "../copies";
 import { stemOf, withMaterial } from "../view";
 import type { ViewProps } from "./sides";
 
@@ -12,8 +11,6 @@ const LIGHT = /\.(hdr|exr)$/i;
 
 export function Dropped({ data, sources, state, change }: ViewProps) {
   const [said, say] = useState(data.warnings.join(" "));
-  const [command, setCommand] = useState("");
-  const [copied, setCopied] = useState("");
   useEffect(() => {
     // Otherwise the browser opens the file.
     const over = (event: DragEvent): void => event.preventDefault();
@@ -26,8 +23,6 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
       const first =
         names.find((name) => DOCUMENT.test(name)) ?? names.find((name) => LIGHT.test(name));
       if (names.length === 0) return;
-      setCommand("");
-      setCopied("");
       if (!first)
         return say(`${names[0]}: drop a .mtlx document with its images, or a .hdr or .exr map.`);
       if (data.served) {
@@ -37,9 +32,9 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
       const own = data.sources.find(
         ({ id, group }) => id.startsWith("document/") && group === first,
       );
-      say(own ? "" : `To see ${first}, run`);
+      const option = DOCUMENT.test(first) ? "" : "--environment ";
+      say(own ? "" : `To see ${first}, run: mxeon explore ${option}FILE`);
       if (own) change(withMaterial(state, sources, stemOf(own.id)));
-      else setCommand(commandFor(first));
     };
     addEventListener("dragover", over);
     addEventListener("drop", drop);
@@ -52,20 +47,6 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
   return (
     <p class="dropped" role="status">
       {said}{" "}
-      {command && (
-        <>
-          <code>{command}</code>{" "}
-          <button
-            type="button"
-            onClick={() =>
-              void copy(command).then((done) => setCopied(done ? "Copied" : "Not copied"))
-            }
-          >
-            Copy
-          </button>{" "}
-          <span class="said">{copied}</span>
-        </>
-      )}{" "}
       <button type="button" aria-label="Close" onClick={() => say("")}>
         ×
       </button>
@@ -114,11 +95,4 @@ async function sent(files: ReadonlyMap<string, File>, documents: boolean): Promi
   history.replaceState(null, "", location.pathname); // the old address belonged to another material
   location.reload();
   return "";
-}
-
-/** The command that shows a document or an environment map. */
-function commandFor(name: string): string {
-  const path = name.startsWith("-") ? `./${name}` : name; // a name must not look like an option
-  const file = /^[\w./-]+$/.test(path) ? path : `'${path.replaceAll("'", `'\\''`)}'`;
-  return `mxeon explore ${DOCUMENT.test(name) ? "" : "--environment "}${file}`;
 }

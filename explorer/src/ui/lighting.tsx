@@ -18,7 +18,6 @@ const SURROUNDINGS_TITLES: Readonly<Record<Surroundings, string>> = {
   uniform: "white",
   studio: "studio",
   sky: "sky",
-  window: "window",
   own: "yours",
 };
 

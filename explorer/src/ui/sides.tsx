@@ -113,7 +113,6 @@ function SideCard(props: SidesProps & { readonly name: SideName }) {
           />
         )}
       </div>
-      {source.note && <p class="note">{source.note}</p>}
       {state.paths && !(source.kind === "shader" && source.paths) && (
         <label class="sampler">
           <span>Samples</span>

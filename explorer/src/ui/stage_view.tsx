@@ -10,7 +10,6 @@ import { LETTER, shortTitle, SIDES, sourceOf } from "../view";
 import { Choice, Slider } from "./fields";
 import { LightHandle, ProbeMark, WipeHandle } from "./handles";
 import type { ViewProps } from "./sides";
-import { Stills } from "./stills";
 
 interface StageViewProps extends ViewProps {
   /** Position of the probe in the picture, [0, 1]^2 from the top left; null for none. */
@@ -110,7 +109,13 @@ export function StageView(props: StageViewProps) {
     end();
   };
 
-  if (stage === null) return <Stills stills={data.stills} />;
+  if (stage === null) {
+    return (
+      <section class="stage" aria-label="Picture">
+        <p role="alert">This browser has no WebGL2, so nothing can be drawn. All numbers work.</p>
+      </section>
+    );
+  }
   const names = SIDES.map((name) => shortTitle(sourceOf(sources, state[name]), state[name]));
   return (
     <section class="stage" aria-label="Picture">

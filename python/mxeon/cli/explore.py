@@ -25,7 +25,6 @@ def add_parser(commands: arguments.Commands) -> None:
         "explore  # every lobe, eonlib beside stock MaterialX; drop documents on the page",
         "explore my.mtlx --environment sky.hdr",
         "explore my.mtlx --output page.html  # a page to send to somebody",
-        "explore --report out  # adds what `mxeon check --report out` found",
     )
     command.add_argument("files", nargs="*", metavar="FILE", help="MaterialX documents to add")
     command.add_argument(
@@ -35,9 +34,6 @@ def add_parser(commands: arguments.Commands) -> None:
     )
     command.add_argument(
         "--environment", metavar="IMAGE", help="latitude-longitude image to light materials with"
-    )
-    command.add_argument(
-        "--report", metavar="RUN", help="add the diagnoses of a run: its report folder"
     )
     command.add_argument(
         "--library",
@@ -51,18 +47,14 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the page and print its path, or serve it; return the exit status."""
-    from mxeon.conformance.results import report_files
-    from mxeon.conformance.run import read_run
     from mxeon.explorer import document_sources, page, page_data, sky_of
     from mxeon.explorer.serve import Server
     from mxeon.io.files import check_output, write_text
     from mxeon.jobs.signals import temporary_folder
 
-    read = report_files(options.report) if options.report else ()
     if options.output:
-        inputs = arguments.inputs(options, options.files, options.environment, *read)
+        inputs = arguments.inputs(options, options.files, options.environment)
         check_output(options.output, inputs, [".html"])
-    results = read_run(options.report).results if options.report else ()
     work = partial(document_sources, policy=arguments.policy(options), library=options.library)
 
     def make(files: list[str], light: str | None) -> str:
@@ -76,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
             fail(*status_of(error))
         if errors:
             raise errors[-1]
-        data = page_data((each.value for each in documents), results)
+        data = page_data(each.value for each in documents)
         if not data.judged:
             warn("the host gl does not run here: the page leaves open which models the nodes are")
         sky = sky_of(light) if light else None

@@ -8,17 +8,15 @@ import json
 from collections.abc import Iterable
 from dataclasses import asdict, replace
 from importlib.resources import files
-from itertools import chain
 from typing import Any
 
 import MaterialX as mx
 
 import mxeon
-from mxeon.conformance.results import Result
 from mxeon.explorer.data import PageData, ShaderSource
 from mxeon.explorer.documents import MEANT, document_sources, sky_of
 from mxeon.explorer.references import pairs, views
-from mxeon.explorer.sources import measured_models, model_sources, node_sources, run_sources, stills
+from mxeon.explorer.sources import measured_models, model_sources, node_sources
 from mxeon.shaders.functions import source
 
 __all__ = ["document_sources", "page", "page_data", "sky_of"]
@@ -29,12 +27,8 @@ MARK = "%DATA%"  # the template's placeholder for the data
 ESCAPES = str.maketrans({sign: f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u2029"})
 
 
-def page_data(
-    documents: Iterable[tuple[ShaderSource, ...]] = (),
-    results: Iterable[Result] = (),
-    pages: str = "",
-) -> PageData:
-    """The data of a page from the `document_sources` of each document and the results of a run.
+def page_data(documents: Iterable[tuple[ShaderSource, ...]] = (), pages: str = "") -> PageData:
+    """The data of a page from the `document_sources` of each document.
 
     `pages` is the address of a page of `docs/upstream` with {} for its name, or "".
     """
@@ -51,8 +45,7 @@ def page_data(
         mxeon.__version__,
         mx.getVersionString(),
         source("glsl"),
-        tuple(chain(shaders, run_sources(results), model_sources())),
-        stills(),
+        (*shaders, *model_sources()),
         pairs(),
         views(),
         pages,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The data of a page: the types of `explorer/src/data.ts`, which describes the fields."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from mxeon.shaders.document.values import Plain
@@ -24,7 +24,6 @@ class ModelSource:
     group: str
     model: str
     meant: str
-    note: str = ""
     pages: tuple[str, ...] = ()
     kind: str = "model"
 
@@ -99,7 +98,6 @@ class ShaderSource:
     id: str
     title: str
     group: str
-    note: str
     library: str
     pixel: str
     inputs: tuple[ShaderInput, ...]
@@ -115,35 +113,17 @@ class ShaderSource:
 
 
 @dataclass(frozen=True)
-class Still:
-    """A picture for browsers without WebGL2."""
-
-    title: str
-    picture: str  # PNG as a data: address
-
-
-@dataclass(frozen=True)
-class Sky:
-    """Surroundings that the reader provided."""
-
-    width: int
-    height: int
-    rgba: str
-
-
-@dataclass(frozen=True)
 class PageData:
     version: str
     materialx: str
     functions: str
     sources: tuple[ModelSource | ShaderSource, ...]
-    stills: tuple[Still, ...] = field(default=())
     pairs: tuple[tuple[Direction, Direction], ...] = ()
     views: tuple[Direction, ...] = ()
     pages: str = ""
     served: bool = False
     warnings: tuple[str, ...] = ()
-    sky: Sky | None = None
+    sky: Texels | None = None
 
     @property
     def judged(self) -> bool:

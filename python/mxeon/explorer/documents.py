@@ -92,7 +92,7 @@ def document_sources(
 SKY_ROWS = 128  # twice the rows of the page's own surroundings
 
 
-def sky_of(file: str) -> data.Sky:
+def sky_of(file: str) -> data.Texels:
     """A latitude-longitude image, turned as `mxeon render` turns it: its middle faces the viewer."""
     pixels = read_latlong(file)
     whole = oiio.ImageBuf(np.ascontiguousarray(np.roll(pixels, pixels.shape[1] // 2, axis=1)))
@@ -100,7 +100,7 @@ def sky_of(file: str) -> data.Sky:
     small = oiio.ImageBufAlgo.resize(whole, filtername="box", roi=area)
     rgba = np.ones((SKY_ROWS, 2 * SKY_ROWS, 4), "<f4")
     rgba[..., :3] = np.asarray(small.get_pixels(oiio.FLOAT))
-    return data.Sky(2 * SKY_ROWS, SKY_ROWS, b64encode(rgba.tobytes()).decode())
+    return data.Texels(2 * SKY_ROWS, SKY_ROWS, b64encode(rgba.tobytes()).decode())
 
 
 def path_texts(document: str, policy: Policy = DEFAULT) -> dict[str, str]:
@@ -178,7 +178,6 @@ def shader_source(
         id=name,
         title=title,
         group=group,
-        note="",
         library=library,
         pixel=shader.stages["pixel"],
         inputs=_by_effect(tuple(_ports(shader, images)), shader.document),

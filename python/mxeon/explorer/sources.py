@@ -1,29 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Contents of every page: the models, renderers' variants, lobes of both libraries, and stills."""
+"""Contents of every page: the models, renderers' variants, and lobes of both libraries."""
 
-from base64 import b64encode
-from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import chain
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
-from mxeon.conformance import backends, words
+from mxeon.conformance import backends
 from mxeon.conformance.case import Case, make_case
 from mxeon.conformance.diagnosis import ALBEDO, INEXACT, VALUE
-from mxeon.conformance.results import FAILED, Result, known_issues
+from mxeon.conformance.results import known_issues
 from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.conformance.specs.diffuse import VALUE as VALUE_ERROR
 from mxeon.errors import NotRun
-from mxeon.explorer.data import Models, ModelSource, ShaderSource, Still
+from mxeon.explorer.data import Models, ModelSource, ShaderSource
 from mxeon.explorer.documents import LIBRARIES, checked_materials, path_texts, shader_source
 from mxeon.explorer.references import reference_of
 from mxeon.hosts import open_host
 from mxeon.hosts.base import Inputs
-from mxeon.io.images import write_png
 from mxeon.jobs.signals import temporary_folder
 from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS, diffuse_model
 from mxeon.shaders.generation import generate
@@ -35,7 +29,6 @@ from mxeon.shaders.nodes import (
     material_text,
     node_text,
 )
-from mxeon.shaders.scene import VIEW, local_directions, sphere
 
 ROUGH: Inputs = {"roughness": (0.5, 0.5)}
 REFLECTS: Inputs = {"scatter_mode": "R"}
@@ -145,7 +138,6 @@ def _nearest(case: Case) -> str:
 GENERATED = "Generated shaders"
 FAMILY = "Models, eonlib's functions"
 VARIANTS = "What renderers do instead"
-RUN = "What the run found"
 
 # Models that are offered first; a node may be either of the first two.
 FIRST = ("eon", "qon", "fon", "lambert")
@@ -227,64 +219,3 @@ def model_sources() -> tuple[ModelSource, ...]:
         for position, (title, name, meant, page) in enumerate(RENDERERS)
     )
     return (*family, *variants)
-
-
-def run_sources(results: Iterable[Result]) -> tuple[ModelSource, ...]:
-    """The nearest models of failures in a run."""
-    names = {row.title: row.name for row in KNOWN_DEFECTS + DIFFUSE_MODELS}
-    sources: dict[tuple[str, str, str], ModelSource] = {}
-    for result in results:
-        key = (result.host, result.library, result.subject)
-        known = {title: far for title, far in result.diagnosis.distances.items() if title in names}
-        if result.verdict != FAILED or not known or key in sources:
-            continue
-        name = names[min(known, key=known.__getitem__)]
-        sources[key] = ModelSource(
-            f"run/{len(sources)}",
-            f"{result.location}, {result.subject}: {diffuse_model(name).title}",
-            RUN,
-            name,
-            _meant(result.subject, name),
-            words.explanation(result),
-        )
-    return tuple(sources.values())
-
-
-def _meant(subject: str, name: str) -> str:
-    """The intended model of a subject; without a flag in its name, by the diagnosed model."""
-    if FLAG in subject:
-        return "eon" if f"{FLAG} true" in subject else "qon"
-    return {"eon_clamped": "eon", "eon_rho_cubed": "eon", "fon_white_lobe": "eon"}.get(name, name)
-
-
-SIZE = 176
-LIGHT = (0.0, 0.8, -0.6)  # a light above and behind
-COLOR = (0.8, 0.4, 0.1)
-STILLS = ("eon", "eon_clamped", "qon", "lambert")
-
-
-def stills() -> tuple[Still, ...]:
-    """A sphere of the color (0.8, 0.4, 0.1) and roughness 1, lit from behind."""
-    found = []
-    for name in STILLS:
-        with temporary_folder("mxeon-still-") as folder:
-            path = Path(folder, "still.png")
-            write_png(path, picture(name).astype(np.float32), {})
-            address = f"data:image/png;base64,{b64encode(path.read_bytes()).decode()}"
-        found.append(Still(diffuse_model(name).title, address))
-    return tuple(found)
-
-
-def picture(name: str) -> NDArray[np.float64]:
-    """Radiance of a sphere of one model, (SIZE, SIZE, 3): pi f cos(theta_i)."""
-    points = sphere(SIZE)
-    normals = points.normal[points.mask]
-    wo, wi = (local_directions(normals, each) for each in (VIEW, LIGHT))
-    lit = wi[:, 2] > 0.0
-    row = diffuse_model(name)
-    parameter = [1.0] if row.parameter else []
-    values = np.zeros((len(normals), 3))
-    values[lit] = np.pi * row.brdf(wo[lit], wi[lit], COLOR, *parameter) * wi[lit, 2:]
-    image = np.zeros((SIZE, SIZE, 3))
-    image[points.mask] = values
-    return image
