@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Differences between a specification's tables of ports and MaterialX's node definitions.
+
+    python -m tools.site.ledger.tables MaterialX.PBRSpec.md
+
+The figures of docs/upstream/pbrlib_tables.md.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+import MaterialX as mx
+
+from mxeon.shaders.library import load_library
+
+GROUP = "pbr"  # nodegroup of the specification's nodes; others of a category are other nodes
+NONE = ("", "__zero__", "__empty__")  # defaults that are not values
+Port = dict[str, object]  # type, default and accepted values of a port
+
+
+def printed(text: str) -> dict[str, dict[str, Port]]:
+    """Ports by node and name, from tables whose first column is headed Port."""
+    nodes: dict[str, dict[str, Port]] = {}
+    node, columns = "", []
+    for line in text.splitlines():
+        if heading := re.match(r"#+ *`(\w+)`", line):
+            node, columns = heading[1], []
+        cells = [cell.strip() for cell in line.split("|")[1:-1]]
+        if [cell.lower() for cell in cells[:1]] == ["port"]:
+            columns, nodes[node] = [cell.lower() for cell in cells], {}
+        elif columns and len(cells) == len(columns) and cells[0].startswith("`"):
+            row, ports = dict(zip(columns, cells, strict=True)), nodes[node]
+            same = re.fullmatch(r"same as `?(\w+)`?", row["type"], re.IGNORECASE)
+            types = set(re.split(r",\s*or\s+|\s+or\s+|,\s*", row["type"]))
+            ports[row["port"].strip("` ")] = {
+                "type": ports[same[1]]["type"] if same else types,
+                "default": value(row.get("default", "")),
+                "accepted values": accepted(row.get("accepted values", "")),
+            }
+    return nodes
+
+
+def defined(node: str) -> dict[str, Port]:
+    """Ports of a node by name, from all its definitions."""
+    nodes = [each for each in load_library("stock").getNodeDefs() if each.getNodeString() == node]
+    default = [each for each in nodes if not each.getVersionString() or each.getDefaultVersion()]
+    ports: dict[str, Port] = {}
+    for each in [each for each in default if each.getNodeGroup() == GROUP] or default:
+        for port in (*each.getActiveInputs(), *each.getActiveOutputs()):
+            types = ports.get(port.getName(), {}).get("type", set())
+            text, ends = "", ("", "")
+            if isinstance(port, mx.Input):
+                text = port.getDefaultGeomPropString() or port.getValueString()
+                ends = port.getAttribute("uimin"), port.getAttribute("uimax")
+            spread = (
+                f"{f'[{ends[0]}' if ends[0] else '(-inf'}, {f'{ends[1]}]' if ends[1] else 'inf)'}"
+            )
+            ports.setdefault(
+                port.getName(),
+                {
+                    "default": value(text),
+                    "accepted values": accepted(
+                        port.getAttribute("enum") or spread * bool("".join(ends))
+                    ),
+                },
+            )["type"] = {*types, port.getType()}
+    return ports
+
+
+def value(text: str) -> object:
+    """A default as its distinct numbers in order, or as text: 1.0 also stands for 1.0, 1.0, 1.0."""
+    try:
+        numbers = tuple(map(float, text.split(",")))
+    except ValueError:
+        return "" if text in NONE else text
+    return numbers[:1] if len(set(numbers)) == 1 else numbers
+
+
+def accepted(text: str) -> object:
+    """A range as its brackets and bounds, names as a set."""
+    text = text.replace(" ", "").replace("∞", "inf")
+    if text.startswith(("[", "(")):
+        return text[0], text[-1], *map(value, text[1:-1].split(","))
+    return set(filter(None, text.split(",")))
+
+
+def main(path: str) -> None:
+    count = 0
+    for node, table in printed(Path(path).read_text(encoding="utf-8")).items():
+        ports = defined(node)
+        for name in dict.fromkeys((*table, *ports)):
+            ours, theirs = ports.get(name), table.get(name)
+            for key in ("type", "default", "accepted values"):
+                two = [each[key] if each else "no port" for each in (theirs, ours)]
+                if two[0] != two[1]:
+                    count += 1
+                    print(f"{node}.{name}: {key}: the text has {two[0]}, the library {two[1]}")
+    print(f"{count} entries differ")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
