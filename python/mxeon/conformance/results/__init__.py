@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, Field, dataclass, field, fields
 from enum import Enum
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
-from typing import Final, Literal, TypeAlias, get_args
+from typing import Any, ClassVar, Final, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,8 +94,22 @@ class Region:
     channels: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class Cause:
+class BriefRepr:
+    """A dataclass whose repr omits fields with default values."""
+
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+    def __repr__(self) -> str:
+        set_fields = (
+            f"{each.name}={value!r}"
+            for each in fields(self)
+            if each.repr and (value := getattr(self, each.name)) not in (each.default, {})
+        )
+        return f"{type(self).__name__}({', '.join(set_fields)})"
+
+
+@dataclass(frozen=True, repr=False)
+class Cause(BriefRepr):
     """One fact about wrong values.
 
     - `key`: Title of a model, or key of a row of the tables in `mxeon.conformance.words`.
@@ -130,8 +144,8 @@ class Cause:
 NO_CAUSE = Cause(Kind.NONE)
 
 
-@dataclass(frozen=True)
-class Diagnosis:
+@dataclass(frozen=True, repr=False)
+class Diagnosis(BriefRepr):
     """The explanation of a failure.
 
     - `causes`: The known causes; the one that explains most comes first.
@@ -209,8 +223,8 @@ def quoted(text: str) -> Diagnosis:
     return Diagnosis((Cause(Kind.TEXT, text=text),))
 
 
-@dataclass(frozen=True)
-class Result:
+@dataclass(frozen=True, repr=False)
+class Result(BriefRepr):
     """The outcome of one check of one subject on one host.
 
     - `check`, `claim`: Key of the check and the sentence that it tests.
