@@ -31,7 +31,7 @@ if TYPE_CHECKING:  # the import loads MaterialX
 
 SIZE = 16  # pixels on a side of a frame
 EVERY = 6  # a control draws every sixth frame
-WHITE_MAP = np.ones((1, 1, 3), np.float32)
+WHITE_MAP, WARM_MAP = (np.full((1, 1, 3), each, np.float32) for each in (1.0, (0.75, 0.5, 0.25)))
 NAMES = {"shading/mix": "mix", "front/opacity": "front", "back/opacity": "back"}
 LEAST_VARIANCE = 1e-5  # least variance of depths in a shadow map
 TRANSPARENT = 0.3333  # weight of each channel of the transparency in alpha
@@ -96,6 +96,7 @@ AXES: dict[str, dict[str, Build]] = {
     "environment": {
         "no environment": same,
         "an environment": bound(partial(replace, radiance=WHITE_MAP, irradiance=WHITE_MAP)),
+        "an environment: colored": bound(partial(replace, radiance=WARM_MAP, irradiance=WARM_MAP)),
     },
     "bound": {
         "what the generator sets": same,
