@@ -8,7 +8,7 @@
 | `... surface_texts` | tables of surfaces.md; some minutes |
 | `... field` | measurements behind field.html, from every host that runs here |
 | `... versions` | versions.md and ledger/versions.json; a quarter of an hour |
-| `... gallery`, `... brushed`, `... explorer`, `... note` | pictures of these pages |
+| `... gallery`, `... explorer`, `... note` | pictures of these pages |
 | `... wall REPORT...` | wall.md and its tiles, from reports of `mxeon check` |
 | `... ledger.measure [HOST ...]`, `... ledger.pictures` | docs/upstream/measured.json; its pictures |
 """

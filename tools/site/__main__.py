@@ -8,12 +8,12 @@ These are the OSL twins, and the tables of pages. What is measured on hosts
 from pathlib import Path
 
 from mxeon.io.files import write_text
-from tools.site import arrays, brushed, gallery, note, research, twins, versions
+from tools.site import arrays, gallery, note, research, twins, versions
 
 
 def made() -> dict[Path, str]:
     """The text of each file, by its path."""
-    tables = {each.PAGE: each.page for each in (arrays, brushed, research, note, versions)}
+    tables = {each.PAGE: each.page for each in (arrays, research, note, versions)}
     return {
         **{twins.path(stem): twins.osl_text(stem) for stem in twins.STEMS},
         **{path: of(path.read_text(encoding="utf-8")) for path, of in tables.items()},

@@ -69,10 +69,6 @@ behind, unless another light is named. To draw a picture yourself:
     mxeon render examples/roughness_wedge.mtlx --element wedge_eon_100 --output wedge_eon_100.png
     mxeon render examples/layered_white_furnace.mtlx --element white_dielectric --scene furnace --output white.png
 
-[![Brushed aluminium: stock, June 2026, eonlib and exact](images/brushed/aluminium.webp)](brushed_metal.md)
-
-*[Brushed metal](brushed_metal.md) under direct light: aluminium with four kinds of masking, and what differs from exact.*
-
 """
 
 TRACED = """
