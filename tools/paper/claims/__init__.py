@@ -18,6 +18,8 @@ the JCGT 2025 edition ([bibliography](bibliography.md)).
 
 A claim *holds* if all of its measured values meet its limit, holds *in part* if some do, and *fails* if none
 does; NaN meets no limit. The tables have the claims that do not hold, with the limit in the column *required*.
+The paper's formulas of values and albedos, and of rho for an albedo, are not among the claims: the tests compare them
+with 50 digits of the printed equations.
 """
 TALLY = "{count} claims; verdicts: {holds} holds, {part} holds in part, {fails} fails."
 
