@@ -14,16 +14,14 @@ from unittest.mock import patch
 
 from mxeon.errors import NotRun
 from tools.benchmarks import rounds
-from tools.benchmarks.check import CACHE
+from tools.benchmarks.command import CACHE, ONE
 
 QUICK = {  # sizes of each group with --quick
     "shaders": {"rounds": 5},
-    "sampling": {"rounds": 3, "size": 64, "pictures": 8, "spokes": 6},
     "materials": {"processes": 3, "size": 256},
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
-    "models": {"rounds": 2, "pairs": (10_000, 100_000), "values_of": 100_000},
-    "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
-    "check": {"rounds": 1, "whole": False},
+    "models": {"rounds": 2, "pairs": 100_000},
+    "command": {"rounds": 1, "jobs": (ONE,)},
 }
 
 

@@ -84,22 +84,6 @@ def figure(name, unit, values, goal=None, at_least=False):
     return Figure(name, unit, median, low, high, goal, at_least)
 
 
-# --- memory ---------------------------------------------------------------------------
-
-
-def reset_memory():
-    """Resident MiB, after resetting the peak to it."""
-    with open("/proc/self/clear_refs", "w", encoding="ascii") as file:
-        file.write("5")
-    return peak_memory()
-
-
-def peak_memory():
-    with open("/proc/self/status", encoding="ascii") as file:
-        line = next(line for line in file if line.startswith("VmHWM"))
-    return int(line.split()[1]) / 1024.0
-
-
 def version_of(package):
     """Version of an installed package; "not installed" without it."""
     try:
