@@ -10,19 +10,16 @@ renderGeometry=dome.obj is half a sphere of 60 faces for OpenGL on a CPU. What h
 kept, so a second call only writes docs/materialx_suite.md and its pictures.
 """
 
-import importlib
 import math
 import os
 import re
 import shutil
 import subprocess
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
 import MaterialX as mx
-import MaterialX.PyMaterialXGenShader as mx_gen
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
@@ -31,7 +28,6 @@ from mxeon.conformance.results import VISIBLE
 from mxeon.io.images import difference
 from mxeon.io.srgb import srgb_decoded
 from mxeon.shaders.library import SOURCE_FOLDERS, documents_folder, source_folder
-from mxeon.shaders.targets import CLASSES
 from tools.site import DOCS, in_percent
 
 PAGE, PICTURES = DOCS / "materialx_suite.md", DOCS / "images" / "suite"
@@ -39,32 +35,18 @@ OPTIONS = "resources/Materials/TestSuite/_options.mtlx"
 DOME = "dome.obj"
 NOTE = " (half a sphere of 60 faces, whose normals turn away from the viewer at the rim)"
 STOCK, EONLIB, RENDER_TEST = "stock", "eonlib", "Render: GLSL TestSuite"
-# Group of the ledger's pages -> its name in print, and the nodes that eonlib implements.
-GROUPS = {
-    "rough_diffuse": ("rough diffuse", "oren_nayar|eon"),
-    "diffuse": ("Burley, translucent, subsurface", "burley|translucent_bsdf|subsurface"),
-    "sheen": ("sheen", "sheen"),
-    "combinations": ("layer, add, multiply", "layer_bsdf|add_bsdf|multiply_bsdf"),
-    "microfacets": ("microfacets", "dielectric|conductor|schlick"),
-    "hair": ("hair", "chiang_hair_bsdf"),
-    "emission": ("emission and media", "edf|vdf"),
-    "utilities": ("utility nodes", "blackbody|hair_"),
-}
-# The tests ask MaterialX where its data is; the installed package would name its own.
-PYTHON = """import runpy, sys, MaterialX as mx
-*sys.argv, folder, test = sys.argv
-mx.getDefaultDataSearchPath = lambda: mx.FileSearchPath(folder)
-runpy.run_path(test, run_name="__main__")"""
 SIZE, QUALITY = 128, 80  # pixels of a tile, and WebP quality
 HEAD = """<!-- Made by `python -m tools.materialx_suite`. -->
 # MaterialX's own test suite with eonlib
 
-The C++ and Python tests of MaterialX {version} on its own documents, with its libraries as published (*stock*) and with
-eonlib loaded before them:
+The C++ tests of MaterialX {version} on its own documents, with its libraries as published (*stock*) and with eonlib
+loaded before them:
 
 | failed | stock | eonlib |
 |---|---|---|
-{table}
+| C++ test cases | {cases} |
+| pictures of the C++ render test | {blank} |
+
 - Failed with both: {both}.
 - Failed with eonlib alone: {ours}.
 - Implementations of eonlib that no document of the suite uses: {untested}. With its option `checkImplCount`, the suite's
@@ -79,16 +61,11 @@ To make this page from your checkout and build, which stay as they are:
 
     python -m tools.materialx_suite CHECKOUT BUILD WORK
 
-## Why pictures change
-
-Each group of nodes links to the defects of MaterialX's shaders that eonlib's GLSL does not have. A change of one node is
-right if the node then agrees with a float64 reference: [Results](results.md) judges each node, [the wall](wall.md) shows
-materials, and [`mxeon check`](check.md#materialxs-test-suite) judges these documents.
-
-| nodes | largest change of a picture that they alone can change |
-|---|---|
-{reasons}
 ## Pictures that change
+
+They change because of defects of MaterialX's shaders that eonlib's do not have; [the ledger](upstream/README.md) lists them by
+node. A change is right if the node then agrees with a float64 reference: [Results](results.md) judges each node, [the
+wall](wall.md) shows materials, and [`mxeon check`](check.md#materialxs-test-suite) judges these documents.
 
 Stock is on the left, eonlib on the right.
 
@@ -97,58 +74,29 @@ Stock is on the left, eonlib on the right.
 
 *Changed* is the share of a picture's pixels that change by more than 1 % of white.
 
-| document: element | largest change | changed | nodes of eonlib |
-|---|---|---|---|
+| document: element | largest change | changed |
+|---|---|---|
 {lines}"""
 
 Codes = NDArray[np.uint8]
-
-
-@dataclass(frozen=True)
-class Change:
-    """The largest change of a picture, signed, as a share of white; and the share of pixels that change visibly."""
-
-    largest: float
-    visible: float
-
-
-def group_of(node: str) -> str:
-    """The group of a node or nodedef; "" for none.
-
-    >>> group_of("ND_multiply_bsdfC"), group_of("ND_multiply_vdfC"), group_of("chiang_hair_bsdf")
-    ('combinations', 'emission', 'hair')
-    """
-    return next((name for name, (_, nodes) in GROUPS.items() if re.search(nodes, node)), "")
-
-
-def groups_of(shader: str) -> set[str]:
-    """Groups of the nodes that eonlib implements in a shader: MaterialX's functions begin with mx_.
-
-    >>> groups_of("void mx_sheen_bsdf(ClosureData c) {" + chr(10) + "void layer_bsdf(ClosureData c) {")
-    {'combinations'}
-    """
-    return {*map(group_of, re.findall(r"^void (?!mx_)([a-z]\w*)\(", shader, re.MULTILINE))} - {""}
 
 
 def slug(text: str) -> str:
     return re.sub(r"\W+", "_", text)
 
 
-def change(stock: Codes, eonlib: Codes) -> Change:
-    """
-    >>> change(np.uint8([[[188] * 3, [0] * 3]]), np.uint8([[[188] * 3, [255] * 3]]))
-    Change(largest=1.0, visible=0.5)
-    """
+def change(stock: Codes, eonlib: Codes) -> tuple[float, float]:
+    """The largest change of a picture, signed, as a share of white; and the share of pixels that change visibly."""
     apart = difference(srgb_decoded(eonlib / 255.0), srgb_decoded(stock / 255.0))
     largest = apart.flat[np.abs(apart).argmax()]
-    return Change(float(largest), float(np.mean(np.abs(apart) > VISIBLE)))
+    return float(largest), float(np.mean(np.abs(apart) > VISIBLE))
 
 
 def stage(folder: Path, checkout: Path, build: Path) -> None:
     """Fill a new folder for the suite, named by its library."""
     if folder.exists():
         return
-    for name in ("libraries", "resources", "python"):
+    for name in ("libraries", "resources"):
         shutil.copytree(checkout / name, folder / name, copy_function=os.symlink)
     (folder / OPTIONS).unlink()  # `run_tests` writes its own
     (folder / "bin").mkdir()
@@ -162,11 +110,7 @@ def stage(folder: Path, checkout: Path, build: Path) -> None:
 
 
 def shown(value: str) -> str:
-    """An option's value in print.
-
-    >>> shown("a/b/c.hdr"), shown("a/b.mtlx,c.mtlx")
-    ('b/c.hdr', '2 documents')
-    """
+    """An option's value in print, such as "b/c.hdr" for "a/b/c.hdr", or "2 documents"."""
     names = ["/".join(Path(each.strip()).parts[-2:]) for each in value.split(",")]
     documents = f"{len(names)} documents" if names[0].endswith(".mtlx") else ", ".join(names)
     return documents + NOTE * (names[0] == DOME)
@@ -206,42 +150,6 @@ def run_tests(folder: Path, suite: mx.Document, case: str, paths: str) -> None:
     (folder / "unfinished").replace(folder / f"{name}.xml")
 
 
-def python_tests(folder: Path) -> tuple[int, int]:
-    """Numbers of MaterialX's Python tests that fail, and of all."""
-    text = ""
-    for path in (
-        folder / "python/MaterialXTest/main.py",
-        folder / "python/MaterialXTest/genshader.py",
-    ):
-        command = [sys.executable, "-c", PYTHON, str(folder), str(path)]
-        text += subprocess.run(command, cwd=path.parent, capture_output=True, text=True).stderr
-    failed, ran = r"(?:failures|errors)=(\d+)", r"Ran (\d+) test"
-    return sum(map(int, re.findall(failed, text))), sum(map(int, re.findall(ran, text)))
-
-
-def generated(folder: Path) -> tuple[int, int]:
-    """Numbers of shaders that MaterialX's Python fails to generate from its documents, and of all."""
-    search, library = mx.FileSearchPath(str(folder)), mx.createDocument()
-    mx.loadLibraries(["libraries"], search, library)
-    failed, count = 0, 0
-    for module, name in CLASSES.values():
-        generator = getattr(importlib.import_module(f"MaterialX.PyMaterialX{module}"), name)
-        for path in (folder / "resources" / "Materials").rglob("*.mtlx"):
-            document = mx.createDocument()
-            mx.readFromXmlFile(document, str(path), search)
-            document.setDataLibrary(library)
-            context = mx_gen.GenContext(generator.create())
-            context.registerSourceCodeSearchPath(search)
-            context.getShaderGenerator().registerTypeDefs(document)
-            for element in mx_gen.findRenderableElements(document):
-                count += 1
-                try:
-                    context.getShaderGenerator().generate("shader", element, context)
-                except (mx.Exception, LookupError):
-                    failed += 1
-    return failed, count
-
-
 def shaders(folder: Path) -> dict[str, Path]:
     """The fragment shaders of the render test by document and element."""
     out = folder / slug(RENDER_TEST)
@@ -257,18 +165,6 @@ def picture(shader: Path) -> Path:
 
 def codes(shader: Path) -> Codes:
     return np.asarray(Image.open(picture(shader)).convert("RGB"))
-
-
-def failures(folder: Path) -> dict[str, tuple[int, int]]:
-    """Numbers of failures and of all, by what is counted."""
-    drawn = [picture(each).exists() for each in shaders(folder).values()]
-    tests = failed_tests(folder).values()
-    return {
-        "C++ test cases": (sum(tests), len(tests)),
-        "pictures of the C++ render test": (drawn.count(False), len(drawn)),
-        "Python tests": python_tests(folder),
-        f"shaders from Python for {len(CLASSES)} targets": generated(folder),
-    }
 
 
 def failed_tests(folder: Path) -> dict[str, bool]:
@@ -317,18 +213,16 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
         if picture(before[each]).exists() and picture(after[each]).exists()
     ]
     changes = {each: change(codes(before[each]), codes(after[each])) for each in drawn}
-    names = sorted(drawn, key=lambda each: (-abs(changes[each].largest), each))
-    visible = [each for each in names if abs(changes[each].largest) > VISIBLE]
+    names = sorted(drawn, key=lambda each: (-abs(changes[each][0]), each))
+    visible = [each for each in names if abs(changes[each][0]) > VISIBLE]
 
-    groups = {each: groups_of(after[each].read_text()) for each in names}
     shutil.rmtree(PICTURES, ignore_errors=True)
     PICTURES.mkdir(parents=True)
-    figures, lines, reasons = "", "", ""
+    figures, lines = "", ""
     for each in names:
-        nodes = "; ".join(GROUPS[group][0] for group in GROUPS if group in groups[each])
-        largest, share = in_percent(changes[each].largest), in_percent(changes[each].visible)
+        largest, share = map(in_percent, changes[each])
         if each in visible:
-            lines += f"| {each} | {largest} | {share.removeprefix('+')} | {nodes} |\n"
+            lines += f"| {each} | {largest} | {share.removeprefix('+')} |\n"
             file = f"{slug(each)}.webp"
             both = Image.fromarray(
                 np.concatenate([codes(before[each]), codes(after[each])], axis=1)
@@ -338,33 +232,26 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
                 f'<figure><img src="images/suite/{file}" alt="stock and eonlib">'
                 f"<figcaption>{each}</figcaption></figure>\n"
             )
-    for group, (title, _) in GROUPS.items():
-        if any(group in found for found in groups.values()):
-            alone = next((each for each in names if groups[each] == {group}), None)
-            size = f"{in_percent(changes[alone].largest)} in {alone}" if alone else ""
-            reasons += f"| [{title}](upstream/README.md#{group}) | {size} |\n"
-    stock, eonlib = failures(work / STOCK), failures(work / EONLIB)
-    rows = (
-        f"| {name} | {stock[name][0]} of {stock[name][1]} | {eonlib[name][0]} of {eonlib[name][1]} |\n"
-        for name in stock
+    tests = {name: failed_tests(work / name) for name in (STOCK, EONLIB)}
+    failed = {name: [each for each, value in tests[name].items() if value] for name in tests}
+    cases = (f"{len(failed[name])} of {len(tests[name])}" for name in tests)
+    blank = (
+        f"{sum(not picture(each).exists() for each in found.values())} of {len(found)}"
+        for found in (before, after)
     )
-    failed = {
-        name: [each for each, value in failed_tests(work / name).items() if value]
-        for name in (STOCK, EONLIB)
-    }
     ours = [each for each in failed[EONLIB] if each not in failed[STOCK]]
     git = ["git", "-C", str(checkout), "ls-files", "--deleted"]
     absent = subprocess.run(git, capture_output=True, text=True).stdout.split()
     PAGE.write_text(
         HEAD.format(
             version=mx.getVersionString(),
-            table="".join(rows),
+            cases=" | ".join(cases),
+            blank=" | ".join(blank),
             drawn=len(drawn),
             visible=len(visible),
             both="; ".join(failed[STOCK]) or "nothing",
             ours="; ".join(ours) or "nothing",
             untested=", ".join(f"`{each}`" for each in untested(work / EONLIB)) or "none",
-            reasons=reasons,
             figures=figures,
             lines=lines,
             options="; ".join(f"`{name}` {shown(value)}" for name, value in options.items())
