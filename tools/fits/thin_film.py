@@ -2,19 +2,24 @@
 """Errors of `genglsl/lib/thin_film.glsl` against all orders and exact averages: python -m tools.fits.thin_film.
 
 The shader sums orders while they matter, and averages over the hemisphere and over the visible facets with
-three cosines each. Each cosine represents a neighborhood, whose fringes damp each other. This
-measures the largest error of each, over films of up to 1000 nm on each kind of substrate, for cosines from
-0.1 on. `thin_film_search.py` searches for the largest.
+three cosines each. Each cosine represents a neighborhood, whose fringes damp each other. This searches for
+the largest error of each, over films of up to 1000 nm on each kind of substrate, for cosines from 0.1 on.
+
+A check measures the root mean square over one set of films. The errors of other sets, drawn in the same way, give its
+tolerance: it is at most a third of the largest error of a single film, so a wrong digit, which affects all films,
+exceeds it although it stays below the largest error.
 """
 
 import numpy as np
+from scipy.optimize import differential_evolution
 
+from mxeon.conformance.checks.microfacets import SMOOTH
+from mxeon.conformance.samples import SEED as DRAWN
+from mxeon.conformance.specs import microfacets
 from mxeon.conformance.specs.microfacets import LEAST_FILM, LEAST_OIL, SHARP
-from mxeon.models import thin_film as curve
 from mxeon.models import thin_film as film
 from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.thin_film import SUBSTRATES, TEXT, film_albedo_dir, film_curve
-from tools.fits.thin_film_search import COLORED, WHITE, largest
 
 # Ranges: roughness, cosine of the view, thickness in nm, index.
 FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
@@ -50,6 +55,23 @@ LEAST_PATH, LEAST_LOST = (
     1e-21,
     1e-12,
 )  # least path difference in m, and least share of escaping light
+# The search for the largest error.
+SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # films per step; steps of evolution
+KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # worst films to keep; distances from them in [0, 1]
+NUMBERS = 10  # numbers that describe a film, its substrate and its view
+COLORED = 17  # NUMBERS plus color82, color90 and the exponent of Schlick's curve
+FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # distances with COLORED numbers
+MOVED = 0.3  # share of the COLORED numbers that change
+LEAST = 1e-3  # least value of numbers except roughness, cosine and extinction: 0 reflects nothing
+# The worst films of longer searches, which random starts miss: of a metal with total reflection in the film,
+# and of glass at grazing, both with fringes of 1000 nm.
+GLASS = (0.0298, 0.001, 1.0, 0.0462, *[0.3587] * 6)
+CORNERS = {
+    "dielectric_bsdf": GLASS,
+    "conductor_bsdf": (0.2061, 0.0314, 1.0, 0.1054, *[0.0959] * 3, *[0.0] * 3),
+    "generalized_schlick_bsdf": GLASS,
+}
+WHITE = {"color82": 1.0, "color90": 1.0}
 
 
 def shader_curve(category, material, mu, width=0.0):
@@ -74,7 +96,7 @@ def shader_curve(category, material, mu, width=0.0):
         mean - 2.0 * weight * counted_orders(r12 * (x + 1j * y), opd, spread, count)
         for mean, weight, (r12, (x, y), _) in zip(means, weights, interfaces, strict=True)
     )
-    return np.clip(curve.to_rgb(0.5 * xyz, TEXT), 0.0, 1.0)
+    return np.clip(film.to_rgb(0.5 * xyz, TEXT), 0.0, 1.0)
 
 
 def substrate(material):
@@ -248,6 +270,13 @@ def monomials(mu, alpha):
     return np.stack([mu**i * y**j for i in range(4) for j in range(4 - i)])
 
 
+def smooth_errors(category, material, _, mu):
+    """Errors of a smooth lobe's value by F_ss: it is F (1 + F_ss (1 - E_ss) / E_ss)."""
+    E_ss = ggx_albedo_dir(mu, SMOOTH[0])
+    F = film_curve(category).at(mu, **material).max(axis=0)
+    return average_errors(category, material) * F * (1.0 - E_ss) / E_ss
+
+
 # Measurements by name: errors, and ranges of films.
 MEASURED = {
     "orders": (orders_errors, FILMS, COLORED),
@@ -265,19 +294,106 @@ MEASURED = {
     "albedo from an index on": (albedo_errors, {**FILMS, "index": (LEAST_FILM, 2.5)}),
     "albedo in a picture": (seen_errors, {**FILMS, "index": (LEAST_FILM, 2.5)}),
 }
+# Measurements of sets by name: errors, and a set of films.
+SETS = {
+    "all orders": (curve_errors, microfacets.ORDERED),
+    "F_ss": (average_errors, microfacets.FRINGED),
+    "compensation of smooth lobes": (smooth_errors, microfacets.FRINGED),
+    "visible facets": (visible_errors, microfacets.STEEP),
+    "visible facets that are much alike": (visible_errors, microfacets.GLOSSY),
+}
 
 
-def search(name, category):
-    """The largest error of a measurement, by a search."""
-    measured, ranges, *numbers = MEASURED[name]
-    return largest(measured, ranges, category, *numbers)
+# --- the largest errors ---------------------------------------------------------------------------
 
 
-def errors(names):
-    return {name: {category: search(name, category) for category in MIRRORS} for name in names}
+def substrates(unit):
+    """Inputs of the three nodes, by category, from numbers in [0, 1], shape (6, N) or (13, N)."""
+    count = unit.shape[1]
+    edges = {name: np.full((3, count), value) for name, value in WHITE.items()}
+    edges["exponent"] = np.full(count, 5.0)
+    if len(unit) > 6:
+        edges = {"color82": unit[6:9], "color90": unit[9:12], "exponent": 1.0 + 9.0 * unit[12]}
+    return {
+        "dielectric_bsdf": {"ior": 1.0 + 2.0 * unit[0], "tint": np.ones((3, 1))},
+        "conductor_bsdf": {"ior": 0.5 + 2.5 * unit[:3], "extinction": 0.2 + 5.8 * unit[3:6]},
+        "generalized_schlick_bsdf": {"color0": unit[:3], **edges},
+    }
+
+
+def filmed(category, ranges, unit):
+    """Inputs of a node under a film, roughness and cosine of a view, from numbers in [0, 1]."""
+    alpha, mu, thickness, index = (
+        low + (high - low) * each for (low, high), each in zip(ranges.values(), unit, strict=False)
+    )
+    films = {"thinfilm_thickness": thickness, "thinfilm_ior": index}
+    return substrates(unit[4:])[category] | films, alpha, mu
+
+
+def largest(errors, ranges, category, numbers=NUMBERS):
+    """The largest error of films in ranges, by a search.
+
+    It searches around the worst random films and a corner in decreasing steps, and then evolves the worst of
+    these. For films with more numbers, more films are kept, and each only changes some of its numbers.
+    """
+    rng = np.random.default_rng(SEED)
+    many = numbers > NUMBERS
+    count, kept, steps = (4 * COUNT, 4 * KEPT, FAR) if many else (COUNT, KEPT, STEPS)
+    least = np.full((numbers, 1), LEAST)
+    least[[0, 1, *range(7, 10)]] = 0.0
+
+    def of(unit):
+        return errors(category, *filmed(category, ranges, unit))
+
+    unit = rng.random((numbers, count))
+    unit[:NUMBERS, 0] = CORNERS[category]
+    found = of(unit)
+    for step in steps:
+        worst = unit[:, np.argsort(found)[-kept:]].repeat(count // kept // 4, axis=1)
+        way = step * rng.standard_normal(worst.shape)
+        if many:
+            way *= rng.random(worst.shape) < MOVED
+        near = np.clip(worst + way, least, 1.0)
+        found = np.append(found, of(near))
+        unit = np.append(unit, near, axis=1)
+    evolved = differential_evolution(
+        lambda unit: -of(np.maximum(unit, least)),
+        [(0.0, 1.0)] * numbers,
+        init=np.append(unit[:, np.argsort(found)[-kept:]], unit[:, : count // 4], axis=1).T,
+        maxiter=GENERATIONS, seed=SEED, vectorized=True, updating="deferred", polish=False,
+    )  # fmt: skip
+    return -float(evolved.fun)
+
+
+def films(spec, ranges, seed):
+    """Category, material, roughness and cosine of a check's films, drawn with another seed."""
+    DRAWN.set(seed)
+    batch = microfacets.film_views(spec, ranges)
+    material = {
+        name: np.moveaxis(batch.inputs[name], -1, 0)
+        for name in batch.inputs
+        if name not in ("roughness", "retroreflective")
+    }
+    return spec.node, material, batch.inputs["roughness"][:, 0], batch.wo[:, 2]
+
+
+def largest_mean(errors, ranges, sets=64):
+    """The largest root mean square of errors over sets of films, by category."""
+    return {
+        spec.node: max(
+            float(np.sqrt(np.mean(errors(*films(spec, ranges, seed)) ** 2)))
+            for seed in range(2, 2 + sets)
+        )
+        for spec in microfacets.FILM_SPECS
+    }
 
 
 if __name__ == "__main__":
-    for name, found in errors([*MEASURED]).items():
-        text = ", ".join(f"{category} {error:.3g}" for category, error in found.items())
+    found = {
+        name: {category: largest(*row[:2], category, *row[2:]) for category in MIRRORS}
+        for name, row in MEASURED.items()
+    }
+    found |= {f"sets, {name}": largest_mean(*row) for name, row in SETS.items()}
+    for name, errors in found.items():
+        text = ", ".join(f"{category} {error:.3g}" for category, error in errors.items())
         print(f"{name}: {text}")

@@ -14,7 +14,6 @@ from scipy.optimize import least_squares
 from mxeon.models.microfacet.ggx import smith_lambda
 from mxeon.models.thin_film import film_curve
 from tools.fits import thin_film as fit
-from tools.fits.thin_film_search import NUMBERS, filmed
 
 SEED, COUNT = 24, 400  # random films
 BARE, HEAVY = 100, 8.0  # substrates without a film, whose F_ss should be kept, and their weight
@@ -31,8 +30,8 @@ def random_films(count, ranges=fit.FILMS, seed=SEED):
     """Categories, materials, roughness and views."""
     rng = np.random.default_rng(seed)
     for category in fit.MIRRORS:
-        unit = rng.random((NUMBERS, count))
-        yield category, *filmed(category, ranges, unit)
+        unit = rng.random((fit.NUMBERS, count))
+        yield category, *fit.filmed(category, ranges, unit)
 
 
 def hemisphere():

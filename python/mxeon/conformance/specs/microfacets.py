@@ -508,7 +508,7 @@ def film_terms(alpha: float) -> tuple[Term, Term]:
 
 
 def _mean(value: float, words: str) -> Tolerance:
-    """The largest error over 64 sets of 64 films, from tools/fits/thin_film_sets.py."""
+    """The largest error over 64 sets of 64 films, from tools/fits/thin_film.py."""
     return given(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
 
 
@@ -554,7 +554,7 @@ class Films(NamedTuple):
     thickness: tuple[float, float]  # nm
 
 
-# tools/fits/thin_film_sets.py measures the mean errors of sets of these sizes.
+# tools/fits/thin_film.py measures the mean errors of sets of these sizes.
 # Rough lobes under films with few fringes, where masking selects facets with another curve.
 STEEP = Films(1 << 6, (0.6, 1.0), (0.6, 1.0), (50.0, 100.0))
 FRINGED = STEEP._replace(thickness=(50.0, 1000.0))  # the same with up to many fringes
