@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tools.fits.minimax import Form, mp, printed, refined
+from tools.fits.minimax import Form, extrema, mp, printed, refined
 
 FORM = Form(
     above=(
@@ -101,13 +101,13 @@ def fitted(mu, alpha, coefficients):
     return 1.0 - z2 * FORM.value(arguments, coefficients)
 
 
-def points(across=61, along=41):
-    """Cosines and roughnesses, dense where lambda = mu / sqrt(alpha^2 + (1 - alpha^2) mu^2) or alpha is near 0 or 1."""
+def points(across=61, along=41, root=0.0, least=LEAST):
+    """Cosines and roughnesses, dense where lambda = mu / sqrt(alpha^2 + (1 - alpha^2) mu^2) or alpha is near 0 or 1.
 
-    def ends(count):
-        return np.array([float((1 - mp.cos(mp.pi * k / (count - 1))) / 2) for k in range(count)])
-
-    x, alpha = np.meshgrid(np.maximum(ends(across), LEAST), np.maximum(ends(along), LEAST))
+    A `root` of 1/2 makes alpha denser near 0.
+    """
+    x, alpha = (np.array(extrema(count), float) for count in (across, along))
+    x, alpha = np.meshgrid(np.maximum(x, least), np.maximum(alpha * alpha**root, LEAST))
     mu = x * alpha / np.sqrt((1.0 - x * x) + x * x * alpha * alpha)
     return np.minimum(mu.ravel(), 1.0), alpha.ravel()
 

@@ -24,10 +24,10 @@ from itertools import pairwise, product
 
 import numpy as np
 
-from tools.fits.ggx_albedo import incident, legendre
+from tools.fits import ggx_albedo
+from tools.fits.ggx_albedo import LEAST, incident, legendre
 from tools.fits.minimax import Form, mp, numerator, printed
 
-LEAST = 1e-4  # smallest alpha and cosine of the fits
 BLOCK = 20  # points that are integrated together
 BISECTIONS = 50
 FLAT = 0.01  # least slope that counts
@@ -110,14 +110,7 @@ DIP_BELOW = (
 
 def points(across=43, along=25):
     """Cosines and roughnesses as in `ggx_albedo.points`, with alpha denser near 0."""
-    ends = [
-        np.array([float((1 - mp.cos(mp.pi * k / (n - 1))) / 2) for k in range(n)])
-        for n in (across, along)
-    ]
-    ends[1] = ends[1] * np.sqrt(ends[1])
-    x, alpha = np.meshgrid(np.maximum(ends[0], 2 * LEAST), np.maximum(ends[1], LEAST))
-    mu = x * alpha / np.sqrt((1.0 - x * x) + x * x * alpha * alpha)
-    return np.minimum(mu.ravel(), 1.0), alpha.ravel()
+    return ggx_albedo.points(across, along, 0.5, 2 * LEAST)
 
 
 def averages(mu, alpha, functions):
