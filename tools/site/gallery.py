@@ -1,18 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Render the materials of `examples/` with stock and with eonlib, and write the gallery page.
 
-python -m tools.site.gallery           the pictures, their differences, and gallery.md
-python -m tools.site.gallery --judge   the differences, and gallery.md
-python -m tools.site.gallery --page    gallery.md alone
-python -m tools.site.gallery --traced FOLDER    the path-traced ones, of documents in a folder
+python -m tools.site.gallery    the pictures, their differences, and gallery.md
 """
 
 import json
-import sys
-import warnings
-from contextlib import closing, suppress
+from contextlib import suppress
 from dataclasses import replace
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -21,17 +15,16 @@ from PIL import Image, ImageDraw, ImageFont
 
 import mxeon
 from mxeon.conformance import words
-from mxeon.conformance.reference import Reference
 from mxeon.conformance.results import VISIBLE
 from mxeon.errors import DocumentError
-from mxeon.hosts import open_host, path_tracer
+from mxeon.hosts import open_host
 from mxeon.hosts.points import visible
 from mxeon.hosts.still import still
 from mxeon.io.images import difference, difference_scale
 from mxeon.io.srgb import srgb_encoded
 from mxeon.io.tone import pbr_neutral
 from mxeon.report.pieces import difference_pixels
-from mxeon.shaders.scene import BACK, FURNACE, SIDE, STUDIO, Paths, Scene
+from mxeon.shaders.scene import BACK, FURNACE, STUDIO
 from tools.site import DOCS, brief
 
 PAGE = DOCS / "gallery.md"
@@ -74,16 +67,18 @@ behind, unless another light is named. To draw a picture yourself:
 TRACED = """
 ## Path traced
 
-Three of [MaterialX's examples](https://github.com/AcademySoftwareFoundation/MaterialX/tree/main/resources/Materials/Examples).
-Each picture shows the [path-traced](path_tracing.md) shader ball in the studio, with shadows and reflections of itself, at
-the default of 64 paths a pixel and denoised; the float64 reference has no floor and no studio, so the small spheres
-compare three engines under a light and an even environment, path tracing with {} paths a pixel.
+Three of [MaterialX's examples](https://github.com/AcademySoftwareFoundation/MaterialX/tree/main/resources/Materials/Examples)
+on the [path-traced](path_tracing.md) shader ball in the studio, with shadows and reflections of itself, at the default of
+64 paths a pixel and denoised:
 
-{}
+![open_pbr_velvet](images/gallery/traced_open_pbr_velvet.webp)
+
+![standard_surface_carpaint](images/gallery/traced_standard_surface_carpaint.webp)
+
+![standard_surface_glass](images/gallery/traced_standard_surface_glass.webp)
+
     mxeon render standard_surface_glass.mtlx --integrator path --output glass.png
 """
-NOISE = PICTURES / "traced.json"  # sentences of the path tracer, by document
-TRACED_SIZE, SAMPLES = SIZE // 3, 400  # pixels of a sphere, and its paths per pixel
 
 
 def studio():
@@ -125,18 +120,18 @@ def pictures(host, document):
         if scene.name == STUDIO.name:
             shown = [Image.fromarray(srgb_encoded(pbr_neutral(each))) for each in images]
         else:
-            shown = [sphere_picture(each, SIZE) for each in images]
+            shown = [sphere_picture(each) for each in images]
         yield pair[0].element, shown, apart
 
 
-def sphere_picture(image, size):
-    """A sphere of twice the size, with smooth edges and a rim of background."""
+def sphere_picture(image):
+    """A picture of a sphere at half its size, with smooth edges and a rim of background."""
     mask = visible(len(image), "sphere").mask[..., None]
     codes = np.where(mask, srgb_encoded(image), np.uint8(BACKGROUND))
-    inner = size - size // 8
-    shown = Image.new("RGB", (size, size), (BACKGROUND,) * 3)
+    inner = SIZE - SIZE // 8
+    shown = Image.new("RGB", (SIZE, SIZE), (BACKGROUND,) * 3)
     reduced = Image.fromarray(codes).resize((inner, inner), Image.Resampling.BOX)
-    shown.paste(reduced, (size // 16, size // 16))
+    shown.paste(reduced, (SIZE // 16, SIZE // 16))
     return shown
 
 
@@ -194,42 +189,6 @@ def judge():
     DIFFERENCES.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 
 
-def trace(folder):
-    """Write the path-traced pictures of a folder's documents, and the sentences on their noise."""
-    said, paths = {}, Paths(SAMPLES // 4)  # four pixels are reduced to one
-    even, ball = Scene("even", SIDE.light, 0.5, 2 * TRACED_SIZE), replace(STUDIO, size=SIZE)
-    with open_host("gl") as host, closing(path_tracer.PathTracerHost()) as tracer:
-        for document in sorted(folder.glob("*.mtlx")):
-            [flat], [path] = host.compile(document), tracer.compile(document)
-            with warnings.catch_warnings(record=True) as notes:
-                warnings.simplefilter("always", path_tracer.NoiseNote)
-                spheres = {
-                    "rasterizer": host.picture(flat, even),
-                    # The reference supports a light or an environment, not both.
-                    "reference": sum(
-                        Reference().picture(flat, replace(even, light=each))
-                        for each in (even.light, None)
-                    ),
-                    "paths": tracer.picture(path, replace(even, paths=paths)),
-                }
-                traced = still(tracer, path, ball)
-            image = Image.new("RGB", (TRACED_SIZE + SIZE, SIZE), (BACKGROUND,) * 3)
-            for number, (name, each) in enumerate(spheres.items()):
-                image.paste(sphere_picture(each, TRACED_SIZE), (0, number * TRACED_SIZE))
-                label(image, (8, (number + 1) * TRACED_SIZE - 8), name, 14)
-            image.paste(Image.fromarray(srgb_encoded(pbr_neutral(traced))), (TRACED_SIZE, 0))
-            image.save(PICTURES / f"traced_{document.stem}.webp", quality=QUALITY, method=6)
-            mask = visible(even.size, "sphere").mask
-            means = ", ".join(f"{name} {each[mask].mean():.4f}" for name, each in spheres.items())
-            noises = [
-                str(each.message).partition("noise of ")[2].partition(",")[0] for each in notes
-            ]
-            said[document.stem] = (
-                f"mean radiance of the sphere: {means}; noise removed from the ball: {noises[-1]}"
-            )
-    NOISE.write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
-
-
 def page():
     """The gallery as Markdown: documents and their materials, those with the largest difference first."""
     found = json.loads(DIFFERENCES.read_text(encoding="utf-8"))
@@ -249,19 +208,11 @@ def page():
                 lines += [f"![{name}](images/gallery/{name}.webp)", f"*{name}: {said}.*"]
             sections["\n\n".join([f"## {document.stem}", *lines]) + "\n"] = largest(names[0])
     same = f"No visible difference: {', '.join(f'`{each}`' for each in sorted(alike))}.\n"
-    traced = "".join(
-        f"![{name}](images/gallery/traced_{name}.webp)\n\n*{name}: {said}.*\n\n"
-        for name, said in json.loads(NOISE.read_text(encoding="utf-8")).items()
-    )
     ordered = sorted(sections, key=sections.__getitem__)
-    return HEAD + "\n".join([*ordered, same]) + TRACED.format(SAMPLES, traced)
+    return HEAD + "\n".join([*ordered, same]) + TRACED
 
 
 if __name__ == "__main__":
-    if "--traced" in sys.argv:
-        trace(Path(sys.argv[-1]))
-    elif "--page" not in sys.argv:
-        if "--judge" not in sys.argv:
-            render()
-        judge()
+    render()
+    judge()
     PAGE.write_text(page(), encoding="utf-8")
