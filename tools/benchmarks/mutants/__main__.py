@@ -11,7 +11,6 @@ import argparse
 import json
 import re
 import sys
-import tempfile
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import closing
@@ -25,7 +24,7 @@ from mxeon.io.files import write_text
 from mxeon.shaders.document.policy import DEFAULT
 from tools.benchmarks.mutants import operators, schemata
 from tools.benchmarks.mutants.mutant import ROOT, Mutant, read_table
-from tools.benchmarks.mutants.trial import KILLED, SURVIVED, trial
+from tools.benchmarks.mutants.trial import KILLED, SURVIVED, killed, trial
 
 OUTPUT = ROOT / "out" / "mutants"
 
@@ -36,7 +35,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--only", default="", metavar="PATTERN", help="in 'GROUP: NAME'")
     parser.add_argument("--resume", action="store_true", help="leave out what has been tried")
-    parser.add_argument("--all", action="store_true", help="go on after the first failure")
     parser.add_argument("--seed", type=int, help="try mutants of the operators, not of the table")
     parser.add_argument("--share", type=float, default=0.1, help="of the operators' mutants")
     parser.add_argument("--output", type=Path, default=OUTPUT, help="folder of the results")
@@ -55,16 +53,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for mutant in tqdm(chosen, disable=None):
             check = together.get(mutant.name, schemata.UNWRITTEN)
             alone = check in (SURVIVED, schemata.UNWRITTEN)
-            found = summary(trial(mutant, judge, options.all)) if alone else noticed(check)
+            found = trial(mutant, judge) if alone else killed("gl", [check], "")
             trials[mutant.name] = {"digest": mutant.digest} | found
             write_text(file, json.dumps(trials, indent=1, sort_keys=True) + "\n")
     print(*lines(chosen, trials), sep="\n")
     return int(any((trials[m.name]["verdict"] == KILLED) == m.survives for m in chosen))
-
-
-def noticed(check: str) -> dict[str, Any]:
-    """The verdict for a mutant that a check noticed in a shared program."""
-    return {"verdict": KILLED, "host": "gl", "checks": [check], "explanation": ""}
 
 
 def lines(mutants: Sequence[Mutant], trials: dict[str, Any]) -> list[str]:
@@ -76,21 +69,6 @@ def lines(mutants: Sequence[Mutant], trials: dict[str, Any]) -> list[str]:
         if (trials[each.name]["verdict"] == KILLED) == each.survives
     ]
     return [*(f"{group}: {count} {verdict}" for (group, verdict), count in counts.items()), *wrong]
-
-
-def summary(found: dict[str, Any]) -> dict[str, Any]:
-    """The checks that failed, and the explanation of the clearest failure."""
-    if found["verdict"] != KILLED:
-        return found
-    failures = found.get("failures", [])
-    clearest = failures[0] if failures else {"diagnosis": found["refusal"]}
-    words = "; ".join(filter(None, (clearest.get("excess"), clearest["diagnosis"])))
-    return {
-        "verdict": KILLED,
-        "host": found["host"],
-        "checks": list(dict.fromkeys(each["check"] for each in failures)) or ["refused"],
-        "explanation": re.sub(rf"{re.escape(tempfile.gettempdir())}/\S*/", "", words),
-    }
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -53,14 +54,14 @@ NOT_ON_GL = (*ON_CYCLES, CLOSURES, "libraries/diffuse/eonlib_genmdl")
 TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # its mistakes also fail other checks
 
 
-def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
-    """Verdict on a mutant, and the failures that it caused on the first host that saw any."""
+def trial(mutant: Mutant, judge: Judge) -> dict[str, Any]:
+    """Verdict on a mutant, and the checks of the first task that failed, with the first cause."""
     if mutant.tests:
         named = tuple(f"{MODEL_TESTS}/{name}" for name in mutant.tests)
         return by_tests(mutant, (named,) if mutant.equivalent else (named, (MODEL_TESTS,)))
     if mutant.file.startswith(PATH):
         return by_tests(mutant, (PATH_TESTS,))
-    found = _on_hosts(mutant, judge, every)
+    found = _on_hosts(mutant, judge)
     if found["verdict"] == SURVIVED and mutant.file.startswith(PROFILE):
         return by_tests(mutant, (PROFILE_TESTS,))
     if found["verdict"] == SURVIVED and mutant.file.startswith(operators.ENVIRONMENT):
@@ -68,23 +69,32 @@ def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
     return found
 
 
-def _on_hosts(mutant: Mutant, judge: Judge, every: bool) -> dict[str, Any]:
+def _on_hosts(mutant: Mutant, judge: Judge) -> dict[str, Any]:
     nodes = bool(changed_nodes(mutant))
     with wrong_library(mutant) as path:
         try:
             limit = 1 if mutant.equivalent and not mutant.control and not nodes else None
             found = node_tasks(mutant, path) if nodes else stages(mutant, path)
             for host, stage in islice(found, limit):
-                if failures := failures_of(stage, judge, every):
-                    rows = ordered(failures)
-                    seen = TEXT if rows[0]["host"] == SOURCE else host
-                    return {"verdict": KILLED, "host": seen, "failures": rows}
+                if failures := failures_of(stage, judge):
+                    first = failures[0]
+                    seen = TEXT if first.host == SOURCE else host
+                    cause = words.diagnosis(first.diagnosis) or f"not run: {first.reason}"
+                    return killed(seen, [each.check for each in failures], cause)
         except MxeonError as error:
-            message = first_line(str(error).replace(f"{Path(path).parent}/", ""))
-            return {"verdict": KILLED, "host": TEXT, "refusal": message}
+            return killed(TEXT, ["refused"], str(error).replace(f"{Path(path).parent}/", ""))
         except Exception as error:
             return {"verdict": CRASHED, "error": f"{type(error).__name__}: {error}"}
         return {"verdict": SURVIVED}
+
+
+def killed(host: str, checks: Sequence[str], explanation: str) -> dict[str, Any]:
+    """A mutant that checks noticed, with the first line of a text: compilers print many."""
+    line = re.sub(
+        rf"{re.escape(tempfile.gettempdir())}/\S*/", "", explanation.strip().split("\n")[0]
+    )
+    found = list(dict.fromkeys(checks))
+    return {"verdict": KILLED, "host": host, "checks": found, "explanation": line}
 
 
 def write_wrong(mutant: Mutant, base: str, *folders: str) -> None:
@@ -107,18 +117,14 @@ def wrong_library(mutant: Mutant) -> Iterator[str]:
             generators._library_generator.cache_clear()
 
 
-def failures_of(
-    tasks: Sequence[Task], judge: Judge, every: bool = True, clean: str = "eonlib"
-) -> list[Result]:
-    """Results that only pass without the mutant; stops after the first task that has some unless `every`."""
-    failures: list[Result] = []
+def failures_of(tasks: Sequence[Task], judge: Judge) -> list[Result]:
+    """Results of the first task that has some that only pass without the mutant."""
     for task in tasks:
         found = _failed(task, judge)
-        known = found and _clean_failures(replace(task, library=clean), judge)
-        failures += [each for key, each in found.items() if key not in known]
-        if failures and not every:
-            break
-    return failures
+        known = found and _clean_failures(replace(task, library="eonlib"), judge)
+        if failures := [each for key, each in found.items() if key not in known]:
+            return failures
+    return []
 
 
 def _failed(task: Task, judge: Judge) -> dict[tuple[str, str], Result]:
@@ -132,37 +138,12 @@ def _clean_failures(task: Task, judge: Judge) -> frozenset[tuple[str, str]]:
     return frozenset(_failed(task, judge))
 
 
-def ordered(failures: list[Result]) -> list[dict[str, str]]:
-    """Failures as plain data: compiler errors first, then by descending error over tolerance."""
-
-    def ratio(result: Result) -> float:
-        if result.error is None:
-            return float("inf")
-        return result.error / max(result.tolerance or 0.0, 1e-9)
-
-    return [
-        {
-            "check": each.check,
-            "subject": Path(each.subject).name if each.subject.startswith("/") else each.subject,
-            "host": each.host,
-            "excess": words.excess(each),
-            "diagnosis": first_line(words.diagnosis(each.diagnosis) or f"not run: {each.reason}"),
-        }
-        for each in sorted(failures, key=ratio, reverse=True)
-    ]
-
-
-def first_line(text: str) -> str:
-    """The first line of a text; compilers print many."""
-    return text.strip().splitlines()[0] if text.strip() else ""
-
-
 # --- tasks of a library ---------------------------------------------------------------------------
 
 
 def tasks_on_gl(path: str) -> list[Task]:
     """Tasks of `mxeon check --library` that judge something, on the first host."""
-    return [task for task in make_plan((), ["gl"], [path]).tasks]
+    return list(make_plan((), ["gl"], [path]).tasks)
 
 
 def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
@@ -310,12 +291,12 @@ def by_tests(mutant: Mutant, steps: Sequence[tuple[str, ...]]) -> dict[str, Any]
             if failure := _first_failure(str(ROOT / "python"), tests):
                 raise RuntimeError(f"a test fails without any change: {failure}")
             if failure := _failure(str(Path(base, "python")), tests):
-                return {"verdict": KILLED, "host": TESTS, "failures": [failure]}
+                return killed(TESTS, [failure[0]], failure[1])
     return {"verdict": SURVIVED}
 
 
-def _failure(package: str, tests: Sequence[str]) -> dict[str, str] | None:
-    """The first of some tests that fails with the package of a folder, or None."""
+def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
+    """The first of some tests that fails with the package of a folder, with its message; or None."""
     ended = subprocess.run(
         [sys.executable, "-m", "pytest", *OPTIONS, *tests],
         cwd=ROOT,
@@ -330,8 +311,7 @@ def _failure(package: str, tests: Sequence[str]) -> dict[str, str] | None:
     if ended.returncode == NO_TEST or match is None:
         raise RuntimeError(f"no test ran: {ended.stdout[-400:]}{ended.stderr[-400:]}")
     file, test, message = match.groups()
-    diagnosis = f"{file}: {message}" if message else file
-    return {"check": test or "import", "excess": "", "host": TESTS, "diagnosis": diagnosis}
+    return test or "import", f"{file}: {message}" if message else file
 
 
 _first_failure = cache(_failure)  # cached for the unchanged package
