@@ -15,8 +15,7 @@ from tools.site.ledger import ROOT, measured, patches, patches_of
 
 VERSIONS = Path(__file__).with_name("versions.json")
 PLACE = re.compile(r"<!-- patches (\S+) -->")  # placeholder for a project's table in the index
-WHOLE = 20  # shorter diffs are shown in full
-SHOWN = 8  # lines of a longer diff on a page, unless its first change is longer
+SHOWN = 20  # lines of a diff on a page
 # The parts of the index, with the text above each part's pages.
 GROUPS = {
     "rough_diffuse": "`oren_nayar_diffuse_bsdf`",
@@ -97,37 +96,26 @@ def said(issue: Issue, found: dict[str, Any]) -> str:
 
 
 def short_diff(page: str) -> tuple[str, int]:
-    """A short repair, or the first or shortest change of a long one, and the number of omitted lines.
+    """The changed lines of a page's first patch, at most SHOWN of them, and the number of omitted ones.
 
-    The repair is the page's first patch; "" and 0 for a page without one.
+    "" and 0 for a page without a patch.
     """
     files = patches_of(page)
     if not files:
         return "", 0
-    text = files[0].read_text(encoding="utf-8").split("\n---\n", 1)[1]
-    changes: list[tuple[str, list[str]]] = []  # file and lines
-    name, inside = "", False
-    for line in text.splitlines():
-        changed = line[:1] in ("+", "-") and line[:4] not in ("--- ", "+++ ")
-        if line.startswith("--- "):
-            name = line[4:].split("/", 1)[1]
-        if changed and not inside:
-            changes.append((name, []))
-        if changed:
-            changes[-1][1].append(line)
-        inside = changed
     shown: list[str] = []
-    left = 0
-    whole = sum(len(lines) for _, lines in changes) < WHOLE
-    if not whole and len(changes[0][1]) >= SHOWN:  # then start with a short one
-        changes.sort(key=lambda change: len(change[1]))
-    for number, (file, lines) in enumerate(changes):
-        head = f"--- {file}" if f"--- {file}" not in shown else "@@"
-        if whole or number == 0 or len(shown) + len(lines) < SHOWN:
-            shown += [head, *lines]
-        else:
-            left += len(lines)
-    return "\n".join(shown), left
+    count, inside = 0, False
+    for line in files[0].read_text(encoding="utf-8").split("\n---\n", 1)[1].splitlines():
+        changed = line[:1] in ("+", "-") and line[:4] not in ("--- ", "+++ ")
+        count += changed
+        if line.startswith("--- "):
+            head = f"--- {line[4:].split('/', 1)[1]}"
+        elif changed and count <= SHOWN:
+            shown += [] if inside else [head]
+            shown.append(line)
+            head = "@@"
+        inside = changed
+    return "\n".join(shown), max(count - SHOWN, 0)
 
 
 def outcome(issue: Issue, numbers: dict[str, str]) -> str:
