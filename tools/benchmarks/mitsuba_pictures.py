@@ -11,13 +11,13 @@ pictures, and averaged over pixels and channels.
 
 import time
 from importlib import import_module
+from importlib.metadata import version
 
 import numpy as np
 
 from mxeon.io.files import write_text
 from mxeon.mitsuba import register
 from mxeon.mitsuba.diffuse import EonPlugin, RoughDiffusePlugin, register_plugin
-from tools.benchmarks.rounds import version_of
 from tools.site import DOCS, with_block
 
 COSINE, EXACT = "eon_by_cosine", "eon"
@@ -105,7 +105,7 @@ def time_table(mi):
     import_module("drjit").set_thread_count(1)
     scenes = {name: mi.load_dict(ball(mi, {"type": name} | row)) for name, row in BSDFS.items()}
     times = {n: min(seconds) for n, (_, seconds) in rendered(mi, scenes, 5, 64).items()}
-    yield f"| BSDF, Mitsuba {version_of('mitsuba')} | seconds | relative to `diffuse` |\n|---|---|---|\n"
+    yield f"| BSDF, Mitsuba {version('mitsuba')} | seconds | relative to `diffuse` |\n|---|---|---|\n"
     for name, each in times.items():
         yield f"| `{name}` | {each:.2f} | {each / times['diffuse']:.2f} |\n"
 
@@ -113,7 +113,7 @@ def time_table(mi):
 def noise_table(mi):
     """The table of docs/sampling.md."""
     head = ("roughness", "variance", "time", "variance times time")
-    yield f"| cosine / exact, Mitsuba {version_of('mitsuba')} | {' | '.join(head)} |\n{'|---' * 5}|\n"
+    yield f"| cosine / exact, Mitsuba {version('mitsuba')} | {' | '.join(head)} |\n{'|---' * 5}|\n"
     integrator = {"type": "path", "max_depth": 50, "rr_depth": 50}
     for title, make in SCENES.items():
         for roughness in (0.25, 1.0):

@@ -8,7 +8,6 @@ another, so their ratios include drift; hence these few lines.
 
 import time
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 
@@ -23,14 +22,11 @@ class Figure:
     low: float
     high: float
     goal: float | None = None  # upper limit of the median
-    at_least: bool = False  # the goal is a lower limit instead
 
     @property
     def reached(self):
         """Whether the goal is reached; None without a goal."""
-        if self.goal is None:
-            return None
-        return self.median >= self.goal if self.at_least else self.median <= self.goal
+        return None if self.goal is None else self.median <= self.goal
 
 
 @dataclass(frozen=True)
@@ -74,30 +70,21 @@ def clock_of(device):
     return time.process_time if "llvmpipe" in device else time.perf_counter
 
 
-def figure(name, unit, values, goal=None, at_least=False):
+def figure(name, unit, values, goal=None):
     """The `Figure` of one value per round.
 
     >>> figure("value", "x", [3.0, 1.0, 2.0], goal=2.0).reached
     True
     """
     low, median, high = np.quantile(values, (0.25, 0.5, 0.75)).tolist()
-    return Figure(name, unit, median, low, high, goal, at_least)
-
-
-def version_of(package):
-    """Version of an installed package; "not installed" without it."""
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return "not installed"
+    return Figure(name, unit, median, low, high, goal)
 
 
 def table(group):
     """The figures of a group and its checks, in Markdown."""
     lines = [f"## {group.title}", "", "| | median | quartiles | goal | |", "|---|---|---|---|---|"]
     for each in group.figures:
-        sign = "≥" if each.at_least else "≤"
-        goal = "" if each.goal is None else f"{sign} {each.goal:g}"
+        goal = "" if each.goal is None else f"≤ {each.goal:g}"
         verdict = {None: "", True: "reached", False: "**missed**"}[each.reached]
         cells = f"{each.median:.3g} {each.unit} | {each.low:.3g} – {each.high:.3g} | {goal}"
         lines.append(f"| {each.name} | {cells} | {verdict} |")
