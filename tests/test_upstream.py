@@ -90,6 +90,4 @@ def _parted(record):
 
 
 def test_every_picture_is_of_a_page_with_a_patch():
-    shown = {page for page, each in MEASURED.items() if "picture" in each}
-    assert shown == {path.stem for path in (FOLDER / "pictures").iterdir()}
-    assert shown <= set(patches("materialx"))
+    assert {path.stem for path in (FOLDER / "pictures").iterdir()} <= set(patches("materialx"))

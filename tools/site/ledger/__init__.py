@@ -5,7 +5,7 @@
 as commits in `patches/`. A patch names its page in its message. The site fills in the figures.
 
     python -m tools.site.ledger.measure [HOST ...]  measures the tables anew
-    python -m tools.site.ledger.pictures            draws the pictures anew
+    python -m tools.site.ledger.pictures            draws the pages' pictures
 """
 
 import json
@@ -28,7 +28,7 @@ MEASURED = FOLDER / "measured.json"
 
 
 def measured() -> dict[str, Any]:
-    """The measurements by page: rows of checks, place, diagnosis, and picture."""
+    """The measurements by page: rows of checks, place and diagnosis."""
     return dict(json.loads(MEASURED.read_text(encoding="utf-8")))
 
 

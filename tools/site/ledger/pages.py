@@ -161,11 +161,10 @@ def _joined(names: list[str]) -> str:
 def patch_table(project: str) -> str:
     """The table of a project's patches in the index."""
     files, found = patches(project), measured()
-    lines = ["| | patch | kind | measured | picture | needs |", "|---|---|---|---|---|---|"]
+    lines = ["| | patch | kind | measured | needs |", "|---|---|---|---|---|"]
     for page, path in files.items():
         issue = issues()[page]
         text = " ".join(path.read_text(encoding="utf-8").split("\n\n", 1)[0].split())
-        picture = found.get(page, {}).get("picture")
         # Use the figure of the first row that the patch repairs.
         measures = found.get(page, {}).get("rows", [])
         chosen = [row for row in measures if (row[0], row[1]) in issue.mended]
@@ -182,7 +181,6 @@ def patch_table(project: str) -> str:
             f"[{text.split('[PATCH] ')[1]}]({page}.md)",
             f"in main, #{issue.pull}" if issue.pull else issue.kind,
             figures[0] if figures else "",
-            f"{picture['mean']} of {picture['of']}; {picture['most']} at most" if picture else "",
             needs,
         )
         lines.append(f"| {' | '.join(cells)} |")
