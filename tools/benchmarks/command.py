@@ -104,4 +104,4 @@ def measure(rounds=3, jobs=tuple(JOBS)):
         figures.append(figure(f"{REPORT}, beyond one without", "s", usual[REPORT] - one, 2.0))
     if BOTH in usual:
         figures.append(figure(f"{BOTH} / one", "x", usual[BOTH] / one, 1.6))
-    return Group("command", "The command, bundled examples", tuple(figures), tuple(checks))
+    return Group("The command, bundled examples", tuple(figures), tuple(checks))

@@ -202,4 +202,4 @@ def measure(processes=PROCESSES, size=SIZE, nodes=tuple(NODES)):
             if node in SAME:
                 checks.append(Check(f"{node}, eonlib - stock", apart, SAME[node]))
     title = f"Materials on {runs[0].device}, {size} x {size}"
-    return Group("materials", title, tuple(figures), tuple(checks))
+    return Group(title, tuple(figures), tuple(checks))

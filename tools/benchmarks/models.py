@@ -80,4 +80,4 @@ def measure(rounds=3, pairs=VALUES):
         apart = np.array(rivals["EON", JIT]()) - eon_brdf(wo, wi, COLORS, R)
         error = float(np.abs(np.pi * wi[:, 2:] * apart).max())
         checks.append(Check(f"EON, {JIT}", error, ROUNDINGS))
-    return Group("models", "NumPy models", tuple(figures), tuple(checks))
+    return Group("NumPy models", tuple(figures), tuple(checks))

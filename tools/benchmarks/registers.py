@@ -114,4 +114,4 @@ def measure(nodes=(*DIFFUSE, *BARE, *OTHERS)):
                     figure(f"{node}, {unit}, eonlib / stock", "x", [own[name] / stock[name]]),
                 ]
     title = f"Fragment shaders as Mesa's RADV compiles them for {CHIP}, without the hardware"
-    return Group("registers", title, tuple(figures))
+    return Group(title, tuple(figures))

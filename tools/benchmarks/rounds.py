@@ -45,7 +45,6 @@ class Check:
 
 @dataclass(frozen=True)
 class Group:
-    name: str
     title: str
     figures: tuple = ()
     checks: tuple = ()

@@ -113,4 +113,4 @@ def measure(rounds=21, invocations=INVOCATIONS, calls=CALLS):
         figure("EON, eonlib", "ns", factor * eonlib),
         figure("EON, eonlib / stock", "x", eonlib / stock, 0.7),
     )
-    return Group("shaders", f"Shaders on {renderer}, ns per call", figures, tuple(checks))
+    return Group(f"Shaders on {renderer}, ns per call", figures, tuple(checks))

@@ -40,11 +40,6 @@ STYLE = {
 # --- energy that FON loses, in float32 --------------------------------------------------------------
 
 
-def cosines():
-    """Cosines in float32, from 1e-6 to 1."""
-    return np.unique(np.geomspace(1e-6, 1.0, 4001).astype(np.float32))
-
-
 def quartic_loss(mu):
     """1 - E at roughness 1 by the quartic, [Portsmouth2025], Eq. (14)."""
     one, (a, b, c, d) = np.float32(1.0), np.float32(FON_G)

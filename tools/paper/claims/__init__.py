@@ -19,7 +19,7 @@ the JCGT 2025 edition ([bibliography](bibliography.md)).
 A claim *holds* if all of its measured values meet its limit, holds *in part* if some do, and *fails* if none
 does; NaN meets no limit. The tables have the claims that do not hold, with the limit in the column *required*.
 The paper's formulas of values and albedos, and of rho for an albedo, are not among the claims: the tests compare them
-with 50 digits of the printed equations.
+with 50 digits of the printed equations. They also test that densities integrate to 1 and mean weights are 1.
 """
 TALLY = "{count} claims; verdicts: {holds} holds, {part} holds in part, {fails} fails."
 
@@ -30,51 +30,36 @@ Measure = Callable[[], Measured]
 ROUNDING = 1e-12  # agreement of two forms of a formula
 
 
-@dataclass(frozen=True)
-class Claim:
-    """A printed sentence or formula, its measurement, and the bounds that it must meet."""
-
-    where: str  # place in the paper
-    text: str  # the claim in our words
-    measure: Measure
-    required: str  # the bounded quantity
-    least: float  # every value lies in [least, most]
-    most: float
-
-    def row(self) -> tuple[str, ...]:
-        """Measure the claim; its row of the page, in the order of COLUMNS."""
-        sentence, values = self.measure()
-        decided = verdict(values, self.least, self.most)
-        limit = f"in [{self.least:.3g}, {self.most:.3g}]"
-        if not np.isfinite(self.most):
-            limit = f"≥ {self.least:.3g}"
-        elif not np.isfinite(self.least):
-            limit = f"≤ {self.most:.3g}"
-        return self.where, self.text, sentence, f"{self.required} {limit}", decided
-
-
 @dataclass
 class Section:
-    """Claims under one heading."""
+    """Claims under one heading: functions that measure a row of the page, in the order of COLUMNS."""
 
     heading: str
-    claims: list[Claim] = field(default_factory=list)
+    rows: list[Callable[[], tuple[str, ...]]] = field(default_factory=list)
 
     def claim(
         self,
         where: str,
         text: str,
-        required: str = "difference",
+        required: str,
         *,
         least: float = -np.inf,
         most: float | None = None,
     ) -> Callable[[Measure], Measure]:
         """Decorate a measurement whose values must lie in [least, most]; by default they must be roundings."""
-        if most is None:
-            most = ROUNDING if least == -np.inf else np.inf
+        top = most if most is not None else ROUNDING if least == -np.inf else np.inf
+        limit = f"in [{least:.3g}, {top:.3g}]"
+        if not np.isfinite(top):
+            limit = f"≥ {least:.3g}"
+        elif not np.isfinite(least):
+            limit = f"≤ {top:.3g}"
 
         def add(measure: Measure) -> Measure:
-            self.claims.append(Claim(where, text, measure, required, least, most))
+            def row() -> tuple[str, ...]:
+                sentence, values = measure()
+                return where, text, sentence, f"{required} {limit}", verdict(values, least, top)
+
+            self.rows.append(row)
             return measure
 
         return add
@@ -97,7 +82,7 @@ def page(sections: Sequence[Section]) -> str:
     """The page as Markdown; measures every claim, and prints those that hold."""
     parts = [HEAD]
     for section in sections:
-        rows = [claim.row() for claim in section.claims]
+        rows = [measured() for measured in section.rows]
         verdicts = [row[-1] for row in rows]
         tally = TALLY.format(
             count=len(verdicts),

@@ -5,9 +5,8 @@ import numpy as np
 
 from mxeon.models import sampling as cltc
 from mxeon.models import sampling as ltc
-from mxeon.models.core.quadrature import hemisphere_nodes
 from tools.paper.claims import ROUNDING, Measured, Section
-from tools.paper.samplers import BY_NAME, moments
+from tools.paper.samplers import moments
 
 DEGREES = np.append(np.arange(0.0, 90.0, 3.0), [89.0, 89.9])
 COSINES = np.linspace(0.0, 1.0, 10001)
@@ -69,17 +68,6 @@ def wasted() -> Measured:
     return sentence, share.max()
 
 
-@claim("Eq. (27), Listing 3", "density of CLTC integrates to 1", "error", most=1e-3)
-def normalized() -> Measured:
-    """The density of CLTC over a fine grid; its edge limits the quadrature."""
-    errors = []
-    for degrees in (0.0, 30.0, 60.0, 85.0):
-        wo, wi, projected = hemisphere_nodes(at(degrees), 200)
-        errors.append(projected @ (BY_NAME["cltc"].pdf(wo, wi, 1.0) / wi[:, 2]) - 1.0)
-    largest = np.max(np.abs(errors))
-    return f"integral off by {largest:.0e} (quadrature)", largest
-
-
 @claim("Listing 3", "no sample below the horizon", "z", least=0.0)
 def side_of_the_lune() -> Measured:
     """Lowest draw of Listing 3 along the normal, where the fitted d is positive."""
@@ -103,12 +91,6 @@ def clipped_bias() -> Measured:
 def mixture_weight() -> Measured:
     _, variance, largest = over_angles("eon_cltc", 1.0)
     return f"variance up to {variance.max():.4f}, weight up to {largest.max():.2f}", largest.max()
-
-
-@claim("Fig. 11", "the mixture: no bias", "error")
-def mixture_mean() -> Measured:
-    error = np.abs(over_angles("eon_cltc", 1.0)[0] - 1.0).max()
-    return f"mean weight within {error:.0e} of 1", error
 
 
 @claim(
