@@ -137,12 +137,12 @@ def set_options(suite: mx.Document, options: dict[str, str]) -> None:
         suite.getNodeDef("TestSuiteOptions").getInput(name).setValueString(value)
 
 
-def run_tests(folder: Path, suite: mx.Document, case: str, paths: str) -> None:
-    """Run C++ tests with the documents of some paths, unless the folder has their results."""
-    name = slug(f"{case} {paths}")[:200]
+def run_tests(folder: Path, suite: mx.Document, case: str) -> None:
+    """Run C++ tests, unless the folder has their results."""
+    name = slug(case)
     if (folder / f"{name}.xml").exists():
         return
-    set_options(suite, {"outputDirectory": str(folder / slug(case)), "renderTestPaths": paths})
+    set_options(suite, {"outputDirectory": str(folder / name)})
     mx.writeToXmlFile(suite, str(folder / OPTIONS))
     program = [str(folder / "bin" / "MaterialXTest"), case, "-r", "xml", "-o", "unfinished"]
     with (folder / f"{name}.txt").open("w") as printed:
@@ -168,13 +168,12 @@ def codes(shader: Path) -> Codes:
 
 
 def failed_tests(folder: Path) -> dict[str, bool]:
-    """Whether each C++ test case failed, the render test in any of its runs."""
-    tests: dict[str, bool] = {}
-    for path in folder.glob("*.xml"):
-        for case in ElementTree.parse(path).getroot().iter("TestCase"):
-            success = case.find("OverallResult[@success='true']") is not None
-            tests[case.attrib["name"]] = tests.get(case.attrib["name"], False) or not success
-    return tests
+    """Whether each C++ test case failed."""
+    return {
+        case.attrib["name"]: case.find("OverallResult[@success='true']") is None
+        for path in folder.glob("*.xml")
+        for case in ElementTree.parse(path).getroot().iter("TestCase")
+    }
 
 
 def untested(folder: Path) -> list[str]:
@@ -191,22 +190,11 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
         work.mkdir(exist_ok=True)
         write_dome(work / DOME)
         set_options(suite, {"renderGeometry": str(work / DOME)})
-    paths = suite.getNodeDef("TestSuiteOptions").getInput("renderTestPaths").getValue()
-    roots = [checkout / each for each in paths.split(",")]
-    files = [
-        each for root in roots for each in (root, *sorted(root.rglob("*.mtlx"))) if each.suffix
-    ]
-    places = {each.stem: str(each.relative_to(checkout)) for each in files}
-
-    def render(name: str, document: str) -> dict[str, Path]:
-        stage(work / name, checkout, build)
-        run_tests(work / name, suite, RENDER_TEST, places[document])
-        return shaders(work / name)
-
-    for each in places:
-        before, after = render(STOCK, each), render(EONLIB, each)
     for name in (STOCK, EONLIB):
-        run_tests(work / name, suite, f"~{RENDER_TEST}", paths)
+        stage(work / name, checkout, build)
+        for case in (RENDER_TEST, f"~{RENDER_TEST}"):
+            run_tests(work / name, suite, case)
+    before, after = (shaders(work / name) for name in (STOCK, EONLIB))
     drawn = [
         each
         for each in set(before) & set(after)

@@ -9,7 +9,7 @@ import json
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from itertools import groupby
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -30,6 +30,7 @@ WORDS = {PASSED: "yes", DIFFERS: "left open", FAILED: "**no**", NOT_RUN: "not ru
 DEFAULTS_HEAD = "| text | parameter | its default | the node's |\n|---|---|---|---|\n"
 HEAD = "| section | the text | verdict: what is there instead; largest error |\n|---|---|---|\n"
 NAMES = tuple(name for name, _ in groupby(SENTENCES, lambda spec: spec.node))
+OPTIONS = [word for name in NAMES for word in ("--node", name)]
 
 TRANSPORT = (
     "how light travels inside the object is the renderer's; path tracers only get the medium"
@@ -100,6 +101,14 @@ def defaults(text: Text) -> Iterator[str]:
             yield f"| {text.name} | `{name}` | {' | '.join(shown)} |\n"
 
 
+def judged_with(version: str, *options: str) -> list[dict[str, Any]]:
+    """Results of a run on gl with a version of MaterialX, as printed."""
+    ran = run(wheel(version), "check", "--host", "gl", "--workers", "0", "--json", *options)
+    if ran.returncode not in (0, 1):
+        raise RuntimeError(f"MaterialX {version}: {ran.stderr}")
+    return list(json.loads(ran.stdout)["results"])
+
+
 def judged() -> tuple[dict[str, dict[str, Result]], Verdicts]:
     """Results by subject and host, and verdicts by subject and by host or version of MaterialX."""
     results: dict[str, dict[str, Result]] = defaultdict(dict)
@@ -109,10 +118,8 @@ def judged() -> tuple[dict[str, dict[str, Result]], Verdicts]:
             if each.check == "specification":
                 results[each.subject][host] = each
                 verdicts[each.subject][host] = each.verdict
-    options = [word for name in NAMES for word in ("--node", name)]
     for version in VERSIONS:
-        ran = run(wheel(version), "check", "--host", "gl", "--workers", "0", "--json", *options)
-        for record in json.loads(ran.stdout)["results"]:
+        for record in judged_with(version, *OPTIONS):
             if record["check"] == "specification":
                 verdicts[record["subject"]][version] = record["verdict"]
     return results, verdicts

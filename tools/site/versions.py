@@ -13,24 +13,14 @@ from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
 from mxeon.conformance.results.known_issues import issues
 from mxeon.io.files import write_text
 from mxeon.shaders.library import TESTED
-from tests.support.wheels import MAIN, run, wheel
+from tests.support.wheels import MAIN
 from tools.site import DOCS, surface_texts, with_block
 from tools.site.ledger import dumped, pages
 
 PAGE, RECORD = DOCS / "versions.md", pages.VERSIONS
 VERSIONS = (*TESTED, "main")
 LIBRARIES = ("eonlib", "stock")
-TEXTS = tuple(word for name in surface_texts.NAMES for word in ("--node", name))
-COMMAND = ("check", "--host", "gl", "--node", "all", *TEXTS, "--workers", "0", "--json")
-
-
-def judged(version):
-    """Results of a run with a version, as printed."""
-    libraries = [word for each in LIBRARIES for word in ("--library", each)]
-    done = run(wheel(version), *COMMAND, *libraries)
-    if done.returncode not in (0, 1):
-        raise RuntimeError(f"MaterialX {version}: {done.stderr}")
-    return json.loads(done.stdout)["results"]
+COMMAND = ("--node", "all", *surface_texts.OPTIONS, "--library", "eonlib", "--library", "stock")
 
 
 def record(versions):
@@ -92,5 +82,6 @@ def page(text):
 
 
 if __name__ == "__main__":
-    write_text(RECORD, dumped(record({name: judged(name) for name in VERSIONS}), 3) + "\n")
+    found = {name: surface_texts.judged_with(name, *COMMAND) for name in VERSIONS}
+    write_text(RECORD, dumped(record(found), 3) + "\n")
     write_text(PAGE, page(PAGE.read_text(encoding="utf-8")))
