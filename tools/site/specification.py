@@ -8,8 +8,6 @@ from contextlib import closing
 
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
-from mxeon.conformance.specs import PBRLIB
-from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.io.files import write_text
 from mxeon.shaders.document.policy import DEFAULT
 from tools.site import DOCS, with_block
@@ -17,7 +15,6 @@ from tools.site.ledger import figure
 
 PAGE = DOCS / "results.md"
 HOST, LIBRARIES = "gl", ("stock", "eonlib")  # the host of the table
-JUDGED = (*DIFFUSE, *PBRLIB)
 # Rows of the table, and descriptions of stock's computation.
 SUMMARY = (
     ("value", "sheen_bsdf, mode zeltner", "a singular frame where the viewer is along the normal"),
@@ -54,14 +51,6 @@ def measured():
     return [each for finding in findings for each in finding.results]
 
 
-def mode_of(subject):
-    """The mode of a subject, or "" if its node has only one."""
-    node, _, mode = subject.partition(", ")
-    if sum(row.node == node for row in JUDGED) == 1:
-        return ""
-    return mode.removeprefix("scatter_").removeprefix("mode ")
-
-
 def summary(results):
     """A table of stock's deviations from the specification."""
     errors = {
@@ -71,9 +60,7 @@ def summary(results):
     lines = []
     for check, subject, words in SUMMARY:
         stock, eonlib = (errors.get((check, subject, each), "") for each in LIBRARIES)
-        mode = mode_of(subject)
-        name = f"`{subject.split(',')[0]}`{mode and ', ' + mode}, `{check}`"
-        lines.append(f"| {name} | {eonlib} | {stock} | {words} |\n")
+        lines.append(f"| `{check}` of {subject} | {eonlib} | {stock} | {words} |\n")
     return "\n" + SUMMARY_HEAD + "".join(lines)
 
 
