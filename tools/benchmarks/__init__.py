@@ -5,7 +5,7 @@
 |---|---|---|
 | `python -m tools.benchmarks [GROUP ...]` | figures, goals and checks of each group, to the terminal | 16 |
 | `... shaders` | EON in GLSL, per call | 0.1 |
-| `... materials` | frame, first frame and source of generated materials, eonlib / stock | 8 |
+| `... materials` | frame and first frame of generated materials, eonlib / stock | 8 |
 | `... registers` | registers and cycles of the same on an AMD GPU, by Mesa's compiler | 1 |
 | `... models` | the NumPy models: values a second | 1 |
 | `... command` | imports, `--help`; `mxeon check`: time and memory | 6 |
