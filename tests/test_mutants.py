@@ -8,6 +8,7 @@ import pytest
 
 from mxeon.conformance.results import SOURCE
 from mxeon.conformance.run.judge import Judge
+from mxeon.conformance.run.plan import make_plan
 from mxeon.shaders.document.policy import DEFAULT
 from tools.benchmarks.mutants import operators, schemata, trial
 from tools.benchmarks.mutants.mutant import FOLDERS, read_table
@@ -64,7 +65,7 @@ def test_a_tenth_of_the_operators_mutants_is_noticed_but_for_those_that_are_list
 @pytest.mark.parametrize(("name", "check"), SLICE.items())
 def test_mutant_is_killed_by_the_check_meant(gl, judge, name, check):
     with trial.wrong_library(NAMED[name]) as path:
-        tasks = trial.tasks_on_gl(path)
+        tasks = make_plan((), ["gl"], [path]).tasks
         chosen = [task for task in tasks if task.check == TASKS.get(check, check)]
         failures = trial.failures_of(chosen, judge)
     assert check in [each.check for each in failures]

@@ -89,19 +89,15 @@ def root_rows(points):
     return rows
 
 
-def root_fit():
-    """Coefficients of y / m in powers of m that minimize the largest relative error, and that error."""
-    return least_largest(root_rows(roots(COUNT)), [mp.one] * COUNT)
-
-
-def multiple_nodes(count):
-    """Points for `multiple`: t = 1 - w^2."""
-    return [1 - w**2 for w in roots(count)]
-
-
 # Name, points, basis, density, exponent of the random number.
 ROWS = (
-    ("MULTIPLE", multiple_nodes, multiple_basis, multiple_density, mp.mpf(3)),
+    (
+        "MULTIPLE",
+        lambda count: [1 - w**2 for w in roots(count)],
+        multiple_basis,
+        multiple_density,
+        mp.mpf(3),
+    ),
     ("UPPER", roots, upper_basis, upper_density, mp.mpf(5) / 2),
 )
 
@@ -117,6 +113,6 @@ if __name__ == "__main__":
         print(f"{name} = ({', '.join(f'{c:.10f}' for c in found)})")
         largest = max(abs(density_error(p, *row, found)[0]) for p in points(10 * COUNT + 1))
         print(f"largest relative error of the density {float(largest):.3g}")
-    found, largest = root_fit()
+    found, largest = least_largest(root_rows(roots(COUNT)), [mp.one] * COUNT)
     print(f"ROOT = ({', '.join(f'{c:.10f}' for c in printed(found))})")
     print(f"largest relative error {float(largest):.3g}")

@@ -144,9 +144,8 @@ def order_count(weights, sizes, opd, spread, least):
 
 def orders_errors(category, material, _, mu):
     """Errors of the sum, relative to the largest channel, or to DARK where that is less."""
-    exact = film_curve(category).at(mu, **material)
-    short = shader_curve(category, material, mu)
-    return (np.abs(short - exact) / np.maximum(exact.max(axis=0), DARK)).max(axis=0)
+    largest = film_curve(category).at(mu, **material).max(axis=0)
+    return curve_errors(category, material, _, mu) / np.maximum(largest, DARK)
 
 
 def curve_errors(category, material, _, mu):

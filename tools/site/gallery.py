@@ -98,11 +98,6 @@ def studio():
     return radiance.astype(np.float32)
 
 
-def materials(document):
-    """Names of the materials in a document, in its order."""
-    return [each.get("name") for each in ElementTree.parse(document).iter("surfacematerial")]
-
-
 def pictures(host, document):
     """A document's materials, each with its pictures and their differences from eonlib's.
 
@@ -199,7 +194,9 @@ def page():
 
     sections = {}
     for document in sorted(EXAMPLES.glob("*.mtlx")):
-        names = sorted((each for each in materials(document) if each not in alike), key=largest)
+        materials = ElementTree.parse(document).iter("surfacematerial")
+        names = [name for each in materials if (name := each.get("name")) not in alike]
+        names.sort(key=largest)
         if names:
             description = document.read_text(encoding="utf-8").splitlines()[2]
             lines = [description.removeprefix("<!-- ").removesuffix(" -->")]

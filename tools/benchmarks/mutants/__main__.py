@@ -14,7 +14,6 @@ import sys
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import closing
-from pathlib import Path
 from typing import Any
 
 from tqdm import tqdm
@@ -37,14 +36,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--resume", action="store_true", help="leave out what has been tried")
     parser.add_argument("--seed", type=int, help="try mutants of the operators, not of the table")
     parser.add_argument("--share", type=float, default=0.1, help="of the operators' mutants")
-    parser.add_argument("--output", type=Path, default=OUTPUT, help="folder of the results")
     options = parser.parse_args(arguments)
     if not 0.0 < options.share <= 1.0:
         parser.error(f"--share must be above 0 and at most 1; got {options.share:g}")
     seed, share = options.seed, options.share
     table = read_table() if seed is None else operators.made(seed, share)
     chosen = [each for each in table if re.search(options.only, f"{each.group}: {each.name}")]
-    file = options.output / "mutants.json"
+    file = OUTPUT / "mutants.json"
     trials: dict[str, Any] = json.loads(file.read_text()) if file.exists() else {}
     if options.resume:
         chosen = [each for each in chosen if trials.get(each.name, {}).get("digest") != each.digest]

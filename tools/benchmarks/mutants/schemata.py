@@ -26,7 +26,6 @@ from mxeon.conformance.check import Check
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.samples import Array
 from mxeon.conformance.shader_functions import FunctionProbe, exact, row_of
-from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs import DIFFUSE, PBRLIB, PLAIN_LOBES
 from mxeon.conformance.specs.combinations import CombinedSpec
 from mxeon.conformance.specs.microfacets import FILM_SPECS
@@ -314,16 +313,17 @@ def subjects(host: SchemataHost) -> Iterator[Subject]:
     yield "functions", False, functions.text, functions
     # Films come before transmission, which has the same code without a film.
     specs = dict.fromkeys((*DIFFUSE, *PLAIN_LOBES, *FILM_SPECS, *PBRLIB))
-    cases = [_case(host, spec) for spec in specs if spec.title != "measured_edf"]
+    cases = [
+        replace(
+            make_case(Evaluating, host, spec, "eonlib"), control=True
+        )  # a subset of the samples
+        for spec in specs
+        if spec.title != "measured_edf"
+    ]
     for turn in range(3):
         for case in cases:
             composed, text = isinstance(case.spec, COMPOSED), case.evaluating.shader.stages["pixel"]
             yield case.spec.title, composed, text, partial(node, case, _rows(case, turn))
-
-
-def _case(host: SchemataHost, spec: Spec) -> Case:
-    """A node with a subset of its samples."""
-    return replace(make_case(Evaluating, host, spec, "eonlib"), control=True)
 
 
 def _rows(case: Case, turn: int) -> Callable[[], list[tuple[Check, Tolerance]]]:

@@ -141,18 +141,13 @@ def _clean_failures(task: Task, judge: Judge) -> frozenset[tuple[str, str]]:
 # --- tasks of a library ---------------------------------------------------------------------------
 
 
-def tasks_on_gl(path: str) -> list[Task]:
-    """Tasks of `mxeon check --library` that judge something, on the first host."""
-    return list(make_plan((), ["gl"], [path]).tasks)
-
-
 def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
     """Hosts and tasks that can see a mutant, the cheapest first.
 
     The text and the nodes come first, then surface shaders, then pictures of documents one by one; then
     the closures of OSL; then Cycles, one by one.
     """
-    tasks = tasks_on_gl(path)
+    tasks = make_plan((), ["gl"], [path]).tasks
     if mutant.file.startswith(NOT_ON_GL):
         yield TEXT, [task for task in tasks if task.host == SOURCE]
     else:
