@@ -33,8 +33,6 @@ STATISTICS = {"VGPRs": "registers", "Instructions": "instructions", "Inverse Thr
 # The loop over lights of a generated shader, and its replacement for one light.
 LIGHTS = "for (int activeLightIndex = 0; activeLightIndex < numLights; ++activeLightIndex)"
 LIGHT = "int activeLightIndex = 0;"
-# Removes code that only films run.
-UNUSED = {"if (fd.airy)": "if (false)"}
 
 BINDING = re.compile(
     r"^layout \((?:std140, )?binding=(\d+)\) uniform (sampler2D|texture2D|sampler)?", re.MULTILINE
@@ -71,9 +69,7 @@ def statistics(stages, program, driver):
     before, loop, after = stages["pixel"].partition(LIGHTS)
     assert loop and LIGHTS not in after
     whole = before + LIGHT + after
-    bare = whole
-    for part, without in UNUSED.items():
-        bare = bare.replace(part, without)
+    bare = whole.replace("if (fd.airy)", "if (false)")  # without code that only films run
     found, alone = (
         _statistics({**stages, "pixel": text}, program, driver) for text in (whole, bare)
     )

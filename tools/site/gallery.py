@@ -30,9 +30,8 @@ from tools.site import DOCS, brief
 PAGE = DOCS / "gallery.md"
 EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
-DIFFERENCES = (
-    PICTURES / "differences.json"
-)  # words on stock, and its largest difference, by material
+# Words on stock, and its largest difference, by material.
+DIFFERENCES = PICTURES / "differences.json"
 SIZE = 512  # pixels of a picture
 INSET, EDGE = 112, 8  # pixels of the difference in a picture, and its distance from the rim
 QUALITY = 85  # WebP quality

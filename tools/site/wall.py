@@ -153,12 +153,6 @@ def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> st
     return f'<div class="wall">\n{text}</div>\n'
 
 
-def differing(tiles: list[Tile]) -> tuple[int, float]:
-    """How many tiles differ visibly, and the largest share of pixels."""
-    shown = [each.difference for each in tiles]
-    return sum(each.is_visible for each in shown), max(each.visible for each in shown)
-
-
 class Wall:
     """Pictures and results of reports; later reports replace earlier ones."""
 
@@ -210,7 +204,10 @@ class Wall:
         ]
         lit, scene = max(
             (([each for each in tiles if each.scene == scene], scene) for scene in references),
-            key=lambda each: differing(each[0]),
+            key=lambda each: (
+                sum(tile.difference.is_visible for tile in each[0]),
+                max(tile.difference.visible for tile in each[0]),
+            ),
         )
         name, light = f"{Path(document).stem}-{element}", words.LIGHTS[scene]
         largest = max(each.largest for each in lit)
