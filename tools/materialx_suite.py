@@ -201,25 +201,22 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
         if picture(before[each]).exists() and picture(after[each]).exists()
     ]
     changes = {each: change(codes(before[each]), codes(after[each])) for each in drawn}
-    names = sorted(drawn, key=lambda each: (-abs(changes[each][0]), each))
-    visible = [each for each in names if abs(changes[each][0]) > VISIBLE]
+    visible = [each for each in drawn if abs(changes[each][0]) > VISIBLE]
 
     shutil.rmtree(PICTURES, ignore_errors=True)
     PICTURES.mkdir(parents=True)
     figures, lines = "", ""
-    for each in names:
+    for each in sorted(visible, key=lambda each: (-abs(changes[each][0]), each)):
         largest, share = map(in_percent, changes[each])
-        if each in visible:
-            lines += f"| {each} | {largest} | {share.removeprefix('+')} |\n"
-            file = f"{slug(each)}.webp"
-            both = Image.fromarray(
-                np.concatenate([codes(before[each]), codes(after[each])], axis=1)
-            )
-            both.resize((2 * SIZE, SIZE)).save(PICTURES / file, quality=QUALITY, method=6)
-            figures += (
-                f'<figure><img src="images/suite/{file}" alt="stock and eonlib">'
-                f"<figcaption>{each}</figcaption></figure>\n"
-            )
+        lines += f"| {each} | {largest} | {share.removeprefix('+')} |\n"
+        file = f"{slug(each)}.webp"
+        both = np.concatenate([codes(before[each]), codes(after[each])], axis=1)
+        tile = Image.fromarray(both).resize((2 * SIZE, SIZE))
+        tile.save(PICTURES / file, quality=QUALITY, method=6)
+        figures += (
+            f'<figure><img src="images/suite/{file}" alt="stock and eonlib">'
+            f"<figcaption>{each}</figcaption></figure>\n"
+        )
     tests = {name: failed_tests(work / name) for name in (STOCK, EONLIB)}
     failed = {name: [each for each, value in tests[name].items() if value] for name in tests}
     cases = (f"{len(failed[name])} of {len(tests[name])}" for name in tests)
