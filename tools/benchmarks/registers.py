@@ -69,7 +69,7 @@ def statistics(stages, program, driver):
     before, loop, after = stages["pixel"].partition(LIGHTS)
     assert loop and LIGHTS not in after
     whole = before + LIGHT + after
-    bare = whole.replace("if (fd.airy)", "if (false)")  # without code that only films run
+    bare = whole.replace("if (fd.airy)", "if (false)")  # films alone run this branch
     found, alone = (
         _statistics({**stages, "pixel": text}, program, driver) for text in (whole, bare)
     )
