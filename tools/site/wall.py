@@ -41,6 +41,10 @@ TILES = DOCS / "images" / "wall"
 SIZE, QUALITY = 192, 85  # pixels, and WebP quality
 LIGHTS = SIDE.name, BACK.name  # every renderer has these two
 BLACK = 1e-3  # mean of a picture that shows nothing
+EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
+OTHER_MODELS = re.compile(
+    "fon|qon|LAMBERT|shorter|compensation false|eon_diffuse|standard_surface|UsdPreview", re.I
+)
 NOT_JUDGED = "not judged"
 
 HEAD = """<!-- Made by `python -m tools.site.wall`. -->
@@ -62,13 +66,20 @@ twice](upstream/babylon_anisotropic_roughness.md).
     mxeon check MATERIAL.mtlx --host gl --host storm --host cycles --host three --report out
 
 """
+ROUGH = f"""## A rough diffuse surface
+
+EON with color (0.8, 0.4, 0.1) and roughness 1, {words.LIGHTS[BACK.name]}. Renderers whose materials are not read from documents
+are here with their own nodes; [Renderers compared](the_field.md) has their models. Nodes in red fail the check `value`: for
+some inputs they do not have the model that they claim.
+
+"""
 
 
 class Tile(NamedTuple):
     """A picture on the wall."""
 
     host: str
-    variant: str  # library; "" for a document in a renderer of its own
+    variant: str  # library or node; "" for a document in a renderer of its own
     scene: str
     image: NDArray[np.floating]
     difference: Difference
@@ -168,8 +179,6 @@ class Wall:
                 each.name: f"{each.name}: {each.version}, {each.device}" for each in report.hosts
             }
             for each in report.pictures:
-                if each.document == PORTRAIT:
-                    continue
                 shown = each.document, each.element, each.scene
                 names = (*shown, each.host, each.library)
                 self.images[names] = folder / each.exr
@@ -178,7 +187,9 @@ class Wall:
                 elif each.reference:
                     self.references.setdefault(shown, folder / each.reference)
             for result in report.results:
-                if result.check in ("picture", "finite"):
+                if result.check in (
+                    ("picture", "finite") if ".mtlx" in result.subject else ("value",)
+                ):
                     self.results[result.subject, result.host, result.library] = result
 
     def tile(self, names: tuple[str, str, str, str, str], reference: NDArray[np.floating]) -> Tile:
@@ -187,6 +198,12 @@ class Wall:
         reference = pixels(self.facets[names]) if names in self.facets else reference
         apart = Picture(document, element, host, library, scene, image, reference, {}).difference
         assert apart is not None
+        if document == PORTRAIT:
+            own = library == RENDERER_NODES
+            result = self.results.get((element, host, library))
+            claim = f"claims {result.claimed}" if result and result.claimed else ""
+            verdict = result.verdict if result else NOT_RUN
+            return Tile(host, element if own else library, scene, image, apart, claim, verdict)
         judged = self.results[f"{document}: {element}", host, library]
         variant = "" if library == RENDERER_NODES else library
         return Tile(host, variant, scene, image, apart, cause_of(judged), judged.verdict)
@@ -227,21 +244,33 @@ class Wall:
             for (host, reason), names in materials.items()
         )
 
+    def rough(self) -> str:
+        """One rough node of every renderer, with its own material; equal pictures of a renderer are shown once."""
+        reference = pixels(self.references[PORTRAIT, EON, BACK.name])
+        tiles: dict[tuple[str, float], Tile] = {}
+        for each in self.images:
+            document, element, scene, host, _ = each
+            if document == PORTRAIT and scene == BACK.name and not OTHER_MODELS.search(element):
+                tile = self.tile(each, reference)
+                tiles.setdefault((host, round(tile.largest, 3)), tile)
+        return ROUGH + figures("rough", reference, list(tiles.values()))
+
     @cached_property
     def shown(self) -> list[tuple[str, str]]:
         """The materials that most renderers drew: reports of other pages have pictures, too."""
         drawn = defaultdict(set)
         for document, element, _, host, _ in self.images:
-            drawn[document, element].add(host)
+            if document != PORTRAIT:
+                drawn[document, element].add(host)
         most = max(map(len, drawn.values()))
         return [each for each, hosts in drawn.items() if 2 * len(hosts) > most]
 
     def page(self) -> str:
         sections = [text for _, text in sorted(map(self.section, self.shown), reverse=True)]
-        drawn = {host for *material, _, host, _ in self.images if tuple(material) in self.shown}
+        drawn = {host for *_, host, _ in self.images}
         measured = "".join(f"- {each}\n" for host, each in self.hosts.items() if host in drawn)
         return HEAD + "\n".join(
-            [*sections, "## Not drawn, and versions\n", self.not_drawn(), measured]
+            [*sections, self.rough(), "## Not drawn, and versions\n", self.not_drawn(), measured]
         )
 
 
