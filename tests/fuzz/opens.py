@@ -2,8 +2,8 @@
 """Files that MaterialX itself opens while it generates the fuzzer's cases.
 
 strace sees every file that a process opens, and Python's audit hook those that Python opens, which
-are mxeon's. MaterialX opened the rest, which must lie in the libraries or among mxeon's copies.
-In a bare run, documents keep the names of their sources: a control that must be detected.
+are mxeon's. MaterialX opened the rest, which must lie in the libraries or in the documents' folder.
+In a bare run, sources are not checked: a control that must be detected.
 """
 
 import codecs
@@ -20,7 +20,6 @@ from pathlib import Path
 
 from mxeon.shaders import generation
 from mxeon.shaders.document.references import library_path
-from mxeon.shaders.document.sources import Sources
 from mxeon.shaders.library import examples_folder
 from tests.fuzz.cases import case
 from tests.fuzz.families import cases
@@ -33,7 +32,10 @@ MACHINE = ("/sys/devices/system/cpu/online",)  # read by the C library
 # Words in documents for which MaterialX might wait forever.
 ENDLESS = (b"pipe", b"zero", b"/dev/", b"/proc/")
 OPEN = re.compile(rb'open(?:at2?)?\((?:AT_FDCWD, |\d+(?:<[^>]*>)?, )?"((?:[^"\\]|\\.)*)"(.*)')
-COPIES = "/mxeon-sources-"  # part of the path of a copy
+# Files in a case's folder; its links lead out of it.
+OWN = re.compile(
+    r"(?:/mxeon-fuzz-[^/]+/documents/|^)(?!/|\.\./|linked|zero|pipe|link/(?!documents/))"
+)
 SEED = 3
 
 
@@ -60,8 +62,8 @@ def opens(count, bare=False):
 
 
 def strangers(paths):
-    """Those paths that are neither in the libraries nor among copies."""
-    others = (path for path in paths if COPIES not in path and path not in MACHINE)
+    """Those paths that are neither in the libraries nor in a case's own folder."""
+    others = (path for path in paths if not OWN.search(path) and path not in MACHINE)
     return sorted(path for path in others if not library_path(path))
 
 
@@ -87,7 +89,7 @@ def generate(count, bare, audit):
         with contextlib.redirect_stderr(None):
             generation.generate(examples_folder() / "clay.mtlx", target)
     if bare:
-        generation.copied_sources = _uncopied
+        generation.check_sources = lambda *_: None
     tried = selected(count, bare)
     trial(tried[0])  # loads the command's own files first
     sys.addaudithook(lambda event, seen: event == "open" and paths.append(seen[0]))
@@ -101,9 +103,3 @@ def generate(count, bare, audit):
         _line(os.fsdecode(path)) for path in paths if isinstance(path, str | bytes | os.PathLike)
     )
     Path(audit).write_text("".join(f"{path}\n" for path in named))
-
-
-@contextlib.contextmanager
-def _uncopied(document, context, policy, tokens):
-    """Replaces `copied_sources`, so that nothing is copied."""
-    yield Sources(document, context, policy, "", tokens)

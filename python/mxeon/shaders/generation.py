@@ -19,7 +19,7 @@ from mxeon.shaders.closure_calls import check_closure_calls, leftover
 from mxeon.shaders.document.notes import CodeWarning, warn_of_files, warn_of_names
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.reading import read_document
-from mxeon.shaders.document.sources import copied_sources
+from mxeon.shaders.document.sources import check_sources
 from mxeon.shaders.document.values import Plain, label, plain
 from mxeon.shaders.generators import (
     GENERATORS,
@@ -205,38 +205,37 @@ def generate(
     searched = map(str, environment_folders(library) if methods.searched else ())
     folders = (*policy.definitions, *own_folders(library), *searched)
     shaders = []
-    with copied_sources(content, context, policy, tokens) as sources:
-        sources.check_limit(len(elements), checked.nodes)
-        for each in elements:
-            path = each.getNamePath()
-            try:
-                source = generated(generator, names[path], each, context)
-            except (mx.Exception, LookupError) as error:
-                reason = in_words(library, sources.in_words(str(error).strip().splitlines()[0]))
-                if "nodedef" in reason:
-                    reason += ": load further definitions by --definitions FOLDER"
-                raise DocumentError(
-                    f'{label(content)}: element "{path}" must give {target}; {reason}'
-                ) from None
-            check_closure_calls(source.getStage("pixel"), target, library, profile, content)
-            stages = MappingProxyType(
-                {stage: source.getSourceCode(stage) for stage in STAGES if source.hasStage(stage)}
+    check_sources(content, context, policy, tokens, len(elements), checked.nodes)
+    for each in elements:
+        path = each.getNamePath()
+        try:
+            source = generated(generator, names[path], each, context)
+        except (mx.Exception, LookupError) as error:
+            reason = in_words(library, str(error).strip().splitlines()[0])
+            if "nodedef" in reason:
+                reason += ": load further definitions by --definitions FOLDER"
+            raise DocumentError(
+                f'{label(content)}: element "{path}" must give {target}; {reason}'
+            ) from None
+        check_closure_calls(source.getStage("pixel"), target, library, profile, content)
+        stages = MappingProxyType(
+            {stage: source.getSourceCode(stage) for stage in STAGES if source.hasStage(stage)}
+        )
+        if methods != UNCHOSEN:
+            assert_generated(stages["pixel"], methods)
+        if token := leftover("\n".join(stages.values())):
+            raise InterfaceError(
+                f"{target}: the generator of MaterialX {mx.getVersionString()} does not replace "
+                f"{token} in the library's sources; use those of its version"
             )
-            if methods != UNCHOSEN:
-                assert_generated(stages["pixel"], methods)
-            if token := leftover("\n".join(stages.values())):
-                raise InterfaceError(
-                    f"{target}: the generator of MaterialX {mx.getVersionString()} does not replace "
-                    f"{token} in the library's sources; use those of its version"
-                )
-            inputs, name = _inputs(source, content), source.getName()
-            if profile == "path":
-                stages = MappingProxyType(
-                    {"pixel": path_tracing.path_text(stages["pixel"], target, each, library)}
-                )
-            copy = root(library)
-            row = name, path, target, stages, inputs, content, folders, copy, methods, table
-            shaders.append(Shader(*row))
+        inputs, name = _inputs(source, content), source.getName()
+        if profile == "path":
+            stages = MappingProxyType(
+                {"pixel": path_tracing.path_text(stages["pixel"], target, each, library)}
+            )
+        copy = root(library)
+        row = name, path, target, stages, inputs, content, folders, copy, methods, table
+        shaders.append(Shader(*row))
     inputs_of_all = [port for shader in shaders for port in shader.inputs]
     files = [
         (port.path, str(port.value))
