@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from importlib import import_module
 from typing import Any
 
 from mxeon.errors import NotRun, Unsupported, assert_known
@@ -13,65 +14,30 @@ from mxeon.hosts.base import Engine, Host
 from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
 
+# Module below this package and class of each host; a module is imported only where its engine runs.
+CLASSES = {
+    "gl": ("gl", "GlHost"),
+    "webgl": ("webgl", "WebGlHost"),
+    "vulkan": ("vulkan", "VulkanHost"),
+    "hlsl": ("translated", "HlslHost"),
+    "dxc": ("translated", "DxcHost"),
+    "naga": ("translated", "NagaHost"),
+    "wgsl": ("wgsl", "WgslHost"),
+    "slang": ("slang", "SlangHost"),
+    "osl": ("osl", "OslHost"),
+    "materialx": ("materialx", "MaterialXHost"),
+    "storm": ("storm", "StormHost"),
+    "shadewire": ("shadewire", "ShadewireHost"),
+    "cycles": ("cycles", "CyclesHost"),
+    "testrender": ("testrender", "TestrenderHost"),
+}
+
+
 def start(name: str) -> Engine:
-    """Start the engine of a row of `HOSTS`; each is imported only where it runs."""
-    match name:
-        case "gl":
-            from mxeon.hosts.gl import GlHost
-
-            return GlHost()
-        case "webgl":
-            from mxeon.hosts.webgl import WebGlHost
-
-            return WebGlHost()
-        case "vulkan":
-            from mxeon.hosts.vulkan import VulkanHost
-
-            return VulkanHost()
-        case "hlsl":
-            from mxeon.hosts.translated import HlslHost
-
-            return HlslHost()
-        case "dxc":
-            from mxeon.hosts.translated import DxcHost
-
-            return DxcHost()
-        case "naga":
-            from mxeon.hosts.translated import NagaHost
-
-            return NagaHost()
-        case "wgsl":
-            from mxeon.hosts.wgsl import WgslHost
-
-            return WgslHost()
-        case "slang":
-            from mxeon.hosts.slang import SlangHost
-
-            return SlangHost()
-        case "osl":
-            from mxeon.hosts.osl import OslHost
-
-            return OslHost()
-        case "materialx":
-            from mxeon.hosts.materialx import MaterialXHost
-
-            return MaterialXHost()
-        case "storm":
-            from mxeon.hosts.storm import StormHost
-
-            return StormHost()
-        case "shadewire":
-            from mxeon.hosts.shadewire import ShadewireHost
-
-            return ShadewireHost()
-        case "cycles":
-            from mxeon.hosts.cycles import CyclesHost
-
-            return CyclesHost()
-        case _:
-            from mxeon.hosts.testrender import TestrenderHost
-
-            return TestrenderHost()
+    """Start the engine of a row of `HOSTS`."""
+    module, kind = CLASSES[name]
+    engine: Engine = getattr(import_module(f"mxeon.hosts.{module}"), kind)()
+    return engine
 
 
 @dataclass(frozen=True)
