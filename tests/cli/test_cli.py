@@ -160,12 +160,9 @@ def test_an_environment_image_ends_at_its_poles(host, hosts, tmp_path):
     np.testing.assert_allclose(below, 0.0, atol=2.0**-7)
 
 
-def test_library_prints_the_folder_and_what_each_target_finds(capsys, tmp_path):
+def test_library_prints_the_folder_and_how_to_load_it(capsys, tmp_path):
     assert main(["library", "--folder"]) == PASSED
     assert capsys.readouterr().out.strip() == str(eonlib_folder())
-    assert main(["library", "--verify"]) == PASSED
-    found = capsys.readouterr().out
-    assert "IM_oren_nayar_diffuse_bsdf_genosl" in found and "IM_sheen_bsdf_genglsl" in found
     assert main(["library"]) == PASSED
     recipes = capsys.readouterr().out.splitlines()
     assert len(recipes) == 8 and all(str(eonlib_folder()) in line for line in recipes)

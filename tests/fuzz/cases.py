@@ -27,7 +27,6 @@ COMMANDS = (
     ("check", "--workers", "1", "--timeout", "5", "--json", "--host", "abacus"),
     ("library",),
     ("library", "--folder"),
-    ("library", "--verify"),
     ("invert", "0.5", "0.4", "0.3", "--roughness", "0.5"),
     ("invert", "0.5", "0.4", "0.3", "--roughness", "1", "--average"),
     ("report", "make", "textures"),

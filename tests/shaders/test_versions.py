@@ -18,7 +18,6 @@ CACHES = (
     generators._library_generator,
     closure_calls._functions,
     closure_calls._signatures,
-    closure_calls._call,
 )
 
 

@@ -17,12 +17,8 @@ def add_parser(commands: arguments.Commands) -> None:
         run,
         "library  # the folder, and a line for each renderer",
         "library --export eonlib.zip  # a copy for machines without Python",
-        "library --verify  # which implementation each target uses",
     )
     command.add_argument("--folder", action="store_true", help="print the folder only")
-    command.add_argument(
-        "--verify", action="store_true", help="list the implementation that each target uses"
-    )
     command.add_argument(
         "--export", metavar="DIR", help="write a copy to the new folder DIR, or to DIR.zip"
     )
@@ -30,13 +26,7 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the folder, or write a copy; return the exit status."""
-    from mxeon.shaders.library import (
-        assert_ours,
-        documents_folder,
-        eonlib_folder,
-        implementations,
-        load_library,
-    )
+    from mxeon.shaders.library import documents_folder, eonlib_folder
 
     if options.export is not None:
         from mxeon.shaders.library_export import export_library
@@ -48,11 +38,6 @@ def run(options: argparse.Namespace) -> int:
             show(copy)
     elif options.folder:
         show(eonlib_folder())
-    elif options.verify:
-        document = load_library()
-        for one in implementations(document):
-            print(f"{one.node:30} {one.target:10} {one.name:40} {one.document}")
-        assert_ours(document)
     else:
         _explain(eonlib_folder(), documents_folder())
     return PASSED

@@ -13,7 +13,6 @@ from mxeon.errors import NotRun, Unsupported, assert_known
 from mxeon.hosts.base import Engine, Host
 from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
-
 # Module below this package and class of each host; a module is imported only where its engine runs.
 CLASSES = {
     "gl": ("gl", "GlHost"),

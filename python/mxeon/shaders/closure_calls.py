@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the generators of this MaterialX call a library's functions as its sources define them.
 
-MaterialX versions pass different arguments to closures. To check this, a generator writes a call of each
-function that a shader uses, from mxeon's own document with unambiguous names. The shader's own document
-and text are not searched.
+MaterialX versions pass different arguments to closures, so the number of arguments of each call in a
+generated text is compared with the function's overloads.
 """
 
 import os
@@ -17,50 +16,37 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.errors import InterfaceError, ShaderError
-from mxeon.shaders.document.graphs import inner_nodes
-from mxeon.shaders.generators import GENERATORS, context_of, generated, generator_of
+from mxeon.shaders.generators import GENERATORS
 from mxeon.shaders.library import load_library
 from mxeon.shaders.library_tree import root, standard_folders
 
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 TEXT = re.compile(rf"{COMMENT.pattern}|\"[^\"\n]*\"", re.DOTALL)  # comments and strings
 TOKEN = re.compile(r"\$[A-Za-z]\w*")
-NODE = "asked"  # name of the node in that document
-CLOSURES = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, which makes it call the closure
 
 
 def check_closure_calls(
-    stage: mx_gen.ShaderStage,
-    target: str,
-    library: str,
-    profile: str | None,
-    document: mx.Document,
+    stage: mx_gen.ShaderStage, target: str, library: str, profile: str | None
 ) -> None:
     """Raise InterfaceError unless a generated stage calls a library's functions as they are defined.
 
-    Raise ShaderError if the implementation of one of the document's own nodes names another node's function.
+    Raise ShaderError if implementations of several nodes name one function, which does not suit all of them.
     """
-    known = _functions(library, profile, target)
+    text, known = COMMENT.sub("", stage.getSourceCode()), _functions(library, profile, target)
     for file in stage.getSourceDependencies():
-        for nodedef, function in known.get(file, ()):
+        for function, nodes in known.get(file, {}).items():
             signatures = _signatures(file, function)
-            call = _call(target, library, profile, nodedef, function)
-            if signatures and len(call) not in map(len, signatures):
-                if others := [
-                    each for each, name in known[file] if name == function and each != nodedef
-                ]:
-                    nodes = (each for each in inner_nodes(document) if each.isA(mx.Node))
-                    if nodedef not in {
-                        each.getNodeDef().getName() for each in nodes if each.getNodeDef()
-                    }:
-                        continue
-                    raise ShaderError(
-                        f"the implementation of {nodedef} names {function}, the function of {others[0]}"
-                    )
-                raise InterfaceError(
-                    f"{target}: MaterialX {mx.getVersionString()} does not call eonlib's function "
-                    f"{function}({', '.join(signatures[0])}); use --library stock"
+            calls = re.finditer(rf"(?<!void )\b{function}\(", text) if signatures else ()
+            if {len(_arguments(text, call.end())) for call in calls} <= {*map(len, signatures)}:
+                continue
+            if len(nodes) > 1:
+                raise ShaderError(
+                    f"{target}: the implementations of {' and '.join(nodes)} name one function, {function}"
                 )
+            raise InterfaceError(
+                f"{target}: MaterialX {mx.getVersionString()} does not call eonlib's function "
+                f"{function}({', '.join(signatures[0])}); use --library stock"
+            )
 
 
 def leftover(text: str) -> str:
@@ -72,9 +58,9 @@ def leftover(text: str) -> str:
 @cache
 def _functions(
     library: str, profile: str | None, target: str
-) -> Mapping[str, list[tuple[str, str]]]:
-    """Nodedefs and functions of each source of a library for a target, except MaterialX's own and their replacements."""
-    functions: dict[str, list[tuple[str, str]]] = defaultdict(list)
+) -> Mapping[str, dict[str, list[str]]]:
+    """Functions of each source of a library for a target and their nodedefs, except MaterialX's own and their replacements."""
+    functions: dict[str, dict[str, list[str]]] = defaultdict(dict)
     if root(library):
         return functions
     document = load_library(library, profile)
@@ -85,7 +71,8 @@ def _functions(
             continue
         if each.hasFile() and each.hasFunction() and not _is_standard(uri):
             file = os.path.normpath(Path(uri).parent / each.getFile())
-            functions[file].append((each.getNodeDefString(), each.getFunction()))
+            nodes = functions[file].setdefault(each.getFunction(), [])
+            nodes.append(each.getNodeDefString())
     return functions
 
 
@@ -101,34 +88,6 @@ def _signatures(file: str, function: str) -> list[list[str]]:
     text = COMMENT.sub("", Path(file).read_text(encoding="utf-8"))
     definitions = re.finditer(rf"\bvoid\s+{function}\s*\(", text)
     return [_arguments(text, definition.end()) for definition in definitions]
-
-
-@cache
-def _call(target: str, library: str, profile: str | None, nodedef: str, function: str) -> list[str]:
-    """Arguments of the generator's call to a node's function; empty if there is no call."""
-    document = mx.createDocument()
-    document.setDataLibrary(load_library(library, profile))
-    generator = generator_of(document, target, library, profile)
-    context = context_of(document, target, generator, library, False, ())
-    text = generated(generator, NODE, _surface(document, nodedef), context).getSourceCode("pixel")
-    calls = list(re.finditer(rf"(?<!void )\b{function}\(", text))
-    return _arguments(text, calls[-1].end()) if calls else []
-
-
-def _surface(document: mx.Document, nodedef: str) -> mx.Node:
-    """A node of a nodedef, or the surface that calls it if it is a closure."""
-    definition = document.getNodeDef(nodedef)
-    kind = definition.getType()
-    node = document.addNode(definition.getNodeString(), NODE, kind)
-    node.setNodeDefString(nodedef)
-    if kind == "VDF":
-        base, node, kind = node, document.addNode("layer", "layer", "BSDF"), "BSDF"
-        node.addInput("base", "VDF").setConnectedNode(base)
-    if kind not in CLOSURES:
-        return node
-    surface = document.addNode("surface", "surface", "surfaceshader")
-    surface.addInput(CLOSURES[kind], kind).setConnectedNode(node)
-    return surface
 
 
 def _arguments(text: str, start: int) -> list[str]:

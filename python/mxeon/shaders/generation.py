@@ -217,7 +217,7 @@ def generate(
             raise DocumentError(
                 f'{label(content)}: element "{path}" must give {target}; {reason}'
             ) from None
-        check_closure_calls(source.getStage("pixel"), target, library, profile, content)
+        check_closure_calls(source.getStage("pixel"), target, library, profile)
         stages = MappingProxyType(
             {stage: source.getSourceCode(stage) for stage in STAGES if source.hasStage(stage)}
         )

@@ -2,7 +2,7 @@
 """The data libraries: where they are and in which order MaterialX has to load them.
 
 MaterialX silently ignores later definitions of a name, so eonlib is loaded before the standard
-libraries. Which implementations MaterialX chooses is then checked: see `implementations`.
+libraries. Which implementations MaterialX chooses is then checked: see `assert_ours`.
 
 mxeon refuses no version of MaterialX by its number: it looks up the methods that it needs, and checks
 generated code against the closure interface of eonlib's sources.
@@ -10,7 +10,7 @@ generated code against the closure interface of eonlib's sources.
 
 import os
 import warnings
-from dataclasses import dataclass
+from collections.abc import Iterator
 from functools import cache, lru_cache
 from pathlib import Path
 
@@ -31,22 +31,6 @@ LOADED = 16  # cached libraries, about 10 MB each
 
 # Targets of MaterialX 1.39.5; earlier versions have fewer. genoslnetwork only supports graphs.
 TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl", "genoslnetwork")
-
-
-@dataclass(frozen=True)
-class Implementation:
-    """The implementation that MaterialX chooses for a nodedef on a target, and its file; "" for none."""
-
-    node: str
-    target: str
-    name: str
-    document: str
-
-    @property
-    def ours(self) -> bool:
-        """Whether it belongs to eonlib."""
-        folders = {eonlib_folder(), *(source_folder("eonlib") / each for each in SOURCE_FOLDERS)}
-        return bool(self.document) and not folders.isdisjoint(Path(self.document).resolve().parents)
 
 
 @cache
@@ -254,23 +238,21 @@ def _documents(folder: AnyPath, rule: str) -> list[Path]:
 
 def implementations(
     document: mx.Document, library: str = "eonlib", profile: str | None = None
-) -> tuple[Implementation, ...]:
-    """The implementations in a document and its data library for all nodes that eonlib ships.
+) -> Iterator[tuple[str, str, str]]:
+    """Nodedef, target and file of the implementations that MaterialX chooses for what eonlib ships; "" for no file.
 
     One for each nodedef in the documents of "eonlib" or "diffuse", and of a profile, on each target that
-    they implement.
+    they implement; graphs for all targets do not count for an implementation for one.
     """
     data = document.getDataLibrary() or document
-    definitions = {each.getName(): each for each in data.getTargetDefs()}
-    known = [each for each in TARGETS if each in definitions or not definitions]
-    parents = {each: definitions[each].getMatchingTargets() for each in definitions}
-    chosen = (
-        _implementation(document, node, heir, own=bool(target))
-        for node, target in _shipped(library, profile)
-        for heir in known
-        if target in ("", heir, *parents.get(heir, ()))
-    )
-    return tuple(dict.fromkeys(chosen))
+    targets = {each.getName(): each.getMatchingTargets() for each in data.getTargetDefs()}
+    for node, target in _shipped(library, profile):
+        definition = document.getNodeDef(node)
+        for heir in TARGETS:
+            if (heir in targets or not targets) and target in ("", heir, *targets.get(heir, ())):
+                element = definition and definition.getImplementation(heir)
+                found = element and (element.getTarget() or not target)
+                yield node, heir, element.getActiveSourceUri() if found else ""
 
 
 @cache
@@ -285,25 +267,16 @@ def _shipped(library: str, profile: str | None) -> tuple[tuple[str, str], ...]:
     return tuple(dict.fromkeys(pair for pair in pairs if pair[0]))
 
 
-def _implementation(document: mx.Document, node: str, target: str, own: bool) -> Implementation:
-    """A document's implementation of a node; with `own`, graphs for all targets do not count."""
-    definition = document.getNodeDef(node)
-    element = definition and definition.getImplementation(target)
-    if not element or (own and not element.getTarget()):
-        return Implementation(node, target, "", "")
-    return Implementation(node, target, element.getName(), element.getActiveSourceUri())
-
-
 def assert_ours(document: mx.Document, library: str = "eonlib", profile: str | None = None) -> None:
     """Raise LibraryError unless a document uses eonlib's implementation for everything that eonlib ships.
 
     The message has the node, the target and the other file; parameters as for `implementations`.
     """
-    for each in implementations(document, library, profile):
-        if not each.ours:
-            where = each.document or "nothing"
+    folders = {eonlib_folder(), *(source_folder("eonlib") / each for each in SOURCE_FOLDERS)}
+    for node, target, file in implementations(document, library, profile):
+        if not file or folders.isdisjoint(Path(file).resolve().parents):
             raise LibraryError(
-                f"implementation of {each.node} for {each.target} must be eonlib's; got {where}: "
+                f"implementation of {node} for {target} must be eonlib's; got {file or 'nothing'}: "
                 f"load {eonlib_folder()} before the standard libraries"
             )
 
