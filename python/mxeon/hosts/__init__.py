@@ -13,31 +13,6 @@ from mxeon.errors import NotRun, Unsupported, assert_known
 from mxeon.hosts.base import Engine, Host
 from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
-# Module below this package and class of each host; a module is imported only where its engine runs.
-CLASSES = {
-    "gl": ("gl", "GlHost"),
-    "webgl": ("webgl", "WebGlHost"),
-    "vulkan": ("vulkan", "VulkanHost"),
-    "hlsl": ("translated", "HlslHost"),
-    "dxc": ("translated", "DxcHost"),
-    "naga": ("translated", "NagaHost"),
-    "wgsl": ("wgsl", "WgslHost"),
-    "slang": ("slang", "SlangHost"),
-    "osl": ("osl", "OslHost"),
-    "materialx": ("materialx", "MaterialXHost"),
-    "storm": ("storm", "StormHost"),
-    "shadewire": ("shadewire", "ShadewireHost"),
-    "cycles": ("cycles", "CyclesHost"),
-    "testrender": ("testrender", "TestrenderHost"),
-}
-
-
-def start(name: str) -> Engine:
-    """Start the engine of a row of `HOSTS`."""
-    module, kind = CLASSES[name]
-    engine: Engine = getattr(import_module(f"mxeon.hosts.{module}"), kind)()
-    return engine
-
 
 @dataclass(frozen=True)
 class Row:
@@ -54,7 +29,7 @@ class Row:
     surfaces: bool = False  # whether surface shaders are checked on it
     rounding: float = 0.0  # relative rounding of its pixels, in addition to float32's
     front_lit: tuple[str, ...] = ()  # models that it supports only for s >= 0
-    start: Callable[[str], Engine] = start
+    engine: str = ""  # module of mxeon and class; imported only where it runs
     nodes: Callable[[str], Sequence[Any]] | None = None
 
 
@@ -62,19 +37,27 @@ class Row:
 WHITE_LIGHT = replace(FURNACE, size=128)
 
 HOSTS = (
-    Row("gl", "glsl", "pairs", scenes=(SIDE, BACK, WHITE_LIGHT), surfaces=True),
-    Row("webgl", "essl", "pairs", scenes=(SIDE, BACK, WHITE_LIGHT)),
-    Row("vulkan", "vulkan", "pairs"),
-    Row("hlsl", "vulkan", "pairs"),
-    Row("dxc", "vulkan", "pairs"),
-    Row("naga", "vulkan", "pairs"),
-    Row("wgsl", "wgsl", "pairs"),
-    Row("slang", "slang", "pairs"),
-    Row("osl", "osl", "closures"),
+    Row(
+        "gl",
+        "glsl",
+        "pairs",
+        engine="hosts.gl.GlHost",
+        scenes=(SIDE, BACK, WHITE_LIGHT),
+        surfaces=True,
+    ),
+    Row("webgl", "essl", "pairs", engine="hosts.webgl.WebGlHost", scenes=(SIDE, BACK, WHITE_LIGHT)),
+    Row("vulkan", "vulkan", "pairs", engine="hosts.vulkan.VulkanHost"),
+    Row("hlsl", "vulkan", "pairs", engine="hosts.translated.HlslHost"),
+    Row("dxc", "vulkan", "pairs", engine="hosts.translated.DxcHost"),
+    Row("naga", "vulkan", "pairs", engine="hosts.translated.NagaHost"),
+    Row("wgsl", "wgsl", "pairs", engine="hosts.wgsl.WgslHost"),
+    Row("slang", "slang", "pairs", engine="hosts.slang.SlangHost"),
+    Row("osl", "osl", "closures", engine="hosts.osl.OslHost"),
     Row(
         "materialx",
         "glsl",
         "drawn pictures",
+        engine="hosts.materialx.MaterialXHost",
         scenes=(SIDE, BACK, WHITE_LIGHT),
         surfaces=True,
     ),
@@ -83,14 +66,28 @@ HOSTS = (
         "storm",
         "glsl",
         "half pictures",
+        engine="hosts.storm.StormHost",
         scenes=(SIDE, BACK),
         surfaces=True,
         rounding=2.0**-10,  # half floats, truncated
     ),
-    Row("shadewire", "glsl", "functions", scenes=(SIDE, BACK)),
+    Row(
+        "shadewire",
+        "glsl",
+        "functions",
+        engine="hosts.shadewire.ShadewireHost",
+        scenes=(SIDE, BACK),
+    ),
     # Its environment has noise. No closure of Cycles is QON for s < 0.
-    Row("cycles", "osl", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
-    Row("testrender", "osl", "rendered", surfaces=True),
+    Row(
+        "cycles",
+        "osl",
+        "pictures",
+        engine="hosts.cycles.CyclesHost",
+        scenes=(SIDE, BACK),
+        front_lit=("qon",),
+    ),
+    Row("testrender", "osl", "rendered", engine="hosts.testrender.TestrenderHost", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
 )
@@ -164,4 +161,6 @@ def open_engine(name: str, *others: Row) -> Engine:
             f"pip install materialx=={TESTED[-1]}"
         )
     _OPENED.add(os.getpid())
-    return row.start(name)
+    module, _, kind = row.engine.rpartition(".")
+    engine: Engine = getattr(import_module(f"mxeon.{module}"), kind)()
+    return engine

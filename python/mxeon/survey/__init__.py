@@ -6,65 +6,32 @@
 
 from collections.abc import Sequence
 from functools import partial
+from importlib import import_module
 from typing import Any
 
 from mxeon.hosts import Row
-from mxeon.hosts.base import Engine
 from mxeon.shaders.scene import BACK, SIDE
-
-
-def start(name: str) -> Engine:
-    """Start the renderer of a row of `ROWS`; each is imported only where it runs."""
-    match name:
-        case "cycles-native":
-            from mxeon.survey.cycles_native import CyclesNativeHost
-
-            return CyclesNativeHost()
-        case "three":
-            from mxeon.survey.browser.three import ThreeHost
-
-            return ThreeHost()
-        case "babylon":
-            from mxeon.survey.browser.babylon import BabylonHost
-
-            return BabylonHost()
-        case "three-gpu-pathtracer":
-            from mxeon.survey.browser.pathtracer import GpuPathTracerHost
-
-            return GpuPathTracerHost()
-        case "mitsuba":
-            from mxeon.survey.polyhedron.mitsuba import MitsubaHost
-
-            return MitsubaHost()
-        case _:
-            from mxeon.survey.polyhedron.eevee import EeveeHost
-
-            return EeveeHost()
 
 
 def nodes(name: str) -> Sequence[Any]:
     """The nodes of a renderer that are judged; the checks and backends of renderers are imported."""
     from mxeon.survey import checks as checks
-    from mxeon.survey import cycles_native
-    from mxeon.survey.browser import babylon, pathtracer, three
-    from mxeon.survey.polyhedron import eevee, mitsuba
 
-    return {
-        "cycles-native": cycles_native.NODES,
-        "three": three.NODES,
-        "babylon": babylon.NODES,
-        "three-gpu-pathtracer": pathtracer.NODES,
-        "mitsuba": mitsuba.NODES,
-        "eevee": eevee.NODES,
-    }[name]
+    [module] = (row.engine.rpartition(".")[0] for row in ROWS if row.name == name)
+    found: Sequence[Any] = import_module(f"mxeon.{module}").NODES
+    return found
 
 
-_row = partial(Row, target="", start=start, nodes=nodes)
+_row = partial(Row, target="", nodes=nodes)
 ROWS = (
-    _row("cycles-native", way="native"),
-    _row("three", way="exact", scenes=(SIDE, BACK)),
-    _row("babylon", way="exact", scenes=(SIDE, BACK)),
-    _row("three-gpu-pathtracer", way="facet pairs"),
-    _row("mitsuba", way="facet pairs"),
-    _row("eevee", way="coarse facets"),
+    _row("cycles-native", way="native", engine="survey.cycles_native.CyclesNativeHost"),
+    _row("three", way="exact", engine="survey.browser.three.ThreeHost", scenes=(SIDE, BACK)),
+    _row("babylon", way="exact", engine="survey.browser.babylon.BabylonHost", scenes=(SIDE, BACK)),
+    _row(
+        "three-gpu-pathtracer",
+        way="facet pairs",
+        engine="survey.browser.pathtracer.GpuPathTracerHost",
+    ),
+    _row("mitsuba", way="facet pairs", engine="survey.polyhedron.mitsuba.MitsubaHost"),
+    _row("eevee", way="coarse facets", engine="survey.polyhedron.eevee.EeveeHost"),
 )
