@@ -14,7 +14,7 @@ import pytest
 import tests.support.osl as osl
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import testrender
-from mxeon.hosts.osl import engines as programs
+from mxeon.hosts import testrender as programs
 from mxeon.models import eon_brdf
 from tests.support.verdicts import FAILED, PASSED, has
 

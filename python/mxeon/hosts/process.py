@@ -36,7 +36,7 @@ class Worker:
     def __init__(
         self, name: str, python: Path, script: Path, limit: float, *arguments: str
     ) -> None:
-        self._name = name
+        self.name = name
         self._command: list[str | Path] = [python, "-I", "-W", "ignore", SERVE, script, *arguments]
         self._temporary = Temporary(f"mxeon-{name}-")
         self.folder = Path(self._temporary.name)
@@ -69,7 +69,7 @@ class Worker:
         greeting = self._reply()
         if "error" in greeting:
             self._end()
-            raise NotRun(f"{self._name}: {greeting['error']}")
+            raise NotRun(f"{self.name}: {greeting['error']}")
         self.version, self.device = greeting["version"], greeting.get("device", "")
 
     def ask(self, **request: object) -> Reply:
@@ -100,7 +100,7 @@ class Worker:
             end = f"ended by {Signals(-status).name}" if status < 0 else f"exit status {status}"
         last = " | ".join(self.printed()[-4:]) or "none"
         self._end()
-        raise NotRun(f"{self._name}: {end}; last output: {last}")
+        raise NotRun(f"{self.name}: {end}; last output: {last}")
 
     def printed(self) -> list[str]:
         with self.log.open("rb") as log:

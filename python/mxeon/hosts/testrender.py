@@ -6,21 +6,31 @@ Each pixel of a picture shows its own pair of directions; see `testrender_scene`
 
 from __future__ import annotations
 
+import os
+import re
+import shutil
+import subprocess
+import warnings
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import NotRun, ShaderError
+from mxeon.errors import MxeonError, NotRun, ShaderError
 from mxeon.hosts import testrender_scene as scenes
-from mxeon.hosts.base import Array, Identity, Inputs
+from mxeon.hosts.base import Array, Identity, Inputs, RendererWarning
 from mxeon.hosts.osl import points
-from mxeon.hosts.osl.engines import find_program, output, version
 from mxeon.hosts.pairs import LAMP, SKY, PairHost
 from mxeon.io.images import read_image
 from mxeon.jobs.signals import Temporary
 from mxeon.shaders.generation import Shader
 
+VARIABLES = {"oslc": "MXEON_OSLC", "testrender": "MXEON_TESTRENDER", "testshade": "MXEON_TESTSHADE"}
+TIMEOUT = 300.0  # seconds for one run
+LINES = 4  # quoted last lines of a program's output
+# The version is in the first line of the help: oslc has no option for it.
+TITLE = re.compile(r"^oslc -- (Open Shading Language) compiler (\S+)", re.MULTILINE)
 HELPERS = {
     "mxeon_root": "shader mxeon_root(closure color material = 0) { Ci = material; }",
     "mxeon_light": "shader mxeon_light() { Ci = emission(); }",
@@ -30,7 +40,7 @@ OPTIONS = ("--center", "-d", "float", points.CALL, "-o", "result")
 
 
 class TestrenderHost(PairHost):
-    """oslc, testrender and testshade, on PATH or named by variables; see `mxeon.hosts.osl.engines.VARIABLES`."""
+    """oslc, testrender and testshade, on PATH or named by variables; see VARIABLES."""
 
     name = "testrender"
 
@@ -94,3 +104,56 @@ class TestrenderHost(PairHost):
             return read_image(picture).astype(np.float64)
         except ValueError as error:
             raise NotRun(f"testrender: {error}") from None
+
+
+def find_program(name: str) -> str:
+    """Path of a program, named by its variable or on PATH."""
+    variable = VARIABLES[name]
+    program = os.environ.get(variable) or name
+    path = shutil.which(program)
+    if path is None:
+        raise NotRun(
+            f"testrender: no program {program!r}; build Open Shading Language, as tools/build_testrender.sh "
+            f"does on Debian 12, and name it in {variable}"
+        )
+    return os.path.abspath(path)
+
+
+def version(oslc: str) -> str:
+    """Name and version of the language, from the help of oslc."""
+    title = TITLE.search(output([oslc, "--help"]))
+    if title is None:
+        raise NotRun(f"testrender: {oslc} must be OSL's compiler; its help names no version")
+    return f"{title[1]} {title[2]}"
+
+
+def output(
+    command: Sequence[str],
+    folder: Path | None = None,
+    failure: type[MxeonError] = NotRun,
+) -> str:
+    """Standard output of a program; its warnings become `RendererWarning`.
+
+    Raises `failure` with the last lines of a failed program, ShaderError if a successful program reports an error:
+    testrender continues without lobes that exceed its memory.
+    """
+    try:
+        process = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT, errors="replace"
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise NotRun(f"testrender: {error}") from None
+    lines = (process.stdout + process.stderr).strip().splitlines()
+    program = Path(command[0]).name
+    if process.returncode:
+        last = " | ".join(lines[-LINES:])
+        raise failure(
+            f"testrender: {program}: exit status {process.returncode}; last output: {last}"
+        )
+    for line in lines:
+        if line.startswith("ERROR") or "Assertion" in line:
+            raise ShaderError(f"testrender: {program}: {line}")
+    for line in dict.fromkeys(lines):
+        if line.startswith("WARNING"):
+            warnings.warn(f"{program}: {line}", RendererWarning, stacklevel=2)
+    return process.stdout

@@ -11,8 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from mxeon.hosts import testrender_scene as scenes
-from mxeon.hosts.osl.engines import VARIABLES
-from mxeon.hosts.testrender import TestrenderHost
+from mxeon.hosts.testrender import VARIABLES, TestrenderHost
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 

@@ -16,14 +16,13 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import ImageError, InputError, NotRun, ShaderError
+from mxeon.errors import ImageError, InputError, NotRun
 from mxeon.hosts.base import Array, Identity, Inputs, Query
 from mxeon.hosts.calls import GRAPH
 from mxeon.hosts.cycles import process
 from mxeon.hosts.osl import points
 from mxeon.hosts.osl.points import side, statements, with_header
 from mxeon.hosts.pairs import DISTANCE, HEIGHT, LAMP, SKY, PairHost, tilted_triangles
-from mxeon.hosts.process import Worker
 from mxeon.io.images import read_image
 from mxeon.shaders import functions, generation, library
 from mxeon.shaders.inner_lobes import inner_lobes
@@ -59,8 +58,7 @@ class CyclesHost(PairHost):
 
     def __init__(self, sources: Path | None = None, limit: float = 300.0) -> None:
         self._sources = Path(sources or library.source_folder("eonlib") / "genosl").resolve()
-        script = Path(__file__).with_name("worker.py")
-        self.worker = Worker(self.name, process.interpreter(), script, limit)
+        self.worker = process.Blender(self.name, limit)
         self._picture = lru_cache(maxsize=PICTURES)(self._rendered)
 
     def close(self) -> None:
@@ -142,34 +140,20 @@ class CyclesHost(PairHost):
         kind: str = "",
         inputs: tuple[tuple[str, Socket], ...] = (),
     ) -> Array:
-        frame = process.request(scene, lobes)
-        with self.worker.temporary() as folder:
-            if text:
-                pixels = self._render(Path(folder), text, **frame)
-            else:
-                native = {"kind": kind, "inputs": dict(inputs)}
-                pixels = self._request(Path(folder), native=native, **frame)
+        native = {"native": {"kind": kind, "inputs": dict(inputs)}} if kind else {}
+        with self.worker.temporary() as name:
+            pixels = self._render(Path(name), text, **process.request(scene, lobes), **native)
         image = np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
         image.flags.writeable = False  # shared by all callers
         return image
 
     def _render(self, folder: Path, text: str, **frame: object) -> Array:
-        shader = folder / "shader.osl"
-        shader.write_text(text, encoding="utf-8")
-        return self._request(folder, shader=str(shader), **frame)
-
-    def _request(self, folder: Path, **request: object) -> Array:
-        output = folder / "output.exr"
-        reply = self.worker.ask(output=str(output), **request)
-        if "error" in reply:
-            errors = " | ".join(self.worker.printed()[:4])
-            raise ShaderError(f"cycles: the shader does not compile: {errors}")
         # An unsupported closure makes the whole shader black, and prints an error.
-        for line in self.worker.printed():
+        for line in self.worker.render(folder, text, **frame):
             if line.startswith("ERROR"):
                 raise NotRun(f"cycles: {line.partition(', called from')[0]}")
         try:
-            return read_image(output)
+            return read_image(folder / process.PICTURE)
         except ImageError as error:
             raise NotRun(f"cycles: Blender wrote no picture that can be read; {error}") from None
 

@@ -12,7 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TypedDict
 
-from mxeon.errors import NotRun
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts.process import Worker
 from mxeon.shaders.inner_lobes import SUBSURFACE
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import Scene
@@ -36,6 +37,26 @@ def interpreter(name: str = "cycles") -> Path:
     )
 
 
+class Blender(Worker):
+    """A process of Blender, which renders OSL or a node of Blender's."""
+
+    def __init__(self, name: str, limit: float = 300.0) -> None:
+        super().__init__(name, interpreter(name), Path(__file__).with_name("worker.py"), limit)
+
+    def render(self, folder: Path, text: str = "", **frame: object) -> list[str]:
+        """Lines printed while it renders a shader's text, if any, to PICTURE in a folder."""
+        if text:
+            (folder / "shader.osl").write_text(text, encoding="utf-8")
+            frame["shader"] = str(folder / "shader.osl")
+        reply = self.ask(output=str(folder / PICTURE), **frame)
+        lines = self.printed()
+        if "error" in reply:
+            errors = " | ".join(lines[:4])
+            raise ShaderError(f"{self.name}: the shader does not compile: {errors}")
+        return lines
+
+
+PICTURE = "output.exr"
 # Samples of a pixel; 1 is enough under a distant light.
 ENVIRONMENT_SAMPLES = 256
 INNER_SAMPLES = 64

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -58,24 +58,6 @@ def set_output(scene: Blender, path: str, size: int) -> None:
     render.image_settings.exr_codec = "NONE"
 
 
-def set_sampling(scene: Blender, samples: int, bounces: int, osl: bool) -> None:
-    """Make `scene` render with Cycles, with or without OSL, every sample at its pixel's center."""
-    scene.render.engine = "CYCLES"
-    cycles = scene.cycles
-    cycles.device = "CPU"
-    cycles.shading_system = osl
-    cycles.samples = samples
-    cycles.use_adaptive_sampling = False
-    cycles.light_sampling_threshold = 0.0
-    cycles.use_denoising = False
-    cycles.sample_clamp_indirect = 0.0
-    cycles.max_bounces = bounces
-    cycles.diffuse_bounces = cycles.glossy_bounces = bounces
-    cycles.transmission_bounces = cycles.volume_bounces = bounces
-    cycles.pixel_filter_type = "BLACKMAN_HARRIS"
-    cycles.filter_width = 0.01
-
-
 def add_sphere(scene: Blender, radius: float, material: Blender) -> None:
     """Add an exact sphere around the origin, a point cloud of one point, with `material` on it."""
     mesh = bpy.data.meshes.new("sphere")
@@ -101,29 +83,16 @@ def add_mesh(scene: Blender, radius: float, material: Blender) -> None:
     scene.collection.objects.link(bpy.data.objects.new("sphere", mesh))
 
 
-def add_plane(scene: Blender, radius: float, material: Blender) -> None:
-    """Add one triangle that fills the picture, at z = 0, with `material` on it."""
-    mesh = bpy.data.meshes.new("plane")
-    mesh.from_pydata([(-3.0, -1.0, 0.0), (3.0, -1.0, 0.0), (0.0, 5.0, 0.0)], [], [(0, 1, 2)])
-    mesh.materials.append(material)
-    scene.collection.objects.link(bpy.data.objects.new("plane", mesh))
-
-
-BODIES = {"points": add_sphere, "mesh": add_mesh, "plane": add_plane}
-
-
-def add_triangles(scene: Blender, width: float, corners: str, material: Blender) -> None:
-    """Add the triangles of a file; they neither shadow nor light each other."""
-    scene.camera.data.ortho_scale = width
-    scene.camera.data.clip_end = 2.0 * scene.camera.location.z
-    points = np.load(corners).reshape(-1, 3)
+def add_triangles(
+    scene: Blender, points: Sequence[Any], triangles: Sequence[Any], material: Blender
+) -> Blender:
+    """Add triangles, with `material` on them, and return their object."""
     mesh = bpy.data.meshes.new("triangles")
-    mesh.from_pydata(points.tolist(), [], np.arange(len(points)).reshape(-1, 3).tolist())
+    mesh.from_pydata(points, [], triangles)
     mesh.materials.append(material)
-    triangles = bpy.data.objects.new("triangles", mesh)
-    triangles.visible_diffuse = triangles.visible_glossy = triangles.visible_transmission = False
-    triangles.visible_shadow = False
-    scene.collection.objects.link(triangles)
+    added = bpy.data.objects.new("triangles", mesh)
+    scene.collection.objects.link(added)
+    return added
 
 
 def add_lamp(scene: Blender, distance: float) -> None:
@@ -136,33 +105,20 @@ def add_lamp(scene: Blender, distance: float) -> None:
     scene.collection.objects.link(light)
 
 
-def script_material(shader: str) -> Blender:
-    """A material whose surface is the output of the compiled OSL file `shader`."""
-    material, script = surface_material("ShaderNodeScript")
-    script.mode = "EXTERNAL"
-    script.filepath = shader
-    connect(material, script)
-    return material
-
-
-def native_material(kind: str, inputs: JsonObject) -> Blender:
-    material, node = surface_material(kind)
+def new_material(kind: str, inputs: JsonObject, shader: str = "") -> Blender:
+    """A material whose surface is a node, or the output of a compiled OSL file."""
+    material = bpy.data.materials.new("material")
+    tree = material.node_tree
+    tree.nodes.clear()
+    node = tree.nodes.new(kind)
+    if shader:
+        node.mode = "EXTERNAL"
+        node.filepath = shader
     for name, value in inputs.items():
         node.inputs[name].default_value = value
-    connect(material, node)
+    surface = tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"]
+    tree.links.new(node.outputs[0], surface)
     return material
-
-
-def surface_material(kind: str) -> tuple[Blender, Blender]:
-    material = bpy.data.materials.new("material")
-    nodes = material.node_tree.nodes
-    nodes.clear()
-    return material, nodes.new(kind)
-
-
-def connect(material: Blender, node: Blender) -> None:
-    surface = material.node_tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"]
-    material.node_tree.links.new(node.outputs[0], surface)
 
 
 def add_light(scene: Blender, direction: tuple[float, float, float], shadow: bool = True) -> None:
@@ -199,19 +155,48 @@ def render(
     triangles: str | None = None,
     lamp: float | None = None,
 ) -> None:
-    """Render the OSL file `shader`, or a Blender node, on one of BODIES or on triangles."""
+    """Render the OSL file `shader`, or a Blender node, on a body or on the triangles in a file.
+
+    Every sample is at its pixel's center. The body is "points", "mesh" or "plane", a triangle that fills the picture.
+    """
+    compiled = ""
     if shader:
         compiled = os.path.splitext(shader)[0] + ".oso"
         if not _cycles.osl_compile(shader, compiled):
             raise SyntaxError(shader)
     scene = unit_scene(2.0 * radius)
     set_output(scene, output, size)
-    set_sampling(scene, samples, bounces, osl=native is None)
-    material = native_material(**native) if native else script_material(compiled)
+    scene.render.engine = "CYCLES"
+    cycles = scene.cycles
+    cycles.device = "CPU"
+    cycles.shading_system = native is None  # OSL
+    cycles.samples = samples
+    cycles.use_adaptive_sampling = False
+    cycles.light_sampling_threshold = 0.0
+    cycles.use_denoising = False
+    cycles.sample_clamp_indirect = 0.0
+    cycles.max_bounces = bounces
+    cycles.diffuse_bounces = cycles.glossy_bounces = bounces
+    cycles.transmission_bounces = cycles.volume_bounces = bounces
+    cycles.pixel_filter_type = "BLACKMAN_HARRIS"
+    cycles.filter_width = 0.01
+    material = new_material(
+        **(native or {"kind": "ShaderNodeScript", "inputs": {}}), shader=compiled
+    )
     if triangles:
-        add_triangles(scene, width, triangles, material)
+        scene.camera.data.ortho_scale = width
+        scene.camera.data.clip_end = 2.0 * scene.camera.location.z
+        points = np.load(triangles).reshape(-1, 3)
+        rows = np.arange(len(points)).reshape(-1, 3)
+        added = add_triangles(scene, points.tolist(), rows.tolist(), material)
+        # The triangles neither shadow nor light each other.
+        added.visible_diffuse = added.visible_glossy = added.visible_transmission = False
+        added.visible_shadow = False
+    elif body == "plane":
+        corners = [(-3.0, -1.0, 0.0), (3.0, -1.0, 0.0), (0.0, 5.0, 0.0)]
+        add_triangles(scene, corners, [(0, 1, 2)], material)
     else:
-        BODIES[body](scene, radius, material)
+        (add_mesh if body == "mesh" else add_sphere)(scene, radius, material)
     if lamp:
         add_lamp(scene, lamp)
     if light:
@@ -238,12 +223,10 @@ def draw(
     scene.eevee.taa_render_samples = samples
     scene.eevee.use_shadows = scene.eevee.use_raytracing = False
     scene.eevee.light_threshold = 0.0
-    polyhedron = bpy.data.meshes.new("polyhedron")
-    polyhedron.from_pydata(data["vertices"].tolist(), [], data["triangles"].tolist())
     kind = material.pop("kind")
     inputs = {k: (*v, 1.0) if isinstance(v, list) else v for k, v in material.items()}
-    polyhedron.materials.append(native_material(kind, inputs))
-    scene.collection.objects.link(bpy.data.objects.new("polyhedron", polyhedron))
+    mesh_data = data["vertices"].tolist(), data["triangles"].tolist()
+    add_triangles(scene, *mesh_data, new_material(kind, inputs))
     if light is not None:
         add_light(scene, light, shadow=False)
     add_environment(scene, environment or 0.0)

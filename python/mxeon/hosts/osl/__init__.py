@@ -9,22 +9,20 @@ This checks MaterialX's text independently of any renderer.
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.errors import NotRun
+from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import base
+from mxeon.hosts.cycles import process
 from mxeon.hosts.osl import carriers, points
-from mxeon.hosts.osl.engines import VARIABLES, Blender, Testshade
 from mxeon.hosts.osl.points import Column, row
-from mxeon.hosts.osl.trees import KeptTrees, TreeRows, keys_of, read_trees, whole_label, with_roots
+from mxeon.hosts.osl.trees import TreeRows, read_trees, whole_label
 from mxeon.shaders.generation import Shader
 
 LINE = re.compile(r"^mxeon (\d+) (\S+) (.*)$")  # row of a point, label, text of the label
@@ -38,27 +36,30 @@ vector mxeon_view()
 }}
 #define I mxeon_view()
 """
+TROUBLE = ("ERROR", "WARNING")  # first words of Blender's messages
 ROOT = "root"
-SHADERS = 8  # size of the cache of closures
+SHADERS, POINTS = 8, 1 << 14  # cached shaders, and points of each
+VIEWED = re.compile(r"\bI\b")  # matches texts that read the view
 PRINT = f'printf("mxeon %d {ROOT} %s\\n", MXEON_ROW, mxeon_text({{0}}));'
 
 
 class OslHost(base.Host):
-    """Blender's OSL, or the testshade that MXEON_TESTSHADE names."""
+    """Blender's OSL, at each pixel of a plane."""
 
     name = "osl"
     target = "osl"
     language = "osl"
 
     def __init__(self) -> None:
-        self._engine = Testshade() if os.environ.get(VARIABLES["testshade"]) else Blender()
-        self._kept = lru_cache(maxsize=SHADERS)(lambda text, names: KeptTrees())
+        self._blender = process.Blender(self.name)
+        self._labels = lru_cache(maxsize=SHADERS)(lambda text, names: dict[bytes, str]())
 
     def close(self) -> None:
-        self._engine.close()
+        self._blender.close()
 
     def identity(self) -> base.Identity:
-        return base.Identity(self.name, f"{self._version} in {self._engine.version}", "CPU")
+        osl = self._version  # starts Blender
+        return base.Identity(self.name, f"{osl} in Blender {self._blender.version}", "CPU")
 
     @cached_property
     def _version(self) -> str:
@@ -71,39 +72,37 @@ class OslHost(base.Host):
         `wo`, shape (N, 3), and `inputs` are as in `evaluate`. Points whose closures differ only in numbers share a tree.
         ShaderError for a closure that OSL does not document.
         """
-        columns, view = points.columns_of(shader, inputs), Column("vector", wo)
-        keys = keys_of(shader.stages["pixel"], columns, view, len(wo))
-        kept = self._kept(shader.stages["pixel"], tuple(columns))
-        rows = kept.missing(keys)
-        if len(rows):
+        text, columns = shader.stages["pixel"], points.columns_of(shader, inputs)
+        view = Column("vector", wo)
+        # Closures do not depend on the light, and mostly not on the view, so other checks request the same points.
+        read = [*columns.values(), *([view] if VIEWED.search(text) else [])]
+        values = [np.broadcast_to(each.rows, (len(wo), each.rows.shape[1])) for each in read]
+        keys = [row.tobytes() for row in np.concatenate(values, axis=1)]
+        known = self._labels(text, tuple(columns))
+        if len(known) > POINTS:
+            known.clear()
+        if missing := {key: row for row, key in enumerate(keys) if key not in known}:
+            rows = np.array([*missing.values()], np.intp)
             some = {name: each.some(rows) for name, each in columns.items()}
-            kept.add(
-                [keys[row] for row in rows], self._run(shader, some, view.some(rows), len(rows))
-            )
-        return kept.of(keys)
+            labels = self._run(shader, some, view.some(rows), len(rows))
+            known.update(zip(missing, labels, strict=True))
+        return read_trees([known[key] for key in keys])
 
     def _run(
         self, shader: Shader, columns: Mapping[str, Column], view: Column, count: int
-    ) -> tuple[TreeRows, ...]:
-        """A shader's closures for each value of its variables."""
-        with self._engine.folder() as name:
-            folder, place = Path(name), self._engine.place
+    ) -> list[str]:
+        """Labels of a shader's closures for each value of its variables."""
+        with self._blender.temporary() as name:
+            folder, place = Path(name), process.PLACE
             block = points.statements(columns, folder / points.IMAGE, count, place)
             [read] = points.statements({"view": view}, folder / "view.tif", count, place)
             shown = points.with_variables(shader, block, f"    {PRINT}\n    {{0}} = 0;\n".format)
             text = VIEW.format(read=read) + points.with_header(shown, shader)
-            rows = self._printed(folder, text, count)
-        found = read_trees([whole_label(each, ROOT) for each in rows])
-        if not self._engine.rooted:
-            return found
-        return tuple(replace(each, tree=with_roots(each.tree)) for each in found)
+            return [whole_label(each, ROOT) for each in self._printed(folder, text, count)]
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> base.Array:
-        with self._engine.folder() as name:
-            place, output = (
-                (Path(name, points.IMAGE), self._engine.place),
-                "output closure color out",
-            )
+        with self._blender.temporary() as name:
+            place, output = (Path(name, points.IMAGE), process.PLACE), "output closure color out"
             text, count = points.call_text(source, function, arguments, *place, output, PRINT)
             rows = self._printed(Path(name), text, count)
         return np.array([row[ROOT].split() for row in rows], np.float32)
@@ -111,9 +110,12 @@ class OslHost(base.Host):
     def _printed(self, folder: Path, text: str, count: int) -> list[dict[str, str]]:
         """Lines that a shader prints at each point, by label."""
         rows: list[dict[str, str]] = [{} for _ in range(count)]
-        engine = self._engine
-        head = f"{row(count, engine.place)}{carriers.prelude(text, engine.carrier)}"
-        lines = engine.printed(folder, f"{head}{text}", count)
+        text = f"{row(count, process.PLACE)}{carriers.prelude(text)}{text}"
+        frame = process.request(process.DARK, ()) | {"body": "plane", "size": points.side(count)}
+        lines = self._blender.render(folder, text, **frame)
+        for line in lines:
+            if line.startswith(TROUBLE) or "Assertion" in line:
+                raise ShaderError(f"osl: {line.partition(', called from')[0]}")
         for match in map(LINE.match, lines):
             if match and int(match[1]) < count:
                 rows[int(match[1])][match[2]] = match[3]

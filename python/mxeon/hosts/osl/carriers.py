@@ -2,7 +2,7 @@
 """OSL text before a generated shader that turns its closures into printable labels.
 
 OSL prints closures with six digits, and only closures that the renderer supports. Here every closure of MaterialX, and
-every operation on closures, is a function that returns one of the engine's closures, labeled with its text. Nine digits
+every operation on closures, is a function that returns a holdout, labeled with its text. Nine digits
 restore a float32 exactly. The shader itself is unchanged.
 
     layer<mul<0.5|sheen_bsdf<0 0 1|1 1 1|0.300000012>>|burley_diffuse_bsdf<0 0 1|1 1 1|0>>
@@ -70,17 +70,8 @@ CLOSURES = {
 }
 
 
-@dataclass(frozen=True)
-class Carrier:
-    """An engine's closure that carries a label."""
-
-    call: str  # OSL expression with the string `label`
-    before: str  # printed before the label
-
-
-HOLDOUT = Carrier('holdout("label", label)', '(1, 1, 1) * holdout ("label", "')
-DEBUG = Carrier("debug(label)", '(1, 1, 1) * debug ("')
-AFTER = '")'
+# What Blender's OSL prints before and after the label of the closure that carries it.
+BEFORE, AFTER = '(1, 1, 1) * holdout ("label", "', '")'
 # OSL truncates formatted closures after 1024 characters, and Blender truncates lines. So each closure is printed where
 # it is made, and its label is the hash of its text.
 LABELS = """\
@@ -88,7 +79,7 @@ closure color mxeon_label(string text)
 {{
     string label = format("@%d", hash(text));
     printf("mxeon %d %s %s\\n", MXEON_ROW, label, text);
-    return {call};
+    return holdout("label", label);
 }}
 string mxeon_text(int x) {{ return format("%d", x); }}
 string mxeon_text(float x) {{ return format("%.9g", x); }}
@@ -105,15 +96,10 @@ string mxeon_text(closure color x)
 """
 
 
-def prelude(text: str, carrier: Carrier) -> str:
+def prelude(text: str) -> str:
     """OSL that turns a text's CLOSURES, and OPERATIONS on them, into labels."""
-    start = len(carrier.before)
-    labels = LABELS.format(
-        call=carrier.call,
-        before=carrier.before.replace('"', '\\"'),
-        start=start,
-        rest=start + len(AFTER),
-    )
+    start = len(BEFORE)
+    labels = LABELS.format(before=BEFORE.replace('"', '\\"'), start=start, rest=start + len(AFTER))
     names = [name for name in CLOSURES if name in text]  # unused ones would cost compile time
     closure = "closure color"
     lines = [

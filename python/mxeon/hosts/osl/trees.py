@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.osl.carriers import CLOSURES, MIX, MULTIPLE, OPERATIONS
-from mxeon.hosts.osl.points import Column
 
 Array: TypeAlias = NDArray[np.float64]
 Argument: TypeAlias = "Array | str | ClosureTree | None"  # None is the closure without light
@@ -68,19 +67,6 @@ def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
         TreeRows(np.array(rows), _tree(shape, np.array([numbers[row] for row in rows], np.float32)))
         for shape, rows in shapes.items()
     )
-
-
-def with_roots(tree: ClosureTree | None) -> ClosureTree | None:
-    """A tree with the root of the roughness in Zeltner sheens, rounded to float32 like the closure's."""
-    if tree is None:
-        return None
-    arguments = dict(tree.arguments)
-    mode = arguments.get("mode")
-    if tree.name == "sheen_bsdf" and isinstance(mode, np.ndarray):
-        rough = np.asarray(arguments["roughness"], np.float64)
-        root = np.sqrt(rough).astype(np.float32).astype(np.float64)
-        arguments["roughness"] = np.where(mode == 0.0, rough, root)
-    return ClosureTree(tree.name, tuple(map(with_roots, tree.parts)), arguments)
 
 
 def _tree(shape: str, numbers: Array) -> ClosureTree | None:
@@ -149,81 +135,3 @@ def _closure(name: str, values: Iterable[Argument]) -> ClosureTree:
 
 def _unreadable(text: str) -> str:
     return f"osl: closure must be one of {', '.join(CLOSURES)}; got {text[:60]!r}"
-
-
-VIEWED = re.compile(r"\bI\b")  # matches texts that read the view
-MOST = 1 << 16  # cached points of a shader
-
-
-class KeptTrees:
-    """A cache of one shader's closures by the values of a point's variables.
-
-    Closures do not depend on the light, and mostly not on the view. So checks of other lights, or of the same points,
-    run nothing.
-    """
-
-    def __init__(self) -> None:
-        self._trees: dict[str, ClosureTree | None] = {}  # keys: shapes
-        self._counts: dict[str, int] = {}  # points by shape
-        self._places: dict[bytes, tuple[str, int]] = {}  # shape of a point's tree, and its row
-
-    def missing(self, keys: Sequence[bytes]) -> NDArray[np.intp]:
-        """Rows of distinct points that are not cached; empties a full cache."""
-        if len(self._places) > MOST:
-            for each in (self._trees, self._counts, self._places):
-                each.clear()
-        rows = {key: row for row, key in enumerate(keys) if key not in self._places}
-        return np.array([*rows.values()], np.intp)
-
-    def add(self, keys: Sequence[bytes], found: Sequence[TreeRows]) -> None:
-        for each in found:
-            shape = _shape(each.tree)
-            first = self._counts.get(shape, 0)
-            known = self._trees.get(shape)
-            self._trees[shape] = each.tree if known is None else _joined(known, each.tree)
-            self._counts[shape] = first + len(each.rows)
-            self._places |= {keys[row]: (shape, first + n) for n, row in enumerate(each.rows)}
-
-    def of(self, keys: Sequence[bytes]) -> tuple[TreeRows, ...]:
-        rows: dict[str, list[tuple[int, int]]] = {}
-        for row, key in enumerate(keys):
-            shape, place = self._places[key]
-            rows.setdefault(shape, []).append((row, place))
-        return tuple(
-            TreeRows(places[:, 0], _some(self._trees[shape], places[:, 1]))
-            for shape, found in rows.items()
-            for places in [np.array(found, np.intp)]
-        )
-
-
-def keys_of(text: str, columns: Mapping[str, Column], view: Column, count: int) -> list[bytes]:
-    """Keys of each point: the values of all variables, and of the view if the text reads it."""
-    read = [*columns.values(), *([view] if VIEWED.search(text) else [])]
-    values = [np.broadcast_to(each.rows, (count, each.rows.shape[1])) for each in read]
-    return [row.tobytes() for row in np.concatenate(values, axis=1)]
-
-
-def _shape(tree: ClosureTree | None) -> str:
-    """A tree without its numbers, as text; trees of one shape can be merged."""
-    if tree is None:
-        return ""
-    arguments = (f"{k}={v}" if isinstance(v, str) else k for k, v in tree.arguments.items())
-    return f"{tree.name}<{'|'.join(map(_shape, tree.parts))};{'|'.join(arguments)}>"
-
-
-def _some(tree: ClosureTree | None, rows: NDArray[np.intp]) -> ClosureTree | None:
-    if tree is None:
-        return None
-    arguments = {k: v if isinstance(v, str) else v[rows] for k, v in tree.arguments.items()}
-    return ClosureTree(tree.name, tuple(_some(part, rows) for part in tree.parts), arguments)
-
-
-def _joined(first: ClosureTree | None, second: ClosureTree | None) -> ClosureTree | None:
-    if first is None or second is None:
-        return None
-    arguments = {
-        k: v if isinstance(v, str) else np.concatenate([v, second.arguments[k]])
-        for k, v in first.arguments.items()
-    }
-    parts = map(_joined, first.parts, second.parts)
-    return ClosureTree(first.name, tuple(parts), arguments)
