@@ -43,16 +43,21 @@ def generator_of(
     """A generator with a document's types, shared by all documents without their own types."""
     if not any(each.isA(mx.TypeDef) for each in document.getChildren()):
         return _library_generator(target, library, profile, definitions)
-    generator = _new_generator(target, library, profile, definitions)
+    generator = new_generator(load_library(library, profile, definitions), target)
     generator.registerTypeDefs(document)
     return generator
 
 
-def _new_generator(
+@lru_cache(maxsize=LOADED)
+def _library_generator(
     target: str, library: str, profile: str | None, definitions: tuple[str, ...]
 ) -> mx_gen.ShaderGenerator:
+    return new_generator(load_library(library, profile, definitions), target)
+
+
+def new_generator(data: mx.Document, target: str) -> mx_gen.ShaderGenerator:
     """A generator with the types, color system and unit system of a data library."""
-    data, generator = load_library(library, profile, definitions), GENERATORS[target].create()
+    generator = GENERATORS[target].create()
     generator.registerTypeDefs(data)
     colors = mx_gen.DefaultColorManagementSystem.create(generator.getTarget())
     colors.loadLibrary(data)
@@ -66,9 +71,6 @@ def _new_generator(
     units.setUnitConverterRegistry(converters)
     generator.setUnitSystem(units)
     return generator
-
-
-_library_generator = lru_cache(maxsize=LOADED)(_new_generator)
 
 
 def context_of(

@@ -6,8 +6,6 @@ iterations. They are the three integers after `hwSpecularEnvironmentMethod` in t
 without Airy iterations). Changing that member through its binding reveals its offset. They are only written if
 they hold their defaults, and `mxeon.shaders.methods.assert_generated` compares the generated text with the chosen
 methods: with a different layout, the option is refused instead of returning a wrong shader.
-
-This module only imports MaterialX; the worker of the host `materialx` loads it by path.
 """
 
 import ctypes

@@ -18,14 +18,13 @@ from collections.abc import Callable
 from functools import lru_cache, partial
 from itertools import product
 from pathlib import Path
-from runpy import run_path
 from typing import Any, TypeAlias
 
 REMEDY = "on Debian: apt-get install libgl1 libsm6 libx11-6 xvfb"
 
-sys.path[:0] = filter(None, [os.environ.get("MXEON_MATERIALX")])
+PACKAGES = str(Path(__file__).parents[3])  # folder of this package
+sys.path[:0] = filter(None, [os.environ.get("MXEON_MATERIALX"), PACKAGES])
 import MaterialX as mx  # noqa: E402
-import MaterialX.PyMaterialXGenGlsl as mx_glsl  # noqa: E402
 import MaterialX.PyMaterialXGenShader as mx_gen  # noqa: E402
 import numpy as np  # noqa: E402
 from numpy.typing import NDArray  # noqa: E402
@@ -36,10 +35,13 @@ try:
 except ImportError as error:
     sys.exit(f"MaterialX's renderer does not load ({error}); {REMEDY}")
 
+from mxeon.shaders.generators import new_generator  # noqa: E402
+from mxeon.shaders.methods import TABLE_SIZE  # noqa: E402
+from mxeon.shaders.options import set_options  # noqa: E402
+
 Chosen: TypeAlias = tuple[tuple[str, str | int | bool], ...]
 FAR = 1e6  # distance of the camera; the shader computes the view from its position
 DIRECTIONS = 256  # directions over which microfacet shaders sum the environment
-TABLE_SIZE = 64  # same as in MaterialX's text
 PICTURES = 8  # cached renderers, each with the program of a document
 ANISOTROPY = ("GL_ARB_texture_filter_anisotropic", "GL_EXT_texture_filter_anisotropic")
 SCREEN = ("-screen", "0", "64x64x24", "-nolisten", "tcp")
@@ -50,8 +52,6 @@ OPENGL = {
     "win32": "opengl32",
 }
 SEARCH_PATH = mx.getDefaultDataSearchPath()
-# The module of the generator's options imports only MaterialX.
-set_options = run_path(str(Path(__file__).parents[2] / "shaders" / "options.py"))["set_options"]
 RAISED = (mx.Exception, mx_render.ExceptionRenderError, LookupError)
 
 
@@ -88,11 +88,12 @@ class ShownElement:
         self._lights = mx_render.LightHandler.create()
         self._lights.setLightSources([self._sun])
         self._lights.setEnvSampleCount(DIRECTIONS)
-        generator = viewer_generator(content, library)
+        generator = new_generator(library, "glsl")
+        generator.registerTypeDefs(content)
         context = mx_gen.GenContext(generator)
         context.registerSourceCodeSearchPath(SEARCH_PATH)
         context.getOptions().targetDistanceUnit = "meter"
-        set_options(context.getOptions(), **dict(methods))
+        set_options(context.getOptions(), **dict(methods))  # type: ignore[arg-type]
         if ("albedo", "table") in methods:
             self._lights.setAlbedoTable(albedo_table(generator, content))
         context.getOptions().fileTextureVerticalFlip = True
@@ -150,24 +151,6 @@ def albedo_table(generator: mx_gen.ShaderGenerator, content: mx.Document) -> mx_
     renderer.createProgram(generator.generate("table", output, context))
     renderer.renderTextureSpace(mx.Vector2(0.0, 0.0), mx.Vector2(1.0, 1.0))
     return renderer.captureImage(None)
-
-
-def viewer_generator(document: mx.Document, library: mx.Document) -> mx_gen.ShaderGenerator:
-    """MaterialX's generator with the colors and units of MaterialXView."""
-    generator = mx_glsl.GlslShaderGenerator.create()
-    target = generator.getTarget()
-    colors = mx_gen.DefaultColorManagementSystem.create(target)
-    colors.loadLibrary(library)
-    generator.setColorManagementSystem(colors)
-    units, converters = mx_gen.UnitSystem.create(target), mx.UnitConverterRegistry.create()
-    for name in ("distance", "angle"):
-        definition = library.getUnitTypeDef(name)
-        converters.addUnitConverter(definition, mx.LinearUnitConverter.create(definition))
-    units.loadLibrary(library)
-    units.setUnitConverterRegistry(converters)
-    generator.setUnitSystem(units)
-    generator.registerTypeDefs(document)
-    return generator
 
 
 @lru_cache(maxsize=1)
