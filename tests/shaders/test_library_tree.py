@@ -49,8 +49,6 @@ def test_an_unchanged_copy_of_materialx_has_the_verdicts_of_stock(gl, tmp_path):
 @pytest.mark.parametrize("name", PARTS)
 def test_a_part_is_completed_by_the_installed_libraries(gl, tmp_path, name):
     copy = copy_of_stock(tmp_path, *PARTS[name])
-    # Only the part: its folder is recognized by its files' names.
-    copy = copy / {"pbrlib": "pbrlib"}.get(name, GLSL)
     stock, part = findings(["stock", str(copy)], ["burley_diffuse_bsdf"])
     assert part == stock
     files = tree(str(copy))

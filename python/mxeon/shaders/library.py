@@ -223,7 +223,7 @@ def _first(library: str, profile: str | None) -> list[Path]:
         return profile_documents(library, profile)
     if library in LIBRARIES or tree(library).kind != library_tree.PART:
         return []
-    home = Path(root(library), "libraries", tree(library).place)
+    home = Path(root(library), "libraries")
     return [home / each for each in tree(library).own if each.endswith(library_tree.DOCUMENT)]
 
 

@@ -6,8 +6,7 @@ A folder is one of three kinds.
 whole
     It has targets/, stdlib/ and pbrlib/, and replaces MaterialX's own libraries.
 part
-    It has files at the same relative paths as MaterialX's libraries, or as one folder in them: pbrlib/,
-    or a node's source with its lib/. They replace those files.
+    It has files at the same relative paths as MaterialX's libraries. They replace those files.
 overlay
     It has its own names, as eonlib does, and is loaded before MaterialX's libraries.
 
@@ -20,7 +19,6 @@ line: MaterialX would wait, fill the memory, or give text that no one can decode
 """
 
 import os
-from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -48,8 +46,6 @@ class Tree:
 
     folder: str  # absolute path
     kind: str  # WHOLE, PART or OVERLAY
-    # folder of MaterialX's libraries that a part replaces, such as "pbrlib/genglsl"; "" for all
-    place: str
     own: tuple[str, ...]  # documents and sources of the folder, relative to it
     package: tuple[str, ...]  # files of the installed libraries that complete it, as relative paths
     # the file behind each path below `libraries`; empty for an overlay
@@ -70,52 +66,29 @@ def _tree(folder: str) -> Tree:
             f"library {folder}: must be the folder with {', '.join(NEEDED)}; pass {folder}/libraries"
         )
     installed = {path: file for root in standard_folders() for path, file in files_in(str(root))}
-    # Libraries that a whole lacks entirely, such as lights/, come from the package.
     if all(os.path.isdir(os.path.join(folder, each)) for each in NEEDED):
+        # Libraries that a whole lacks entirely, such as lights/, come from the package.
         tops = {each.partition("/")[0] for each in own}
-        missing = {
-            path: file
-            for path, file in installed.items()
-            if path.endswith(FILES) and path.partition("/")[0] not in tops
+        kind = WHOLE
+        rest = {
+            path: file for path, file in installed.items() if path.partition("/")[0] not in tops
         }
-        return Tree(folder, WHOLE, "", named, tuple(missing), missing | own)
-    place = _place(folder, named, installed)
-    # Reject sources that look like a replacement but are not used as one, unless a search path below `libraries` finds them.
-    known = {PurePosixPath(each).name: each for each in installed if each.endswith(CODE)}
-    for each in named:
-        other = known.get(PurePosixPath(each).name)
-        if not other or each.endswith(f"/libraries/{other}"):
-            continue
-        if place is None or place + each not in installed:
-            raise InputError(
-                f"library {folder}: {each} must lie at {other}, as MaterialX's file of that name, to "
-                "replace it; or rename it"
-            )
-    if place is None:
-        return Tree(folder, OVERLAY, "", named, (), {})
-    placed = {place + path: file for path, file in own.items()}
-    package = tuple(each for each in installed if each.endswith(FILES) and each not in placed)
-    return Tree(folder, PART, place.rstrip("/"), named, package, installed | placed)
-
-
-def _place(folder: str, own: tuple[str, ...], installed: Mapping[str, str]) -> str | None:
-    """Folder of the installed libraries, with "/" at its end, where most files have a namesake."""
-    paths = defaultdict(list)
-    for path in installed:
-        paths[PurePosixPath(path).name].append(path)
-    places = Counter(
-        path.removesuffix(each)
-        for each in own
-        for path in paths[PurePosixPath(each).name]
-        if path == each or path.endswith(f"/{each}")
-    )
-    best = [each for each, count in places.items() if count == max(places.values())]
-    if len(best) > 1:
-        raise InputError(
-            f"library {folder}: its files match several parts of MaterialX's libraries: "
-            f"{' or '.join(sorted(best))}: arrange them in folders as MaterialX does"
-        )
-    return best[0] if best else None
+    else:
+        # Reject sources that look like a replacement but are not used as one, unless a search path below `libraries`
+        # finds them.
+        known = {PurePosixPath(each).name: each for each in installed if each.endswith(CODE)}
+        for each in named:
+            other = known.get(PurePosixPath(each).name)
+            if other and each not in installed and not each.endswith(f"/libraries/{other}"):
+                raise InputError(
+                    f"library {folder}: {each} must lie at {other}, as MaterialX's file of that name, to "
+                    "replace it; or rename it"
+                )
+        if installed.keys().isdisjoint(named):
+            return Tree(folder, OVERLAY, named, (), {})
+        kind, rest = PART, installed
+    package = tuple(each for each in rest if each.endswith(FILES) and each not in own)
+    return Tree(folder, kind, named, package, rest | own)
 
 
 def files_in(folder: str) -> Iterator[tuple[str, str]]:
