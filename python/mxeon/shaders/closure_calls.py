@@ -16,6 +16,7 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.errors import InterfaceError, ShaderError
+from mxeon.shaders.document.values import split
 from mxeon.shaders.generators import GENERATORS
 from mxeon.shaders.library import load_library
 from mxeon.shaders.library_tree import root, standard_folders
@@ -37,7 +38,7 @@ def check_closure_calls(
         for function, nodes in known.get(file, {}).items():
             signatures = _signatures(file, function)
             calls = re.finditer(rf"(?<!void )\b{function}\(", text) if signatures else ()
-            if {len(_arguments(text, call.end())) for call in calls} <= {*map(len, signatures)}:
+            if {len(split(text[call.end() :], ",")) for call in calls} <= {*map(len, signatures)}:
                 continue
             if len(nodes) > 1:
                 raise ShaderError(
@@ -87,16 +88,6 @@ def _signatures(file: str, function: str) -> list[list[str]]:
     """Parameters of each overload of a function that a source defines."""
     text = COMMENT.sub("", Path(file).read_text(encoding="utf-8"))
     definitions = re.finditer(rf"\bvoid\s+{function}\s*\(", text)
-    return [_arguments(text, definition.end()) for definition in definitions]
-
-
-def _arguments(text: str, start: int) -> list[str]:
-    """Arguments of a call, or parameters of a definition, whose parenthesis opens before `start`."""
-    depth, commas, end = 1, [start - 1], start
-    while depth:
-        depth += (text[end] in "({") - (text[end] in ")}")  # MSL writes structures in braces
-        if text[end] == "," and depth == 1:
-            commas.append(end)
-        end += 1
-    ends = [*commas[1:], end - 1]
-    return [" ".join(text[a + 1 : b].split()) for a, b in zip(commas, ends, strict=True)]
+    return [
+        [" ".join(part.split()) for part in split(text[each.end() :], ",")] for each in definitions
+    ]

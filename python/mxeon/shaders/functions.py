@@ -2,7 +2,7 @@
 """Shader functions as text, in GLSL and in OSL, and their signatures."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 
@@ -45,14 +45,19 @@ def twins(language: str, library: str) -> str:
 def parts(text: str) -> Parts:
     """Functions and constants of a text, in GLSL's words."""
     found = dict(re.findall(r"^#define (\w+) (.+)$", text, re.MULTILINE))
-    matches = list(SIGNATURE.finditer(text))
-    ends = [match.start() for match in matches[1:]] + [len(text)]
-    for match, end in zip(matches, ends, strict=True):
-        found[match[1]] = re.sub(r"^#.*\n?", "", text[match.start() : end], flags=re.MULTILINE)
+    for match, body in _definitions(text):
+        found[match[1]] = match[0] + re.sub(r"^#.*\n?", "", body, flags=re.MULTILINE)
     return {
         name: [GLSL_WORDS.get(word, word) for word in re.findall(r"[\w.]+|\S", part)]
         for name, part in found.items()
     }
+
+
+def _definitions(text: str) -> Iterator[tuple[re.Match[str], str]]:
+    """The head of each function of a text, and what follows up to the next head."""
+    matches = list(SIGNATURE.finditer(text))
+    ends = [match.start() for match in matches[1:]] + [len(text)]
+    return ((each, text[each.end() : end]) for each, end in zip(matches, ends, strict=True))
 
 
 def expanded(path: Path) -> str:
@@ -94,11 +99,9 @@ def signatures(text: str) -> Mapping[str, tuple[tuple[str, str], ...]]:
 
 def uses(text: str) -> Mapping[str, frozenset[str]]:
     """Functions that each function of a text calls, directly or through others."""
-    matches = list(SIGNATURE.finditer(text))
-    ends = [match.start() for match in matches[1:]] + [len(text)]
     known: dict[str, frozenset[str]] = {}
-    for match, end in zip(matches, ends, strict=True):
-        words = set(re.findall(r"\w+", text[match.end() : end])) & known.keys()
+    for match, body in _definitions(text):
+        words = set(re.findall(r"\w+", body)) & known.keys()
         known[match[1]] = frozenset(words).union(*(known[word] for word in words))
     return known
 

@@ -16,6 +16,7 @@ from typing import NamedTuple, TypeAlias
 import MaterialX as mx
 
 from mxeon.shaders.closure_calls import COMMENT
+from mxeon.shaders.document.values import split
 from mxeon.shaders.library_tree import included
 
 Definition: TypeAlias = tuple[
@@ -181,14 +182,7 @@ def arguments(code: str) -> tuple[str, dict[str, str]]:
     ('m::f', {'mxp_a': '{{a}}', '1': '2.0'})
     """
     callee, _, rest = code.partition("(")
-    parts, depth = [""], 0
-    for sign in rest.rpartition(")")[0]:
-        depth += (sign in "([{") - (sign in ")]}")
-        if sign == "," and depth == 0:
-            parts.append("")
-        else:
-            parts[-1] += sign
-    matches = (ARGUMENT.fullmatch(part) for part in parts)
+    matches = map(ARGUMENT.fullmatch, split(rest, ","))
     return callee.strip(), {
         match[1] or str(number): "".join(match[2].split())
         for number, match in enumerate(matches)

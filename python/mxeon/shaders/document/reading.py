@@ -8,15 +8,16 @@ generation: their text before MaterialX reads it (`xml`), their elements afterwa
 
 import math
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TypeGuard
+from xml.parsers import expat
 
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-from mxeon.errors import DocumentError
+from mxeon.errors import STEERING, DocumentError
 from mxeon.io.files import AnyPath
 from mxeon.names import meant
 from mxeon.shaders.document import graphs, references, words, xml
@@ -28,6 +29,7 @@ from mxeon.shaders.library import load_library
 __all__ = ["Document", "DocumentError", "DocumentWarning", "read_document"]
 
 RAISED = (mx.Exception, LookupError)  # raised by MaterialX
+LONGEST_NAME = 128  # characters; file names contain three names and may have 255
 ALIKE = 0.85  # least similarity for suggestions; names of nodes have similar endings
 
 
@@ -60,7 +62,11 @@ def read_document(
     if isinstance(source, mx.Document):
         content.copyContentFrom(source)
         content.setSourceUri(source.getSourceUri())
-    elif _is_text(source):
+    elif (
+        isinstance(source, str)
+        and source.lstrip("\ufeff \t\r\n").startswith("<")
+        and not os.path.isfile(source)  # a path may also begin with `<`
+    ):
         _Reader(policy, Path.cwd()).read_text(content, source)
     elif os.path.isfile(source):  # a pipe or a device may have no end
         path = Path(source).resolve()
@@ -106,12 +112,6 @@ def read_document(
     return Document(content, renderables, nodes, missing)
 
 
-def _is_text(source: AnyPath) -> TypeGuard[str]:
-    """Whether a source is XML text instead of the path of a file, which may also begin with `<`."""
-    starts = isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<")
-    return starts and not os.path.isfile(source)
-
-
 def _resolve_files(
     document: mx.Document, elements: Iterable[mx.Element], folders: list[Path]
 ) -> None:
@@ -128,17 +128,26 @@ def _resolve_files(
 
 
 class _Reader:
-    """Reads a document and its includes, and checks their text before MaterialX reads it."""
+    """Reads a document and its includes, and checks their text before MaterialX reads it.
+
+    MaterialX keeps what it reads in memory and follows every include at once, so size, depth and number
+    are counted here, by a parser that keeps nothing, for a document and everything that it includes.
+    """
 
     def __init__(self, policy: Policy, home: Path) -> None:
         self._policy, self._home = policy, home
-        self._checker = xml.XmlChecker(policy)
+        self._size = self._elements = self._attributes = 0
         self._open: list[str] = []  # stack of the files being read
 
     def read_file(self, document: mx.Document, name: str) -> None:
         """Read a file into a document."""
-        data = self._checker.read(name)
-        self._checker.check_size(data, name)
+        try:
+            with Path(name).open("rb") as stream:  # at most one byte more than the limit
+                size = min(self._policy.size - self._size, os.fstat(stream.fileno()).st_size)
+                data = stream.read(size + 1)
+        except OSError as error:
+            raise DocumentError(f"{name}: must be readable; {error.strerror}") from None
+        self._count(data, name)
         self._open.append(os.path.realpath(name))
         self._parse(document, xml.decode(data, name), name)
         self._open.pop()
@@ -147,12 +156,17 @@ class _Reader:
     def read_text(self, document: mx.Document, text: str) -> None:
         """Read XML text into a document."""
         data = text.encode(errors="replace")  # lone surrogates
-        self._checker.check_size(data, TEXT)
+        self._count(data, TEXT)
         self._parse(document, data.decode().removeprefix("\ufeff"), TEXT)
+
+    def _count(self, data: bytes, title: str) -> None:
+        self._size += len(data)
+        rule, unit = f"{title}: must have", "bytes, with all that it includes"
+        self._policy.check_limit("size", self._size, rule, unit)
 
     def _parse(self, document: mx.Document, text: str, title: str) -> None:
         text = xml.strict(text)
-        warn(DocumentWarning, self._checker.check(text, title))
+        warn(DocumentWarning, self._ignored(text, title))
 
         def include(part: mx.Document, name: mx.FilePath, *_: object) -> None:
             self._include(part, name.asString(), title)
@@ -165,6 +179,51 @@ class _Reader:
             reason = str(error).strip().splitlines()[0]
             raise DocumentError(f"{title}: must be a MaterialX document; {reason}") from None
         _check_version(document, title)
+
+    def _ignored(self, text: str, title: str) -> list[str]:
+        """Check the elements of a text; the faults of those that MaterialX ignores."""
+        names: list[set[str]] = [set()]  # names of siblings at each level
+        ignored: list[str] = []
+        limit = partial(self._policy.check_limit, rule=f"{title}: must have")
+
+        def start(category: str, attributes: Mapping[str, str]) -> None:
+            self._elements += 1
+            self._attributes += len(attributes)
+            limit("depth", len(names), unit="elements within each other")
+            limit("elements", self._elements, unit="elements, with all that it includes")
+            limit("attributes", self._attributes, unit="attributes, with all that it includes")
+            for key, value in attributes.items():
+                if len(value) > self._policy.length:
+                    limit("length", len(value), unit=f"characters in {key!r} of {category!r}")
+                if STEERING.search(value):
+                    rule = f"must have no control characters in {key!r}"
+                    raise DocumentError(f"{title}: {category} {rule}; got {value!r}")
+            if len(name := attributes.get("name", "")) > LONGEST_NAME:
+                rule = f"must have a name of at most {LONGEST_NAME} characters"
+                raise DocumentError(f"{title}: {category} {rule}; got {name}")
+            if name in names[-1]:
+                rule = "must have another name than its siblings; MaterialX ignores it"
+                ignored.append(f"{title}: {category} {name!r} {rule}")
+            names[-1] |= {name} - {""}
+            names.append(set())
+
+        def refuse_type(name: str, *_: object) -> None:
+            rule = "must have no document type, which may define entities"
+            raise DocumentError(f"{title}: {rule}; got DOCTYPE {name}")
+
+        parser = expat.ParserCreate()
+        parser.StartDoctypeDeclHandler = refuse_type
+        parser.StartElementHandler = start
+        parser.EndElementHandler = lambda _: names.pop()
+        try:
+            parser.Parse(text, True)
+        except expat.ExpatError as error:
+            usd = title.lower().endswith((".usd", ".usda", ".usdc", ".usdz"))
+            remedy = "; a renderer that reads USD is checked by its images: mxeon kit export" * usd
+            raise DocumentError(
+                f"{title}: must be a MaterialX document; XML parse error: {error}{remedy}"
+            ) from None
+        return ignored
 
     def _include(self, document: mx.Document, name: str, title: str) -> None:
         """Read a file that the document `title` includes, by its real path."""
@@ -208,8 +267,14 @@ def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Polic
     """Wrong values and violations of MaterialX's rules, which MaterialX would silently replace by defaults."""
     told = set()
     for each in elements:
-        written = each.isA(mx.ValueElement) and each.getValueString()
-        if written and (fault := _value_fault(each, policy)):
+        text, fault = each.getValueString() if each.isA(mx.ValueElement) else "", ""
+        if text and (kind := each.getType()) in NUMERIC:
+            read = numbers(each)
+            if not read or not all(map(math.isfinite, read)):
+                fault = f"{location(each)} must be a valid {kind} of finite numbers; got {text}"
+        elif text and kind == "filename":
+            fault = references.file_fault(each, policy)
+        if fault:
             told.add(each.asString())
             yield fault
     # MaterialX reports only one wrong input of a node, without a suggestion.
@@ -237,15 +302,6 @@ def _check_version(document: mx.Document, title: str) -> None:
             f"{title}: version must be one that MaterialX upgrades to {current[0]}.{current[1]}; "
             f"got {document.getVersionString()!r}"
         )
-
-
-def _value_fault(element: mx.ValueElement, policy: Policy) -> str:
-    kind, text = element.getType(), element.getValueString()
-    if kind in NUMERIC:
-        read = numbers(element)
-        if not read or not all(map(math.isfinite, read)):
-            return f"{location(element)} must be a valid {kind} of finite numbers; got {text}"
-    return references.file_fault(element, policy) if kind == "filename" else ""
 
 
 def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:

@@ -43,6 +43,9 @@ def check_sources(
     expressions = max((len(each.getAttribute("sourcecode")) for each in code), default=0)
     known: set[tuple[str, str]] = set()  # names and including folders
     read: set[str] = set()
+    target = context.getShaderGenerator().getTarget()
+    code = [each for each in code if each.hasFile() and target != UNREAD]
+    targets = document.getTargetDef(target).getMatchingTargets() if code else ()
     # Name, including folder, prefix of messages, and depth of includes, None for expressions.
     waiting = [
         (
@@ -51,7 +54,8 @@ def check_sources(
             location(each),
             0 if each.hasFunction() else None,
         )
-        for each in reversed(_used(document, context, code))
+        for each in reversed(code)
+        if any(mx.targetStringsMatch(each.getTarget(), other) for other in targets)
     ]
     while waiting:
         name, local, prefix, depth = waiting.pop()
@@ -87,17 +91,3 @@ def check_sources(
         ]
     total = functions * shaders + expressions * nodes
     policy.check_limit("text", total, rule, "characters of its own code in all its shaders")
-
-
-def _used(
-    document: mx.Document, context: mx_gen.GenContext, code: list[mx.Implementation]
-) -> list[mx.Implementation]:
-    """Implementations whose file the generator of a context may open."""
-    target = context.getShaderGenerator().getTarget()
-    files = [each for each in code if each.hasFile() and target != UNREAD]
-    targets = document.getTargetDef(target).getMatchingTargets() if files else ()
-    return [
-        each
-        for each in files
-        if any(mx.targetStringsMatch(each.getTarget(), other) for other in targets)
-    ]

@@ -79,7 +79,7 @@ def is_exact(text: str, kind: str) -> bool:
 
 
 def _members(text: str, kind: str, document: mx.Document) -> tuple[Plain, ...]:
-    parts = _parts(text)
+    parts = split(text[1:-1], ";")
     return tuple(
         _members(part, kind, document)
         if members(kind, document)
@@ -88,12 +88,18 @@ def _members(text: str, kind: str, document: mx.Document) -> tuple[Plain, ...]:
     )
 
 
-def _parts(text: str) -> list[str]:
-    """Texts between the outer semicolons of `{a;b;{c;d}}`: a, b and {c;d}."""
+def split(text: str, separator: str) -> list[str]:
+    """Texts between the separators that are in no bracket, up to a bracket that closes without an opening.
+
+    >>> split("a;b;{c;d}} e", ";")
+    ['a', 'b', '{c;d}']
+    """
     parts, depth = [""], 0
-    for sign in text[1:-1]:
-        depth += (sign == "{") - (sign == "}")
-        if sign == ";" and depth == 0:
+    for sign in text:
+        depth += (sign in "([{") - (sign in ")]}")
+        if depth < 0:
+            break
+        if sign == separator and depth == 0:
             parts.append("")
         else:
             parts[-1] += sign

@@ -61,25 +61,19 @@ def word_faults(document: mx.Document, elements: Iterable[mx.Element]) -> Iterat
 
 
 def _broken(element: mx.Element, name: str, text: str, choices: Choices) -> str:
-    """Rule broken by an attribute, or ""."""
+    """Rule broken by an attribute, or ""; numbers and file names have their own rules."""
     if name == "value" and element.hasAttribute("type"):
-        return _broken_value(element, text, choices)
-    if (name in NAMES or name == "name") and not NAME.fullmatch(text):
+        kind = element.getAttribute("type")
+        if kind in NUMBERS or kind == "filename" or WORD.fullmatch(text):
+            return ""
+        if kind == "string" and element.getName() in choices():
+            return "one word of letters, digits and _"
+        if not (STRING if kind in STRINGS else MEMBERS).fullmatch(text) or COMMENT in text:
+            return "words of letters, digits and .,:/+- without //"
+    elif (name in NAMES or name == "name") and not NAME.fullmatch(text):
         return "a name of letters, digits, _ and :"
-    if name in TEXTS and ENDS_A_STRING.search(text):
+    elif name in TEXTS and ENDS_A_STRING.search(text):
         return "without quotes, backslashes and control characters"
-    return ""
-
-
-def _broken_value(element: mx.Element, text: str, choices: Choices) -> str:
-    """Rule broken by a value, or ""; numbers and file names have their own rules."""
-    kind = element.getAttribute("type")
-    if kind in NUMBERS or kind == "filename" or WORD.fullmatch(text):
-        return ""
-    if kind == "string" and element.getName() in choices():
-        return "one word of letters, digits and _"
-    if not (STRING if kind in STRINGS else MEMBERS).fullmatch(text) or COMMENT in text:
-        return "words of letters, digits and .,:/+- without //"
     return ""
 
 
