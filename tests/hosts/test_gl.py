@@ -9,12 +9,12 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
+from mxeon.hosts.points import visible
 from mxeon.hosts.textures import irradiance, read_latlong
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import EON
 from mxeon.shaders.scene import FRONT, SCENES, Scene, sphere
-from mxeon.shaders.shader_ball import shader_ball
 from tests.support.documents import connected, lobe, material
 from tests.support.documents import image as image_node
 from tests.support.tolerances import PICTURE
@@ -49,7 +49,7 @@ def test_every_pixel_is_the_models(gl, reference, name, scene):
 
 def test_the_shader_ball_is_drawn_at_its_points(gl):
     image = picture(gl, lobe(EON, color=ROUGH["color"]), replace(FRONT, shape="ball"))
-    points = shader_ball(SIZE)
+    points = visible(SIZE, "ball")
     cosine = np.where(points.mask, points.normal[..., 2], 0.0)[..., None]
     assert np.abs(image - cosine * [0.8, 0.4, 0.1]).max() <= PICTURE
 

@@ -4,21 +4,12 @@
 import numpy as np
 import pytest
 
-from mxeon.shaders.scene import sphere
-from mxeon.shaders.shader_ball import (
-    CENTER,
-    CLOSE,
-    OBJECT,
-    RADIUS,
-    STEP,
-    distance,
-    shader_ball,
-    shader_ball_at,
-)
+from mxeon.shaders.scene import pixel_centers, sphere
+from mxeon.shaders.shader_ball import CENTER, CLOSE, OBJECT, RADIUS, STEP, distance, shader_ball_at
 
 
 def test_points_of_the_shader_ball_lie_on_it_with_their_normals():
-    points = shader_ball(64)
+    points = shader_ball_at(*pixel_centers(64))
     seen = points.position[points.mask]
     assert np.abs(distance(seen)).max() <= CLOSE
     # Points outside the picture's frame do not exist: nothing covers visible points.

@@ -62,14 +62,6 @@ def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArr
     }
 
 
-def quad_file(folder: Path, size: int, place: tuple[float, float] = (0.0, 0.0)) -> Path:
-    """File of the quads of a picture, written on the first request; parameters as for `quads`."""
-    path = folder / f"quads{size}{place}.npz"
-    if not path.exists():
-        np.savez(path, **quads(size, place))  # type: ignore[arg-type]  # NumPy takes it for an option
-    return path
-
-
 # Pixels along a quad if blocks of 2 x 2 must lie in one of its two triangles, and the place of the pixel that is read:
 # right of the diagonal and below the middle.
 PIXEL_BLOCK, PLACE = 4, (0.25, -0.25)
@@ -161,10 +153,13 @@ class DocumentHost(base.Host):
         folder = self.worker.folder
         document = folder / f"{sha256(text.encode()).hexdigest()}.mtlx"
         document.write_text(text, encoding="utf-8")
-        output = folder / "output.npy"
+        output, place = folder / "output.npy", PLACE if blocks else (0.0, 0.0)
+        mesh = folder / f"quads{scene.size}{place}.npz"
+        if not mesh.exists():
+            np.savez(mesh, **quads(scene.size, place))  # type: ignore[arg-type]  # NumPy takes it for an option
         reply = self.worker.ask(
             output=str(output),
-            mesh=str(quad_file(folder, scene.size, PLACE if blocks else (0.0, 0.0))),
+            mesh=str(mesh),
             document=str(document),
             element=element,
             size=scene.size * (PIXEL_BLOCK if blocks else 1),

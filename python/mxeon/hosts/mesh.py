@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from mxeon.errors import InputError, NotRun, install
 from mxeon.io.images import Floats
-from mxeon.shaders.scene import VisiblePoints, pixel_centers
+from mxeon.shaders.scene import VisiblePoints
 from mxeon.shaders.shader_ball import GROUND, NEAR, OBJECT
 
 SIZE = 1.9  # diagonal of the box around a mesh; the frame is 2 wide
@@ -51,12 +51,6 @@ def mesh(file: str) -> Any:
         visual=loaded.visual,
         process=False,
     )
-
-
-@lru_cache(maxsize=2)
-def mesh_points(file: str, size: int, margin: int = 0) -> VisiblePoints:
-    """Points of a mesh under the pixel centers of a `size` x `size` picture."""
-    return mesh_points_at(file, *pixel_centers(size, margin))
 
 
 def mesh_points_at(file: str, x: Floats, y: Floats) -> VisiblePoints:

@@ -15,16 +15,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.hosts.fragment import renamed
-from mxeon.hosts.mesh import mesh_points, mesh_points_at
+from mxeon.hosts.mesh import mesh_points_at
 from mxeon.io.images import Floats
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.scene import SHAPES, VisiblePoints, sphere, sphere_at, tangents
-from mxeon.shaders.shader_ball import shader_ball, shader_ball_at
+from mxeon.shaders.scene import SHAPES, VisiblePoints, pixel_centers, sphere_at, tangents
+from mxeon.shaders.shader_ball import shader_ball_at
 
 MARGIN = 1  # points beyond each edge, for derivatives at the edges
 SAMPLER = "mxeon_points"
@@ -75,11 +76,10 @@ def pixel_stage(shader: Shader) -> str:
     )
 
 
+@lru_cache(maxsize=4)
 def visible(size: int, shape: str, margin: int = 0) -> VisiblePoints:
-    """Visible points of a shape of `mxeon.shaders.scene.Scene`."""
-    if shape in SHAPES:
-        return shader_ball(size, margin) if shape == "ball" else sphere(size, margin)
-    return mesh_points(shape, size, margin)
+    """Visible points of a shape of `mxeon.shaders.scene.Scene` under the pixel centers."""
+    return visible_at(*pixel_centers(size, margin), shape)
 
 
 def visible_at(x: Floats, y: Floats, shape: str) -> VisiblePoints:

@@ -194,7 +194,12 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
     try:
         if definitions:  # an empty list makes MaterialX load everything
             mx.loadLibraries(list(definitions), path, document, readOptions=options)
-        for file in _first(library, profile):  # MaterialX does not sort files within a folder
+        # Load a profile first, or the documents of a part: MaterialX does not sort files within a folder.
+        first = profile_documents(library, profile) if profile else []
+        if not first and library not in LIBRARIES and tree(library).kind == library_tree.PART:
+            home, own = Path(root(library), "libraries"), tree(library).own
+            first = [home / each for each in own if each.endswith(library_tree.DOCUMENT)]
+        for file in first:
             mx.loadLibrary(mx.FilePath(str(file)), document, path, options)
         folders = [*own_folders(library), *mx.getDefaultDataLibraryFolders()]
         mx.loadLibraries(folders, path, document, readOptions=options)
@@ -215,16 +220,6 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
     if library in ("eonlib", "diffuse"):
         assert_ours(document, library, profile)
     return document
-
-
-def _first(library: str, profile: str | None) -> list[Path]:
-    """Documents to load first: a profile's, or those of a part in its tree."""
-    if profile and has_profile(library, profile):
-        return profile_documents(library, profile)
-    if library in LIBRARIES or tree(library).kind != library_tree.PART:
-        return []
-    home = Path(root(library), "libraries")
-    return [home / each for each in tree(library).own if each.endswith(library_tree.DOCUMENT)]
 
 
 def _documents(folder: AnyPath, rule: str) -> list[Path]:

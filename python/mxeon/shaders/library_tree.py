@@ -258,17 +258,13 @@ def check_definitions(
         check_sources(document, folder, search)
         for each in document.getChildren():
             file = each.getActiveSourceUri()
-            if Path(folder) in Path(file).parents and _replaces(each, base):
+            if Path(folder) not in Path(file).parents:
+                continue
+            implements = each.isA(mx.Implementation) or each.isA(mx.NodeGraph)
+            definition = base.getNodeDef(each.getNodeDefString()) if implements else None
+            same = definition and definition.getImplementation(each.getTarget())
+            if same or base.getChild(each.getName()):
                 raise InputError(
                     f"{file}: {each.getName()} must not redefine a name of the library: "
                     "rename it, or load the folder with --library"
                 )
-
-
-def _replaces(element: mx.Element, base: mx.Document) -> bool:
-    """Whether a library has an element with this name, or an implementation for this node and target."""
-    if base.getChild(element.getName()):
-        return True
-    implements = element.isA(mx.Implementation) or element.isA(mx.NodeGraph)
-    definition = base.getNodeDef(element.getNodeDefString()) if implements else None
-    return bool(definition and definition.getImplementation(element.getTarget()))

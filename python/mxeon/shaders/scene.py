@@ -163,9 +163,9 @@ def pixel_centers(size: int, margin: int = 0) -> tuple[Floats, Floats]:
 
 
 @lru_cache(maxsize=8)
-def sphere(size: int, margin: int = 0) -> VisiblePoints:
+def sphere(size: int) -> VisiblePoints:
     """Points of the unit sphere under the pixel centers of a `size` x `size` picture."""
-    return sphere_at(*pixel_centers(size, margin))
+    return sphere_at(*pixel_centers(size))
 
 
 def sphere_at(x: Floats, y: Floats) -> VisiblePoints:

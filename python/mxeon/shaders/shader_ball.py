@@ -5,13 +5,11 @@ The shape is a signed distance field. Each ray of the picture finds its surface 
 the gradient is the normal. Nothing casts a shadow, because shaders see one point at a time.
 """
 
-from functools import lru_cache
-
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.io.images import Floats
-from mxeon.shaders.scene import VisiblePoints, pixel_centers
+from mxeon.shaders.scene import VisiblePoints
 
 CENTER, RADIUS = np.array([0.0, 0.2, 0.0]), 0.72
 BELT_HEIGHT = 0.13  # half the height of the belt
@@ -59,12 +57,6 @@ def distance(points: Floats) -> Floats:
     foot = _cylinder(upright - [0.0, -0.6, 0.0], FOOT_RADIUS, FOOT_HEIGHT)
     nearest: Floats = np.minimum(ball, foot)
     return nearest
-
-
-@lru_cache(maxsize=2)
-def shader_ball(size: int, margin: int = 0) -> VisiblePoints:
-    """Points of the shader ball under the pixel centers of a `size` x `size` picture."""
-    return shader_ball_at(*pixel_centers(size, margin))
 
 
 def shader_ball_at(x: Floats, y: Floats) -> VisiblePoints:

@@ -85,18 +85,14 @@ def definitions(path: Path) -> Mapping[Definition, str]:
     return found
 
 
-def files(path: Path, search: mx.FileSearchPath) -> tuple[Path, ...]:
-    """A source and everything it includes, without duplicates."""
-    return _files(path, search.asString())
-
-
 def _reached(path: Path, search: mx.FileSearchPath) -> tuple[Path, ...]:
     """`files`, plus the functions that a generator adds to all nodes of the GLSL family."""
-    return *files(path, search), Path(search.find(MATH).asString())
+    return *files(path, search.asString()), Path(search.find(MATH).asString())
 
 
 @cache
-def _files(path: Path, search: str) -> tuple[Path, ...]:
+def files(path: Path, search: str) -> tuple[Path, ...]:
+    """A source and everything it includes, found on a search path, without duplicates."""
     seen: dict[Path, None] = {}
     waiting = [path]
     while waiting:
@@ -162,7 +158,7 @@ def clashes(
     # Owners of a definition: the file, whether it is included, and a node that uses it.
     owners: dict[Definition, dict[tuple[Path, bool], str]] = defaultdict(dict)
     for path, node in nodes.items():
-        for file in files(path, search):
+        for file in files(path, search.asString()):
             for definition in definitions(file):
                 owners[definition].setdefault((file, file != path), node)
                 if twice and file == path:

@@ -101,7 +101,12 @@ class ShownElement:
         shader = generator.generate("shader", content.getDescendant(element), context)
         self._renderer, self._mesh = open_renderer(), ""
         self._renderer.setLightHandler(self._lights)
-        self._renderer.setCamera(camera())
+        view = mx_render.Camera.create()
+        eye, center, up = mx.Vector3(0, 0, FAR), mx.Vector3(0, 0, 0), mx.Vector3(0, 1, 0)
+        view.setViewMatrix(mx_render.Camera.createViewMatrix(eye, center, up))
+        matrix = mx_render.Camera.createOrthographicMatrix(-1, 1, -1, 1, FAR - 4, FAR + 4)
+        view.setProjectionMatrix(matrix)
+        self._renderer.setCamera(view)
         self._renderer.createProgram(shader)
         self._renderer.validateInputs()
 
@@ -127,7 +132,10 @@ class ShownElement:
         self._lights.setEnvSampleCount(DIRECTIONS if environment else 1)
         self._renderer.setSize(size, size)
         self._renderer.render()
-        return pixels(self._renderer.captureImage(None))
+        image = self._renderer.captureImage(None)  # row 0 at the bottom
+        texels = [image.getTexelColor(x, y) for y, x in product(range(size), repeat=2)]
+        rows = np.array([(each[0], each[1], each[2]) for each in texels], np.float32)
+        return rows.reshape(size, size, 3)[::-1]
 
 
 def open_renderer() -> mx_render_glsl.GlslRenderer:
@@ -153,28 +161,9 @@ def albedo_table(generator: mx_gen.ShaderGenerator, content: mx.Document) -> mx_
     return renderer.captureImage(None)
 
 
-@lru_cache(maxsize=1)
-def camera() -> mx_render.Camera:
-    """A camera that sees the square [-1, 1]^2 from far away, along -z."""
-    view = mx_render.Camera.create()
-    eye, center, up = mx.Vector3(0, 0, FAR), mx.Vector3(0, 0, 0), mx.Vector3(0, 1, 0)
-    view.setViewMatrix(mx_render.Camera.createViewMatrix(eye, center, up))
-    matrix = mx_render.Camera.createOrthographicMatrix(-1, 1, -1, 1, FAR - 4, FAR + 4)
-    view.setProjectionMatrix(matrix)
-    return view
-
-
 @lru_cache(maxsize=2)
 def geometry(path: str) -> mx_render.GeometryHandler:
-    """The quads in a NumPy file, cached: reading them takes longer than drawing."""
-    handler = mx_render.GeometryHandler.create()
-    handler.addLoader(mx_render.TinyObjLoader.create())
-    handler.loadGeometry(mx.FilePath(obj_file(path)), False)
-    return handler
-
-
-def obj_file(path: str) -> str:
-    """The quads in a NumPy file as a Wavefront OBJ file, which MaterialX reads."""
+    """The quads in a NumPy file, written as a Wavefront OBJ file, which MaterialX reads; cached, since that is slow."""
     data, target = np.load(path), Path(path).with_suffix(".obj")
     lines = [
         f"{word} {' '.join(f'{number:.9g}' for number in row)}"
@@ -184,23 +173,10 @@ def obj_file(path: str) -> str:
     corners = np.arange(1, len(data["position"]) + 1).reshape(-1, 4).tolist()
     lines += [f"f {' '.join(f'{each}/{each}/{each}' for each in quad)}" for quad in corners]
     target.write_text("\n".join(lines) + "\n", encoding="ascii")
-    return str(target)
-
-
-def pixels(image: mx_render.Image) -> NDArray[np.float32]:
-    """Pixels of a square picture whose row 0 is at the bottom."""
-    size = image.getWidth()
-    texels = [image.getTexelColor(x, y) for y, x in product(range(size), repeat=2)]
-    rows = np.array([(each[0], each[1], each[2]) for each in texels], np.float32)
-    return rows.reshape(size, size, 3)[::-1]
-
-
-def device(renderer: mx_render_glsl.GlslRenderer) -> str:
-    """Name of the device, from the context of a renderer."""
-    renderer.setSize(1, 1)  # make its context current
-    function = ctypes.CDLL(OPENGL.get(sys.platform, "libGL.so.1")).glGetString
-    function.restype = ctypes.c_char_p
-    return str(function(RENDERER).decode())
+    handler = mx_render.GeometryHandler.create()
+    handler.addLoader(mx_render.TinyObjLoader.create())
+    handler.loadGeometry(mx.FilePath(str(target)), False)
+    return handler
 
 
 def start(
@@ -225,5 +201,9 @@ def start(
         shown = picture(document, element, tuple((methods or {}).items()))
         np.save(output, shown.draw(**draw))
 
-    greeting = {"version": f"MaterialX {mx.getVersionString()}", "device": device(first)}
+    first.setSize(1, 1)  # make its context current
+    function = ctypes.CDLL(OPENGL.get(sys.platform, "libGL.so.1")).glGetString
+    function.restype = ctypes.c_char_p
+    device = str(function(RENDERER).decode())
+    greeting = {"version": f"MaterialX {mx.getVersionString()}", "device": device}
     return greeting, answer, RAISED

@@ -8,7 +8,7 @@ Blender's package contains it, with its own versions of OpenUSD and MaterialX. T
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -49,9 +49,19 @@ class StormHost(DocumentHost):
         """Subsurface lobes, or the enumerated inputs of closures: Storm takes their defaults."""
         if reason := super().unread(shader):
             return reason
-        nodes = (each for each in shader.document.traverseTree() if each.isA(mx.Node))
-        names = ", ".join(name for node in nodes for name in _enumerated(node))
-        return names and f"Storm takes the default of an enumerated input, here of {names}"
+        names = []
+        for each in shader.document.traverseTree():
+            node = each.getParent()
+            if not each.isA(mx.Input) or not node.isA(mx.Node) or node.getType() not in CLOSURES:
+                continue
+            definition = node.getNodeDef()
+            default = definition and definition.getActiveInput(each.getName())
+            enumerated = default and default.hasAttribute(mx.ValueElement.ENUM_ATTRIBUTE)
+            if enumerated and each.getValueString() != default.getValueString():
+                names.append(f"{node.getName()}/{each.getName()}")
+        if not names:
+            return ""
+        return f"Storm takes the default of an enumerated input, here of {', '.join(names)}"
 
     def _interpreter(self) -> Path:
         return interpreter(self.name)
@@ -77,15 +87,3 @@ class StormHost(DocumentHost):
         if reason:
             what = "use other libraries than its own" if self._folders[0] else "show the document"
             raise NotRun(f"storm: {self.worker.version} cannot {what}: {reason}")
-
-
-def _enumerated(node: mx.Node) -> Iterator[str]:
-    """Names of a closure's enumerated inputs whose value is not the default."""
-    definition = node.getNodeDef()
-    if definition is None or node.getType() not in CLOSURES:
-        return
-    for each in node.getInputs():
-        default = definition.getActiveInput(each.getName())
-        enumerated = default and default.hasAttribute(mx.ValueElement.ENUM_ATTRIBUTE)
-        if enumerated and each.getValueString() != default.getValueString():
-            yield f"{node.getName()}/{each.getName()}"

@@ -72,7 +72,15 @@ class Canvas:
     def clear(self, size: int) -> None:
         """Draw into this frame from now on; it is black, and `size` pixels wide and high."""
         if size != self._size:
-            self._allocate(size)
+            self._size, buffers = size, (c_uint * 2)()
+            self._call("glGenFramebuffers", None, 1, byref(self._name))
+            self._call("glBindFramebuffer", None, FRAMEBUFFER, self._name)
+            self._call("glGenRenderbuffers", None, 2, buffers)
+            kinds, places = (RGBA32F, DEPTH32F), (COLOR, DEPTH)
+            for buffer, kind, place in zip(buffers, kinds, places, strict=True):
+                self._call("glBindRenderbuffer", None, BUFFER, buffer)
+                self._call("glRenderbufferStorage", None, BUFFER, kind, size, size)
+                self._call("glFramebufferRenderbuffer", None, FRAMEBUFFER, place, BUFFER, buffer)
         self._call("glBindFramebuffer", None, FRAMEBUFFER, self._name)
         self._call("glClearColor", None, *[c_float(0.0)] * 4)
         self._call("glClearDepth", None, c_double(1.0))
@@ -85,17 +93,6 @@ class Canvas:
         memory = c_void_p(image.ctypes.data)
         self._call("glReadPixels", None, 0, 0, self._size, self._size, RGBA, FLOAT, memory)
         return image[::-1, :, :3]
-
-    def _allocate(self, size: int) -> None:
-        buffers = (c_uint * 2)()
-        self._call("glGenFramebuffers", None, 1, byref(self._name))
-        self._call("glBindFramebuffer", None, FRAMEBUFFER, self._name)
-        self._call("glGenRenderbuffers", None, 2, buffers)
-        for buffer, kind, place in zip(buffers, (RGBA32F, DEPTH32F), (COLOR, DEPTH), strict=True):
-            self._call("glBindRenderbuffer", None, BUFFER, buffer)
-            self._call("glRenderbufferStorage", None, BUFFER, kind, size, size)
-            self._call("glFramebufferRenderbuffer", None, FRAMEBUFFER, place, BUFFER, buffer)
-        self._size = size
 
     def _call(self, name: str, result: Type, *arguments: object) -> Foreign:
         address = self._egl.eglGetProcAddress(name.encode())
@@ -153,9 +150,30 @@ class Stage:
         card: bool = False,
     ) -> Pixels:
         """Picture of the square [-1, 1]^2, seen along -z."""
-        self._set_mesh(mesh)
-        self._set_material(document, element)
-        self._set_lights(light, environment)
+        if mesh != self._mesh_path:
+            data, self._mesh_path = np.load(mesh), mesh
+            count = len(data["position"])
+            vectors, numbers = usd.Vt.Vec3fArray.FromNumpy, usd.Vt.IntArray.FromNumpy
+            self._mesh.CreatePointsAttr(vectors(data["position"]))
+            self._mesh.CreateNormalsAttr(vectors(data["normal"]))
+            self._mesh.CreateFaceVertexCountsAttr(numbers(np.full(count // 4, 4, np.int32)))
+            self._mesh.CreateFaceVertexIndicesAttr(numbers(np.arange(count, dtype=np.int32)))
+            self._texcoord.Set(usd.Vt.Vec2fArray.FromNumpy(data["texcoord"]))
+        references = self._look.GetReferences()
+        references.ClearReferences()
+        references.AddReference(document, "/MaterialX")
+        prim = self._stage.GetPrimAtPath(f"/look/Materials/{element}")
+        if not prim:
+            raise LookupError(f"OpenUSD has read no material {element}")
+        binding = usd.UsdShade.MaterialBindingAPI.Apply(self._mesh.GetPrim())
+        binding.Bind(usd.UsdShade.Material(prim))
+        self._sun.GetPrim().SetActive(light is not None)
+        self._dome.GetPrim().SetActive(environment is not None)
+        if light is not None:
+            turn = usd.Gf.Rotation(usd.Gf.Vec3d(0.0, 0.0, 1.0), usd.Gf.Vec3d(*light))
+            self._turn.Set(usd.Gf.Matrix4d().SetRotate(turn))
+        if environment is not None:
+            self._dome.CreateIntensityAttr(environment / WHITE_DOME)
         self._card.GetPrim().SetActive(card)
         frustum = usd.Gf.Frustum()
         frustum.projectionType = usd.Gf.Frustum.Orthographic
@@ -170,39 +188,6 @@ class Stage:
         self._canvas.clear(size)
         self._engine.Render(self._stage.GetPseudoRoot(), options)
         return self._canvas.pixels()
-
-    def _set_mesh(self, path: str) -> None:
-        if path == self._mesh_path:
-            return
-        data, self._mesh_path = np.load(path), path
-        count = len(data["position"])
-        vectors, numbers = usd.Vt.Vec3fArray.FromNumpy, usd.Vt.IntArray.FromNumpy
-        self._mesh.CreatePointsAttr(vectors(data["position"]))
-        self._mesh.CreateNormalsAttr(vectors(data["normal"]))
-        self._mesh.CreateFaceVertexCountsAttr(numbers(np.full(count // 4, 4, np.int32)))
-        self._mesh.CreateFaceVertexIndicesAttr(numbers(np.arange(count, dtype=np.int32)))
-        self._texcoord.Set(usd.Vt.Vec2fArray.FromNumpy(data["texcoord"]))
-
-    def _set_material(self, document: str, name: str) -> None:
-        references = self._look.GetReferences()
-        references.ClearReferences()
-        references.AddReference(document, "/MaterialX")
-        prim = self._stage.GetPrimAtPath(f"/look/Materials/{name}")
-        if not prim:
-            raise LookupError(f"OpenUSD has read no material {name}")
-        binding = usd.UsdShade.MaterialBindingAPI.Apply(self._mesh.GetPrim())
-        binding.Bind(usd.UsdShade.Material(prim))
-
-    def _set_lights(
-        self, light: tuple[float, float, float] | None, environment: float | None
-    ) -> None:
-        self._sun.GetPrim().SetActive(light is not None)
-        self._dome.GetPrim().SetActive(environment is not None)
-        if light is not None:
-            turn = usd.Gf.Rotation(usd.Gf.Vec3d(0.0, 0.0, 1.0), usd.Gf.Vec3d(*light))
-            self._turn.Set(usd.Gf.Matrix4d().SetRotate(turn))
-        if environment is not None:
-            self._dome.CreateIntensityAttr(environment / WHITE_DOME)
 
 
 def import_usd(root: str, libraries: str) -> Foreign:

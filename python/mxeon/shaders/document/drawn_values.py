@@ -8,7 +8,6 @@ nodegraph.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from typing import TypeAlias
 
 import MaterialX as mx
@@ -37,7 +36,7 @@ def value_document(
         # Replace the outer node by the nodes of its nodegraph, which get new names in the same order.
         before = {each.getName() for each in scope.getNodes()}
         place = [each.getName() for each in element.getParent().getNodes()].index(element.getName())
-        scope.flattenSubgraphs(filter=partial(_is_named, name))
+        scope.flattenSubgraphs(filter=lambda node, name=name: bool(node.getName() == name))
         name = [each.getName() for each in scope.getNodes() if each.getName() not in before][place]
     _drop_closures(copy)
     if scope.isA(mx.NodeGraph):
@@ -93,10 +92,6 @@ def _copied(document: mx.Document) -> mx.Document:
 def _own_graphs(document: mx.Document) -> list[mx.NodeGraph]:
     """Its own nodegraphs; getNodeGraphs also returns those of the shared data library."""
     return [each for each in document.getChildren() if each.isA(mx.NodeGraph)]
-
-
-def _is_named(name: str, node: mx.Node) -> bool:
-    return bool(node.getName() == name)
 
 
 def _drop_closures(document: mx.Document) -> None:
