@@ -16,8 +16,7 @@ import sys
 from itertools import product
 from pathlib import Path
 
-from mxeon import survey
-from mxeon.hosts import host_rows, register
+from mxeon.hosts import host_names
 
 LIBRARIES = ("eonlib", "stock", "diffuse")
 PLACE = ("host", "library", "subject", "check")
@@ -79,8 +78,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
-    register(*survey.ROWS)
-    hosts = [row.name for row in host_rows()]
+    hosts = host_names()
     jobs = parser.add_subparsers(dest="job", required=True)
     write = jobs.add_parser("write")
     write.add_argument("file", type=Path)

@@ -12,11 +12,9 @@ from importlib import import_module
 
 import pytest
 
-from mxeon import survey
 from mxeon.errors import NotRun
-from mxeon.hosts import host_names, register
+from mxeon.hosts import host_names
 
-register(*survey.ROWS)
 VARIABLE, PACKAGES = "MXEON_REQUIRE", "packages"
 
 

@@ -14,6 +14,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
+from importlib import import_module
 from itertools import product
 from operator import attrgetter
 from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar, cast
@@ -31,7 +32,7 @@ from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
 from mxeon.conformance.specs.microfacets import FacetSpec
 from mxeon.conformance.tolerance import Term, Tolerance, given, relative, roundings, sum_in, sum_of
 from mxeon.errors import DocumentError, NotRun
-from mxeon.hosts import front_lit_only, host_row
+from mxeon.hosts import RENDERERS, front_lit_only, host_row
 from mxeon.hosts.base import Host, Query
 from mxeon.hosts.calls import LIT
 from mxeon.hosts.pairs import DISTANCE, JITTER, PIXEL, apart, visible
@@ -900,14 +901,18 @@ BACKENDS: dict[str, tuple[type[Backend], ...]] = {
 
 def ways_of(host: str) -> tuple[type[Backend], ...]:
     """The backends of a host; () if only the text of its target is checked."""
-    own_nodes(host)  # adds a renderer's backends
+    own_nodes(host)  # imports a renderer's backends
     return BACKENDS.get(host_row(host).way, ())
 
 
 def own_nodes(host: str) -> tuple[Spec, ...]:
-    """A host's own judged nodes; empty for hosts of generated shaders."""
-    nodes = host_row(host).nodes
-    return tuple(nodes(host)) if nodes else ()
+    """A renderer's own judged nodes, whose backends and checks are imported; empty for other hosts."""
+    row = host_row(host)
+    if row not in RENDERERS:
+        return ()
+    import_module("mxeon.survey.checks")
+    module = import_module(f"mxeon.{row.engine.rpartition('.')[0]}")
+    return tuple(module.NODES)
 
 
 def backend_of(host: str, spec: Spec) -> type[Backend] | None:

@@ -4,10 +4,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
-from typing import Any
 
 from mxeon.errors import NotRun, Unsupported, assert_known
 from mxeon.hosts.base import Engine, Host
@@ -16,10 +14,7 @@ from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
 @dataclass(frozen=True)
 class Row:
-    """A host, and what is judged on it.
-
-    - `nodes`: Returns the specs of a renderer's own nodes, and registers its backends and checks.
-    """
+    """A host, and what is judged on it."""
 
     name: str
     target: str  # shading language; "" for a renderer that only has its own materials
@@ -30,7 +25,6 @@ class Row:
     rounding: float = 0.0  # relative rounding of its pixels, in addition to float32's
     front_lit: tuple[str, ...] = ()  # models that it supports only for s >= 0
     engine: str = ""  # module of mxeon and class; imported only where it runs
-    nodes: Callable[[str], Sequence[Any]] | None = None
 
 
 # Every pixel sums over the environment, and the picture is smooth: half the usual width is enough.
@@ -93,31 +87,30 @@ HOSTS = (
 )
 
 
-_REGISTERED: dict[str, Row] = {}
-
-
-def register(*rows: Row) -> None:
-    """Add rows of renderers with their own materials, as `mxeon.survey` does."""
-    _REGISTERED.update({row.name: row for row in rows})
-
-
-def registered() -> tuple[Row, ...]:
-    """The rows that were added; workers need them too."""
-    return tuple(_REGISTERED.values())
-
-
-def host_rows() -> tuple[Row, ...]:
-    """The table, and the rows that were added."""
-    return HOSTS + registered()
+# Renderers with their own materials. `mxeon.survey` has their classes, nodes, backends and checks.
+RENDERERS = (
+    Row("cycles-native", "", "native", engine="survey.cycles_native.CyclesNativeHost"),
+    Row("three", "", "exact", engine="survey.browser.three.ThreeHost", scenes=(SIDE, BACK)),
+    Row("babylon", "", "exact", engine="survey.browser.babylon.BabylonHost", scenes=(SIDE, BACK)),
+    Row(
+        "three-gpu-pathtracer",
+        "",
+        "facet pairs",
+        engine="survey.browser.pathtracer.GpuPathTracerHost",
+    ),
+    Row("mitsuba", "", "facet pairs", engine="survey.polyhedron.mitsuba.MitsubaHost"),
+    Row("eevee", "", "coarse facets", engine="survey.polyhedron.eevee.EeveeHost"),
+)
+ROWS = HOSTS + RENDERERS
 
 
 def host_names() -> tuple[str, ...]:
-    return tuple(row.name for row in host_rows())
+    return tuple(row.name for row in ROWS)
 
 
 def host_row(name: str, *others: Row) -> Row:
-    """The row of a host in `host_rows` or `others`; otherwise InputError lists the known ones."""
-    rows = {row.name: row for row in (*host_rows(), *others)}
+    """The row of a host in ROWS or `others`; otherwise InputError lists the known ones."""
+    rows = {row.name: row for row in (*ROWS, *others)}
     assert_known("host", name, rows)
     return rows[name]
 
