@@ -124,12 +124,6 @@ def _before_main(pixel: str, dialect: Dialect) -> tuple[str, str]:
     return before, re.findall(r"\bout vec4 (\w+);", text)[0]
 
 
-def table_stage(text: str, target: str) -> str:
-    """The pixel stage that draws a table of albedos."""
-    version, rest = text.split("\n", 1)
-    return f"{version}\n{DIALECTS[target].prelude}{rest}"
-
-
 def renamed(text: str) -> str:
     """A generated text whose main is renamed by a macro that follows all of its functions."""
     functions, main = text.rsplit("void main", 1)

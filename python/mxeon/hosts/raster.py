@@ -215,8 +215,8 @@ class FragmentHost(base.Host):
         return self._in_parts(Frame(vertex, pixel, arguments, textures, uniforms))
 
     def _drawn_table(self, text: str) -> Array:
-        pixel, dialect = fragment.table_stage(text, self.target), fragment.DIALECTS[self.target]
-        texels = self._evaluate(Frame(dialect.vertex, pixel))
+        dialect, (version, rest) = fragment.DIALECTS[self.target], text.split("\n", 1)
+        texels = self._evaluate(Frame(dialect.vertex, f"{version}\n{dialect.prelude}{rest}"))
         return texels.reshape(TABLE_SIZE, TABLE_SIZE, 3)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TypedDict
+from typing import Any
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.process import Worker
@@ -66,16 +66,6 @@ INNER_SAMPLES = 64
 SURFACE_BOUNCES, REFRACTED_BOUNCES = 1, 8
 
 
-class SceneParts(TypedDict):
-    size: int
-    samples: int
-    bounces: int
-    radius: float
-    light: tuple[float, float, float] | None
-    environment: float | Path | None
-    body: str
-
-
 DARK = Scene("dark")  # no light; for emission or other lights
 PLACE = (
     "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"  # OSL expressions of a point's place on the body "plane"
@@ -83,7 +73,7 @@ PLACE = (
 FEWEST_SAMPLES = 16  # minimum for lobes below the surface, which are too noisy with fewer
 
 
-def request(scene: Scene, lobes: Sequence[str]) -> SceneParts:
+def request(scene: Scene, lobes: Sequence[str]) -> dict[str, Any]:
     """The worker's parameters for a scene and a material with these lobes below its surface."""
     samples = ENVIRONMENT_SAMPLES if scene.environment is not None else 1
     return {
