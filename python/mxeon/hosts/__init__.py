@@ -44,7 +44,7 @@ HOSTS = (
     Row("hlsl", "vulkan", "pairs", engine="hosts.translated.HlslHost"),
     Row("dxc", "vulkan", "pairs", engine="hosts.translated.DxcHost"),
     Row("naga", "vulkan", "pairs", engine="hosts.translated.NagaHost"),
-    Row("wgsl", "wgsl", "pairs", engine="hosts.wgsl.WgslHost"),
+    Row("wgsl", "wgsl", "pairs", engine="hosts.vulkan.WgslHost"),
     Row("slang", "slang", "pairs", engine="hosts.slang.SlangHost"),
     Row("osl", "osl", "closures", engine="hosts.osl.OslHost"),
     Row(

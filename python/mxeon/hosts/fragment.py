@@ -134,12 +134,8 @@ def function_evaluation(
     source: str, function: str, arguments: Sequence[ArrayLike], target: str
 ) -> tuple[str, Columns]:
     """A pixel stage that evaluates a function of `source`, and its texels as in `bsdf_evaluation`."""
-    parameters = functions.parameters(source, function)
-    values = {
-        name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
-    }
-    store = f"mxeon_out = vec4(vec3({function}({', '.join(values)})), 1.0);"
-    return evaluation(source, values, [store], target)
+    values, call = functions.call(source, function, arguments)
+    return evaluation(source, values, [f"mxeon_out = vec4(vec3({call}), 1.0);"], target)
 
 
 def evaluation(

@@ -164,11 +164,8 @@ class SlangHost(base.Host):
         return texels.reshape(TABLE_SIZE, TABLE_SIZE, 3)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        parameters = functions.parameters(source, function)
-        values = {
-            name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
-        }
-        body = [f"float3 mxeon_value = float3({function}({', '.join(values)}));"]
+        values, call = functions.call(source, function, arguments)
+        body = [f"float3 mxeon_value = float3({call});"]
         return self._evaluate(GLSL + source, values, body, {})
 
     def close(self) -> None:

@@ -47,6 +47,8 @@ DECLARATION = re.compile(
     re.MULTILINE,
 )
 
+INPUT_BLOCK = re.compile(r"^layout \(location = 0\) in (\w+\s*\{[^}]*\} \w+;)", re.MULTILINE)
+
 STD140 = {"mat4": (16, 64), "vec4": (16, 16), "vec3": (16, 12), "vec2": (8, 8)}
 STD140 |= dict.fromkeys(("float", "int", "bool"), (4, 4))  # type -> alignment and size, in bytes
 BLOCK_SIZE = 1 << 14
@@ -219,6 +221,28 @@ class VulkanHost(FragmentHost):
         layout = {"bytes_per_row": texels[0].nbytes, "rows_per_image": height}
         self._device.queue.write_texture({"texture": texture}, texels, layout, size)
         return texture.create_view()
+
+
+class WgslHost(VulkanHost):
+    """WebGPU without a browser: MaterialX's text for its target WGSL, which is GLSL for a converter.
+
+    The converter in wgpu, naga, compiles it instead of glslang.
+    """
+
+    name = "wgsl"
+    target = "wgsl"
+    path = "naga, "
+    programs = ()
+    interfaces = ("Vulkan", "Metal", "D3D12")
+
+    def _vertex(self, pixel: str) -> str:
+        """A vertex stage with the pixel stage's block, all 0: wgpu requires it, even if it is unused."""
+        head, rest = super()._vertex(pixel).split("\n", 1)
+        outputs = [f"layout (location = 0) out {block}\n" for block in INPUT_BLOCK.findall(pixel)]
+        return "".join([f"{head}\n", *outputs, rest])
+
+    def _code(self, stage: str, text: str) -> str:
+        return text
 
 
 @lru_cache(maxsize=8)  # the vertex stage is always the same

@@ -2,9 +2,11 @@
 """Shader functions as text, in GLSL and in OSL, and their signatures."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
+
+from numpy.typing import ArrayLike
 
 from mxeon.errors import InputError, ShaderError
 from mxeon.shaders.library import kind_of, source_folder
@@ -85,6 +87,15 @@ def parameters(text: str, function: str) -> tuple[tuple[str, str], ...]:
     if function not in known:
         raise InputError(f"function must be one of {', '.join(known)}; got {function!r}")
     return known[function]
+
+
+def call(
+    text: str, function: str, arguments: Sequence[ArrayLike]
+) -> tuple[dict[str, tuple[str, ArrayLike]], str]:
+    """Type and value of each argument of a function by its parameter's name, and the call."""
+    pairs = zip(parameters(text, function), arguments, strict=True)
+    values = {name: (kind, value) for (kind, name), value in pairs}
+    return values, f"{function}({', '.join(values)})"
 
 
 @lru_cache(maxsize=4)
