@@ -142,7 +142,8 @@ class _Reader:
     def read_file(self, document: mx.Document, name: str) -> None:
         """Read a file into a document."""
         try:
-            with Path(name).open("rb") as stream:  # at most one byte more than the limit
+            # Read one byte more than the limit to notice that a file exceeds it.
+            with Path(name).open("rb") as stream:
                 size = min(self._policy.size - self._size, os.fstat(stream.fileno()).st_size)
                 data = stream.read(size + 1)
         except OSError as error:
