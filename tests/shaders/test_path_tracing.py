@@ -169,16 +169,22 @@ def test_draws_of_hair_find_the_light_that_tilted_cuticles_fold(gl, angle):
     assert (abs(densities.mean(axis=0) - 1.0) < 5.0 * densities.std(axis=0) / 2.0**9).all()
 
 
-# By alpha: variance over squared mean of walks through a ball of glass, and the largest weight of a
-# sample.
-VARIANCES = {0.1: (0.051, 1.8), 0.4: (0.25, 1.8), 1.0: (0.31, 2.2)}
+# Variance over squared mean of walks through a ball of glass, and the largest weight of a sample.
+VARIANCES = {
+    "dielectric_bsdf, 0.1": (0.036, 1.83),
+    "dielectric_bsdf, 0.4": (0.21, 1.8),
+    "dielectric_bsdf, 1.0": (0.3, 2.1),
+    "generalized_schlick_bsdf, 0.4": (0.21, 1.8),
+    "standard_surface, 0.4": (0.5, 2.43),
+    "open_pbr_surface, 0.4": (0.5, 2.28),
+}
 
 
 @pytest.mark.whole
-@pytest.mark.parametrize("alpha", VARIANCES)
-def test_walks_through_rough_glass_vary_little(gl, alpha):
-    total, largest = glass.walks(glass.eonlib(alpha), np.random.default_rng(1))
-    variance, weight = VARIANCES[alpha]
+@pytest.mark.parametrize("name", VARIANCES)
+def test_walks_through_rough_glass_vary_little(gl, name):
+    total, largest = glass.walks(paths(gl, glass.ROWS[name]), np.random.default_rng(1))
+    variance, weight = VARIANCES[name]
     assert total.var() < 1.05 * variance * total.mean() ** 2
     assert largest < 1.05 * weight
 

@@ -11,32 +11,43 @@ import numpy as np
 
 from mxeon.conformance.checks.paths import paths
 from mxeon.hosts import open_engine
-from mxeon.shaders.nodes import material_text
+from mxeon.shaders.nodes import document_text, input_text, material_text, node_text
 
-WALKS, BOUNCES, INDEX = 1 << 16, 256, 1.5
-ALPHAS = (0.1, 0.4, 1.0)
-
-
-def eonlib(alpha):
-    """A function that draws directions and weights by eonlib's text."""
-    inputs = {"ior": INDEX, "roughness": (alpha, alpha), "scatter_mode": "RT"}
-    text = paths(open_engine("gl"), material_text("dielectric_bsdf", inputs))
-
-    def draw(wo, u, inside):
-        wi, weight = (text.values(what, wo, u=u, inside=inside) for what in ("wi", "weight"))
-        return wi, weight[:, 0]
-
-    return draw
+WALKS, BOUNCES = 1 << 16, 256
+ROUGH = 0.4  # alpha, the square of a surface's roughness
 
 
-def walks(draw, rng):
+def glass(node, **inputs):
+    """A document with a surface shader that only transmits."""
+    inputs = {"specular_roughness": ROUGH**0.5} | inputs
+    ports = "".join(input_text(name, "float", value) for name, value in inputs.items())
+    return document_text(node_text(node, "surfaceshader", "shading", ports))
+
+
+def lobe(node, alpha, **inputs):
+    return material_text(node, {"roughness": (alpha, alpha), "scatter_mode": "RT"} | inputs)
+
+
+ROWS = {
+    **{f"dielectric_bsdf, {a}": lobe("dielectric_bsdf", a, ior=1.5) for a in (0.1, ROUGH, 1.0)},
+    f"generalized_schlick_bsdf, {ROUGH}": lobe(
+        "generalized_schlick_bsdf", ROUGH, color0=(0.04, 0.04, 0.04)
+    ),
+    f"standard_surface, {ROUGH}": glass("standard_surface", transmission=1.0),
+    f"open_pbr_surface, {ROUGH}": glass("open_pbr_surface", transmission_weight=1.0),
+}
+
+
+def walks(text, rng):
     """Weights of walks from a parallel beam, and the largest weight of a draw."""
     mu = np.sqrt(rng.random(WALKS))
     total, largest, active = np.zeros(WALKS), 0.0, np.arange(WALKS)
     weights, inside = np.ones(WALKS), False
     for _ in range(BOUNCES):
         wo = np.stack([np.sqrt(1.0 - mu**2), 0.0 * mu, mu], axis=1)
-        wi, weight = draw(wo, rng.integers(0, 1 << 24, (len(mu), 3)) * 2.0**-24, inside)
+        u = rng.integers(0, 1 << 24, (len(mu), 3)) * 2.0**-24
+        wi, weight = (text.values(what, wo, u=u, inside=inside) for what in ("wi", "weight"))
+        weight = weight[:, 0]
         largest = max(largest, weight.max())
         weights = weights * weight
         left = (wi[:, 2] < 0.0) if inside else (wi[:, 2] > 0.0)
@@ -50,10 +61,10 @@ def walks(draw, rng):
 
 def main():
     """Print a table of Markdown: mean and standard deviation of a walk, and the largest draw."""
-    print("| alpha | mean | deviation | largest draw |\n|---|---|---|---|")
-    for alpha in ALPHAS:
-        total, largest = walks(eonlib(alpha), np.random.default_rng(1))
-        print(f"| {alpha} | {total.mean():.3g} | {total.std():.3g} | {largest:.3g} |")
+    print("| node, alpha | mean | deviation | largest draw |\n|---|---|---|---|")
+    for name, document in ROWS.items():
+        total, largest = walks(paths(open_engine("gl"), document), np.random.default_rng(1))
+        print(f"| {name} | {total.mean():.3g} | {total.std():.3g} | {largest:.3g} |")
 
 
 if __name__ == "__main__":
