@@ -300,7 +300,7 @@ def dielectric_over_eon_sample(
     `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr:
     the sum of both lobes' densities, each times its probability. The dielectric is
     chosen with probability E_r / E at the mean of the channels. The weight of a sample is the mean
-    of those of both lobes alone, of which EON's is E for gray. [Dupuy2023]; docs/sampling.md.
+    of those of both lobes alone, of which EON's is E for gray. [Dupuy2023].
 
         >>> wi, pdf = dielectric_over_eon_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.7, 0.5, 0.3, 1.5)
         >>> wi.round(5), round(float(pdf), 5)
