@@ -135,7 +135,7 @@ vec3 chiang_hair_sum(vec3 wo, vec3 wi, mat3 tint, vec2 roughness_R, vec2 roughne
 {
     ChiangHairSection section = chiang_hair_section(wo, ior, absorption);
 
-    // Tilt the light for R, and turn it to where R leaves.
+    // For R: the tilted light; its azimuth from R's exit.
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
     vec2 inclined_i = vec2(length(wi.yz), wi.x);
     vec2 alpha = chiang_hair_tilt(M_PI * (cuticle_angle - 0.5));

@@ -25,7 +25,7 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     MicrofacetLobe lobe = microfacet_lobe(closureData, N, X, roughness, retroreflective);
     FresnelData fd = mx_init_fresnel_schlick(max(color0, 0.0), max(color82, 0.0), max(color90, 0.0),
                                              exponent, thinfilm_thickness, thinfilm_ior);
-    fd.ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));  // which transmission refracts by
+    fd.ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));  // index for transmission
     vec3 dip = eonlib_fresnel_schlick_dip(fd.F0, fd.F82, fd.F90, exponent);
     MicrofacetFresnel F;
     // The printed curve of dark colors and a small color82 falls below 0.

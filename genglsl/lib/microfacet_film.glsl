@@ -19,7 +19,7 @@
 vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
 {
     float x = FILM_OUTER * float(i - 1);
-    float mu = facets.x + facets.y * (x + facets.z * (4.0 * x * x - 1.0));  // a bend keeps the mean
+    float mu = facets.x + facets.y * (x + facets.z * (4.0 * x * x - 1.0));  // the bend averages 0
     vec3 average = i < 4 ? FILM_AVERAGE_1 : FILM_AVERAGE_2;
     average = i == 5 ? FILM_AVERAGE_3 : average;
 
@@ -28,7 +28,7 @@ vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
     return i > 5 ? vec4(mu_h, 0.0, 0.0, 0.0) : node;
 }
 
-// Reflectances under a film, without unused ones: the value in an environment, and a metal's visible facets in direct
+// Reflectances under a film. Unused ones are skipped: the value in an environment; a metal's visible facets in direct
 // light, since nothing lies below it.
 void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresnel F)
 {

@@ -93,7 +93,7 @@ float microfacet_lossless(MicrofacetLobe lobe)
     return mx_ggx_NDF(microfacet_local(lobe, lobe.wh), lobe.roughness) * mu_i / (2.0 * smith);
 }
 
-// Light of an environment. MaterialX's sum uses the mean alpha for masking. With a film, its facets reflect everything.
+// Light of an environment. MaterialX's sum masks by the mean alpha. Under a film, it sums perfectly reflecting facets.
 vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData fd)
 {
     fd.ior = fd.model == FRESNEL_MODEL_DIELECTRIC ? max(fd.ior, MICROFACET_LEAST_INDEX) : fd.ior;

@@ -14,7 +14,7 @@ vec3 subsurface_ring(float mu, vec3 chord)
     vec3 along = mu * (1.0 - 0.5 * squared);
     vec3 across = sqrt(max((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared), 0.0));
 
-    // A circle cut by the terminator has a larger mean than the cosine of its middle.
+    // Where the terminator cuts a circle, the mean exceeds the cosine at its center.
     vec3 height = min(abs(along) / max(across, 1e-30), 1.0);
     vec3 more = across * (sqrt(1.0 - height * height) - height * acos(height));
     return max(along, 0.0) + more / 3.14159265358979;

@@ -14,10 +14,10 @@
 #define THIN_FILM_COLOR_Y vec3(-1.666124, 1.9557635, -0.2145965)
 #define THIN_FILM_COLOR_Z vec3(-0.4801271, 0.0397715, 1.1509987)
 
-#define THIN_FILM_LEAST 1e-12  // divisors that vanish: a root of 0, full reflection at grazing
+#define THIN_FILM_LEAST 1e-12  // least divisor: for roots of 0, full reflection at grazing
 
-// Orders are summed while the square of one exceeds VALUE times the squared mean reflectances and WIDTH times the
-// squared width, and counts as at most RATIO of the one before: COUNT = ln(VALUE 1e-6) / ln(RATIO), 86.1, reach a mean
+// Orders are summed while the next square exceeds VALUE times the squared mean reflectances and WIDTH times the squared
+// width. A square counts as at most RATIO of the last; ln(VALUE 1e-6) / ln(RATIO) = 86.1 orders, COUNT, reach a mean
 // of 1e-3.
 // Source: tools/fits/thin_film.py. Largest relative error of a film that reflects 1e-3 or more: 8e-4.
 #define THIN_FILM_ORDER_VALUE 8e-14

@@ -29,7 +29,7 @@ float material_pdf(Point p, vec3 wo, vec3 wi)
     return path_root.x > 0.0 ? path_root.y * path_out.a : 0.0;
 }
 
-// Draws wi by three random numbers in [0, 1): whether the path goes on there, with `weight`, f cos(theta_i) / pdf.
+// Draws wi by three random numbers in [0, 1); `weight` is f cos(theta_i) / pdf. False if the path ends.
 // Where a surface lets light pass, wi is -wo and pdf is 0, since no other call can find that direction.
 bool material_sample(Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight, out float pdf)
 {

@@ -10,9 +10,9 @@
 // its place, the facet where the spherical cap of visible normals [Dupuy2023] is turned upside down. That map keeps
 // areas and is its own inverse, so a facet whose partner loses its light is drawn exactly twice as often.
 //
-// Into a thinner medium light takes the paths of light that comes from there, reversed. If P is the share that passes
-// from outside and p the density of refracted directions, then n^2 mu_i T(wi, wo) = P(wo) p(wo, wi) mu_o, and p by
-// visible normals turns this into
+// Light into a thinner medium takes the paths of light from there in reverse. If P is the share that passes from
+// outside and p the density of refracted directions, then n^2 mu_i T(wi, wo) = P(wo) p(wo, wi) mu_o. With p by visible
+// normals this is
 //   T(wi, wo) = P(wo) G_1(wo) / G_1(wi) p(wi, wo).
 // What does not pass is reflected: once by facets with the curve as from outside, and F = 1 beyond the critical angle;
 // the rest by facets that reflect everything.
@@ -73,7 +73,7 @@ bool path_is_denser()
     return path_eta < 1.0 && !path_thin;
 }
 
-// Whether the facet H loses its light.
+// Whether facet H sends light nowhere.
 bool path_is_lost(MicrofacetLobe lobe, vec3 H)
 {
     return dot(lobe.N, path_turned(lobe.wo, H)) <= 0.0 && dot(lobe.N, path_refracted(lobe.wo, H, lobe.N)) >= 0.0;
@@ -121,7 +121,7 @@ MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec
     MicrofacetLobe lobe = microfacet_lobe(closureData, N, X, roughness, retroreflective);
     if (retroreflective && dot(lobe.N, lobe.wi) < 0.0)
     {
-        lobe.wi = path_turned(lobe.wi, lobe.N);  // transmission has the view itself
+        lobe.wi = path_turned(lobe.wi, lobe.N);  // transmission is not mirrored
     }
     path_facet = path_facet_between(lobe.wo, lobe.wi, lobe.N);
     if (path_asked == PATH_DRAW)

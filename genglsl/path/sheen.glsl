@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sheen for path tracers: Zeltner's lobe, a linearly transformed cosine, by its own map, and that of Conty and
-// Kulla, which is brightest at the horizon, uniformly over the hemisphere.
+// The sheen for path tracers. Zeltner's lobe, a linearly transformed cosine, is drawn by its own map; Conty and
+// Kulla's, brightest at the horizon, uniformly over the hemisphere.
 
 #include "lib/questions.glsl"
 #include "../sheen_bsdf.glsl"

@@ -57,7 +57,7 @@ vec3 eon_albedo_avg(vec3 rho, float roughness)
     return rho * (vec3(1.0) - roughness * EON_LOSS_AVG * (vec3(1.0) - rho) / D);
 }
 
-// [Portsmouth2025], the s of Eq. (3), which in this frame needs no difference.
+// s of [Portsmouth2025], Eq. (3), without the difference: N is +z.
 float oren_nayar_s(vec3 wo, vec3 wi)
 {
     return wo.x * wi.x + wo.y * wi.y;

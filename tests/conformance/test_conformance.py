@@ -148,7 +148,7 @@ def test_other_lobes_are_lit_alike_by_eonlib_s_lookups(judged, environment):
 @pytest.mark.parametrize(
     "check, methods, verdict, reason",
     [
-        # MaterialX's own sum masks twice, and stock has no folder to search.
+        # MaterialX's own sum masks twice, so the library's own lookups are used; stock has none.
         ("anisotropic_albedo", Methods("fis", searched=True), NOT_RUN, "library stock: has no genglsl/environment to search"),
         # Stock has no compensation by the exact average.
         ("environment", Methods("prefilter"), FAILED, ""),

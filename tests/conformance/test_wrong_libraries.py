@@ -43,7 +43,7 @@ def copy(tmp_path):
 
 
 def failed(results):
-    """Words about each failed result, by check."""
+    """The diagnosis of each failed result in words, by check."""
     return {each.check: said(each) for each in results if each.verdict == FAILED}
 
 
@@ -322,7 +322,7 @@ LOSS = (
 )
 SIGNATURE = """void oren_nayar_diffuse_bsdf(ClosureData closureData, float weight, vec3 color, float roughness,
                              vec3 N, bool energy_compensation, inout BSDF bsdf)"""
-# Files of eonlib, a text and the one in its place.
+# Changes that keep what eonlib computes: its files, a text in them, and the replacement.
 REWRITTEN = {
     "a comment with braces": (SHARED, "// A_F of", "// void main() { } } /* A_F of"),
     "a renamed variable": (SHARED, "sigma2", "squared_sigma"),

@@ -495,7 +495,7 @@ def test_a_color_that_an_image_node_reads_wrongly_is_wrong_in_inputs_from_an_ima
 
 @pytest.mark.whole
 def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
-    """A check that no row of `ROWS` fails has to fail one of MaterialX's shaders."""
+    """Each check fails in a row of `ROWS` or for one of MaterialX's shaders, except those in `WITHOUT`."""
     failing = {row[4] for row in ROWS}
     failing |= {each.check for each in stock.results if each.verdict == FAILED}
     asked = {each.check for each in (*stock.results, *run.results) if each.host == "gl"}

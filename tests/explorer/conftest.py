@@ -45,6 +45,6 @@ def undrawn(browser, address):
 
 @pytest.fixture(scope="module")
 def sources(stage):
-    """A source of each model by its name, on a stage that a module's tests share."""
+    """The identifier of the first source of each model, by the model's name."""
     rows = stage.evaluate("mxeon.data.sources.filter(each => each.kind === 'model')")
     return {row["model"]: row["id"] for row in reversed(rows)}

@@ -144,7 +144,7 @@ def judged(row):
 
 
 def _part(values, argument):
-    """An argument, or a mapping's value for the key after a dot."""
+    """The value of an argument; for `name.key`, the value of that key in a mapping."""
     name, _, key = argument.partition(".")
     return values[name][key] if key else values[name]
 

@@ -113,7 +113,8 @@ def test_stock_is_wrong_from_behind(host, judged):
 
 
 GLASS = surface("open_pbr_surface", transmission_weight=1.0, specular_roughness=0.8)
-# As opacity, R over T counts light that is reflected once.
+# As opacity, T passes all light, and the layer of R over it subtracts what is reflected. The wrong copy
+# subtracts it twice.
 BELOW = (
     "bool below = scatter_mode == 1;",
     "bool below = false;",

@@ -28,7 +28,7 @@ real = pytest.mark.skipif(not REAL, reason="its variables name no build of OSL")
 
 @pytest.fixture
 def replay(tmp_path, monkeypatch):
-    """Programs that replay the recording, named by their variables; their folder."""
+    """The folder of programs that replay the recording; environment variables name them."""
     for variable, path in osl.write_replay(tmp_path).items():
         monkeypatch.setenv(variable, path)
     return tmp_path

@@ -269,7 +269,7 @@ def scalar(value, axes=1):
 
 
 def moved(function, arrays, switches, name):
-    """Scalars of each row with each component of an array moved by each of OFFSETS, in a single call."""
+    """Scalars of all rows by offset, for each component of an array that is moved; a single call computes all."""
     array = arrays[name]
     rows, size = len(array), array[0].size
     several = np.tile(array.reshape(rows, size), (size, len(OFFSETS), 1, 1))
@@ -301,7 +301,7 @@ def slopes(f, step):
 
 
 def differences(function, arrays, switches, name):
-    """Derivatives of each row by each component, by differences, and where they are reliable."""
+    """For each component, the derivatives of all rows by differences, and which of them are reliable."""
     for k, f in enumerate(moved(function, arrays, switches, name)):
         low, high, _ = RANGES[name] if name in RANGES else RANGES["mu" if k == 2 else "cos_theta"]
         x = arrays[name].reshape(len(arrays[name]), -1)[:, k]

@@ -42,7 +42,7 @@ def made_run(
 
 
 def kept(run, folder):
-    """The folder of a run, with the parts that are read."""
+    """Write the results of a run to a folder, as `report` reads them, and return its path."""
     Path(folder).mkdir(exist_ok=True)
     Path(folder, "results.json").write_text(to_json(run))
     return str(folder)
@@ -130,7 +130,7 @@ ALL = Errors(1000, 100, 0, 0.3, 0.05)
 
 
 def errors(*regions, samples="a", **changes):
-    """Errors of all samples and in regions, each given by its difference from ALL."""
+    """Errors of all samples and of regions; each is ALL with the given changes."""
     whole, *parts = ({**changes}, *regions)
     found = (replace(ALL, **whole), *(replace(ALL, **{**changes, **each}) for each in parts))
     return {"errors": found, "samples": samples}

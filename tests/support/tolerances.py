@@ -158,8 +158,8 @@ FRESNEL = 4.0 * (40 + FUNCTION) * ROUNDING
 # 2 roundings, by which D moves 2 / alpha times as much; 60 others.
 MICROFACET = (2 * 2 / 0.05 + 60) * ROUNDING
 
-# Reflectance of a conductor, absolute; E_ss; albedos by slopes in units of the larger of 1 and the
-# albedo: as their docstrings promise.
+# Accuracies that docstrings promise: reflectance of a conductor, absolute; E_ss; albedos by slopes, in
+# units of the larger of 1 and the albedo.
 CONDUCTOR = 1e-12
 E_SS = 1e-10
 E_SS_SMALL = 2e-8

@@ -8,9 +8,9 @@ from mxeon.hosts import open_engine
 from mxeon.shaders.document.policy import DEFAULT
 
 PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
-SOURCE = "source"  # replaces a host
+SOURCE = "source"  # stands for a host in checks of texts
 STOCK, RENDERER_NODES = "stock", "its own nodes"  # names of libraries
-SHADER_FUNCTIONS = "shader twins"  # replaces a node
+SHADER_FUNCTIONS = "shader twins"  # stands for a node in checks of shader functions
 
 
 class Verdicts:

@@ -5,8 +5,8 @@
 
 For `oren_nayar_angle` of the shaders on [0, tan(pi / 8)] in float32.
 
-The polynomial that meets atan(t) / t at the roots of a Chebyshev polynomial in t^2, solved with 40
-digits. Nearer than the branch points t^2 = -1 there is no singularity, so each term gains a factor of 25.
+The polynomial meets atan(t) / t at the roots of a Chebyshev polynomial in t^2, and is solved with 40
+digits. The nearest singularity is the branch point t^2 = -1, so each term gains a factor of 25.
 """
 
 from tools.fits.minimax import mp, roots

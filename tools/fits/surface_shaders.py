@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of surface shaders by the fits of eonlib's lobes: python -m tools.fits.surface_shaders.
+"""Errors of surface shaders due to the fits of eonlib's lobes: python -m tools.fits.surface_shaders.
 
-The layer equation uses each lobe's albedo by quadrature; eonlib uses fits. Here both are computed in
-float64, for pairs and materials drawn as in the checks, but with other seeds: the largest change of a value
-and an albedo by all fits together, and the change in the mean of a set.
+The layer equation uses each lobe's albedo by quadrature; eonlib uses a fit. Here both are computed in float64, for
+pairs and materials drawn as in the checks, but with other seeds. Printed are the largest errors of values and albedos
+due to all fits together, and those in the mean of a set.
 """
 
 from contextlib import ExitStack, contextmanager, suppress

@@ -45,10 +45,9 @@ FACETS = (
     (0.32298, 3.3428, -4.255, 0.51298, 3.6133, -7.43, 3.3391, -2.597, 3.5172, -0.34239),
     (0.14542, 0.030955, -0.22576, -0.22374, 1.0328, -1.4779, 0.16285, -1.7185, 2.1385, 0.018052),
 )  # fmt: skip
-# Orders are summed while the square of one exceeds a limit: for a value, this number times the
-# squared mean reflectances of all channels; for a node of a rule, this number times the squared
-# width if that is larger. Each order counts as smaller than the previous one by at least the given
-# factor.
+# Orders are summed while the square of the next one exceeds VALUE_ORDER times the squared mean
+# reflectances of all channels and, for a node of a rule, WIDTH_ORDER times the squared width. Each
+# square counts as at most ORDER_RATIO of the last.
 VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 8e-14, 1e-3, 0.6
 NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # narrowest sensitivity
 LEAST_PATH, LEAST_LOST = (
@@ -192,13 +191,13 @@ def kept(category, material, _, mu):
 
 
 def average_errors(category, material, *_):
-    """Errors of F_ss in three cosines."""
+    """Errors of F_ss as a sum over three cosines."""
     exact = film_curve(category).average(**material)
     return np.abs(average(category, material) - exact).max(axis=0)
 
 
 def average(category, material, nodes=NODES):
-    """F_ss in nodes: cosines, weights and widths."""
+    """F_ss as a sum over `nodes`: cosines, weights and widths."""
     return sum(
         weight * shader_curve(category, material, np.asarray(mu), width)
         for mu, weight, width in zip(*nodes, strict=True)
@@ -206,7 +205,7 @@ def average(category, material, nodes=NODES):
 
 
 def visible_errors(category, material, alpha, mu):
-    """Errors of the average over the visible facets in three cosines."""
+    """Errors of the average over the visible facets as a sum over three cosines."""
     exact = visible_average(category, material, alpha, mu)
     return np.abs(visible_mean(category, material, alpha, mu) - exact).max(axis=0)
 

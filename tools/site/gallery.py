@@ -30,7 +30,7 @@ from tools.site import DOCS, brief
 PAGE = DOCS / "gallery.md"
 EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
-# Words on stock, and its largest difference, by material.
+# The difference of stock MaterialX by material: its description, and its largest value.
 DIFFERENCES = PICTURES / "differences.json"
 SIZE = 512  # pixels of a picture
 INSET, EDGE = 112, 8  # pixels of the difference in a picture, and its distance from the rim
@@ -173,7 +173,7 @@ def render():
 
 
 def judge():
-    """Write what `mxeon check` says of each material with stock."""
+    """Write the difference that `mxeon check` finds for each material with stock MaterialX."""
     found = {}
     for each in mxeon.check(sorted(EXAMPLES.glob("*.mtlx")), ["gl"], ["stock"]).results:
         if each.check == "picture" and (apart := each.difference):

@@ -87,7 +87,7 @@ def instead(result: Result) -> str:
 
 
 def defaults(text: Text) -> Iterator[str]:
-    """Table rows of the defaults that a node's definition does not have from the text."""
+    """Table rows of the defaults in which a node's definition differs from the text."""
     [definition, *_] = load_library("stock").getMatchingNodeDefs(text.node)
     for name, default in text.model.DEFAULTS.items():
         value = definition.getActiveInput(name).getValue()

@@ -183,7 +183,7 @@ class Backend(ABC):
 
     @cached_property
     def integrals(self) -> Array:
-        """Integrals of the integrated materials' values by the equations, (N, 3)."""
+        """Integrals of the equations for the materials in `integrated`, (N, 3)."""
         batch, weights = self.integrated
         views = batch.where(np.arange(len(weights)) * weights.shape[1])
         return cast(ScatteringSpec, self.spec).integral(views)
@@ -653,7 +653,8 @@ HALF_CUT = Term(2.0**-10, "half floats, cut off")  # llvmpipe truncates
 # A ray's point has an angular error, which the logarithm of a lobe multiplies by at most this slope:
 # twice 1 / alpha of a distribution, whose alpha is at least 0.4, and 3 for Fresnel, shadowing and the cosine.
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
-# In each of two cosines of at least 0.05 five roundings, times 20 by s / t, and times 2 by s and the cosine.
+# Each of two cosines has five roundings. They count 20 times in s / t, since cosines are at least 0.05, and
+# once each in s and in the cosine factor.
 TWO_COSINES = roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)")
 EXACT = sum_in(Quantity.DIFFERENCE, roundings(28, "(14, of numbers up to 2)"), TWO_COSINES)
 EXACT_ALBEDO = sum_in(Quantity.ALBEDO, roundings(21 * 1.02, "of numbers up to 1.02"))
@@ -775,7 +776,7 @@ def lit_pairs(normal: Array, scene: Scene) -> Pairs:
 
 
 class CyclesPictures(Spheres):
-    """Cycles's pictures of a rough diffuse node, whose closure is its own."""
+    """Pictures of a rough diffuse node by Cycles, which renders it with a closure of its own."""
 
     abilities = Ability.DIFFUSE | Ability.LIGHT
     own_errors: ClassVar[Errors] = {

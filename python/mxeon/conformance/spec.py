@@ -112,7 +112,7 @@ class Ability(Flag):
     EMISSION = auto()
     SURFACE = auto()  # an emitting surface
     MEDIUM = auto()
-    IMPLEMENTATION = auto()  # only the implementation of a node without values
+    IMPLEMENTATION = auto()  # a node without values, judged only by having an implementation
     OUTPUT = auto()
     # Required by checks: pairs at the edges of the domain, and branches of lighting.
     CLIENT = auto()  # the whole main with a client's bindings

@@ -10,7 +10,7 @@ from mxeon.conformance import results
 from mxeon.conformance.results import Cause, Diagnosis, Difference, Kind, Region, Result, Run
 from mxeon.shaders.nodes import FLAG
 
-NAMED = 3  # names in a list, before the number of the rest
+NAMED = 3  # maximum names in a list; the rest are only counted
 PARTS_SHOWN = 3  # maximum parts shown of two graphs that differ
 AS_SPECIFIED = "looks as specified"
 

@@ -72,7 +72,7 @@ HOSTS = (
         engine="hosts.shadewire.ShadewireHost",
         scenes=(SIDE, BACK),
     ),
-    # Its environment has noise. No closure of Cycles is QON for s < 0.
+    # Cycles samples an environment with noise. None of its closures is QON for s < 0.
     Row(
         "cycles",
         "osl",

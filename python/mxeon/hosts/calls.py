@@ -44,7 +44,7 @@ KINDS = {
 @dataclass(frozen=True)
 class Prelude:
     statements: str
-    inputs: dict[str, str]  # types of the parameters and geometric properties that they read
+    inputs: dict[str, str]  # types of the parameters and of the geometric properties it reads
 
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader

@@ -42,7 +42,7 @@ float tracer_distance(vec3 p)
     return min(max(length(q) - 0.72, -groove), foot);
 }
 
-// The next surface along a ray, from outside or from inside; no less than TRACER_FAR for none.
+// Distance to the next surface, from outside or from inside; TRACER_FAR if there is none.
 float tracer_hit(vec3 origin, vec3 direction)
 {
     float t = 0.0;

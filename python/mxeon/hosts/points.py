@@ -42,7 +42,7 @@ FORMATS = {"float": "f4", "vec2": "2f4", "vec3": "3f4", "vec4": "4f4", "int": "i
 @dataclass(frozen=True)
 class Output:
     kind: str  # GLSL type
-    name: str  # name for the capture
+    name: str  # name in the vertex stage, by which it is captured
     variable: str  # name in the pixel stage
 
 

@@ -34,7 +34,7 @@ except ImportError:
     mtlx = None
 
 MODELS = ("surface", "surface_unlit")  # a tree of closures, or emission alone
-SKIPPED = ": not evaluated"  # ends the comment behind a black lobe
+SKIPPED = ": not evaluated"  # ends shadewire's comment on a lobe that it leaves black
 EMITTED = "shadewire_eval_emission(surface, V, N)"
 BSDF = "shadewire_eval_bsdf(surface, L, V, N)"
 # Responses by branch: nothing is transmitted, and nothing scattered is emitted.

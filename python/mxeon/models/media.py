@@ -142,8 +142,9 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
 
         f_p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2)),  cos = -dot(wo, wi)
 
-    The denominator is (1 - |g|)^2 + 2 |g| (1 - cos), with the sign of g on the cosine, and 1 - g^2 a product: neither
-    cancels near g = 1 or -1. [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase Function.
+    The denominator is computed as (1 - |g|)^2 + 2 |g| (1 - cos), with the cosine negated for g < 0, and 1 - g^2 as a
+    product: neither cancels near g = 1 or -1. [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase
+    Function.
 
         >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
         0.477465

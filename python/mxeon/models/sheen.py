@@ -12,7 +12,8 @@ Raises `ValueError`, which names the first bad element, if an argument leaves it
 not broadcast.
 
 The directional albedo of the Conty-Kulla sheen is an integral over the half vector, at latitude l above the surface and
-azimuth phi from wo, one in closed form, one by quadrature:
+azimuth phi from wo. The integral over phi has a closed form, used where it does not cancel; the one over l is a
+quadrature:
 
     E = integral of D(l) w mu_i / (mu_i + mu_o - mu_i mu_o) cos(l) dphi dl,
     w = wo . wh = mu_o sin(l) + s_o cos(l) cos(phi),  mu_i = 2 w sin(l) - mu_o

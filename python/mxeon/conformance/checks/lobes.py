@@ -56,7 +56,7 @@ def of_model(*names: str) -> Specs:
     return family(DiffuseModelSpec, lambda spec: spec.model in names)
 
 
-# Sets of nodes for the rows.
+# Sets of nodes, for the checks in the table below.
 FILMS, TRANSMITTING = family(FilmSpec), family(TransmissionSpec)
 CLEAR = family(TransmissionSpec, lambda spec: spec.reflects)  # also reflect
 DARK = TRANSMITTING - CLEAR  # reflect nothing

@@ -110,7 +110,10 @@ def anisotropy(case: Case) -> Compared:
 
 
 def reflected_sky(case: Case) -> Iterator[Compared]:
-    """Means of the sky under each lobe; retroreflection must give the mirrored view's mean. Factors cancel."""
+    """Means of the sky weighted by each lobe; a retroreflective lobe must give the mean of the mirrored view.
+
+    Each mean is a quotient of two albedos, so factors of the lobe cancel.
+    """
     views = case.backend.take(case.of(FacetSpec).stretched)[0].first(SKIES)
     part, weights = case.of(FacetSpec).lit(views, case.backend.counts.nodes)
     shape = (*weights.shape, 3)
@@ -458,8 +461,8 @@ def rough_refraction(case: Case) -> Compared:
 def through_sphere(wo: Array, index: Array, facet: Array = UPWARD) -> Array:
     """Direction of a view after a solid sphere refracts it twice, (N, 3), at its normal or at a facet.
 
-    The ray meets the far surface at the same angle, so it turns by the same amount twice: by a half turn about
-    the ray inside.
+    The ray meets the far surface at the same angle, so both refractions turn it by the same amount: together they
+    are half a turn of the incoming ray about the ray inside.
     """
     inner = transmission.refraction_direction(wo, facet, index)
     return np.asarray(wo - 2.0 * np.sum(wo * inner, axis=1, keepdims=True) * inner)
@@ -510,7 +513,7 @@ dropped = controls.with_inputs("the film is dropped", thinfilm_thickness=0.0)
 
 
 def curves(films: microfacets.Films, case: Case) -> Compared:
-    """Curves: values in mirrored lights over a mirror's.
+    """Curves F of films: values in the mirror direction divided by those of a mirror.
 
     The lobes are so smooth that their compensation is 1 for any average.
     """
@@ -571,7 +574,7 @@ def diagnose_average(case: Case) -> Diagnosis:
 
 
 def film_average(case: Case) -> Compared:
-    """F_ss of films with a curve away from 0."""
+    """F_ss of films, for pairs whose curve F is not near 0."""
     batch = film_views(case.of(FilmSpec), microfacets.FRINGED)
     _, measured = _averages(case, case.direct, batch)
     F, expected = _averages(case, case.expected, batch)

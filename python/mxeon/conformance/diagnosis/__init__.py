@@ -106,7 +106,7 @@ def explain(
         if least <= SAME * models[own.title] and least <= enough:
             return Diagnosis((faults[order[0]].cause(least),), models)
     nearest = next(each for each in candidates if each.title == ranking[0][0])
-    # A model that is near on average may be far off for the wrong values.
+    # The model that is nearest on average may still be far from the values that are wrong.
     near, far = (
         max(tolerance.metric(each.measured, model.values(each.batch)).max() for each in short)
         for model in (nearest, own)

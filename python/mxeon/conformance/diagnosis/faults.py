@@ -35,7 +35,7 @@ NO_FAULT = Fault("")
 
 
 def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Batch]:
-    """A change of an input, if the batch has it."""
+    """A change of one input; batches without this input stay unchanged."""
 
     def batch(batch: Batch) -> Batch:
         if name not in batch.inputs:

@@ -28,7 +28,7 @@ CLEARER = 0.5  # a range with two ends must reduce that share by this factor ove
 CHANCE = 12.0  # least logarithm of the odds against finding a range by chance
 LARGEST = 0.6  # largest share of the pairs, or of their values, in a reported region
 DENSITY = 0.1  # least share of wrong pairs in a region
-UPRIGHT = 1e-3  # tangent of a half vector along the normal: its cosine rounds to about 1
+UPRIGHT = 1e-3  # a half vector counts as upright up to this tangent; its cosine rounds to about 1
 COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
 
 

@@ -32,7 +32,7 @@ LATTICE = 32  # rows and columns of judged pixels if each has a different materi
 MOST = 2000  # up to this many pixels are all judged then; an integral takes a millisecond
 
 PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # generators draw at most three components
-TARGETS = ("glsl", "essl", "vulkan", "wgsl")  # shaders of an output draw its value
+TARGETS = ("glsl", "essl", "vulkan", "wgsl")  # targets whose shaders can draw a node's value
 
 
 class HostValues:

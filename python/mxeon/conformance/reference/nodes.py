@@ -211,7 +211,7 @@ class ShadingPoints:
         return value
 
     def _albedo(self, albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-        """Albedo at directions; for a picture of one material by a series, unless it is fast to compute."""
+        """Albedo at each direction. For a picture of one material it comes from a series, unless it is fast to compute."""
         closed = not node.fitted and node.integral is None
         varied = any(len(value) > 1 for value in inputs.values())
         if varied and not closed and len(wo) > self.most:
@@ -232,7 +232,7 @@ class ShadingPoints:
         # Cosines of symmetric points of a sphere differ by roundings.
         mu = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
         upright = _directions(mu, np.zeros(len(mu)))
-        # All scenes of a document use them.
+        # All scenes of a document share these albedos.
         integrated = partial(albedo_at, albedo, node, upright, inputs)
         return ALBEDOS.value((contents(upright), *key), integrated)
 
@@ -410,7 +410,7 @@ def plain(value: Plain) -> Array | bool | str | None:
 Value: TypeAlias = Array | bool | str | Bsdf | Mapping[str, Array] | None
 Operation: TypeAlias = tuple[tuple[str, ...], Callable[..., Value]]  # its inputs, the function
 
-# Types of several components, and how many.
+# Number of components of each type with more than one.
 WIDTHS = {"vector2": 2, "color3": 3, "vector3": 3, "color4": 4, "vector4": 4}
 
 

@@ -22,7 +22,7 @@ LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # smallest values of random pairs
 WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # smallest values of integrated lobes
 MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # largest outputs of the node for artistic roughness
 FRONT = np.array([1.0, 0.0, 1.0, 0.5])  # share of R, TT, TRT and TRRT+ from the viewer's side
-STEP = 1e-6  # change of an angle that measures slopes
+STEP = 1e-6  # change of an angle in the differences that measure slopes
 LEAST = 0.01  # errors of smaller values are relative to this
 
 # fmt: off

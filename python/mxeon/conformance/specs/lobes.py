@@ -182,7 +182,7 @@ class PbrSpec(ScatteringSpec):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """A transmitting lobe instead of a reflecting one; and zero."""
+        """Zero; for a lobe that transmits, also a reflection instead."""
         if not self.row.transmits:
             return (spec.ZERO,)
         opaque = replace(self, row=replace(self.row, transmits=False))

@@ -349,10 +349,10 @@ def _with_one_alpha(batch: Batch) -> Batch:
 def _has_curve(batch: Batch) -> samples.Mask:
     """Pairs whose Fresnel curve is accurate in float32.
 
-    Lengths of directions differ from 1 by a rounding, and the cosines of both with the half vector by the rounding
-    over |wo + wi|: for nearly opposite directions, a correct shader may use either cosine. At grazing only
-    color90 remains, and if it is dark, a curve that rises from 0 has few digits; also, shaders clamp the
-    cosine to GRAZING. If the printed curve is below 0, the text does not define the reflection.
+    The lengths of directions differ from 1 by a rounding, so wo . wh and wi . wh differ by the rounding over
+    |wo + wi|. A correct shader may use either, but they differ too much for nearly opposite directions. At grazing
+    only color90 remains; if it is dark, the curve rises from nearly 0 and has few digits. Shaders also clamp the
+    cosine to GRAZING. Where the printed curve is below 0, the text does not define the reflection.
     """
     half = np.linalg.norm(batch.wo + batch.wi, axis=1)
     apart = np.abs((batch.wo**2).sum(axis=1) - (batch.wi**2).sum(axis=1))
@@ -476,7 +476,8 @@ TRANSMISSION_SPECS = tuple(
 
 # Largest errors of the shader's thin film, for cosines from 0.1 and up to 1000 nm, found by
 # tools/fits/thin_film.py.
-# Average over visible facets in three cosines and F_ss in three, times the lost light.
+# Error of the average over the visible facets, plus the error of F_ss times the lost light. Each is a sum over
+# three cosines.
 FILM_SEEN = 7.82e-2
 FILM_OILED = 6.92e-2  # the same for films with index >= 1.25
 FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5

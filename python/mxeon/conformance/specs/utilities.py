@@ -28,7 +28,7 @@ from mxeon.shaders.nodes import INVERSIONS, Node, connection_text, document_text
 
 NAME, COLOR = "value", "color"  # names of the node and of its conversion to a color
 TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # input types by shape
-SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # edges of most inputs
+SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # special values of most inputs
 PIGMENTS = (0.01, 0.5, 1.0)
 TEMPERATURES = (800.0, 1000.0, 1667.0, 2222.0, 4000.0, 6504.0, 25000.0)
 BEYOND = (-1.0, 0.0, 0.5, 1.0, 2.0, 1e3)  # values for inputs that may leave their range

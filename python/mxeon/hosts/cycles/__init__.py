@@ -174,7 +174,7 @@ def _graph_function(shader: generation.Shader, inputs: Inputs) -> tuple[str, lis
     before = head[: head.rindex("\nshader ")]
     words = set(re.findall(r"\w+", statements + call[1]))
     count = max([np.shape(value)[0] for value in inputs.values() if np.ndim(value)], default=1)
-    parameters, locals_ = ["float mxeon_row"], []  # a graph may read nothing
+    parameters, locals_ = ["float mxeon_row"], []  # one parameter even if the graph reads no inputs
     arguments: list[ArrayLike] = [np.zeros(count)]
     for port in shader.inputs:
         if port.name not in words:

@@ -131,7 +131,7 @@ NAMES = {"N": "normal", "dPdu": "tangent", "dPdv": "bitangent"}
 def columns_of(
     shader: Shader, inputs: Inputs, turned: Callable[[Array], Array] = lambda rows: rows
 ) -> Mapping[str, Column]:
-    """Columns of the surface and of a shader's inputs by variable name, with turned directions."""
+    """Columns of the surface and of a shader's inputs by variable name; `turned` is applied to directions."""
     columns = {
         each: Column(kind, inputs.get(NAMES[each], value), declared=False)
         for each, (kind, value) in SURFACE.items()

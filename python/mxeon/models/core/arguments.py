@@ -27,8 +27,8 @@ _LARGEST = float(np.finfo(np.float64).max)
 _BELOW_ONE, _ABOVE_ZERO = float(np.nextafter(1.0, 0.0)), float(np.nextafter(0.0, 1.0))
 _SHARE = (0.0, 1.0, "[0, 1]")
 _POSITIVE = (0.0, 1e50, "[0, 1e50]")  # fourth powers fit into float64
-_WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # exponents and squares fit
-_LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # products and quotients fit
+_WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # exponents and squares fit into float64
+_LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # products and quotients fit into float64
 
 
 # Ranges that rounding may exceed.
@@ -235,12 +235,12 @@ def checked_numbers(**values: ArrayLike) -> list[Array]:
 
 
 def checked_vector(name: str, value: ArrayLike) -> Numbers:
-    """Argument inside its range, with at least one axis."""
+    """Argument as numbers inside the range for its name, with at least one axis."""
     return with_axis(checked(name, value))
 
 
 def checked_color(name: str, value: ArrayLike) -> Numbers:
-    """Argument inside its range, with an axis of at least one channel."""
+    """Argument as a color inside the range for its name; the last axis has at least one channel."""
     color = checked_vector(name, value)
     if not color.shape[-1]:
         raise ValueError(f"{name} must have at least one channel; got shape {tuple(color.shape)}")
@@ -248,7 +248,7 @@ def checked_color(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_rgb(name: str, value: ArrayLike) -> Numbers:
-    """Argument inside its range, as red, green and blue; a single channel is used for all."""
+    """Argument as red, green and blue inside the range for its name; a single channel is used for all."""
     color = checked_color(name, value)
     if color.shape[-1] not in (1, 3):
         raise ValueError(f"{name} must have 1 or 3 channels; got shape {tuple(color.shape)}")

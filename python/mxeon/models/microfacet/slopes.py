@@ -125,7 +125,7 @@ class Slopes:
 
 
 def _squared(slope: tuple[Array, Array]) -> Array:
-    """g of a slope at r = 1."""
+    """Squared length of a slope: the g of `Slopes.rays` for the slope at r = 1."""
     return slope[0] ** 2 + slope[1] ** 2
 
 

@@ -145,10 +145,10 @@ def _unscaled(combine: Combine) -> tuple[Variant[Scattering], ...]:
 
 
 def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant[Scattering], ...]:
-    """A combination of a sum whose albedo is clamped to 1, over a base or not.
+    """The variant in which the albedo of a sum is clamped to 1; `layered` if the sum lies over a base.
 
-    MaterialX's `add` clamps the throughput to at least 0. The text leaves the throughput of a sum open, but not a
-    layer that reflects more light than it receives.
+    MaterialX's `add` clamps the throughput to at least 0. The text leaves the throughput of a sum open, but defines
+    a layer that reflects more light than it receives, so the variant is wrong over a base.
     """
     clamped = partial(
         combine, finish=lambda lobe: replace(lobe, throughput=np.maximum(lobe.throughput, 0.0))

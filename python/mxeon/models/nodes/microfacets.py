@@ -33,7 +33,7 @@ REFLECTION, NONE = {"scatter_mode": "R"}, dict[str, str]()
 
 @dataclass(frozen=True)
 class MicrofacetLobe:
-    """Functions of a microfacet node of its inputs, under a thin film if the inputs include one."""
+    """A microfacet node: its values and albedos from its inputs, under a thin film if the inputs include one."""
 
     category: str
     fresnel: Callable[[Array, Inputs], Array]  # its curve F
@@ -54,7 +54,7 @@ class MicrofacetLobe:
         return self.fresnel(np.ones(len(wo)), inputs), inputs[self.edge] if self.edge else 1.0
 
     def fitted(self, wo: Array, inputs: Inputs) -> Array:
-        """Albedo as in MaterialX's throughput, per channel."""
+        """Albedo by the fit that MaterialX's throughput uses, per channel."""
         fit = layer_albedo(wo, inputs, *self.ends(wo, inputs), self._at_view(wo, inputs))
         return np.asarray(fit * inputs.get("tint", np.ones(3)))
 

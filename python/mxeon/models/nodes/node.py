@@ -111,7 +111,7 @@ class Node(Generic[Function]):
     title: str
     category: str
     inputs: Collection[str]  # names or paths of the inputs that the functions read
-    value: Function  # its values from these inputs
+    value: Function  # computes the node's values from these inputs
     variants: tuple[Variant[Function], ...] = field(default=(), kw_only=True)
 
 

@@ -48,7 +48,7 @@ def _zeltner(wo: Array, inputs: Inputs) -> Array:
 
 
 CONTY_KULLA = partial(gray, conty_kulla_albedo)
-# By the name of the node's row.
+# Variants by the name of the node's row.
 BSDL_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
     "dielectric": (
         Variant(
@@ -122,7 +122,7 @@ SHEEN: Variant[Scattering] = Variant(
     albedo=lambda wo, i: gray(_zeltner, wo, {**i, "color": np.square(i["color"])}),
     above=True,
 )
-# By the name of the node's row.
+# Variants by the name of the node's row.
 CYCLES_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
     "dielectric": (
         Variant(

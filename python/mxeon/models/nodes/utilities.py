@@ -132,7 +132,7 @@ def _hair_roughness(inputs: Inputs) -> dict[str, Array]:
 
 
 def _unsquared_variance(inputs: Inputs) -> dict[str, Array]:
-    """Roughnesses with the standard deviation instead of the variance."""
+    """Roughnesses whose first component is the standard deviation instead of the variance."""
     pairs = _hair_roughness(inputs)
     return {
         name: np.stack([np.sqrt(pair[..., 0]), pair[..., 1]], -1) for name, pair in pairs.items()
