@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scripts for coefficients, figures and pages; users install none of them."""
+"""Scripts that make coefficients, figures and pages. They are not part of the package."""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws comments and docstrings at random, to be read without their code.
+"""Prints a random sample of comments and docstrings, to be read without their code.
 
     python -m tools.comments SEED COUNT FOLDER ...
 
-A reader marks each that has to be read twice. Folders are such as `tools` or `python/mxeon/models`; COUNT is for each.
+A reader marks those that have to be read twice. COUNT is the number per FOLDER, such as `python/mxeon/models`.
 """
 
 import ast
@@ -19,7 +19,7 @@ SUFFIXES = (".py", ".glsl", ".osl", ".ts")
 
 
 def texts(path: Path) -> list[str]:
-    """The docstrings and comments of a file; a comment of several lines is one."""
+    """The docstrings and comments of a file. Consecutive comment lines count as one comment."""
     text, found, last = path.read_text(encoding="utf-8"), [], 0
     if path.suffix == ".py":
         nodes = (n for n in ast.walk(ast.parse(text)) if hasattr(n, "body"))

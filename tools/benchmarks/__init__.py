@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Benchmarks of eonlib and mxeon; docs/performance.md has the figures, the goals and what was learned.
+"""Benchmarks of eonlib and mxeon; docs/performance.md has results, goals and conclusions.
 
 | command | what it writes | minutes |
 |---|---|---|
 | `python -m tools.benchmarks [GROUP ...]` | figures, goals and checks of each group, to the terminal | 16 |
 | `... shaders` | EON in GLSL, per call | 0.1 |
 | `... materials` | frame and first frame of generated materials, eonlib / stock | 8 |
-| `... registers` | registers and cycles of the same on an AMD GPU, by Mesa's compiler | 1 |
+| `... registers` | registers and cycles of these materials on an AMD GPU, by Mesa's compiler | 1 |
 | `... models` | the NumPy models: values a second | 1 |
 | `... command` | imports, `--help`; `mxeon check`: time and memory | 6 |
 | `python -m tools.benchmarks.sampling` | the tables of docs/sampling.md, to the terminal | 2 |

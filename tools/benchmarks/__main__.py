@@ -16,7 +16,7 @@ from mxeon.errors import NotRun
 from tools.benchmarks import rounds
 from tools.benchmarks.command import CACHE, ONE
 
-QUICK = {  # sizes of each group with --quick
+QUICK = {  # arguments of each group's `measure` with --quick
     "shaders": {"rounds": 5},
     "materials": {"processes": 3, "size": 256},
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
@@ -37,7 +37,7 @@ def main(arguments=None):
     for name in options.groups or QUICK:
         sizes = dict(QUICK[name]) if options.quick else {}
         try:
-            with patch.dict(os.environ, {CACHE: "true"}):  # otherwise compilations come from a file
+            with patch.dict(os.environ, {CACHE: "true"}):  # measure real compilations
                 group = import_module(f"tools.benchmarks.{name}").measure(**sizes)
         except NotRun as reason:
             print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command as a user starts it: imports, `--help`, and `mxeon check` without and with the driver's shaders cached.
+"""Benchmarks of the command line: imports, `--help`, and `mxeon check` with a cold and a warm cache.
 
-Each row of JOBS has its own cache folder, so that rows do not depend on earlier runs.
+Each row of JOBS has its own folder for the driver's shader cache, so rows do not affect each other.
 """
 
 import json
@@ -18,16 +18,16 @@ import numpy as np
 from tools.benchmarks.rounds import Check, Group, figure, interleave
 
 CACHE, FOLDER = "MESA_SHADER_CACHE_DISABLE", "MESA_SHADER_CACHE_DIR"
-MEMORY = 600.0  # MiB
+MEMORY = 600.0  # goal for peak memory in MiB
 ONE, REPORT, BOTH = "gl, 2 workers", "gl, --report", "gl, two libraries"
-# Options of `mxeon check`, and goals in seconds without and with an empty cache.
+# Options of `mxeon check`, goal in seconds with a warm cache, goal in seconds with a cold cache.
 JOBS = {
     ONE: ((), 9.0, 30.0),
     REPORT: (("--report", "{folder}/report-{turn}"), None, None),
     BOTH: (("--library", "eonlib", "--library", "stock"), None, None),
     "gl, --node all": (("--node", "all"), 25.0, 40.0),
 }
-# Starts the command, and writes the KiB of its largest process. This launcher must be small: Linux
+# Starts the command, and prints the peak memory of its largest process in KiB. This launcher must be small: Linux
 # counts the memory of the starting process as the program's.
 LAUNCHER = """
 import resource, subprocess, sys
@@ -39,7 +39,7 @@ sys.exit(status)
 
 @dataclass(frozen=True)
 class Job:
-    """Seconds and MiB of one run, and the number of failures."""
+    """Duration of a run in seconds, its peak memory in MiB, and its number of failed checks."""
 
     seconds: float
     memory: float
@@ -47,7 +47,7 @@ class Job:
 
 
 def job(options, cache):
-    """Run `mxeon check` with options and the driver's folder."""
+    """Run `mxeon check` with the given options and folder for the driver's shader cache."""
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
     command = [sys.executable, "-P", "-m", "mxeon", "check", "--json", "--workers", "2", *options]
     start = time.perf_counter()
@@ -66,7 +66,7 @@ def job(options, cache):
 
 
 def starting(rounds):
-    """Figures of imports and of the command's help, each in its own process."""
+    """Times of imports and of `mxeon --help`, each in a new process."""
     codes = {
         "numpy": "import numpy",
         "mxeon": "import numpy, mxeon, mxeon.models.table",
@@ -97,7 +97,7 @@ def measure(rounds=3, jobs=tuple(JOBS)):
             figure(name, "s", usual[name], goal),
             figure(f"{name}, largest process", "MiB", [max(each.memory for each in runs)], MEMORY),
         ]
-        if name != BOTH:  # stock MaterialX fails
+        if name != BOTH:  # failures are expected with stock MaterialX
             checks.append(Check(name, max(each.wrong for each in (first, *runs)), 0.0))
     one = np.median(usual[ONE])
     if REPORT in usual:

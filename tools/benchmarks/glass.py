@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Walks through a rough ball of glass in a white furnace, drawn by eonlib's text.
+"""Random walks through a rough glass ball in a white furnace, sampled by eonlib's path tracing code.
 
     python -m tools.benchmarks.glass
 
-The right weight of a walk is 1. On a sphere, light meets the surface again at the angle at which it left it, so a walk
-is a chain of draws. Radiance lacks the factor of the squared index.
+The expected weight of a walk is 1. Light crosses a ball from surface to surface at equal angles, so
+samples can be chained without tracing rays. Radiance omits the factor of the squared index.
 """
 
 import numpy as np
@@ -39,7 +39,7 @@ ROWS = {
 
 
 def walks(text, rng):
-    """Weights of walks from a parallel beam, and the largest weight of a draw."""
+    """Total weights of walks that start in a parallel beam, and the largest weight of one sample."""
     mu = np.sqrt(rng.random(WALKS))
     total, largest, active = np.zeros(WALKS), 0.0, np.arange(WALKS)
     weights, inside = np.ones(WALKS), False
@@ -60,7 +60,7 @@ def walks(text, rng):
 
 
 def main():
-    """Print a table of Markdown: mean and standard deviation of a walk, and the largest draw."""
+    """Print a Markdown table: mean and deviation of the walks' weights, largest weight of a sample."""
     print("| node, alpha | mean | deviation | largest draw |\n|---|---|---|---|")
     for name, document in ROWS.items():
         total, largest = walks(paths(open_engine("gl"), document), np.random.default_rng(1))

@@ -21,10 +21,10 @@ from mxeon.shaders.scene import SIDE
 from tools.benchmarks.rounds import Group, clock_of, figure, interleave
 
 SIZE = 512
-FIRST = 8  # pixels along a side of a first frame
-FRAMES = 3  # frames of each library in a process, after a dropped one
-PROCESSES = 7  # llvmpipe's code for the same text is 1/6 to 2/5 slower in one process of six
-MESH = 128  # squares along a side of the mesh, whose cost is negligible
+FIRST = 8  # width and height of the first frame in pixels
+FRAMES = 3  # timed frames per library and process, after one warm-up frame
+PROCESSES = 7  # in one process of six, llvmpipe's code is 1/6 to 2/5 slower
+MESH = 128  # squares along a side of the mesh; its cost is negligible
 LIBRARIES = ("eonlib", "stock")
 
 
@@ -67,7 +67,7 @@ OTHERS = {
 DIFFUSE = {"oren_nayar": _lobe(OREN_NAYAR, roughness=0.6, **{FLAG: True})}
 NODES = DIFFUSE | BARE | FILMED | OTHERS
 
-# Largest ratios eonlib / stock of time.
+# Goals: largest ratio of eonlib's time to stock's.
 TIMES = (
     dict.fromkeys(DIFFUSE, 1.0)
     | dict.fromkeys(BARE, 1.03)
@@ -79,7 +79,7 @@ TIMES = (
 class Frame:
     """A material on the sphere, drawn repeatedly with its uniforms and buffers in place.
 
-    It draws like `mxeon.hosts.gl`, with the same functions, but separates the setup.
+    It uses the functions of `mxeon.hosts.gl`, but separates setup from drawing.
     """
 
     def __init__(self, host, generated, size):
@@ -91,7 +91,7 @@ class Frame:
             if name in program:
                 host._texture(raster.WHITE_TEXELS, False).use(location=unit)
                 program[name].value = unit
-        # A mesh with a vertex at each pixel center of a small picture with a margin.
+        # The mesh has a vertex at each pixel center of a small picture with a margin.
         width = MESH + 2 * points.MARGIN
         corner = np.arange(width * width).reshape(width, width)[:-1, :-1].ravel()
         indices = (corner[:, None] + [0, 1, width, width, 1, width + 1]).astype("u4")
@@ -117,7 +117,7 @@ class Frame:
 
 
 def run(node, size, libraries):
-    """The device, and seconds of compilation and of a frame by library, in this order, in a process of one material."""
+    """Device, seconds to compile and seconds per frame, both by library; called in a new process."""
     host = gl.GlHost()
     device = host.identity().device
     clock = clock_of(device)
@@ -141,7 +141,7 @@ def run(node, size, libraries):
 
 
 def measure(processes=PROCESSES, size=SIZE, nodes=tuple(NODES)):
-    """The `Group` of materials, each in `PROCESSES` processes."""
+    """Measure each material in `processes` separate processes, and return the `Group`."""
     figures = []
     turns = [LIBRARIES[:: -1 if turn % 2 else 1] for turn in range(processes)]
     with ProcessPoolExecutor(1, get_context("spawn"), max_tasks_per_child=1) as pool:

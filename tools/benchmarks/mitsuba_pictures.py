@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Time and noise of pictures that Mitsuba renders with the BSDFs of mxeon.
+"""Render time and noise of Mitsuba with mxeon's BSDFs.
 
     python -m tools.benchmarks.mitsuba_pictures
 
-Writes the tables of docs/mitsuba.md (a ball under an even sky with each BSDF) and of docs/sampling.md: EON scenes with 50
-bounces and multiple importance sampling, with exact samples and with cosine samples. Everything runs in llvm_ad_rgb.
-Times are the least processor time of a compiled kernel over some pictures; variances are measured over independent
-pictures, and averaged over pixels and channels.
+Writes two tables. docs/mitsuba.md: a ball under a uniform sky with each BSDF. docs/sampling.md: EON
+scenes with 50 bounces and multiple importance sampling, with exact and with cosine samples. Times are
+the least processor time of several pictures in llvm_ad_rgb, without compilation. Variances are measured
+over independent pictures, and averaged over pixels and channels.
 """
 
 import time
@@ -34,7 +34,7 @@ BSDFS = {
 
 
 class EonByCosinePlugin(RoughDiffusePlugin):
-    """EON, sampled by the cosine."""
+    """EON with cosine-weighted sampling."""
 
     brdf = staticmethod(EonPlugin.brdf)
 
@@ -61,7 +61,7 @@ def eon(kind, color, roughness):
 
 
 def cornell_box(mi, kind, roughness):
-    """Mitsuba's Cornell box, whose surfaces are EON."""
+    """Mitsuba's Cornell box with EON on its diffuse surfaces."""
     scene = mi.cornell_box()
     for name, each in scene.items():
         if isinstance(each, dict) and each.get("type") == "diffuse":
@@ -71,7 +71,7 @@ def cornell_box(mi, kind, roughness):
 
 
 def balls(mi, kind, roughness):
-    """Three balls on the ground under an even sky."""
+    """Three balls on the ground under a uniform sky."""
     clay = {"type": "twosided", "bsdf": eon(kind, (0.8, 0.8, 0.8), roughness)}
     ground = {"type": "rectangle", "to_world": mi.ScalarTransform4f().scale([20, 20, 1])}
     spheres = {
@@ -90,7 +90,7 @@ SCENES = {"Cornell box": cornell_box, "three balls under an even sky": balls}
 
 
 def rendered(mi, scenes, pictures, samples):
-    """Pictures of each scene, and their processor times, rendered in turns; a first one is dropped."""
+    """Pictures and processor times by scene. Scenes take turns; the first round is a warm-up."""
     found = {name: [] for name in scenes}
     for seed in range(pictures + 1):
         for name, scene in scenes.items():
@@ -101,7 +101,7 @@ def rendered(mi, scenes, pictures, samples):
 
 
 def time_table(mi):
-    """The table of docs/mitsuba.md."""
+    """Lines of the table in docs/mitsuba.md: render time of each BSDF."""
     import_module("drjit").set_thread_count(1)
     scenes = {name: mi.load_dict(ball(mi, {"type": name} | row)) for name, row in BSDFS.items()}
     times = {n: min(seconds) for n, (_, seconds) in rendered(mi, scenes, 5, 64).items()}
@@ -111,7 +111,7 @@ def time_table(mi):
 
 
 def noise_table(mi):
-    """The table of docs/sampling.md."""
+    """Lines of the table in docs/sampling.md: noise and time of cosine / exact sampling."""
     head = ("roughness", "variance", "time", "variance times time")
     yield f"| cosine / exact, Mitsuba {version('mitsuba')} | {' | '.join(head)} |\n{'|---' * 5}|\n"
     integrator = {"type": "path", "max_depth": 50, "rr_depth": 50}
@@ -137,7 +137,7 @@ def main():
     mi.set_variant("llvm_ad_rgb")
     register()
     register_plugin(mi, COSINE, EonByCosinePlugin)
-    # Measure noise first: timing leaves Mitsuba a single thread.
+    # Measure noise first: `time_table` permanently limits Mitsuba to one thread.
     for page, mark, rows in (
         ("sampling.md", "mitsuba", noise_table),
         ("mitsuba.md", "time", time_table),

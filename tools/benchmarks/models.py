@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The NumPy models on one thread, in float64, and under `jax.jit` in float32: values a second of processor time."""
+"""Values per second of the models: NumPy in float64 on one thread, and `jax.jit` in float32."""
 
 import sys
 import time
@@ -11,16 +11,16 @@ from mxeon.models import conductor_brdf, dielectric_brdf, eon_brdf, generalized_
 from mxeon.models.sheen import zeltner_brdf
 from tools.benchmarks.rounds import Check, Group, figure, interleave
 
-VALUES = 1_000_000  # pairs for values per second
-COLORS, R = np.array([0.2, 0.5, 0.8]), 0.7  # one material for all pairs
+VALUES = 1_000_000  # number of pairs of directions
+COLORS, R = np.array([0.2, 0.5, 0.8]), 0.7  # color and roughness of the shared material
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 ROUNDINGS = 3e-6  # tolerance of pi f cos in float32
 ONE, OWN, JIT = "one material", "a material each", "jax.jit, float32"
-SECONDS = {ONE: 0.5, OWN: 3.0}  # goals of a million pairs of microfacets
+SECONDS = {ONE: 0.5, OWN: 3.0}  # goals for a million pairs with microfacet models
 
 
 def models(wo, wi, material):
-    """Each model over these pairs, with one material for all or one each."""
+    """Functions that evaluate each model for these pairs; `material` is ONE or OWN."""
     rng, count = np.random.default_rng(2), len(wo)
     colors, alpha, r = COLORS, np.array([0.3, 0.3]), R
     (n, k), ior = GOLD, 1.5
@@ -38,7 +38,7 @@ def models(wo, wi, material):
 
 
 def traced(wo, wi):
-    """The models over these pairs with one material, compiled by JAX; none without it."""
+    """Functions compiled by JAX that evaluate the models with one material; empty without JAX."""
     try:
         import jax
     except ImportError:
@@ -59,7 +59,7 @@ def traced(wo, wi):
 
 
 def measure(rounds=3, pairs=VALUES):
-    """The `Group` of values per second and of the seconds for a million pairs."""
+    """Measure values per second and seconds per million pairs, and return the `Group`."""
     z, phi = np.random.default_rng(1).random((2, 2, pairs)) * [[[1.0]], [[2.0 * np.pi]]]
     S = np.sqrt(1.0 - z * z)
     wo, wi = np.stack([S * np.cos(phi), S * np.sin(phi), z], axis=-1)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Registers, instructions and estimated cycles of materials on an absent GPU, eonlib / stock.
+"""Registers, instructions and estimated cycles of materials on an AMD GPU, eonlib / stock.
 
-Mesa's driver RADV compiles for a chip by name, `RADV_FORCE_FAMILY`, without the hardware, and reports statistics of the
-code. Shaders are compiled for one light, since the compiler may unroll the loop over lights for only one of the
-libraries. The estimate of cycles counts the body of a loop eight times, so the loop over a film's nodes is removed.
+No GPU is needed: Mesa's driver RADV compiles for the chip in `RADV_FORCE_FAMILY`, and reports statistics
+of the code. Shaders have one light, because the compiler may unroll the loop over lights for only one of
+the libraries. Estimated cycles count a loop's body eight times, so the loop of films is removed for them.
 """
 
 import os
@@ -22,12 +22,12 @@ from tools.benchmarks.materials import BARE, DIFFUSE, LIBRARIES, NODES, OTHERS
 from tools.benchmarks.rounds import Group, figure
 
 COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin", "-S")
-HEADER = 5  # words before the first SPIR-V instruction, whose high half counts its words
+HEADER = 5  # words before the first instruction; an instruction's high half is its length in words
 CHIP = "navi21"
 PROGRAM = Path(__file__).with_name("pipeline_statistics.c")
 DRIVERS = Path("/usr/share/vulkan/icd.d")
 PACKAGES = "gcc glslang-tools libvulkan-dev mesa-vulkan-drivers"
-# The driver's statistics and their units.
+# Names of the driver's statistics, with units.
 STATISTICS = {"VGPRs": "registers", "Instructions": "instructions", "Inverse Throughput": "cycles"}
 
 # The loop over lights of a generated shader, and its replacement for one light.
@@ -42,7 +42,7 @@ ATTRIBUTE = re.compile(r"^layout \(location = \d+\) in", re.MULTILINE)
 
 
 def sources(node):
-    """Stages of a material in Vulkan's GLSL, by library."""
+    """Shader stages of a material in Vulkan GLSL, by library."""
     text = document_text(NODES[node])
     return {
         library: generate(text, "vulkan", library=library, lights=True)[0].stages
@@ -51,7 +51,7 @@ def sources(node):
 
 
 def compiled(source, kind, file):
-    """Compile a stage to a file of SPIR-V; its number of instructions. NotRun without the compiler."""
+    """Compile a stage to a SPIR-V file, and count its instructions. NotRun without the compiler."""
     if not shutil.which(COMPILER[0]):
         raise NotRun(f"registers: no program {COMPILER[0]!r}; on Debian: glslang-tools")
     command = [*COMPILER, kind, "-o", file]
@@ -65,11 +65,11 @@ def compiled(source, kind, file):
 
 
 def statistics(stages, program, driver):
-    """The driver's statistics of a material's fragment shader with one light, by name."""
+    """Statistics of a material's fragment shader with one light, by the driver's names."""
     before, loop, after = stages["pixel"].partition(LIGHTS)
     assert loop and LIGHTS not in after
     whole = before + LIGHT + after
-    bare = whole.replace("if (fd.airy)", "if (false)")  # films alone run this branch
+    bare = whole.replace("if (fd.airy)", "if (false)")  # only films run this branch
     found, alone = (
         _statistics({**stages, "pixel": text}, program, driver) for text in (whole, bare)
     )
@@ -93,7 +93,7 @@ def _statistics(stages, program, driver):
 
 
 def measure(nodes=(*DIFFUSE, *BARE, *OTHERS)):
-    """The `Group` of nodes; NotRun if RADV, a compiler or a header is missing."""
+    """Measure nodes and return the `Group`; NotRun if RADV, a compiler or a header is missing."""
     driver = next(DRIVERS.glob("radeon_icd*.json"), None)
     tools = all(map(shutil.which, ("gcc", COMPILER[0])))
     if driver is None or not tools or not Path("/usr/include/vulkan/vulkan.h").exists():

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shared code of benchmarks: interleaved rounds, figures with goals, and their tables.
 
-Rivals take turns within a round, so that other load on the machine affects all of them equally; a
-ratio is the median of the rounds' ratios. Benchmark libraries time one function after
-another, so their ratios include drift; hence these few lines.
+The functions to compare take turns within a round, so other load on the machine affects all of them
+equally; a ratio is the median of the rounds' ratios. Benchmark libraries time functions one after
+another, so drift of the machine would affect their ratios.
 """
 
 import time
@@ -14,7 +14,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Figure:
-    """A median over rounds and its quartiles."""
+    """A measured quantity: median and quartiles over the rounds."""
 
     name: str
     unit: str  # "x" for a ratio
@@ -25,13 +25,13 @@ class Figure:
 
     @property
     def reached(self):
-        """Whether the goal is reached; None without a goal."""
+        """Whether the median reaches the goal; None without a goal."""
         return None if self.goal is None else self.median <= self.goal
 
 
 @dataclass(frozen=True)
 class Check:
-    """Largest error of the timed values."""
+    """Largest error of the values that a timed function computed."""
 
     name: str
     error: float
@@ -51,9 +51,9 @@ class Group:
 
 
 def interleave(rivals, rounds, clock=time.perf_counter):
-    """Seconds of each rival as an array, one call per round, in turn; the first round is dropped.
+    """Time functions in turns: an array of seconds by name, one per round after a warm-up round.
 
-    With `time.process_time` as the clock, other load is excluded and cores are summed.
+    The clock `time.process_time` excludes other processes, and adds up the time of all cores.
     """
     found = {name: [] for name in rivals}
     for _ in range(rounds + 1):
@@ -65,12 +65,12 @@ def interleave(rivals, rounds, clock=time.perf_counter):
 
 
 def clock_of(device):
-    """The clock for an OpenGL device; processor time for software devices."""
+    """Clock for an OpenGL device: processor time for software devices, otherwise wall time."""
     return time.process_time if "llvmpipe" in device else time.perf_counter
 
 
 def figure(name, unit, values, goal=None):
-    """The `Figure` of one value per round.
+    """Summarize values, one per round, as a `Figure`.
 
     >>> figure("value", "x", [3.0, 1.0, 2.0], goal=2.0).reached
     True
@@ -80,7 +80,7 @@ def figure(name, unit, values, goal=None):
 
 
 def table(group):
-    """The figures of a group and its checks, in Markdown."""
+    """Markdown table of a group's figures and checks."""
     lines = [f"## {group.title}", "", "| | median | quartiles | goal | |", "|---|---|---|---|---|"]
     for each in group.figures:
         goal = "" if each.goal is None else f"≤ {each.goal:g}"

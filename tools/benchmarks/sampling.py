@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Variance of samples of EON, by quadrature: the tables of docs/sampling.md.
+"""Prints the tables of docs/sampling.md: the variance of EON's samplers, by quadrature.
 
     python -m tools.benchmarks.sampling
 
-Nothing in the tables is random: the variance of one sample is an integral over the hemisphere, by a Gauss-Legendre rule
-between the kinks of EON. LTC and CLTC alone have no finite variance: their density falls to 0 along a line on which EON
-does not.
+The tables contain no random numbers: the variance of one sample is an integral over the hemisphere, by
+Gauss-Legendre rules between the kinks of EON. LTC and CLTC without uniform samples have infinite variance:
+their density falls to 0 along a line where EON does not.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from mxeon.models.diffuse import eon_brdf
 from mxeon.models.sampling import eon_pdf
 from tools.paper.samplers import BY_NAME, moments
 
-# From 0.01 on: towards 0 the variance of cosine sampling grows without bound, as its logarithm.
+# They start at 0.01: towards 0 the variance of cosine sampling diverges like log(mu).
 COSINES = np.linspace(0.01, 1.0, 100)
 ROUGHNESSES = (0.01, 0.1, 0.5, 0.75, 1.0)
 VIEWS = (1.0, 0.3, 0.1)
@@ -23,7 +23,7 @@ PRINTED = ("uniform", "cosine", "eon_cltc", "eon")
 
 
 def narrow(polar):
-    """Light from around a polar angle in degrees, in the view's plane; > 0 on the view's side."""
+    """Radiance of a narrow light at a polar angle in degrees; angles > 0 are on the viewer's side."""
     towards = np.array([np.sin(np.radians(polar)), 0.0, np.cos(np.radians(polar))])
     return lambda wi: np.exp(200.0 * (wi @ towards - 1.0))
 
@@ -39,7 +39,7 @@ RADIANCES = {
 
 
 def print_table(first, columns, rows):
-    """A table in Markdown of rows by their first cells."""
+    """Print a Markdown table; the keys of `rows` are their first cells."""
     print("\n| " + " | ".join([first, *columns]) + " |")
     print("|---" * (1 + len(columns)) + "|")
     for name, cells in rows.items():
@@ -47,7 +47,7 @@ def print_table(first, columns, rows):
 
 
 def print_throughput():
-    """Largest variance and weight over the polar angle, and the largest loss of CLTC without uniform samples."""
+    """Print, by roughness, the samplers' largest variance and weight, and the energy CLTC loses."""
 
     def over_cosines(name, roughness):
         return np.transpose([moments(name, mu, roughness) for mu in COSINES])
@@ -61,7 +61,7 @@ def print_throughput():
 
 
 def print_lighting(name):
-    """Variance of a sampler relative to the exact one at r = 1, by light and view."""
+    """Print the ratio of a sampler's variance to the exact sampler's at r = 1, by light and view."""
     rows = {}
     for title, light in RADIANCES.items():
         ratios = [
@@ -72,7 +72,7 @@ def print_lighting(name):
 
 
 def print_color():
-    """Largest relative variance that exact sampling for rho 1 or gray leaves in channels of a color, at r = 1."""
+    """Print the largest relative variance per channel at r = 1 if samples are exact for a gray rho."""
     rows = {}
     for rho in ((1e-6, 1e-6, 1e-6), (0.1, 0.1, 0.1), (0.5, 0.5, 0.5), (0.8, 0.2, 0.05)):
         found = []

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values of EON in a compute shader, eonlib's and stock's, in nanoseconds per call and invocation.
+"""Times eonlib's and stock's EON in a compute shader, in nanoseconds per call and invocation.
 
-Each invocation calls its function many times, with arguments that change unpredictably from call to call, and stores the
-sum. The time of a loop that only adds up the arguments is subtracted. A loop of one pass gives the values of the first
-arguments, which are compared with float64. Software devices are measured by processor time, which excludes other work.
+Each invocation calls its function many times with unpredictable arguments, and stores the sum. The time
+of a loop that only adds up the arguments is subtracted. Values of the first call are compared with
+float64. On software devices, processor time is measured, which excludes other processes.
 """
 
 import re
@@ -46,8 +46,8 @@ void main()
 }
 """
 BASE = "rho * (cosine + mu_o + mu_i + roughness)"
-# Calls of each library, and tolerances of pi f cos in float32. Listing 1, which stock follows, loses digits of
-# 1 - E: 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
+# Calls and tolerances of pi f cos in float32, by library. Stock follows Listing 1, which loses digits in
+# 1 - E: errors are up to 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
 RIVALS = {
     "stock": (
         "mx_oren_nayar_compensated_diffuse(mu_o, mu_i, cosine, roughness, rho) / EON_PI",
@@ -61,7 +61,7 @@ RIVALS = {
 
 
 def library_source():
-    """The functions that the rivals call: eonlib's, and MaterialX's own."""
+    """GLSL of the functions to compare, from eonlib and from MaterialX."""
     stock = "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
     text = mx.readFile(mx.getDefaultDataSearchPath().find(stock).asString())
     constants = "\n".join(re.findall(r"^const float FUJII.*$", text, re.MULTILINE))
@@ -74,7 +74,7 @@ def library_source():
 
 
 def value(given):
-    """pi f cos of the arguments of all invocations, in float64."""
+    """pi f cos in float64 for the first arguments of all invocations."""
     mu_o, mu_i, turn, roughness, *rho = np.float64(given.T)
     S_o, S_i, x = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2), 2.0 * turn - 1.0
     wo = np.stack([S_o, 0.0 * S_o, mu_o], -1)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong libraries, one change each, and the checks that notice them."""
+"""Mutation tests: copies of eonlib with one wrong change each, and the checks that detect them."""

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs `mxeon check` on wrong libraries, and keeps which check notices each in out/mutants.
+"""Runs `mxeon check` on mutants of eonlib, and writes which check detects each to out/mutants.
 
     python -m tools.benchmarks.mutants [--only PATTERN] [--resume]    the rows of the table
-    python -m tools.benchmarks.mutants --seed N [--share 0.1]         a share of what the operators make
+    python -m tools.benchmarks.mutants --seed N [--share 0.1]         a share of the operators' mutants
 
-Exit status: 0, or 1 if the survivors differ from the listed ones.
+Exit status: 0, or 1 if other mutants survive than those listed.
 """
 
 import argparse
@@ -59,7 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def lines(mutants: Sequence[Mutant], trials: dict[str, Any]) -> list[str]:
-    """Counts by group and verdict, and each mutant with an unexpected verdict."""
+    """Lines to print: number of mutants by group and verdict, then each unexpected verdict."""
     counts = Counter((each.group, trials[each.name]["verdict"]) for each in mutants)
     wrong = [
         f"{each.name}: {trials[each.name]['verdict']} ({each.reason})"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of mutants: single textual changes of eonlib's sources, read from `table/*.toml`.
 
-In addition, each file gets a changed first comment: a negative control, which must survive.
+For each file there is also a negative control that only changes its first comment. It must survive.
 """
 
 import re
@@ -14,31 +14,31 @@ from mxeon.shaders.functions import STEMS
 
 TABLE = Path(__file__).with_name("table")
 ROOT = Path(__file__).resolve().parents[3]
-TWINS = (*STEMS, "hair_parameters")  # files whose functions have one text in two languages
-FOLDERS = ("libraries", "genglsl", "genosl")  # eonlib
+TWINS = (*STEMS, "hair_parameters")  # files whose functions are the same in GLSL and OSL
+FOLDERS = ("libraries", "genglsl", "genosl")  # folders of eonlib
 CONTROLS = "Negative controls"  # group of the mutants that change a comment
-COMMENT = "SPDX-License-Identifier"  # occurs in the first comment of every file
+COMMENT = "SPDX-License-Identifier"  # part of the first comment of every file
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """One wrong library."""
+    """One wrong change of a file of eonlib."""
 
     name: str  # unique in the table
-    group: str  # title of the implementation that it belongs to
+    group: str  # title of the mutated implementation
     file: str  # path from the root
     old: str  # occurs once in the file
     new: str
-    reason: str  # why it is wrong, or the proof that it is equivalent
+    reason: str  # why the change is wrong, or a proof that it is equivalent
     host: str  # cheapest host that can detect it; "text" if none is needed
-    equivalent: bool  # the same function on the whole valid domain
-    survives: bool  # no check notices it, for the stated reason
+    equivalent: bool  # whether values stay the same on the whole valid domain
+    survives: bool  # whether no check detects it, as `reason` explains
     tests: tuple[str, ...] = ()  # test files to run first on a wrong reference
-    operator: str = ""  # operator that made it, and position in the file
-    place: tuple[int, int] = (0, 0)
+    operator: str = ""  # name of the operator that made it
+    place: tuple[int, int] = (0, 0)  # start and end of the operator's match in the file
 
     def texts(self) -> dict[str, str]:
-        """Text of each mutated file, by path; shared GLSL functions include their OSL twin."""
+        """Texts of the mutated files by path; for functions shared with OSL, the OSL twin changes too."""
         texts = {self.file: self._replaced(self.file, re.escape(self.old), self.new)}
         twin = self.file.replace("glsl", "osl")
         if self.file.startswith("genglsl/") and Path(self.file).stem in TWINS:
@@ -56,7 +56,7 @@ class Mutant:
 
     @property
     def control(self) -> bool:
-        """Whether it changes only a comment."""
+        """Whether this is a negative control, which only changes a comment."""
         return self.group == CONTROLS
 
     @property
@@ -65,7 +65,7 @@ class Mutant:
 
 
 def read_table() -> tuple[Mutant, ...]:
-    """All mutants, in the order of the page, and the negative controls of their files."""
+    """All mutants of the table, and the negative controls of their files."""
     files = [tomllib.loads(path.read_text(encoding="utf-8")) for path in TABLE.glob("*.toml")]
     table = [
         Mutant(

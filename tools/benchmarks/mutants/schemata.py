@@ -3,8 +3,8 @@
 
 At each mutant's place, an expression equals the original unless the uniform `mutant` has the mutant's number: ` + `
 becomes ` + mutant_sign(mutant == 7) * `. So a node's shader compiles once for hundreds of mutants, and each mutant only
-takes the milliseconds of a check on a subset of samples. Mutants that cannot be written this way, in constant expressions
-or of integers, are reported as such, and need a separate library.
+takes the milliseconds of a check on a subset of samples. Mutants of constant expressions and of integers cannot be written this
+way. They are reported, and need a separate library.
 """
 
 import re
@@ -62,7 +62,7 @@ ERROR = re.compile(r"\b\d+:(\d+)\(\d+\): error")
 
 @dataclass(frozen=True)
 class Edit:
-    """Text before and after a part of a source, or instead of a token."""
+    """Text to insert around a part of a source, or the replacement of a token."""
 
     start: int
     end: int
@@ -72,7 +72,7 @@ class Edit:
 
 
 def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
-    """Edits that write a mutant; empty if it cannot be written."""
+    """Edits that add a mutant to its source; empty if it cannot be selected by a uniform."""
     operator, (start, end), on = mutant.operator, mutant.place, f"(mutant == {number})"
     found, put = code[start:end], operators.changed(mutant.operator, code[start:end])
 
@@ -90,7 +90,7 @@ def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
     if operator == "product" and (last := _operand(code, end)):
         return [wrapped(end, last, "over")]
     if operator == "comparison":
-        # Inserted after the edits of the right side.
+        # Compare the result with the uniform, which inverts it for this mutant.
         return [Edit(start, _end(code, end), "", f" != {on}")]
     if operator == "channel":
         old, new = (CHANNELS[each[1]] for each in (found, put))
@@ -118,7 +118,7 @@ def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
 
 
 def _operand(code: str, place: int) -> int:
-    """End of a name, a number, a call or a part in parentheses; 0 if there is none."""
+    """End of the operand at `place`; 0 if there is none."""
     start, depth = place, 0
     for each in re.compile(r"-?[\w.]+|[(\[]|[)\]]|[^\w.()\[\]]+").finditer(code, place):
         depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(each[0], 0)
@@ -129,7 +129,7 @@ def _operand(code: str, place: int) -> int:
 
 
 def _end(code: str, place: int) -> int:
-    """End of the right side of a comparison."""
+    """End of the right side of a comparison; `place` is its start."""
     depth = 0
     for each in re.compile(r"[()\[\]]|[;,?:]|&&|\|\|").finditer(code, place):
         depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(each[0], 0)
@@ -139,13 +139,15 @@ def _end(code: str, place: int) -> int:
 
 
 def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
-    """A source with all its mutants, by their numbers."""
+    """A source with the edits of all its mutants; `mutants` has them by number."""
     code = operators.code_of(text)
     made = [each for number, mutant in mutants.items() for each in edits(number, mutant, code)]
     opens: dict[int, list[str]] = {}
     closes: dict[int, list[str]] = {}
     tokens: dict[int, Edit] = {}
-    for each in sorted(made, key=lambda each: (each.start, -each.end)):  # the outer ones first
+    for each in sorted(
+        made, key=lambda each: (each.start, -each.end)
+    ):  # outer edits before inner ones
         if each.token:
             tokens.setdefault(each.start, each)
         else:
@@ -153,7 +155,7 @@ def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
             closes.setdefault(each.end, []).insert(0, each.after)
     parts, place = [], 0
     for at in sorted({*opens, *closes, *tokens, len(text)}):
-        if at >= place:  # not inside of a token
+        if at >= place:  # skip edits inside a replaced token
             parts += [text[place:at], *closes.get(at, ()), *opens.get(at, ())]
             place = at
         if at in tokens:
@@ -169,12 +171,12 @@ class SchemataHost(gl.GlHost):
         super().__init__()
         self.alive: dict[int, Mutant] = {}
         self.mutant = 0
-        self.unwritten: set[int] = set()  # mutants that cannot be written
+        self.unwritten: set[int] = set()  # numbers of mutants that cannot be compiled into a shader
         self._made = lru_cache(maxsize=gl.PROGRAMS)(self._schema)
         self._program = self._chosen  # type: ignore[assignment]
 
     def take(self, mutants: dict[int, Mutant]) -> None:
-        """Replace the mutants."""
+        """Compile these mutants into shaders from now on."""
         self.alive = mutants
         self._made.cache_clear()
 
@@ -217,7 +219,7 @@ class SchemataHost(gl.GlHost):
         return pixel.replace("/*mutants*/", helpers, 1)
 
     def numbers_in(self, pixel: str) -> list[int]:
-        """Living mutants of the sources in a shader's text."""
+        """Numbers of the mutants in a shader's text that are still undetected."""
         known = {
             file for file in {each.file for each in self.alive.values()} if chunk_of(file) in pixel
         }
@@ -225,7 +227,7 @@ class SchemataHost(gl.GlHost):
 
 
 def _numbers_at(text: str, error: str) -> set[int]:
-    """The mutants on the lines of errors, or on the nearest ones before them."""
+    """Numbers of the mutants on each line with a compiler error, or on the nearest line before it."""
     lines, found = text.splitlines(), set[int]()
     for place in map(int, ERROR.findall(error)):
         numbers = (NUMBER.findall(line) for line in reversed(lines[max(0, place - 12) : place]))
@@ -235,12 +237,12 @@ def _numbers_at(text: str, error: str) -> set[int]:
 
 @cache
 def chunk_of(file: str) -> str:
-    """A source as in a shader's text: without its includes and the comments above them."""
+    """The part of a source that a shader contains: everything after its includes."""
     text = (ROOT / file).read_text(encoding="utf-8")
     return re.split(r"^#include .*\n", text, flags=re.M)[-1].strip()
 
 
-# FIRST notice most mutants and LAST take longest, so these checks run first and last.
+# Order of checks: those in FIRST detect most mutants, those in LAST take longest.
 FIRST = (
     *("value", "environment", "layering", "denser", "output", "radiance", "sphere_mean"),
     *("film_visible", "combination", "combined_throughput"),
@@ -249,24 +251,28 @@ LAST = (
     *("frame", "finite", "layer", "integral", "energy", "states", "lossless", "domain", "sky"),
     *("narrow_lobes", "tilted_lobes", "wide_lobes", "straight_views", "low_index", "each_lobe"),
 )
-COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # consist of lobes that are also judged separately
+COMPOSED = (
+    CombinedSpec,
+    SurfaceShaderSpec,
+)  # nodes of several lobes that are also checked separately
 UNWRITTEN = "unwritten"
 OSL_TWINS = {
     source_file("osl", stem).relative_to(ROOT).as_posix()
     for stem in (*STEMS, "ggx_albedo", "conty_kulla_albedo")
 }
-# Sources that no check of a node runs: text for path tracers, and functions that only OSL calls.
+# Sources that no check of a node runs: code for path tracers, and functions that only OSL calls.
 APART = ("genglsl/path/", "genglsl/lib/hair_parameters.glsl")
-EACH = 8  # stride of a shader function's points
-GROUP = 1024  # mutants of a program; more slow the driver down
-Asked = Callable[[], Iterator[tuple[str, bool]]]  # checks, and whether each failed
+EACH = 8  # shader functions are evaluated at every eighth point
+GROUP = 1024  # mutants per program; larger programs slow the driver down
+Asked = Callable[[], Iterator[tuple[str, bool]]]  # yields each check and whether it failed
 Subject = tuple[str, bool, str, Asked]
 
 
 def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
-    """The check and subject that notices each mutant of a node's GLSL, or of a function shared with OSL, by name.
+    """The check and subject that detect each mutant, by the mutant's name.
 
-    SURVIVED if no check does, and UNWRITTEN if the mutant cannot be written.
+    Only for GLSL of nodes and functions shared with OSL. The value is SURVIVED if no check detects the
+    mutant, and UNWRITTEN if a uniform cannot select it.
     """
     twins = [each for each in mutants if each.file in OSL_TWINS]
     own = [each for each in mutants if each.file.startswith("genglsl/")]
@@ -285,14 +291,14 @@ def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
 
 
 def is_another_text(mutant: Mutant) -> bool:
-    """Whether an OSL mutant makes a function or constant differ from GLSL, as in the check `languages`."""
+    """Whether a mutated OSL function or constant differs from GLSL, so that `languages` fails."""
     texts = (ROOT / mutant.file.replace("osl", "glsl")).read_text(), mutant.texts()[mutant.file]
     glsl, osl = (parts(operators.COMMENT.sub(" ", each)) for each in texts)
     return glsl != osl
 
 
 def noticed(host: SchemataHost, asked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
-    """Numbers of noticed mutants, which are then removed, and the checks that noticed them."""
+    """Number of each detected mutant and the check that detected it; the mutant is then removed."""
     seen: set[int] = set()
     for title, composed, text, ask in asked:
         own = [each for each in host.numbers_in(text) if not composed or each not in seen]
@@ -308,15 +314,15 @@ def noticed(host: SchemataHost, asked: Sequence[Subject]) -> Iterator[tuple[int,
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """Subjects: title, whether it is composed, text, and a function that runs its checks."""
+    """What to check: title, whether it is composed, shader text, function that runs the checks."""
     functions = Functions(host)
     yield "functions", False, functions.text, functions
-    # Films come before transmission, which has the same code without a film.
+    # Check films before transmission: transmission runs the same code without a film.
     specs = dict.fromkeys((*DIFFUSE, *PLAIN_LOBES, *FILM_SPECS, *PBRLIB))
     cases = [
         replace(
             make_case(Evaluating, host, spec, "eonlib"), control=True
-        )  # a subset of the samples
+        )  # use a subset of the samples
         for spec in specs
         if spec.title != "measured_edf"
     ]
@@ -327,7 +333,7 @@ def subjects(host: SchemataHost) -> Iterator[Subject]:
 
 
 def _rows(case: Case, turn: int) -> Callable[[], list[tuple[Check, Tolerance]]]:
-    """Checks of a turn with their tolerances, measured on demand."""
+    """A cached function that returns the checks of a turn with their tolerances."""
 
     @cache
     def rows() -> list[tuple[Check, Tolerance]]:
@@ -340,7 +346,7 @@ def _rows(case: Case, turn: int) -> Callable[[], list[tuple[Check, Tolerance]]]:
 
 
 class Functions:
-    """The shader functions, evaluated in one call at a subset of the judged points."""
+    """Checks of all shader functions, in one call at a subset of the usual points."""
 
     def __init__(self, host: SchemataHost) -> None:
         self._host, self.language = host, host.language
@@ -353,7 +359,7 @@ class Functions:
             self._rows.append((row.key, probe.tolerance(row), scale, scale * values[::EACH]))
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """The host's answer; calls of all functions use a subset of the points."""
+        """Execute on the host. The call that evaluates every function is recorded with fewer points."""
         if function == EVERY:
             points = np.arange(len(np.asarray(arguments[0]))) % EACH == 0
             self._asked = source, function, *(np.asarray(each)[points] for each in arguments)
@@ -370,7 +376,7 @@ class Functions:
 def node(
     case: Case, rows: Callable[[], list[tuple[Check, Tolerance]]]
 ) -> Iterator[tuple[str, bool]]:
-    """Whether each check of a node fails."""
+    """Run the checks of a node; yields each key and whether the check failed."""
     case.backend._evaluations = Recent(EVALUATIONS)
     for check, tolerance in rows():
         try:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The trial of a mutant: `mxeon check` on a copy of eonlib with the mutant, cheapest tasks first.
+"""Tests a mutant: runs `mxeon check` on a copy of eonlib with the mutant, cheapest tasks first.
 
-A wrong node of pbrlib is judged by the checks of the nodes that it changes, other sources by the checks
-of a library, text first, and a wrong reference by the tests of the models on a copy of mxeon.
+Mutants of pbrlib are tested by the checks of the nodes that they change, other sources by all checks of
+a library, and wrong references by the tests of the models on a copy of mxeon.
 """
 
 import os
@@ -34,28 +34,35 @@ from tools.benchmarks.mutants import operators
 from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
 
 KILLED, SURVIVED = "killed", "survived"
-CRASHED = "crashed"  # traceback instead of a verdict
-TEXT, TESTS = "text", "tests"  # replace the name of a host
+CRASHED = "crashed"  # the check ended with a traceback
+TEXT, TESTS = "text", "tests"  # used instead of a host's name
 
-# Cycles cannot show these exactly or at all; tests run them in Blender's OSL.
+# Checks on Cycles cannot detect all of these mutants; tests run the code in Blender's OSL.
 PROFILE, PROFILE_TESTS = "genosl/cycles/", ("tests/hosts/test_osl.py",)
-PATH, PATH_TESTS = "genglsl/path/", ("tests/shaders/test_path_tracing.py",)  # run by no check
-LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups that no source includes
+PATH, PATH_TESTS = (
+    "genglsl/path/",
+    ("tests/shaders/test_path_tracing.py",),
+)  # code that no check runs
+LOBE = (
+    "genglsl/lib/microfacet_lobe.glsl"  # stands for environment lookups, which no source includes
+)
 ENVIRONMENT_TESTS = (
     "tests/conformance/test_conformance.py::test_other_lobes_are_lit_alike_by_eonlib_s_lookups",
     "tests/hosts/test_document_hosts.py::"
     "test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo",
 )
-NOISY = ("environment", "furnace")  # checks that take Cycles longest
+NOISY = ("environment", "furnace")  # slowest checks on Cycles
 # Files that no shader for gl contains: the gl host cannot detect mutants in them.
 ON_CYCLES = ("genosl/",)
-CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls of closures, which host osl evaluates
+CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls closures, which only the osl host evaluates
 NOT_ON_GL = (*ON_CYCLES, CLOSURES, "libraries/diffuse/eonlib_genmdl")
-TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # its mistakes also fail other checks
+TEXT_FIRST = (
+    "libraries/diffuse/eonlib_defs.mtlx",
+)  # text checks name its mistakes best, although other checks fail too
 
 
 def trial(mutant: Mutant, judge: Judge) -> dict[str, Any]:
-    """Verdict on a mutant, and the checks of the first task that failed, with the first cause."""
+    """Verdict on a mutant, and the failed checks of the first task that fails, with the first cause."""
     if mutant.tests:
         named = tuple(f"{MODEL_TESTS}/{name}" for name in mutant.tests)
         return by_tests(mutant, (named,) if mutant.equivalent else (named, (MODEL_TESTS,)))
@@ -89,7 +96,7 @@ def _on_hosts(mutant: Mutant, judge: Judge) -> dict[str, Any]:
 
 
 def killed(host: str, checks: Sequence[str], explanation: str) -> dict[str, Any]:
-    """A mutant that checks noticed, with the first line of a text: compilers print many."""
+    """Record of a detected mutant, with only the first line of the explanation."""
     line = re.sub(
         rf"{re.escape(tempfile.gettempdir())}/\S*/", "", explanation.strip().split("\n")[0]
     )
@@ -107,7 +114,7 @@ def write_wrong(mutant: Mutant, base: str, *folders: str) -> None:
 
 @contextmanager
 def wrong_library(mutant: Mutant) -> Iterator[str]:
-    """Path of eonlib with one change, in a folder that no cache contains."""
+    """Path of a mutated copy of eonlib in a new folder, so that no cache knows it."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
         write_wrong(mutant, base, *FOLDERS)
         try:
@@ -118,7 +125,7 @@ def wrong_library(mutant: Mutant) -> Iterator[str]:
 
 
 def failures_of(tasks: Sequence[Task], judge: Judge) -> list[Result]:
-    """Results of the first task that has some that only pass without the mutant."""
+    """Failures of the first task with failures that eonlib itself does not have."""
     for task in tasks:
         found = _failed(task, judge)
         known = found and _clean_failures(replace(task, library="eonlib"), judge)
@@ -128,7 +135,7 @@ def failures_of(tasks: Sequence[Task], judge: Judge) -> list[Result]:
 
 
 def _failed(task: Task, judge: Judge) -> dict[tuple[str, str], Result]:
-    """Results that did not pass, by check and subject."""
+    """Results of a task that did not pass, by check and subject."""
     results = judge.work(task).results
     return {(each.check, each.subject): each for each in results if each.verdict != PASSED}
 
@@ -142,10 +149,10 @@ def _clean_failures(task: Task, judge: Judge) -> frozenset[tuple[str, str]]:
 
 
 def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
-    """Hosts and tasks that can see a mutant, the cheapest first.
+    """Hosts and tasks that can detect a mutant, cheapest first.
 
-    The text and the nodes come first, then surface shaders, then pictures of documents one by one; then
-    the closures of OSL; then Cycles, one by one.
+    The order is: text and nodes, surface shaders, pictures of documents, OSL closures, Cycles. Pictures
+    and tasks of Cycles are separate stages.
     """
     tasks = make_plan((), ["gl"], [path]).tasks
     if mutant.file.startswith(NOT_ON_GL):
@@ -175,14 +182,14 @@ DOCUMENTS = (
     "genosl/cycles/eonlib_cycles_impl.xml",
 )
 INCLUDE = re.compile(r'^#include "([\w./]+)"$', re.MULTILINE)
-# Targets, and hosts that run their text, cheap hosts first.
+# Pairs of a target and a host that runs its shaders, cheapest host first.
 HOSTS = (("genglsl", "gl"), ("genosl", "osl"), ("genosl", "cycles"))
-# Checks that take longest.
+# The slowest checks.
 LATE = ("inputs", "transmitted_inputs", "integral", "energy")
 
 
 def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
-    """Target and title of each subject whose implementation a mutant changes."""
+    """Target and title of each subject that a mutant changes."""
     texts = mutant.texts()
     changed = {LOBE if each.startswith(operators.ENVIRONMENT) else each for each in texts}
     entries: set[tuple[str, ...]] = set()
@@ -197,7 +204,7 @@ def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
 
 
 def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
-    """Hosts and tasks that judge the subjects that a mutant changes, cheap hosts first."""
+    """Hosts, cheapest first, and tasks that check the subjects that a mutant changes."""
     changed = changed_nodes(mutant)
     for target, host in HOSTS:
         titles = {title for each, title in changed if each == target}
@@ -207,10 +214,10 @@ def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
 
 @cache
 def _tasks(host: str) -> tuple[Task, ...]:
-    """All tasks of a host with eonlib: subject by subject, since each has a shader to compile.
+    """All tasks of a host with eonlib, grouped by subject, because each subject compiles one shader.
 
-    The last subjects come first (transmission, which uses most of a source); films come last, because their
-    failures take longest to diagnose.
+    Subjects are in reverse order: transmission runs most of the code, so it comes early. Films come last,
+    because their failures take longest to diagnose.
     """
     places = {spec.title: -place for place, spec in enumerate(PBRLIB)}
     tasks = make_plan((), [host], ["eonlib"], nodes=["all"]).tasks
@@ -220,7 +227,7 @@ def _tasks(host: str) -> tuple[Task, ...]:
 
 @cache
 def _titles(nodedef: str) -> frozenset[str]:
-    """Subjects that are nodes of a definition: of its category, and of its type."""
+    """Titles of the subjects that use a node definition."""
     definition = library.load_library("eonlib").getNodeDef(nodedef)
     if not definition:
         return frozenset()
@@ -238,7 +245,7 @@ def _titles(nodedef: str) -> frozenset[str]:
 
 @cache
 def _sources(file: str) -> frozenset[str]:
-    """Paths of a source and of all that it includes, from the root."""
+    """Paths of a source and of everything that it includes, relative to the root."""
     path = ROOT / file
     if not path.is_file():
         return frozenset()
@@ -250,7 +257,7 @@ def _sources(file: str) -> frozenset[str]:
 
 
 def _entries(document: str, text: str) -> set[tuple[str, ...]]:
-    """Definition, target, file, function, name and text of implementations; none where unreadable."""
+    """Attributes of the implementations in a document; empty if it is not valid XML."""
     try:
         elements = ElementTree.fromstring(text).iter("implementation")
     except ElementTree.ParseError:
@@ -273,13 +280,15 @@ def _entries(document: str, text: str) -> set[tuple[str, ...]]:
 MODEL_TESTS = "tests/models"
 OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
 FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
-WIDTH = {"COLUMNS": "200"}  # otherwise pytest truncates messages
-BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}  # a copy has no environment
+WIDTH = {"COLUMNS": "200"}  # wide enough for whole messages of pytest
+BLENDER = {
+    "MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"
+}  # the copy has no virtual environment
 GOOD, NO_TEST = 0, 5  # exit statuses of pytest
 
 
 def by_tests(mutant: Mutant, steps: Sequence[tuple[str, ...]]) -> dict[str, Any]:
-    """Verdict of tests on a copy of mxeon and of eonlib, and the first that fails."""
+    """Verdict of tests on a mutated copy of mxeon and eonlib, and the first test that fails."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
         write_wrong(mutant, base, "python", *FOLDERS)
         for tests in steps:
@@ -291,7 +300,7 @@ def by_tests(mutant: Mutant, steps: Sequence[tuple[str, ...]]) -> dict[str, Any]
 
 
 def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
-    """The first of some tests that fails with the package of a folder, with its message; or None."""
+    """Name and message of the first test that fails with the package in a folder; None if all pass."""
     ended = subprocess.run(
         [sys.executable, "-m", "pytest", *OPTIONS, *tests],
         cwd=ROOT,
@@ -309,4 +318,4 @@ def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
     return test or "import", f"{file}: {message}" if message else file
 
 
-_first_failure = cache(_failure)  # cached for the unchanged package
+_first_failure = cache(_failure)  # for the unchanged package, with a cache
