@@ -3,7 +3,7 @@
 
     python -m tools.comments SEED COUNT FOLDER ...
 
-A reader marks those that have to be read twice. COUNT is the number per FOLDER, such as `python/mxeon/models`.
+A reader marks those that have to be read twice. COUNT is the number per FOLDER.
 """
 
 import ast

@@ -27,8 +27,8 @@ JOBS = {
     BOTH: (("--library", "eonlib", "--library", "stock"), None, None),
     "gl, --node all": (("--node", "all"), 25.0, 40.0),
 }
-# Starts the command, and prints the peak memory of its largest process in KiB. This launcher must be small: Linux
-# counts the memory of the starting process as the program's.
+# Starts the command, and prints the peak memory of its largest process in KiB. This launcher must
+# be small: Linux counts the memory of the starting process as the program's.
 LAUNCHER = """
 import resource, subprocess, sys
 status = subprocess.call(sys.argv[1:])

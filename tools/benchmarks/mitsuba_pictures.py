@@ -4,8 +4,8 @@
     python -m tools.benchmarks.mitsuba_pictures
 
 Writes two tables. docs/mitsuba.md: a ball under a uniform sky with each BSDF. docs/sampling.md: EON
-scenes with 50 bounces and multiple importance sampling, with exact and with cosine samples. Times are
-the least processor time of several pictures in llvm_ad_rgb, without compilation. Variances are measured
+scenes with 50 bounces and multiple importance sampling, with exact or cosine samples. Times are the
+least processor time of several pictures in llvm_ad_rgb, without compilation. Variances are measured
 over independent pictures, and averaged over pixels and channels.
 """
 

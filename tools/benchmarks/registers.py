@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Registers, instructions and estimated cycles of materials on an AMD GPU, eonlib / stock.
 
-No GPU is needed: Mesa's driver RADV compiles for the chip in `RADV_FORCE_FAMILY`, and reports statistics
-of the code. Shaders have one light, because the compiler may unroll the loop over lights for only one of
-the libraries. Estimated cycles count a loop's body eight times, so the loop of films is removed for them.
+No GPU is needed: Mesa's driver RADV compiles for the chip in `RADV_FORCE_FAMILY`, and reports its
+statistics. Shaders have one light, because the compiler may unroll the loop over lights for only one
+library. The loop of films is removed for cycles, since their estimate counts its body eight times.
 """
 
 import os

@@ -3,9 +3,9 @@
 
     python -m tools.benchmarks.sampling
 
-The tables contain no random numbers: the variance of one sample is an integral over the hemisphere, by
-Gauss-Legendre rules between the kinks of EON. LTC and CLTC without uniform samples have infinite variance:
-their density falls to 0 along a line where EON does not.
+No random numbers are used: the variance of one sample is an integral over the hemisphere, by
+Gauss-Legendre rules between the kinks of EON. LTC and CLTC without uniform samples have infinite
+variance: their density falls to 0 along a line where EON does not.
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Times eonlib's and stock's EON in a compute shader, in nanoseconds per call and invocation.
 
-Each invocation calls its function many times with unpredictable arguments, and stores the sum. The time
-of a loop that only adds up the arguments is subtracted. Values of the first call are compared with
+Each invocation calls its function many times with unpredictable arguments, and stores the sum. The
+time of a loop that only adds up the arguments is subtracted. The first values are compared with
 float64. On software devices, processor time is measured, which excludes other processes.
 """
 
@@ -46,8 +46,8 @@ void main()
 }
 """
 BASE = "rho * (cosine + mu_o + mu_i + roughness)"
-# Calls and tolerances of pi f cos in float32, by library. Stock follows Listing 1, which loses digits in
-# 1 - E: errors are up to 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
+# Calls and tolerances of pi f cos in float32, by library. Stock follows Listing 1, which loses
+# digits in 1 - E: errors are up to 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
 RIVALS = {
     "stock": (
         "mx_oren_nayar_compensated_diffuse(mu_o, mu_i, cosine, roughness, rho) / EON_PI",

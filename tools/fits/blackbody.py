@@ -16,7 +16,7 @@ COLDEST, HOTTEST = 800, 25000  # K
 COUNT = 120  # points of the fit
 DEGREE = 4
 FORM = Form(tuple((k,) for k in range(DEGREE + 1)), tuple((k,) for k in range(1, DEGREE + 1)))
-# Six digits of fits of least squares, from which the exchange starts.
+# Starting coefficients of the exchange: least-squares fits, rounded to six digits.
 STARTS = {
     "X": (1.0228, 2.98338, 15.7174, 26.6339, 22.5429, 3.34545, 21.0468, 2.47854, 8.48835),
     "Z": (2.24174, -4.94097, 5.96466, -4.06478, 1.14041, 0.466323, 17.7771, -22.9823, 46.1071),
@@ -24,7 +24,7 @@ STARTS = {
 
 
 def sampled(count):
-    """Points of t, dense at both ends, with X and Z of a black body with Y = 1."""
+    """Values of t, dense at both ends, and X and Z of black bodies with Y = 1 there."""
     low, high = mp.mpf(1000) / HOTTEST, mp.mpf(1000) / COLDEST
     second = mp.mpf(SECOND) * 10**6  # nm times 1000 K
     points, quotients = [low + (high - low) * x for x in roots(count)], []
@@ -40,7 +40,7 @@ def sampled(count):
 
 
 def fit():
-    """Coefficients of X and of Z, numerator first, rounded as printed."""
+    """Coefficients of X and Z by name, the numerator's first, rounded as printed."""
     t, *rows = sampled(COUNT)
     return {
         name: refined(FORM, (t,), values, np.ones(COUNT), STARTS[name])
@@ -49,7 +49,7 @@ def fit():
 
 
 def largest_errors(coefficients, count=400):
-    """Largest absolute errors of X and Z, at other points than those of the fit."""
+    """Largest absolute errors of X and Z, at points that the fit did not use."""
     t, *rows = sampled(count)
     return {
         name: float(np.abs(FORM.value((t,), coefficients[name]) - values).max())

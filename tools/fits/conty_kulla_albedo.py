@@ -4,11 +4,11 @@
     E(mu, r) = exp(-mu^2 / (r (8 - 4 mu^2))) s^2 / (mu + s)^3 N / D,
     s = sqrt(r),  z = sqrt(mu / (mu + s)),
 
-with polynomials N and D in z and s. At small roughness r only light near the horizon remains:
+where N and D are polynomials in z and s. At small roughness r only light near the horizon remains:
 the exponential is sin(theta_h)^(1 / r) at the lowest half vector that light above the horizon
-allows, and the quotient has the limits at mu = 0 and 1. The fit minimizes the largest absolute
+allows, and the quotient has the exact limits at mu = 0 and 1. The fit minimizes the largest absolute
 error of min(E, 1). As in `ggx_albedo.py`, the quadrature only uses sums, products, quotients and
-square roots: roughness is 4 / k with integer k, so that its powers are products of roots.
+square roots: roughness is 4 / k with integer k, so powers become products of roots.
 
     python -m tools.fits.conty_kulla_albedo
 """
@@ -32,7 +32,7 @@ EIGHTHS = (
     *(170, 230, 320, 450, 640, 900, 1300, 2000, 3000, 5000, 8000, 13000, 20000, 40000),
 )
 TOP, LEAST = 1.02, 1e-4  # range of fitted albedos: shaders clamp to 1, smaller ones do not matter
-NODES = 20  # nodes of each of two half turns
+NODES = 20  # quadrature nodes per quarter turn of the azimuth
 
 
 def albedo(mu, eighths):
@@ -45,11 +45,11 @@ def albedo(mu, eighths):
     s, s_i = np.sqrt((1.0 - mu) * (1.0 + mu)), np.sqrt((1.0 - mu_i) * (1.0 + mu_i))
     M = mu + mu_i
     total = np.zeros_like(mu)
-    # tan(phi / 2) = x from the azimuth of wo to a right angle, and 1 / x beyond.
+    # With x in [0, 1]: tan(phi / 2) = x on one side of a right angle, and 1 / x on the other.
     for near, far in ((1.0, x * x), (x * x, 1.0)):
         half = near / (near + far)
         flat = (s - s_i) * (s - s_i) + 4.0 * s * s_i * half
-        # sin(theta_h)^(2 p), by square roots and products.
+        # Compute sin(theta_h)^(2 p) by square roots and products.
         base, lobe, power = np.sqrt(np.sqrt(np.sqrt(flat / (flat + M * M)))), 1.0, eighths
         while power:
             if power & 1:
@@ -61,7 +61,7 @@ def albedo(mu, eighths):
 
 
 def variables(mu, roughness):
-    """z and s, the factor of N / D without the exponential, and the exponent."""
+    """The tuple (z, s), the factor of N / D without the exponential, and the exponent."""
     s = np.sqrt(roughness)
     factor = roughness / ((mu + s) * (mu + s) * (mu + s))
     exponent = -mu * mu / (roughness * (8.0 - 4.0 * mu * mu))
@@ -74,7 +74,7 @@ def fitted(mu, roughness, coefficients):
 
 
 def points(count=37):
-    """Cosines, roughnesses and albedos where these lie between `LEAST` and `TOP`."""
+    """Cosines, roughnesses and albedos of the fit: points with albedos between `LEAST` and `TOP`."""
     ends = np.array(extrema(count), float)
     rows = []
     for eighths in EIGHTHS:
@@ -88,7 +88,7 @@ def points(count=37):
 
 
 def fit():
-    """Coefficients, numerator first, rounded as printed."""
+    """Coefficients, the numerator's first, rounded as printed."""
     mu, roughness, E = points()
     arguments, factor, exponent = variables(mu, roughness)
     factor = factor * np.array([float(mp.exp(mp.mpf(float(x)))) for x in exponent])

@@ -3,13 +3,13 @@
 
     python -m tools.fits.eon_sampling
 
-Two inverse distributions map a random number to a cosine without any parameter. They have the form
-x = p + sum(a_k B_k(p)), where p is the root of the random number in which x is analytic; both ends
-are exact for any coefficients. The fit minimizes the largest relative error of the resulting
-density (minimax fits on Newton steps, which need the exact density but not the exact inverse).
+Two inverse distributions map a random number to a cosine, without further parameters. They have the
+form x = p + sum(a_k B_k(p)), where p is the root of the random number that makes x(p) analytic.
+Both ends are exact for any coefficients. Newton steps of minimax fits minimize the density's largest
+relative error; they need the exact density but not the exact inverse.
 
-ROOT, only used by shaders, is the root y of K for a given cosine, y = (K / K(pi / 2))^(2/5), which
-is analytic in m = 1 - cos; the fit replaces an arc tangent, a cancellation and a power.
+ROOT, which only shaders use, fits y = (K / K(pi / 2))^(2/5) for a given cosine, where y is analytic
+in m = 1 - cos. It replaces an arc tangent, a cancellation and a power.
 """
 
 from tools.fits.fon_loss import closed_form
@@ -39,20 +39,20 @@ def upper_density(m):
 
 
 def multiple_basis(t):
-    """t w^k with w^2 = 1 - t, and the derivatives by t."""
+    """Basis functions t w^k with w^2 = 1 - t, and their derivatives by t."""
     w = mp.sqrt(1 - t)
     values = [t * w**k for k in MULTIPLE_POWERS]
     return values, [w**k - k * t * w ** (k - 2) / 2 for k in MULTIPLE_POWERS]
 
 
 def upper_basis(y):
-    """(1 - y) y^(1 + k), and the derivatives by y."""
+    """Basis functions (1 - y) y^(1 + k), and their derivatives by y."""
     values = [(1 - y) * y ** (1 + k) for k in UPPER_POWERS]
     return values, [(1 + k) * y**k - (2 + k) * y ** (1 + k) for k in UPPER_POWERS]
 
 
 def density_error(p, basis, density, root, coefficients):
-    """Relative error of the density of x, at x(p), where the random number is p^root."""
+    """Relative error of the density at x(p), and its gradient; the random number is p^root."""
     values, slopes = basis(p)
     x, slope = p + mp.fdot(values, coefficients), 1 + mp.fdot(slopes, coefficients)
     step = mp.sqrt(mp.eps)
@@ -76,9 +76,9 @@ def fitted(points, basis, density, root):
 
 
 def root_rows(points):
-    """Factors of the coefficients of y / m in powers of m, relative to y / m.
+    """Rows of the linear fit of y / m by powers of m, divided by y / m.
 
-    y = (K / K(pi / 2))^(2/5) at the cosine 1 - m; cancellation costs at most 14 of 40 digits.
+    Here y = (K / K(pi / 2))^(2/5) at the cosine 1 - m; cancellation costs at most 14 of 40 digits.
     """
     rows = []
     for m in points:
@@ -89,7 +89,7 @@ def root_rows(points):
     return rows
 
 
-# Name, points, basis, density, exponent of the random number.
+# Columns: name, points, basis, density, exponent `root`.
 ROWS = (
     (
         "MULTIPLE",

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Coefficients of `fon_loss` in the shaders: H(mu) without an inverse cosine and without a division.
+"""Coefficients of the shaders' `fon_loss`, which computes H(mu) without inverse cosine or division.
 
     H(mu) = mu [P(mu) + (1 - S)(1 - mu) Q(mu)],  S = sqrt(1 - mu^2)
 
-S contains the branch point of H at mu = 1, so both errors fall geometrically with the degrees. The
-second term vanishes at both ends, so nothing cancels there. One fit of both minimizes the largest
-relative error of H, using only the closed form.
+S contains the branch point of H at mu = 1, so errors fall geometrically with the degrees. The second term
+vanishes at both ends, so nothing cancels there. P and Q are fitted together to the closed form, and
+minimize the largest relative error of H.
 
     python -m tools.fits.fon_loss
 """
@@ -16,12 +16,12 @@ from numpy.polynomial.polynomial import polyval
 from mxeon.models import diffuse as formulas
 from tools.fits.minimax import extrema, least_largest, mp
 
-# One degree less in either costs a factor above ten, as the printed table shows.
+# With one degree less in P or Q, errors grow more than tenfold, as the printed table shows.
 DEGREE_P, DEGREE_Q = 4, 3
-DIGITS = 9  # decimal digits that tell any two float32 numbers apart
+DIGITS = 9  # enough to distinguish any two float32 numbers
 COUNT = 200  # points of the fit
 
-# Every decade from 1e-8 and every part of [0, 1], exactly representable.
+# Cosines in float32 for measuring errors: dense in all decades from 1e-8, and in [0, 1].
 CHECKED = np.unique(
     np.concatenate([np.logspace(-8, 0, 100_000), np.linspace(1e-5, 1, 100_000)]).astype("f4")
 )
@@ -35,7 +35,7 @@ def closed_form(mu):
 
 
 def fitted(mu, p, q):
-    """H(mu) from coefficients, in the precision of `mu`, operation by operation as the shaders."""
+    """H(mu) by the fit, with the shaders' operations in the precision of `mu`."""
     one = mu.dtype.type(1.0)
     m = one - mu
     S = np.sqrt(m * (one + mu))
@@ -67,7 +67,7 @@ def largest_errors(p, q):
 
 
 def defines():
-    """The coefficients as lines of the shaders."""
+    """Lines of shader code that define the coefficients."""
     rows = zip("PQ", fit(), strict=True)
     return [
         f"#define EON_{name}{k} {x:.{DIGITS}g}" for name, row in rows for k, x in enumerate(row)

@@ -5,12 +5,12 @@ For a dielectric of index n above 1, with t = 1 / n:
 
     1 - F_ss = t N / D,
 
-with polynomials in t. An index below 1 follows from the other side: 1 - F_ss(n) = n^2 (1 - F_ss(1 /
-n)). For a metal, whose curve is 1 at grazing:
+where N and D are polynomials in t. For an index below 1, 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)). For a
+metal, whose reflectance is 1 at grazing:
 
     1 - F_ss = sum of w_k (1 - F(c_k)),
 
-with three cosines and the weights that minimize the largest error over metals. Schlick's curve
+with three cosines c_k, and weights w_k that minimize the largest error over metals. Schlick's curve
 needs no fit.
 
     python -m tools.fits.fresnel_average
@@ -36,7 +36,7 @@ NODES = 24  # nodes of the average over the hemisphere
 
 
 def dielectric_average(n):
-    """F_ss for n > 1: [Walsh1926]."""
+    """F_ss of a dielectric for n > 1, [Walsh1926]."""
     n2 = n * n
     n4 = n2 * n2
     return (
@@ -49,9 +49,9 @@ def dielectric_average(n):
 
 
 def dielectric_fit():
-    """Coefficients of N and D, except the constant 1 of D, by linear fits of N - D T over D.
+    """Coefficients of N and D, without D's constant 1, by linear fits of (N - D T) / D.
 
-    Each fit uses the previous D as weight; at convergence the largest error is minimal.
+    T is the exact N / D. Each fit divides by the previous D, and so converges to the minimax fit.
     """
     t, above = roots(COUNT), len(FORM.above)
     T = [(1 - dielectric_average(1 / x)) / x for x in t]
@@ -68,7 +68,7 @@ def dielectric_fit():
 
 
 def dielectric_error(coefficients):
-    """Largest absolute error of F_ss on a finer set of points."""
+    """Largest absolute error of F_ss on a finer set of points than the fit's."""
     t = roots(4 * COUNT + 1)
     exact = np.array([dielectric_average(1 / x) for x in t], float)
     t = np.array(t, float)
@@ -76,7 +76,7 @@ def dielectric_error(coefficients):
 
 
 def metals(n, k):
-    """F_ss of metals by Gauss-Legendre, whose error is below 1e-6, and their reflectance at three cosines."""
+    """F_ss of metals by quadrature, with an error below 1e-6; their reflectances at three cosines."""
     n, k = (each.ravel() for each in np.meshgrid(n, k, indexing="ij"))
 
     def at(c):
@@ -87,20 +87,20 @@ def metals(n, k):
 
 
 def conductor_error(weights, n, k):
-    """Largest absolute error of the F_ss of metals by three cosines."""
+    """Largest absolute error of F_ss of metals as a sum over three cosines."""
     exact, at = metals(n, k)
     return float(np.abs(1.0 - (1.0 - at) @ weights - exact).max())
 
 
 def conductor_fit():
-    """Weights of the cosines that minimize the largest absolute error over the metals."""
+    """Weights of the three cosines that minimize the largest absolute error over metals."""
     exact, at = metals(INDICES, EXTINCTIONS)
     weights, _ = least_largest((1.0 - at).tolist(), (1.0 - exact).tolist())
     return tuple(float(mp.nstr(w, DIGITS)) for w in weights)
 
 
 def shipped_conductor():
-    """Weights and cosines in the shader."""
+    """Weights and cosines that the shader uses."""
     text = source_file("glsl", "fresnel_conductor").read_text(encoding="utf-8")
     pairs = re.findall(r"- ([\d.]+) \* \(1\.0 - mx_fresnel_conductor\(([\d.]+),", text)
     return np.array(pairs, float).T
@@ -112,6 +112,6 @@ if __name__ == "__main__":
     print(f"largest absolute error, dielectrics: {dielectric_error(found):.3g}")
     shares = conductor_fit()
     print("metals", *printed(shares))
-    for least in (0.5, 0.2):  # the domain, and beyond it
+    for least in (0.5, 0.2):  # least extinction: of the fit's domain, and below it
         error = conductor_error(shares, np.linspace(0.05, 5.0, 200), np.linspace(least, 10.0, 200))
         print(f"largest absolute error, metals of an extinction from {least}: {error:.3g}")

@@ -12,9 +12,7 @@ from pathlib import Path
 from tools.benchmarks.mutants.mutant import ROOT, Mutant, read_table
 
 GROUP = "Operators"
-SURVIVORS = Path(__file__).with_name(
-    "survivors.toml"
-)  # undetected mutants, as "lines => changed lines"
+SURVIVORS = Path(__file__).with_name("survivors.toml")  # known undetected mutants
 FOLDERS = ("genglsl", "genosl")
 # Programs with many mutants do not compile these lookups; `table` has mutants for them.
 ENVIRONMENT = "genglsl/environment/"

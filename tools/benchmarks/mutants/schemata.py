@@ -3,8 +3,8 @@
 
 At each mutant's place, an expression equals the original unless the uniform `mutant` has the mutant's number: ` + `
 becomes ` + mutant_sign(mutant == 7) * `. So a node's shader compiles once for hundreds of mutants, and each mutant only
-takes the milliseconds of a check on a subset of samples. Mutants of constant expressions and of integers cannot be written this
-way. They are reported, and need a separate library.
+takes the milliseconds of a check on a subset of samples. Mutants of constant expressions and of integers
+cannot be written this way. They are reported, and need a separate library.
 """
 
 import re
@@ -145,9 +145,7 @@ def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
     opens: dict[int, list[str]] = {}
     closes: dict[int, list[str]] = {}
     tokens: dict[int, Edit] = {}
-    for each in sorted(
-        made, key=lambda each: (each.start, -each.end)
-    ):  # outer edits before inner ones
+    for each in sorted(made, key=lambda each: (each.start, -each.end)):  # outer edits first
         if each.token:
             tokens.setdefault(each.start, each)
         else:
@@ -251,10 +249,7 @@ LAST = (
     *("frame", "finite", "layer", "integral", "energy", "states", "lossless", "domain", "sky"),
     *("narrow_lobes", "tilted_lobes", "wide_lobes", "straight_views", "low_index", "each_lobe"),
 )
-COMPOSED = (
-    CombinedSpec,
-    SurfaceShaderSpec,
-)  # nodes of several lobes that are also checked separately
+COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # several lobes, which are also checked alone
 UNWRITTEN = "unwritten"
 OSL_TWINS = {
     source_file("osl", stem).relative_to(ROOT).as_posix()
@@ -271,7 +266,7 @@ Subject = tuple[str, bool, str, Asked]
 def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
     """The check and subject that detect each mutant, by the mutant's name.
 
-    Only for GLSL of nodes and functions shared with OSL. The value is SURVIVED if no check detects the
+    Covers GLSL of nodes and functions shared with OSL. The value is SURVIVED if no check detects a
     mutant, and UNWRITTEN if a uniform cannot select it.
     """
     twins = [each for each in mutants if each.file in OSL_TWINS]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests a mutant: runs `mxeon check` on a copy of eonlib with the mutant, cheapest tasks first.
 
-Mutants of pbrlib are tested by the checks of the nodes that they change, other sources by all checks of
-a library, and wrong references by the tests of the models on a copy of mxeon.
+Mutants of pbrlib are tested by the checks of the nodes that they change, other sources by all
+checks of a library, and wrong references by the tests of the models on a copy of mxeon.
 """
 
 import os
@@ -39,13 +39,8 @@ TEXT, TESTS = "text", "tests"  # used instead of a host's name
 
 # Checks on Cycles cannot detect all of these mutants; tests run the code in Blender's OSL.
 PROFILE, PROFILE_TESTS = "genosl/cycles/", ("tests/hosts/test_osl.py",)
-PATH, PATH_TESTS = (
-    "genglsl/path/",
-    ("tests/shaders/test_path_tracing.py",),
-)  # code that no check runs
-LOBE = (
-    "genglsl/lib/microfacet_lobe.glsl"  # stands for environment lookups, which no source includes
-)
+PATH, PATH_TESTS = "genglsl/path/", ("tests/shaders/test_path_tracing.py",)  # no check runs it
+LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls lookups of environments without including them
 ENVIRONMENT_TESTS = (
     "tests/conformance/test_conformance.py::test_other_lobes_are_lit_alike_by_eonlib_s_lookups",
     "tests/hosts/test_document_hosts.py::"
@@ -56,9 +51,7 @@ NOISY = ("environment", "furnace")  # slowest checks on Cycles
 ON_CYCLES = ("genosl/",)
 CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls closures, which only the osl host evaluates
 NOT_ON_GL = (*ON_CYCLES, CLOSURES, "libraries/diffuse/eonlib_genmdl")
-TEXT_FIRST = (
-    "libraries/diffuse/eonlib_defs.mtlx",
-)  # text checks name its mistakes best, although other checks fail too
+TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # its mistakes also fail slower checks
 
 
 def trial(mutant: Mutant, judge: Judge) -> dict[str, Any]:
@@ -151,8 +144,8 @@ def _clean_failures(task: Task, judge: Judge) -> frozenset[tuple[str, str]]:
 def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
     """Hosts and tasks that can detect a mutant, cheapest first.
 
-    The order is: text and nodes, surface shaders, pictures of documents, OSL closures, Cycles. Pictures
-    and tasks of Cycles are separate stages.
+    The order is: text and nodes, surface shaders, pictures of documents, OSL closures, Cycles. Each
+    picture and each task of Cycles is a stage of its own.
     """
     tasks = make_plan((), ["gl"], [path]).tasks
     if mutant.file.startswith(NOT_ON_GL):
@@ -216,8 +209,8 @@ def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
 def _tasks(host: str) -> tuple[Task, ...]:
     """All tasks of a host with eonlib, grouped by subject, because each subject compiles one shader.
 
-    Subjects are in reverse order: transmission runs most of the code, so it comes early. Films come last,
-    because their failures take longest to diagnose.
+    Subjects are in reverse order, so that transmission, which runs most of the code, comes early.
+    Films come last, because their failures take longest to diagnose.
     """
     places = {spec.title: -place for place, spec in enumerate(PBRLIB)}
     tasks = make_plan((), [host], ["eonlib"], nodes=["all"]).tasks
@@ -281,9 +274,7 @@ MODEL_TESTS = "tests/models"
 OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
 FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
 WIDTH = {"COLUMNS": "200"}  # wide enough for whole messages of pytest
-BLENDER = {
-    "MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"
-}  # the copy has no virtual environment
+BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}  # a copy lacks this folder
 GOOD, NO_TEST = 0, 5  # exit statuses of pytest
 
 
