@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""All verdicts of the suite in one file, which a redesign must not change.
+"""Writes all verdicts of the suite to a file, and compares two such files, to refactor safely.
 
     python tools/golden.py write out/before.jsonl [--host gl ...]   every host that runs here x every library
     python tools/golden.py compare out/before.jsonl out/after.jsonl
 
-A line is one check: host, library, subject and key; its verdict, tolerance, whether its control was
-caught, diagnosis and pages. Numbers in a diagnosis keep two digits, since engines differ in the rest.
+A line is one check: host, library, subject and key; verdict, tolerance, whether its control was
+caught, diagnosis and pages. Numbers in a diagnosis keep two digits, since others differ by engine.
 """
 
 import argparse
@@ -27,7 +27,7 @@ Line = dict[str, object]
 def lines(host: str, library: str) -> list[Line]:
     """The results of all nodes and the bundled examples on a host."""
     command = ["mxeon", "check", "--host", host, "--library", library, "--json"]
-    for nodes in (["--node", "all"], []):  # renderers with own materials reject --node
+    for nodes in (["--node", "all"], []):  # renderers without MaterialX nodes reject --node
         run = subprocess.run([*command, *nodes], capture_output=True, text=True, check=False)
         if run.stdout.startswith("{"):
             return [line(each) for each in json.loads(run.stdout)["results"]]
@@ -46,7 +46,7 @@ def line(result: Line) -> Line:
 
 
 def rounded(value: object) -> object:
-    """Fields of JSON, with non-integer numbers rounded to two digits."""
+    """A JSON value with non-integer numbers rounded to two digits."""
     if isinstance(value, dict):
         return {name: rounded(each) for name, each in value.items()}
     if isinstance(value, list):
@@ -55,7 +55,7 @@ def rounded(value: object) -> object:
 
 
 def compare(before: Path, after: Path) -> int:
-    """Print the differences, and count them."""
+    """Print the differences, and return their number."""
     old, new = (
         {tuple(each.get(key) for key in PLACE): each for each in map(json.loads, path.open())}
         for path in (before, after)

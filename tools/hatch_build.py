@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Puts the ledger into the wheel: the package reads its rows, and answers and reports link to its pages."""
+"""Adds the ledger to the wheel: the package reads its rows, and results link to its pages."""
 
 from pathlib import Path
 from typing import Any
@@ -9,7 +9,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 class Pages(BuildHookInterface):
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Add the pages to a wheel; an editable one finds them in the checkout."""
+        """Add the pages to a standard wheel; editable installs find them in the checkout."""
         if version == "standard":
             for file in Path(self.root, "docs", "upstream").iterdir():
                 if file.suffix in (".md", ".json"):

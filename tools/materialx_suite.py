@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MaterialX's own tests with its libraries as published, and with eonlib before them.
+"""Runs MaterialX's own tests with its stock libraries, and with eonlib loaded before them.
 
 python -m tools.materialx_suite CHECKOUT BUILD WORK [NAME=VALUE ...]
 
-CHECKOUT is a clone of MaterialX in the version of the installed package, and BUILD a build of it with
-MATERIALX_BUILD_TESTS and the GLSL renderer. Both stay as they are: each library gets a folder in WORK with
-links to them, and its own copy of the suite's `_options.mtlx`, in which NAME=VALUE replaces a value;
-renderGeometry=dome.obj is half a sphere of 60 faces for OpenGL on a CPU. What has been rendered in WORK is
-kept, so a second call only writes docs/materialx_suite.md and its pictures.
+CHECKOUT is a clone of MaterialX in the version of the installed package, BUILD a build of it with
+MATERIALX_BUILD_TESTS and the GLSL renderer. Neither is changed: each library gets a folder in WORK with
+links to them, and its own copy of the suite's `_options.mtlx`. NAME=VALUE replaces a value there, such as
+renderGeometry=dome.obj, half a sphere of 60 faces for OpenGL on a CPU. Results in WORK are reused, so a
+second call only writes docs/materialx_suite.md and its pictures.
 """
 
 import math
@@ -35,7 +35,7 @@ OPTIONS = "resources/Materials/TestSuite/_options.mtlx"
 DOME = "dome.obj"
 NOTE = " (half a sphere of 60 faces, whose normals turn away from the viewer at the rim)"
 STOCK, EONLIB, RENDER_TEST = "stock", "eonlib", "Render: GLSL TestSuite"
-SIZE, QUALITY = 128, 80  # pixels of a tile, and WebP quality
+SIZE, QUALITY = 128, 80  # width of a tile in pixels, and WebP quality
 HEAD = """<!-- Made by `python -m tools.materialx_suite`. -->
 # MaterialX's own test suite with eonlib
 
@@ -86,22 +86,24 @@ def slug(text: str) -> str:
 
 
 def change(stock: Codes, eonlib: Codes) -> tuple[float, float]:
-    """The largest change of a picture, signed, as a share of white; and the share of pixels that change visibly."""
+    """Largest signed change of a picture, where white is 1; share of pixels that visibly change."""
     apart = difference(srgb_decoded(eonlib / 255.0), srgb_decoded(stock / 255.0))
     largest = apart.flat[np.abs(apart).argmax()]
     return float(largest), float(np.mean(np.abs(apart) > VISIBLE))
 
 
 def stage(folder: Path, checkout: Path, build: Path) -> None:
-    """Fill a new folder for the suite, named by its library."""
+    """Create the folder in which the suite runs with the library of that name."""
     if folder.exists():
         return
     for name in ("libraries", "resources"):
         shutil.copytree(checkout / name, folder / name, copy_function=os.symlink)
     (folder / OPTIONS).unlink()  # `run_tests` writes its own
     (folder / "bin").mkdir()
-    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # it looks for data from there
-    # MaterialX reads the files of a folder before its subfolders, so these come before its own.
+    shutil.copy(
+        build / "bin" / "MaterialXTest", folder / "bin"
+    )  # the program finds its data relative to itself
+    # MaterialX reads files before subfolders, so eonlib's documents take precedence.
     for path in documents_folder().rglob("*.mtlx") if folder.name == EONLIB else ():
         (folder / "libraries" / path.name).symlink_to(path)
     for name in SOURCE_FOLDERS:  # the documents refer to "../../genglsl"
@@ -110,14 +112,14 @@ def stage(folder: Path, checkout: Path, build: Path) -> None:
 
 
 def shown(value: str) -> str:
-    """An option's value in print, such as "b/c.hdr" for "a/b/c.hdr", or "2 documents"."""
+    """An option's value for the page, such as "b/c.hdr" for "a/b/c.hdr", or "2 documents"."""
     names = ["/".join(Path(each.strip()).parts[-2:]) for each in value.split(",")]
     documents = f"{len(names)} documents" if names[0].endswith(".mtlx") else ", ".join(names)
     return documents + NOTE * (names[0] == DOME)
 
 
 def write_dome(path: Path) -> None:
-    """Write half a sphere of 60 faces as OBJ, which software renders much faster than the suite's 3600."""
+    """Write half a sphere of 60 faces as OBJ; software renders it much faster than 3600 faces."""
     rings, sectors = 5, 12
     lines = []
     for ring, sector in np.ndindex(rings + 1, sectors + 1):
@@ -138,7 +140,7 @@ def set_options(suite: mx.Document, options: dict[str, str]) -> None:
 
 
 def run_tests(folder: Path, suite: mx.Document, case: str) -> None:
-    """Run C++ tests, unless the folder has their results."""
+    """Run C++ tests, unless the folder already has their results."""
     name = slug(case)
     if (folder / f"{name}.xml").exists():
         return
@@ -151,7 +153,7 @@ def run_tests(folder: Path, suite: mx.Document, case: str) -> None:
 
 
 def shaders(folder: Path) -> dict[str, Path]:
-    """The fragment shaders of the render test by document and element."""
+    """Paths of the render test's fragment shaders, by document and element."""
     out = folder / slug(RENDER_TEST)
     return {
         f"{path.relative_to(out).parts[0]}: {path.stem.removesuffix('_ps')}": path
@@ -168,7 +170,7 @@ def codes(shader: Path) -> Codes:
 
 
 def failed_tests(folder: Path) -> dict[str, bool]:
-    """Whether each C++ test case failed."""
+    """Whether each C++ test case failed, by its name."""
     return {
         case.attrib["name"]: case.find("OverallResult[@success='true']") is None
         for path in folder.glob("*.xml")
@@ -177,7 +179,7 @@ def failed_tests(folder: Path) -> dict[str, bool]:
 
 
 def untested(folder: Path) -> list[str]:
-    """Implementations that no document of the suite uses, by the log of the test that counts them."""
+    """Implementations that no document of the suite uses, as listed in a test's log."""
     log = folder / slug(f"~{RENDER_TEST}") / "genglsl_glsl_generate_test.txt"
     return re.findall(r"^\t(\w+)$", log.read_text().partition("Untested: ")[2], re.MULTILINE)
 
@@ -248,7 +250,9 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
 
 
 if __name__ == "__main__":
-    from mxeon.hosts.materialx.worker import open_display  # it ends a process without X's libraries
+    from mxeon.hosts.materialx.worker import (
+        open_display,
+    )  # importing it ends the process if X's libraries are missing
 
     open_display()
     folders, chosen = sys.argv[1:4], sys.argv[4:]

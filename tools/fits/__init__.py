@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of the shaders' approximate coefficients, in arithmetic that is the same on every machine."""
+"""Fits of approximate coefficients for shaders, in arithmetic that is the same on every machine."""

@@ -5,8 +5,8 @@
 
 Two inverse distributions map a random number to a cosine, without further parameters. They have the
 form x = p + sum(a_k B_k(p)), where p is the root of the random number that makes x(p) analytic.
-Both ends are exact for any coefficients. Newton steps of minimax fits minimize the density's largest
-relative error; they need the exact density but not the exact inverse.
+Both ends are exact for any coefficients. Newton steps of minimax fits minimize the largest relative
+error of the density; they need the exact density but not the exact inverse.
 
 ROOT, which only shaders use, fits y = (K / K(pi / 2))^(2/5) for a given cosine, where y is analytic
 in m = 1 - cos. It replaces an arc tangent, a cancellation and a power.

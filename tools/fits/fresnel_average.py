@@ -76,7 +76,7 @@ def dielectric_error(coefficients):
 
 
 def metals(n, k):
-    """F_ss of metals by quadrature, with an error below 1e-6; their reflectances at three cosines."""
+    """F_ss of metals by quadrature, to within 1e-6, and their reflectances at three cosines."""
     n, k = (each.ravel() for each in np.meshgrid(n, k, indexing="ij"))
 
     def at(c):

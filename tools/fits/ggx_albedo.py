@@ -3,9 +3,9 @@
 
     E_ss(mu, alpha) = 1 - z^2 N / D,  z = sqrt(mu / (mu + alpha)),
 
-with polynomials N and D in z and alpha. At small alpha E_ss only depends on mu / alpha, which z
-represents; and 1 - E_ss vanishes at grazing like mu log(mu), which polynomials in z approximate better
-than those in mu. The fit minimizes the largest absolute error. The quadrature only uses sums, products,
+where N and D are polynomials in z and alpha. At small alpha E_ss only depends on mu / alpha, and so
+on z. At grazing 1 - E_ss vanishes like mu log(mu), which polynomials in z approximate better than
+those in mu. The fit minimizes the largest absolute error. The quadrature only uses sums, products,
 quotients and square roots of float64, which are the same on every processor.
 
     python -m tools.fits.ggx_albedo
@@ -29,8 +29,11 @@ START = (
     *(-1.49084, 5.82249, 1.60299, 0.74937, 1.79916),
     *(0.225562, -0.0983618, 4.00769, 1.57355, 0.538882, -12.0367, -1.69065, -1.00164, 7.53262),
 )
-DEGREE, PANELS = 12, 10  # quadrature nodes per panel, panels towards the mirror direction
-NEWTON = 6  # steps to 40 digits from the asymptotic root
+DEGREE, PANELS = (
+    12,
+    10,
+)  # quadrature nodes per panel; number of panels, finest at the mirror direction
+NEWTON = 6  # Newton steps from the asymptotic root to 40 digits
 LEAST = 1e-4  # smallest alpha and cosine of the fit
 
 
@@ -60,10 +63,10 @@ def graded(degree=DEGREE, panels=PANELS):
 
 
 def incident(mu, alpha):
-    """Geometry and weights of light around the mirror direction, nodes along the first axis.
+    """Terms of the albedo's integrand around the mirror direction, with nodes along the first axis.
 
-    With t = tan((theta_o - theta_i) / 2), the azimuth integral of D G2 / (4 mu_o) is that of
-    pre (u / (u - k))^2, u - k between `low` at the mirror's azimuth and `high` opposite.
+    With t = tan((theta_o - theta_i) / 2), D G2 / (4 mu_o) is pre (u / (u - k))^2 over the azimuth,
+    where u - k goes from `low` at the mirror's azimuth to `high` opposite.
     """
     node, weight = (each.reshape(-1, *(1,) * np.ndim(mu)) for each in graded())
     s = np.sqrt((1.0 - mu) * (1.0 + mu))
@@ -91,7 +94,7 @@ def albedo(mu, alpha):
 
 
 def variables(mu, alpha):
-    """z and alpha, and the factor z^2 of the fit."""
+    """The fit's variables (z, alpha), and its factor z^2."""
     z2 = mu / (mu + alpha)
     return (np.sqrt(z2), alpha), z2
 
@@ -102,9 +105,9 @@ def fitted(mu, alpha, coefficients):
 
 
 def points(across=61, along=41, root=0.0, least=LEAST):
-    """Cosines and roughnesses, dense where lambda = mu / sqrt(alpha^2 + (1 - alpha^2) mu^2) or alpha is near 0 or 1.
+    """Cosines and roughnesses, dense where alpha or the variable x below is near 0 or 1.
 
-    A `root` of 1/2 makes alpha denser near 0.
+    x is mu / sqrt(alpha^2 + (1 - alpha^2) mu^2). A `root` of 1/2 makes alpha denser near 0.
     """
     x, alpha = (np.array(extrema(count), float) for count in (across, along))
     x, alpha = np.meshgrid(np.maximum(x, least), np.maximum(alpha * alpha**root, LEAST))
@@ -113,34 +116,34 @@ def points(across=61, along=41, root=0.0, least=LEAST):
 
 
 def fit():
-    """Coefficients, numerator first, rounded as printed."""
+    """Coefficients, the numerator's first, rounded as printed."""
     mu, alpha = points()
     arguments, z2 = variables(mu, alpha)
     return refined(FORM, arguments, (1.0 - albedo(mu, alpha)) / z2, z2, START)
 
 
 def largest_error(coefficients, across=145, along=97):
-    """Largest absolute error of E_ss on a grid that is finer than that of the fit."""
+    """Largest absolute error of E_ss on a finer grid than the fit's."""
     mu, alpha = points(across, along)
     return float(np.max(np.abs(fitted(mu, alpha, coefficients) - albedo(mu, alpha))))
 
 
 def peak(mu, alpha, count=400):
-    """Largest value, pi f cos, of perfectly reflecting facets, which lies in the plane of incidence."""
+    """Largest pi f cos of perfectly reflecting facets; it occurs in the plane of incidence."""
     mu_i = (np.arange(count) + 0.5).reshape(-1, *(1,) * np.ndim(mu)) / count
     s, s_i = (np.sqrt((1.0 - each) * (1.0 + each)) for each in (mu, mu_i))
     alpha2 = alpha * alpha
-    h2 = (mu + mu_i) ** 2 / (2.0 + 2.0 * (mu * mu_i - s * s_i))  # squared height of the half vector
+    h2 = (mu + mu_i) ** 2 / (2.0 + 2.0 * (mu * mu_i - s * s_i))  # squared cosine of the half vector
     lambdas = (np.sqrt(alpha2 + (1.0 - alpha2) * each * each) for each in (mu, mu_i))
     smith = sum(each * other for each, other in zip(lambdas, (mu_i, mu), strict=True))
     return np.max(alpha2 / (1.0 + (alpha2 - 1.0) * h2) ** 2 * mu_i / (2.0 * smith), axis=0)
 
 
 def value_errors(coefficients, across=145, along=97):
-    """Largest error of a compensated value, over itself or 1, and the largest factor of F_ss in it.
+    """Largest error of a compensated value, and the largest factor of F_ss in such a value.
 
-    v / E_ss has the relative error of E_ss, and v (1 - E_ss) / E_ss is multiplied by the error of
-    F_ss.
+    Both are relative where the value exceeds 1. With v the value without compensation, the error is
+    that of v / E_ss, and the factor is v (1 - E_ss) / E_ss.
     """
     mu, alpha = points(across, along)
     E, v = albedo(mu, alpha), peak(mu, alpha)

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Isotropic facets that replace anisotropic ones in the shaders' fits of E_ss and of Fresnel averages.
+"""Isotropic facets to replace anisotropic ones in the shaders' fits of E_ss and Fresnel averages.
 
 With r^2 = (alpha_x^2 + alpha_y^2) / 2, the squared roughness along the azimuth of wo and across it are
 
     v^2 = (alpha_x x)^2 + (alpha_y y)^2 + (r z)^2,  u^2 = 2 r^2 - v^2,
 
-and the slopes along and across are correlated by c, c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2. The
-lost light is that of isotropic facets of alpha r at the cosine z r / v, times
+and c is the correlation of these slopes, c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2. The lost light
+equals that of isotropic facets with alpha = r at the cosine z r / v, times
 
     1 + C_0 c^2 + C_1 d + C_2 t + C_3 c^2 t,  d = 1 - (alpha_x alpha_y)^2 / r^4,  t = v^2 / r^2 - 1,
 
-where the coefficients minimize the largest relative error of E_ss. A Fresnel curve has the average
-over isotropic facets of alpha v k(0.7 + c^2) at the cosine z k(0.35 c^2), k(p) = min((1 + p v) / (1
-+ p u), 1).
+where the coefficients minimize the largest relative error of E_ss. The average of a Fresnel curve
+equals that over isotropic facets with alpha = v k(0.7 + c^2) at the cosine z k(0.35 c^2), where
+k(p) = min((1 + p v) / (1 + p u), 1).
 
     python -m tools.fits.ggx_anisotropic
 """
@@ -33,7 +33,7 @@ AZIMUTHS = np.radians((0.0, 5.0, 12.0, 25.0, 45.0, 65.0, 80.0, 90.0))
 
 
 def points(ratios=RATIOS):
-    """Directions (3, N) and alphas (2, N) of a grid, each alpha at least 1e-3."""
+    """Directions (3, N) and alphas (2, N) of a grid; all alphas are at least 1e-3."""
     a, ratio, mu, phi = (
         each.ravel() for each in np.meshgrid(LARGEST, ratios, COSINES, AZIMUTHS, indexing="ij")
     )
@@ -45,7 +45,7 @@ def points(ratios=RATIOS):
 
 
 def exact(wo, alpha, ior=None, block=64):
-    """E_ss by quadrature, or the albedo of a dielectric."""
+    """E_ss by quadrature; with `ior`, the albedo of a dielectric without compensation."""
     parts = []
     for start in range(0, wo.shape[1], block):
         c, weight = slope_nodes(wo[:, start : start + block], alpha[:, start : start + block])
@@ -55,7 +55,7 @@ def exact(wo, alpha, ior=None, block=64):
 
 
 def terms(wo, alpha):
-    """Isotropic cosine and alpha, and factors of the four coefficients."""
+    """Cosine and alpha of the isotropic facets, and the factors c^2, d, t and c^2 t."""
     (x2, y2, z2), (a2, b2) = wo**2, alpha**2
     r2 = 0.5 * (a2 + b2)
     v2 = a2 * x2 + b2 * y2 + r2 * z2
@@ -65,12 +65,12 @@ def terms(wo, alpha):
 
 
 def missed(wo, alpha):
-    """1 - E_ss of the isotropic facets, by the shaders' fit."""
+    """1 - E_ss of the isotropic facets by the shaders' fit."""
     return 1.0 - fitted(*terms(wo, alpha)[0], shipped("ggx_albedo", "ggx_missing"))
 
 
 def visible(wo, alpha):
-    """Cosine and alpha of isotropic facets for Fresnel averages."""
+    """Cosine and alpha of the isotropic facets for Fresnel averages."""
     r2 = 0.5 * np.sum(alpha**2, axis=0)
     v2 = np.sum((alpha * wo[:2]) ** 2, axis=0) + r2 * wo[2] ** 2
     v, u = np.sqrt(v2), np.sqrt(2.0 * r2 - v2)
@@ -80,7 +80,7 @@ def visible(wo, alpha):
 
 
 def fit(wo, alpha):
-    """The four coefficients, and the largest error."""
+    """The four coefficients, and the largest relative error of E_ss."""
     E, lost, factors = exact(wo, alpha), missed(wo, alpha), terms(wo, alpha)[1]
     slope, offset = -(lost / E * factors).T, (1.0 - lost) / E - 1.0
     one = np.ones((len(offset), 1))
@@ -94,14 +94,14 @@ def fit(wo, alpha):
 
 
 def largest_error(ratios=RATIOS, coefficients=MISSED):
-    """Largest relative error of E_ss up to the last of these ratios."""
+    """Largest relative error of E_ss for these ratios of the alphas."""
     wo, alpha = points(ratios)
     E = 1.0 - missed(wo, alpha) * (1.0 + np.tensordot(coefficients, terms(wo, alpha)[1], axes=1))
     return float(np.max(np.abs(E / exact(wo, alpha) - 1.0)))
 
 
 def largest_visible_error(ratios=RATIOS, ior=1.5):
-    """Largest error of a dielectric's albedo, with E_ss exact."""
+    """Largest absolute error of a dielectric's albedo if E_ss is exact."""
     wo, alpha = points(ratios)
     mu, own = visible(wo, alpha)
     view = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu])

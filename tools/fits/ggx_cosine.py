@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits of the cosine at which a Fresnel curve equals its average over the visible facets of GGX.
 
-The directional albedo of GGX with a Fresnel reflectance F is E_ss F(c) for one cosine c, which
-depends on mu, alpha and a little on the curve. At alpha 0 it is mu:
+The directional albedo of GGX with a Fresnel reflectance F is E_ss F(c) for some cosine c, which
+depends on mu, alpha and slightly on the curve. At alpha = 0, c is mu:
 
     c = mu + alpha^2 / (mu + alpha) N / D,
 
-N and D being polynomials in x = mu / (mu + alpha), a root y of alpha, and s, which distinguishes the curves
-of a kind. The fit is for c, but minimizes the largest error of the albedo E_ss F(c). Among Schlick's
-curves, (1 - c)^q, exponent 5 has twice the weight of the rest.
+where N and D are polynomials in x = mu / (mu + alpha), a root y of alpha, and s, which identifies a
+curve within its kind. The fit is for c, but minimizes the largest error of the albedo E_ss F(c).
+Among Schlick's curves, (1 - c)^q, exponent 5 has twice the weight of other exponents.
 
-A third fit is for Hoffman's dip c (1 - c)^6, which is not monotone: its average is that at the
-cosine c of Schlick's curve of exponent 5 plus alpha^2 / (mu + alpha) N / D in mu and sqrt(alpha).
+Hoffman's dip c (1 - c)^6 is not monotone. A third fit makes its average the dip at the cosine c of
+Schlick's curve with exponent 5, plus alpha^2 / (mu + alpha) N / D in mu and sqrt(alpha).
 
-The arithmetic is as in `ggx_albedo.py`.
+Arithmetic is restricted as in `ggx_albedo.py`.
 
     python -m tools.fits.ggx_cosine
 """
@@ -28,10 +28,10 @@ from tools.fits import ggx_albedo
 from tools.fits.ggx_albedo import LEAST, incident, legendre
 from tools.fits.minimax import Form, mp, numerator, printed
 
-BLOCK = 20  # points that are integrated together
+BLOCK = 20  # number of points integrated at once
 BISECTIONS = 50
-FLAT = 0.01  # least slope that counts
-DEGREE, OUTER = 8, 12  # azimuth nodes per panel, and outside the panels
+FLAT = 0.01  # weights use at least this slope
+DEGREE, OUTER = 8, 12  # azimuth nodes per panel, and beyond the panels
 
 
 def dielectric(c, ior):
@@ -54,20 +54,20 @@ def dip(c):
 
 @dataclass(frozen=True)
 class Curves:
-    """Fresnel curves of one kind, and the fit of their cosine."""
+    """A kind of Fresnel curves, and the fit of c for them."""
 
-    function: str  # the shader's function of the fitted cosine
-    reflectance: Callable  # F of cosine and parameter
-    parameters: tuple  # parameters of the curves
+    function: str  # name of the shader function that computes c
+    reflectance: Callable  # function of the cosine and a curve's parameter
+    parameters: tuple  # parameter of each curve
     shapes: tuple  # s of each curve
     counts: tuple  # weight of each curve
     roots: int  # y is alpha to the power 2^-roots
     form: Form
-    below: tuple  # coefficients of the denominator, from a search
+    below: tuple  # coefficients of the denominator, found by a search
 
 
 def below(total, count):
-    """Monomials of `count` variables up to a total degree."""
+    """Exponents of all monomials in `count` variables up to a total degree."""
     return tuple(m for m in product(range(total + 1), repeat=count) if sum(m) <= total)
 
 
@@ -114,7 +114,7 @@ def points(across=43, along=25):
 
 
 def averages(mu, alpha, functions):
-    """E_ss, and averages of functions of the cosine, weighted as E_ss is."""
+    """E_ss, and averages of functions of the cosine over the visible facets."""
     blocks = [
         _averages(mu[i : i + BLOCK], alpha[i : i + BLOCK], functions)
         for i in range(0, len(mu), BLOCK)
@@ -145,7 +145,7 @@ def _averages(mu, alpha, functions):
     k, low, high, pre = (each[:, None] for each in incident(mu, alpha))
     tangents, widths = azimuths(np.sqrt(low / high))
     far, rest = (each[None, :, None] for each in legendre(OUTER))
-    # Squared sine of half the azimuth from the mirror's; beyond 1 the tangent is 1 / far.
+    # The variable is the squared sine of half the azimuth, which is 0 at the mirror's azimuth.
     shape = (len(low), OUTER, low.shape[-1])
     sine2 = np.concatenate(
         [
@@ -169,7 +169,7 @@ PI = float(mp.pi)
 
 
 def inverse(values, reflectance):
-    """Cosines at which a falling curve has the values."""
+    """Cosines at which a falling curve takes the given values."""
     low, high = np.zeros_like(values), np.ones_like(values)
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
@@ -179,7 +179,7 @@ def inverse(values, reflectance):
 
 
 def variables(curves, mu, alpha, shape):
-    """x, y and s of the fit, and its factor."""
+    """The fit's variables (x, y, s), and its factor alpha^2 / (mu + alpha)."""
     y = alpha
     for _ in range(curves.roots):
         y = np.sqrt(y)
@@ -192,9 +192,9 @@ def cosine(curves, mu, alpha, shape, coefficients):
 
 
 def sample(curves, mu, alpha):
-    """Variables, values and weights of the fit of the cosine, every third curve at each point.
+    """Variables, values and weights of the fit of c, with every third curve at each point.
 
-    At one point of x and y a cubic in s takes four residuals; more would make the exchange singular.
+    More curves would make the exchange singular: at fixed x and y, N is a cubic in s.
     """
     functions = [lambda c, n=n: curves.reflectance(c, n) for n in curves.parameters]
     albedo, means = averages(mu, alpha, functions)
@@ -207,7 +207,7 @@ def sample(curves, mu, alpha):
         low, high = np.maximum(c - 1e-5, 0.0), np.minimum(c + 1e-5, 1.0)
         slope = (function(low) - function(high)) / (high - low)
         arguments, factor = variables(curves, mu[kept], alpha[kept], shape)
-        # c must be roughly right even where the curve is flat, or it could end up where the curve is steep.
+        # Where the curve is flat, c still needs a weight, or it could drift to steep parts.
         weight = np.maximum(count * slope, FLAT) * albedo[kept] * factor
         columns.append((*arguments, (c - mu[kept]) / factor, weight))
     *arguments, value, weight = (np.concatenate(each) for each in zip(*columns, strict=True))
@@ -215,7 +215,7 @@ def sample(curves, mu, alpha):
 
 
 def fit(curves):
-    """Coefficients, numerator first, rounded as printed."""
+    """Coefficients, the numerator's first, rounded as printed."""
     return numerator(curves.form, *sample(curves, *points()), curves.below)
 
 
@@ -234,7 +234,7 @@ def errors(curves, coefficients, mu, alpha):
 def dip_sample(mu, alpha, schlick_coefficients):
     """Variables, values and weights of the fit of the dip's average.
 
-    Compensation for a white surface multiplies the albedo by 1 / E_ss, so that all points count.
+    Weights omit E_ss: the compensation of a white surface multiplies the albedo by 1 / E_ss.
     """
     _, (mean,) = averages(mu, alpha, [dip])
     c = cosine(SCHLICK, mu, alpha, 0.5, schlick_coefficients)

@@ -1,32 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fit of the light that passes the visible facets of GGX to the less dense side, for indices n below 1.
 
-Facets beyond the critical angle reflect everything, so no single cosine stands for all of them. With
-tau the cotangent of the angle between view and facet and tau_c^2 = (1 - n^2) / n^2 the critical one, the
-share of facets below the critical angle is
+Facets beyond the critical angle reflect everything, so no single cosine can represent all of them.
+Let tau be the cotangent of the angle between view and facet, and tau_c its critical value,
+tau_c^2 = (1 - n^2) / n^2. The share of facets below the critical angle is
 
     S = (1 + v / sqrt(1 + v^2)) / 2,  v = k (tau_m / tau_c - tau_c / tau_m),
 
-and what passes is S^p (1 - F) at the tau that a part of S exceeds. This tau follows from the same
-distribution in closed form: if a share Q exceeds tau,
+and the share of transmitted light is S^p (1 - F), where F is taken at the tau that a part of S
+exceeds. This tau has a closed form by the same distribution: if a share Q exceeds tau,
 
     k (tau_m / tau - tau / tau_m) = w = (Q - 1/2) / sqrt(Q (1 - Q)),  2 k tau / tau_m = sqrt(w^2 + 4 k^2) - w.
 
-Along the normal, GGX's share 1 / (1 + alpha^2 tau_c^2) is this S with k = 1/2. For a smooth surface, S is
-the distribution of GGX's slopes in one direction, with 2 k = mu s / alpha. With mu the cosine of the
-view and s its sine,
+Along the normal, GGX's share 1 / (1 + alpha^2 tau_c^2) is this S with k = 1/2. For a smooth surface,
+S is the distribution of GGX's slopes in one direction, with 2 k = mu s / alpha. The fit is, with mu the
+cosine of the view and s its sine,
 
     tau_m^2 = (mu^2 + a alpha^2) / (s^2 + b alpha^2),  k^2 = k_0 + k_1 mu^2 s^2 / alpha^2.
 
-a, b, k_0, p and the part are linear, or exponentials of linear forms, in products of mu, x = mu / (mu +
-alpha), y = sqrt(alpha), z = s / (s + alpha) and n, which a greedy search chose.
+Each of a, b, k_0, p and the part of S is linear, or an exponential of a linear form, in products
+that a greedy search chose from mu, x = mu / (mu + alpha), y = sqrt(alpha), z = s / (s + alpha), n.
 
-The share of transmitted light according to the reversed paths from outside
-(`mxeon.models.transmission`) has this form with other coefficients and a factor
-1 / (1 + r alpha (1 - n^2) / mu), because facets send light up again: less light passes at grazing.
+The share of light by reversed paths from outside (`mxeon.models.transmission`) has this form with
+other coefficients and a factor 1 / (1 + r alpha (1 - n^2) / mu): less light passes at grazing, where
+facets reflect it back up.
 
-The search minimizes the largest error of the albedo with its compensation and of the share. It is in
-float64, starts from the coefficients in the shader, and need not be repeatable.
+The fit minimizes the largest errors of the compensated albedo and of that share. The search runs in
+float64, starts from the shader's coefficients, and need not be repeatable.
 
     python -m tools.fits.ggx_inside
 """
@@ -40,15 +40,15 @@ from mxeon.models import dielectric_albedo_dir, fresnel_dielectric, fresnel_diel
 from mxeon.models.transmission import reversed_transmittance
 from mxeon.shaders.functions import source_file
 
-SEED, COUNT = 5, 2500  # views
+SEED, COUNT = 5, 2500  # random views and roughnesses
 LEAST = 1e-4  # smallest cosine and roughness
 INDICES = (0.33, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.93, 0.95, 0.98)
-POWERS = (4, 8, 16)  # half the exponents of the norms, which approach the maximum norm
-SCALE = 30.0  # makes errors about 1
+POWERS = (4, 8, 16)  # norms of the errors have twice these exponents, and approach the maximum norm
+SCALE = 30.0  # scales errors to about 1
 
 
 def points(seed=SEED, count=COUNT):
-    """Cosines and roughnesses: uniform, uniform in the logarithm, ratios near 1, near the normal and critical angles."""
+    """Random cosines and roughnesses; many near the normal, the critical angles and mu = alpha."""
     rng = np.random.default_rng(seed)
     pick, ratio = rng.random((3, count)), rng.random(count)
     alpha = np.where(pick[0] < 0.5, LEAST ** rng.random(count), rng.random(count))
@@ -60,14 +60,14 @@ def points(seed=SEED, count=COUNT):
 
 
 def albedo(mu, alpha, ior):
-    """Directional albedo without compensation; at index 0 it is E_ss."""
+    """Directional albedo without compensation. Index 0 gives E_ss."""
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
     roughness = np.stack([alpha, alpha], axis=-1)
     return np.ravel(dielectric_albedo_dir(wo, 1.0, roughness, ior, compensate=False))
 
 
 def passing(mu, alpha, ior, c):
-    """Mean of 1 - F over the visible facets, and the share by reversed paths, from the coefficients."""
+    """Fits of the mean of 1 - F over the visible facets, and of the share by reversed paths."""
     s2, bent = 1.0 - mu * mu, 1.0 - ior * ior
     x, y, z = mu / (mu + alpha), np.sqrt(alpha), np.sqrt(s2) / (np.sqrt(s2) + alpha)
     ratio = mu * mu * s2 / alpha**2
@@ -104,7 +104,7 @@ def passing(mu, alpha, ior, c):
 
 
 def passed(mu, alpha, ior):
-    """Exact shares of reversed paths, one view each."""
+    """Exact shares by reversed paths, for arrays of equal length."""
 
     def albedos(a, n):
         return lambda mu: dielectric_albedo_dir(
@@ -118,19 +118,19 @@ def passed(mu, alpha, ior):
 
 
 def sample(mu, alpha):
-    """E_ss, and albedos of all indices."""
+    """E_ss, and the albedos for all INDICES."""
     return albedo(mu, alpha, 0.0), np.stack([albedo(mu, alpha, n) for n in INDICES])
 
 
 def errors(coefficients, mu, alpha, ess, albedos):
-    """Errors of the albedo with its compensation, (I, N)."""
+    """Errors of the compensated albedo by index and view, (I, N)."""
     fitted = np.stack([1.0 - passing(mu, alpha, n, coefficients)[0] for n in INDICES])
     average = np.array([float(fresnel_dielectric_avg(n)) for n in INDICES])[:, np.newaxis]
     return (ess * fitted - albedos) * (1.0 + average * (1.0 - ess) / ess)
 
 
 def fit(mu, alpha, ior, sampled, exact):
-    """Coefficients: `sampled` for all indices, `exact` shares of reversed paths for `ior`."""
+    """Fit the coefficients to `sampled`, from `sample`, and `exact`, shares by reversed paths."""
 
     def powers(coefficients, power):
         share = passing(mu, alpha, ior, coefficients)[1] - exact
@@ -144,7 +144,7 @@ def fit(mu, alpha, ior, sampled, exact):
 
 
 def shipped():
-    """Coefficients in the shader, in the order of the text."""
+    """The shader's coefficients, in the order of its text."""
     text = source_file("glsl", "fresnel_dielectric").read_text(encoding="utf-8")
     lines = re.search(r"vec2 a = .*?risen =[^;]*", text, re.DOTALL)
     assert lines
@@ -152,7 +152,7 @@ def shipped():
 
 
 def main():
-    """Print the coefficients found by a search, and the errors of the shader's on other views."""
+    """Print the coefficients of a search, and errors of the shader's coefficients on new views."""
     mu, alpha = points()
     ior = np.random.default_rng(SEED).uniform(INDICES[0], INDICES[-1], len(mu))
     print(fit(mu, alpha, ior, sample(mu, alpha), passed(mu, alpha, ior)).round(5).tolist())

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of sums over directions of a uniform environment, for several point sets.
 
-A lobe's albedo is the mean of F G2 / G1 over directions drawn by its visible facets, and the compensation of a white one
-divides it by E_ss. MaterialX draws them with a Fibonacci lattice; a library may use other points that fill the
-square as evenly. The error falls with their number n: it prints n times the largest error over views and alphas.
+A lobe's albedo is the mean of F G2 / G1 over directions sampled by visible facets, and compensation
+divides a white lobe's albedo by E_ss. MaterialX samples with a Fibonacci lattice; other sets of low
+discrepancy are permitted. Errors fall like 1 / n, so n times the largest error is printed.
 
     python -m tools.fits.lattices
 """
@@ -18,19 +18,19 @@ ALPHAS = np.linspace(0.05, 1.0, 20)
 
 
 def fibonacci(count):
-    """MaterialX's points, the multiples of the golden ratio."""
+    """MaterialX's points: i / n, and multiples of the golden ratio."""
     i = np.arange(count)
     return (i + 0.5) / count, (i * (np.sqrt(5.0) - 1.0) / 2.0 + 0.5) % 1.0
 
 
 def r2(count):
-    """Multiples of the inverse powers of the plastic number, the root of x^3 = x + 1."""
+    """Roberts' R2 points: multiples of powers of 1 / x, where x^3 = x + 1."""
     steps = 1.3247179572447460 ** -np.arange(1.0, 3.0)
     return tuple((0.5 + np.arange(1, count + 1) * step) % 1.0 for step in steps)
 
 
 def hammersley(count):
-    """Indices over their number, and with their binary digits mirrored."""
+    """Hammersley points: i / n, and i with mirrored binary digits."""
     i, mirrored = np.arange(count), np.zeros(count)
     for digit in range(count.bit_length()):
         mirrored += ((i >> digit) & 1) * 0.5 ** (digit + 1)
@@ -41,9 +41,7 @@ LATTICES = {"Fibonacci": fibonacci, "R2": r2, "Hammersley": hammersley}
 
 
 def error(lattice, count, alpha):
-    """Largest relative error of a white lobe's albedo over cosines of the view, for both
-    assignments of the two numbers.
-    """
+    """Largest relative error of a white lobe's albedo over views and both orders of coordinates."""
     numbers, found = lattice(count), 0.0
     wo = np.stack([np.sqrt(1.0 - COSINES**2), 0.0 * COSINES, COSINES], axis=-1)[:, None]
     for u in (numbers, numbers[::-1]):

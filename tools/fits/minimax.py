@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Linear and rational minimax fits in 40 digits: the same on every machine.
 
-With N unknowns, the minimax residual over many rows equals that over N + 1 of them, a reference,
-whose rows all attain it. Stiefel's exchange goes from reference to reference with increasing
-residuals, until no row exceeds it: the simplex method on the dual linear program.
+With N unknowns, the minimax residual over many rows equals that over some N + 1 of them, called a
+reference, which all attain it. Stiefel's exchange replaces rows of the reference, so its residual
+grows, until no other row exceeds it. It is the simplex method on the dual linear program.
 
-A rational fit is N / D with D = 1 + ..., both sums of given monomials. A search in float64, which
-need not be repeatable, finds a start, or a denominator that stays away from 0. Linear fits from there
-give repeatable coefficients.
+A rational fit is N / D with D = 1 + ..., where N and D are sums of given monomials. A search in
+float64, which need not be repeatable, finds starting coefficients, or a denominator that stays away
+from 0. From there, linear fits give repeatable coefficients.
 """
 
 import math
@@ -22,26 +22,26 @@ from mxeon.shaders.functions import source_file
 mp = MPContext()
 mp.dps = 40
 
-EXCHANGES = 500  # ten times the number that fits here need
-DIGITS = 8  # decimal digits of a printed coefficient, one more than float32 tells apart
+EXCHANGES = 500  # limit; ten times what the fits here need
+DIGITS = 8  # decimal digits of a printed coefficient, one more than float32 resolves
 SCATTER = 2654435769  # 2^32 over the golden ratio
-STEPS = 2  # Newton steps from a start with six digits; a third changes no printed error
+STEPS = 2  # Newton steps from coefficients with six digits; a third changes no printed error
 
 
 def least_largest(rows, right):
-    """Solution x of rows @ x = right, (M, N) with M > N, with the least largest residual; and that residual.
+    """Minimax solution x of rows @ x = right, where rows are (M, N) with M > N, and its residual.
 
-    Any N of the starting rows must be independent. ArithmeticError if it does not converge.
+    Any N of the starting rows must be independent. Raises ArithmeticError if it does not converge.
     """
 
     def signed(i, sign):
-        """Coefficients of sign (row @ x) - level, which is sign times the right side."""
+        """Coefficients of the equation sign (row @ x) - level = sign right for x and level."""
         return [sign * each for each in rows[i]] + [-mp.one]
 
     count = len(rows[0])
     indices = [(len(rows) - 1) * k // count for k in range(count + 1)]
     total = mp.matrix([0] * count + [-1])
-    # Signs with which the rows of a reference add up to zero under positive weights.
+    # Choose signs so that some positive weights make the rows of the reference add up to zero.
     signs = [(-1) ** k for k in range(count + 1)]
     weights = mp.lu_solve(mp.matrix(list(map(signed, indices, signs))).T, total)
     signs = [sign * int(mp.sign(weight)) for sign, weight in zip(signs, weights, strict=True)]
@@ -53,7 +53,7 @@ def least_largest(rows, right):
         worst = max(range(len(rows)), key=lambda i: abs(residuals[i]))
         if abs(residuals[worst]) <= level * (1 + mp.sqrt(mp.eps)):
             return x, level
-        # The new row replaces the one that leaves all weights positive.
+        # Replace the row of the reference whose removal keeps all weights positive.
         sign = int(mp.sign(residuals[worst]))
         weights = mp.lu_solve(matrix.T, total)
         change = mp.lu_solve(matrix.T, mp.matrix(signed(worst, sign)))
@@ -64,12 +64,12 @@ def least_largest(rows, right):
 
 
 def roots(count):
-    """Roots of a Chebyshev polynomial on [0, 1]: dense at both ends, which are excluded."""
+    """Roots of a Chebyshev polynomial on [0, 1]; dense near both ends, which are not included."""
     return [(1 - mp.cos(mp.pi * (2 * k + 1) / (2 * count))) / 2 for k in range(count)]
 
 
 def extrema(count):
-    """Extrema of a Chebyshev polynomial on [0, 1], both ends included."""
+    """Extrema of a Chebyshev polynomial on [0, 1], including both ends."""
     return [(1 - mp.cos(mp.pi * k / (count - 1))) / 2 for k in range(count)]
 
 
@@ -78,13 +78,13 @@ def extrema(count):
 
 @dataclass(frozen=True)
 class Form:
-    """Monomials of a rational function, as tuples of exponents."""
+    """A rational function's monomials; each is a tuple of exponents."""
 
     above: tuple  # monomials of the numerator
     below: tuple  # monomials of the denominator, without its constant 1
 
     def value(self, variables, coefficients):
-        """Values at arrays of variables, numerator's coefficients first."""
+        """Values at arrays of variables; the numerator's coefficients come first."""
         count = len(self.above)
         above, below = (
             sum(
@@ -104,7 +104,7 @@ def _monomial(point, exponents):
 
 
 def _exact(*columns):
-    """Columns of numbers with 40 digits."""
+    """Convert columns of numbers to 40 digits."""
     return [[mp.mpf(x) for x in column] for column in columns]
 
 
@@ -145,7 +145,7 @@ def numerator(form, variables, values, weights, below):
 
 
 def printed(coefficients):
-    """Coefficients with all their digits, in the order in which they stand in the shader."""
+    """Coefficients as texts with all digits of the shader."""
     return [f"{x:.{DIGITS}g}" for x in coefficients]
 
 
@@ -160,7 +160,7 @@ def defines(form, coefficients, prefix):
 
 
 def shipped(stem, function):
-    """Coefficients of a fit in a GLSL function, numerator first, in the order of the form."""
+    """Coefficients of a fit in a GLSL function, the numerator's first, in the order of the form."""
     text = source_file("glsl", stem).read_text(encoding="utf-8")
     body = text.partition(f"{function}(")[2].partition("\n}")[0]
     parts = re.findall(r"float ([ND])\d? = (.*?);", body, re.DOTALL)

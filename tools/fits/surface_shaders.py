@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of surface shaders due to the fits of eonlib's lobes: python -m tools.fits.surface_shaders.
 
-The layer equation uses each lobe's albedo by quadrature; eonlib uses a fit. Here both are computed in float64, for
-pairs and materials drawn as in the checks, but with other seeds. Printed are the largest errors of values and albedos
-due to all fits together, and those in the mean of a set.
+The layer equation uses each lobe's albedo by quadrature; eonlib uses a fit. The script compares
+both in float64, for pairs and materials drawn as in the checks, but with other seeds. It prints the
+largest errors of values and albedos due to all fits together, and the largest errors of a set's means.
 """
 
 from contextlib import ExitStack, contextmanager, suppress
@@ -40,26 +40,26 @@ def facets(wo, roughness):
 
 
 def albedo(wo, roughness):
-    """E_ss from its fit."""
+    """E_ss by the shader's fit."""
     factors = ggx_anisotropic.terms(wo, roughness)[1]
     scale = 1.0 + np.tensordot(ggx_anisotropic.MISSED, factors, axes=1)
     return 1.0 - ggx_anisotropic.missed(wo, roughness) * scale
 
 
 def missing(wo, roughness):
-    """(1 - E_ss) / E_ss from the fit of E_ss."""
+    """(1 - E_ss) / E_ss by the shader's fit."""
     E = albedo(*facets(wo, roughness))
     return (1.0 - E) / E
 
 
 def dielectric_average(ior):
-    """F_ss of a dielectric with an index of at least 1, by its fit."""
+    """F_ss of a dielectric with an index of at least 1, by the shader's fit."""
     t = np.asarray(1.0 / ior)
     return 1.0 - t * fresnel_average.FORM.value((t,), AVERAGE)
 
 
 def conductor_average(ior, extinction):
-    """F_ss of a metal in three cosines."""
+    """F_ss of a metal as the shader's sum over three cosines."""
     return 1.0 - sum(
         weight * (1.0 - fresnel.conductor(np.asarray(cosine), ior, extinction))
         for cosine, weight in zip(COSINES, WEIGHTS, strict=True)
@@ -93,7 +93,7 @@ def _dielectric(wo, inputs):
 
 
 def _schlick(wo, inputs):
-    assert np.all(inputs["color82"] == 1.0)  # no material puts a lobe with a dip over others
+    assert np.all(inputs["color82"] == 1.0)  # no material has layers below a lobe with a dip
 
     def curve(mu, alpha):
         exponent = inputs["exponent"]
@@ -111,13 +111,13 @@ def _sheen(wo, inputs):
     return inputs["color"] * E[:, np.newaxis]
 
 
-# Fitted albedos by name of the node.
+# Functions that compute fitted albedos, by name of the node.
 LAYERED = {"dielectric": _dielectric, "schlick": _schlick, "conty_kulla": _sheen}
 
 
 @contextmanager
 def fits():
-    """The reference with the shader's fits instead of quadratures."""
+    """Context in which the reference uses the shader's fits instead of quadratures."""
     curve = microfacets.CONDUCTOR_CURVE
     exact = curve.average
     with ExitStack() as stack:
@@ -130,7 +130,7 @@ def fits():
 
 
 def errors(shader, seed):
-    """Errors of one set, by name: the largest of values and albedos, and the errors of their means."""
+    """Errors in one random set, by name: largest errors of values and albedos, errors of their means."""
     token = SEED.set(seed)
     [batch] = batches = shader.batches(shader.counts)
     [views] = shader.views(batches, shader.counts)
