@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node add for two lobes: 1 - E of their sum, negative where E exceeds 1.
+// Entry point of the node add for BSDFs. The throughput 1 - E is negative if E exceeds 1.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 

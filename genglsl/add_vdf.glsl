@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node add for two media: the coefficients of both.
+// Entry point of the node add for two media: coefficients add up.
 
 #include "lib/medium.glsl"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node anisotropic_vdf: what neither absorption nor scattering takes from a ray in
-// one meter. Light that is scattered into the ray is left out, and with it the anisotropy.
+// Entry point of the node anisotropic_vdf: transmittance of one meter, with absorption and
+// scattering. Light scattered into the ray is ignored, and hence the anisotropy.
 
 #include "lib/medium.glsl"
 

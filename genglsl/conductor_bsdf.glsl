@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node conductor_bsdf, which is opaque: scatter_mode R, 0.
+// Entry point of the node conductor_bsdf, an opaque lobe: scatter_mode 0 (R).
 
 #include "lib/microfacet_film.glsl"
 #include "lib/fresnel_conductor.glsl"
 
-// Index and extinction 0 reflect everything; along the normal MaterialX's curve then divides 0 by 0.
+// With index and extinction 0, which reflect everything, MaterialX's curve is 0 / 0 along the normal.
 #define CONDUCTOR_LEAST_INDEX 1e-8
 
 void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction,
@@ -20,7 +20,7 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
         MicrofacetFresnel F;
         F.value = mx_fresnel_conductor(lobe.mu_h, ior, extinction);
         F.average = eonlib_fresnel_conductor_avg(ior, extinction);
-        F.visible = vec3(1.0);  // nothing lies below
+        F.visible = vec3(1.0);  // opaque
 #ifdef EONLIB_PREFILTERED
         vec3 F0 = mx_fresnel_conductor(1.0, ior, extinction);
         F.visible = mx_ggx_dir_albedo(lobe.mu_o, lobe.alpha, F0, vec3(1.0))
@@ -29,10 +29,10 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
         microfacet_film(lobe, fd, F);
         microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, bsdf);
     }
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // covers the share `weight` of its base
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // the base keeps the share 1 - weight
 }
 
-// As MaterialX before 1.39.5 calls it, which has no retroreflection.
+// Overload for MaterialX before 1.39.5, without retroreflection.
 void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction,
                     vec2 roughness, float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 X,
                     int distribution, inout BSDF bsdf)

@@ -3,8 +3,8 @@
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 
-// Cosine of half of a full angle in degrees, 1 - 2 sin^2 of a quarter of it. The sine is its series up to
-// the 13th power, to 7e-10 in [0, pi / 2]: engines have cosines of their own, some to 2e-4 only.
+// Cosine of half of a full angle in degrees, 1 - 2 sin^2 of a quarter of it. The sine is a series up to
+// the 13th power, accurate to 7e-10 in [0, pi / 2]; built-in cosines are off by up to 2e-4.
 float conical_edf_cosine(float angle)
 {
     float u = angle * (M_PI / 720.0);
@@ -20,11 +20,11 @@ void conical_edf(ClosureData closureData, vec3 color, vec3 N, float inner_angle,
     result = vec3(0.0);
     if (closureData.closureType == CLOSURE_TYPE_EMISSION)
     {
-        // The back of the surface counts as its horizon.
+        // Views of the back count as grazing.
         float mu = max(dot(N, closureData.V), 0.0);
         float inner = conical_edf_cosine(inner_angle);
         float outer = conical_edf_cosine(outer_angle);
-        // Rounded cosines of close angles may be equal, or exchanged; 1e-8 is less than a step between two.
+        // Rounded cosines of close angles may be equal or swapped; 1e-8 is less than the step between two.
         if (outer_angle > inner_angle)
         {
             float t = clamp((mu - outer) / max(inner - outer, 1e-8), 0.0, 1.0);

@@ -27,19 +27,19 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     microfacet_film(lobe, fd, F);
     if (ior < 1.0 && scatter_mode != 0 && !fd.airy)
     {
-        // What does not pass returns, the rest by facets that reflect everything.
+        // Facets that reflect everything return the light that neither passes nor is in F.
         float rest = max((1.0 - passing.y) / lobe.albedo - F.visible.x, 0.0);
         F.value += rest;
         F.visible += rest;
         F.average = vec3(0.0);
         F.outside = F.visible;
-        fd.airy = true;  // an environment is summed over facets that reflect everything, as under a film
+        fd.airy = true;  // sums an environment over facets that reflect everything, as under a film
     }
     microfacet_bsdf(closureData, lobe, fd, F, max(tint, 0.0), weight, distribution, scatter_mode,
                     bsdf);
 }
 
-// As MaterialX before 1.39.5 calls it, which has no retroreflection.
+// Overload for MaterialX before 1.39.5, without retroreflection.
 void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior, vec2 roughness,
                      float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 X, int distribution,
                      int scatter_mode, inout BSDF bsdf)

@@ -28,7 +28,7 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     fd.ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));  // index for transmission
     vec3 dip = eonlib_fresnel_schlick_dip(fd.F0, fd.F82, fd.F90, exponent);
     MicrofacetFresnel F;
-    // The printed curve of dark colors and a small color82 falls below 0.
+    // With dark colors and a small color82 the printed curve falls below 0.
     F.value = max(mx_fresnel_hoffman_schlick(lobe.mu_h, fd), 0.0);
     F.average = max(eonlib_fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip), 0.0);
     F.visible = generalized_schlick_visible(lobe, fd, dip);
@@ -36,7 +36,7 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, scatter_mode, bsdf);
 }
 
-// As MaterialX before 1.39.5 calls it, which has no retroreflection.
+// Overload for MaterialX before 1.39.5, without retroreflection.
 void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0, vec3 color82,
                               vec3 color90, float exponent, vec2 roughness,
                               float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 X,

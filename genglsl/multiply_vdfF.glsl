@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node multiply for a medium and a number: a multiple of the coefficients.
+// Entry point of the node multiply for a medium and a number: it scales the coefficients.
 
 #include "lib/medium.glsl"
 
 void multiply_vdfF(ClosureData closureData, EONLIB_VDF in1, float in2, out EONLIB_VDF result)
 {
-    // Avoid pow(0, x): what float32 has no logarithm of is black.
+    // The floor avoids pow(0, x), which may be NaN.
     result.response = vec3(0.0);
     result.throughput = pow(max(in1.throughput, vec3(1e-30)), vec3(max(in2, 0.0)));
 }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Entry point of the node sheen_bsdf, and the lobe of Conty and Kulla.
 //
-// Roughness is kept in [1e-4, 1], the domain of the albedo: below it only grazing pairs reflect.
+// Roughness is clamped to [1e-4, 1], the domain of the albedo fit; below, only grazing pairs reflect.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_sheen.glsl"
 #include "lib/conty_kulla_albedo.glsl"
 #include "lib/half_vector.glsl"
 
-// Logarithm of the squared sine of the half vector's angle, from whichever of sine and cosine does
-// not cancel. The series is cut after the cube: 2e-9 of the logarithm.
+// Logarithm of the squared sine of the half vector's angle, by whichever of sine and cosine does
+// not cancel. The series ends at the cube. Relative error: 2e-9.
 float conty_kulla_log_sine(vec3 N, vec3 H)
 {
     float cosine = dot(N, H);
@@ -28,7 +28,7 @@ float conty_kulla_brdf(float mu_o, float mu_i, vec3 N, vec3 H, float roughness)
 }
 
 // [MaterialX2026], Zeltner Sheen Model, times the cosine, at unit albedo. The frame comes from a
-// cross product: a view along the normal would leave the rounding of a difference, which points anywhere.
+// cross product: for a view along the normal, wo - mu_o N would be a rounding error.
 float zeltner_lobe(vec3 wo, vec3 wi, vec3 N, float mu_o, float roughness)
 {
     vec3 Y = cross(N, wo);
@@ -48,7 +48,7 @@ float zeltner_lobe(vec3 wo, vec3 wi, vec3 N, float mu_o, float roughness)
 void sheen_bsdf(ClosureData closureData, float weight, vec3 color, float roughness, vec3 N,
                 int mode, inout BSDF bsdf)
 {
-    // A lobe that is switched off costs nothing; a negative weight, never valid, counts as 0.
+    // Disabled lobes cost nothing; negative weights are invalid and count as 0.
     if (weight <= 0.0)
     {
         return;
@@ -58,13 +58,13 @@ void sheen_bsdf(ClosureData closureData, float weight, vec3 color, float roughne
     vec3 wi = closureData.L;
     N = mx_forward_facing_normal(N, wo);
 
-    // Cosines of 0 would divide by 0 where both directions graze.
+    // With both directions at grazing, cosines of 0 would divide by 0.
     float mu_o = clamp(dot(N, wo), M_FLOAT_EPS, 1.0);
     float rough = clamp(roughness, mode == 0 ? 1e-4 : 0.01, 1.0);
     float albedo = mode == 0 ? conty_kulla_albedo_dir(mu_o, rough)
                              : mx_zeltner_sheen_dir_albedo(mu_o, rough);
 
-    // Light that the color removes is absorbed; light through the base passes the sheen as well.
+    // Light that the color removes is absorbed; light that the base transmits passes the sheen, too.
     bsdf.throughput = vec3(max(1.0 - albedo * weight, 0.0));
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)

@@ -6,9 +6,9 @@
 
 void translucent_bsdf(ClosureData closureData, float weight, vec3 color, vec3 N, inout BSDF bsdf)
 {
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // covers the share `weight` of its base
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // the base keeps the share 1 - weight
 
-    // A lobe that is switched off costs nothing; a negative weight, never valid, counts as 0.
+    // Disabled lobes cost nothing; negative weights are invalid and count as 0.
     if (weight <= 0.0)
     {
         return;
@@ -16,7 +16,7 @@ void translucent_bsdf(ClosureData closureData, float weight, vec3 color, vec3 N,
 
     N = -mx_forward_facing_normal(N, closureData.V);
 
-    // What shadows the visible side does not shadow the other one.
+    // Occlusion is that of the visible side, not of the lit one.
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {
         bsdf.response = color * weight * clamp(dot(N, closureData.L), 0.0, 1.0) * M_PI_INV;

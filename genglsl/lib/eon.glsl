@@ -82,8 +82,8 @@ vec3 eon_albedo_dir(float mu, vec3 rho, float roughness)
     return rho * (vec3(1.0) - loss);
 }
 
-// For divisors (cosines or sines) up to 1e-37 the quotient is 0: it might overflow, and
-// overflow times a cosine of 0 is NaN.
+// value / divisor, a cosine or sine; 0 for divisors up to 1e-37: it might overflow, and
+// infinity times 0 is NaN.
 float oren_nayar_quotient(float value, float divisor)
 {
     return divisor > 1.0e-37 ? value / divisor : 0.0;

@@ -2,7 +2,7 @@
 // Fresnel reflectance of a dielectric; F_ss, its cosine-weighted average over the hemisphere; and its average over the
 // visible facets of GGX. mu is the cosine of wo with the normal.
 
-// [MaterialX2026], Dielectric Fresnel Equations, from the amplitudes: no quotient of 0 at ior 0.
+// [MaterialX2026], Dielectric Fresnel Equations, by amplitudes: no 0 / 0 at ior 0.
 float eonlib_fresnel_dielectric(float mu, float ior)
 {
     float n2 = ior * ior;
@@ -13,7 +13,7 @@ float eonlib_fresnel_dielectric(float mu, float ior)
     return g2 <= 0.0 ? 1.0 : 0.5 * (s * s + p * p);
 }
 
-// F_ss of a dielectric: 1 - F_ss is t N / D, t = 1 / ior; for an index below 1 from the other side,
+// F_ss of a dielectric: 1 - F_ss is t N / D, t = 1 / ior; for an index below 1,
 // 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)). Source: tools/fits/fresnel_average.py. Largest absolute error: 5.3e-5.
 float eonlib_fresnel_dielectric_avg(float ior)
 {
@@ -47,8 +47,8 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 
-// Light that passes to the less dense side (index below 1): x is the mean of 1 - F over the visible facets, y the share
-// by reversed paths from that side, which lacks what facets send up again.
+// Light that passes to the less dense side (index below 1): x is the mean of 1 - F over the visible facets; y is the
+// share by reversed paths from that side, without the light that facets reflect back.
 // Source and derivation: tools/fits/ggx_inside.py.
 // Domain: mu and alpha in [1e-4, 1], index in [0.33, 0.98].
 // Largest absolute error of the albedo by x: 2.8e-2; of y: 3.4e-2.
@@ -88,9 +88,9 @@ vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
     return min(pow(S, power) * 2.0 * g * (s * s + p * p), 1.0) / vec2(1.0, 1.0 + risen);
 }
 
-// Average over the visible facets for indices from 1 on. Near 1 the curve only depends on the cosine over
-// sqrt(n^2 - 1): an index below 1.03 uses the average of 1.03 at k mu and k alpha, at most 1. If k mu exceeds 1, the
-// cosine grows with mu. Largest absolute error of the albedo below index 1.03, where k alpha exceeds 1: 9.3e-3.
+// Average over the visible facets for an index of 1 or more. Near 1 the curve only depends on the cosine over
+// sqrt(n^2 - 1): an index below 1.03 uses the average of 1.03 at k mu and k alpha, both at most 1. If k mu exceeds 1,
+// the cosine grows with mu. Largest absolute error of the albedo below index 1.03, where k alpha exceeds 1: 9.3e-3.
 float eonlib_fresnel_dielectric_visible(float mu, float alpha, float ior)
 {
     float k = sqrt(max(0.0609 / max((ior - 1.0) * (ior + 1.0), 1e-9), 1.0));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Averages of Hoffman's generalization of Schlick's curve: F_ss, weighted by the cosine over the hemisphere, and
-// over the visible facets of GGX, by the cosine at which the curve equals it. mu is the cosine of wo with the normal.
+// Averages of Hoffman's generalization of Schlick's curve: F_ss, cosine-weighted over the hemisphere, and over
+// the visible facets of GGX, as the curve's value at a fitted cosine. mu is the cosine of wo with the normal.
 
-// F_ss of Hoffman's generalization of Schlick's curve, in closed form: the mean of (1 - c)^q is
-// 2 / ((q + 1) (q + 2)), that of c (1 - c)^6 is 1 / 126.
+// F_ss of Hoffman's generalization of Schlick's curve, in closed form: (1 - c)^q averages
+// 2 / ((q + 1) (q + 2)) and c (1 - c)^6 averages 1 / 126.
 vec3 eonlib_fresnel_schlick_avg(vec3 color0, vec3 color90, float exponent, vec3 dip)
 {
     return mix(color0, color90, 2.0 / ((exponent + 1.0) * (exponent + 2.0))) - dip / 126.0;

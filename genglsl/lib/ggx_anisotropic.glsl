@@ -5,7 +5,7 @@
 
 #include "ggx_albedo.glsl"
 
-// Cosine and alpha for E_ss, with a factor for 1 - E_ss; and cosine and alpha for averages over the visible facets.
+// Cosine, alpha and factor for 1 - E_ss; `visible` is cosine and alpha for averages over the visible facets.
 vec3 ggx_facets(vec3 wo, vec2 roughness, out vec2 visible)
 {
     vec2 a2 = roughness * roughness;
@@ -13,7 +13,7 @@ vec3 ggx_facets(vec3 wo, vec2 roughness, out vec2 visible)
     vec2 xy = wo.xy * wo.xy + 0.5 * wo.z * wo.z;
     vec2 alpha2 = vec2(dot(a2, xy), dot(a2, xy.yx));  // along, across
     float area2 = a2.x * a2.y;
-    float correlated = max(1.0 - area2 / (alpha2.x * alpha2.y), 0.0);  // slopes along with those across
+    float correlated = max(1.0 - area2 / (alpha2.x * alpha2.y), 0.0);  // squared correlation of slopes
     vec2 alpha = sqrt(alpha2);
     vec2 k = vec2(0.35 * correlated, 0.7 + correlated);
     visible = vec2(wo.z, alpha.x) * (1.0 - k * max(alpha.y - alpha.x, 0.0) / (1.0 + k * alpha.y));

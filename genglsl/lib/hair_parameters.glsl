@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Roughness and absorption of hair from artistic parameters.
 
-// Least roughness and color: a lobe without width divides by 0.
+// Least roughness and color: a lobe of width 0 would divide by 0.
 #define HAIR_LEAST 1e-3
 
 // Share of light that remains at the largest concentration of melanin.
@@ -25,7 +25,7 @@ float hair_logistic(float azimuthal)
     return a * (0.265 + 1.194 * a) + 5.372 * pow(a, 22.0);
 }
 
-// Absorption of a mix of both melanins: [dEon2011], with the amounts that implementations use.
+// Absorption of a mix of both melanins: [dEon2011], with the amounts used in practice.
 vec3 hair_absorption_of_melanin(float concentration, float redness, vec3 eumelanin, vec3 pheomelanin)
 {
     float melanin = -log(max(1.0 - max(concentration, 0.0), HAIR_LEAST_SHARE));
@@ -35,7 +35,7 @@ vec3 hair_absorption_of_melanin(float concentration, float redness, vec3 eumelan
     return melanin * ((1.0 - red) * brown + red * blond);
 }
 
-// Absorption of hair with a given apparent albedo: [Chiang2016], the fit of the absorption.
+// Absorption of hair with a given apparent albedo, by the fit of [Chiang2016].
 vec3 hair_absorption_of_albedo(vec3 scattering, float azimuthal)
 {
     float b = clamp(azimuthal, 0.0, 1.0);

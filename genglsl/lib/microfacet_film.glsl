@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reflectances of a microfacet lobe under a thin film: F_airy at the half vector, its average F_ss over the hemisphere,
-// and its average over the visible facets. Each average is a sum over three nodes, whose waves are damped over a width.
+// and its average over the visible facets. Each average is a sum over three nodes; each damps waves over its width.
 
 #include "microfacet_lobe.glsl"
 #include "thin_film.glsl"
@@ -11,8 +11,8 @@
 #define FILM_AVERAGE_2 vec3(0.55701, 0.43737, 0.13743)
 #define FILM_AVERAGE_3 vec3(0.88292, 0.4528, 0.088681)
 
-// Nodes x, 0 and -x of Gauss's rule for a semicircle over [-1, 1], with weights (1 - x^2) / 2. Each represents a third of
-// the reach on both sides.
+// Nodes x, 0 and -x of Gauss's rule for a semicircle over [-1, 1], with weights (1 - x^2) / 2. Each node covers a third
+// of the reach on either side.
 #define FILM_OUTER 0.70710678
 
 // Cosine, width and weights of a node: 0 to 2 are for the visible facets, 3 to 5 for F_ss, 6 is the half vector.
@@ -38,9 +38,9 @@ void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresne
         float mu = lobe.visible.x;
         float alpha = lobe.visible.y;
         float y = alpha / (alpha + 0.2);
-        // Visible facets: mean of the nodes' cosines, their reach and their bend. Source and films as above.
-        // Domain: mu in [0.1, 1], alpha in [0.01, 1]. Largest error: 7.7e-2, at index 1.16 over a metal with a lower
-        // index, which reflects totally. Outside the domain, 0.14.
+        // Visible facets: mean cosine, reach and bend of the nodes. Same source and films as for F_ss.
+        // Domain: mu in [0.1, 1], alpha in [0.01, 1]. Largest error: 7.7e-2, in total reflection by a film of index
+        // 1.16 on a metal of lower index. Outside the domain: 0.14.
         vec3 C = vec3(3.252, 0.32298, 0.14542)
             + y * (vec3(-0.91173, 3.3428, 0.030955) + y * (vec3(-4.1529, -4.255, -0.22576)
             + y * vec3(1.7917, 0.51298, -0.22374)))
@@ -49,7 +49,7 @@ void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresne
             + mu * (vec3(-7.6708, -2.597, -1.7185) + y * vec3(8.1838, 3.5172, 2.1385)
             + mu * vec3(0.0010818, -0.34239, 0.018052)));
         float s = alpha / sqrt(mu + alpha);
-        vec3 facets = vec3(mu + s * s * C.x, s * C.y, C.z);  // mean of the cosines, reach of the nodes, their bend
+        vec3 facets = vec3(mu + s * s * C.x, s * C.y, C.z);  // mean cosine, reach and bend of the nodes
         bool is_lit = lobe.closure == CLOSURE_TYPE_REFLECTION;
         int i = is_lit && fd.model == FRESNEL_MODEL_CONDUCTOR ? 3 : 0;
         int end = is_lit ? 7 : 6;
@@ -58,7 +58,7 @@ void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresne
         do
         {
             vec4 node = microfacet_film_node(i, lobe.mu_h, facets);
-            F.value = thin_film_fresnel(node.x, node.y, fd);  // the last node's is the half vector's
+            F.value = thin_film_fresnel(node.x, node.y, fd);  // the last node is the half vector
             F.visible += node.z * F.value;
             F.average += node.w * F.value;
             i++;

@@ -29,7 +29,7 @@ struct MicrofacetLobe
 };
 
 // A Fresnel curve's value at the half vector, its cosine-weighted average over the hemisphere, F_ss, and its average
-// over the visible facets, weighted by D G_2 / (4 mu_o). A film's is a factor outside MaterialX's sum.
+// over the visible facets, weighted by D G_2 / (4 mu_o). `outside` multiplies MaterialX's environment.
 struct MicrofacetFresnel
 {
     vec3 value;
@@ -57,7 +57,7 @@ float microfacet_stretched(MicrofacetLobe lobe, vec3 w)
     return length(microfacet_local(lobe, w) * vec3(lobe.roughness, 1.0));
 }
 
-// Clamps cosines and alphas, which divide. Retroreflection mirrors wo about the normal.
+// Divisors, cosines and alphas, are clamped. Retroreflection mirrors wo about the normal.
 MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness,
                                bool retroreflective)
 {
@@ -73,7 +73,7 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
     lobe.mu_h = clamp(dot(lobe.wo, lobe.wh), M_FLOAT_EPS, 1.0);
     lobe.roughness = clamp(roughness, M_FLOAT_EPS, 1.0);
     lobe.alpha = mx_average_alpha(lobe.roughness);
-    vec2 visible = vec2(lobe.mu_o, lobe.alpha);  // naga takes no member of a structure as an output
+    vec2 visible = vec2(lobe.mu_o, lobe.alpha);  // naga rejects struct members as outputs
     vec3 lossless = vec3(visible, 1.0);
     if (lobe.roughness.x != lobe.roughness.y)
     {
@@ -123,7 +123,7 @@ void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData f
     }
     else if (lobe.closure == CLOSURE_TYPE_INDIRECT)
     {
-#ifdef EONLIB_PREFILTERED  // the file in genglsl/environment
+#ifdef EONLIB_PREFILTERED  // set in genglsl/environment
         vec3 mean = eonlib_prefiltered_light(lobe.N, lobe.wo, lobe.roughness, fd);
         bsdf.response = mean * lobe.albedo * F.visible * scale;
 #else

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light through the surface of a microfacet lobe, and response and throughput of a lobe that may transmit.
+// Light through a microfacet surface, and response and throughput of a lobe that may transmit.
 
 #include "microfacet_film.glsl"
 
-// Light through a surface that transmits a share of it, along the view refracted twice, as by a solid sphere; or,
-// where MaterialX renders transmission as opacity, the tint.
+// Light through a surface that transmits `share`. The view is refracted twice, as by a solid sphere. If MaterialX
+// renders transmission as opacity, this is the tint.
 //
-// Where MaterialX's squared cosine of the ray that leaves, 1 - n^2 (1 - q^2) with the cosine q inside, rounds below 0,
-// nothing leaves: 0 / 0. A view longer by d adds 8 d q^2 / n^2, here 8e-6 n^2, three times the roundings of seven
-// operations. Near n = 1 and above 4, d is too large: rough surfaces refract as with 1.001 and 4; a smooth one keeps n
-// above 4 with a larger cosine.
+// MaterialX squares the exit cosine as 1 - n^2 (1 - q^2), with the cosine q inside. If that rounds below 0, no light
+// leaves: 0 / 0. A view longer by d adds 8 d q^2 / n^2, here 8e-6 n^2, three times the roundings of seven operations.
+// Near n = 1 and above 4, d is too large: rough surfaces use n = 1.001 and 4; a smooth one keeps n above 4, but with
+// a larger cosine.
 //
-// A Schlick curve, F0 but along the horizon of the view, transmits the share by each sum, with MaterialX's fits A and B:
+// A Schlick curve that is F0 except at grazing transmits the share in both sums; A and B are MaterialX's fits:
 //   sampled: (1 - F0) / G_1(mu)           prefiltered: 1 - (A F0 + B F90)
 vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, FresnelData fd, vec3 share, vec3 tint)
 {
@@ -31,14 +31,14 @@ vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, FresnelData f
     fd.model = FRESNEL_MODEL_SCHLICK;
     fd.airy = false;
     fd.ior = vec3(n);
-#ifdef MX_REFRACTION_UNMASKED // the sampled sum has no division: patch 0009, genglsl/environment
+#ifdef MX_REFRACTION_UNMASKED // no division by G_1: patch 0009, genglsl/environment
     fd.F0 = 1.0 - share;
 #else
     fd.F0 = 1.0 - mx_ggx_smith_G1(mu, lobe.alpha) * share;
 #endif
     fd.F82 = vec3(1.0);
     vec3 AB = mx_ggx_dir_albedo(mu, lobe.alpha, vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0));
-    fd.F90 = (1.0 - share - AB.x * fd.F0) / max(AB.y, 1e-6);  // finite where there is no table of fits
+    fd.F90 = (1.0 - share - AB.x * fd.F0) / max(AB.y, 1e-6);  // finite without a table of fits
     fd.exponent = 1e9;
     return mx_surface_transmission(lobe.N, wo, lobe.X, lobe.roughness, distribution, fd, tint);
 }
@@ -49,7 +49,7 @@ void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData f
     microfacet_bsdf(closureData, lobe, fd, F, tint, weight, distribution, bsdf);
     if (lobe.closure == CLOSURE_TYPE_TRANSMISSION && scatter_mode != 0)
     {
-        // As opacity, a lobe that only transmits passes all light; a layer over it takes away what it reflects.
+        // As opacity, a lobe that only transmits passes all light; the layer above subtracts its reflection.
         vec3 passed = max(1.0 - F.visible * mix(F.average, vec3(1.0), lobe.albedo), 0.0);
         bool below = scatter_mode == 1;
         bsdf.response = microfacet_transmitted(lobe, distribution, fd, below ? passed : vec3(1.0), tint)

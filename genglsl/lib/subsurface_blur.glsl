@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cosine of a distant light, blurred over a unit sphere by the normalized diffusion profile.
 
-// Gauss's rule over [-1, 1]: positive nodes, and weights.
+// Gauss's rule over [-1, 1]: positive nodes and weights.
 #define SUBSURFACE_RINGS 6
 #define SUBSURFACE_GAUSS1 vec2(0.93246951, 0.17132449)
 #define SUBSURFACE_GAUSS2 vec2(0.66120939, 0.36076157)
@@ -20,11 +20,11 @@ vec3 subsurface_ring(float mu, vec3 chord)
     return max(along, 0.0) + more / 3.14159265358979;
 }
 
-// The blurred cosine; `reach` is the mean free path over the radius of the sphere. The profile's light within
-// a distance r rises by (1 + t^2) dt, t = exp(-r / (3 reach)).
+// The blurred cosine; `reach` is the mean free path over the radius of the sphere. With
+// t = exp(-r / (3 reach)), the profile's share of light is (1 + t^2) dt.
 vec3 subsurface_blur(float mu, vec3 reach)
 {
-    vec3 least = exp(-2.0 / (3.0 * max(reach, 1e-6)));  // the sphere ends at a distance of 2
+    vec3 least = exp(-2.0 / (3.0 * max(reach, 1e-6)));  // t at r = 2, the diameter
     vec3 light = vec3(0.0);
     vec3 total = vec3(0.0);
 

@@ -34,7 +34,7 @@ struct ThinFilmComplex
 
 ThinFilmComplex thin_film_product(ThinFilmComplex a, ThinFilmComplex b)
 {
-    ThinFilmComplex z;  // Metal has no constructor calls for structures
+    ThinFilmComplex z;  // Metal lacks constructors of structs
     z.re = a.re * b.re - a.im * b.im;
     z.im = a.re * b.im + a.im * b.re;
     return z;
@@ -58,7 +58,7 @@ void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out Th
 {
     if (fd.model == FRESNEL_MODEL_SCHLICK)
     {
-        // The phase is pi below a denser film; F0 may have roundings. A negative curve has no amplitude.
+        // The phase is pi below a denser film; 1e-6 covers roundings of F0. Negative curves count as 0.
         float F0 = (1.0 - 1e-6) * mx_ior_to_f0(n);
         vec3 r = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0));
         r23_p.re = r * (2.0 * step(vec3(F0), fd.F0) - 1.0);
@@ -106,7 +106,7 @@ vec3 thin_film_rec709(vec4 S)
 
 // Airy Summation, higher-order terms: the sum of C_m S_m / 2 over m and both polarizations, C_m = C_0 z^m, S_m / 2 =
 // fade^(m^2) exp(i mu_k phi m), fade = exp(-sigma_k^2 phi^2). Real z need no sine: S_(m + 1) + fade^(4 m) S_(m - 1) =
-// fade^(2 m) Re(S_1) S_m. Fast waves of a node, over which phi varies by `spread`, fade: by its fourth power, a choice.
+// fade^(2 m) Re(S_1) S_m. `spread`, the change of phi in a node, damps fast waves; its fourth power is a choice.
 vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex z_p, float phi, float spread,
                       float limit, bool is_real)
 {
@@ -190,6 +190,6 @@ vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
     float spread = scale * width * mu / max(g, THIN_FILM_LEAST);
     vec3 mean = 1.0 + 0.5 * (C0_s + C0_p);
     float limit = max(THIN_FILM_ORDER_VALUE * dot(mean, mean), THIN_FILM_ORDER_WIDTH * width * width);
-    bool is_real = fd.model != FRESNEL_MODEL_CONDUCTOR;  // phases of total reflection have C_0 = 0
+    bool is_real = fd.model != FRESNEL_MODEL_CONDUCTOR;  // z is complex in total reflection, with C_0 = 0
     return clamp(mean + thin_film_orders(C0_s, z_s, C0_p, z_p, phi, spread, limit, is_real), 0.0, 1.0);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Combinations of closures for path tracers: values add up, and of two lobes one is drawn.
+// Combinations of closures for path tracers: values are summed; one of two lobes is drawn.
 
 #include "lib/questions.glsl"
 #include "../layer_bsdf.glsl"
@@ -9,7 +9,7 @@
 #include "libraries/pbrlib/genglsl/mx_mix_bsdf.glsl"
 #include "libraries/pbrlib/genglsl/mx_layer_vdf.glsl"
 
-// The answer of two closures with factors.
+// Response of two closures and factors.
 void path_combine(vec3 a, vec3 factor_a, vec3 b, vec3 factor_b, inout BSDF result)
 {
     if (path_asked != PATH_VALUE)

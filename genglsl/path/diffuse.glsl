@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The diffuse lobes for path tracers: EON by its own sampler, the others by a cosine.
+// The diffuse lobes for path tracers: EON has its own sampler, the rest use a cosine.
 
 #include "lib/questions.glsl"
 #include "../oren_nayar_diffuse_bsdf.glsl"

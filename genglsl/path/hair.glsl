@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hair for path tracers, drawn by its lobes: M_p as in [dEon2013], N_p by the inverse distribution of a logistic that
-// is cut at +-pi. A cuticle tilts the light, so that a draw is turned back, and may pass the end of the fiber.
+// Hair for path tracers. M_p is drawn as in [dEon2013], N_p, a logistic cut at +-pi, by its inverse distribution. A
+// cuticle tilts the light, so a draw is tilted back, perhaps past the end of the fiber.
 
 #include "lib/questions.glsl"
 #include "../chiang_hair_bsdf.glsl"
 
-// The lobes at one view: mean weight and roughness of each, the angle from the fiber's axis by which it sees the light
-// tilted, and the azimuth where it leaves, as complex numbers. The last, TRRT+, leaves at all azimuths alike.
+// The lobes at one view: mean weight, roughness, and, as complex numbers, the tilt of the light by the cuticle and the
+// azimuth of the exit. The last, TRRT+, is uniform in azimuth.
 struct PathHair
 {
     vec4 weight;
@@ -15,7 +15,7 @@ struct PathHair
     vec2 exit[4];
 };
 
-// Angles in the cross-section are those of z + i y.
+// Azimuths are the angles of z + i y.
 PathHair path_hair(vec3 wo, vec3 tint_R, vec3 tint_TT, vec3 tint_TRT, float ior, vec2 roughness_R, vec2 roughness_TT,
                    vec2 roughness_TRT, float cuticle_angle, vec3 absorption)
 {
@@ -50,9 +50,9 @@ vec2 path_hair_untilted(vec2 tilted, vec2 tilt)
     return chiang_hair_product(tilted, tilt * vec2(1.0, -1.0));
 }
 
-// Density of wi by all lobes. The model folds tilted directions at the end of the fiber, so that up to two directions of
-// light have the same tilted one; a draw chooses between them in proportion to their cosines. If there are none, it
-// passes the end of the fiber, to the opposite azimuth.
+// Density of wi over all lobes. The model folds tilted directions at the end of the fiber, so up to two directions of
+// light share a tilted direction; a draw chooses between them in proportion to their cosines. If there are none, the
+// draw passes the end of the fiber to the opposite azimuth.
 float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
 {
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
@@ -74,7 +74,7 @@ float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
     return sum / dot(hair.weight, vec4(1.0));
 }
 
-// The high bits of two random numbers draw the inclination, the low ones the azimuth, and the third the lobe.
+// The high bits of two random numbers draw the inclination, their low bits the azimuth; a third number draws the lobe.
 vec3 path_hair_draw(PathHair hair, vec3 wo)
 {
     float left = path_u.z * dot(hair.weight, vec4(1.0));
@@ -96,7 +96,7 @@ vec3 path_hair_draw(PathHair hair, vec3 wo)
     vec2 tilted = vec2(sqrt((1.0 - S) * (1.0 + S)), S);
     vec2 inclined = path_hair_untilted(tilted, hair.tilt[p]);
     vec2 folded = path_hair_untilted(tilted * vec2(-1.0, 1.0), hair.tilt[p]);
-    float folds = max(folded.x, 0.0) / (max(inclined.x, 0.0) + max(folded.x, 1e-30));  // 0 if there is neither
+    float folds = max(folded.x, 0.0) / (max(inclined.x, 0.0) + max(folded.x, 1e-30));  // 0 if neither exists
     bool folding = path_u.z < folds;
     inclined = folding ? folded : inclined;
     path_u.z = folding ? path_u.z / folds : (path_u.z - folds) / (1.0 - folds);

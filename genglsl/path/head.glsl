@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A point of a surface, and what one question to its material has to remember.
+// A point of a surface, and the state of one query of its material.
 
 struct Point
 {
     vec3 position;
-    vec3 normal;   // of shading, unit
-    vec3 tangent;  // unit, across the normal
+    vec3 normal;   // shading, unit
+    vec3 tangent;  // unit, orthogonal to normal
     vec2 texcoord;
-    bool inside;   // whether wo lies inside a solid of this material, which bends light the other way there
+    bool inside;   // wo lies inside a solid of this material, where light refracts in reverse
 };
 
 #define PATH_NOTHING 0
@@ -21,16 +21,16 @@ vec3 path_wi;
 vec3 path_u;
 bool path_inside;
 bool path_thin;
-float path_eta; // index of the lobe below relative to that above
-vec3 path_facet; // of the lobe: the one that is drawn, or that joins both directions
-vec3 path_inner; // of the view from the denser side: share that a dielectric passes, E_ss, mean F of visible facets
-float path_reversed; // G_1 outside over that inside; 0 where the facet lets nothing pass
-vec3 path_root; // answer of the closure called last, which is that of the material
+float path_eta; // index below the lobe over index above
+vec3 path_facet; // normal of the facet that is drawn or that turns wo into wi
+vec3 path_inner; // view from the denser side: share that a dielectric passes, E_ss, mean F of visible facets
+float path_reversed; // G_1 outside over G_1 inside; 0 if the facet passes no light
+vec3 path_root; // response of the last closure, the root of the material
 
 #define u_numActiveLightSources 1
 #define u_refractionTwoSided false
 
-// A unit vector on the octahedron |x| + |y| + |z| = 1, whose lower half is folded outwards.
+// Octahedral map of unit vectors to |x| + |y| + |z| = 1; the lower half is folded outwards.
 vec2 path_fold(vec2 w)
 {
     return vec2(w.x < 0.0 ? abs(w.y) - 1.0 : 1.0 - abs(w.y), w.y < 0.0 ? abs(w.x) - 1.0 : 1.0 - abs(w.x));

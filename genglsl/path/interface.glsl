@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a path tracer calls: docs/path_tracing.md. Directions are unit vectors that leave the point.
+// Functions for path tracers: docs/path_tracing.md. Directions are unit vectors that leave the point.
 
 void path_ask(int asked, Point p, vec3 wo, vec3 wi, vec3 u)
 {
@@ -15,14 +15,14 @@ void path_ask(int asked, Point p, vec3 wo, vec3 wi, vec3 u)
     path_material();
 }
 
-// f cos(theta_i), with the share of light that the surface does not let pass.
+// f cos(theta_i) times the opacity.
 vec3 material_evaluate(Point p, vec3 wo, vec3 wi)
 {
     path_ask(PATH_VALUE, p, wo, wi, vec3(0.0));
     return path_root * path_out.a;
 }
 
-// Density of wi in 1/sr among what material_sample draws; its integral is the share of draws that are not lost.
+// Density in 1/sr of wi as material_sample draws it; its integral is the share of draws that are not lost.
 float material_pdf(Point p, vec3 wo, vec3 wi)
 {
     path_ask(PATH_PDF, p, wo, wi, vec3(0.0));
@@ -30,14 +30,14 @@ float material_pdf(Point p, vec3 wo, vec3 wi)
 }
 
 // Draws wi by three random numbers in [0, 1); `weight` is f cos(theta_i) / pdf. False if the path ends.
-// Where a surface lets light pass, wi is -wo and pdf is 0, since no other call can find that direction.
+// If light passes straight through, wi is -wo and pdf is 0, since no other call can find that direction.
 bool material_sample(Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight, out float pdf)
 {
     wi = -wo;
     weight = vec3(1.0);
     pdf = 0.0;
 
-    // In a loop, compilers inline the material only once.
+    // A loop makes compilers inline the material only once.
     for (int asked = PATH_DRAW; asked >= PATH_VALUE; --asked)
     {
         path_ask(asked, p, wo, wi, u);
@@ -62,7 +62,7 @@ bool material_sample(Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight, out
     return pdf > 0.0;
 }
 
-// Share of the light that the surface does not let pass straight on, for rays that look for shadows.
+// Opacity for shadow rays: the share of light that does not pass straight through the surface.
 float material_shadow(Point p, vec3 wo)
 {
     path_ask(PATH_NOTHING, p, wo, wo, vec3(0.0));

@@ -1,36 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
-// The microfacet lobes for path tracers, drawn by visible normals. eonlib's nodes call two functions of
-// microfacet_lobe.glsl, which macros replace here.
+// The microfacet lobes for path tracers, drawn by visible normals. Macros replace three functions of
+// microfacet_lobe.glsl that eonlib's nodes call.
 //
-// A facet is drawn first, and then reflects or refracts in proportion to what it would return by either, so no draw
-// weighs much more than the lobe's albedo. Transmission: the light that is not reflected passes the visible facets,
-// refracted by the index, each alike as in MaterialX's own transmission of an environment.
+// A facet is drawn first; then it reflects or refracts in proportion to the light it would return, so no draw weighs
+// much more than the lobe's albedo. Light that is not reflected is transmitted: all visible facets refract the same
+// share, as in MaterialX's own transmission of an environment.
 //
-// From inside, a facet may lose its light: it neither reflects into the solid nor refracts out of it. Its partner takes
-// its place, the facet where the spherical cap of visible normals [Dupuy2023] is turned upside down. That map keeps
+// Inside a solid a facet may lose its light: it neither reflects into the solid nor refracts out of it. Its partner,
+// the facet after the spherical cap of visible normals [Dupuy2023] is turned upside down, replaces it. That map keeps
 // areas and is its own inverse, so a facet whose partner loses its light is drawn exactly twice as often.
 //
 // Light into a thinner medium takes the paths of light from there in reverse. If P is the share that passes from
 // outside and p the density of refracted directions, then n^2 mu_i T(wi, wo) = P(wo) p(wo, wi) mu_o. With p by visible
 // normals this is
 //   T(wi, wo) = P(wo) G_1(wo) / G_1(wi) p(wi, wo).
-// What does not pass is reflected: once by facets with the curve as from outside, and F = 1 beyond the critical angle;
-// the rest by facets that reflect everything.
+// The rest is reflected: once by facets with the curve from outside and F = 1 beyond the critical angle; what remains
+// by facets that reflect everything.
 
 #include "lib/questions.glsl"
 #include "../lib/microfacet_transmission.glsl"
 #include "../lib/fresnel_dielectric.glsl"
 
-// Narrower lobes are lost in the rounding of directions: a smooth surface has this alpha.
+// Narrower lobes vanish in the rounding of directions; smooth surfaces use this alpha.
 #define PATH_LEAST_ALPHA 1e-4
 
-// With an index nearer to 1, a refracted direction does not determine its facet.
+// Nearer to index 1, a refracted direction does not determine its facet.
 #define PATH_LEAST_BEND 1e-3
 
-// A fitted albedo may be 0 where some facets still reflect: the lobe is drawn as if it reflected this share.
+// A fitted albedo may be 0 though some facets reflect; this is the least share by which a lobe is drawn.
 #define PATH_LEAST_SHARE 1e-3
 
-// The index below relative to that above.
+// Index below over index above.
 float path_eta_of(float ior)
 {
     float n = path_inside && !path_thin ? 1.0 / max(ior, PATH_LEAST_BEND) : ior;
@@ -42,7 +42,7 @@ vec3 path_mirrored(vec3 w, vec3 N)
     return w - 2.0 * dot(w, N) * N;
 }
 
-// Half a turn about N, which takes a view to the view of a retroreflective lobe.
+// Half a turn about N. It turns wo into the wo of a retroreflective lobe.
 vec3 path_turned(vec3 w, vec3 N)
 {
     return 2.0 * dot(w, N) * N - w;
@@ -60,7 +60,7 @@ vec3 path_facet_between(vec3 wo, vec3 wi, vec3 N)
     return normalize(wo + (through ? path_mirrored(wi, N) : wi));
 }
 
-// Where the facet H refracts wo to; N where it reflects totally.
+// Direction of wo refracted by the facet H; N in total reflection.
 vec3 path_refracted(vec3 wo, vec3 H, vec3 N)
 {
     float cosine = dot(wo, H);
@@ -79,7 +79,7 @@ bool path_is_lost(MicrofacetLobe lobe, vec3 H)
     return dot(lobe.N, path_turned(lobe.wo, H)) <= 0.0 && dot(lobe.N, path_refracted(lobe.wo, H, lobe.N)) >= 0.0;
 }
 
-// The partner of path_facet. The height z on the cap goes from -wo.z to 1.
+// The partner of path_facet. Heights z on the cap are from -wo.z to 1.
 vec3 path_partner(MicrofacetLobe lobe)
 {
     vec3 stretch = vec3(lobe.roughness, 1.0);
@@ -90,9 +90,9 @@ vec3 path_partner(MicrofacetLobe lobe)
     return path_world(vec3(flat_cap + wo.xy, max(z + wo.z, M_FLOAT_EPS)) * stretch, lobe.X, lobe.N);
 }
 
-// From the denser side a lobe has the averages of the direction outside to which its facet refracts. Values of
-// reflection have none: any tells how a curve differs from that of a dielectric, here the one that a smooth surface
-// refracts to, of a cosine of at least 0.5.
+// On the denser side a lobe uses the averages of the outer direction to which its facet refracts. In values of
+// reflection it only serves to compare a curve with a dielectric's, so any will do: that of a smooth surface, with a
+// cosine of at least 0.5.
 void path_turn_outside(ClosureData closureData, inout MicrofacetLobe lobe)
 {
     bool below = dot(lobe.N, lobe.wi) < 0.0;
@@ -142,8 +142,8 @@ MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec
     return lobe;
 }
 
-// Density of wi by visible normals, G_1 D / (4 mu_o) for reflection; for refraction the solid angle of facets for that
-// of wi is n^2 |wi . h| / |wo + n wi|^2: [Walter2007], Eq. (17).
+// Density of wi by visible normals: G_1 D / (4 mu_o) for reflection. For refraction, facets per solid angle of wi are
+// n^2 |wi . h| / |wo + n wi|^2: [Walter2007], Eq. (17).
 float path_facet_pdf(MicrofacetLobe lobe, bool through)
 {
     if ((dot(lobe.N, lobe.wi) < 0.0) != through)
@@ -166,7 +166,7 @@ float path_facet_pdf(MicrofacetLobe lobe, bool through)
     return cosine_o > 0.0 && cosine_i > 0.0 ? 2.0 * visible * cosine_o * jacobian : 0.0;
 }
 
-// G_2 / G_1, the share of the light reflected by path_facet that no other facet shadows; 0 below the horizon.
+// G_2 / G_1, the unshadowed share of the light that path_facet reflects; 0 below the horizon.
 float path_unshadowed(MicrofacetLobe lobe)
 {
     vec3 wi = path_turned(lobe.wo, path_facet);
@@ -192,8 +192,8 @@ vec2 path_facet_draw(MicrofacetLobe lobe, bool through, bool retroreflective)
 void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData fd, MicrofacetFresnel F, vec3 tint,
                           float weight, int distribution, int scatter_mode, inout BSDF bsdf)
 {
-    // 0: reflection, 1: transmission, 2: both. A lobe that transmits alone also draws what its facets reflect, since
-    // it lies below one that reflects; else such draws weigh nothing.
+    // 0: reflection, 1: transmission, 2: both. A lobe that only transmits also draws reflected light, since it lies
+    // below a lobe that reflects; without one, such draws weigh nothing.
     vec3 scale = tint * weight;
     vec3 factor = 1.0 + F.average * ((1.0 - lobe.albedo) / lobe.albedo);
     vec3 albedo = lobe.albedo * F.visible * factor;
@@ -202,7 +202,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     bool valued = path_asked == PATH_VALUE;
     if (path_is_denser())
     {
-        vec3 curve = vec3(1.0); // what passes over that of a dielectric
+        vec3 curve = vec3(1.0); // transmission over a dielectric's
         if (valued && !below)
         {
             float n = 1.0 / path_eta;
@@ -219,7 +219,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     }
     if (scatter_mode != 1)
     {
-        // A lobe below draws facets that reflect, too: few may refract the view, and those have to be drawn.
+        // A lobe below must be drawn even at full reflection: the few facets that refract the view need draws.
         bsdf.throughput = path_is_denser() && !valued ? vec3(1.0) : max(1.0 - albedo * weight, 0.0);
         bsdf.response = microfacet_lossless(lobe) * F.value * factor * scale;
     }
@@ -251,7 +251,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     path_microfacet_bsdf(closureData, lobe, fd, F, tint, weight, distribution, 0, bsdf);
 }
 
-// Nothing is off because of the question alone.
+// Unlike microfacet_is_off, ignores closureType.
 bool path_microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
 {
     return weight <= 0.0;
@@ -287,7 +287,7 @@ void path_conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 e
 {
     if (path_is_asked(closureData))
     {
-        path_eta = 1.0; // nothing lies below
+        path_eta = 1.0; // opaque
         conductor_bsdf(path_question(closureData), weight, ior, extinction, roughness, retroreflective,
                        thinfilm_thickness, thinfilm_ior, N, X, distribution, bsdf);
         path_end(bsdf);

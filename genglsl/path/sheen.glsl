@@ -5,7 +5,7 @@
 #include "lib/questions.glsl"
 #include "../sheen_bsdf.glsl"
 
-// The frame in which a view has azimuth 0, as in zeltner_lobe.
+// X axis of the frame with wo at azimuth 0: zeltner_lobe.
 vec3 path_sheen_across(vec3 N)
 {
     vec3 Y = cross(N, path_wo);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exact importance sampling of EON with two random numbers, no table and no iteration.
 //
-// eon_sample -> wi and eon_pdf, the density of wi in 1/sr; directions and random numbers are those
-// of ltc_sampling. On the disk below the hemisphere, with wo at azimuth 0, EON is the sum of four
-// parts: docs/sampling.md. v is a random number in [0, 1), mu_o and S_o cosine and sine of wo.
+// eon_sample -> wi and eon_pdf, the density of wi in 1/sr; directions and random numbers as
+// in ltc_sampling. On the disk below the hemisphere, with wo at azimuth 0, EON is the sum of four
+// parts: docs/sampling.md. v is a random number in [0, 1); mu_o and S_o are cosine and sine of wo.
 
 #include "ltc_sampling.glsl"
 
@@ -11,7 +11,7 @@
 #define EON_HORIZON (1.0 / 16777216.0)
 
 // Inverse distributions of two parts of EON. Source: tools/fits/eon_sampling.py. Domain: random numbers
-// and roots of them in [0, 1]. Largest relative error of the density: 1.27e-5 and 5.7e-6; of ROOT,
+// and their roots in [0, 1]. Largest relative error of the density: 1.27e-5 and 5.7e-6; of ROOT,
 // the inverse of m = y Q(y): 1.8e-7.
 #define EON_MULTIPLE0 -0.1221923217
 #define EON_MULTIPLE1 0.3674909842
@@ -45,7 +45,7 @@ float eon_cube_gap(float mu, float S)
     return mu * (1.0 + S + S * S) / (1.0 + S);
 }
 
-// Direction with cosine mu and sine S at an azimuth whose sine is uniform, towards wo.
+// Direction with cosine mu and sine S, on the side of wo; the azimuth's sine is uniform.
 vec3 eon_towards(float mu, float S, float u2)
 {
     return vec3(2.0 * S * sqrt(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu);
@@ -91,8 +91,8 @@ float eon_multiple_cosine(float t)
     return t * (1.0 + m * (even + m * w * odd));
 }
 
-// Drawn in proportion to 1 + q x: along each chord of the disk, x by its inverse distribution from
-// the uniform point (x, y). z is sqrt(1 - x^2 - y^2) without a cancellation.
+// Drawn in proportion to 1 + q x: the inverse distribution of x moves a uniform point of the disk
+// along its chord. z is sqrt(1 - x^2 - y^2) without a cancellation.
 vec3 eon_flat_draw(float v, float u2, float q)
 {
     vec3 wh = cosine_sample(v, u2);
@@ -102,9 +102,9 @@ vec3 eon_flat_draw(float v, float u2, float q)
     return vec3((q * (1.0 - wh.y * wh.y) + 2.0 * wh.x) / (1.0 + root), wh.y, z);
 }
 
-// Drawn from one of the four parts, chosen by what their integrals over pi leave of u1; wo has
-// azimuth 0. The flat part's integral is 1. The others share a power, the most expensive operation:
-// where lanes of a processor choose different parts, it takes every lane through all.
+// Drawn from one of the four parts, chosen by u1 in proportion to their integrals; wo has azimuth 0.
+// The flat part's integral over pi is 1. The others share a power, the most expensive operation: if
+// lanes of a GPU choose different parts, each lane pays for all.
 vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughness)
 {
     float q = roughness * S_o;
@@ -128,8 +128,8 @@ vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughn
     return v < towards ? eon_towards(mu, S, u2) : eon_around(mu, S, u2);
 }
 
-// In proportion to EON with a gray rho, times the cosine: docs/sampling.md. The end of a part may
-// reach the horizon, where the density is 0 and a weight 0 / 0.
+// Drawn in proportion to EON with a gray rho, times the cosine: docs/sampling.md. Samples are kept
+// above the horizon, where the density is 0 and a weight 0 / 0.
 vec3 eon_sample(vec3 wo, float u1, float u2, float rho, float roughness)
 {
     vec3 turn = eon_azimuth_frame(wo);

@@ -3,8 +3,8 @@
 //
 // Pairs x_sample -> wi and x_pdf, the density of wi in 1/sr. wo and wi are unit vectors that leave
 // the surface, in a local frame with the normal +z, neither below the horizon. u1 and u2 are
-// independent uniform random numbers in [0, 1); d is an entry of the lobe's matrix M, and turn
-// holds what eon_azimuth_frame returns.
+// independent uniform random numbers in [0, 1); d is an entry of the lobe's matrix M, and
+// `turn` is the result of eon_azimuth_frame.
 
 #include "oren_nayar_family.glsl"
 
@@ -12,7 +12,7 @@
 #define EON_BELOW_ONE (1.0 - 1.0 / 16777216.0)
 
 // Cosine and sine of the azimuth of wo, and the sine of its polar angle. Below 1e-18, where squares
-// underflow, wo counts as the normal, whose azimuth counts as 0.
+// underflow, the azimuth is 0.
 vec3 eon_azimuth_frame(vec3 wo)
 {
     float S_o = min(sqrt(wo.x * wo.x + wo.y * wo.y), 1.0);
@@ -108,7 +108,7 @@ float ltc_density(vec3 wo, vec3 wi, float roughness, float d)
     return ratio * ratio * max(wh_z, 0.0) / EON_PI;
 }
 
-// The transformed cosine, whose samples below the horizon are wasted.
+// The transformed cosine; samples below the horizon are wasted.
 vec3 ltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
     return ltc_transformed(wo, cosine_sample(u1, u2), roughness, ltc_md(wo.z, roughness));
@@ -126,7 +126,7 @@ float cltc_kept_fraction(float d)
 }
 
 // Direction under the clamped cosine with d x + z >= 0: [Portsmouth2025], Listing 3, with the lune
-// on its other side where d > 0. Rounding may leave x^2 + y^2 > 1 on the rim.
+// on the other side if d > 0. On the rim, rounding may leave x^2 + y^2 > 1.
 vec3 cltc_clipped(float u1, float u2, float d)
 {
     vec3 wh = cosine_sample(u1, u2);
@@ -134,7 +134,7 @@ vec3 cltc_clipped(float u1, float u2, float d)
     return vec3(d > 0.0 ? x : -x, wh.y, sqrt(max(1.0 - (x * x + wh.y * wh.y), 0.0)));
 }
 
-// On the edge of the lune d x + z is zero up to rounding, of either sign.
+// On the edge of the lune d x + z is 0, but rounding may make it negative.
 vec3 cltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
     float d = ltc_md(wo.z, roughness);

@@ -63,14 +63,14 @@ float oren_nayar_s(vec3 wo, vec3 wi)
     return wo.x * wi.x + wo.y * wi.y;
 }
 
-// The same in every direction.
+// rho / pi in every direction.
 vec3 lambert_brdf(vec3 wo, vec3 wi, vec3 rho)
 {
     return rho / EON_PI;
 }
 
-// The angle whose sine is y and whose cosine is x, as a fraction of a right angle: four times the arc
-// tangent of a quarter of it (tools/fits/arc_tangent.py). Built-in functions are less accurate: SwiftShader's cosine
+// The angle with sine y and cosine x, as a fraction of a right angle: four times an arc tangent for
+// a quarter of it (tools/fits/arc_tangent.py). Built-in functions are less accurate: SwiftShader's cosine
 // is off by 1.9e-4, OSL's arc tangent by 1.2e-5.
 float oren_nayar_angle(float y, float x)
 {
@@ -83,7 +83,7 @@ float oren_nayar_angle(float y, float x)
 
 // (sin(alpha) - (2 beta / pi)^3) / cos(beta), and its limit 6 / pi with both directions at grazing.
 // With q = 1 - 2 beta / pi the cube is 1 - q (3 - 3 q + q^2), and 1 - sin(alpha) is
-// cos(alpha)^2 / (1 + sin(alpha)): the ones cancel, not the digits.
+// cos(alpha)^2 / (1 + sin(alpha)), so the ones cancel exactly.
 float oren_nayar_behind_slope(float mu_o, float mu_i, float S_o, float S_i)
 {
     float high = max(mu_o, mu_i);
@@ -96,7 +96,7 @@ float oren_nayar_behind_slope(float mu_o, float mu_i, float S_o, float S_i)
 // [OrenNayar1994], the functional approximation for Gaussian slopes, with interreflection:
 //   f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)]
 //       + 0.17 rho^2 / pi k (1 - (2 beta / pi)^2 cos(phi)),  k = sigma^2 / (sigma^2 + 0.13)
-// alpha is the larger polar angle, beta the smaller; both as fractions of a right angle below.
+// alpha is the larger polar angle, beta the smaller; the code uses fractions of a right angle.
 vec3 oren_nayar_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     float mu_o = min(wo.z, 1.0);
@@ -123,7 +123,7 @@ vec3 qon_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
     return qon_brdf_mu(min(wo.z, 1.0), min(wi.z, 1.0), oren_nayar_s(wo, wi), rho, sigma);
 }
 
-// QON with 0.57 in place of 0.33 in A_q: [OrenNayar1994], in [Portsmouth2025], footnote 1.
+// QON with 0.57 instead of 0.33 in A_q: [OrenNayar1994], in [Portsmouth2025], footnote 1.
 vec3 qon_footnote_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     float quotient = qon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));

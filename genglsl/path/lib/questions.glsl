@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a closure answers a path tracer. PATH_VALUE: `response` is f cos(theta_i) of path_wo and path_wi. PATH_PDF: it
-// is (weight, density of path_wi, 0). PATH_DRAW: (weight, a direction of that density in two numbers). A weight is
-// the mean albedo of the lobes below; of two closures one is drawn by their weights, and densities are mixed by them,
-// so that a density is exactly that of what is drawn, however rough the weights are.
+// A closure's `response` by path_asked. PATH_VALUE: f cos(theta_i) of path_wo and path_wi. PATH_PDF: (weight, density
+// of path_wi, 0). PATH_DRAW: (weight, a direction of that density in two numbers). The weight is the mean albedo of
+// the closure's lobes. Weights choose between two closures and mix their densities, so a density is exactly that of
+// the draws, however rough the weights are.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
 
-// An environment of radiance 1 turns INDIRECT into the albedo. A path has no neighbors to form derivatives with.
+// An environment of radiance 1 turns INDIRECT into the albedo. A path has no neighbors for derivatives.
 #define mx_environment_irradiance(N) vec3(1.0)
 #define fwidth(x) vec3(0.0)
 
 #define PATH_WASTED vec2(4.0, 0.0)
 
-// The surface node asks once for a light; what it asks of an environment and of the view is not answered.
+// Closures run only when the surface node evaluates a light, not an environment or transmission.
 bool path_is_asked(ClosureData closureData)
 {
     return closureData.closureType == CLOSURE_TYPE_REFLECTION && path_asked != PATH_NOTHING;
 }
 
-// The question as eonlib's own function understands it: of a value, which also has the curve at the half vector.
+// Arguments of eonlib's function for the value in direct light, which includes F at the half vector.
 ClosureData path_question_in_direct_light(ClosureData closureData)
 {
     closureData.closureType = CLOSURE_TYPE_REFLECTION;
@@ -29,7 +29,7 @@ ClosureData path_question_in_direct_light(ClosureData closureData)
     return closureData;
 }
 
-// The same: of a value, or of the albedo.
+// Arguments for the value or for the albedo.
 ClosureData path_question(ClosureData closureData)
 {
     closureData = path_question_in_direct_light(closureData);
@@ -42,7 +42,7 @@ float path_mean(vec3 color)
     return dot(max(color, 0.0), vec3(1.0 / 3.0));
 }
 
-// A direction in the frame of X and N, and back.
+// Directions to the frame of X and N, and back.
 vec3 path_local(vec3 w, vec3 X, vec3 N)
 {
     return vec3(dot(w, X), dot(w, cross(N, X)), dot(w, N));
@@ -53,19 +53,19 @@ vec3 path_world(vec3 w, vec3 X, vec3 N)
     return normalize(w.x * X + w.y * cross(N, X) + w.z * N);
 }
 
-// Any unit vector across N.
+// Any unit vector orthogonal to N.
 vec3 path_across(vec3 N)
 {
     return normalize(cross(abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), N));
 }
 
-// The answer of a lobe: `drawn` for path_u, or the density of path_wi.
+// Response of a lobe: `drawn`, from path_u, or the density of path_wi.
 vec3 path_answer(float weight, vec2 drawn, float pdf)
 {
     return path_asked == PATH_DRAW ? vec3(weight, drawn) : vec3(weight, pdf, 0.0);
 }
 
-// The answer of two lobes. What is left of the random number chooses again.
+// Response of two lobes. The random number is rescaled and used again.
 vec3 path_either(vec3 a, vec3 b)
 {
     float total = a.x + b.x;
@@ -83,19 +83,19 @@ vec3 path_either(vec3 a, vec3 b)
     return vec3(total, first ? a.yz : b.yz);
 }
 
-// The response of a closure below a factor.
+// Response of a closure times a factor.
 vec3 path_scaled(vec3 response, vec3 factor)
 {
     return path_asked == PATH_VALUE ? response * factor : vec3(response.x * path_mean(factor), response.yz);
 }
 
-// What the closure called last answers is the answer of the material.
+// The closure called last gives the response of the material.
 void path_end(BSDF bsdf)
 {
     path_root = bsdf.response;
 }
 
-// Answers for a lobe that is drawn by a cosine about N; its response is the value or the albedo.
+// Cosine sampling about N for a lobe whose response is the value or the albedo.
 void path_cosine(vec3 N, inout BSDF bsdf)
 {
     if (path_asked != PATH_VALUE)

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// A path tracer around the text of a material: one path per pixel and pass, on the sphere or the shader ball. World
-// frame: x to the right, y up, z towards the viewer, who looks along parallel rays.
+// A path tracer for the generated code of a material: one path per pixel and pass, on the sphere or the shader ball.
+// World frame: x right, y up, z towards the viewer, who sees parallel rays.
 
-#define TRACER_OFFSET 2e-4  // From a surface to the next ray, against its own hit.
+#define TRACER_OFFSET 2e-4  // Offset of a ray's origin, so it misses its own surface.
 #define TRACER_FAR 8.0
 #define TRACER_CLOSE 1e-5
 #define TRACER_STEPS 160
 
 uniform int tracer_pass;
-uniform int tracer_bounces; // Times that a path may be scattered.
+uniform int tracer_bounces; // maximum scatterings of a path
 uniform int tracer_size;
 uniform bool tracer_ball;
-uniform vec3 tracer_light; // Towards a distant light of irradiance pi; zero for none.
+uniform vec3 tracer_light; // direction to a distant light of irradiance pi; zero for none
 uniform sampler2D tracer_environment;
-uniform bool tracer_mapped; // Whether the environment is a map, whose texels are drawn by their light.
-uniform sampler2D tracer_drawn; // 256 x 256 numbers of texels, each as often as it is to be drawn.
-uniform sampler2D tracer_chance; // The probability of drawing each texel.
-uniform mat3 tracer_foot; // From the picture to the foot of the shader ball, and from there to its belt.
-uniform mat3 tracer_belt;
+uniform bool tracer_mapped; // the environment is a map; texels are drawn by their light
+uniform sampler2D tracer_drawn; // 256 x 256 texel indices, each repeated in proportion to its light
+uniform sampler2D tracer_chance; // probability of drawing each texel
+uniform mat3 tracer_foot; // rotates the picture's frame to the frame of the ball's foot
+uniform mat3 tracer_belt; // rotates the foot's frame to the belt's
 
-out vec4 tracer_radiance; // And the square of its mean over the channels.
+out vec4 tracer_radiance; // rgb: radiance; a: its squared channel mean
 
 vec3 tracer_random(int bounce)
 {
@@ -80,7 +80,7 @@ Point tracer_point(vec3 position, vec3 normal, vec3 wo)
     return Point(position, normal, tangent, texcoord, dot(normal, wo) < 0.0 && !(material_is_thin_walled));
 }
 
-// Where a direction lies in the environment, which MaterialX turns by half a turn.
+// Texture coordinates of a direction; MaterialX rotates the environment by 180 degrees.
 vec2 tracer_latlong(vec3 direction)
 {
     float longitude = atan(-direction.x, direction.z) / (2.0 * M_PI) + 0.5;
@@ -92,7 +92,7 @@ vec3 tracer_sky(vec3 direction)
     return textureLod(tracer_environment, tracer_latlong(direction), 0.0).rgb;
 }
 
-// Density of a direction among those of tracer_towards, in 1/sr.
+// Density of tracer_towards at a direction, in 1/sr.
 float tracer_sky_pdf(vec3 direction)
 {
     vec2 size = vec2(textureSize(tracer_chance, 0));
@@ -101,7 +101,7 @@ float tracer_sky_pdf(vec3 direction)
     return tracer_mapped ? chance / area : 0.0;
 }
 
-// Draws a direction to the environment.
+// Draws a direction towards a texel.
 vec3 tracer_towards(vec3 u)
 {
     int k = int(u.x * 65536.0);
@@ -118,8 +118,8 @@ bool tracer_is_shadowed(vec3 position, vec3 normal, vec3 wi)
     return tracer_hit(position + TRACER_OFFSET * sign(dot(wi, normal)) * normal, wi) < TRACER_FAR;
 }
 
-// What a light and the environment send along wo, by way of the point. Drawing wi from the material finds the
-// environment too; both ways are weighted by their densities: [Veach1995], balance heuristic.
+// Light of the distant light and the environment that the point scatters along wo. Drawing wi from the material also
+// finds the environment, so both ways are weighted by the balance heuristic: [Veach1995].
 vec3 tracer_lit(Point p, vec3 normal, vec3 wo, vec3 u)
 {
     vec3 lit = vec3(0.0);
@@ -138,7 +138,7 @@ vec3 tracer_lit(Point p, vec3 normal, vec3 wo, vec3 u)
 
 void main()
 {
-    // A picture of the sphere is compared with others at the centers of pixels.
+    // Pictures of the sphere are compared at the centers of pixels.
     vec2 within = tracer_ball ? tracer_random(-1 - tracer_bounces - 1).xy : vec2(0.5);
     vec2 at = (2.0 * (gl_FragCoord.xy - 0.5 + within) - float(tracer_size)) / float(tracer_size);
     vec3 origin = vec3(at, 2.0);
@@ -151,7 +151,7 @@ void main()
         float t = tracer_hit(origin, direction);
         if (t >= TRACER_FAR)
         {
-            // Around the object lies what it is composed with.
+            // Camera rays that miss: the sky is added in compositing.
             float drawn = bounce == 0 ? 0.0 : pdf > 0.0 ? pdf / (pdf + tracer_sky_pdf(direction)) : 1.0;
             radiance += throughput * tracer_sky(direction) * drawn;
             break;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Changed from MaterialX's file of this name: Copyright Contributors to the MaterialX Project.
-// An environment summed over the facets that the view sees, as MaterialX sums it, but masked by the direction where
-// both alphas differ, and without negative reflectances. It replaces MaterialX's file where a client searches
-// `genglsl/environment` before MaterialX's data.
+// MaterialX's sum of an environment over the visible facets, but with masking by the direction if the alphas differ,
+// and without negative reflectances. It replaces MaterialX's file where a client searches `genglsl/environment`
+// before MaterialX's data.
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
@@ -29,12 +29,12 @@ vec3 mx_environment_radiance(vec3 N, vec3 V, vec3 X, vec2 alpha, int distributio
         vec3 wi = fd.refraction ? mx_refraction_solid_sphere(-wo, H, fd.ior.x) : -reflect(wo, H);
         vec3 L = mx_matrix_mul(frame, wi);
 
-        // The density of a mirrored direction is G_1 D / (4 mu_o).
+        // Density of a reflected direction: G_1 D / (4 mu_o).
         float pdf = mx_ggx_NDF(H, alpha) / (2.0 * (mu_o + length_o));
         float lod = mx_latlong_compute_lod(L, pdf, float($envRadianceMips - 1), count);
         vec3 F = max(mx_compute_fresnel(clamp(dot(wo, H), M_FLOAT_EPS, 1.0), fd), 0.0);
 
-        // A facet that is seen reflects F G_2 / G_1.
+        // A visible facet reflects F G_2 / G_1.
         float mu_i = clamp(wi.z, M_FLOAT_EPS, 1.0);
         float lit = mu_i * (mu_o + length_o) / (length_o * mu_i + length(stretch * wi) * mu_o);
         light += mx_latlong_map_lookup(L, $envMatrix, lod, $envRadiance) * (fd.refraction ? 1.0 - F : lit * F);

@@ -7,14 +7,14 @@
 
 #define EONLIB_PREFILTERED
 
-// The mip level of an alpha.
+// Mip level for an alpha.
 float mx_latlong_alpha_to_lod(float alpha)
 {
     float lodBias = (alpha < 0.25) ? sqrt(alpha) : 0.5 * alpha + 0.375;
     return lodBias * float($envRadianceMips - 1);
 }
 
-// The environment's mean over a lobe of mirrored or refracted directions.
+// Mean of the environment over a lobe of reflected or refracted directions.
 vec3 eonlib_prefiltered_light(vec3 N, vec3 V, vec2 alpha, FresnelData fd)
 {
     vec3 L = fd.refraction ? mx_refraction_solid_sphere(-V, N, fd.ior.x) : -reflect(V, N);
@@ -22,7 +22,7 @@ vec3 eonlib_prefiltered_light(vec3 N, vec3 V, vec2 alpha, FresnelData fd)
     return mx_latlong_map_lookup(L, $envMatrix, lod, $envRadiance) * $envLightIntensity;
 }
 
-// That light times the share that facets reflect or transmit, by MaterialX's fit of their albedo, in its form for
+// Prefiltered light times the share that facets reflect or transmit, by the overload of MaterialX's albedo in
 // every version.
 vec3 mx_environment_radiance(vec3 N, vec3 V, vec3 X, vec2 alpha, int distribution, FresnelData fd)
 {
