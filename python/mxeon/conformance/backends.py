@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The ways of evaluating a node on an engine: supported nodes, samples, and additional errors.
 
-An engine evaluates any pairs of directions, returns closures, lights a point by a camera and a
-light, or renders pictures of a sphere. Every backend returns values in the same form, so each check
-is written once.
+An engine evaluates arbitrary pairs of directions, returns closures, renders one pair of directions
+per pixel, or renders pictures of a sphere. Every backend returns values in the same form, so each
+check is written once.
 """
 
 from __future__ import annotations
@@ -59,9 +59,9 @@ if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
 LINEAR, SRGB_COLOR = 'colorspace="lin_rec709" version="', 'name="color" colorspace="srgb_texture"'
-POWERS = 1 << 12  # colors with measured powers
+POWERS = 1 << 12  # number of colors for which pow() is measured
 NO_IMPLEMENTATION = "Could not find a matching implementation"
-Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and a mask of the judged ones
+Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and a mask of the judged pairs
 Errors: TypeAlias = Mapping[str, Tolerance | None]  # quantity -> tolerance, None if not measured
 T = TypeVar("T")
 
@@ -79,13 +79,13 @@ def implementation(host: Host, text: str, library: str) -> Shader | None:
 class Backend(ABC):
     """A way of evaluating one node on an engine: its samples, shader and values."""
 
-    abilities: ClassVar[Ability]  # supported nodes and checks
-    # Axes of `checks.states` for which it only supports the first state.
+    abilities: ClassVar[Ability]  # supported kinds of nodes and checks
+    # Axes of `checks.states` on which the backend supports only the first state.
     plain: ClassVar[tuple[str, ...]] = ()
     whole: ClassVar[bool] = False  # whether controls and expensive checks use all samples
     fewer: ClassVar[Counts | None] = None  # upper limits of a spec's sample counts
-    own_errors: ClassVar[Errors | None] = None  # replace the spec's errors
-    methods: ClassVar[Methods] = UNCHOSEN  # the methods of an engine that has no choice
+    own_errors: ClassVar[Errors | None] = None  # errors that replace the spec's
+    methods: ClassVar[Methods] = UNCHOSEN  # lighting methods that the engine fixes
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
         self.host, self.spec, self.library = host, spec, library
@@ -100,7 +100,7 @@ class Backend(ABC):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        """The largest error of each quantity, without engine functions."""
+        """The tolerance of each quantity, before the errors of engine functions are added."""
         return spec.errors if cls.own_errors is None else cls.own_errors
 
     @property
@@ -110,7 +110,7 @@ class Backend(ABC):
 
     @property
     def searched(self) -> bool:
-        """Whether the library's own lookups of an environment replace MaterialX's."""
+        """Whether the library's own environment lookups replace MaterialX's."""
         return bool(self.host.active.searched)
 
     def implemented(self, text: str) -> Shader:
@@ -123,7 +123,7 @@ class Backend(ABC):
         return shader
 
     def precision(self, quantity: str) -> tuple[Term, ...]:
-        """Errors of the engine's own functions for a quantity, measured on the host."""
+        """Error terms due to the engine's built-in functions, measured on the host."""
         return ()
 
     @property
@@ -133,15 +133,15 @@ class Backend(ABC):
 
     @property
     def claims(self) -> tuple[str, str]:
-        """A result's `claimed` and `model`, for a renderer's own node."""
+        """Values of `Result.claimed` and `Result.model`; "" unless the node is a renderer's own."""
         return "", ""
 
     def judged(self) -> Spec:
-        """The spec with the engine's alternatives to its model, or in the form nearest to the measured values."""
+        """The spec to judge: with a renderer's variants, or in the form closest to its values."""
         return self.spec
 
     def take(self, draw: Callable[[Counts], T]) -> T:
-        """The result of one of the spec's sampling methods."""
+        """Samples from one of the spec's methods, drawn once per backend."""
         if draw.__qualname__ not in self._drawn:
             self._drawn[draw.__qualname__] = draw(self.counts)
         return cast(T, self._drawn[draw.__qualname__])
@@ -189,11 +189,11 @@ class Backend(ABC):
         return cast(ScatteringSpec, self.spec).integral(views)
 
     def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
-        """Inputs in the backend's form."""
+        """Inputs adapted to what the backend supports."""
         return dict(inputs)
 
     def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
-        """Pairs at the points of a picture, the mask of judged ones, and the pixels of the points."""
+        """Directions at a picture's points, a mask of judged points, and a mask of their pixels."""
         wo, wi, judged = picture_pairs(scene)
         return samples.rounded(wo.T), samples.rounded(wi.T), judged, sphere(scene.size).mask
 
@@ -203,11 +203,11 @@ class Backend(ABC):
 
     @abstractmethod
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        """Values of the environment branch, (N, 3); the environment is uniform unless given."""
+        """Values of the environment branch, (N, 3); uniform light unless `irradiance` is given."""
 
 
 def isotropic(batch: Batch) -> Batch:
-    """A batch with the mean alpha in all directions, since a prefiltered environment has one roughness."""
+    """A batch with the geometric mean of each alpha pair: prefiltered light has one roughness."""
     inputs: dict[str, Array] = {}
     for name, value in batch.inputs.items():
         if name == "roughness" and np.shape(value)[-1:] == (2,):
@@ -218,11 +218,11 @@ def isotropic(batch: Batch) -> Batch:
     return batch.altered(**inputs)
 
 
-# Hosts that evaluate any pairs of directions.
+# Hosts that evaluate arbitrary pairs of directions.
 
 
 class Evaluating(Backend):
-    """An engine that runs the generated shader for any pairs."""
+    """An engine that runs the generated shader for arbitrary pairs of directions."""
 
     abilities = ~(Ability.BELOW | Ability.SURFACE | Ability.CLIENT)
 
@@ -265,11 +265,11 @@ class Evaluating(Backend):
         return self.evaluate(batch, "environment", irradiance=irradiance)
 
     def throughput(self, batch: Batch, branch: str) -> Array:
-        """The share of the light from below that passes the node in a branch, (N, 3)."""
+        """Fraction of the light from below that passes through the node in a branch, (N, 3)."""
         return self.evaluate(batch, branch, "throughput")
 
     def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
-        """Light of an environment through the surface, (N, 3); it is uniform unless given."""
+        """Environment light through the surface, (N, 3); uniform unless `radiance` is given."""
         return self.evaluate(batch, "transmission", irradiance=radiance)
 
     @cached_property
@@ -279,14 +279,14 @@ class Evaluating(Backend):
 
     @cached_property
     def decoded(self) -> Shader:
-        """The shader of a color in sRGB."""
+        """A shader whose color input is in sRGB."""
         text = self.spec.document({"color": samples.WHITE}).replace('name="color"', SRGB_COLOR)
         return self.host.compile(text.replace('version="', LINEAR), library=self.library)[0]
 
     def together(
         self, batch: Batch, irradiance: NDArray[np.float32] | None, client: Client, two: bool
     ) -> Array:
-        """Light of several lights and an environment in one pixel, or of the only light, from one or two lobes."""
+        """Values of one or two lobes under several lights and an environment, or the only light."""
         shader = self.two if two else self.shader
         if "lights" in self.plain:
             return np.pi * self.evaluate(batch, "direct", shader=shader)
@@ -318,24 +318,24 @@ class Evaluating(Backend):
 
 
 class InTheDark(Evaluating):
-    """Evaluation of media, and of nodes with only an implementation to judge, on a renderer."""
+    """A renderer that evaluates media, and nodes judged only by having an implementation."""
 
     abilities = Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.PAIRS | Ability.LIGHT
 
 
 # OSL: closures are trees of arguments and weights, which the models evaluate in float64.
 
-# The closures are few, and the models give their values: more pairs would only compare the models.
+# The models compute the closures' values: more pairs would compare the models with themselves.
 FEW_CLOSURES = Counts(1 << 11, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
-SOME = 1 << 8  # pairs of every kind except random ones
+SOME = 1 << 8  # maximum pairs of each kind except random pairs
 # The models round in float64, 2^-53, and the sharpest lobe, with alpha 1e-4, amplifies that by 1e8.
 ARGUMENTS = sum_of(roundings(1, "of arguments with nine digits, evaluated in float64"), exact=True)
-# A distribution's logarithm grows four times.
+# The slope of a distribution's logarithm is at most 4.
 GRAPH = sum_of(roundings(4 * 16, "16 from an input to an argument, times the slope 4"))
 
 
 def joined(batches: Sequence[Batch]) -> Batch:
-    """One batch of all pairs; their inputs must have the same names."""
+    """One batch with the pairs of all batches, whose inputs must have the same names."""
     if len(batches) == 1:
         return batches[0]
     wo, wi = (np.concatenate(each) for each in ([b.wo for b in batches], [b.wi for b in batches]))
@@ -346,7 +346,7 @@ def joined(batches: Sequence[Batch]) -> Batch:
 
 
 def _altered(batch: Batch) -> Batch:
-    """The batch with nonnegative weights, which OSL multiplies closures by, and some dielectrics of index 0."""
+    """A batch with nonnegative weights, as OSL closures need, and index 0 for some dielectrics."""
     changes: dict[str, Array] = {}
     if "weight" in batch.inputs:
         changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
@@ -357,7 +357,7 @@ def _altered(batch: Batch) -> Batch:
 
 
 class Closures(Evaluating):
-    """A host that returns closures; arguments are exact, and closures do not compute lighting."""
+    """A host that returns closures: their arguments are exact, and they compute no lighting."""
 
     abilities = Evaluating.abilities & ~Ability.LIGHT
     plain = ("lights", "environment", "shape", "inputs")
@@ -371,8 +371,8 @@ class Closures(Evaluating):
         exact = GRAPH if Ability.MATERIAL in spec.requires else ARGUMENTS
         absent = ["integral", "light", "reciprocity"]
         if Ability.TRANSMISSION in spec.requires:
-            absent.append("states")  # lights do not show its transmission
-        if Ability.FILM in spec.requires:  # closures have no flag and no lighting
+            absent.append("states")  # direct light does not reveal transmission
+        if Ability.FILM in spec.requires:  # closures have no retroreflective flag and no lighting
             absent += ["retroreflection", "albedo", "throughput"]
         return {
             **own,
@@ -388,7 +388,7 @@ class Closures(Evaluating):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """A subset of each kind, joined if possible, because every run has a fixed cost."""
+        """A subset of each kind of samples, joined if possible: every run has a fixed cost."""
         groups: dict[tuple[str, ...], list[Batch]] = {}
         for batch in self.batches:
             few, names = batch.first(self.counts.few), tuple(sorted(batch.inputs))
@@ -409,7 +409,7 @@ class Closures(Evaluating):
 
         assert query.irradiance is None, "closures look no environment up"
         if query.shader is self.shader and self.spec.requires & (Ability.DIFFUSE | Ability.LOBE):
-            # A constant other than the surface's own frame is an input of the document's node.
+            # Constant normals and tangents that differ from the surface's become node inputs.
             frame = {
                 name: query.inputs[name]
                 for name, axis in (("normal", UP), ("tangent", ALONG))
@@ -425,13 +425,13 @@ class Closures(Evaluating):
 
     @property
     def unset(self) -> tuple[str, ...]:
-        """Frames of a surface shader's lobes, which its text takes from the surface instead of an input."""
+        """Frame inputs of a surface shader's lobes: its text reads the surface's frame instead."""
         names = self.spec.names if Ability.MATERIAL in self.spec.requires else ()
         return tuple(each for each in names if each.endswith(("normal", "tangent")))
 
 
 class Functions(Evaluating):
-    """A compiler whose functions return values and MaterialX's fit of albedos, but no transmitted light."""
+    """A compiler whose functions return values and MaterialX's fitted albedos, not transmission."""
 
     abilities = Evaluating.abilities & ~(
         Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.TRANSMISSION
@@ -453,29 +453,29 @@ class Functions(Evaluating):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """Samples without occlusion, which is the renderer's."""
+        """Samples with occlusion 1, since the renderer applies occlusion itself."""
         return tuple(
             each.altered(**dict.fromkeys({"occlusion"} & each.inputs.keys(), 1.0))
             for each in super().batches
         )
 
 
-# Renderers whose camera and light show one pair per pixel.
+# Renderers in which each pixel shows one pair of directions.
 
-SMOOTH = ("eon", "qon", "burley")  # models whose roughness sharpens no lobe
-# Sine times cosine of a view far from its mirror direction and from the opposite direction.
+SMOOTH = ("eon", "qon", "burley")  # models without a sharp lobe at any roughness
+# Smallest sine times cosine of a view far enough from its mirror and its opposite direction.
 OBLIQUE = 0.25
 FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=32, mirrored=1 << 10)
-FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # stated in its source
-POINT = 3.0 * EYE / NEAREST  # roundings of a point at the distance 40, seen from a light 1/2 away
+FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # value from its source
+POINT = 3.0 * EYE / NEAREST  # roundings of a point 40 from the eye and 1/2 from the light
 FLAT_SLOPE = 8.0  # largest slope of the diffuse models
-# Twice over the least alpha, and 3 for Fresnel and shadowing.
+# 2 divided by the smallest alpha, plus 3 for Fresnel and shadowing.
 SHARP_SLOPE = 2.0 / samples.LEAST_TURNED + 3.0
 FLAT, SHARP = (
     sum_of(roundings(each * POINT, f"of a point, times the slope {each:g}"), FAST_ARC_COSINE)
     for each in (FLAT_SLOPE, SHARP_SLOPE)
 )
-# Angular error of a light seen from a point of a steep triangle.
+# Angular error of the light's direction at a displaced point on a steep triangle.
 TURN = JITTER * PIXEL / (RIM * DISTANCE)
 BESIDE = "a point up to 0.007 pixels beside the middle, at cosine 0.05"
 TRACED_FLAT, TRACED_SHARP = (
@@ -485,7 +485,7 @@ BELOW = sum_of(
     roundings(4.0 * 16.0 * POINT, "of a point, times 16 by the lobes above, in four values"),
     FAST_ARC_COSINE,
 )
-VIEWS, PIXELS = 8, 1 << 12  # views of a case, and pixels of their picture
+VIEWS, PIXELS = 8, 1 << 12  # number of views per case, and of pixels in their common picture
 MEAN_OF_PATHS = "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms"
 NOISE = sum_in(Quantity.ALBEDO, Term(5.0 * 0.01 / math.sqrt(PIXELS / VIEWS), MEAN_OF_PATHS))
 PASSED = given(2e-3, Quantity.ALBEDO, "testrender's tables, off by 1e-3 for a white dielectric")
@@ -515,7 +515,7 @@ class Shown(Evaluating):
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """Few views of the random pairs, because they share the paths."""
+        """A few views of the random pairs; they share a fixed number of paths."""
         return (super().views[0].first(self.counts.albedos),)
 
     @cached_property
@@ -531,7 +531,7 @@ class Shown(Evaluating):
 
     @cached_property
     def integrated(self) -> tuple[Batch, Array]:
-        """Views for which neighboring quadrature nodes are smooth."""
+        """Oblique views, for which values are smooth between neighboring quadrature nodes."""
         batch, weights = super().integrated
         nodes = weights.shape[1]
         height = batch.wo[::nodes, 2]
@@ -552,7 +552,7 @@ class Shown(Evaluating):
 
 
 class Rendered(Shown):
-    """OSL's testrender, whose own closures light a point."""
+    """OSL's testrender, which lights a point with its own closures."""
 
     abilities = (
         Ability.DIFFUSE | Ability.LOBE | Ability.SUBSURFACE | Ability.COMBINATION | Ability.PAIRS
@@ -586,12 +586,12 @@ class Rendered(Shown):
         }
 
     def direct(self, batch: Batch) -> Array:
-        """Values; pairs that cannot be shown are replaced by a pair next to them."""
+        """Values in direct light; a pair that cannot be rendered is replaced by one next to it."""
         return super().direct(replace(batch, wi=apart(batch.wo, batch.wi)))
 
 
 class Traced(Rendered):
-    """Cycles, whose closures of pbrlib's nodes light a point; pictures show the diffuse ones."""
+    """Cycles lighting a point with closures for pbrlib's lobes; see CyclesPictures for diffuse."""
 
     abilities = Ability.LOBE | Ability.COMBINATION | Ability.PAIRS
     variants = CYCLES_VARIANTS
@@ -624,7 +624,7 @@ class LobesBelow(Shown):
 
 
 class RenderedLobes(LobesBelow):
-    """Lower lobes on testrender."""
+    """Diffuse lobes below other lobes, rendered by testrender."""
 
     own_errors: ClassVar[Errors] = {"value": BELOW}
 
@@ -633,7 +633,7 @@ def diffuse_alone(show: Callable[[Batch], Array], batch: Batch) -> Array:
     """Values of the diffuse lobe, without the lobes above; see SurfaceLobe."""
     others = show(batch.altered(color=samples.BLACK))
     lambert = show(batch.altered(color=samples.WHITE, roughness=0.0)) - others
-    with np.errstate(divide="ignore", invalid="ignore"):  # an always black shader has no value
+    with np.errstate(divide="ignore", invalid="ignore"):  # an all-black shader divides 0 by 0
         return (show(batch) - others) / lambert * batch.wi[:, 2:]
 
 
@@ -649,9 +649,9 @@ def _with_variants(backend: type[Rendered], spec: Spec) -> Spec:
 # Hosts that render pictures: the lit points of a sphere are the pairs.
 
 PICTURE_SIZE = 128
-HALF_CUT = Term(2.0**-10, "half floats, cut off")  # llvmpipe truncates
-# A ray's point has an angular error, which the logarithm of a lobe multiplies by at most this slope:
-# twice 1 / alpha of a distribution, whose alpha is at least 0.4, and 3 for Fresnel, shadowing and the cosine.
+HALF_CUT = Term(2.0**-10, "half floats, cut off")  # llvmpipe truncates instead of rounding
+# Relative error of a lobe per angular error of a ray's point: 2 / alpha for a distribution, with
+# alpha at least 0.4, plus 3 for Fresnel, shadowing and the cosine.
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
 # Each of two cosines has five roundings. They count 20 times in s / t, since cosines are at least 0.05, and
 # once each in s and in the cosine factor.
@@ -670,15 +670,15 @@ FOUR_PICTURES = Term(
 HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR_PICTURES, *DRAWN_LOBE.terms, exact=True)
 
 # A point is a ray's origin plus its length, both at most 2: three roundings of 2^-23 together. A
-# grazing ray divides them by its cosine, and the relative error of cos(theta_i) is divided by the other cosine.
+# grazing ray divides this error by its cosine, and cos(theta_i) divides it by the other cosine.
 CYCLES_RAY = sum_of(
     roundings(3.0 * 2.0 / RIM**2, "of a pixel's point, over the least cosine squared"),
     Term(1e-5, "a roughness that counts as 0"),
     quantity=Quantity.RELATIVE,
     metric=relative,
 )
-# With 256 samples each. Measured over seeds 0 to 15 at roughness 1 and reflectance 1: a pixel is off by 1.3e-3
-# rms, and the mean of 3212 has a standard deviation of 3.1e-5, 1.34 times that of independent ones.
+# Measured at 256 samples per pixel, seeds 0 to 15, roughness 1 and reflectance 1: a pixel is off by
+# 1.3e-3 rms; the mean of 3212 pixels deviates by 3.1e-5, 1.34 times that of independent pixels.
 CYCLES_MEAN = "four standard errors of the mean of 12836 pixels, each off by 1.3e-3, times 1.4"
 CYCLES_NOISE = sum_of(
     Term(4.0 * 1.4 * 1.3e-3 / math.sqrt(12_836), CYCLES_MEAN),
@@ -708,7 +708,7 @@ class Pictures(Backend):
         return diffuse_alone(self.picture, batch) if alone else self.picture(batch)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        return self.picture(batch)  # has the environment
+        return self.picture(batch)  # its scene already has the environment
 
     def picture(self, batch: Batch) -> Array:
         scene = scene_of(batch)
@@ -720,7 +720,7 @@ class Pictures(Backend):
 
 
 class Spheres(Pictures):
-    """Pictures whose lit points, away from rim and terminator, are the samples, per light and material."""
+    """Pictures per light and material; lit points away from rim and terminator are the samples."""
 
     scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
     whole = True
@@ -741,7 +741,7 @@ class Spheres(Pictures):
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """The points in a white environment."""
+        """Points of the sphere in a white environment, one batch per material."""
         scene = replace(FURNACE, size=self.size)
         views = tuple(self.batch(scene, inputs) for inputs in self.materials)
         return tuple(map(isotropic, views)) if self.prefiltered else views
@@ -776,7 +776,7 @@ def lit_pairs(normal: Array, scene: Scene) -> Pairs:
 
 
 class CyclesPictures(Spheres):
-    """Pictures of a rough diffuse node by Cycles, which renders it with a closure of its own."""
+    """Pictures of a rough diffuse node by Cycles, which renders it with its own closure."""
 
     abilities = Ability.DIFFUSE | Ability.LIGHT
     own_errors: ClassVar[Errors] = {
@@ -786,7 +786,7 @@ class CyclesPictures(Spheres):
     }
 
     def points(self, scene: Scene) -> Pairs:
-        """The points for which the host has a closure that may be the model."""
+        """The points where the host's closure may be the model: s >= 0 if it is front-lit only."""
         wo, wi, mask = super().points(scene)
         if front_lit_only(self.host.name, self.spec.model):
             mask = mask & (wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1] >= 0.0)
@@ -794,7 +794,7 @@ class CyclesPictures(Spheres):
 
 
 class Drawn(Spheres):
-    """Pictures of a sphere with points and light exact up to rounding."""
+    """Pictures of a sphere whose points and light are exact up to rounding."""
 
     abilities = Ability.LOBE | Ability.DIFFUSE | Ability.BELOW | Ability.LIGHT
     exact: ClassVar[Errors] = {"value": EXACT, "albedo": EXACT_ALBEDO, "lambert": EXACT}
@@ -828,7 +828,7 @@ class Half(Drawn):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        """Errors of pictures; the furnace of pbrlib's nodes sums over other directions."""
+        """Errors of pictures; no albedo of pbrlib's nodes: their furnace sums other directions."""
         own = super().errors(spec)
         return {**own, "albedo": None} if Ability.LOBE in spec.requires else own
 
@@ -837,10 +837,10 @@ class Half(Drawn):
         drawn = super().drawn(error)
         return replace(drawn, terms=(drawn.term("a drawn number"), HALF_CUT), exact=True)
 
-    unset = ("retroreflective",)  # added after MaterialX 1.39.3, Storm's version
+    unset = ("retroreflective",)  # input added after MaterialX 1.39.3, which Storm uses
 
 
-# A pixel's point is off by three roundings of 2^-23, over a cosine of 0.05.
+# A pixel's point is off by three roundings of 2^-23, divided by a cosine of at least 0.05.
 PICTURE_RADIANCE = sum_of(
     roundings(5 * 6 / RIM, "of a pixel's point, over the least cosine, times the slope 5"),
     roundings(8),
@@ -855,7 +855,7 @@ class DarkPictures(Pictures):
 
 
 class Frames(Pictures):
-    """The whole main, drawn with a client's bindings."""
+    """Pictures drawn by the shader's complete main() with a client's bindings."""
 
     abilities = Ability.CLIENT | Ability.LIGHT
 
@@ -888,7 +888,7 @@ class UtilityOsl(Evaluating):
 
 
 # Backends by `way` of a host's row; the first one that supports a spec evaluates it. `mxeon.survey`
-# adds backends of renderers with their own materials.
+# adds backends for renderers with their own materials.
 BACKENDS: dict[str, tuple[type[Backend], ...]] = {
     "pairs": (Evaluating, LobesBelow, DarkPictures, Frames),
     "closures": (Closures,),
@@ -902,12 +902,12 @@ BACKENDS: dict[str, tuple[type[Backend], ...]] = {
 
 def ways_of(host: str) -> tuple[type[Backend], ...]:
     """The backends of a host; () if only the text of its target is checked."""
-    own_nodes(host)  # imports a renderer's backends
+    own_nodes(host)  # imports the backends of a renderer
     return BACKENDS.get(host_row(host).way, ())
 
 
 def own_nodes(host: str) -> tuple[Spec, ...]:
-    """A renderer's own judged nodes, whose backends and checks are imported; empty for other hosts."""
+    """The judged nodes that a renderer defines, or (); imports its backends and checks."""
     row = host_row(host)
     if row not in RENDERERS:
         return ()

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small LRU caches of values, keyed by the numbers that they depend on.
 
-Checks, controls and libraries share many values. Batches are compared by their numbers: hashing
-them takes less time than computing their values.
+Checks, controls and libraries share many values. Batches are compared by hashing their numbers,
+which takes less time than computing their values.
 """
 
 from collections import OrderedDict
@@ -14,8 +14,8 @@ import numpy as np
 from mxeon.conformance.samples import Array, Batch
 
 LARGEST = 1 << 14  # maximum pairs of a cached batch
-KEPT = 32  # cached batches, up to 400 kB each
-EVALUATIONS = 16  # cached batches of a host's values, up to 3.5 megabytes each
+KEPT = 32  # maximum cached batches, up to 400 kB each
+EVALUATIONS = 16  # maximum cached batches of a host's values, up to 3.5 megabytes each
 T = TypeVar("T")
 
 

@@ -22,8 +22,8 @@ from mxeon.conformance.tolerance import ROUNDING, Compared, Tolerance
 from mxeon.hosts.base import Engine, Host
 
 F = TypeVar("F", bound=Spec)
-Change = Callable[[Batch, Array], Array]  # changes values of a batch
-# An engine compiles two documents differently, so values that no input changed may differ by roundings.
+Change = Callable[[Batch, Array], Array]  # batch, values -> changed values
+# Engines may compile two documents differently, so even unchanged values may differ by roundings.
 ROUNDED = 64 * ROUNDING
 KEPT_SPECS = 2  # specs with cached expected values: the case's own and a related one
 
@@ -42,14 +42,14 @@ def candidates(spec: Spec, quantity: str) -> tuple[Candidate, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A node on a backend; `inputs`, `outputs` and `throughputs` are a control's mistakes."""
+    """A node on a backend; `inputs`, `outputs` and `throughputs` apply a control's mistake."""
 
     spec: Spec
     backend: backends.Backend
     inputs: Callable[[Batch], Batch] = lambda batch: batch
     outputs: Change = lambda batch, values: values
     throughputs: Change = lambda batch, values: values
-    control: bool = False  # uses a subset: one failing sample is enough
+    control: bool = False  # controls use a subset: one failing sample is enough
     chosen: tuple[Batch, ...] = ()  # a diagnosis's batches, which replace the samples
     explained: dict[object, results.Diagnosis] = field(default_factory=dict, init=False)  # cache
 
@@ -62,7 +62,7 @@ class Case:
         return self.backend.library
 
     def of(self, family: type[F]) -> F:
-        """The spec, for a check that only applies to one family."""
+        """The spec, cast to the only family that a check applies to."""
         assert isinstance(self.spec, family), f"{self.spec.title} is no {family.__name__}"
         return self.spec
 
@@ -110,7 +110,7 @@ class Case:
         return self.outputs(batch, evaluate(self.inputs(batch)))
 
     def compared(self, batch: Batch) -> Compared:
-        """Values in direct light, and the expected ones."""
+        """Measured and expected values in direct light."""
         return Compared(batch, self.direct(batch), self.expected(batch))
 
     @property
@@ -129,7 +129,7 @@ class Case:
 
     @property
     def changes(self) -> Mapping[str, Changes]:
-        """For each input that the engine sets: inputs without and with a change of that input."""
+        """Inputs before and after a change of each input that the engine can set, by its name."""
         changes, unset = self.spec.changes, self.backend.unset
         return {name: changes[name] for name in changes if name not in unset}
 
@@ -137,7 +137,7 @@ class Case:
         return candidates(self.spec, quantity)
 
     def tolerance(self, *quantities: str) -> Tolerance:
-        """The spec's error for the first of these quantities that it has, plus the engine's error."""
+        """Tolerance of the first of these quantities that has one, plus the engine's errors."""
         errors = self.backend.errors(self.spec)
         for quantity in quantities:
             if error := errors.get(quantity):
@@ -174,7 +174,7 @@ def albedos(case: Case) -> Iterator[Compared]:
 
 
 def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
-    """Throughput of a layer against 1 - E."""
+    """Throughput of a layer, compared with 1 - E."""
     for branch in branches:
         for batch in case.views:
             expected = case.expected_throughput(batch)
@@ -182,9 +182,9 @@ def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
 
 
 def frames(case: Case) -> Iterator[Compared]:
-    """Values in turned frames, half of them with a normal that faces away, compared with unturned ones."""
+    """Values in rotated frames, compared with unrotated frames; half of the normals face away."""
     turned = case.backend.turned
-    # An albedo sums over the environment, which is slow: every fifth pair covers both sides.
+    # Summing an albedo over the environment is slow; every fifth pair still covers both sides.
     some = turned.where(slice(None, None, 5))
     shown = [(case.direct, turned), (case.albedo, some)]
     for each in case.spec.inputs:
@@ -198,7 +198,7 @@ def frames(case: Case) -> Iterator[Compared]:
 def dead_inputs(
     case: Case, batch: Batch | None = None, show: Callable[[Batch], Array] | None = None
 ) -> list[str]:
-    """Names of inputs that do not affect the values, or other shown quantities of a batch."""
+    """Names of inputs that do not affect the values, or the quantity that `show` evaluates."""
     batch, show = batch or case.few[0], show or case.direct
     plain = show(batch)  # most changes start from the unmodified batch
     dead = []

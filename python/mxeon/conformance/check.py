@@ -62,26 +62,26 @@ def compared_of(found: Compared | Iterable[Compared] | Measurement) -> list[Comp
 
 @dataclass(frozen=True, kw_only=True)
 class Check:
-    """A claim about nodes."""
+    """A claim about nodes, with its measurement, tolerance and control."""
 
-    key: str  # single word
-    claim: str  # full sentence
+    key: str  # a single word
+    claim: str  # a full sentence
     applies: Specs
-    measure: Measure  # comparisons, judged by their worst row, or a single number
+    measure: Measure  # returns comparisons, judged by the worst row, or a number
     tolerance: str | Tolerance  # name of one of the spec's errors, or a fixed tolerance
     control: controls.Control
     explain: Explain | Diagnosis
-    requires: Ability = NO_ABILITY  # what a backend must support to be judged
-    # Profile of the generated text, if not the rasterizer's; only judged for nodes that the user names.
+    requires: Ability = NO_ABILITY  # abilities that a backend needs
+    # Profile of the generated text other than the rasterizer's; only for nodes that the user names.
     profile: str = ""
-    # Whether an error that a permitted function explains is "differs" instead of a failure.
+    # Whether the verdict is "differs" instead of failed if a permitted function explains the error.
     open: bool = False
-    # Whether it can be measured on a host, by name, and with a client's methods.
+    # Whether a spec can be measured on a host, given by name, and with a client's methods.
     hosts: Callable[[Spec, str], bool] = lambda spec, host: True
     methods: Callable[[Spec, Methods], bool] = lambda spec, methods: True
 
     def measured(self, case: Case, tolerance: Tolerance) -> Measurement:
-        """The worst error of a case, with all errors if it is too large."""
+        """The worst error of a case; if it exceeds the tolerance, also all other errors."""
         found = self.measure(case)
         if isinstance(found, Measurement):
             return found
@@ -96,7 +96,7 @@ class Check:
 
         Negative values count as 0; the check `dark` judges them.
         """
-        model = copy(case.backend)  # returns the function's values
+        model = copy(case.backend)  # a backend that returns the function's values
         for name, candidates in (
             ("direct", case.spec.all_candidates if isinstance(case.spec, ValueSpec) else ()),
             ("albedo", case.candidates("albedo") if isinstance(case.spec, LobeSpec) else ()),
@@ -115,7 +115,7 @@ class Check:
     def applies_to(
         self, spec: Spec, backend: type[backends.Backend], host: str, methods: Methods = GENERATED
     ) -> bool:
-        """Whether it judges a node on a host, by one of its backends, with a client's methods."""
+        """Whether the check applies to a node on a host, for a backend and a client's methods."""
         methods = backend.methods.over(methods)
         if not (self.applies(spec) and self.hosts(spec, host) and self.methods(spec, methods)):
             return False
@@ -160,10 +160,10 @@ def judge(
     variant: str,
     diagnose: Callable[[], Diagnosis],
 ) -> Result:
-    """The result of a check that measures a subject, and with True its control, described by `variant`.
+    """The result of a check: `measure(False)` measures the subject, `measure(True)` the control.
 
     `place` is the result to return if the check does not run; a shader error makes it fail.
-    The renderer's warnings become part of the diagnosis, all other warnings are shown as usual.
+    `variant` describes the control. Renderer warnings join the diagnosis; others are shown.
     """
     try:
         with warnings.catch_warnings(record=True) as records:

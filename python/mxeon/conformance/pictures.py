@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of documents' materials, compared with the reference's pixel by pixel; and one material of each node."""
+"""Compares pictures of documents' materials with the reference, and draws each node once."""
 
 import warnings
 from collections.abc import Callable, Iterable, Sequence
@@ -58,12 +58,12 @@ from mxeon.shaders.scene import BACK, SIDE, STUDIO, Scene, sphere
 # Nodes whose shaders use a fitted albedo.
 FITTED_NODES = {row.category for row in PBR_NODES if row.fitted or row.mirror}
 HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
-COSINES = 256  # number of views tried for the largest albedo of a sheen
+COSINES = 256  # number of views tried to find a sheen's largest albedo
 
-# Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
+# Errors are weighted by cos(theta_o), since the normal changes by 1 / cos(theta_o) per pixel.
 POINT_AND_VALUE = roundings(16, "of a pixel's point"), roundings(32, "in the value")
 PLAIN = sum_in(Quantity.PICTURE, *POINT_AND_VALUE, exact=True)
-# The precision that OpenGL requires; texels differ by at most 1.
+# OpenGL requires this filtering precision; neighboring texels differ by at most 1.
 TEXTURED = given(2.0**-8, Quantity.PICTURE, "a filter's weights of 8 bits")
 CODES = f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
 ENCODED = given(SLOPE * TEXTURED.value, Quantity.PICTURE, CODES)
@@ -77,9 +77,9 @@ FITTED, SHADED = (
 
 
 def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host, scene: Scene) -> Tolerance:
-    """Tolerance of a material's picture: the lobes' fits or the images, and additional errors.
+    """Tolerance of a material's picture: errors of fits or image filters, plus those of some lobes.
 
-    An image is filtered before its color values are decoded.
+    Hosts filter an image before they decode its colors.
     """
     nodes, lobes = list(inner_nodes(shader.document)), tuple(lobes)
     fitted = FITTED_NODES & {lobe.category for lobe in lobes}
@@ -113,7 +113,7 @@ def _others(lobes: tuple[ShownLobe, ...], direct: bool) -> list[Term]:
     """Additional errors due to inputs of lobes: a film, an index below 1, and narrow lobes of hair and sheen."""
 
     def some(name: str, condition: Callable[[np.ndarray], np.ndarray], category: str = "") -> bool:
-        """Whether an input satisfies a condition anywhere, in lobes of a category or in all."""
+        """Whether an input satisfies a condition at any point, in all lobes or in one category."""
         own = (each.inputs for each in lobes if category in ("", each.category))
         return any(bool(np.any(condition(each[name]))) for each in own if name in each)
 
@@ -121,7 +121,7 @@ def _others(lobes: tuple[ShownLobe, ...], direct: bool) -> list[Term]:
     inside = microfacets.ERRORS["denser"].term("the throughput of an index below 1")
     others: list[Term] = []
     films = [each for each in lobes if np.any(each.inputs.get("thinfilm_thickness", 0.0) > 0.0)]
-    # Direct light needs the albedo of a film only for what passes to other lobes, or through it.
+    # In direct light, a film's albedo only affects light that passes to other lobes or through it.
     if films and direct:
         others += microfacets.film_terms(max(np.max(each.inputs["roughness"]) for each in films))
     if films and not (direct and {each.category for each in lobes} == {"conductor_bsdf"}):
@@ -176,7 +176,7 @@ def _read(
 def judge_document(
     file: Path, host: Host, judge: Reference, library: str, policy: Policy = DEFAULT
 ) -> tuple[tuple[Result, ...], tuple[Picture, ...], tuple[Note, ...]]:
-    """Pictures of every material of a document on a host, compared with the reference's.
+    """Compare a host's pictures of every material of a document with the reference.
 
     Raise DocumentError if no shader can be made from the document.
     """
@@ -198,7 +198,7 @@ def judge_document(
         for scene in _scenes(host)
         for text in host.approximations(shader, scene)
     )
-    # Results already name the inputs that are out of range.
+    # Omit range warnings if results already name the inputs.
     told_inputs = any(each.diagnosis.kind is Kind.INPUT for each in found)
     untold = (each for each in others if not (told_inputs and isinstance(each, notes.RangeWarning)))
     told += [(str(each), file.name) for each in untold]
@@ -206,7 +206,7 @@ def judge_document(
 
 
 def _scenes(host: Host) -> tuple[Scene, ...]:
-    """Scenes of a host; without an environment those with a light."""
+    """Scenes of a host; only those with a light if it has no environment."""
     scenes = host_row(host.name).scenes
     if host.active.environment == "none":
         scenes = tuple(each for each in scenes if each.environment is None)
@@ -216,7 +216,7 @@ def _scenes(host: Host) -> tuple[Scene, ...]:
 def _judge_material(
     file: Path, shader: Shader, host: Host, judge: Reference, values: HostValues, front_lit: bool
 ) -> tuple[Result, tuple[Picture, ...]]:
-    """Judge one material; `front_lit` hosts only have its model for s >= 0."""
+    """Judge one material; if `front_lit`, the host has its model only for s >= 0."""
     scenes, library = _scenes(host), values.library
     subject = f"{file.name}: {shader.element}"
     place = Result("picture", MATCH, subject, host.name, library, results.NOT_RUN)
@@ -248,7 +248,7 @@ def _judge_material(
         where = mask[..., None].astype(np.float32) if partly else None
         return Picture(*names, image, reference, metadata, where)
 
-    # Compare them with the reference's; without a model they only have to be finite.
+    # Compare with the reference; pictures without a model only have to be finite.
     try:
         _assert_judged(shader, host)
         expected = [judge.expected(shader, scene, values) for scene in scenes]
@@ -284,13 +284,13 @@ def _judge_material(
     return replace(result, difference=worst), pictures
 
 
-SMALL = 64  # pixels; wide enough to tell which input is at fault
+SMALL = 64  # picture size in pixels, enough to find the input at fault
 
 
 def _input_at_fault(
     shader: Shader, host: Host, judge: Reference, scenes: Sequence[Scene]
 ) -> Diagnosis:
-    """The input of a surface shader without which a renderer's own material is closest to the reference."""
+    """The input whose removal brings a renderer's own material closest to the reference."""
     small = [replace(scene, size=SMALL) for scene in scenes]
     names = [each.getName() for each in surface_shader(shader.document, shader.element).getInputs()]
     left: dict[str, float] = {}
@@ -310,7 +310,7 @@ def _input_at_fault(
 
 
 def _known(shader: Shader) -> Diagnosis | None:
-    """A known error of MaterialX for documents like this shader's, or None."""
+    """A known error of MaterialX that the shader's document triggers, or None."""
     element = shader.document.getDescendant(shader.element)
     if names := notes.same_names(element):
         return diagnosis.defect("same_names", names[0])
@@ -320,7 +320,7 @@ def _known(shader: Shader) -> Diagnosis | None:
 
 
 def _assert_judged(shader: Shader, host: Host) -> None:
-    """Raise NotRun if the host shows another material, or its own closures, which have their own checks."""
+    """Raise NotRun if the host renders another material or its own closures, which have checks."""
     if reason := host.unread(shader):
         raise NotRun(f"{host.name}: {reason}: the picture is shown and only has to be finite")
     own = sorted(categories(inner_nodes(shader.document)) & set(BSDF_NODES))
@@ -350,7 +350,7 @@ def _judge_match(
 ) -> Result:
     """Result for a material that the models cover: its pixels must match the reference.
 
-    It has error and tolerance of the picture whose error is largest relative to its tolerance.
+    Error and tolerance are from the picture with the largest error relative to its tolerance.
     """
     pixels = [_worst_pixel(case) for case in cases]
     allowed = [case[3].value for case in cases]
@@ -411,13 +411,13 @@ def _front_lit(expected: ExpectedPicture, scene: Scene) -> ExpectedPicture:
 
 
 STUDIO_PICTURE = replace(STUDIO, size=320)
-STUDIED = 4  # materials of a document
+STUDIED = 4  # maximum materials drawn per document
 
 
 def studio_pictures(
     file: Path, host: Host, library: str, policy: Policy = DEFAULT
 ) -> tuple[Picture, ...]:
-    """Pictures of a document's first materials for presentation, on a shader ball in a studio; without references."""
+    """Presentation pictures of a document's first materials: a shader ball in a studio."""
     shaders, _, _ = _read(file, lambda: host.compile(file, library=library, policy=policy))
     metadata = {"version": mxeon.__version__, "document": str(file), "scene": STUDIO.name}
     pictures = []
@@ -427,7 +427,7 @@ def studio_pictures(
     return tuple(pictures)
 
 
-# --- documents on hosts that make no pictures: their shaders are generated, and not run -----------
+# --- documents on hosts without pictures: shaders are generated but not run -----------------------
 
 DOCUMENT_KEY = "document"
 DOCUMENT_CLAIM = "Shaders are generated from every material of the document."
@@ -461,18 +461,18 @@ def generate_document(
     return (result,), tuple((str(each), file.name) for each in told)
 
 
-# --- one material of each node, for the page on which hosts stand together ------------------------
+# --- one material of each node, for the page that compares hosts ----------------------------------
 
 PORTRAYED: samples.Values = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
 PORTRAIT_SCENES = tuple(replace(scene, size=96) for scene in (SIDE, BACK))
 
 
 def comparison_pictures(case: Case) -> tuple[Picture, ...]:
-    """Pictures of a rough node in light from the side and from behind, and the corresponding
-    pictures of its model.
+    """Pictures of a rough node in light from the side and from behind, and the same pictures of
+    its model.
 
-    Empty for a surface shader's lobe, and on a renderer without exact mirror pairs. Rim and
-    terminator are black in both pictures.
+    Empty for a surface shader's lobe, and for renderers in which each pixel shows one pair. Rim
+    and terminator are black in both pictures.
     """
     rough = isinstance(case.spec, DiffuseModelSpec) and not isinstance(case.spec, SurfaceLobe)
     if not rough or isinstance(case.backend, backends.Rendered):
@@ -490,6 +490,6 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
         names = (results.PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)
         keys = ("document", "element", "host", "library", "scene")
         metadata = dict(zip(keys, names, strict=True)) | {"version": mxeon.__version__}
-        metadata |= {"points": case.host.name}  # a host may only have part of its model
+        metadata |= {"points": case.host.name}  # a host may implement only part of the model
         pictures.append(Picture(*names, image, expected, metadata))
     return tuple(pictures)

@@ -37,23 +37,23 @@ from mxeon.shaders.scene import CLIENT, FURNACE, SIDE, Client
 
 RELEASE, SUBJECT = "release", "definitions, units, graphs and texts"
 CLAIM = "What has no model is as MaterialX released it, or has the same values."
-SAMPLES = 64  # samples of the inputs
+SAMPLES = 64  # number of samples of a node's inputs
 MOST = 12  # maximum number of evaluated nodes
-SIZE, PICTURED = 24, 3  # size and number of pictures for differently arranged lobes
-# Compared attributes of inputs and outputs; ranges only guide editors and are only compared for eonlib's nodes.
+SIZE, PICTURED = 24, 3  # size and number of pictures that compare rearranged lobes
+# Compared attributes of ports. Ranges, which only guide editors, are compared for eonlib's nodes.
 ATTRIBUTES = ("type", "defaultgeomprop", "uniform", "unit", "unittype", "colorspace", "enum")
 RANGE = ("uimin", "uimax")
 COMPONENTS = {"float": 1, "integer": 1, "boolean": 1, "vector2": 2, "color3": 3, "vector3": 3}
-JOINED = {"color4": "color3", "vector4": "vector3"}  # types of four components, and of three
+JOINED = {"color4": "color3", "vector4": "vector3"}  # four- to three-component types
 NUMBERS = (*COMPONENTS, *JOINED)  # types that are compared by values
 SHADED = ("BSDF", "EDF", "surfaceshader")  # types that are compared by pictures
 SHADERS = ("surfaceshader", "volumeshader", "displacementshader")  # types that stay unconnected
 ALPHA = ("hwTransparency",)  # option that adds an alpha to shaders
-# A light, an uneven environment, and alpha.
+# Scenes with a light, with an uneven environment, and with alpha.
 UNEVEN = Client(radiance=sky_map(), irradiance=sky_map())
 LIT_SCENES = (SIDE, CLIENT), (FURNACE, UNEVEN), (SIDE, Client(alpha=True))
 PICTURES = tuple(replace(scene, size=SIZE, client=client) for scene, client in LIT_SCENES)
-LOBES = {"BSDF": "burley_diffuse_bsdf", "EDF": "uniform_edf"}  # sources for inputs, by type
+LOBES = {"BSDF": "burley_diffuse_bsdf", "EDF": "uniform_edf"}  # lobes connected to inputs, by type
 # Constant values of inputs by type; a tangent must not be along the normal.
 ZEROS = {"float": "0", "integer": "0", "boolean": "false"}
 ZEROS |= {"vector2": "0, 0", "color3": "0, 0, 0", "vector3": "0, 0, 1"}
@@ -64,7 +64,7 @@ Place: TypeAlias = tuple[mx.GraphElement, mx.PortElement]  # a graph and one of 
 
 
 class Subject(NamedTuple):
-    """An output of a node in a library, or a port of a graph in its place with the node's inputs."""
+    """An output of a library's node, or a graph's port that replaces it and keeps its inputs."""
 
     definition: mx.NodeDef
     library: str
@@ -127,7 +127,7 @@ def unit_facts(document: mx.Document, release: mx.Document) -> dict[str, str]:
 
 
 def one_spelling(text: str) -> str:
-    """Numbers as they are shortest; an omitted flag is false."""
+    """Text with numbers in their shortest form, and without "false", an omitted flag's value."""
     words = text.replace("false", "").replace(",", " ").split()
     with suppress(ValueError):
         words = [f"{float(word):g}" for word in words]
@@ -135,7 +135,7 @@ def one_spelling(text: str) -> str:
 
 
 class Terms:
-    """Numbers the terms of graphs; terms with the same number have the same value."""
+    """Assigns numbers to the terms of graphs; terms with equal numbers have equal values."""
 
     def __init__(self) -> None:
         self._numbers: dict[object, int] = {}
@@ -152,7 +152,7 @@ class Terms:
     def _node(self, graph: mx.GraphElement, node: mx.Node) -> int:
         key = id(graph), node.getName()
         if key not in self._nodes:
-            self._nodes[key] = -1  # marks nodes that depend on themselves
+            self._nodes[key] = -1  # ends the recursion of nodes that depend on themselves
             ports = {name: self.port((graph, port)) for name, port in ports_of(node).items()}
             kind = node.getCategory(), node.getType(), node.getNodeDefString()
             self._nodes[key] = self._number((*kind, *sorted(ports.items())))
@@ -163,7 +163,7 @@ class Terms:
 
 
 def apart(terms: Terms, own: Place, right: Place) -> Iterator[tuple[Place, Place]]:
-    """Ports of two graphs with different terms: inputs of equal lobes, or different lobes."""
+    """Pairs of ports at which two graphs differ: inputs of equal lobes, or different lobes."""
     if terms.port(own) == terms.port(right):
         return
     nodes = [graph.getNode(port.getNodeName()) for graph, port in (own, right)]
@@ -186,9 +186,9 @@ class Comparison:
         self.unjudged: list[tuple[str, str]] = []
 
     def definitions(self, changed: bool = False) -> list[Cause]:
-        """Differences of definitions, units and properties; `changed` changes a version as a control.
+        """Differences of definitions, units and properties; a control sets `changed` to alter one.
 
-        The nodes that eonlib defines are also compared with its definitions.
+        Nodes that eonlib defines are also compared with eonlib's definitions.
         """
         defined, release = load_library("eonlib").getNodeDefs(), self._release
         ours = (each for each in defined if release.getNodeDef(each.getName()) != each)
@@ -202,7 +202,7 @@ class Comparison:
             found, expected = (definition_facts(each, right, attributes) for each in (own, right))
             if changed and number == 0:
                 found[f"version of {name}"] = "1234"
-            # The release itself omits some ranges of its nodes.
+            # An omitted range is no difference, because the release omits some of its own.
             omitted = (each for each in found if each.startswith(RANGE) and not found[each])
             left_out = {each: expected[each] for each in omitted} if released else {}
             rows += differences(found | left_out, expected)
@@ -212,7 +212,7 @@ class Comparison:
 
     @cached_property
     def nodes(self) -> list[Cause]:
-        """Nodes whose graph or text has different values than the released one.
+        """Causes for nodes whose values differ from those of the released graph or text.
 
         If several nodes differ in the same text, only the first with different values is reported.
         """
@@ -248,7 +248,7 @@ class Comparison:
         return own, right, *(each.getImplementation(self._target) for each in (own, right))
 
     def _change(self, name: str) -> object:
-        """The difference of a node that no model judges, or None."""
+        """A key for how a node differs from the release; None if it is equal or has a model."""
         own, right, ours, theirs = self._pair(name)
         if theirs is None or (ours is not None and ours == theirs and ours.isA(mx.NodeGraph)):
             return None
@@ -269,7 +269,7 @@ class Comparison:
         return frozenset(one ^ two) or None
 
     def _evaluated(self, name: str) -> Cause | None:
-        """The cause that the values of a node differ from the released one's."""
+        """The cause to report if a node's values differ from the release's, otherwise None."""
         own, right, ours, theirs = self._pair(name)
         node = right.getNodeString()
         if ours is not None and ours.isA(mx.NodeGraph) and theirs.isA(mx.NodeGraph):
@@ -289,7 +289,7 @@ class Comparison:
     def _graphs_apart(
         self, definition: mx.NodeDef, ours: mx.NodeGraph, theirs: mx.NodeGraph
     ) -> float:
-        """The largest difference between the values of two graphs, where their terms differ."""
+        """The largest difference between two graphs' values, at ports whose terms differ."""
         node, terms, error = Subject(definition, self._library, definition.getType()), Terms(), 0.0
         for output in theirs.getOutputs():
             other = ours.getOutput(output.getName())
@@ -310,7 +310,7 @@ class Comparison:
         return error
 
     def _texts_apart(self, own: mx.NodeDef, right: mx.NodeDef) -> float:
-        """The largest difference between the values of a node with two texts; NotRun if none are known."""
+        """The largest difference between two texts' values; NotRun if nothing evaluates them."""
         outputs = right.getActiveOutputs()
         kinds, inputs = ({p.getType() for p in each} for each in (outputs, right.getActiveInputs()))
         sides = (own, self._library), (right, "stock")
@@ -326,7 +326,7 @@ class Comparison:
         raise NotRun("its text is not MaterialX's, and nothing evaluates it")
 
     def _values_apart(self, own: Subject, right: Subject) -> float:
-        """The largest difference between two subjects' values; NotRun if the released one does not compile."""
+        """The largest difference between two values; NotRun if `right` does not compile."""
         try:
             expected = self._values(right)
         except (DocumentError, ShaderError) as error:
@@ -358,7 +358,7 @@ class Comparison:
         return np.concatenate(found, axis=1).astype(np.float64)
 
     def _pictures_apart(self, *subjects: Subject) -> float:
-        """The largest difference between pictures of a node, alpha included; infinity without pictures."""
+        """The largest difference between pictures, alpha included; infinity without a picture."""
         shaders: list[generation.Shader] = []
         try:
             for each in subjects:
@@ -402,7 +402,7 @@ class Comparison:
 
     @cached_property
     def tolerance(self) -> Tolerance:
-        """The largest difference between the values of one graph that is written in two ways."""
+        """The tolerance for the values of one graph that is written in two ways."""
         base, exponent = float32(np.linspace(0.01, 1.0, SAMPLES)), float32(np.full(SAMPLES, 2.0))
         power = float(spec.POWER.errors(self._host, base, exponent).max())
         engine = Term(8.0 * power, "the engine's pow(), eight times")
@@ -411,9 +411,9 @@ class Comparison:
 
 
 def samples(definition: mx.NodeDef) -> dict[str, Array]:
-    """Values of the nodes that feed a definition's inputs, by path; half of them in [0, 1].
+    """Values of a definition's inputs, by the paths of their sources; the first half is in [0, 1].
 
-    In every third row all inputs are equal, since a graph may compare them.
+    In every third row, all inputs are equal, since a graph may compare them.
     """
     rng, found = generator(), {}
     equal = rng.random((SAMPLES, 1))
@@ -431,7 +431,7 @@ def samples(definition: mx.NodeDef) -> dict[str, Array]:
 
 
 def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
-    """A node of a subject, with a separate node for each input."""
+    """A node that computes a subject, with a separate node connected to each input."""
     definition, kind, place = subject.definition, subject.kind, subject.place
     category, name = definition.getNodeString(), definition.getName()
     left_out = ("VDF",) if kind in CLOSURES else CLOSURES
@@ -445,7 +445,7 @@ def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
         graph.copyContentFrom(place[0])
         for output in graph.getOutputs():
             graph.removeOutput(output.getName())
-        for each in graph.getNodes():  # numbers do not depend on lobes
+        for each in graph.getNodes():  # a number does not depend on lobes
             if each.getType() in CLOSURES and kind not in CLOSURES:
                 graph.removeNode(each.getName())
         graph.setNodeDefString(name)
@@ -485,8 +485,8 @@ def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
 def distance(own: Array, right: Array) -> float:
     """The largest difference, relative above 1, infinite if only one value is finite.
 
-    For inputs outside [0, 1], the last half, only finite values count: graphs that agree in [0, 1] may differ for the
-    root of a negative number.
+    In the last half of the rows, with inputs outside [0, 1], only finite values count: graphs that
+    agree in [0, 1] may differ for the root of a negative number.
     """
     with np.errstate(invalid="ignore"):
         error = np.abs(own - right) / np.maximum(1.0, np.abs(right))

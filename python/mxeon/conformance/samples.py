@@ -20,7 +20,7 @@ from mxeon.models.nodes.node import BLACK as BLACK
 from mxeon.models.nodes.node import WHITE as WHITE
 from mxeon.shaders.scene import Scene
 
-# Seed of `mxeon check`: verdicts must not depend on it, and shaders cannot know it.
+# Seed of `mxeon check`. Verdicts must not depend on it, and shaders cannot predict it.
 SEED: ContextVar[int] = ContextVar("seed", default=1)
 GOLDEN_RATIO = 0.618  # its multiples, modulo 1, are evenly spread
 PAIRS = 1 << 16
@@ -44,7 +44,7 @@ class Counts:
     few: int = FEW
     diagnosed: int = FEW  # pairs per batch in a diagnosis
     albedos: int = 1 << 7  # views with measured albedos
-    # Materials whose values are integrated or averaged, and quadrature nodes per axis.
+    # Number of materials with integrated or averaged values, and of quadrature nodes per axis.
     materials: int = 64
     nodes: int = 48
     mirrored: int = 1 << 11  # views with lights near the mirror direction
@@ -64,8 +64,8 @@ def arrays(inputs: Values) -> dict[str, Array]:
 class Batch:
     """Pairs of directions and the node's inputs for them."""
 
-    # Local frame; float32 values, so that float32 hosts see the same pairs. `wo` is on or above
-    # the horizon.
+    # Directions in the local frame, as float32 values so that all hosts see the same pairs. `wo` is
+    # on or above the horizon.
     wo: Array
     wi: Array
     # Node inputs and "occlusion", (N, ...) or constant. The normal is in world space.
@@ -115,7 +115,7 @@ class Batch:
 
     @property
     def rough(self) -> Array:
-        """Roughness of each pair, (N,): the larger of two, or 0 without a roughness."""
+        """Roughness of each pair, (N,): the larger of two alphas, or 0 if the node has none."""
         roughness = np.asarray(self.inputs.get("roughness", 0.0), np.float64)
         if roughness.shape[-1:] == (2,):
             roughness = roughness.max(axis=-1)
@@ -137,7 +137,7 @@ def generator() -> Rng:
 
 
 def directions(rng: Rng, count: int) -> Array:
-    """Random directions: cosines uniform, a quarter of them log-uniform down to GRAZING."""
+    """Random directions with uniform cosines, a quarter of them log-uniform down to GRAZING."""
     mu = rng.random(count)
     mu[: count // 4] = GRAZING ** rng.random(count // 4)
     rng.shuffle(mu)
@@ -149,20 +149,20 @@ def float32(values: ArrayLike) -> Array:
 
 
 def rounded(columns: Iterable[Array]) -> Array:
-    """Columns as rows of float32 values in float64."""
+    """Columns stacked into rows, rounded to float32 and stored in float64."""
     return float32(np.stack(list(columns), axis=-1))
 
 
-EACH = 256  # pairs of each kind
-GRID = (1.0, 0.999, 0.6, 0.25, 0.05, 1e-3, 1e-5, 1e-6, 3e-7, 1e-7)  # cosines
+EACH = 256  # number of pairs of each special kind
+GRID = (1.0, 0.999, 0.6, 0.25, 0.05, 1e-3, 1e-5, 1e-6, 3e-7, 1e-7)  # cosines of special pairs
 AZIMUTHS = (0.0, 0.5 * np.pi, np.pi)
 ABOVE_ONE = 1.0 + 2.0**-23  # a cosine of unit vectors after one float32 rounding
 HORIZON = 0.1  # least cosine of one direction if the other is at or below the horizon
-POLE = 0.99  # largest height of normals in turned frames: sky maps end at the poles
-TURNED = (0.25, 0.95)  # range of cosines in turned frames, where cosines have roundings
-LEAST_SHEEN = 0.01  # least roughness; the Zeltner sheen clamps to it
+POLE = 0.99  # largest |y| of normals in turned frames, which keeps them off the sky map's poles
+TURNED = (0.25, 0.95)  # range of cosines in turned frames, whose rotation rounds cosines
+LEAST_SHEEN = 0.01  # smallest sheen roughness; the Zeltner model clamps to it
 LEAST_COLOR82 = 0.5  # least color82 of lobes with measured albedos; see docs/loading.md
-LEAST_TURNED = 0.1  # least roughness of microfacets in turned frames
+LEAST_TURNED = 0.1  # smallest roughness of microfacets in turned frames
 WEIGHTS = (-0.5, 0.0, 1e-4, 0.01, 0.5)
 OCCLUSIONS = (0.0, 1e-3, 0.5)
 
@@ -209,7 +209,7 @@ def turned_frames(rng: Rng, count: int) -> Array:
 def aimed(axes: Array, of: Array, to: Array) -> Array:
     """Frames (N, 3, 3), turned by the smallest rotation from unit vectors `of` to `to`, (N, 3).
 
-    That is half a turn about the bisector, followed by half a turn about `to`.
+    The rotation is half a turn about the bisector, followed by half a turn about `to`.
     """
     for vectors in (of + to, to):
         about = vectors[:, :, np.newaxis]
@@ -228,7 +228,7 @@ def _between(rng: Rng, count: int, low: float, high: float) -> Array:
 
 
 def with_edges(rng: Rng, values: Array, edges: ArrayLike) -> Array:
-    """Values, half of them replaced by random edges, as float32 values."""
+    """Values in float32, about half of them replaced by random edges."""
     picked = rng.choice(np.asarray(edges, np.float64), np.shape(values))
     mixed = np.where(rng.random(np.shape(values)) < 0.5, picked, values)
     return float32(mixed)
@@ -242,8 +242,8 @@ def directions_at(mu: ArrayLike, azimuth: ArrayLike) -> Array:
     return rounded(np.broadcast_arrays(*columns))
 
 
-FRAMES = 1 << 12  # pairs with individual frames
-LEAN = 0.3  # largest slope of their tangents
+FRAMES = 1 << 12  # maximum pairs with individual frames
+LEAN = 0.3  # largest slope of a tangent out of the surface
 SKY_ROWS = 128  # rows of the sky's map, which has twice as many columns
 SLOPE = 0.5  # slope of the irradiance by a component of the normal
 
@@ -263,7 +263,7 @@ def sky_map() -> NDArray[np.float32]:
 def texel_middles(near: Array) -> Array:
     """The directions to the texel middles nearest to unit vectors, both (N, 3).
 
-    There every filter reads a single texel. The opposite direction is also a texel middle.
+    At a texel middle, every filter reads one texel. The opposite direction is also a middle.
     """
     polar = np.arccos(np.clip(near[:, 1], -1.0, 1.0)) / np.pi
     azimuth = np.arctan2(near[:, 0], -near[:, 2]) / (2.0 * np.pi) + 0.5

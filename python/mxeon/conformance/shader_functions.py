@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of a library's shader functions against their NumPy versions, on a host.
 
-The host compiles one program for all functions, with an additional one that calls each by its index. The
+The host compiles one program: all functions, and one more that calls any of them by its index. The
 parameters that eonlib's GLSL declares select the columns of arguments, for shaders and for NumPy.
 """
 
@@ -26,16 +26,16 @@ from mxeon.models import diffuse, sampling
 from mxeon.shaders import functions
 
 KINDS = ("pairs", "pictures", "rendered")  # ways of hosts that can evaluate functions
-STEP = 2.0**-22  # change of arguments that measures a function's condition
+STEP = 2.0**-22  # step of arguments that measures a function's condition number
 PART = tolerance.sum_in(Quantity.CONDITIONED, tolerance.roundings(16))
 
 
 class FunctionCheck(NamedTuple):
-    """A check of some of the shader functions."""
+    """A check of the shader functions that match a pattern."""
 
-    key: str  # single word; the claim is a sentence
+    key: str  # a single word; the claim is a sentence
     claim: str
-    names: str  # regular expression; the first matching row judges a function
+    names: str  # pattern of function names; the first matching row judges a function
     error: tolerance.Tolerance
     turns: bool = False  # whether its functions rotate by the engine's sine and cosine
 
@@ -54,7 +54,7 @@ FUNCTION_CHECKS = (
     FunctionCheck("densities",
                   "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
                   r"\w+_pdf|ltc_(density|m[abcd])",
-                  # An inverse fourth power takes the 8 of a matrix entry four times, plus 16.
+                  # An inverse fourth power multiplies an entry's 8 roundings by 4 and adds 16.
                   tolerance.sum_in(Quantity.CONDITIONED, tolerance.roundings(48, "four times the 8 of a matrix entry, and 16"))),
     FunctionCheck("parts", "The functions that models and sampling are built from match NumPy's.",
                   r"\w+", PART),
@@ -75,7 +75,7 @@ def _error(function: str, values: Array) -> float:
 
 @cache
 def exact(function: str) -> tuple[Array, Array]:
-    """Values of a shader function in NumPy, and the factor of its errors.
+    """Values of a shader function in NumPy, and the factor that scales its errors.
 
     The factor is pi cos(theta_i) for a BRDF. For functions judged by their condition, it is the
     inverse of a sum: the value, or 1 if that is larger, plus the value's change with each argument.
@@ -88,10 +88,10 @@ def exact(function: str) -> tuple[Array, Array]:
         return values, np.pi * columns["mu_i"][:, np.newaxis] if brdf else np.ones((1, 1))
     total: Array = np.maximum(1.0, np.abs(values).max(axis=1))
     for name in arguments(function):
-        # A quotient has a relative error, and is huge next to a divisor of 0.
+        # Skip divisors: a quotient has a relative error, and its slope is huge near a divisor of 0.
         if name == "divisor" or (columns[name].ndim > 1 and name != "wo"):
             continue
-        # Step towards the middle of the range; only the cosine of wo has a range.
+        # Step toward the middle of the range. Of a direction wo, only the cosine has a range.
         middle = np.array([0.0, 0.0, 0.5]) if name == "wo" else 0.5
         moves = np.where(columns[name] > middle, -STEP, STEP) * (middle != 0.0)
         moved = _expected(function, {**columns, name: columns[name] + moves})
@@ -100,7 +100,7 @@ def exact(function: str) -> tuple[Array, Array]:
 
 
 def arguments(function: str) -> list[str]:
-    """The columns that are a shader function's arguments, in order."""
+    """Names of the columns that a shader function takes as arguments, in order."""
     gray = {("float", "rho"): "gray"}
     return [gray.get(each, each[1]) for each in functions.signature("glsl", function)]
 
@@ -108,7 +108,7 @@ def arguments(function: str) -> list[str]:
 POINTS = 4096  # points per function
 CORNERS = 64  # points with arguments at the ends of their ranges
 
-# Along the normal, beyond it by a rounding, at the horizon, and in between.
+# Directions along the normal, with a cosine rounded above 1, on the horizon, and in between.
 AXES = tuple((x, 0.0, z) for x, z in ((0, 1), (0, 1 + 2.0**-23), (1, 0), (-1, 0), (0.6, 0.8)))
 
 Columns = Mapping[str, Array]
@@ -122,11 +122,11 @@ NAMED: Mapping[str, Callable[..., Array | tuple[Array, ...]]] = {
     "eon_pdf": lambda wo, wi, rho, roughness: sampling.eon_pdf(wo, wi, roughness, rho=rho),
     "eon_rotate_z": sampling.rotate_z,
     "eon_sample": lambda wo, u, rho, roughness: sampling.eon_sample(wo, u, roughness, rho=rho),
-    # y of the angle with cosine 1 - m, from the exact integral that the shader fits.
+    # The root y for the angle with cosine 1 - m, from the exact integral that the shader fits.
     "eon_upper_root": lambda m: sampling.eon_upper_limit(1.0 - m, np.sqrt(m * (2.0 - m))),
     "oren_nayar_s": lambda wo, wi: diffuse.cosines(wo, wi)[2],
 }
-# Internal functions whose colors have their channels first in NumPy.
+# Internal functions whose NumPy versions have color channels on the first axis.
 CHANNELS_FIRST = re.compile(r"fon_lambert|eon_(denominator|multiple_ratio)|(qon|eon)_brdf_mu")
 
 
@@ -156,7 +156,7 @@ def random_columns() -> Columns:
     azimuth, elevation = 2.0 * np.pi * rng.random(POINTS), 0.5 * np.pi * _unit(rng)
     mu, roughness = np.clip(wo[:, 2], GRAZING, 1.0), unit["roughness"]
     rho, value = np.stack([_unit(rng) for _ in range(3)], axis=-1), 2.0 * _unit(rng) - 1.0
-    divisors = _unit(rng)  # a quarter log-uniform down to 1e-36; shaders treat 1e-37 as 0
+    divisors = _unit(rng)  # log-uniform down to 1e-36 in a quarter; shaders treat 1e-37 as 0
     divisors[CORNERS : POINTS // 4] = 10.0 ** (-36.0 * divisors[CORNERS : POINTS // 4])
     u1, u2 = unit["u1"], unit["u2"]
     # fmt: off
@@ -174,7 +174,7 @@ def random_columns() -> Columns:
 
 
 def _unit(rng: np.random.Generator) -> Array:
-    """24-bit numbers in [0, 1), like shaders' random numbers; the first ones are at both ends."""
+    """24-bit numbers in [0, 1), like shaders' random numbers; the first are ends of the range."""
     numbers = rng.integers(0, 1 << 24, POINTS).astype(np.float64)
     numbers[:CORNERS] = (numbers[:CORNERS] % 2.0) * (2.0**24 - 1.0)
     return numbers * 2.0**-24
@@ -200,7 +200,7 @@ class FunctionProbe:
 
     @cached_property
     def values(self) -> Mapping[bool, Mapping[str, Array]]:
-        """Values of all functions of the library; with True, the control's values."""
+        """Values of all functions of the library; the key True has the control's values."""
         return {wrong: self._values(0.95 if wrong else 1.0) for wrong in (False, True)}
 
     @cached_property

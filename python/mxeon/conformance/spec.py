@@ -34,17 +34,17 @@ class Input:
     type: str = "float"  # MaterialX type
     low: ArrayLike = 0.0  # range of random values, for all components or per component
     high: ArrayLike = 1.0
-    edges: tuple[float, ...] = ()  # values of half of the special samples; () for none
+    edges: tuple[float, ...] = ()  # values that half of the special samples use; () for none
     # A value other than the default that must have an effect; None if it has none by itself.
     change: ArrayLike | None = None
     needs: Values = field(default_factory=dict, hash=False)  # inputs that make the change visible
-    # Whether random values are uniform in the logarithm; otherwise a tenth is at each end.
+    # Whether random values are log-uniform; otherwise a tenth of them is at each end of the range.
     logarithmic: bool = False
-    often: float | None = None  # value of every other sample, for rarely set inputs
+    often: float | None = None  # value in every other sample, for rarely set inputs
     equal: bool = False  # both components are equal in every other sample
     # Values in the two materials that represent a node in pictures; () for the default.
     materials: tuple[ArrayLike, ...] = ()
-    variable: str = ""  # shader variable that a host sets instead, if it is the default
+    variable: str = ""  # shader variable that supplies the default; hosts set it instead
     default: ArrayLike = 1.0  # value in documents that must set the input
     beyond: tuple[float, ...] = ()  # values outside the range that hosts also pass
     ends: tuple[float, float] = (-np.inf, np.inf)  # range to which the node clamps
@@ -97,7 +97,7 @@ def broadcast_inputs(batch: Batch) -> dict[str, Array]:
 class Ability(Flag):
     """Abilities of a backend, as required by nodes and checks."""
 
-    # Supported nodes: rough diffuse ones, a renderer's own, and lobes of pbrlib.
+    # Kinds of supported nodes: rough diffuse nodes, a renderer's own nodes, and pbrlib's lobes.
     DIFFUSE = auto()
     BELOW = auto()  # a diffuse lobe below other lobes
     OWN = auto()
@@ -115,7 +115,7 @@ class Ability(Flag):
     IMPLEMENTATION = auto()  # a node without values, judged only by having an implementation
     OUTPUT = auto()
     # Required by checks: pairs at the edges of the domain, and branches of lighting.
-    CLIENT = auto()  # the whole main with a client's bindings
+    CLIENT = auto()  # running the shader's complete main() with a client's bindings
     PAIRS = auto()
     LIGHT = auto()
 
@@ -145,31 +145,31 @@ class Spec(ABC):
     """A node in one mode."""
 
     requires: ClassVar[Ability]
-    coarse: ClassVar[int] = 1  # factor by which pictures are smaller
-    rim: ClassVar[float] = samples.RIM  # least judged cosines in pictures
+    coarse: ClassVar[int] = 1  # divisor of the size of pictures
+    rim: ClassVar[float] = samples.RIM  # smallest cosine judged in pictures
 
     title: str  # unique title for reports
     node: str  # category of the node
     model: str = ""  # name of the expected model; "" for none
     inputs: tuple[Input, ...] = ()  # inputs, except those that select the mode
-    errors: Mapping[str, Tolerance] = field(default_factory=dict)  # a correct shader's, by quantity
+    errors: Mapping[str, Tolerance] = field(default_factory=dict)  # tolerances by quantity
     # Errors outside the usual range of an input: by quantity, input and value.
     outside_errors: Mapping[tuple[str, str, float], Tolerance] = field(default_factory=dict)
     libraries: tuple[str, ...] = ()  # libraries that it applies to; () for all
-    claim: str = ""  # replaces that of its checks
+    claim: str = ""  # claim that replaces its checks' own; "" for none
     closure: bool = True  # whether eonlib's OSL uses a renderer's own closure for it
     counts: Counts = USUAL
-    # Inputs of evaluations, unless a batch sets them.
+    # Input values of all evaluations, unless a batch sets them.
     fixed: Values = field(default_factory=dict)
     # The evaluated branch and output, and a factor for the host's values.
     evaluated: tuple[str, str, float] = ("direct", "response", np.pi)
-    flat: bool = False  # whether its values have no peak
-    # Slope of values or albedos by the angle to the normal, which cosines near 1 do not resolve.
+    flat: bool = False  # whether values have no sharp peak
+    # Slope of values or albedos over the angle to the normal; cosines near 1 do not resolve angles.
     along: float = 0.0
     optional: bool = False  # whether targets may lack the node; it is then not run
-    # Errors of an engine's own functions, measured there, by quantity.
+    # Errors due to an engine's built-in functions, measured on the engine, by quantity.
     engines: Mapping[str, tuple[EngineError, ...]] = field(default_factory=dict)
-    # Additional error by MaterialX's fit of prefiltered light, by quantity.
+    # Additional errors due to MaterialX's fit of prefiltered light, by quantity.
     prefiltered_fits: Mapping[str, tuple[Term, ...]] = field(default_factory=dict)
 
     @abstractmethod
@@ -178,7 +178,7 @@ class Spec(ABC):
 
     @property
     def side(self) -> float:
-        """-1 if it scatters light from below the horizon, otherwise 1."""
+        """-1 for a node that scatters light from below the horizon, otherwise 1."""
         return 1.0
 
     @property
@@ -192,7 +192,7 @@ class Spec(ABC):
 
     @property
     def changes(self) -> Mapping[str, samples.Changes]:
-        """For each input: inputs without and with a change of that input."""
+        """Inputs before and after a change of each input, by its name."""
         return {
             each.name: (each.needs, {**each.needs, each.variable or each.name: each.change})
             for each in self.inputs
@@ -204,7 +204,7 @@ class Spec(ABC):
         return self
 
     def engine(self, quantity: str, host: base.Host) -> tuple[Term, ...]:
-        """Errors of an engine's own functions for a quantity."""
+        """Error terms of a quantity due to an engine's built-in functions."""
         found = ((_measured(each, host), each.words) for each in self.engines.get(quantity, ()))
         return tuple(Term(error, words) for error, words in found if error)
 
@@ -228,14 +228,14 @@ class ValueSpec(Spec):
 
     @abstractmethod
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """All samples."""
+        """All samples, in one batch per kind."""
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         """A subset of the samples, for controls and expensive checks."""
         return tuple(batch.first(counts.few) for batch in batches)
 
     def alike(self, compared: Compared) -> Compared:
-        """Values in a unit in which errors are uniform."""
+        """The same comparison, rescaled to a unit in which errors are uniform."""
         return compared
 
 
@@ -243,7 +243,7 @@ class LobeSpec(ValueSpec):
     """A node that scatters light."""
 
     curved: ClassVar[bool] = False  # whether it depends on the surface's curvature
-    # Axes of `checks.states` for which it only supports the first state, and unsupported states.
+    # Axes of `checks.states` on which only the first state is supported, and unsupported states.
     plain: ClassVar[tuple[str, ...]] = ()
 
     @property
@@ -255,7 +255,7 @@ class LobeSpec(ValueSpec):
         return {**nodes.input_types(self.node), **{each.name: each.type for each in self.inputs}}
 
     def two_lobes(self) -> str:
-        """MaterialX text of a material with two such lobes; `second` has its own frame."""
+        """MaterialX text of a material with two of these lobes; `second` has its own frame."""
         own = [name for name in nodes.FRAME_INPUTS if name in nodes.input_types(self.node)]
         frame = {name: calls.NORMAL if name == "normal" else calls.TANGENT for name in own}
         modes = {"first": self.mode, "second": {**self.mode, **frame}}
@@ -291,7 +291,7 @@ class LobeSpec(ValueSpec):
         )
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """A few of the random pairs, and the special ones, without outside pairs."""
+        """A subset of the random pairs, and all special pairs; no outside pairs."""
         return batches[0].first(counts.few), batches[1]
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
@@ -317,7 +317,7 @@ class LobeSpec(ValueSpec):
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs, frame=frames)
 
     def _batch(self, rng: samples.Rng, pairs: tuple[Array, Array], edged: bool = False) -> Batch:
-        """Pairs with random inputs, weights and occlusions, lit from the side that the node scatters."""
+        """Pairs with random inputs, weights and occlusions, lit from the node's `side`."""
         wo, wi = pairs
         inputs, count = self.random_inputs(rng, len(wo), edged), len(wo)
         for name, edges in (("weight", samples.WEIGHTS), ("occlusion", samples.OCCLUSIONS)):
@@ -340,13 +340,13 @@ def named(row: NodeRow[object], title: str = "") -> Names:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RowSpec(ValueSpec, Generic[F]):
-    """A node with a row's functions."""
+    """A node whose values a row of the models computes."""
 
     row: NodeRow[F]
 
     @property
     def drawn(self) -> tuple[Input, ...]:
-        """The inputs used by its functions."""
+        """The inputs that the row's functions use."""
         inputs = {each.name: each for each in self.inputs}
         return tuple(inputs[name] for name in self.row.inputs)
 
@@ -376,7 +376,7 @@ class RowSpec(ValueSpec, Generic[F]):
 
 
 def ports(inputs: Iterable[Input], values: Values | None) -> list[tuple[str, str, Array]]:
-    """Paths and types of inputs, and their given values or a document's."""
+    """Path, type and value of each input; values that are not given are the inputs' defaults."""
     return [
         (each.name, each.type, np.broadcast_to(value, COMPONENTS[each.type]))
         for each in inputs
@@ -384,15 +384,15 @@ def ports(inputs: Iterable[Input], values: Values | None) -> list[tuple[str, str
     ]
 
 
-ARGUMENTS = 1 << 14  # arguments per measured function
+ARGUMENTS = 1 << 14  # number of arguments per measured function
 
 
 @dataclass(frozen=True)
 class EngineFunction:
     """A built-in function of engines."""
 
-    name: str  # GLSL function of x, or of x and y
-    expression: str
+    name: str  # ending of the name of the GLSL function that wraps the expression
+    expression: str  # GLSL expression in x, or in x and y
     exact: Callable[..., Array]  # NumPy equivalent
 
     def errors(self, host: base.Host, *arguments: Array) -> Array:
@@ -406,7 +406,7 @@ class EngineFunction:
     def error(
         self, arguments: Callable[[], Sequence[Array]], allowed: float = 1.0
     ) -> Callable[[base.Host], float]:
-        """A measurement of a host's largest error on some arguments, beyond a number of roundings of 1."""
+        """A measurement of a host's largest error on arguments, minus `allowed` roundings of 1."""
         least = allowed * ROUNDING
         return lambda host: max(float(self.errors(host, *arguments()).max()) - least, 0.0)
 

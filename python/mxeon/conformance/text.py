@@ -31,7 +31,7 @@ from mxeon.shaders.library import load_library
 
 # --- checks --------------------------------------------------------------------------------------
 
-Faults: TypeAlias = tuple[list[Cause], int]  # faults, and the control's count
+Faults: TypeAlias = tuple[list[Cause], int]  # faults found, and number of faults in the control
 Inputs = Mapping[str, expressions.Array]
 # Check -> claim, counted quantity, and the control's mistake.
 # fmt: off
@@ -70,7 +70,7 @@ def check_texts(subjects: Iterable[diffuse.DiffuseSpec], library: str) -> tuple[
             faults = partial(_arguments, library, release)
             results.append(_judged("arguments", "every node, mdl", library, faults))
     for each, target in product((*subjects, *PLAIN_LOBES), generation.TARGETS):
-        # The check of closures compares every argument of MDL's rough diffuse nodes.
+        # The check "closure" already compares every argument of MDL's rough diffuse nodes.
         if target in TEXT_ONLY and (target != "mdl" or isinstance(each, lobes.PbrSpec)):
             faults = partial(_dropped, each, target, library)
             results.append(_judged("source", f"{each.title}, {target}", library, faults))
@@ -97,7 +97,7 @@ def _judged(check: str, subject: str, library: str, faults: Callable[[], Faults]
 
 
 def _clashes(library: str) -> Faults:
-    """Names that two nodes of a library define, except those in the installed MaterialX."""
+    """Names that two nodes of a library both define; clashes in MaterialX itself are excluded."""
 
     def found(name: str, target: str, twice: bool = False) -> dict[texts.Clash, str]:
         search = library_tree.search_path(name)
@@ -115,7 +115,7 @@ def _clashes(library: str) -> Faults:
 
 
 def _arguments(library: str, release: mx.Document) -> Faults:
-    """Arguments of MDL calls with values that differ from a release."""
+    """Arguments of MDL calls whose values differ from the release's."""
 
     def faults(exchanged: bool) -> Iterator[Cause]:
         for definition in release.getNodeDefs():
@@ -148,7 +148,7 @@ CALLEE = re.compile(r"(?:\w+::)*\w+(?=\()")
 
 
 def source(subject: lobes.ScatteringSpec, target: str, library: str) -> str:
-    """Pixel stage of a subject; variables of inputs are named `lobe_` and the input's name."""
+    """Pixel stage of a subject; an input's variable is named `lobe_` plus the input's name."""
     frame = {"normal": (0.0, 0.6, 0.8), "tangent": (1.0, 0.0, 0.0)}
     document = subject.document({name: frame[name] for name in frame if name in subject.names})
     with warnings.catch_warnings():
@@ -170,7 +170,7 @@ def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object])
 
 
 def _dropped(subject: lobes.ScatteringSpec, target: str, library: str) -> Faults:
-    """Inputs whose unique values do not occur as arguments of a call."""
+    """Inputs that are never passed: no argument of a call has their unique value."""
     expression = _expression(source(subject, target, library))
     names = tuple(subject.types) if isinstance(subject, lobes.PbrSpec) else subject.names
     inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}
@@ -194,15 +194,15 @@ def _dropped(subject: lobes.ScatteringSpec, target: str, library: str) -> Faults
 # --- closures: the node's arguments for random materials, in MDL -----------------------------------
 
 DRAWS = 256
-ROUNDED = 1e-12  # 4500 float64 roundings, more than in any text
+ROUNDED = 1e-12  # 4500 float64 roundings, more than any text performs
 TINT = "multiscatter_tint"
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
 UP = np.array([[0.0, 0.0, 1.0]])  # the surface's normal, which differs from the node's
-# Arguments by the names of the node's inputs, weight included.
+# Closure arguments, weight included, by the names of the node's inputs.
 Closure: TypeAlias = dict[str, ArrayLike]
 
 
-# The functions below have parameters as in MDL's documentation.
+# Functions with the parameters that MDL's documentation lists.
 def diffuse_reflection_bsdf(
     tint: ArrayLike = 1.0, roughness: ArrayLike = 0.0, multiscatter_tint: ArrayLike = 0.0
 ) -> Closure:
@@ -224,7 +224,7 @@ FUNCTIONS: Mapping[str, object] = {
     "material_surface": lambda *, scattering: scattering,
     "df::weighted_layer": weighted_layer,
     "df::diffuse_reflection_bsdf": diffuse_reflection_bsdf,
-    # FON, plus a white lobe with the flag.
+    # FON, plus a white lobe if the flag `energy_compensation` is set.
     PBRLIB: lambda mxp_weight, mxp_color, mxp_roughness, mxp_normal, mxp_energy_compensation: weighted_layer(
         mxp_weight, diffuse_reflection_bsdf(mxp_color, mxp_roughness, mxp_energy_compensation), (), mxp_normal),
 }
@@ -232,14 +232,14 @@ FUNCTIONS: Mapping[str, object] = {
 
 
 def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
-    """Arguments of the closure that differ from the node's inputs; the count ignores the weight."""
+    """Closure arguments that differ from the node's inputs; the control drops the weight."""
     expression = _expression(source(subject, "mdl", library))
     rng = generator()
     drawn = subject.random_inputs(rng, DRAWS)
     rows = {name: each.reshape(DRAWS, -1) for name, each in drawn.items()}
     rows["weight"], normal = rng.random((DRAWS, 1)), rng.standard_normal((DRAWS, 3))
     rows["normal"] = normal / np.linalg.norm(normal, axis=1, keepdims=True)
-    # [Portsmouth2025], Eq. (19); MDL without the flag is FON.
+    # [Portsmouth2025], Eq. (19); MDL's closure without the flag is FON.
     rho, r = rows["color"], rows["roughness"]
     average = (1.0 + formulas.C2 * r) / (1.0 + formulas.C1 * r)
     tint = rho**2 * average / (1.0 - rho * (1.0 - average))

@@ -50,7 +50,7 @@ def _largest(values: Array) -> Array:
 
 
 def absolute(measured: ArrayLike, expected: ArrayLike) -> Array:
-    """Largest difference of each row; infinity if it is not a number."""
+    """Largest difference of each row; infinity if it is not finite."""
     error = _largest(np.abs(np.subtract(measured, expected)))
     return np.where(np.isfinite(error), error, np.inf)
 
@@ -70,7 +70,7 @@ def relative(measured: Array, expected: Array) -> Array:
 
 
 def mean_error(measured: Array, expected: Array) -> Array:
-    """Difference of the means over all rows, repeated for every row; averages noise out."""
+    """Difference of the means over all rows, repeated for every row; averaging removes noise."""
     return np.broadcast_to(absolute(np.mean(measured - expected, axis=0), 0.0), len(measured))
 
 
@@ -81,7 +81,7 @@ def mean_scaled(measured: Array, expected: Array) -> Array:
 
 
 def root_mean_square(measured: Array, expected: Array) -> Array:
-    """Root mean square of the largest differences of all rows, for every row.
+    """Root mean square over all rows of each row's largest difference, repeated for every row.
 
     It detects small errors in many rows, which a tolerance for the largest error would hide.
     """
@@ -160,7 +160,7 @@ class Tolerance:
 
     @property
     def value(self) -> float:
-        total = float(sum(term.value for term in self.terms))  # results are plain numbers
+        total = float(sum(term.value for term in self.terms))  # results store plain floats
         return total if self.exact or not total else rounded_up(total)
 
     @property
@@ -193,7 +193,7 @@ def sum_of(
 
 
 def sum_in(quantity: Quantity, *terms: Term, exact: bool = False) -> Tolerance:
-    """A tolerance of absolute errors."""
+    """A tolerance for absolute errors."""
     return Tolerance(terms, quantity, absolute, exact)
 
 
@@ -207,7 +207,7 @@ def count_of(quantity: Quantity) -> Tolerance:
 
 
 def rounded_up(value: float) -> float:
-    """The next number with one digit.
+    """The value rounded up to one significant digit.
 
     >>> rounded_up(1.94e-6)
     2e-06
