@@ -4,10 +4,10 @@
 python -m tools.materialx_suite CHECKOUT BUILD WORK [NAME=VALUE ...]
 
 CHECKOUT is a clone of MaterialX in the version of the installed package, BUILD a build of it with
-MATERIALX_BUILD_TESTS and the GLSL renderer. Neither is changed: each library gets a folder in WORK with
-links to them, and its own copy of the suite's `_options.mtlx`. NAME=VALUE replaces a value there, such as
-renderGeometry=dome.obj, half a sphere of 60 faces for OpenGL on a CPU. Results in WORK are reused, so a
-second call only writes docs/materialx_suite.md and its pictures.
+MATERIALX_BUILD_TESTS and the GLSL renderer. Neither is changed: each library gets a folder in WORK
+with links to them, and a copy of the suite's `_options.mtlx`, in which NAME=VALUE replaces a value.
+renderGeometry=dome.obj is half a sphere of 60 faces for OpenGL on a CPU. Results in WORK are reused,
+so a second call only writes docs/materialx_suite.md and its pictures.
 """
 
 import math
@@ -250,9 +250,7 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
 
 
 if __name__ == "__main__":
-    from mxeon.hosts.materialx.worker import (
-        open_display,
-    )  # importing it ends the process if X's libraries are missing
+    from mxeon.hosts.materialx.worker import open_display  # exits if X's libraries are missing
 
     open_display()
     folders, chosen = sys.argv[1:4], sys.argv[4:]

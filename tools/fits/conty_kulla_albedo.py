@@ -6,7 +6,7 @@
 
 where N and D are polynomials in z and s. At small roughness r only light near the horizon remains:
 the exponential is sin(theta_h)^(1 / r) at the lowest half vector that light above the horizon
-allows, and the quotient has the right limits at mu = 0 and 1. The fit minimizes the largest absolute
+allows, and the quotient has its limits at mu = 0 and 1. The fit minimizes the largest absolute
 error of min(E, 1). As in `ggx_albedo.py`, the quadrature only uses sums, products, quotients and
 square roots: roughness is 4 / k with integer k, so powers become products of roots.
 

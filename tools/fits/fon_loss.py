@@ -4,8 +4,8 @@
     H(mu) = mu [P(mu) + (1 - S)(1 - mu) Q(mu)],  S = sqrt(1 - mu^2)
 
 S contains the branch point of H at mu = 1, so errors fall geometrically with the degrees. The
-second term vanishes at both ends, so nothing cancels there. P and Q are fitted together to the closed
-form, and minimize the largest relative error of H.
+second term vanishes at both ends, so nothing cancels there. P and Q are fitted together to the
+closed form, and minimize the largest relative error of H.
 
     python -m tools.fits.fon_loss
 """

@@ -12,8 +12,8 @@ exceeds. This tau has a closed form by the same distribution: if a share Q excee
 
     k (tau_m / tau - tau / tau_m) = w = (Q - 1/2) / sqrt(Q (1 - Q)),  2 k tau / tau_m = sqrt(w^2 + 4 k^2) - w.
 
-Along the normal, GGX's share 1 / (1 + alpha^2 tau_c^2) is this S with k = 1/2. For a smooth surface,
-S is the distribution of GGX's slopes in one direction, with 2 k = mu s / alpha. The fit is, with mu the
+Along the normal, GGX's share 1 / (1 + alpha^2 tau_c^2) is S with k = 1/2. For a smooth surface, S is
+the distribution of GGX's slopes in one direction, with 2 k = mu s / alpha. The fit is, with mu the
 cosine of the view and s its sine,
 
     tau_m^2 = (mu^2 + a alpha^2) / (s^2 + b alpha^2),  k^2 = k_0 + k_1 mu^2 s^2 / alpha^2.
@@ -22,8 +22,8 @@ Each of a, b, k_0, p and the part of S is linear, or an exponential of a linear 
 that a greedy search chose from mu, x = mu / (mu + alpha), y = sqrt(alpha), z = s / (s + alpha), n.
 
 The share of light by reversed paths from outside (`mxeon.models.transmission`) has this form with
-other coefficients and a factor 1 / (1 + r alpha (1 - n^2) / mu): less light passes at grazing, where
-facets reflect it back up.
+other coefficients and a factor 1 / (1 + r alpha (1 - n^2) / mu): less light passes at grazing,
+where facets reflect it back up.
 
 The fit minimizes the largest errors of the compensated albedo and of that share. The search runs in
 float64, starts from the shader's coefficients, and need not be repeatable.

@@ -3,7 +3,7 @@
 
 The layer equation uses each lobe's albedo by quadrature; eonlib uses a fit. The script compares
 both in float64, for pairs and materials drawn as in the checks, but with other seeds. It prints the
-largest errors of values and albedos due to all fits together, and the largest errors of a set's means.
+largest errors of values and albedos due to all fits together, and of their means over a set.
 """
 
 from contextlib import ExitStack, contextmanager, suppress
@@ -130,7 +130,7 @@ def fits():
 
 
 def errors(shader, seed):
-    """Errors in one random set, by name: largest errors of values and albedos, errors of their means."""
+    """Errors in a random set by name: largest errors of values and albedos, errors of their means."""
     token = SEED.set(seed)
     [batch] = batches = shader.batches(shader.counts)
     [views] = shader.views(batches, shader.counts)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of `genglsl/lib/thin_film.glsl` against all orders and exact averages: python -m tools.fits.thin_film.
 
-The shader sums orders while they matter, and averages over the hemisphere and over the visible facets with
-three cosines each. Each cosine represents a neighborhood, whose fringes damp each other. This searches for
-the largest error of each, over films of up to 1000 nm on each kind of substrate, for cosines from 0.1 on.
+The shader sums only orders that matter, and averages over the hemisphere and over the visible facets
+by three cosines each. Each cosine stands for a range, within which fringes partly cancel. The script
+finds the largest errors for films of up to 1000 nm on each kind of substrate, and cosines from 0.1.
 
-A check measures the root mean square over one set of films. The errors of other sets, drawn in the same way, give its
-tolerance: it is at most a third of the largest error of a single film, so a wrong digit, which affects all films,
-exceeds it although it stays below the largest error.
+A check measures the root mean square error of a set of films. Other sets, drawn in the same way, give
+its tolerance, which is at most a third of the largest error of a single film. So the check detects a
+wrong digit, which affects all films, even if its effect is below the largest error of one film.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ from mxeon.models import thin_film as film
 from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.thin_film import SUBSTRATES, TEXT, film_albedo_dir, film_curve
 
-# Ranges: roughness, cosine of the view, thickness in nm, index.
+# Ranges of roughness, cosine of the view, thickness in nm, and index.
 FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
 CLEAR = {
     "alpha": SHARP.alpha,
@@ -29,11 +29,11 @@ CLEAR = {
     "thickness": SHARP.thickness,
     "index": (LEAST_OIL, 2.5),
 }
-DARK = 1e-3  # reflectance below which errors are no longer relative
-STEP = 1e-6  # relative change of a thickness to measure the slope of a curve
-# The shader's values, from `thin_film_nodes.py`: cosines, weights and widths of three nodes for F_ss; for
-# visible facets, polynomials for the mean of their cosines, for the reach of three nodes around it and for
-# their bend.
+DARK = 1e-3  # errors of reflectances below this are absolute instead of relative
+STEP = 1e-6  # relative change of the thickness for difference quotients
+# The shader's values, from `thin_film_nodes.py`. NODES: cosines, weights and widths of the nodes for
+# F_ss. FACETS: polynomials for the nodes of visible facets: the mean of the cosines, the reach of the
+# nodes around the mean, and the bend of their positions.
 NODES = (
     (0.17999, 0.55701, 0.88292),
     (0.10982, 0.43737, 0.4528),
@@ -49,21 +49,24 @@ FACETS = (
 # reflectances of all channels and, for a node of a rule, WIDTH_ORDER times the squared width. Each
 # square counts as at most ORDER_RATIO of the last.
 VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 8e-14, 1e-3, 0.6
-NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # narrowest sensitivity
+NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # narrowest spectral sensitivity
 LEAST_PATH, LEAST_LOST = (
     1e-21,
     1e-12,
 )  # least path difference in m, and least share of escaping light
-# The search for the largest error.
+# Parameters of the search for the largest error.
 SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # films per step; steps of evolution
-KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # worst films to keep; distances from them in [0, 1]
+KEPT, STEPS = (
+    8,
+    (0.1, 0.05, 0.02, 0.01),
+)  # number of worst films to keep; sizes of steps away from them
 NUMBERS = 10  # numbers that describe a film, its substrate and its view
-COLORED = 17  # NUMBERS plus color82, color90 and the exponent of Schlick's curve
-FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # distances with COLORED numbers
-MOVED = 0.3  # share of the COLORED numbers that change
-LEAST = 1e-3  # least value of numbers except roughness, cosine and extinction: 0 reflects nothing
-# The worst films of longer searches, which random starts miss: of a metal with total reflection in the film,
-# and of glass at grazing, both with fringes of 1000 nm.
+COLORED = 17  # NUMBERS, color82, color90 and the exponent of Schlick's curve
+FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # sizes of steps with COLORED numbers
+MOVED = 0.3  # share of the COLORED numbers that change in a step
+LEAST = 1e-3  # least number, except for roughness, cosine and extinction: 0 reflects nothing
+# The worst films of longer searches, which random starts miss: a metal with total reflection in the
+# film, and glass at grazing. Both films are 1000 nm thick.
 GLASS = (0.0298, 0.001, 1.0, 0.0462, *[0.3587] * 6)
 CORNERS = {
     "dielectric_bsdf": GLASS,
@@ -74,20 +77,20 @@ WHITE = {"color82": 1.0, "color90": 1.0}
 
 
 def shader_curve(category, material, mu, width=0.0):
-    """`thin_film_fresnel`: the mean of a film's curve over cosines of a standard deviation around mu."""
-    # Both interfaces at each cosine.
+    """`thin_film_fresnel`: mean of a film's curve over cosines around mu with a deviation `width`."""
+    # Evaluate both interfaces at each cosine.
     films = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
     mu, thickness, n = np.broadcast_arrays(mu, *films)
     opd = film.path_difference(mu, thickness, n)
     spread = (2.0 * film.METERS * thickness) ** 2 * width * mu / np.maximum(opd, LEAST_PATH)
     interfaces = SUBSTRATES[category](mu, n, TEXT, **substrate(material))
-    # Reflectance averaged over all phases; weight of the orders, and amplitude of the first.
+    # `means`: reflectance averaged over all phases. `weights` and `sizes`: amplitudes of the orders.
     pairs = [np.broadcast_arrays(r12**2, R23) for r12, _, R23 in interfaces]
     lost = [np.maximum(1.0 - first * second, LEAST_LOST) for first, second in pairs]
     means = [R + (1.0 - R) ** 2 * S / each for (R, S), each in zip(pairs, lost, strict=True)]
     weights = [(1.0 - R) * (1.0 - S) / each for (R, S), each in zip(pairs, lost, strict=True)]
     sizes = [np.sqrt(R * S) for R, S in pairs]
-    # Sum the orders that matter in any polarization or channel.
+    # Sum all orders that matter in some polarization or channel.
     bright = 3.0 * ((0.5 * sum(means)) ** 2).mean(axis=0)
     least = np.maximum(VALUE_ORDER * bright, WIDTH_ORDER * np.square(width))
     count = order_count(np.stack(weights), np.stack(sizes), opd, spread, least)
@@ -99,20 +102,20 @@ def shader_curve(category, material, mu, width=0.0):
 
 
 def substrate(material):
-    """Inputs of a curve without its film."""
+    """Inputs of the substrate alone, without its film and tint."""
     return {k: v for k, v in material.items() if k != "tint" and not k.startswith("thinfilm")}
 
 
 def counted_orders(z, opd, spread, count):
-    """Sum of `count` orders, shape (3, ...), in each tristimulus.
+    """Sum of the first `count` orders by tristimulus, shape (3, ...).
 
-    `spread` is the standard deviation of the path differences in m, whose fringes damp each other.
+    `spread` is the standard deviation of the path differences in m; it damps the fringes.
     """
     total = np.zeros((3, *np.broadcast_shapes(z.shape, opd.shape)))
     for k, v, mu, var in film.GAUSSIANS:
         height = v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
         wave, fade = z * np.exp(2j * np.pi * mu * opd), np.exp(-decay(mu, var, opd, spread))
-        # The order m is wave^m fade^(m^2).
+        # Order m is wave^m fade^(m^2).
         order, step = height * wave * fade, wave * fade**3
         for m in range(1, int(count.max()) + 1):
             total[k] += np.where(m <= count, order.real, 0.0)
@@ -121,14 +124,15 @@ def counted_orders(z, opd, spread, count):
 
 
 def decay(mu, var, opd, spread):
-    """Exponent by which a sensitivity damps the first order."""
+    """Exponent of the damping of the first order by a sensitivity and a spread of paths."""
     return var * (2.0 * np.pi * opd) ** 2 + 0.25 * (2.0 * np.pi * mu * spread) ** 4
 
 
 def order_count(weights, sizes, opd, spread, least):
-    """Number of orders that the shader sums, at least one, from weights and amplitudes of polarizations and channels.
+    """Number of orders that the shader sums; at least one.
 
-    s-polarized light is reflected more at both interfaces, p-polarized light transmitted more.
+    It uses bounds of all polarizations and channels: both interfaces reflect s-polarized light more,
+    and transmit p-polarized light more.
     """
     k2 = np.exp(-2.0 * decay(*NARROWEST[2:], opd, spread))
     along_p, along_s = weights[0], sizes[1]
@@ -142,19 +146,19 @@ def order_count(weights, sizes, opd, spread, least):
 
 
 def orders_errors(category, material, _, mu):
-    """Errors of the sum, relative to the largest channel, or to DARK where that is less."""
+    """Errors of the sum of orders, relative to the largest channel or DARK, whichever is larger."""
     largest = film_curve(category).at(mu, **material).max(axis=0)
     return curve_errors(category, material, _, mu) / np.maximum(largest, DARK)
 
 
 def curve_errors(category, material, _, mu):
-    """Errors of the sum."""
+    """Absolute errors of the sum of orders."""
     short, exact = shader_curve(category, material, mu), film_curve(category).at(mu, **material)
     return np.abs(short - exact).max(axis=0)
 
 
 def slopes(category, material, _, mu):
-    """Slopes of a curve in the logarithm of the thickness, which scale the rounding of a path difference."""
+    """Derivatives of a curve by log(thickness), which scale the rounding of path differences."""
     curve, thickness = film_curve(category), material["thinfilm_thickness"]
     up, down = (
         curve.at(mu, **{**material, "thinfilm_thickness": thickness * (1.0 + step)})
@@ -185,7 +189,7 @@ def wave_slopes(category, material, _, mu):
 
 
 def kept(category, material, _, mu):
-    """F (1 - F_ss), the factor of an error of E_ss in a smooth lobe's F (E_ss + F_ss (1 - E_ss))."""
+    """F (1 - F_ss), the factor of E_ss in a smooth lobe's albedo F (E_ss + F_ss (1 - E_ss))."""
     airy = film_curve(category)
     return (airy.at(mu, **material) * (1.0 - airy.average(**material))).max(axis=0)
 
@@ -211,18 +215,18 @@ def visible_errors(category, material, alpha, mu):
 
 
 def albedo_errors(category, material, alpha, mu):
-    """Errors of the average over the visible facets and of F_ss, times the lost light."""
+    """Errors of an albedo: of the average over visible facets, plus F_ss's times the lost light."""
     lost = 1.0 - ggx_albedo_dir(mu, alpha)
     return visible_errors(category, material, alpha, mu) + lost * average_errors(category, material)
 
 
 def seen_errors(category, material, alpha, mu):
-    """The same times the cosine of the view, as pictures count them."""
+    """`albedo_errors` times the cosine of the view, as in a mean over a picture."""
     return mu * albedo_errors(category, material, alpha, mu)
 
 
 def visible_average(category, material, alpha, mu):
-    """The average over the visible facets, by quadrature of two albedos."""
+    """Average over the visible facets, as a quotient of two albedos by quadrature."""
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
     inputs = {name: value.T for name, value in material.items()}
     inputs["roughness"] = np.repeat(alpha[:, np.newaxis], 2, axis=1)
@@ -234,9 +238,9 @@ def visible_average(category, material, alpha, mu):
 
 
 def visible_mean(category, material, alpha, mu, coefficients=FACETS):
-    """`visible_average` with the shader's cosines, or with other coefficients.
+    """`visible_average` by the shader's three cosines, optionally with other coefficients.
 
-    The cosines are Gauss nodes for a semicircle, which has fewer facets at its ends than in its middle.
+    They are Gauss nodes for a semicircular density: few facets are at the ends of the range.
     """
     mean, reach, bend = facets(mu, alpha, coefficients)
     total = 0.0
@@ -255,7 +259,7 @@ MIRRORS = {
 
 
 def facets(mu, alpha, coefficients):
-    """Mean of the cosines of visible facets with their view, the reach of nodes around it, and their bend."""
+    """Mean of the cosines between visible facets and view; reach and bend of the nodes around it."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), 1.0
     polynomials = np.reshape(coefficients, (3, -1)) @ monomials(mu, alpha)
     mean, reach, bend = (a * b for a, b in zip(factors, polynomials, strict=True))
@@ -263,19 +267,19 @@ def facets(mu, alpha, coefficients):
 
 
 def monomials(mu, alpha):
-    """Monomials up to third degree in the cosine of the view and alpha / (alpha + 1/5)."""
+    """Monomials up to degree 3 in the cosine of the view and alpha / (alpha + 1/5)."""
     y = alpha / (alpha + STEEP)
     return np.stack([mu**i * y**j for i in range(4) for j in range(4 - i)])
 
 
 def smooth_errors(category, material, _, mu):
-    """Errors of a smooth lobe's value by F_ss: it is F (1 + F_ss (1 - E_ss) / E_ss)."""
+    """Errors due to F_ss of a smooth lobe's value F (1 + F_ss (1 - E_ss) / E_ss)."""
     E_ss = ggx_albedo_dir(mu, SMOOTH[0])
     F = film_curve(category).at(mu, **material).max(axis=0)
     return average_errors(category, material) * F * (1.0 - E_ss) / E_ss
 
 
-# Measurements by name: errors, and ranges of films.
+# Largest errors to measure, by name: function, ranges of films, and numbers that describe a film.
 MEASURED = {
     "orders": (orders_errors, FILMS, COLORED),
     "orders of curves": (curve_errors, CLEAR, COLORED),
@@ -292,7 +296,7 @@ MEASURED = {
     "albedo from an index on": (albedo_errors, {**FILMS, "index": (LEAST_FILM, 2.5)}),
     "albedo in a picture": (seen_errors, {**FILMS, "index": (LEAST_FILM, 2.5)}),
 }
-# Measurements of sets by name: errors, and a set of films.
+# Errors of sets to measure, by name: function, and set of films.
 SETS = {
     "all orders": (curve_errors, microfacets.ORDERED),
     "F_ss": (average_errors, microfacets.FRINGED),
@@ -306,7 +310,7 @@ SETS = {
 
 
 def substrates(unit):
-    """Inputs of the three nodes, by category, from numbers in [0, 1], shape (6, N) or (13, N)."""
+    """Inputs of the three nodes by category; `unit` has numbers in [0, 1], (6, N) or (13, N)."""
     count = unit.shape[1]
     edges = {name: np.full((3, count), value) for name, value in WHITE.items()}
     edges["exponent"] = np.full(count, 5.0)
@@ -320,7 +324,7 @@ def substrates(unit):
 
 
 def filmed(category, ranges, unit):
-    """Inputs of a node under a film, roughness and cosine of a view, from numbers in [0, 1]."""
+    """Inputs of a node with a film, roughness, and cosine of the view, from numbers in [0, 1]."""
     alpha, mu, thickness, index = (
         low + (high - low) * each for (low, high), each in zip(ranges.values(), unit, strict=False)
     )
@@ -329,10 +333,10 @@ def filmed(category, ranges, unit):
 
 
 def largest(errors, ranges, category, numbers=NUMBERS):
-    """The largest error of films in ranges, by a search.
+    """Search for the largest error of films within ranges.
 
-    It searches around the worst random films and a corner in decreasing steps, and then evolves the worst of
-    these. For films with more numbers, more films are kept, and each only changes some of its numbers.
+    It takes decreasing steps from the worst random films and a known one, then evolves the worst of
+    these. With more numbers per film, it keeps more films, and a step changes only some numbers.
     """
     rng = np.random.default_rng(SEED)
     many = numbers > NUMBERS
@@ -364,7 +368,7 @@ def largest(errors, ranges, category, numbers=NUMBERS):
 
 
 def films(spec, ranges, seed):
-    """Category, material, roughness and cosine of a check's films, drawn with another seed."""
+    """Category, material, roughness and cosine of the films that a check draws with this seed."""
     DRAWN.set(seed)
     batch = microfacets.film_views(spec, ranges)
     material = {
@@ -376,7 +380,7 @@ def films(spec, ranges, seed):
 
 
 def largest_mean(errors, ranges, sets=64):
-    """The largest root mean square of errors over sets of films, by category."""
+    """Largest root mean square error of a set of films, over many sets, by category."""
     return {
         spec.node: max(
             float(np.sqrt(np.mean(errors(*films(spec, ranges, seed)) ** 2)))

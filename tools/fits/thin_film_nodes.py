@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Choice of the nodes in which `genglsl/lib/microfacet_film.glsl` averages a film.
+"""Fits the nodes with which `genglsl/lib/microfacet_film.glsl` averages a film.
 
-Over random films of up to 1000 nm on each kind of substrate, different from those of the checks, it minimizes
-the mean fourth power of the errors of F_ss, which emphasizes the largest, and the mean square of the errors of
-the mean over visible facets.
+It uses random films of up to 1000 nm on each kind of substrate, drawn with other seeds than the checks'.
+Nodes for F_ss minimize the mean fourth power of the errors, which emphasizes the largest. Nodes for
+visible facets minimize the mean square error.
 
     python -m tools.fits.thin_film_nodes
 """
@@ -15,19 +15,23 @@ from mxeon.models.microfacet.ggx import smith_lambda
 from mxeon.models.thin_film import film_curve
 from tools.fits import thin_film as fit
 
-SEED, COUNT = 24, 400  # random films
-BARE, HEAVY = 100, 8.0  # substrates without a film, whose F_ss should be kept, and their weight
-START = ((0.2, 0.6, 0.9), (0.15, 0.4, 0.45), (0.15, 0.12, 0.09))  # cosines, weights and widths
-FACETS = 384  # films that coefficients for visible facets are fitted to
-GRID = 16  # views and roughnesses per side of a grid that ties coefficients to moments of facets
+SEED, COUNT = 24, 400  # seed and number of random films
+BARE, HEAVY = 100, 8.0  # number and weight of samples without a film
+START = (
+    (0.2, 0.6, 0.9),
+    (0.15, 0.4, 0.45),
+    (0.15, 0.12, 0.09),
+)  # initial cosines, weights and widths
+FACETS = 384  # number of films for the fit of the visible facets
+GRID = 16  # views and roughnesses along each side of the grid of moments
 TIE = 2e-2  # weight of the moments, relative to an error of a film
-BEND = 0.33  # bend b of a semicircle's nodes, a t + b (t^2 - 1), for a skewness of 1
-NEAR = 1e-5  # difference of a coefficient to measure slopes
-SCALE = 1e3  # makes squares of errors about 1
+BEND = 0.33  # b that gives nodes a t + b (t^2 - 1) of a semicircle a skewness of 1
+NEAR = 1e-5  # change of a coefficient for difference quotients
+SCALE = 1e3  # scales squared errors to about 1
 
 
 def random_films(count, ranges=fit.FILMS, seed=SEED):
-    """Categories, materials, roughness and views."""
+    """Category, materials, roughnesses and views of random films, for each category."""
     rng = np.random.default_rng(seed)
     for category in fit.MIRRORS:
         unit = rng.random((fit.NUMBERS, count))
@@ -35,7 +39,7 @@ def random_films(count, ranges=fit.FILMS, seed=SEED):
 
 
 def hemisphere():
-    """Cosines, weights and widths of three nodes for F_ss."""
+    """Fitted cosines, weights and widths of the three nodes for F_ss."""
     bare = {**fit.FILMS, "thickness": (0.0, 0.0), "index": (1.0, 1.0)}
     films = [
         (weight, category, material, film_curve(category).average(**material))
@@ -65,7 +69,7 @@ def hemisphere():
 
 
 def facets():
-    """Coefficients for visible facets, by a step of Gauss and Newton from the moments of their cosines."""
+    """Coefficients for visible facets by one Gauss-Newton step from those that match moments."""
     films = [(film, fit.visible_average(*film)) for film in random_films(FACETS)]
     start = _moments()
 
@@ -78,7 +82,7 @@ def facets():
     slopes = np.stack(
         [(errors(start + NEAR * axis) - left) / NEAR for axis in np.eye(len(start))], 1
     )
-    # Tie coefficients to the start where no film determines them.
+    # Keep coefficients near the start if the films do not determine them.
     rows = TIE * _rows(*grid())
     change = np.linalg.lstsq(
         np.concatenate([slopes, rows]), np.append(-left, np.zeros(len(rows))), rcond=None
@@ -87,13 +91,13 @@ def facets():
 
 
 def grid():
-    """Cosines of views and roughnesses over the whole domain."""
+    """Cosines of views and roughnesses on a grid of the whole domain."""
     axis = (np.arange(GRID) + 0.5) / GRID
     return (each.ravel() for each in np.meshgrid(axis, axis))
 
 
 def _rows(mu, alpha):
-    """Contribution of each coefficient to mean, reach and bend at views and roughness."""
+    """Contribution of each coefficient to mean, reach and bend, by view and roughness."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), np.ones_like(mu)
     terms = fit.monomials(mu, alpha)
     blocks = np.zeros((3, mu.size, 3, len(terms)))
@@ -103,7 +107,7 @@ def _rows(mu, alpha):
 
 
 def _moments():
-    """Coefficients that best match the mean, deviation and skewness of the facets."""
+    """Coefficients that best match mean, deviation and skewness of the facets' cosines."""
     mu, alpha = grid()
     mean, deviation, skewness = facet_moments(mu, alpha)
     b = np.clip(BEND * skewness, -0.8, 0.8)
@@ -114,7 +118,7 @@ def _moments():
 
 
 def facet_moments(mu, alpha):
-    """Mean, deviation and skewness of the cosines of 16 visible facets with their view."""
+    """Mean, deviation and skewness of the cosines between 16 visible facets and the view."""
     cosines, weights = (np.array(each) for each in zip(*_facets(mu, alpha), strict=True))
     weights /= weights.sum(axis=0)
     mean = (weights * cosines).sum(axis=0)
@@ -124,9 +128,9 @@ def facet_moments(mu, alpha):
 
 
 def _facets(mu, alpha):
-    """Cosines of 16 visible facets with their view, and their weights.
+    """Cosines between 16 visible facets and the view, and the facets' weights.
 
-    Facets below `lowest` are excluded: they mirror no light along the normal.
+    Facets below `lowest` are excluded, because they reflect no light along the normal.
     """
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
     x, w = np.polynomial.legendre.leggauss(4)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EON below an interface, by both models and by random walks: python -m tools.fits.varnish_walk.
+"""Compares two models of EON below an interface with random walks: python -m tools.fits.varnish_walk.
 
-`dielectric_over_eon` is a `layer`: EON receives what the dielectric does not reflect, and its light
-leaves without loss. `varnished` has exits and internal reflections in closed form. Here random
-walks of light go between EON and GGX facets, and among the facets as in [Heitz2016], so that the
-interface loses nothing. For each rho, the script prints the ratios of both models' albedos to the
-walk's, the largest error of the second model, and the ratios of the light that EON returns into
-twelfths of the hemisphere.
+`dielectric_over_eon` is a `layer`: EON receives the light that the dielectric does not reflect, and
+returns it without loss. `varnished` has closed forms for exits and internal reflections. The random
+walks here go between EON and GGX facets, and from facet to facet as in [Heitz2016], so the interface
+loses no light. For each rho, the script prints the ratios of both models' albedos to the walk's, the
+largest error of `varnished`, and its ratios for the light that EON returns into each of twelve bins of
+the hemisphere.
 """
 
 from itertools import product
@@ -23,15 +23,15 @@ from mxeon.models.microfacet.fresnel import dielectric
 from mxeon.models.sampling import eon_sample
 
 SEED, PATHS = 1, 1 << 18
-FAINT = 1e-5  # weight at which a path ends
+FAINT = 1e-5  # paths with a smaller weight end
 RHO = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
-BINS, NODES = (4, 3), 8  # bins in squared cosine and azimuth on one side; nodes per bin
+BINS, NODES = (4, 3), 8  # bins of squared cosine and of half the azimuth; nodes per bin
 COSINES, ROUGHNESSES = (1.0, 0.5, 0.15, 0.05), (0.0, 1.0)
 ALPHAS, INDICES = (0.05, 0.1, 0.2, 0.4, 0.7), (1.1, 1.3, 1.5, 2.0)
 
 
 def facets(w, alpha, rng):
-    """Visible normals of GGX, [Dupuy2023]."""
+    """Samples of GGX's visible normals, [Dupuy2023]."""
     stretch = np.array([alpha, alpha, 1.0])
     v = w * stretch
     v /= np.linalg.norm(v, axis=1, keepdims=True)
@@ -42,12 +42,12 @@ def facets(w, alpha, rng):
 
 
 def interface(w, alpha, ior, rng):
-    """Directions, z >= 0, in which light from above, along -w, leaves the facets, and whether it leaves below."""
+    """Directions, z >= 0, of light from w after the facets, and whether it leaves below them."""
     out, passed = np.zeros_like(w), np.zeros(len(w), bool)
-    # State of each path: index, direction, height as the share of heights below it, and side.
+    # State of each path: index, direction, share of the heights below it, and side.
     i, d, height, below = np.arange(len(w)), -w, np.ones(len(w)), passed.copy()
     while i.size:
-        # Lambda, negative downwards, tells how far the next facet is: [Heitz2016].
+        # The distance to the next facet depends on Lambda, negative downwards, [Heitz2016].
         tangent2 = (1.0 - d[:, 2] ** 2) / np.maximum(d[:, 2] ** 2, 1e-12)
         root = np.sqrt(1.0 + alpha**2 * tangent2)
         Lambda = np.maximum(0.5 * (np.where(d[:, 2] > 0.0, root, -root) - 1.0), -1e9)
@@ -70,7 +70,7 @@ def interface(w, alpha, ior, rng):
 
 
 def walk(mu, roughness, alpha, ior, paths=PATHS):
-    """Light that leaves along each path for each of RHO, (paths, 5), and its direction, (paths, 3)."""
+    """Light that each path returns for each of RHO, (paths, 5), and its direction, (paths, 3)."""
     rng = np.random.default_rng(SEED)
     out, inside = interface(np.tile(view(mu), (paths, 1)), alpha, ior, rng)
     total, weight = np.where(inside, 0.0, 1.0)[:, np.newaxis] + 0.0 * RHO, 1.0
@@ -92,7 +92,7 @@ def view(mu):
 
 
 def walked_bins(total, out):
-    """Light that EON returns into each bin, (12, 4)."""
+    """Light that EON returns into each bin, for each nonzero rho, (12, 4)."""
     azimuth = np.abs(np.arctan2(out[:, 1], out[:, 0])) / np.pi
     row, column = (
         np.minimum((x * n).astype(int), n - 1)
@@ -104,7 +104,7 @@ def walked_bins(total, out):
 
 
 def model_bins(mu, *inputs):
-    """`walked_bins` by the model `varnished`."""
+    """Light that EON returns into each bin by the model `varnished`, as in `walked_bins`."""
     x, weight = (each / 2.0 for each in np.polynomial.legendre.leggauss(NODES))
     square, azimuth = ((np.arange(n)[:, np.newaxis] + 0.5 + x) / n for n in BINS)
     square, azimuth = square[:, np.newaxis, :, np.newaxis], np.pi * azimuth[:, np.newaxis]
@@ -116,7 +116,7 @@ def model_bins(mu, *inputs):
 
 
 def rows(paths=PATHS):
-    """For each case: albedos by the layer, varnished and the walk, (3, 5), and quotients of bins, (12, 4)."""
+    """For each case, albedos by layer, varnished and walk, (3, 5), and ratios of bins, (12, 4)."""
     for ior, alpha, roughness, mu in product(INDICES, ALPHAS, ROUGHNESSES, COSINES):
         inputs = roughness, alpha, ior
         walked = walk(mu, *inputs, paths)
