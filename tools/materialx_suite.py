@@ -100,9 +100,7 @@ def stage(folder: Path, checkout: Path, build: Path) -> None:
         shutil.copytree(checkout / name, folder / name, copy_function=os.symlink)
     (folder / OPTIONS).unlink()  # `run_tests` writes its own
     (folder / "bin").mkdir()
-    shutil.copy(
-        build / "bin" / "MaterialXTest", folder / "bin"
-    )  # the program finds its data relative to itself
+    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # it finds data from its own path
     # MaterialX reads files before subfolders, so eonlib's documents take precedence.
     for path in documents_folder().rglob("*.mtlx") if folder.name == EONLIB else ():
         (folder / "libraries" / path.name).symlink_to(path)

@@ -56,10 +56,7 @@ LEAST_PATH, LEAST_LOST = (
 )  # least path difference in m, and least share of escaping light
 # Parameters of the search for the largest error.
 SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # films per step; steps of evolution
-KEPT, STEPS = (
-    8,
-    (0.1, 0.05, 0.02, 0.01),
-)  # number of worst films to keep; sizes of steps away from them
+KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # worst films to keep; step sizes from them
 NUMBERS = 10  # numbers that describe a film, its substrate and its view
 COLORED = 17  # NUMBERS, color82, color90 and the exponent of Schlick's curve
 FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # sizes of steps with COLORED numbers

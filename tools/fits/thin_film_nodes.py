@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits the nodes with which `genglsl/lib/microfacet_film.glsl` averages a film.
 
-It uses random films of up to 1000 nm on each kind of substrate, drawn with other seeds than the checks'.
-Nodes for F_ss minimize the mean fourth power of the errors, which emphasizes the largest. Nodes for
-visible facets minimize the mean square error.
+It uses random films of up to 1000 nm on each kind of substrate, not those of the checks. Nodes for
+F_ss minimize the mean fourth power of the errors, which emphasizes the largest. Nodes for visible
+facets minimize the mean square error.
 
     python -m tools.fits.thin_film_nodes
 """
@@ -17,11 +17,7 @@ from tools.fits import thin_film as fit
 
 SEED, COUNT = 24, 400  # seed and number of random films
 BARE, HEAVY = 100, 8.0  # number and weight of samples without a film
-START = (
-    (0.2, 0.6, 0.9),
-    (0.15, 0.4, 0.45),
-    (0.15, 0.12, 0.09),
-)  # initial cosines, weights and widths
+START = ((0.2, 0.6, 0.9), (0.15, 0.4, 0.45), (0.15, 0.12, 0.09))  # cosines, weights, widths
 FACETS = 384  # number of films for the fit of the visible facets
 GRID = 16  # views and roughnesses along each side of the grid of moments
 TIE = 2e-2  # weight of the moments, relative to an error of a film

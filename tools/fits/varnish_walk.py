@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compares two models of EON below an interface with random walks: python -m tools.fits.varnish_walk.
+"""Compares models of EON below an interface with random walks: python -m tools.fits.varnish_walk.
 
 `dielectric_over_eon` is a `layer`: EON receives the light that the dielectric does not reflect, and
 returns it without loss. `varnished` has closed forms for exits and internal reflections. The random

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The claims of [Portsmouth2025], measured: the page "The paper, checked"."""
+"""Measures the claims of [Portsmouth2025] for the page "The paper, checked"."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measure the claims of the EON paper and write docs/paper_checked.md: `python -m tools.paper`."""
+"""Measures the claims of the EON paper, and writes docs/paper_checked.md: `python -m tools.paper`."""
 
 from pathlib import Path
 

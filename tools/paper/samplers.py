@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The samplers of EON that the paper compares, under one signature, and the moments of their weights."""
+"""The samplers of EON that the paper compares, and the moments of their weights."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,12 +12,12 @@ from mxeon.models.diffuse import eon_brdf
 
 @dataclass(frozen=True)
 class Sampler:
-    """A sampler and its density, under one signature.
+    """A sampler and its density; all samplers have the same arguments.
 
-    - `name`: The x of x_sample and x_pdf.
+    - `name`: Prefix of the functions, such as `ltc` of `ltc_sample` and `ltc_pdf`.
     - `sample`: sample(wo, u, roughness) -> wi, pdf.
     - `pdf`: pdf(wo, wi, roughness).
-    - `title`: For plots and tables.
+    - `title`: Name in plots and tables.
     """
 
     name: str
@@ -45,7 +45,7 @@ SAMPLERS = (
     Sampler("eon", sampling.eon_sample, sampling.eon_pdf, "exact"),
 )
 BY_NAME = {sampler.name: sampler for sampler in SAMPLERS}
-# Variance of exact samples: two fits make their density differ from the returned one by up to 1.3e-5.
+# Variance of exact samples. Two fits change their true density by up to 1.3e-5.
 EXACT_VARIANCE = 1.7e-10
 
 
@@ -56,9 +56,9 @@ def moments(
     light: Callable[[Array], Array] | None = None,
     nodes: int = 96,
 ) -> tuple[float, float, float]:
-    """Mean, variance and largest value of the weight times a light's radiance, by quadrature.
+    """Mean, variance and largest value, by quadrature, of a sample's weight times a light's radiance.
 
-    The weight of a sample of EON at unit reflectance is f cos(theta_i) / p, and 0 below the horizon.
+    The weight is f cos(theta_i) / p for EON at unit reflectance, and 0 below the horizon.
     """
     wo, wi, projected = hemisphere_nodes(mu, nodes)
     value, pdf = eon_brdf(wo, wi, 1.0, roughness)[:, 0], BY_NAME[name].pdf(wo, wi, roughness)

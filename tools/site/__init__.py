@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scripts for the pages of docs/; each measured page has its own command.
+"""Scripts that write pages of docs/. Each measured page has its own command.
 
 | command | what it writes |
 |---|---|
-| `python -m tools.site` | OSL twins, and tables of pages that need no engine; a minute |
-| `... specification` | table of results.md, from gl; some seconds |
+| `python -m tools.site` | OSL twins, and tables that need no engine; a minute |
+| `... specification` | table of results.md, measured on gl; some seconds |
 | `... surface_texts` | tables of surfaces.md; some minutes |
-| `... field` | measurements behind field.html, from every host that runs here |
+| `... field` | data of field.html, measured on every host that runs here |
 | `... versions` | versions.md and ledger/versions.json; a quarter of an hour |
-| `... gallery`, `... explorer`, `... note` | pictures of these pages |
+| `... gallery`, `... explorer`, `... note` | pictures of the pages of these names |
 | `... wall REPORT...` | wall.md and its tiles, from reports of `mxeon check` |
 | `... ledger.measure [HOST ...]`, `... ledger.pictures` | docs/upstream/measured.json; its pictures |
 """
@@ -34,7 +34,7 @@ def in_percent(share: float) -> str:
 
 
 def brief(apart: Difference) -> str:
-    """The largest difference of a picture, and how much of the object differs visibly.
+    """Text: the largest difference of a picture, and the share of the object that visibly differs.
 
     >>> brief(Difference("back", 0.2035, False, 0.124))
     '+20 %, visible on 12 %'
@@ -46,6 +46,6 @@ def brief(apart: Difference) -> str:
 
 
 def with_block(text: str, name: str, made: str) -> str:
-    """A page with other text between the comments NAME and end."""
+    """A page with new text between the comments `name` and `end`."""
     block = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end -->)", re.DOTALL)
     return block.sub(lambda found: found[1] + made + found[2], text)

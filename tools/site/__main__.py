@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes every generated file that needs no engine and no other version of MaterialX: `python -m tools.site`.
 
-These are the OSL twins, and the tables of pages. What is measured on hosts
-(`specification`, `field`, `versions`, `ledger.measure`, pictures) has its own command.
+These are the OSL twins and some tables of pages. Measurements on hosts (`specification`, `field`,
+`versions`, `ledger.measure`, pictures) have their own commands.
 """
 
 from pathlib import Path
@@ -12,7 +12,7 @@ from tools.site import arrays, gallery, note, research, twins, versions
 
 
 def made() -> dict[Path, str]:
-    """The text of each file, by its path."""
+    """Texts of the generated files, by path."""
     tables = {each.PAGE: each.page for each in (arrays, research, note, versions)}
     return {
         **{twins.path(stem): twins.osl_text(stem) for stem in twins.STEMS},

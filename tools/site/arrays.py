@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page on arrays: lists the functions that do not accept other libraries' arrays."""
+"""Updates docs/arrays.md: the list of functions that do not accept other libraries' arrays."""
 
 import inspect
 import re
@@ -14,7 +14,7 @@ PUBLIC = re.compile(r"^::: (mxeon\.models\.[\w.]*[a-z]\w*)$", re.M)
 
 
 def public():
-    """Public functions of arrays by their documented names."""
+    """Public functions with array arguments, by their documented names."""
     pages = sorted((DOCS / "api").glob("*.md"))
     names = [name for page in pages for name in PUBLIC.findall(page.read_text(encoding="utf-8"))]
     names = [name for name in names if not name.startswith(NUMPY_ONLY)]
@@ -25,7 +25,7 @@ def public():
 
 
 def arrays(function):
-    """Names of the array arguments, which have gradients."""
+    """Names of a function's array arguments, which are also those with gradients."""
     parameters = inspect.signature(function).parameters.values()
     return [each.name for each in parameters if each.annotation in ARRAYS]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The explorer on the site; `python -m tools.site.explorer` draws the picture of the page about it."""
+"""The site's explorer; `python -m tools.site.explorer` takes the screenshot for its page."""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -10,12 +10,12 @@ from mxeon.io.files import write_text
 from tools.site import DOCS
 
 PICTURE = DOCS / "images" / "explorer.png"
-PAGES = "upstream/{}.html"  # relative to the page in the built site
+PAGES = "upstream/{}.html"  # ledger pages, relative to the explorer in the built site
 SIZE = {"width": 1280, "height": 900}
 
 
 def text() -> str:
-    """The explorer, whose links lead to the site's pages of the ledger."""
+    """HTML of the explorer, with links to the site's ledger pages."""
     return page(page_data(pages=PAGES))
 
 
@@ -31,7 +31,7 @@ def main() -> None:
         sheet = browser.new_page(viewport=SIZE)
         sheet.goto(file.as_uri())
         sheet.get_by_text("shader, float32").first.wait_for()
-        sheet.wait_for_timeout(5000)  # until the edges of the picture are smooth
+        sheet.wait_for_timeout(5000)  # wait until the edges of the picture are smooth
         sheet.screenshot(path=PICTURE)
         browser.close()
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The comparison of renderers on the site, and the measurements behind it.
+"""The site's comparison of renderers, and the measurements that it shows.
 
-`python -m tools.site.field` measures every available host in sequence; `python -m tools.site.field DIR` takes the
-reports in a folder instead. Hosts without a new report keep their measurements.
+`python -m tools.site.field` measures the available hosts one after the other; `python -m
+tools.site.field DIR` reads the reports in a folder instead. Hosts without a new report keep their measurements.
 """
 
 import base64
@@ -31,9 +31,9 @@ from mxeon.survey.field import Entry, by_harm, read_field
 from mxeon.survey.field_page import INPUTS, SCENES, Frame, frames, render
 
 DATA = Path(__file__).with_name("field.json")
-PICTURES = DATA.with_suffix(".webp")  # all portraits and difference maps, ACROSS in a line
+PICTURES = DATA.with_suffix(".webp")  # all portraits and difference maps, ACROSS per row
 SIZE, ACROSS = 96, 8
-PAGES = "upstream/{}.html"  # relative to the page in the built site
+PAGES = "upstream/{}.html"  # ledger pages, relative to this one in the built site
 EXAMPLE = examples_folder() / "clay.mtlx"
 DIFFUSE = tuple(dict.fromkeys(row.node for row in (*DIFFUSE_SPECS, *SURFACE_LOBES)))
 LIBRARIES = ("eonlib", "stock")
@@ -44,9 +44,9 @@ TIMEOUT = 600.0
 class Row:
     """A row of the page without its pictures.
 
-    - `entry`: The entry with the largest error.
-    - `same`: Library and node of each entry with the same cause.
-    - `frames`: Scale of the difference map and largest difference, by scene.
+    - `entry`: The entry with the largest error among those with the same cause.
+    - `same`: Library and node of the other entries.
+    - `frames`: The difference map's scale and the largest difference, by scene.
     """
 
     entry: Entry
@@ -55,14 +55,14 @@ class Row:
 
 
 def read() -> tuple[list[Row], Iterator[NDArray[np.uint8]]]:
-    """The kept rows, and their pictures: portrait and difference map of each scene of each row."""
+    """The stored rows, and all their pictures: portrait and difference map by row and scene."""
     rows = make_converter().structure(json.loads(DATA.read_text(encoding="utf-8")), list[Row])
     lines = np.asarray(Image.open(PICTURES)).reshape(-1, SIZE, ACROSS, SIZE, 3)
     return rows, iter(lines.swapaxes(1, 2).reshape(-1, SIZE, SIZE, 3))
 
 
 def text() -> str:
-    """The page, whose links lead to the site's pages of the ledger."""
+    """HTML of the page, with links to the site's ledger pages."""
     rows, pictures = read()
     shown = {
         (row.entry.host, row.entry.library, row.entry.node, scene): (
@@ -94,7 +94,7 @@ def text() -> str:
 
 
 def keep(folder: str) -> None:
-    """Replace the rows of the hosts that have reports in a folder."""
+    """Replace the stored rows of the hosts that have reports in a folder."""
     groups = by_harm(read_field([folder]))
     measured = {group[0].host for group in groups if group[0].verdict != NOT_RUN}
     old, old_pictures = read()
@@ -119,7 +119,7 @@ def write(rows: list[Row], pictures: list[NDArray[np.uint8]]) -> None:
     records = make_converter().unstructure(rows)
     for cell in (cell for record in records for cell in record["entry"]["cells"].values()):
         for key in [key for key, value in cell.items() if value in (None, "", [], {})]:
-            del cell[key]  # the default
+            del cell[key]  # the default value is restored when reading
     write_text(DATA, "[\n" + ",\n".join(map(json.dumps, records)) + "\n]\n")
     blank = np.zeros((-len(pictures) % ACROSS, SIZE, SIZE, 3), np.uint8)
     lines = np.concatenate([pictures, blank]).reshape(-1, ACROSS, SIZE, SIZE, 3)
@@ -133,7 +133,7 @@ def pixels(uri: str) -> NDArray[np.uint8]:
 
 
 def essential(entry: Entry) -> Entry:
-    """An entry without what the page does not show."""
+    """An entry with only the fields that the page shows."""
     cells = {
         column: replace(
             cell,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Render the materials of `examples/` with stock and with eonlib, and write the gallery page.
+"""Renders the materials of `examples/` with stock MaterialX and eonlib, and writes the gallery page.
 
-python -m tools.site.gallery    the pictures, their differences, and gallery.md
+python -m tools.site.gallery    writes pictures, their differences, and gallery.md
 """
 
 import json
@@ -32,11 +32,11 @@ EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
 # The difference of stock MaterialX by material: its description, and its largest value.
 DIFFERENCES = PICTURES / "differences.json"
-SIZE = 512  # pixels of a picture
-INSET, EDGE = 112, 8  # pixels of the difference in a picture, and its distance from the rim
+SIZE = 512  # width and height of a picture in pixels
+INSET, EDGE = 112, 8  # width of the difference's inset, and its distance from the edge, in pixels
 QUALITY = 85  # WebP quality
-ROWS = 96  # rows of the studio's picture
-BOXES = (  # soft boxes of the studio: azimuth from the viewer and elevation, half of both widths, in degrees; radiance
+ROWS = 96  # rows of the studio's latitude-longitude map
+BOXES = (  # soft boxes: center (azimuth from the viewer, elevation) and half sizes in degrees; radiance
     ((-48.0, 42.0), (22.0, 15.0), (7.0, 6.8, 6.4)),
     ((66.0, 22.0), (5.0, 34.0), (8.0, 8.3, 9.0)),
     ((-118.0, 20.0), (8.0, 36.0), (9.0, 8.6, 8.0)),
@@ -44,7 +44,7 @@ BOXES = (  # soft boxes of the studio: azimuth from the viewer and elevation, ha
 )
 SOFT = 2.5  # degrees over which the edge of a box falls off
 BACKGROUND = 30  # sRGB code
-TITANIUM = DOCS / "images" / "titanium.mtlx"  # material in the README
+TITANIUM = DOCS / "images" / "titanium.mtlx"  # material of the README's picture
 
 HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
 # Gallery
@@ -81,7 +81,7 @@ on the [path-traced](path_tracing.md) shader ball in the studio, with shadows an
 
 
 def studio():
-    """Radiance of a studio, a latitude-longitude picture: a floor, a ceiling and soft boxes."""
+    """Latitude-longitude map of a studio's radiance: floor, ceiling and soft boxes."""
     polar = (np.arange(ROWS)[:, None] + 0.5) / ROWS * np.pi
     azimuth = ((np.arange(2 * ROWS) + 0.5) / ROWS - 1.0) * np.pi
     up = np.broadcast_to(np.cos(polar), (ROWS, 2 * ROWS))[..., None]
@@ -98,9 +98,9 @@ def studio():
 
 
 def pictures(host, document):
-    """A document's materials, each with its pictures and their differences from eonlib's.
+    """For each material of a document: name, pictures, and the difference of stock from eonlib.
 
-    With stock first, if stock can generate the material, then with eonlib.
+    The first picture is stock MaterialX's, if it can generate the material; the last is eonlib's.
     """
     shaders, scene = [], replace(STUDIO, size=SIZE)
     if "furnace" in document.stem:
@@ -119,7 +119,7 @@ def pictures(host, document):
 
 
 def sphere_picture(image):
-    """A picture of a sphere at half its size, with smooth edges and a rim of background."""
+    """A picture of a sphere, reduced to half its size, with a margin of background."""
     mask = visible(len(image), "sphere").mask[..., None]
     codes = np.where(mask, srgb_encoded(image), np.uint8(BACKGROUND))
     inner = SIZE - SIZE // 8
@@ -136,7 +136,7 @@ def label(image, place, text, size=22, anchor="ls"):
 
 
 def save(path, shown, apart=None):
-    """Write pictures side by side, each with its label if there are several, and the difference as an inset."""
+    """Save pictures side by side, with labels if there are two, and the difference as an inset."""
     image = Image.new("RGB", (sum(each.width for each in shown), shown[0].height))
     for number, each in enumerate(shown):
         image.paste(each, (number * each.width, 0))
@@ -184,7 +184,7 @@ def judge():
 
 
 def page():
-    """The gallery as Markdown: documents and their materials, those with the largest difference first."""
+    """Markdown of the gallery: documents and their materials, largest differences first."""
     found = json.loads(DIFFERENCES.read_text(encoding="utf-8"))
     alike = [name for name, (said, _) in found.items() if not said]
 

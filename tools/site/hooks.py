@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Add built pages and pages from outside `docs/`, adapt pages to the site, fill in the ledger's figures."""
+"""MkDocs hooks: add pages from outside `docs/`, adapt links, fill in the ledger's figures."""
 
 import re
 from pathlib import Path
@@ -12,7 +12,7 @@ from tools.site import explorer, field
 from tools.site.ledger.pages import filled
 
 ROOT = Path(__file__).resolve().parents[2]
-# Page of the site -> file of the repository; its links are relative to the root.
+# Pages of the site from files of the repository whose links are relative to its root.
 OUTSIDE = {
     "index.md": "README.md",
     "changelog.md": "CHANGELOG.md",
@@ -21,7 +21,7 @@ OUTSIDE = {
 
 
 def on_files(files, config):
-    """Add the home page, the changelog, contributing, the explorer and the comparison of renderers."""
+    """Add the pages in OUTSIDE, the explorer, and the comparison of renderers."""
     pages = {page: ROOT / name for page, name in OUTSIDE.items()}
     for page, path in pages.items():
         files.append(File.generated(config, page, abs_src_path=str(path)))
@@ -31,7 +31,7 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, **_):
-    """Make links relative to `docs/`, and remove the section column on pages without sections."""
+    """Fill in ledger pages, adapt links to the site, and hide navigation on top-level pages."""
     if page.parent is None:
         page.meta["hide"] = ["navigation"]
     if page.file.src_uri.startswith("upstream/"):
@@ -39,13 +39,13 @@ def on_page_markdown(markdown, page, **_):
     is_outside = page.file.src_uri in OUTSIDE
     root = "" if is_outside else "../"
     for page_name, name in OUTSIDE.items():
-        markdown = markdown.replace(f"](../../{name}", f"](../{page_name}")  # used in docs/api
+        markdown = markdown.replace(f"](../../{name}", f"](../{page_name}")  # links of docs/api
         markdown = markdown.replace(f"]({root}{name}", f"]({page_name}")
     return markdown.replace("](docs/", "](") if is_outside else markdown
 
 
 def on_page_content(html, page, **_):
-    """Join numbers and units; split pairs of balls into halves for phones; link the wall to the ledger."""
+    """Join numbers with units, split pictures of pairs for phones, link the wall to the ledger."""
     html = unbroken(html)
     if page.file.src_uri == "wall.md":
         return html.replace('href="upstream/README.md"', 'href="upstream/index.html"')
@@ -55,7 +55,7 @@ def on_page_content(html, page, **_):
 
 
 def _halves(found):
-    """A picture as the halves stock and eonlib; unchanged unless it is twice as wide as high."""
+    """HTML that shows a picture's halves, stock and eonlib, separately, if it is a pair."""
     width, height = Image.open(ROOT / "docs" / found[2]).size
     if width != 2 * height:
         return found[0]

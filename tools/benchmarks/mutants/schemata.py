@@ -3,7 +3,7 @@
 
 At each mutant's place, an expression equals the original unless the uniform `mutant` has the mutant's number: ` + `
 becomes ` + mutant_sign(mutant == 7) * `. So a node's shader compiles once for hundreds of mutants, and each mutant only
-takes the milliseconds of a check on a subset of samples. Mutants of constant expressions and of integers
+takes the milliseconds of a check on a subset of samples. Mutants of constant expressions or integers
 cannot be written this way. They are reported, and need a separate library.
 """
 
@@ -266,8 +266,7 @@ Subject = tuple[str, bool, str, Asked]
 def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
     """The check and subject that detect each mutant, by the mutant's name.
 
-    Covers GLSL of nodes and functions shared with OSL. The value is SURVIVED if no check detects a
-    mutant, and UNWRITTEN if a uniform cannot select it.
+    The value is SURVIVED if no check detects the mutant, UNWRITTEN if a uniform cannot select it.
     """
     twins = [each for each in mutants if each.file in OSL_TWINS]
     own = [each for each in mutants if each.file.startswith("genglsl/")]

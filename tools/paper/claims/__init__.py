@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Claims as measurements with a bound, and the page "The paper, checked" that lists them."""
+"""Claims as measurements with limits, and the page "The paper, checked", which lists them."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -24,15 +24,15 @@ with 50 digits of the printed equations. They also test that densities integrate
 TALLY = "{count} claims; verdicts: {holds} holds, {part} holds in part, {fails} fails."
 
 
-# A sentence with the numbers, and the values to compare with the bounds.
+# Result of a measurement: a sentence for the page, and the values to compare with the limits.
 Measured = tuple[str, ArrayLike]
 Measure = Callable[[], Measured]
-ROUNDING = 1e-12  # agreement of two forms of a formula
+ROUNDING = 1e-12  # largest difference of two equal formulas in float64
 
 
 @dataclass
 class Section:
-    """Claims under one heading: functions that measure a row of the page, in the order of COLUMNS."""
+    """Claims under one heading; each function measures and returns a row with COLUMNS."""
 
     heading: str
     rows: list[Callable[[], tuple[str, ...]]] = field(default_factory=list)
@@ -46,7 +46,7 @@ class Section:
         least: float = -np.inf,
         most: float | None = None,
     ) -> Callable[[Measure], Measure]:
-        """Decorate a measurement whose values must lie in [least, most]; by default they must be roundings."""
+        """Decorate a measurement whose values must lie in [least, most]; `most` defaults to ROUNDING."""
         top = most if most is not None else ROUNDING if least == -np.inf else np.inf
         limit = f"in [{least:.3g}, {top:.3g}]"
         if not np.isfinite(top):
@@ -79,7 +79,7 @@ def verdict(values: ArrayLike, least: float, most: float) -> str:
 
 
 def page(sections: Sequence[Section]) -> str:
-    """The page as Markdown; measures every claim, and prints those that hold."""
+    """Measure every claim, print those that hold, and return the page as Markdown."""
     parts = [HEAD]
     for section in sections:
         rows = [measured() for measured in section.rows]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Appendix A of [Portsmouth2025]: the rho for a given albedo."""
+"""Claims of [Portsmouth2025], Appendix A: rho from a given albedo."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from tools.paper.claims import Measured, Section
 COLORS = np.linspace(0.0, 1.0, 401)
 ROUGHNESS = np.linspace(0.0, 1.0, 101)
 STATED = 3e-3
-# The rounding of float32: a float64 formula with a larger error has failed.
+# A float64 formula counts as failed if its error exceeds a float32 rounding.
 FLOAT32 = 2.0**-24
 SECTION = Section("Appendix A: inversion of the albedo")
 claim = SECTION.claim
@@ -29,7 +29,7 @@ def _listed(errors: dict[float, float]) -> str:
 
 
 def _polynomial(slope: float, zero: float, exact: np.ndarray) -> Measured:
-    """Largest error of C + slope (zero - C) C r, and its place."""
+    """Sentence with the largest error of C + slope (zero - C) C r and its place; the error."""
     error = np.abs(COLORS + slope * (zero - COLORS) * COLORS * ROUGHNESS[:, np.newaxis] - exact)
     row, column = np.unravel_index(error.argmax(), error.shape)
     place = f"at r = {ROUGHNESS[row]:g}, C = {COLORS[column]:.2f}"
@@ -43,7 +43,7 @@ def _polynomial(slope: float, zero: float, exact: np.ndarray) -> Measured:
     least=FLOAT32,
 )
 def printed_root() -> Measured:
-    """Eq. (30) as printed, at low roughness; its error at the lowest."""
+    """Errors of Eq. (30) as printed, at low roughness; the error at the lowest counts."""
     errors = {}
     for r in (1e-3, 1e-6, 1e-9):
         A, B = _quadratic(r)
@@ -55,7 +55,7 @@ def printed_root() -> Measured:
 
 @claim("below Eq. (31)", "a series serves at low roughness", "error up to r = 0.1", most=STATED)
 def taylor() -> Measured:
-    """The series below Eq. (31); its error at roughness 0.01 and 0.1."""
+    """Errors of the series below Eq. (31); those at roughness 0.01 and 0.1 count."""
     errors = {}
     for r in (0.01, 0.1, 1.0):
         A, B = _quadratic(r)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sections 2 and 3 of [Portsmouth2025]: values and albedos of QON, FON and EON."""
+"""Claims of [Portsmouth2025], Sections 2 and 3: values and albedos of QON, FON and EON."""
 
 import numpy as np
 
@@ -22,14 +22,14 @@ from tools.paper.claims import ROUNDING, Measured, Section
 FINE = np.linspace(0.0, 1.0, 10001)
 SIGMA = np.array([0.1, 0.2, 0.3, 0.5, 0.8, 0.5 * np.pi])
 ROUGHNESS = np.array([0.1, 0.5, 1.0])
-# Full Oren-Nayar exceeds albedo 1 below this sigma; above it is called high.
+# The albedo of full Oren-Nayar must exceed 1 below this sigma. Larger sigmas count as high.
 HIGH_SIGMA = 0.6
 SECTION = Section("Sections 2 and 3: the models")
 claim = SECTION.claim
 
 
 def pairs(count: int = 100_000) -> np.ndarray:
-    """Random pairs of directions of the hemisphere."""
+    """Random directions of the hemisphere in pairs, (2, count, 3)."""
     rng = np.random.default_rng(1)
     z, phi = rng.random((2, count)), 2.0 * np.pi * rng.random((2, count))
     S = np.sqrt((1.0 - z) * (1.0 + z))
@@ -56,7 +56,7 @@ def qon_gain() -> Measured:
     least=ROUNDING,
 )
 def full_gain() -> Measured:
-    """The distance of the largest albedo from 1, on the claimed side."""
+    """Distances of the largest albedos from 1; positive on the side that the paper claims."""
     mu = np.array([1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2])
     albedos = np.array([albedo_dir_quadrature(oren_nayar_brdf, mu, 1.0, s).max() for s in SIGMA])
     listed = ", ".join(f"{E:.3f} at sigma = {s:.2g}" for s, E in zip(SIGMA, albedos, strict=True))
@@ -93,7 +93,7 @@ def rms_to_full() -> Measured:
     most=0.1,
 )
 def kink() -> Measured:
-    """Jumps of the slope of f in s at s = 0, at the largest roughness, both directions at the same angle."""
+    """Jumps of df/ds at s = 0, at the largest roughness, with both directions at the same angle."""
     parts, ratios = [], []
     for degrees in (5, 25, 60):
         mu = np.cos(np.radians(degrees))
@@ -136,7 +136,7 @@ def fon_loses() -> Measured:
 
 
 def listing_1_albedo(mu: np.ndarray) -> np.ndarray:
-    """The exact albedo of the listing at roughness 1, in the order of its operations, float32 for float32."""
+    """The listing's exact albedo at roughness 1, with the same operations in float32."""
     one, third = np.float32(1.0), np.float32(2.0 / 3.0)
     S = np.sqrt(one - mu * mu)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Section 4 of [Portsmouth2025]: mean, variance and largest weight of the samplers, by quadrature."""
+"""Claims of [Portsmouth2025], Section 4: mean, variance and largest weight of samplers."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ def at(degrees: float) -> float:
 
 
 def over_angles(name: str, roughness: float) -> np.ndarray:
-    """Mean, variance and largest value at all of `DEGREES`, shape (3, angles)."""
+    """Mean, variance and largest value of a sampler's weight at all `DEGREES`, (3, angles)."""
     return np.transpose([moments(name, at(degrees), roughness) for degrees in DEGREES])
 
 
@@ -36,9 +36,9 @@ def cosine_variance() -> Measured:
     "Fig. 11", "the variance of cosine sampling has a peak", "step over the step before", most=0.9
 )
 def cosine_diverges() -> Measured:
-    """How the growth of the variance shrinks from one factor of 10 in mu to the next.
+    """Ratio of the variance's growth over two factors of 10 in mu.
 
-    It would shrink before a peak. It does not: each factor of 10 adds (A r)^2 / 2 ln 10.
+    Before a peak the growth would shrink. Instead, each factor of 10 adds (A r)^2 / 2 ln 10.
     """
     below = [moments("cosine", mu, 1.0, nodes=200)[1] for mu in (1e-3, 1e-4, 1e-5)]
     growth = np.diff(below)
@@ -60,7 +60,7 @@ def determinant() -> Measured:
 
 @claim("Section 4", "general LTC wastes samples below the horizon", "share", least=1e-3)
 def wasted() -> Measured:
-    """Share of the samples of LTC that fall below the horizon."""
+    """Share of LTC's samples that fall below the horizon."""
     d = ltc.ltc_md(COSINES, 1.0)
     share = 1.0 - cltc.cltc_kept_fraction(d)
     at = COSINES[share.argmax()]
@@ -70,7 +70,7 @@ def wasted() -> Measured:
 
 @claim("Listing 3", "no sample below the horizon", "z", least=0.0)
 def side_of_the_lune() -> Measured:
-    """Lowest draw of Listing 3 along the normal, where the fitted d is positive."""
+    """Lowest sample of Listing 3 near the normal, where the fitted d is positive."""
     mu = np.linspace(0.999, 1.0, 100_001)
     d = ltc.ltc_md(mu, 1.0)
     u1, u2 = np.random.default_rng(2).random((2, 200_000))
@@ -100,7 +100,7 @@ def mixture_weight() -> Measured:
     least=100.0,
 )
 def gain() -> Measured:
-    """Variance of cosine sampling over the mixture's variance."""
+    """Ratio of the variance of cosine sampling to the mixture's variance."""
     parts, ratios = [], []
     for degrees in (60.0, 85.0, 89.0, 89.9, 90.0 - np.degrees(1e-6)):
         cosine, mixture = (
@@ -118,7 +118,7 @@ def gain() -> Measured:
     most=1.0,
 )
 def low_roughness() -> Measured:
-    """The variance of mixture and cosine, each averaged over the projected hemisphere."""
+    """Ratio of the mixture's variance to the cosine's, averaged over the projected hemisphere."""
     weight = np.sin(np.radians(2.0 * DEGREES))
     parts, ratios = [], []
     for r in (0.02, 0.05, 0.1, 0.2):
@@ -132,7 +132,7 @@ def low_roughness() -> Measured:
 
 @claim("Listing 4", "defined for u1 in [0, 1] and r in [0, 1]", "u1 / P_u", least=0.0, most=1.0)
 def no_number() -> Measured:
-    """The draw of Listing 4 divides u1 by P_u where u1 <= P_u."""
+    """Listing 4 divides u1 by P_u if u1 <= P_u; both can be 0."""
     with np.errstate(invalid="ignore"):
         u1 = np.float64(0.0) / np.float64(0.0**0.1)
     return f"at r = 0, u1 = 0: P_u = 0, u1 / P_u = {u1}", u1
