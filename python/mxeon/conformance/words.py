@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sentences about results, made from their fields. No other module makes such sentences, and none reads them."""
+"""Sentences about results. Only this module makes them from fields; no code parses them."""
 
 import math
 from collections import Counter
@@ -18,7 +18,7 @@ AS_SPECIFIED = "looks as specified"
 
 
 def in_words(number: float) -> str:
-    """A number of two digits, without a power of ten.
+    """A number with two significant digits, without an exponent.
 
     >>> in_words(1.234), in_words(1234.5)
     ('1.2', '1,200')
@@ -27,7 +27,7 @@ def in_words(number: float) -> str:
 
 
 def of_white(share: float) -> str:
-    """A share of the radiance of a white, matte surface that faces the light.
+    """A radiance in words, given as a share of that of a white, matte surface facing the light.
 
     >>> of_white(0.2035), of_white(1e-7), of_white(48.2)
     ('20 % of white', 'less than 0.1 % of white', '48 times white')
@@ -59,7 +59,7 @@ def enumerated(names: Sequence[str]) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """A number of things.
+    """A number and its noun, in the plural unless the number is 1.
 
     >>> counted(1, "check"), counted(2, "check")
     ('1 check', '2 checks')
@@ -71,7 +71,7 @@ def _short(number: float, digits: int = 2) -> str:
     return f"{float(f'{number:.{digits}g}'):g}"
 
 
-# --- tables: names of scenes, regions, models' faults and other defects ------------------------------
+# --- tables: names of scenes and regions, faults of models, and other defects -----------------------
 
 LIGHTS = {"side": "light from the side", "front": "light from the front"}
 LIGHTS |= {"back": "light from behind", "furnace": "a white environment"}
@@ -128,14 +128,14 @@ REGIONS = {
     "normal_away": "where the normal faces away from the viewer",
     **{scene: f"in {light}" for scene, light in LIGHTS.items()},
 }
-# Sentences for the part of an input whose range is a region.
+# Phrases for the part of an input whose range defines a region.
 PARTS = {
     "value": "{}",
     **{each: f"the {each} component of {{}}" for each in ("first", "second", "smaller", "larger")},
     "difference": "a difference between the components of {} of",
 }
 # fmt: off
-# Faults between the inputs and a model: {0}, {1} are names, {x} is the first number.
+# Faults between the inputs and a model. {0} and {1} are names, {x} is the first number.
 FAULTS = {
     "channels_exchanged": "the color channels are exchanged: they arrive as {0}, {1}, {2}",
     "one_channel": "every channel takes the {0} of the color",
@@ -168,7 +168,7 @@ FAULTS = {
     "pi_missing": "the factor 1/pi is missing",
     "pi_twice": "the factor 1/pi is applied twice",
 }
-# Words between the states that all wrong pixels share, and between those of all wrong frames.
+# Words that join the states shared by all wrong pixels, or by all wrong frames.
 STATES = {"state": "", "both_states": " and ", "either_state": " or "}
 FRAMES = {f"{key}_of_frames": word for key, word in STATES.items()}
 SUMS = (
@@ -323,7 +323,7 @@ def _rms(cause: Cause) -> str:
 
 
 def _model(cause: Cause, distances: Mapping[str, float]) -> str:
-    """The nearest model, and the next one.
+    """The nearest model and the second nearest, in words.
 
     >>> _model(Cause(Kind.MODEL, "Lambert", rms=0.001), {"EON": 0.25, "Lambert": 0.001})
     'best match: Lambert (rms 0.001), then EON (0.25)'
@@ -336,7 +336,7 @@ def _model(cause: Cause, distances: Mapping[str, float]) -> str:
 
 
 def _region(cause: Cause) -> str:
-    """The number of wrong pairs, and their region or the worst one."""
+    """The number of wrong pairs, and their region or the worst pair."""
     begins = "wrong for" if cause.key == "wrong" else "correct except for"
     wrong, count = cause.wrong or 0, cause.of or 1
     if cause.region:
@@ -357,7 +357,7 @@ def _point(point: Mapping[str, Sequence[float]]) -> str:
 
 
 def _degrees(direction: Sequence[float]) -> str:
-    """Angle from the normal."""
+    """Angle between a direction and the normal, in whole degrees."""
     return f"{math.degrees(math.acos(max(-1.0, min(1.0, direction[2])))):.0f}"
 
 
@@ -414,7 +414,7 @@ def _released(cause: Cause) -> str:
 
 
 def _differences(names: Sequence[str]) -> str:
-    """The first differing parts of two graphs: three texts each, its name and both values."""
+    """The first parts in which two graphs differ; `names` has a name and two values for each."""
     parts = [
         f"{name} is {own} instead of {right}"
         for name, own, right in zip(names[::3], names[1::3], names[2::3], strict=False)
@@ -433,7 +433,7 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
     Kind.UNKNOWN: lambda cause: UNKNOWN[cause.key],
     Kind.TEXT: lambda cause: cause.text,
     Kind.CONTROL: lambda cause: "inconclusive: the values are right, but the control passed too",
-    # The reason of a result that did not run states it.
+    # These causes add nothing to the reason that the result itself states.
     **dict.fromkeys((Kind.NONE, Kind.FOLLOWS, Kind.INPUT), lambda cause: ""),
 }
 
@@ -475,7 +475,7 @@ def appearance(apart: Difference) -> str:
 
 
 def excess(result: Result) -> str:
-    """The excessive error, or the control that passed; "" for neither."""
+    """An error above the tolerance, or a control that passed, in words; "" without either."""
     control = result.control
     if result.error is not None and not result.within:
         if result.difference:
@@ -506,7 +506,7 @@ def look(result: Result) -> str:
 
 
 def unchecked(names: Iterable[str]) -> str:
-    """Inputs of nodes whose values come from the host, because no model has them.
+    """A note on inputs that are not checked, because no model computes their values.
 
     >>> unchecked(["SR_tiles.base_color"])
     'not checked: base_color, which comes from a pattern or texture'
@@ -524,7 +524,7 @@ def explanation(result: Result) -> str:
 
 # --- changes ---------------------------------------------------------------------------------------
 
-# Numbers that differ between two runs of a check: {0} before, {1} after.
+# Changes of a number between two runs of a check: {0} is its old value, {1} its new one.
 GROWTHS = {
     "largest": "the largest error is {0} -> {1}",
     "rms": "the rms error is {0} -> {1}",
@@ -537,7 +537,7 @@ ROUNDED = "with another driver, few samples leave the tolerance"
 
 
 def growth(key: str, before: float, after: float, place: Region | None) -> str:
-    """The change of a number, and its place.
+    """A change of a number between two runs in words, and the region that it concerns.
 
     >>> growth("wrong", 0.125, 0.25, Region("roughness", "value", low=0.5))
     '12.5 % -> 25 % of the samples are wrong with roughness 0.5 or above'
@@ -560,7 +560,7 @@ def found_page(pages: Sequence[str]) -> str:
 
 
 def annotation(level: str, title: str, message: str) -> str:
-    """A command to GitHub's log, which shows the message.
+    """A line that makes GitHub Actions show a message as an annotation.
 
     >>> annotation("error", "worse: sheen", "50 % darker")
     '::error title=worse%3A sheen::50 %25 darker'
@@ -585,7 +585,7 @@ def sentence(run: Run) -> str:
     if counts[results.DIFFERS]:
         verb = "differs" if counts[results.DIFFERS] == 1 else "differ"
         differ = f"; {counts[results.DIFFERS]} {verb}, but the specification allows it"
-    # Checks that a failure prevented count as part of it.
+    # Checks that another failure prevented are not counted separately.
     idle = sum(each.verdict == results.NOT_RUN and not each.follows for each in judged)
     missed = f"; {idle} did not run" if idle else ""
     if counts[results.FAILED]:
@@ -634,7 +634,7 @@ def summary(run: Run) -> str:
 
 
 def origins(run: Run) -> tuple[str, ...]:
-    """For each folder judged as a library: its files, and MaterialX's."""
+    """For each folder judged as a library, the number of its own files and of MaterialX's."""
     return tuple(
         f"library {folder}: {counted(len(files['folder']), 'file')} from the folder, "
         + (f"{len(files['MaterialX']) or 'none'} from" if "MaterialX" in files else "loaded before")
@@ -644,7 +644,7 @@ def origins(run: Run) -> tuple[str, ...]:
 
 
 def not_judged(run: Run) -> tuple[str, ...]:
-    """One line on subjects that no check judges, with reasons; empty if there are none."""
+    """One line that lists the subjects no check judges, with reasons; empty if there are none."""
     reasons: dict[str, list[str]] = {}
     for what, reason in run.unjudged:
         reasons.setdefault(reason, []).append(what)

@@ -63,31 +63,31 @@ def check(
       nodes and the bundled examples.
     - `hosts`: Hosts to judge, or "all"; `mxeon.hosts.host_names` lists them.
     - `libraries`: "eonlib", "stock" for unmodified MaterialX, and folders of MaterialX documents.
-    - `workers`: Number of worker processes, which may crash or hang; 0 to work in this
-      one.
+    - `workers`: Number of worker processes, which may crash or hang without ending the run; 0 to
+      work in this process.
     - `timeout`: Seconds per task in a worker.
     - `folder`: Folder of the journal, from which an interrupted run can be resumed; None for
       no journal. It must not contain files that the run reads, nor another interrupted run. Results of an
       earlier run move to its subfolder `previous_run`.
     - `resume`: Continue the run in `folder`.
     - `scheduler`, `wait`: Address of a Dask scheduler whose workers do the work, and seconds to
-      wait for a compatible one.
+      wait for a compatible worker.
     - `policy`: Permissions and limits of documents; None for `Policy()`.
     - `nodes`: Categories of nodes to judge; "all", or "common" for the nodes of an audit. None for
-      the nodes of `files`, or the common ones without files.
+      the nodes of `files`, or for the common nodes if there are no files.
     - `progress`: Called as `progress(tasks, total)`; returns the tasks as an iterator that shows its
       progress, such as `lambda tasks, total: tqdm(tasks, total=total)`.
     - `refuse`: Called with each fault of each document that cannot be read, before any other work.
     - `compared`: Additional libraries for comparison: their failures do not change the
-      verdict. `compared="stock"` is what the command does with documents.
+      verdict. The command uses `compared="stock"` for documents.
     - `seed`: Seed of the samples, at least 0; verdicts should not depend on it.
     - `methods`: How generated shaders compute lighting; None for each host's own methods.
 
-    Documents that cannot be judged are refused, and the rest is judged. The run has then not
-    passed: see `mxeon.Run`.
+    Documents that cannot be judged are refused, and the rest is judged. Such a run has not passed:
+    see `mxeon.Run`.
 
-    Raises ValueError if a name or number is wrong, the run to resume differs, or no
-    scheduler answers; NotRun if no process can start, or the cluster has no workers for too long.
+    Raises ValueError if a name or number is wrong, the run to resume differs, or no scheduler
+    answers; NotRun if no process can start, or the cluster has no workers for too long.
     """
     begin = time.monotonic()
     policy = policy or DEFAULT
@@ -111,7 +111,7 @@ def check(
             for target in {host_row(host).target for host in engines} & {*generation.TARGETS}:
                 try:
                     generation.check_generator(library, target)
-                except InterfaceError as reason:  # no task would run
+                except InterfaceError as reason:  # no task of this library would run
                     raise InputError(str(reason)) from None
         if workers < 0:
             raise InputError(f"workers must be at least 0; got {workers}")
@@ -132,7 +132,7 @@ def check(
             done: dict[int, Findings] = journal.findings if journal else {}
             numbers = [n for n in range(len(planned.tasks)) if n not in done]
             waiting = [planned.tasks[number] for number in numbers]
-            # The machines of a farm may differ.
+            # Hosts on a cluster's machines may differ from those of the earlier run.
             earlier = [] if scheduler else [host for part in done.values() for host in part.hosts]
             identities = {host.name: host for host in earlier}
             found = (
@@ -143,7 +143,7 @@ def check(
                 )
                 for position, outcome in executor(waiting)
             )
-            with closing(found) as outcomes:  # processes work until then
+            with closing(found) as outcomes:  # workers run until this closes
                 shown = progress(outcomes, len(waiting)) if progress else outcomes
                 for position, findings in shown:
                     if differences := [
@@ -154,16 +154,16 @@ def check(
                     ]:
                         raise InputError(refusal(folder, differences))
                     if journal:
-                        journal.add(numbers[position], findings)  # writes its pictures to disk
+                        journal.add(numbers[position], findings)  # writes the pictures to disk
                     else:
                         done[numbers[position]] = findings
             seconds = round(time.monotonic() - begin, 3)
-            left = None if journal else policy  # a journal has the studio's pictures
+            left = None if journal else policy  # a journal already has the studio pictures
             return replace(to_run(planned, done), seconds=seconds, policy=left)
 
 
 def with_studio(run: Run, policy: Policy) -> Run:
-    """A run with its documents' pictures in the studio, which `check` itself only draws for a folder."""
+    """The run with studio pictures of its documents, which `check` draws only for a folder."""
     libraries = dict.fromkeys(each.library for each in run.results if each.host == "gl")
     subjects = product(libraries, list(run.contents)[: plan.STUDIED])
     tasks = [Task(plan.STUDIO, file, "gl", library) for library, file in subjects]
@@ -183,7 +183,7 @@ def _inputs(files: Sequence[AnyPath], libraries: Iterable[str], policy: Policy) 
 
 
 def read_run(folder: AnyPath) -> Run:
-    """The completed part of the run in a folder; ValueError without a journal of this version."""
+    """The completed part of the run in a folder; ValueError if it has no journal of this version."""
     return to_run(*read_journal(folder))
 
 
@@ -193,7 +193,7 @@ def work(policy: Policy, task: Task) -> Findings:
 
 
 def work_or_not_run(work: Callable[[Task], Findings], task: Task) -> Findings:
-    """Findings of a task, with "not run" if the host cannot be opened here."""
+    """Findings of a task; the verdict is "not run" if the host cannot be opened here."""
     try:
         return work(task)
     except NotRun as reason:
@@ -215,7 +215,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         if lines := findings[number].errors:
             file = planned.tasks[number].subject
             refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
-    # Documents that only a compared library cannot read.
+    # Faults of documents that only a compared library cannot read become notes.
     for document, library in product(planned.contents, planned.compared):
         lines = refused.pop(f"{document} with {library}", ())
         notes += tuple((line, document) for line in lines)
@@ -247,7 +247,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
 
 
 def texts_not_run(hosts: Container[str]) -> Iterator[tuple[str, str]]:
-    """The languages of a library's texts that none of these hosts compiles, with the reasons."""
+    """The targets of a library's texts that none of these hosts compiles, with the reasons."""
     targets = {row.target for row in HOSTS if row.name in hosts}
     for row in HOSTS:
         if row.target and row.target not in targets:
@@ -272,9 +272,9 @@ def _executor(
 
 
 def _subject(task: Task) -> tuple[str, str, str]:
-    """The part of a task that checks share: its shader, samples and diagnosis.
+    """A key for tasks that share shader, samples and diagnosis, so they run in one worker.
 
-    Expected values are the same with every library, but a host that reads libraries itself opens one at a time.
+    Expected values do not depend on the library; it counts only for hosts that open one at a time.
     """
     return task.host, "" if task.host in EVALUATING else task.library, task.subject
 

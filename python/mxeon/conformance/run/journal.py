@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The journal of a run: the findings of each task, written to disk as soon as it ends.
 
-`journal/items.jsonl` in the folder of a run is JSON Lines. The first line is the plan of the run, with its
-version, options and the hashes of its files: --resume requires the same. Each following line has the findings
-of a task; an incomplete last line is dropped. Pictures are NumPy files, named by their SHA-256.
+`journal/items.jsonl` in a run's folder is JSON Lines. The first line is the run's plan, with its
+version, options and file hashes; --resume requires an equal plan. Each following line holds the
+findings of a task; an incomplete last line is dropped. Pictures are NumPy files named by SHA-256.
 """
 
 import hashlib
@@ -36,11 +36,11 @@ TASK = re.compile(rb'\{"task": (\d+),.*\n')
 
 
 class Journal:
-    """The folder of a run, locked while entered, without the results of an earlier run.
+    """The folder of a run as a context manager, which locks it and clears earlier results.
 
-    Entering moves an earlier run's journal, results and page to the folder PREVIOUS; with `resume`, the
-    journal stays. It raises InputError if another process writes here, or, without `resume`, if the
-    earlier run was interrupted. `begin` creates the folder if it does not exist.
+    Entering moves an earlier run's journal, results and page to the folder PREVIOUS; with `resume`,
+    the journal stays. Entering raises InputError if another process writes here, or if the earlier
+    run was interrupted and `resume` is not set. `begin` creates the folder if it does not exist.
     """
 
     def __init__(self, folder: str | os.PathLike[str], resume: bool = False) -> None:
@@ -49,7 +49,7 @@ class Journal:
         self._exit = ExitStack()
         self._converter = make_converter(self._path.parent)
         self._held = False
-        self.findings: dict[int, Findings] = {}  # keys: task numbers in the plan
+        self.findings: dict[int, Findings] = {}  # by the task's number in the plan
 
     def __enter__(self) -> Self:
         if os.path.lexists(self._folder):
@@ -79,7 +79,7 @@ class Journal:
         self._held = True
 
     def _clear(self) -> None:
-        """Move an earlier run's results away; for a run to resume, `report make` recreates them."""
+        """Move an earlier run's results away; delete those to resume: `report make` remakes them."""
         there = [name for name in (RESULTS, JUNIT, PAGE) if (self._folder / name).is_file()]
         if self._path.exists() and self._resume:
             for name in there:
@@ -99,7 +99,7 @@ class Journal:
     def begin(self, plan: Plan) -> None:
         """Write the plan of the run, or read the completed part of the run to resume.
 
-        Raises InputError if that run differs; OSError if nothing can be written.
+        Raises InputError if the run to resume differs; OSError if nothing can be written.
         """
         with self._exit as stack:
             if not self._held:
@@ -120,7 +120,7 @@ class Journal:
             self._exit = stack.pop_all()
 
     def add(self, number: int, findings: Findings) -> None:
-        """Record the findings of a task: pictures first, all on disk when this returns.
+        """Record the findings of a task, pictures first; all is on disk when this returns.
 
         Raises OSError if the disk is full; the journal is then unchanged.
         """
@@ -134,7 +134,7 @@ class Journal:
                 path = below(self._path.parent, f"{digest}.npy")
                 with replacing(path) as beside:
                     beside.write_bytes(stream.getbuffer())
-                own[name] = StoredImage(path)  # read again by each use
+                own[name] = StoredImage(path)  # each use reads the file again
             return replace(picture, **own)
 
         findings = replace(findings, pictures=tuple(map(stored, findings.pictures)))
@@ -162,13 +162,13 @@ def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findin
 
 
 def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -> str:
-    """The reason for not resuming the run in a folder, a line that lists the differences."""
+    """A line that says why the run in a folder is not resumed, and lists the differences."""
     remedy = "use a new folder, or omit --resume"
     return f"{folder}: holds another run ({listed(differences)}); {remedy}"
 
 
 def _left(path: Path) -> str:
-    """The number of remaining tasks of an interrupted run, in words; "" for a complete run or none.
+    """The number of remaining tasks of an interrupted run, in words; "" without such a run.
 
     Journals of other versions count too, so this only reads the numbers of tasks.
     """

@@ -40,7 +40,7 @@ def one_result(
     reason: str = "",
     diagnosis: results.Diagnosis = results.NO_DIAGNOSIS,
 ) -> Findings:
-    """Findings of a task without a measurement, from the reason or the diagnosis."""
+    """Findings of a task without a measurement, which only state a reason or a diagnosis."""
     if task.check == plan.STUDIO:  # judges nothing
         return Findings(notes=((f"not drawn in the studio: {reason}", Path(task.subject).name),))
     if not (claim := CLAIMS.get(task.check)):
@@ -55,9 +55,9 @@ class Judge:
 
     def __init__(self, policy: Policy, opened: Callable[[str], base.Engine] = open_engine) -> None:
         self._policy, self._opened = policy, opened
-        self._hosts: dict[str, base.Engine | NotRun] = {}  # hosts, or why they cannot run
+        self._hosts: dict[str, base.Engine | NotRun] = {}  # open hosts, or why they cannot run
         self._reference = reference.Reference()
-        self._case = lru_cache(maxsize=1)(_case)  # pairs take much memory
+        self._case = lru_cache(maxsize=1)(_case)  # one, since pairs take much memory
 
     def work(self, task: Task) -> Findings:
         """Findings of a task; errors include documents that cannot be read.
@@ -74,7 +74,7 @@ class Judge:
             return replace(findings, results=tuple(found))
         except InterfaceError as reason:
             return one_result(task, results.NOT_RUN, reason=str(reason))
-        except DocumentError as reason:  # one of mxeon's own documents
+        except DocumentError as reason:  # the document is mxeon's own
             refused = results.Cause(results.Kind.DEFECT, "own_document_refused", text=str(reason))
             return one_result(task, results.FAILED, diagnosis=results.Diagnosis((refused,)))
 
@@ -84,7 +84,7 @@ class Judge:
                 host.close()
 
     def _host(self, name: str) -> base.Engine:
-        """The host of this name, opened once."""
+        """The host with this name; it is opened only once."""
         if name not in self._hosts:
             try:
                 self._hosts[name] = self._opened(name)
@@ -112,7 +112,7 @@ class Judge:
             if task.check == plan.PICTURE:
                 return self._document(task, host)
             if task.check == plan.STUDIO:
-                with suppress(MxeonError):  # the picture's result says so
+                with suppress(MxeonError):  # the result of the PICTURE task reports it
                     path = Path(task.subject)
                     stills = pictures.studio_pictures(path, host, task.library, self._policy)
                     return Findings((), stills)
@@ -152,7 +152,7 @@ class Judge:
 
 
 def _copy(task: Task) -> str:
-    """The folder whose `libraries` replace MaterialX's for a task's library, or ""."""
+    """The folder whose `libraries` replace MaterialX's for a task; "" if none does."""
     return root(task.library) if os.path.isabs(task.library) else ""
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plan of a run: its tasks, each a check of one subject on one host with one library, and their findings.
+"""The plan of a run: its tasks and their findings.
 
-A task is a few words and its findings are plain data, so both travel to other processes and machines.
+A task checks one subject on one host with one library. Both are plain data that workers exchange.
 """
 
 from __future__ import annotations
@@ -52,11 +52,11 @@ from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
 from mxeon.shaders.methods import GENERATED, UNCHOSEN, UNTABLED, Methods
 from mxeon.shaders.released_graphs import hidden
 
-Source = tuple[str, str]  # a file, and the library with which it is read
+Source = tuple[str, str]  # a file, and the library to read it with
 
 
 class Reading(NamedTuple):
-    """What the documents of a run contain; see `mxeon.conformance.results.Scope`."""
+    """Contents of a run's documents, as in `mxeon.conformance.results.Scope`."""
 
     contents: dict[str, tuple[str, ...]]
     unreached: dict[str, dict[str, tuple[Region, ...]]]
@@ -66,9 +66,9 @@ class Reading(NamedTuple):
 def read_documents(
     files: Sequence[str], libraries: Sequence[str], policy: Policy, workers: int, timeout: float
 ) -> Reading:
-    """Read documents with each library, in worker processes unless there are none.
+    """Read documents with each library, in worker processes unless `workers` is 0.
 
-    A document that crashes its worker has no nodes; the task that draws it reports the reason.
+    A document that crashes its worker counts as empty; the task that draws it reports the crash.
 
     Raise MxeonError if a library cannot be used.
     """
@@ -78,7 +78,7 @@ def read_documents(
     with closing(_answers(sources, policy, workers, timeout)) as answers:
         for (file, library), answer in zip(sources, answers, strict=True):
             if isinstance(answer, DocumentError):
-                # An example that cannot be read is the library's fault.
+                # If a bundled example cannot be read, the library is at fault, not the example.
                 if not Path(file).resolve().is_relative_to(examples_folder()):
                     faults[file, library] = answer.args
             elif isinstance(answer, MxeonError):
@@ -122,7 +122,7 @@ def _answers(
 
 @cache
 def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
-    """Every judged node, in its judged mode; sentences only run if the user names them."""
+    """Every spec with a node in its mode, except SENTENCES, which run only if the user names them."""
     rows = (row for row in ALL_SPECS if row not in surface_texts.SENTENCES)
     return tuple((row, node_of(row.document(), row.node)) for row in rows)
 
@@ -131,7 +131,7 @@ def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
 
 HOST = "host"
 PICTURE, STUDIO = "picture", "studio"
-STUDIED = 4  # documents whose materials are drawn in the studio, for a report
+STUDIED = 4  # maximum documents whose materials a report shows in the studio
 FUNCTIONS, DOCUMENT = "twins", "document"
 RELEASE = "release"
 EVERY_NODE = "every node"
@@ -148,7 +148,7 @@ class Task:
     host: str
     library: str
     seed: int = 1  # seed of the samples
-    methods: Methods = UNCHOSEN  # the client's choice
+    methods: Methods = UNCHOSEN  # lighting methods that the client chose
 
     def __str__(self) -> str:
         return f"{self.host}, {self.check}, {self.subject}, {self.library}"
@@ -159,7 +159,7 @@ class Plan(Scope):
     """The plan of a run: its tasks and everything they depend on; equal plans mean equal runs."""
 
     tasks: tuple[Task, ...]
-    # The policy for documents, by the option of the command.
+    # Values of the command's options for policy, seed and methods, by option.
     options: dict[str, str] = field(default_factory=dict)
     # SHA-256 of each file that the findings depend on, by path; "" for unreadable files. Empty if
     # the run is not stored.
@@ -186,7 +186,7 @@ class Findings:
         )
 
 
-ALL, COMMON = "all", "common"  # words for several nodes
+ALL, COMMON = "all", "common"  # names for groups of nodes
 
 
 def assert_known_names(hosts: Iterable[str], nodes: Iterable[str]) -> None:
@@ -209,7 +209,7 @@ def _titles(*nodes: str) -> set[str]:
 def _selected(
     tasks: Sequence[Task], files: Sequence[str], nodes: Sequence[str], reading: Reading
 ) -> list[Task]:
-    """The requested tasks, those of the user's documents first.
+    """The requested tasks, starting with tasks for the user's documents.
 
     Raise InputError if none of the nodes is judged.
     """
@@ -227,8 +227,8 @@ def _selected(
         or task.subject in files
         or (task.subject in titles and (nodes or task.check not in by_name))
         or (audit and task.subject not in rare and task.check not in by_name)
-        # A folder may have graphs that differ from the release without any visible effect in
-        # pictures: the reference reads them, too.
+        # A folder's graphs may differ from the release without any effect in pictures, because the
+        # reference reads the same graphs.
         or (task.check == RELEASE and files and not nodes and os.path.isabs(task.library))
     ]
     if chosen or not nodes:
@@ -263,20 +263,20 @@ def make_plan(
 ) -> Plan:
     """The tasks of a run, grouped by host and library.
 
-    `resumable` lists the files that the run depends on. `nodes` are categories, ALL or COMMON; by
-    default, the nodes of `files` are judged, or the common ones without files. Results of
-    `libraries` in `compared` do not count. Raises InputError for an unknown name, or if no host
-    judges the nodes; ImportError if this MaterialX is too old.
+    If `resumable`, the plan lists the files that the run depends on. `nodes` are categories, ALL or
+    COMMON; by default, the nodes of `files` are judged, or the common nodes if there are no files.
+    Results of `libraries` in `compared` do not count. Raises InputError for an unknown name, or if
+    no host judges the nodes; ImportError if this MaterialX is too old.
     """
     assert_known_names(hosts, nodes)
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
     hosts = tuple(dict.fromkeys(hosts))
     tasks: list[Task] = []
     documents: list[str] = []
-    # The contents of documents, and comparisons of libraries, are judged with each library.
+    # With documents or with several libraries, every library is judged on all nodes.
     everywhere = bool(files and not nodes) or len(libraries) > 1
     for library in libraries:
-        unread = reading.refused.keys()  # unreadable with all libraries, or this one
+        unread = reading.refused.keys()  # files that no library or only this one cannot read
         names = ((str(file), f"{file} with {library}") for file in files)
         readable = [each[0] for each in names if unread.isdisjoint(each)]
         paths = list(map(Path, readable)) if files else _examples(library)
@@ -286,21 +286,21 @@ def make_plan(
             if not host_row(host).scenes:
                 tasks += [Task(DOCUMENT, file, host, library) for file in readable]
             tasks += _on_host(host, library, paths, everywhere, methods.over(GENERATED))
-            if resumable and host == "gl":  # shown in a report
+            if resumable and host == "gl":  # a report shows these pictures
                 tasks += [Task(STUDIO, file, host, library) for file in readable[:STUDIED]]
-    for host in hosts:  # a renderer's own nodes and materials use none of our libraries
+    for host in hosts:  # a renderer's own nodes and materials need no library
         for spec in backends.own_nodes(host):
             tasks += _checks_of(spec, host, RENDERER_NODES)
         if files and host_row(host).scenes and not host_row(host).target:
             tasks += [Task(PICTURE, file, host, RENDERER_NODES) for file in readable]
     tasks = _selected(tasks, list(map(str, files)), nodes, reading)
-    # Report hosts that measure nothing; for hosts that read no documents, the document's task does
-    # this.
+    # Report hosts that measure nothing. DOCUMENT tasks already report hosts that read no
+    # documents.
     told = (each for each in tasks if each.check != DOCUMENT or not host_row(each.host).target)
     telling = {task.host for task in told}
     silent = [host for host in hosts if tasks and host not in telling]
     tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in silent]
-    # Also report a node that no host judges if others are judged.
+    # If some hosts measure something, also report nodes that no host judges.
     subjects = {task.subject for task in tasks}
     named = (each for each in nodes if each not in (ALL, COMMON))
     lost = [each for each in named if subjects.isdisjoint(_titles(each))]
@@ -369,7 +369,7 @@ def _on_host(
     everywhere: bool = False,
     methods: Methods = GENERATED,
 ) -> Iterator[Task]:
-    """Tasks of one host with one library, for files and nodes of pbrlib, or for the nodes that it repairs."""
+    """Tasks of one host with one library: checks of its nodes and functions, pictures of files."""
     ways, row = backends.ways_of(host), host_row(host)
     if not ways:
         yield Task(HOST, EVERY_NODE, host, library)
@@ -386,10 +386,10 @@ def _on_host(
         yield from _checks_of(spec, host, library, methods)
     defines = load_library(library).getMatchingNodeDefs
     for each in (*PBRLIB, *surface_texts.SENTENCES):
-        # If pictures show a renderer's own closures, they are only judged with the stock library.
+        # Pictures of a renderer's own closures are only judged with the stock library.
         own = row.target == "osl" and kind in ("eonlib", "diffuse")
         left = each.closure and row.way == "pictures" and own
-        # Without documents, one of our libraries is judged by the nodes that it repairs.
+        # Without documents, a bundled library is judged only on the nodes that it repairs.
         missing = each.libraries and not defines(each.node)  # MaterialX lacks eonlib's own nodes
         if not (left or missing) and (
             everywhere or kind in (OVERLAY, *(each.libraries or LIBRARIES))
@@ -414,7 +414,7 @@ def _checks_of(spec: Spec, host: str, library: str, methods: Methods = GENERATED
 
 
 def _software() -> dict[str, str]:
-    """Versions of the packages according to the modules: a build from source has no metadata."""
+    """Package versions as the modules state them, since a build from source has no metadata."""
     folder = str(Path(mx.__file__).parents[1])
     installed = folder in sysconfig.get_paths().values()
     return {
@@ -428,7 +428,7 @@ def _software() -> dict[str, str]:
 
 
 def _examples(library: str) -> list[Path]:
-    """The bundled documents, except those with a node that the library lacks."""
+    """The bundled documents, without those that use a node the library lacks."""
     files = sorted(examples_folder().glob("*.mtlx"))
     missing = [spec.node for spec in diffuse.DIFFUSE if spec not in diffuse_specs(library)]
     return [file for file in files if not any(node in file.read_text("utf-8") for node in missing)]
