@@ -29,10 +29,7 @@ START = (
     *(-1.49084, 5.82249, 1.60299, 0.74937, 1.79916),
     *(0.225562, -0.0983618, 4.00769, 1.57355, 0.538882, -12.0367, -1.69065, -1.00164, 7.53262),
 )
-DEGREE, PANELS = (
-    12,
-    10,
-)  # quadrature nodes per panel; number of panels, finest at the mirror direction
+DEGREE, PANELS = 12, 10  # quadrature nodes per panel; panels, finest at the mirror direction
 NEWTON = 6  # Newton steps from the asymptotic root to 40 digits
 LEAST = 1e-4  # smallest alpha and cosine of the fit
 

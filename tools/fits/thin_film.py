@@ -29,7 +29,7 @@ CLEAR = {
     "thickness": SHARP.thickness,
     "index": (LEAST_OIL, 2.5),
 }
-DARK = 1e-3  # errors of reflectances below this are absolute instead of relative
+DARK = 1e-3  # errors are relative to the reflectance, but at least to this one
 STEP = 1e-6  # relative change of the thickness for difference quotients
 # The shader's values, from `thin_film_nodes.py`. NODES: cosines, weights and widths of the nodes for
 # F_ss. FACETS: polynomials for the nodes of visible facets: the mean of the cosines, the reach of the
@@ -128,8 +128,7 @@ def decay(mu, var, opd, spread):
 def order_count(weights, sizes, opd, spread, least):
     """Number of orders that the shader sums; at least one.
 
-    It uses bounds of all polarizations and channels: both interfaces reflect s-polarized light more,
-    and transmit p-polarized light more.
+    s-polarization bounds the reflectances, p-polarization the transmittances of both interfaces.
     """
     k2 = np.exp(-2.0 * decay(*NARROWEST[2:], opd, spread))
     along_p, along_s = weights[0], sizes[1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the claims of the EON paper, and writes docs/paper_checked.md: `python -m tools.paper`."""
+"""Measures the EON paper's claims, and writes docs/paper_checked.md: `python -m tools.paper`."""
 
 from pathlib import Path
 

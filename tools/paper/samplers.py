@@ -56,7 +56,7 @@ def moments(
     light: Callable[[Array], Array] | None = None,
     nodes: int = 96,
 ) -> tuple[float, float, float]:
-    """Mean, variance and largest value, by quadrature, of a sample's weight times a light's radiance.
+    """Mean, variance and maximum, by quadrature, of a sample's weight times a light's radiance.
 
     The weight is f cos(theta_i) / p for EON at unit reflectance, and 0 below the horizon.
     """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The site's comparison of renderers, and the measurements that it shows.
 
-`python -m tools.site.field` measures the available hosts one after the other; `python -m
-tools.site.field DIR` reads the reports in a folder instead. Hosts without a new report keep their measurements.
+`python -m tools.site.field` measures the available hosts; `python -m tools.site.field DIR` reads
+reports from a folder instead. Hosts without a new report keep their measurements.
 """
 
 import base64

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renders the materials of `examples/` with stock MaterialX and eonlib, and writes the gallery page.
+"""Renders the materials of `examples/` with stock MaterialX and eonlib, and writes their page.
 
 python -m tools.site.gallery    writes pictures, their differences, and gallery.md
 """
@@ -36,7 +36,7 @@ SIZE = 512  # width and height of a picture in pixels
 INSET, EDGE = 112, 8  # width of the difference's inset, and its distance from the edge, in pixels
 QUALITY = 85  # WebP quality
 ROWS = 96  # rows of the studio's latitude-longitude map
-BOXES = (  # soft boxes: center (azimuth from the viewer, elevation) and half sizes in degrees; radiance
+BOXES = (  # soft boxes: azimuth from the viewer and elevation, half sizes, in degrees; radiance
     ((-48.0, 42.0), (22.0, 15.0), (7.0, 6.8, 6.4)),
     ((66.0, 22.0), (5.0, 34.0), (8.0, 8.3, 9.0)),
     ((-118.0, 20.0), (8.0, 36.0), (9.0, 8.6, 8.0)),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Print the numbers of the technical note, and draw its figures: `python -m tools.site.note`."""
+"""Prints the numbers of the technical note, and draws its figures: `python -m tools.site.note`."""
 
 import numpy as np
 from matplotlib import style
@@ -49,7 +49,7 @@ def quartic_loss(mu):
 
 
 def closed_loss(mu):
-    """1 - E at roughness 1 by H in closed form."""
+    """1 - E at roughness 1 by the closed form of H."""
     one = np.float32(1.0)
     S = np.sqrt((one - mu) * (one + mu))
     t = mu / (one + S)
@@ -59,7 +59,7 @@ def closed_loss(mu):
 
 
 def fitted_loss(mu):
-    """1 - E at roughness 1 by the polynomials of the shaders."""
+    """1 - E at roughness 1 by the shaders' polynomials."""
     p, q = (np.float32(shipped("eon", "EON", each)) for each in "PQ")
     return loss_fit.fitted(mu, p, q) / (np.float32(1.0) + np.float32(C1))
 
@@ -73,15 +73,15 @@ LOSSES = {
 
 
 def loss_errors(mu):
-    """Error of 1 - E of each form, and 1 - E."""
+    """Errors of 1 - E by name of the form, and the exact 1 - E."""
     exact = fon_loss(np.float64(mu)) / (1.0 + C1)
     return {name: np.float64(each(mu)) - exact for name, each in LOSSES.items()}, exact
 
 
 def loss_figures(stride=1):
-    """Largest errors, absolute, and relative ones of the energy that is lost.
+    """Largest absolute and relative errors of 1 - E.
 
-    The paper's forms at 4001 cosines from 1e-6 to 1, ours at each `stride`-th float32 number between.
+    The paper's forms use 4001 cosines from 1e-6 to 1, ours every `stride`-th float32 number there.
     """
     mu = np.unique(np.geomspace(1e-6, 1.0, 4001).astype(np.float32))
     errors, exact = loss_errors(mu)
@@ -109,21 +109,21 @@ def loss_figures(stride=1):
 
 
 def variances(name, roughness, mu):
-    """Variance of the weight at unit reflectance, by quadrature."""
+    """Variance of a sampler's weight at unit reflectance for each mu, by quadrature."""
     return np.array([moments(name, each, roughness)[1] for each in mu])
 
 
 def albedo_errors(mu, alpha):
-    """Errors of E_ss: of MaterialX's fit and of that in z and alpha."""
+    """Errors of E_ss by MaterialX's fit, and by eonlib's fit in z and alpha."""
     exact = models.ggx_albedo_dir(mu, alpha)
     ours = albedo_fit.fitted(mu, alpha, shipped("ggx_albedo", "ggx_missing"))
     return fitted_albedo(mu, alpha, 1.0, 1.0) - exact, ours - exact
 
 
 def fresnel_errors(mu, alpha, ior=GLASS):
-    """Errors of a dielectric's albedo without compensation: three forms.
+    """Errors of a dielectric's albedo without compensation, for three forms.
 
-    F at the view; MaterialX's fit for Schlick's curve with the index's F0; F at the cosine c.
+    These are E_ss F(mu), MaterialX's fit for Schlick's curve with the same F0, and E_ss F(c).
     """
     curves = cosine_fit.DIELECTRIC
     shape = np.sqrt((ior - 1.0) / (ior + 1.0))
@@ -139,7 +139,7 @@ def fresnel_errors(mu, alpha, ior=GLASS):
 
 
 def largest_figures():
-    """Largest variances of samplers, and largest and mean errors of E_ss and of a dielectric's albedo."""
+    """Largest variances of samplers; largest and mean errors of E_ss and a dielectric's albedo."""
     mu = np.append(0.01, np.linspace(0.05, 1.0, 20))
     found = {
         f"{name} {r}": variances(name, r, mu).max()
@@ -171,7 +171,7 @@ def largest_figures():
 
 
 def energy_rows():
-    """Equation, reading, and the least and the largest share of light that a white surface returns."""
+    """Rows: equation, its reading, and the shares of light that a white surface returns."""
     mu = VIEWS
     wo = np.stack([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0 * mu, mu], axis=-1)
     E = models.ggx_albedo_dir(mu, 1.0)
@@ -179,7 +179,7 @@ def energy_rows():
         function(wo, 1.0, ROUGH, GLASS)[:, 0]
         for function in (dielectric_albedo_dir, transmission.dielectric_transmittance_dir)
     )
-    around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # along the tangent, and the bitangent
+    around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # views along tangent and bitangent
     yield "Microfacet BRDF, F = 1, alpha 1", "as it is", E
     whole = dielectric_albedo_dir(wo, 1.0, ROUGH, 0.0)  # index 0 reflects everything
     yield "", "times 1 + F_ss (1 - E_ss) / E_ss", whole
@@ -227,7 +227,7 @@ def page(text):
 
 
 def exact_figure():
-    """Errors of the energy that FON loses, and variance of the samples of EON."""
+    """Figure: errors of the energy that FON loses, and variance of EON's samplers."""
     figure = Figure(figsize=(7.6, 3.0), layout="constrained")
     left, right = figure.subplots(1, 2)
     mu = np.unique(np.geomspace(1e-6, 1.0, 400).astype(np.float32))
@@ -250,7 +250,7 @@ def exact_figure():
 
 
 def albedo_figure():
-    """Errors of the albedo of GGX and of a dielectric over the cosine."""
+    """Figure: errors of the albedos of GGX and of a dielectric, by cosine."""
     figure = Figure(figsize=(7.6, 3.0), layout="constrained")
     left, right = figure.subplots(1, 2)
     mu = np.geomspace(1e-3, 1.0, 120)

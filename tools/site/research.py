@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Output of the first example on the page for researchers."""
+"""Updates the output of the first example on the page for researchers."""
 
 import contextlib
 import io
@@ -15,7 +15,7 @@ def blocks(text):
 
 
 def printed(text):
-    """Output of the first block."""
+    """Output of the first code block of a page."""
     with contextlib.redirect_stdout(io.StringIO()) as output:
         exec(blocks(text)[0], {})
     return output.getvalue()

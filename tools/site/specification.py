@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measure the largest errors of stock and eonlib by the specification.
+"""Measures the largest errors of stock and eonlib relative to the specification.
 
-`python -m tools.site.specification` judges the rows of the table of results.md on gl, and writes it; a few seconds.
+`python -m tools.site.specification` measures the table of results.md on gl, in a few seconds.
 """
 
 from contextlib import closing
@@ -14,8 +14,8 @@ from tools.site import DOCS, with_block
 from tools.site.ledger import figure
 
 PAGE = DOCS / "results.md"
-HOST, LIBRARIES = "gl", ("stock", "eonlib")  # the host of the table
-# Rows of the table, and descriptions of stock's computation.
+HOST, LIBRARIES = "gl", ("stock", "eonlib")  # host and libraries of the table
+# Rows of the table: check, subject, and what stock computes.
 SUMMARY = (
     ("value", "sheen_bsdf, mode zeltner", "a singular frame where the viewer is along the normal"),
     ("transmitted", "dielectric_bsdf, scatter_mode RT", "a division by the masking G1"),
@@ -41,7 +41,7 @@ SUMMARY_HEAD = (
 
 
 def measured():
-    """Results of the table's checks on the host with both libraries."""
+    """Results of the table's checks with both libraries."""
     rows = {row[:2] for row in SUMMARY}
     nodes = {subject.split(",")[0] for _, subject in rows}
     plans = [make_plan((), (HOST,), (library,), nodes=sorted(nodes)) for library in LIBRARIES]
@@ -52,7 +52,7 @@ def measured():
 
 
 def summary(results):
-    """A table of stock's deviations from the specification."""
+    """Markdown table of errors relative to the specification."""
     errors = {
         (each.check, each.subject, each.library): "" if each.error is None else figure(each)
         for each in results

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Write the tables of surfaces.md: how the shaders implement each sentence of their specifications.
+"""Writes the tables of surfaces.md: whether shaders follow each sentence of their specifications.
 
-`python -m tools.site.surface_texts` judges all sentences on HOSTS, and with VERSIONS of MaterialX on gl; ten
-minutes.
+`python -m tools.site.surface_texts` checks all sentences on HOSTS, and with VERSIONS of MaterialX
+on gl. It takes ten minutes.
 """
 
 import json
@@ -24,7 +24,7 @@ from tools.site.ledger import figure
 
 PAGE = DOCS / "surfaces.md"
 HOSTS = ("gl", "vulkan", "webgl")
-VERSIONS = (*TESTED[:-1], "main")  # those that are not installed
+VERSIONS = (*TESTED[:-1], "main")  # versions other than the installed one
 Verdicts: TypeAlias = dict[str, dict[str, str]]
 WORDS = {PASSED: "yes", DIFFERS: "left open", FAILED: "**no**", NOT_RUN: "not run"}
 DEFAULTS_HEAD = "| text | parameter | its default | the node's |\n|---|---|---|---|\n"
@@ -35,7 +35,7 @@ OPTIONS = [word for name in NAMES for word in ("--node", name)]
 TRANSPORT = (
     "how light travels inside the object is the renderer's; path tracers only get the medium"
 )
-# Statements that no row judges: text, section, statement, and the reason.
+# Statements without a check: text, section, statement, reason.
 # fmt: off
 NOT_JUDGED = (
     (OPENPBR, "Subsurface", "radius, scale, anisotropy and the inversion of the albedo", TRANSPORT),
@@ -60,7 +60,7 @@ NOT_JUDGED = (
 def rows(
     text: Text, results: Mapping[str, Mapping[str, Result]], verdicts: Verdicts
 ) -> Iterator[str]:
-    """Table rows of a text, from results by subject and host; a verdict names the places that differ."""
+    """Table rows of a text: verdict on gl, and hosts or versions with other verdicts."""
     for spec in (each for each in SENTENCES if each.text is text):
         found = results[spec.title]
         said = verdicts[spec.title]
@@ -78,7 +78,7 @@ def rows(
 
 
 def instead(result: Result) -> str:
-    """The form that a shader has instead of the text's, with the size of the error."""
+    """Text about the form that a shader uses instead, and its error; "" if the sentence holds."""
     cause = result.diagnosis.first
     if result.verdict == PASSED:
         return ""
@@ -87,7 +87,7 @@ def instead(result: Result) -> str:
 
 
 def defaults(text: Text) -> Iterator[str]:
-    """Table rows of the defaults in which a node's definition differs from the text."""
+    """Table rows of defaults that differ between a node's definition and the text."""
     [definition, *_] = load_library("stock").getMatchingNodeDefs(text.node)
     for name, default in text.model.DEFAULTS.items():
         value = definition.getActiveInput(name).getValue()
@@ -102,7 +102,7 @@ def defaults(text: Text) -> Iterator[str]:
 
 
 def judged_with(version: str, *options: str) -> list[dict[str, Any]]:
-    """Results of a run on gl with a version of MaterialX, as printed."""
+    """Results of `mxeon check --json` on gl with a version of MaterialX."""
     ran = run(wheel(version), "check", "--host", "gl", "--workers", "0", "--json", *options)
     if ran.returncode not in (0, 1):
         raise RuntimeError(f"MaterialX {version}: {ran.stderr}")
@@ -110,7 +110,7 @@ def judged_with(version: str, *options: str) -> list[dict[str, Any]]:
 
 
 def judged() -> tuple[dict[str, dict[str, Result]], Verdicts]:
-    """Results by subject and host, and verdicts by subject and by host or version of MaterialX."""
+    """Results by subject and host; verdicts by subject and by host or MaterialX version."""
     results: dict[str, dict[str, Result]] = defaultdict(dict)
     verdicts: Verdicts = defaultdict(dict)
     for host in HOSTS:

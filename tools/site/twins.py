@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the OSL files that only differ from GLSL in a few words: `python -m tools.site.twins`."""
+"""Generates the OSL files that are translated from GLSL: `python -m tools.site.twins`."""
 
 import re
 from pathlib import Path
@@ -19,9 +19,9 @@ HEADER = "// Generated from genglsl/{stem}.glsl by `python -m tools.site.twins`;
 
 
 def osl_text(stem: str) -> str:
-    """OSL of a GLSL file.
+    """OSL translation of a GLSL file.
 
-    GLSL's vec3 becomes a vector in the samplers and in declarations of wo, wi or wh, otherwise a color.
+    A vec3 becomes a vector in samplers and in declarations of wo, wi or wh, otherwise a color.
     """
     text = (ROOT / "genglsl" / f"{stem}.glsl").read_text(encoding="utf-8")
     text = re.sub(r"\bvec3(?= w[oih]\b)", "vector", text)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Judge eonlib and stock with every version of MaterialX: `python -m tools.site.versions` writes the page.
+"""Checks eonlib and stock with all versions of MaterialX: `python -m tools.site.versions`.
 
-It runs `mxeon check --host gl --node all` and all surface shaders' texts with each version, 14 minutes of
-processor time in all, and keeps the data in `ledger/versions.json`. From it `python -m tools.site` writes the page, and the site the lines on
-the ledger's pages.
+It runs `mxeon check --host gl --node all` and all surface shaders' texts with each version, in 14
+minutes of processor time, and stores the results in `ledger/versions.json`. `python -m tools.site`
+writes versions.md from them, and the site adds lines to the ledger's pages.
 """
 
 import json
@@ -24,11 +24,11 @@ COMMAND = ("--node", "all", *surface_texts.OPTIONS, "--library", "eonlib", "--li
 
 
 def record(versions):
-    """The data of the pages, from the results of all versions by name.
+    """Data for the pages; `versions` has the results by version.
 
-    By version: number of results per verdict for each library's nodes, eonlib's results that do not pass, and,
-    by page of a defect of MaterialX on gl or in its texts, whether all results that show it pass. Sentences of
-    surface shaders' texts are not counted: surfaces.md has their verdicts.
+    For each version, it has the number of results by library, node and verdict, and eonlib's results
+    that do not pass. For pages about MaterialX on gl or in its texts, it has whether all rows pass.
+    Sentences of surface shaders' texts are not counted, because surfaces.md has their verdicts.
     """
     found = {
         "commit": (MAIN.parent / "commits.txt").read_text().split(" ", 2)[:2],

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Write wall.md, materials in every renderer that was judged, from reports of `mxeon check`.
+"""Writes wall.md, which shows materials in all renderers, from reports of `mxeon check`.
 
-python -m tools.site.wall REPORT...    the tiles and wall.md, from folders that `mxeon check --report` wrote
+python -m tools.site.wall REPORT...    folders that `mxeon check --report` wrote
 """
 
 import re
@@ -37,9 +37,9 @@ from tools.site import DOCS, brief
 
 PAGE = DOCS / "wall.md"
 TILES = DOCS / "images" / "wall"
-SIZE, QUALITY = 192, 85  # pixels, and WebP quality
-LIGHTS = SIDE.name, BACK.name  # every renderer has these two
-BLACK = 1e-3  # mean of a picture that shows nothing
+SIZE, QUALITY = 192, 85  # width of a tile in pixels, and WebP quality
+LIGHTS = SIDE.name, BACK.name  # all renderers have these scenes
+BLACK = 1e-3  # pictures with a smaller mean show nothing
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 OTHER_MODELS = re.compile(
     "fon|qon|LAMBERT|shorter|compensation false|eon_diffuse|standard_surface|UsdPreview", re.I
@@ -78,12 +78,12 @@ class Tile(NamedTuple):
     """A picture on the wall."""
 
     host: str
-    variant: str  # library or node; "" for a document in a renderer of its own
+    variant: str  # library or node; "" for a document with a renderer's own nodes
     scene: str
     image: NDArray[np.floating]
     difference: Difference
     cause: str  # HTML
-    verdict: str  # class of its figure
+    verdict: str  # CSS class of the figure
 
     @property
     def largest(self) -> float:
@@ -95,7 +95,7 @@ class Tile(NamedTuple):
 
 
 def title(tiles: list[Tile]) -> str:
-    """The hosts of tiles, by what they draw: "gl, storm: stock; cycles: eonlib"."""
+    """The hosts of tiles grouped by variant, such as "gl, storm: stock; cycles: eonlib"."""
     hosts: dict[str, list[str]] = defaultdict(list)
     for each in tiles:
         hosts[each.variant].append(each.host)
@@ -106,7 +106,7 @@ def title(tiles: list[Tile]) -> str:
 
 
 def cause_of(result: Result) -> str:
-    """The lobes that make a picture wrong, the reason why it was not judged, or its diagnosis."""
+    """HTML of the cause: wrong lobes, the reason why it was not judged, or the diagnosis."""
     text = wrapped(escape(words.diagnosis(result.diagnosis)))
     if result.check == "finite":
         reason = text.partition(": the")[0].removeprefix(f"{result.host}: ")
@@ -120,7 +120,7 @@ def cause_of(result: Result) -> str:
 
 
 def wrapped(text: str) -> str:
-    """A text whose names break at underscores."""
+    """HTML of a text in which lines can break after underscores."""
     return text.replace("_", "_<wbr>")
 
 
@@ -136,7 +136,7 @@ def figure(
     caption: str,
     verdict: str = "expected",
 ) -> str:
-    """Write a picture as a tile; returns its figure."""
+    """Save a picture as a tile; returns the HTML of its figure."""
     shown = Image.fromarray(srgb_encoded(image.astype(np.float32)))
     name = re.sub(r"[^\w-]+", "-", name)
     shown.resize((SIZE, SIZE), Image.Resampling.LANCZOS).save(
@@ -149,7 +149,7 @@ def figure(
 
 
 def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> str:
-    """The reference, and the tiles by their difference; one picture for equal captions."""
+    """HTML of the reference, then tiles by difference; equal captions share a tile."""
     alike: dict[tuple[str, str], list[Tile]] = defaultdict(list)
     for each in sorted(tiles, key=lambda each: each.largest):
         alike[each.caption, each.verdict].append(each)
@@ -164,13 +164,15 @@ def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> st
 
 
 class Wall:
-    """Pictures and results of reports; later reports replace earlier ones."""
+    """The wall: pictures and results of all reports. Later reports replace earlier ones."""
 
     def __init__(self, folders: list[Path]) -> None:
         self.hosts: dict[str, str] = {}
         self.references: dict[tuple[str, str, str], Path] = {}
         self.images: dict[tuple[str, str, str, str, str], Path] = {}
-        self.facets: dict[tuple[str, str, str, str, str], Path] = {}  # references on a polyhedron
+        self.facets: dict[
+            tuple[str, str, str, str, str], Path
+        ] = {}  # references rendered on a polyhedron
         self.results: dict[tuple[str, str, str], Result] = {}
         for folder in folders:
             report = read_results(folder)
@@ -208,7 +210,7 @@ class Wall:
         return Tile(host, variant, scene, image, apart, cause_of(judged), judged.verdict)
 
     def section(self, material: tuple[str, str]) -> tuple[float, str]:
-        """Largest difference of a material, and its part of the page."""
+        """Largest difference of a material, and its section of the page."""
         document, element = material
         references = {scene: pixels(self.references[(*material, scene)]) for scene in LIGHTS}
         if max(map(np.mean, references.values())) < BLACK:
@@ -231,7 +233,7 @@ class Wall:
         return largest, text + figures(name, references[scene], lit)
 
     def not_drawn(self) -> str:
-        """The materials that a renderer does not draw, by its reason without the names of nodes."""
+        """Markdown list of materials that renderers do not draw, grouped by renderer and reason."""
         materials: dict[tuple[str, str], list[str]] = defaultdict(list)
         for (subject, host, _), result in self.results.items():
             for document, element in self.shown:
@@ -244,7 +246,7 @@ class Wall:
         )
 
     def rough(self) -> str:
-        """One rough node of every renderer, with its own material; equal pictures of a renderer are shown once."""
+        """Section of each renderer's rough diffuse nodes; equal pictures of a renderer appear once."""
         reference = pixels(self.references[PORTRAIT, EON, BACK.name])
         tiles: dict[tuple[str, float], Tile] = {}
         for each in self.images:
@@ -256,7 +258,7 @@ class Wall:
 
     @cached_property
     def shown(self) -> list[tuple[str, str]]:
-        """The materials that most renderers drew: reports of other pages have pictures, too."""
+        """Materials with pictures of most hosts; reports may also contain other materials."""
         drawn = defaultdict(set)
         for document, element, _, host, _ in self.images:
             if document != PORTRAIT:

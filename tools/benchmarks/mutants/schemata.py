@@ -3,8 +3,8 @@
 
 At each mutant's place, an expression equals the original unless the uniform `mutant` has the mutant's number: ` + `
 becomes ` + mutant_sign(mutant == 7) * `. So a node's shader compiles once for hundreds of mutants, and each mutant only
-takes the milliseconds of a check on a subset of samples. Mutants of constant expressions or integers
-cannot be written this way. They are reported, and need a separate library.
+takes the milliseconds of a check on a subset of samples. Mutants of constant expressions or of
+integers cannot be written this way. They are reported, and need a separate library.
 """
 
 import re

@@ -46,7 +46,7 @@ class Section:
         least: float = -np.inf,
         most: float | None = None,
     ) -> Callable[[Measure], Measure]:
-        """Decorate a measurement whose values must lie in [least, most]; `most` defaults to ROUNDING."""
+        """Decorate a measurement whose values must lie in [least, most]; by default <= ROUNDING."""
         top = most if most is not None else ROUNDING if least == -np.inf else np.inf
         limit = f"in [{least:.3g}, {top:.3g}]"
         if not np.isfinite(top):

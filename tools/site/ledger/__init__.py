@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ledger of upstream defects: the measurements of its pages, and the patches.
+"""The ledger of upstream defects: measurements and patches of its pages.
 
-`docs/upstream` has a page for each defect, the suite's latest results in `measured.json`, and the repairs
-as commits in `patches/`. A patch names its page in its message. The site fills in the figures.
+`docs/upstream` has a page for each defect, the latest results in `measured.json`, and repairs
+as commits in `patches/`. The message of a patch names its page. The site adds figures to the pages.
 
-    python -m tools.site.ledger.measure [HOST ...]  measures the tables anew
+    python -m tools.site.ledger.measure [HOST ...]  repeats the measurements
     python -m tools.site.ledger.pictures            draws the pages' pictures
 """
 
@@ -28,17 +28,17 @@ MEASURED = FOLDER / "measured.json"
 
 
 def measured() -> dict[str, Any]:
-    """The measurements by page: rows of checks, place and diagnosis."""
+    """Measurements by page: rows of the table, host and versions, diagnosis."""
     return dict(json.loads(MEASURED.read_text(encoding="utf-8")))
 
 
 def write_measured(found: dict[str, Any]) -> None:
-    """Write the measurements and the changes by patches, one line per page."""
+    """Write the measurements to `measured.json`, with the patches' shortest changes."""
     write_text(MEASURED, dumped(dict(sorted(with_patches(found).items())), 1) + "\n")
 
 
 def dumped(found: Any, depth: int) -> str:
-    """JSON with a line for each entry down to a depth."""
+    """JSON with one line per entry in objects of the given depth."""
     if depth == 0 or not isinstance(found, dict):
         return json.dumps(found)
     lines = (f"{json.dumps(name)}: {dumped(each, depth - 1)}" for name, each in found.items())
@@ -46,7 +46,7 @@ def dumped(found: Any, depth: int) -> str:
 
 
 def with_patches(found: dict[str, Any]) -> dict[str, Any]:
-    """The measurements, with the shortest change by each page's patch, which identifies patched copies."""
+    """Measurements with the shortest change of each page's patch, to recognize patched copies."""
     files = patches("materialx")
     return found | {
         page: found[page] | {"patch": _shortest_change(path.read_bytes().decode())}
@@ -55,14 +55,14 @@ def with_patches(found: dict[str, Any]) -> dict[str, Any]:
 
 
 def _shortest_change(patch: str) -> tuple[str, str, str]:
-    """The shortest change of a patch: its file, and the text before and after."""
+    """The shortest change of a patch: file, old text, new text."""
     changes = []
     for file, part in re.findall(
         r"^--- a/(\S+)\n\+\+\+ .*\n((?:[ @+-].*\n)+)", patch, re.MULTILINE
     ):
         for run in re.findall(r"^(?: .*\n)?(?:[+-].*\n)+(?: .*\n)?", part, re.MULTILINE):
             lines = run.splitlines(keepends=True)
-            if {line[0] for line in lines} >= {"+", "-"}:  # otherwise context lines are needed
+            if {line[0] for line in lines} >= {"+", "-"}:  # a replacement needs no context lines
                 lines = [line for line in lines if line[0] != " "]
             old, new = ("".join(line[1:] for line in lines if line[0] != sign) for sign in "+-")
             changes.append((file, old, new))
@@ -70,7 +70,7 @@ def _shortest_change(patch: str) -> tuple[str, str, str]:
 
 
 def figure(result: Result) -> str:
-    """The error of a result in print."""
+    """The error of a result as printed."""
     return f"{result.error:.0f}" if result.quantity is Quantity.VALUES else f"{result.error:.2g}"
 
 
@@ -79,7 +79,7 @@ def figure(result: Result) -> str:
 
 @cache
 def patches(project: str) -> dict[str, Path]:
-    """The patches of a project in order, by page."""
+    """Paths of a project's patches by page, in the order of their numbers."""
     found = {}
     for path in sorted((PATCHES / project).glob("*.patch")):
         [page] = re.findall(r"docs/upstream/(\w+)\.md", path.read_text(encoding="utf-8"))
@@ -88,20 +88,20 @@ def patches(project: str) -> dict[str, Path]:
 
 
 def patches_of(page: str) -> list[Path]:
-    """The patches of a page, those for MaterialX before those for copies."""
+    """The patches of a page, in all projects that have one."""
     projects = sorted(path.name for path in PATCHES.iterdir() if path.is_dir())
     return [found[page] for each in projects if page in (found := patches(each))]
 
 
 def own_diff(page: str) -> str:
-    """The diff in a page's own text; "" if its repair is a patch."""
+    """The diff in the text of a page; "" if its repair is a patch."""
     return "".join(
         re.findall(r"^```diff\n(.*?)^```", issues()[page].text, re.DOTALL | re.MULTILINE)
     )
 
 
 def needed(page: str) -> set[str]:
-    """The page, and all pages whose patches its own requires, recursively."""
+    """The page itself, and all pages whose patches its patch requires, recursively."""
     found = {page}
     while more := {each for name in found for each in issues()[name].needs} - found:
         found |= more
@@ -109,14 +109,14 @@ def needed(page: str) -> set[str]:
 
 
 def linked(source: Path, target: Path) -> Path:
-    """A tree of links to the files of an installed package."""
+    """Create a folder of links to the files of an installed package."""
     ignored = shutil.ignore_patterns("__pycache__", "*.d.ts", "*.map")
     shutil.copytree(source, target, copy_function=os.symlink, ignore=ignored)
     return target
 
 
 def apply(folder: Path, *diffs: Path | str, strip: int = 1) -> Path:
-    """Apply patches, or texts of diffs, to a tree of files or links, and return the tree.
+    """Apply patches, given as paths or diffs, to a folder of files or links; returns the folder.
 
     `strip` is the number of path components to drop.
     """
@@ -127,7 +127,7 @@ def apply(folder: Path, *diffs: Path | str, strip: int = 1) -> Path:
         for name in re.findall(r"^--- (\S+)$", text, re.MULTILINE):
             path = folder.joinpath(*name.split("/")[strip:])
             data = path.read_bytes()
-            path.unlink()  # perhaps a link
+            path.unlink()  # it may be a link
             path.write_bytes(data)
         subprocess.run(
             command,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measure the tables of the ledger's pages: `python -m tools.site.ledger.measure [HOST ...]`."""
+"""Measures the tables of the ledger's pages: `python -m tools.site.ledger.measure [HOST ...]`."""
 
 import json
 import sys
@@ -19,16 +19,18 @@ from mxeon.errors import NotRun
 from mxeon.shaders.document.policy import DEFAULT
 from tools.site.ledger import figure, measured, write_measured
 
-CHECKED = [each for each in issues().values() if each.rows]  # their pages have a table of checks
-# Renderers whose own nodes need no MaterialX.
+CHECKED = [
+    each for each in issues().values() if each.rows
+]  # issues whose pages have a table of checks
+# Renderers whose own nodes do not use MaterialX.
 OWN_NODES = ("three", "babylon", "shadewire", "three-gpu-pathtracer")
 
 
 def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple[list[Result], str]:
-    """Results of some checks on a host or on "source", with device and versions.
+    """Results of the checks in `rows` on a host or "source"; device and versions as text.
 
-    Without `rows`, the checks in the tables of this host's pages on `library`; STOCK includes a
-    renderer's own nodes.
+    By default, `rows` are those in the tables of pages about this host and library. STOCK includes
+    a renderer's own nodes.
 
     Raises
     ------
@@ -52,12 +54,12 @@ def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple
 
 
 def shows(issue: Issue, host: str, library: str) -> bool:
-    """Whether the table of a page is measured on a host with a library."""
+    """Whether the table of an issue's page is measured on this host with this library."""
     return issue.host == host and (issue.library == EONLIB) == (library == EONLIB)
 
 
 def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any]:
-    """The data of an issue's page, from results that include its rows."""
+    """Measurements for an issue's page; `results` must contain its rows."""
     found = {(each.check, each.subject): each for each in results}
     shown = [found[row] for row in issue.rows]
     rows = [
@@ -71,11 +73,11 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
     nearest = [title for _, title in others if title != diagnosis.first.key]
     if diagnosis.kind is Kind.MODEL and nearest:
         measures["next"] = nearest[0]
-    return dict(json.loads(json.dumps(measures)))  # same types as when read
+    return dict(json.loads(json.dumps(measures)))  # the same types as after reading
 
 
 def fields(cause: Cause) -> dict[str, Any]:
-    """The driver-independent fields of a cause, without empty ones."""
+    """The fields of a cause that do not depend on the driver and are not empty."""
     found = asdict(cause) | {"kind": cause.kind.value}
     if cause.region:
         found["region"] = {
@@ -86,7 +88,7 @@ def fields(cause: Cause) -> dict[str, Any]:
 
 
 def main(names: Sequence[str]) -> None:
-    """Measure the defects of some hosts; without names, of all hosts, together with the largest errors."""
+    """Measure the defects on the given hosts; without names, on all hosts, and reset all errors."""
     found = measured()
     everywhere = [host for each in issues().values() for host in each.hosts if host]
     if not names:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The site's additions to the ledger's pages: figures, diffs of patches, versions; and the list of all pages."""
+"""Additions of the site to the ledger: the list of pages, figures, diffs of patches, versions."""
 
 import json
 import re
@@ -15,8 +15,8 @@ from tools.site.ledger import ROOT, measured, patches, patches_of
 
 VERSIONS = Path(__file__).with_name("versions.json")
 PLACE = re.compile(r"<!-- patches (\S+) -->")  # placeholder for a project's table in the index
-SHOWN = 20  # lines of a diff on a page
-# The parts of the index, with the text above each part's pages.
+SHOWN = 20  # maximum lines of a diff on a page
+# Headings of the index's groups, by name.
 GROUPS = {
     "rough_diffuse": "`oren_nayar_diffuse_bsdf`",
     "diffuse": "`burley_diffuse_bsdf`, `subsurface_bsdf`, `translucent_bsdf`",
@@ -41,7 +41,7 @@ GROUPS = {
 
 
 def entries() -> str:
-    """The list of all pages, by groups.
+    """Markdown list of all pages by group.
 
     Raises KeyError if a page's group is not one of `GROUPS`.
     """
@@ -53,7 +53,7 @@ def entries() -> str:
 
 
 def filled(name: str, text: str) -> str:
-    """The Markdown of a ledger page, or of the index, with the site's additions."""
+    """Markdown of a ledger page, or of the index README, with the site's additions."""
     if name == "README":
         text = text.replace("<!-- entries -->", entries())
         return PLACE.sub(lambda found: patch_table(found[1]), text)
@@ -73,7 +73,7 @@ def filled(name: str, text: str) -> str:
 
 
 def table(issue: Issue) -> str:
-    """The measured rows of a page, and the diagnosis of the first; "" without rows."""
+    """Markdown table of a page's measurements, and the first row's diagnosis; "" without rows."""
     found = measured().get(issue.page, {})
     if not issue.rows or not issue.cause:
         return ""
@@ -90,15 +90,15 @@ def table(issue: Issue) -> str:
 
 
 def said(issue: Issue, found: dict[str, Any]) -> str:
-    """The diagnosis in words: the cause, and for a model the next one."""
+    """The diagnosis in words: the cause, and the second-best model if the cause is a model."""
     cause = words.diagnosis(Diagnosis((issue.cause,) if issue.cause else ()))
     return f"{cause}, then {found['next']}" if "next" in found else cause
 
 
 def short_diff(page: str) -> tuple[str, int]:
-    """The changed lines of a page's first patch, at most SHOWN of them, and the number of omitted ones.
+    """The first SHOWN changed lines of a page's first patch, and the number of omitted ones.
 
-    "" and 0 for a page without a patch.
+    Returns "" and 0 for a page without a patch.
     """
     files = patches_of(page)
     if not files:
@@ -119,7 +119,7 @@ def short_diff(page: str) -> tuple[str, int]:
 
 
 def outcome(issue: Issue, numbers: dict[str, str]) -> str:
-    """The checks' outcome with a page's patch and its prerequisites."""
+    """Sentence about checks that pass, or still fail, with a page's patch and those it needs."""
     subjects: dict[tuple[str, bool], list[str]] = {}
     for check, subject in issue.repaired:
         subjects.setdefault((subject, True), []).append(f"`{check}`")
@@ -142,7 +142,7 @@ def outcome(issue: Issue, numbers: dict[str, str]) -> str:
 
 
 def seen(issue: Issue, versions: dict[str, Any]) -> str:
-    """The line on the MaterialX versions with a defect; empty if no check of them shows it."""
+    """Sentence about the MaterialX versions with a defect; "" if they were not checked for it."""
     if issue.page not in versions["pages"]:
         return ""
     shown = versions["pages"][issue.page]
@@ -159,13 +159,13 @@ def _joined(names: list[str]) -> str:
 
 
 def patch_table(project: str) -> str:
-    """The table of a project's patches in the index."""
+    """Markdown table of a project's patches for the index."""
     files, found = patches(project), measured()
     lines = ["| | patch | kind | measured | needs |", "|---|---|---|---|---|"]
     for page, path in files.items():
         issue = issues()[page]
         text = " ".join(path.read_text(encoding="utf-8").split("\n\n", 1)[0].split())
-        # Use the figure of the first row that the patch repairs.
+        # Prefer the figure of a row that the patch repairs.
         measures = found.get(page, {}).get("rows", [])
         chosen = [row for row in measures if (row[0], row[1]) in issue.mended]
         figures = [

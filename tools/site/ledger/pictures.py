@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draw the pictures of the ledger: `python -m tools.site.ledger.pictures`.
+"""Draws the pictures of the ledger: `python -m tools.site.ledger.pictures`.
 
-Each shows a page's document on gl with the installed MaterialX, with the page's patch and its
-prerequisites, and the difference of both.
+Each picture shows a page's document on gl with the installed MaterialX, then with the page's patch
+and those it needs, then the difference.
 """
 
 import sys
@@ -49,7 +49,7 @@ ADDED = {
 
 
 def hair(variance: float, scale: float) -> str:
-    """White hair with the same variance and scale for all lobes."""
+    """A document of white hair whose lobes all have the same variance and scale."""
     clear = {"absorption_coefficient": (0.0, 0.0, 0.0)}
     inputs: Mapping[str, ArrayLike] = dict.fromkeys(LOBES, (variance, scale)) | clear
     return material_text("chiang_hair_bsdf", inputs)
@@ -72,7 +72,7 @@ def layered(*nodes: str) -> str:
     return document_text("".join((BASE, *nodes)) + SURFACE)
 
 
-# The scene and the document of each page's picture; the page describes them in words.
+# Scene and document of each page's picture, which the page also describes.
 PAGES = {
     "genglsl_clamped_dot": ("back", material_text("oren_nayar_diffuse_bsdf", ROUGH)),
     "genglsl_film_half": ("side", material_text("generalized_schlick_bsdf", FILM)),
@@ -108,7 +108,7 @@ PAGES = {
 
 
 def draw(folder: str, *pages: str) -> None:
-    """Write pictures with the MaterialX of this process: an array for each page."""
+    """Render the pictures of pages with this process's MaterialX, and save them as arrays."""
     scenes = {each.name: each for each in SCENES}
     with open_host("gl") as host:
         for page in pages:
@@ -119,7 +119,7 @@ def draw(folder: str, *pages: str) -> None:
 
 
 def drawn(page: str, folder: Path, repair: bool) -> NDArray[np.float32]:
-    """A page's picture with MaterialX, or with the page's patch and its prerequisites."""
+    """A page's picture with stock MaterialX, or with the page's patch and those it needs."""
     package = linked(Path(mx.__file__).parent, folder / "MaterialX")
     if repair:
         names = needed(page)
@@ -131,13 +131,13 @@ def drawn(page: str, folder: Path, repair: bool) -> NDArray[np.float32]:
 
 
 def main() -> None:
-    """Write the pictures of all pages: stock, repaired and difference."""
+    """Write the picture of each page: stock, repaired and difference side by side."""
     mask = visible(SIZE, "sphere").mask[..., None]
     for page, (scene, _) in PAGES.items():
         with TemporaryDirectory(prefix="mxeon-picture-") as base:
             stock, own = (drawn(page, Path(base, name), name == "own") for name in ("stock", "own"))
         apart = np.where(mask, np.abs(stock - own), 0.0)
-        # Show white surroundings as gray, so that excess light is visible.
+        # Halve the exposure in white surroundings, so that excess light is visible.
         gain = 0.5 if scene == "furnace" else 1.0
         codes = [srgb_encoded(each) for each in (gain * stock, gain * own, apart / apart.max())]
         codes = [np.where(mask, each, np.uint8(BACKGROUND)) for each in codes]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Differences between a specification's tables of ports and MaterialX's node definitions.
+"""Prints differences between a specification's tables of ports and MaterialX's node definitions.
 
     python -m tools.site.ledger.tables MaterialX.PBRSpec.md
 
-The figures of docs/upstream/pbrlib_tables.md.
+The output has the figures of docs/upstream/pbrlib_tables.md.
 """
 
 import re
@@ -14,13 +14,13 @@ import MaterialX as mx
 
 from mxeon.shaders.library import load_library
 
-GROUP = "pbr"  # nodegroup of the specification's nodes; others of a category are other nodes
-NONE = ("", "__zero__", "__empty__")  # defaults that are not values
+GROUP = "pbr"  # nodegroup of the specification's nodes; some have namesakes in other nodegroups
+NONE = ("", "__zero__", "__empty__")  # defaults that count as missing
 Port = dict[str, object]  # type, default and accepted values of a port
 
 
 def printed(text: str) -> dict[str, dict[str, Port]]:
-    """Ports by node and name, from tables whose first column is headed Port."""
+    """Ports by node and name, from the tables of a text whose first column is Port."""
     nodes: dict[str, dict[str, Port]] = {}
     node, columns = "", []
     for line in text.splitlines():
@@ -42,7 +42,7 @@ def printed(text: str) -> dict[str, dict[str, Port]]:
 
 
 def defined(node: str) -> dict[str, Port]:
-    """Ports of a node by name, from all its definitions."""
+    """Ports of a node by name, from all its definitions in MaterialX."""
     nodes = [each for each in load_library("stock").getNodeDefs() if each.getNodeString() == node]
     default = [each for each in nodes if not each.getVersionString() or each.getDefaultVersion()]
     ports: dict[str, Port] = {}
@@ -69,7 +69,7 @@ def defined(node: str) -> dict[str, Port]:
 
 
 def value(text: str) -> object:
-    """A default as its distinct numbers in order, or as text: 1.0 also stands for 1.0, 1.0, 1.0."""
+    """A default as a tuple of numbers or a text; equal components are reduced to one number."""
     try:
         numbers = tuple(map(float, text.split(",")))
     except ValueError:
@@ -78,7 +78,7 @@ def value(text: str) -> object:
 
 
 def accepted(text: str) -> object:
-    """A range as its brackets and bounds, names as a set."""
+    """Accepted values: for a range, its brackets and ends; for names, a set."""
     text = text.replace(" ", "").replace("∞", "inf")
     if text.startswith(("[", "(")):
         return text[0], text[-1], *map(value, text[1:-1].split(","))
