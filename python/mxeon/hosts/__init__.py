@@ -14,12 +14,12 @@ from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
 @dataclass(frozen=True)
 class Row:
-    """A host, and what is judged on it."""
+    """A host and the properties that determine its checks."""
 
     name: str
     target: str  # shading language; "" for a renderer that only has its own materials
     way: str = ""  # key of `mxeon.conformance.backends.BACKENDS`, or ""
-    needs: str = ""  # requirement of a host that cannot run here, whose text is checked
+    needs: str = ""  # what a host needs to run; with a value, only its text is checked
     scenes: tuple[Scene, ...] = ()  # lights under which it renders the materials of documents
     surfaces: bool = False  # whether surface shaders are checked on it
     rounding: float = 0.0  # relative rounding of its pixels, in addition to float32's
@@ -55,7 +55,7 @@ HOSTS = (
         scenes=(SIDE, BACK, WHITE_LIGHT),
         surfaces=True,
     ),
-    # Its furnace sums microfacets over other directions.
+    # No WHITE_LIGHT: Storm sums an environment over different directions than the other hosts.
     Row(
         "storm",
         "glsl",
@@ -87,7 +87,7 @@ HOSTS = (
 )
 
 
-# Renderers with their own materials. `mxeon.survey` has their classes, nodes, backends and checks.
+# Renderers with their own materials. `mxeon.survey` defines their classes, nodes and checks.
 RENDERERS = (
     Row("cycles-native", "", "native", engine="survey.cycles_native.CyclesNativeHost"),
     Row("three", "", "exact", engine="survey.browser.three.ThreeHost", scenes=(SIDE, BACK)),
@@ -116,12 +116,12 @@ def host_row(name: str, *others: Row) -> Row:
 
 
 def front_lit_only(host: str, model: str) -> bool:
-    """Whether a host only has a model for s >= 0; hosts outside the table have complete models."""
+    """Whether a host supports a model only for s >= 0; False for hosts outside the table."""
     return any(row.name == host and model in row.front_lit for row in HOSTS)
 
 
 def open_host(name: str, *others: Row) -> Host:
-    """Start the host of a name; Unsupported for a renderer that only has its own materials."""
+    """Start the host with this name; Unsupported for a renderer with only its own materials."""
     engine = open_engine(name, *others)
     if isinstance(engine, Host):
         return engine
@@ -129,11 +129,11 @@ def open_host(name: str, *others: Row) -> Host:
     raise Unsupported(f"{name}: this renderer only has its own materials; gl renders MaterialX's")
 
 
-_OPENED: set[int] = set()  # processes that opened an engine: this one, and those it was forked from
+_OPENED: set[int] = set()  # ids of processes that opened an engine: this one and its ancestors
 
 
 def open_engine(name: str, *others: Row) -> Engine:
-    """Start the host or renderer of a name, or raise NotRun; `others` are additional rows."""
+    """Start the host or renderer with this name, or raise NotRun; `others` are additional rows."""
     from mxeon.shaders.generation import TARGETS
 
     row = host_row(name, *others)

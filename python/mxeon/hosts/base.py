@@ -62,12 +62,12 @@ class Engine(ABC):
 
     name: str
     draws_images: ClassVar[bool] = False  # whether pictures may have an image as their environment
-    default: ClassVar[Methods] = UNCHOSEN  # methods unless others are chosen; UNCHOSEN: it has none
-    methods: Methods = UNCHOSEN  # chosen for all shaders
+    default: ClassVar[Methods] = UNCHOSEN  # used if none are chosen; UNCHOSEN: methods do not apply
+    methods: Methods = UNCHOSEN  # methods chosen for all shaders
 
     @property
     def active(self) -> Methods:
-        """The methods of its shaders."""
+        """The chosen methods, completed by the default ones."""
         return self.methods.over(self.default)
 
     def choose(self, methods: Methods) -> None:
@@ -117,8 +117,7 @@ class Host(Engine):
     """An engine that executes generated shaders; hosts override the methods that they support.
 
     Unsupported methods raise `Unsupported`; a shader that the host's compiler refuses raises `ShaderError`. Only `compile`
-    knows the target, the profile and the lights. Pairs, rows and pixels keep the order of the request, as linear radiance
-    or 1/sr.
+    knows the target, the profile and the lights. Results are in the order of the request, as linear radiance or 1/sr.
     """
 
     target: ClassVar[str]
@@ -169,7 +168,7 @@ class Host(Engine):
         self.methods = UNCHOSEN if self.fixed else methods
 
     def table(self, shader: Shader) -> dict[str, Array]:
-        """Texels of the table of albedos that a shader reads, by its sampler, which clamps and interpolates."""
+        """Texels of the albedo table that a shader reads, by sampler; it clamps and interpolates."""
         return {TABLE: self._tables(shader.table)} if shader.table else {}
 
     @cached_property
@@ -183,7 +182,7 @@ class Host(Engine):
     def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the unit sphere with a shader on it: linear, row 0 at the top, 0 off the sphere.
 
-        Raises NotRun if the host cannot render the scene or fails; InputError for paths unless it traces them.
+        Raises NotRun if rendering fails or is not supported; InputError for `paths` unless it traces paths.
         """
         raise self._unsupported("pictures of a sphere", "gl")
 

@@ -67,13 +67,13 @@ CLOSURES = {
     "transmission": ("CLOSURE_TYPE_REFLECTION", 3),
     "emission": ("CLOSURE_TYPE_REFLECTION", 4),
 }
-EMISSION = "CLOSURE_TYPE_EMISSION"  # calls EDFs in every branch
+EMISSION = "CLOSURE_TYPE_EMISSION"  # closure type that evaluates EDFs, in every branch
 GRAPH = "graph"  # branch: the color of the uniform EDF
 LIT = "lit"  # branch: several lights, then an environment on both sides, in one pixel
 # Inputs of LIT: number of lights (up to 2), direction of the second in world space, and whether an environment follows.
 LIGHTS, SECOND_LIGHT, SKY = "mxeon_lights", "mxeon_second", "mxeon_sky"
 # Steps 0 and 1 are lights, 2 is the reflected and 3 the transmitted environment. All branches share one program, which
-# takes no longer to compile than a program for one branch. STEPS has the first step, the end, and the irradiance of a
+# takes no longer to compile than a program for one branch. STEPS holds the first step, the end, and the irradiance of a
 # light, or -1 for throughput.
 STEPS = "mxeon_steps"
 LOOP = """{type} mxeon_sum = {type}(0.0);
@@ -92,11 +92,11 @@ for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxe
 """
 OUTPUTS = ("response", "throughput", "radiance")  # EDFs have radiance
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
-SURFACE = "surface_normal"  # the geometric normal, which is not that of a node
+SURFACE = "surface_normal"  # the geometric normal, not a node's normal input
 FAR = (0.0, 0.0, 1e31)  # makes the host use the position of its pixel on a plane
 GIVEN = "P = P.z < 1e30 ? P : {};"
 FILES = ("filename", "string")  # types of inputs that an evaluation does not set
-# Each image fills its texture; by the end of the variable's name.
+# Values with which each image fills its texture, by the end of the variable's name.
 PLACED = {"_uv_scale": (1.0, 1.0), "_uv_offset": (0.0, 0.0)}
 # MaterialX's text for WGSL converts integers, since WGSL has no booleans in memory.
 BOOLEAN = re.compile(r"^#define (\w+) bool\(\1\)$", re.MULTILINE)
@@ -107,8 +107,8 @@ Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by na
 @dataclass(frozen=True)
 class BsdfCall:
     statements: str  # the shader's main up to the call
-    value: str  # a color
-    arguments: Arguments  # variables that both read
+    value: str  # expression of a color
+    arguments: Arguments  # variables that statements and value read
 
 
 def bsdf_call(query: Query) -> BsdfCall:
@@ -199,7 +199,7 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
     statements, ports = _main(text), _ports(shader)
     words = _words(statements + color[1])
     arguments: Arguments = {"V": ("vector3", wo), "P": ("vector3", FAR)}
-    # A value of four components keeps its uniform.
+    # Inputs of these types keep the values of their uniforms.
     unset = (*FILES, "color4", "vector4", "matrix33", "matrix44")
     own = [name for name in words if name in ports and ports[name].type not in unset]
     arguments |= {name: _argument(name, ports, inputs) for name in own} | _placed(words)
@@ -207,7 +207,7 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
 
 
 def _placed(words: Iterable[str]) -> Arguments:
-    """The places of images in their textures, among the words of a text."""
+    """Values of the variables among `words` that place images in their textures."""
     return {
         each: ("vector2", value)
         for each in words
@@ -218,7 +218,7 @@ def _placed(words: Iterable[str]) -> Arguments:
 
 @lru_cache(maxsize=16)
 def _main(text: str) -> str:
-    """Statements of a main before its surface."""
+    """Statements of a main before it declares its surface shader."""
     before = re.split(r"\n *surfaceshader \w+ = ", text)[0]
     # In Slang, main begins with the stage's inputs and outputs.
     return re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
@@ -239,7 +239,7 @@ def _ports(shader: Shader) -> dict[str, Input]:
 
 @lru_cache(maxsize=16)
 def booleans(text: str) -> list[str]:
-    """Names of the inputs that a text for WGSL turns into booleans."""
+    """Names of the integer inputs that a text for WGSL converts to booleans."""
     return BOOLEAN.findall(text)
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shared code of hosts that read documents and libraries themselves, each in its own process.
 
-They generate the shader again, and draw it with their own lights and uniforms on quads.
+These hosts generate the shader again and draw it on quads with their own lights and uniforms.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ STEEPEST = (
 def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArray[np.float32]]:
     """The quads of a picture of `size` x `size` pixels, four vertices each, counterclockwise.
 
-    Each has one normal, so every pixel is an exact point, at `place` in half widths from its center. A quad lies in the
+    Each has one normal, so every pixel shows an exact point, `place` half widths from its center. A quad lies in the
     tangent plane and covers the pixel, so derivatives of positions equal the sphere's. Derivatives of "texcoord" have
     the same directions but are smaller, so textures are read at full size. Row 0, at the top, comes first.
     """
@@ -62,10 +62,10 @@ def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArr
     }
 
 
-# Pixels along a quad if blocks of 2 x 2 must lie in one of its two triangles, and the place of the pixel that is read:
-# right of the diagonal and below the middle.
+# Side of a quad in pixels if blocks of 2 x 2 must lie in one of its two triangles, and the offset of the pixel that is
+# read: right of the diagonal and below the center.
 PIXEL_BLOCK, PLACE = 4, (0.25, -0.25)
-PICTURES = 64  # cached: the checks of a node request some again
+PICTURES = 64  # cached pictures; the checks of a node request some again
 
 
 class DocumentHost(base.Host):
@@ -121,7 +121,7 @@ class DocumentHost(base.Host):
 
     @abstractmethod
     def _interpreter(self) -> Path:
-        """Path of the Python that has the renderer."""
+        """Path of the Python interpreter that can import the renderer."""
 
     @abstractmethod
     def _check(self, error: str, printed: Sequence[str]) -> None:

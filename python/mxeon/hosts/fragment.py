@@ -30,7 +30,7 @@ FETCH = {
 FETCH["vector3"] = FETCH["vec3"] = FETCH["color3"]
 FETCH["vector2"] = "vec2 {0} = {1}.xy;"
 FETCH["integer"] = "int {0} = int({1}.x);"
-# Arguments that exceed the number of textures share one, in stacked layers.
+# Texture that stacks the arguments in layers if there are too many for a texture each.
 STACK = "mxeon_stack"
 MOST = 12  # textures for arguments; every device has 16, and the environment uses some
 LAYER = (
@@ -51,7 +51,7 @@ class Dialect:
     """Text around a function in a language of the GLSL family."""
 
     version: str  # first line of a stage
-    prelude: str  # between the version and a generated text
+    prelude: str  # code between the version and a generated text
     output: str  # declaration of a pixel stage's output
     sampler: str  # declaration of an argument's sampler, with its name and number
     vertex: str  # vertex stage without outputs
@@ -96,7 +96,7 @@ DIALECTS = {
         vertex="#version 450\nlayout (location = 0) " + VERTEX,
     ),
 }
-DIALECTS["wgsl"] = replace(DIALECTS["vulkan"], prelude="")  # its textures are separate already
+DIALECTS["wgsl"] = replace(DIALECTS["vulkan"], prelude="")  # WGSL's textures are separate
 
 
 def bsdf_evaluation(query: Query) -> tuple[str, Columns]:

@@ -34,10 +34,10 @@ T = TypeVar("T")
 
 
 def _current(verb: Callable[Concatenate[GlHost, P], T]) -> Callable[Concatenate[GlHost, P], T]:
-    """Make the host's context current for a method: other hosts of the process have their own.
+    """Make the host's context current for a method, since each host of the process has its own.
 
-    Each context numbers its objects itself. Objects that Python has dropped are therefore deleted here, while their own
-    context is current.
+    The same number means a different object in each context, so objects that Python has dropped are
+    deleted here, while their own context is current.
     """
 
     @wraps(verb)
@@ -170,8 +170,8 @@ class GlHost(FragmentHost):
     ) -> dict[str, moderngl.Texture | moderngl.TextureArray]:
         """Textures for the samplers of a program; samplers of one array share a texture.
 
-        A map of the environment ends at its poles. The uniform one of a check repeats: clamping would turn a NaN
-        coordinate into a number, and hide it from the check.
+        An environment map is clamped at its poles. The uniform map of a check repeats instead, since
+        clamping would turn a NaN coordinate into a number and hide it from the check.
         """
         made: dict[tuple[int, bool], moderngl.Texture] = {}
         own: dict[str, moderngl.Texture | moderngl.TextureArray] = {}
@@ -227,7 +227,7 @@ def _points(
     count = len(vertices["i_position"])
     stage = context.vertex_array(program, _buffers(context, program, vertices))
     buffer = context.buffer(reserve=count * points.stride(captured))
-    context.simple_framebuffer((1, 1)).use()  # OpenGL draws nothing unless it has a frame
+    context.simple_framebuffer((1, 1)).use()  # OpenGL draws nothing without a framebuffer
     stage.transform(buffer, mode=context.POINTS, vertices=count)
     texels = points.texels(buffer.read(), captured, seen)
     layers, height, width, _ = texels.shape

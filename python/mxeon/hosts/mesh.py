@@ -82,7 +82,7 @@ def mesh_points_at(file: str, x: Floats, y: Floats) -> VisiblePoints:
     position.reshape(-1, 3)[ray] = hit
     normal.reshape(-1, 3)[ray] = _unit(unit)
     uv = getattr(shape.visual, "uv", None)
-    if uv is None:  # longitude and latitude around the box's middle
+    if uv is None:  # use longitude and latitude about the box's center
         out = (hit - shape.bounds.mean(axis=0)) @ OBJECT.T
         u = 0.5 + np.arctan2(out[:, 0], out[:, 2]) / (2.0 * np.pi)
         v = 0.5 + np.arctan2(out[:, 1], np.hypot(out[:, 0], out[:, 2])) / np.pi

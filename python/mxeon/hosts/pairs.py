@@ -49,7 +49,7 @@ class PairHost(base.Host):
                     f"{self.name}: the sine of each pair must be at least {LEAST_SINE}"
                 )
             return self._pixels(shader, wo, wi, inputs, "", LAMP)
-        # Emission and sky do not depend on the light: use one across the view. A sky needs several pixels.
+        # Emission and sky ignore wi: use one perpendicular to wo. A sky needs several pixels.
         sky = not through and branch != EMITTED
         repeats = max(1, PATHS // len(wo)) if sky else 1
         rows = np.repeat(np.arange(len(wo)), repeats)
@@ -65,7 +65,7 @@ class PairHost(base.Host):
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
-        """Radiance of pairs, (N, 3), with the OSL statement `last`, a pattern with `output`, at the shader's end.
+        """Radiance of pairs, (N, 3); the shader ends with the OSL statement `last`.
 
         `light` is LAMP with irradiance 1 on a facing surface, SKY with uniform radiance 1, or DARK.
         """
@@ -73,7 +73,7 @@ class PairHost(base.Host):
 
 Vectors = NDArray[np.float64]
 
-# Least sine of the angle between view and light: with less, the camera sees the light or points lie behind it.
+# Least sine between wo and wi; below it, the light is in view or points are behind the camera.
 LEAST_SINE = 0.08
 FARTHER = 1.001 * LEAST_SINE  # allows for rounding
 NO_SINE = 1e-6  # sine of directions that are equal up to the rounding of float32
@@ -99,7 +99,7 @@ def visible(wo: Array, wi: Array) -> NDArray[np.bool_]:
 
 def apart(wo: Array, wi: Array) -> Array:
     """Lights turned away from the view, or from its opposite, until the pair is visible."""
-    # The light's direction across the view, or any if it has none.
+    # Component of the light perpendicular to the view; any perpendicular if it is 0.
     cosine = (wo * wi).sum(axis=1, keepdims=True)
     across = wi - cosine * wo
     sine = np.linalg.norm(across, axis=1, keepdims=True)
@@ -123,7 +123,7 @@ VIEW = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True)
 class TurnedPairs:
-    turn: Vectors  # (N, 3, 3), from the pairs' frames to the scene's
+    turn: Vectors  # rotations from the pairs' frames to the scene's, (N, 3, 3)
 
     def turned(self, vectors: Array) -> Vectors:
         """Vectors (N or 1, 3) of the pairs' frames in the scene's frame."""
@@ -134,8 +134,8 @@ class TurnedPairs:
 @dataclass(frozen=True)
 class TiltedTriangles(TurnedPairs):
     width: float  # width of the picture
-    corners: Vectors  # (N, 3, 3)
-    irradiance: Vectors  # (N, 1), on a facing surface, for radiant intensity 1
+    corners: Vectors  # three corners of each triangle, (N, 3, 3)
+    irradiance: Vectors  # irradiance of a surface facing a light of radiant intensity 1, (N, 1)
 
     @property
     def place(self) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures by paths, on OpenGL: generated text of the profile "path" inside `path_tracer.glsl`."""
+"""Path-traced pictures on OpenGL: text of the profile "path" inside `path_tracer.glsl`."""
 
 import warnings
 from importlib.util import find_spec
@@ -25,7 +25,7 @@ HEAD = (
 
 
 def by_light(sky: Array) -> tuple[Array, Array]:
-    """Indices of texels, sampled in proportion to their light, 256 x 256, and each texel's probability."""
+    """256 x 256 texel indices, repeated in proportion to light, and each texel's probability."""
     rows, columns, _ = sky.shape
     across = np.sin(np.pi * (np.arange(rows) + 0.5) / rows)[:, np.newaxis]
     share = np.cumsum(sky.mean(axis=-1) * across + 1e-6)
@@ -35,7 +35,7 @@ def by_light(sky: Array) -> tuple[Array, Array]:
 
 
 class NoiseNote(UserWarning):
-    """Noise of a picture."""
+    """Reports the estimated noise of a picture."""
 
 
 class PathTracerHost(gl.GlHost):

@@ -31,7 +31,7 @@ MARGIN = 1  # points beyond each edge, for derivatives at the edges
 SAMPLER = "mxeon_points"
 ALPHA = "mxeon_alpha"  # uniform: whether a pixel shows its alpha
 
-# Macros that turn a text's inputs into variables. In GLSL they are in a block.
+# Macros that turn a text's inputs into variables. In GLSL, inputs are in a block.
 VARIABLES = {
     "glsl": "#define VertexData mxeon_Inputs { float mxeon_unused; } mxeon_inputs; struct VertexData\n",
     "essl": "#define in\n",
@@ -83,14 +83,14 @@ def visible(size: int, shape: str, margin: int = 0) -> VisiblePoints:
 
 
 def visible_at(x: Floats, y: Floats, shape: str) -> VisiblePoints:
-    """Visible points of a shape at places of the frame."""
+    """Visible points of a shape at positions in the frame."""
     if shape in SHAPES:
         return shader_ball_at(x, y) if shape == "ball" else sphere_at(x, y)
     return mesh_points_at(shape, x, y)
 
 
 def vertices(points: VisiblePoints) -> dict[str, NDArray[np.float32]]:
-    """Attributes of points in the rows of a frame, row 0 at the top."""
+    """Vertex attributes of a frame's points, row by row, row 0 at the top."""
     flat = points.normal.reshape(-1, 3)
     attributes = {
         "i_position": points.position.reshape(-1, 3),
@@ -102,7 +102,7 @@ def vertices(points: VisiblePoints) -> dict[str, NDArray[np.float32]]:
 
 
 def frame(points: VisiblePoints) -> tuple[int, int]:
-    """Width and height of the frame of points that have a margin."""
+    """Width and height of a frame of points, including its margin."""
     height, width = points.mask.shape
     return width - 2 * MARGIN, height - 2 * MARGIN
 

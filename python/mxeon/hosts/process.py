@@ -64,7 +64,7 @@ class Worker:
                 stderr=log,
                 text=True,
                 errors="replace",
-                env=os.environ | {"TMPDIR": str(self.folder)},  # Blender leaves a folder
+                env=os.environ | {"TMPDIR": str(self.folder)},  # Blender leaves files behind
             )
         greeting = self._reply()
         if "error" in greeting:

@@ -36,8 +36,8 @@ WHITE_TEXELS = np.ones((2, 2, 3), dtype=np.float32)
 # first mipmap of the environment is read.
 EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
 PICTURE_DIRECTIONS = 256
-DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # every sum is 0
-TRIANGLE = {  # attributes of its three vertices
+DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # one direction: sums are 0
+TRIANGLE = {  # attributes of a triangle's three vertices
     "i_position": np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4"),
     "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
 }
@@ -120,7 +120,7 @@ def light(scene: Scene, directions: int = PICTURE_DIRECTIONS) -> Uniforms:
     if scene.light is not None:
         x, y, z = scene.light
         lamps = (Lamp(direction=(-x, -y, -z)), *lamps)
-    values["u_numActiveLightSources"] = len(lamps)  # a program keeps the last scene's values
+    values["u_numActiveLightSources"] = len(lamps)  # set even if 0: a program keeps the last value
     for number, lamp in enumerate(lamps):
         for name, value in vars(lamp).items():
             values[f"u_lightData[{number}].{name}"] = value
@@ -152,7 +152,7 @@ def bands(size: int, shape: str) -> tuple[Rectangle, ...]:
     return tuple(parts)
 
 
-# An evaluation looks like a frame with two lights in the middle of an animation.
+# Uniforms of an evaluation, as in a frame with two lights in the middle of an animation.
 FRAME_UNIFORMS = (
     light(SIDE)
     | {"u_numActiveLightSources": 2, "u_frame": 24.0, "u_time": 1.0, TABLE + "Size": TABLE_SIZE}
@@ -161,7 +161,7 @@ FRAME_UNIFORMS = (
 
 
 class Frame(NamedTuple):
-    """Both stages of a program, and what they read: rows of arguments, texels, and uniforms."""
+    """Both stages of a program and their data: rows of arguments, texels, and uniforms."""
 
     vertex: str
     pixel: str

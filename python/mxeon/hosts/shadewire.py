@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""shadewire, a MaterialX compiler in Rust with closures of its own: its GLSL, executed as on the host `gl`.
+"""shadewire, a MaterialX compiler in Rust with its own closures; its GLSL runs as on the host `gl`.
 
 It reads a document and returns a library of GLSL functions for a renderer to call. Inputs that vary are connected to
 geometric properties, whose functions the renderer has to define, so the text is unchanged.
@@ -33,11 +33,11 @@ try:
 except ImportError:
     mtlx = None
 
-MODELS = ("surface", "surface_unlit")  # a tree of closures, or emission alone
+MODELS = ("surface", "surface_unlit")  # a tree of closures, or only emission
 SKIPPED = ": not evaluated"  # ends shadewire's comment on a lobe that it leaves black
 EMITTED = "shadewire_eval_emission(surface, V, N)"
 BSDF = "shadewire_eval_bsdf(surface, L, V, N)"
-# Responses by branch: nothing is transmitted, and nothing scattered is emitted.
+# Expressions of the response by branch; 0 for branches in which shadewire's BSDFs do not respond.
 RESPONSES = {
     "direct": f"{BSDF}.response",
     "environment": "shadewire_eval_albedo(surface, V, N)",
@@ -45,16 +45,16 @@ RESPONSES = {
     "emission": "vec3(0.0)",
     GRAPH: EMITTED,
 }
-OUTPUTS = {"throughput": f"{BSDF}.throughput", "radiance": EMITTED}  # every branch has the same
+OUTPUTS = {"throughput": f"{BSDF}.throughput", "radiance": EMITTED}  # the same in every branch
 FRAME = """vec3 host_normal, host_tangent;
 vec3 shadewire_host_normal_world() { return host_normal; }
 vec3 shadewire_host_tangent_world() { return host_tangent; }
 vec3 shadewire_host_bitangent_world() { return cross(host_normal, host_tangent); }
 """
 PROPERTY = "{0} host_{1};\n{0} shadewire_host_geomprop_{1}() {{ return host_{1}; }}\n"
-TYPES = {"float": "float", "boolean": "bool", "integer": "int", "vector2": "vec2"}  # others: vec3
+TYPES = {"float": "float", "boolean": "bool", "integer": "int", "vector2": "vec2"}  # else vec3
 
-Properties: TypeAlias = Mapping[str, tuple[str, str]]  # key of the given inputs, and type
+Properties: TypeAlias = Mapping[str, tuple[str, str]]  # input's key and type, by property
 
 
 class ShadewireHost(base.Host):
@@ -132,9 +132,9 @@ class ShadewireHost(base.Host):
 
 
 def _connected(shader: Shader, given: Collection[str]) -> tuple[str, Properties]:
-    """Text of a shader's document with the library's definitions, whose given inputs are geometric properties.
+    """Text of a shader's document with the library's definitions.
 
-    The frame of the surface is the renderer's.
+    Inputs in `given` read geometric properties; the renderer supplies the surface's frame.
     """
     document = mx.createDocument()
     document.copyContentFrom(shader.document)
@@ -162,7 +162,7 @@ def _connected(shader: Shader, given: Collection[str]) -> tuple[str, Properties]
 
 
 def _compiled(document: str, material: str) -> str:
-    """shadewire's text for a document's material, or its only one for "", without its first line.
+    """shadewire's text, without its first line, for a document's material ("": its only one).
 
     Raises NotRun if shadewire refuses the document; warns of a lobe that it replaces by black.
     """

@@ -31,7 +31,7 @@ Resource: TypeAlias = Any  # an object of slangpy, whose types are unknown if it
 def _slangpy() -> Resource:
     """slangpy, or None if it is not installed; without PyTorch, whose import takes two seconds."""
     modules = cast(dict[str, object], sys.modules)
-    unused = modules.setdefault("torch", None) is None  # hide it
+    unused = modules.setdefault("torch", None) is None  # makes slangpy skip PyTorch
     try:
         import slangpy
     except ImportError:
@@ -75,7 +75,7 @@ void {entry}(uint3 mxeon_thread : SV_DispatchThreadID)
 }}
 """
 
-# GLSL's names in the shader functions that differ in Slang.
+# GLSL names in the shader functions that Slang spells differently.
 GLSL = """typealias vec3 = float3;
 #define mix lerp
 """
@@ -109,7 +109,7 @@ class SlangHost(base.Host):
     def __init__(self) -> None:
         if slangpy is None:
             raise NotRun(f"slang: slangpy is not installed; {install('slang')}")
-        slangpy.Logger.get().level = slangpy.LogLevel.error  # it warns of features that CPUs lack
+        slangpy.Logger.get().level = slangpy.LogLevel.error  # CPUs lack features it warns of
         for device in DEVICES:
             self._kernels: dict[str, Resource] = {}
             self._names = itertools.count()
@@ -219,8 +219,8 @@ class SlangHost(base.Host):
     def _texture(self, texels: Array) -> Resource:
         """A texture of float32 texels (height, width, 3).
 
-        A CPU device reads the nearest texel, and places the first and the last at 0 and 1: texels in between
-        keep the others in the middle of their own area.
+        A CPU device reads the nearest texel and places the first and the last texel at 0 and 1.
+        Texels are therefore doubled, so that each is read in the middle of its own area.
         """
         if self._device.info.type == slangpy.DeviceType.cpu:
             for axis in (0, 1):

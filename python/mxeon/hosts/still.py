@@ -29,7 +29,7 @@ from mxeon.shaders.shader_ball import CENTER, FOOT_HEIGHT, FOOT_RADIUS, GROUND, 
 Mask = NDArray[np.bool_]
 
 SIDE = 4  # rows and columns of samples in a redrawn pixel
-BLOCKS = 64, 256  # columns and rows of such pixels in one frame
+BLOCKS = 64, 256  # columns and rows of redrawn pixels in one frame
 # A pixel is redrawn above this change of a display value, or below this cosine of normals.
 SMOOTH = 0.06, 0.98
 

@@ -24,7 +24,7 @@ SCENE, POINTS, LIGHT = "scene.xml", "points.obj", "light.obj"
 EYE = 40.0  # height of the camera above the light, which lies at the origin
 NEAREST = 0.5  # distance from the light to a ray
 CENTER = 1.5  # x of the picture's center, at the height of the light
-FOV = 5.725  # degrees, of the whole frame, which is tan(FOV / 2) wide at distance 1
+FOV = 5.725  # field of view in degrees; the frame is tan(FOV / 2) wide at distance 1
 LIGHT_RADIUS = 2.0**-18
 # Size of a triangle over its distance: above the camera's error of 2^-24, and too small to hide the light.
 TRIANGLE = 2e-5

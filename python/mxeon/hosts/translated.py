@@ -23,8 +23,8 @@ except ImportError:
 
 TRANSLATOR = ("spirv-cross", "--hlsl", "--shader-model", "60")
 COMPILER = ("glslangValidator", "-D", "-V", "--quiet", "-S", "frag", "-e", "main")
-# Otherwise glslang inlines every function, which takes half a minute for path tracers' text. Vulkan
-# requires it of functions that take textures, and wgpu wants unused stage inputs removed.
+# Optimizing, glslang inlines every function, which takes half a minute for path tracers. Texts with
+# functions that take textures (Vulkan) or with unused stage inputs (wgpu) still need it.
 KEEP_FUNCTIONS = "-Od"
 OPTIMIZED = re.compile(r"^\w+ \w+\(.*\bTexture2D\b| : TEXCOORD\d+;$", re.MULTILINE)
 REGISTER = re.compile(r"^(?=.* : register\([bst](\d+), space(\d+)\))", re.MULTILINE)
@@ -54,7 +54,7 @@ class HlslHost(vulkan.VulkanHost):
         return text
 
     def _translated(self, folder: Path) -> bytes | str:
-        """What wgpu compiles, made of own.spv."""
+        """Code for wgpu, translated from own.spv in `folder`."""
         text, compiled = self._hlsl(folder), folder / "compiled"
         flags = () if OPTIMIZED.search(text.read_text()) else (KEEP_FUNCTIONS,)
         self._run(*COMPILER, *flags, "-o", compiled, text)
@@ -62,7 +62,7 @@ class HlslHost(vulkan.VulkanHost):
 
 
 class DxcHost(HlslHost):
-    """DXC as the Python package compushady calls it, with its bindings named in the text."""
+    """DXC as the Python package compushady calls it; the text names the bindings."""
 
     name = "dxc"
     path = "HLSL, DXC, "

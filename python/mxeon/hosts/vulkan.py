@@ -69,8 +69,8 @@ class VulkanHost(FragmentHost):
 
     name = "vulkan"
     target = "vulkan"
-    path: ClassVar[str] = ""  # name of the converter
-    # Programs that it runs, and how to install them.
+    path: ClassVar[str] = ""  # prefix of the device's description that names a converter
+    # Programs that the host runs, and how to install each.
     programs: ClassVar[tuple[tuple[str, str], ...]] = (
         (COMPILER[0], f"{APT} glslang-tools"),
         (REMOVER[0], f"{APT} spirv-tools"),
@@ -212,7 +212,7 @@ class VulkanHost(FragmentHost):
     def _texture(self, texels: Array) -> Resource:
         """A texture of 8-bit, float16 or float32 texels, of one to four components."""
         height, width, components = texels.shape
-        if components == 3:  # not supported
+        if components == 3:  # three components are not supported
             texels = np.pad(texels, ((0, 0), (0, 0), (0, 1)))
         form = FORMATS.get(texels.dtype.name) or FLOATS[texels.shape[2]]
         size = (width, height, 1)

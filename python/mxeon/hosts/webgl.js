@@ -5,7 +5,7 @@ const gl = document.createElement("canvas").getContext("webgl2");
 const floats = gl && gl.getExtension("EXT_color_buffer_float");
 const filters = gl && gl.getExtension("OES_texture_float_linear");
 
-// The device, or why there can be no frame.
+// Name of the device, or the reason why it cannot draw frames.
 function identify() {
     if (!floats || !filters) {
         return { failed: "the browser has no WebGL2 with float32 frames and filtered float32 textures" };
@@ -35,7 +35,7 @@ function link(vertex, pixel, outputs = []) {
     return program;
 }
 
-// Programs by their texts, the last used last: one serves many frames.
+// An LRU cache of programs by their texts; one program draws many frames.
 const programs = new Map();
 const PROGRAMS = 16;
 
@@ -52,13 +52,13 @@ function programOf(vertex, pixel) {
     return program;
 }
 
-// An array of a job's file.
+// An array in a job's file.
 function view({ shape, offset }, data, Kind = Float32Array) {
     return new Kind(data, offset, shape.reduce((product, each) => product * each));
 }
 
-// A texture of float32 texels that repeats, without smaller versions of itself; of layers where the
-// array has four dimensions.
+// A repeating texture of float32 texels without mipmaps; an array texture if the array has four
+// dimensions.
 function upload(layout, data) {
     const texture = gl.createTexture();
     if (layout.shape.length == 4) {
@@ -85,7 +85,7 @@ function upload(layout, data) {
     return texture;
 }
 
-// What sets a uniform, by its type.
+// Functions that set a uniform, by its type.
 function setters() {
     return {
         [gl.FLOAT]: (place, value) => gl.uniform1f(place, value),
@@ -107,7 +107,7 @@ function setUniforms(program, values) {
     }
 }
 
-// The buffers that were made.
+// Sets vertex attributes and returns their new buffers.
 function setAttributes(program, attributes, data) {
     return Object.entries(attributes).map(([name, layout]) => {
         const place = gl.getAttribLocation(program, name);
@@ -122,7 +122,7 @@ function setAttributes(program, attributes, data) {
     });
 }
 
-// Calls `draw` with vertex arrays that are for it alone.
+// Calls `draw` with its own vertex array.
 function withAttributes(program, attributes, data, draw) {
     const state = gl.createVertexArray();
     gl.bindVertexArray(state);
@@ -154,7 +154,7 @@ function render(program, job, data) {
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
         }
         if (["u_envRadiance", "u_envIrradiance"].includes(name) && layout.shape[0] > 2) {
-            // A map of the environment ends at its poles; the even one of a check keeps NaN in sight.
+            // An environment map is clamped at its poles; a check's uniform map repeats, to keep NaN.
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
         }
         return texture;
@@ -164,7 +164,7 @@ function render(program, job, data) {
     const pixels = new Float32Array(4 * size[0] * size[1]);
     gl.readPixels(0, 0, ...size, gl.RGBA, gl.FLOAT, pixels);
     bound.forEach((texture) => gl.deleteTexture(texture));
-    gl.deleteFramebuffer(frame); // and nothing else draws into what is gone
+    gl.deleteFramebuffer(frame); // so nothing draws into a deleted frame
     gl.deleteRenderbuffer(target);
     return pixels;
 }
@@ -178,7 +178,7 @@ function encode(array) {
     });
 }
 
-// Outputs of a vertex stage, `stride` bytes for each of `count` points, one after the other.
+// Outputs of a vertex stage for `count` points in sequence, `stride` bytes per point.
 function feedback(program, { attributes, uniforms, count, stride }, data) {
     const captured = new Uint8Array(count * stride);
     const buffer = gl.createBuffer();
@@ -199,8 +199,8 @@ function feedback(program, { attributes, uniforms, count, stride }, data) {
     return captured;
 }
 
-// What `work` makes of a program and the job's arrays: { bytes }, or { refused } in the compiler's
-// words, or { failed }.
+// Result of `work` for a program and the job's arrays: { bytes }, { refused } with the compiler's
+// message, or { failed }.
 async function answer(makeProgram, work, job) {
     const data = await document.querySelector("input").files[0].arrayBuffer();
     let program;

@@ -47,7 +47,7 @@ FLAGS = (
     "--host-resolver-rules=MAP * ~NOTFOUND",
 )
 PAGE = "<input type='file'><script>{}</script>"
-# A lost context draws nothing, and reports its error only once: `lostContext` asks all that a page has made.
+# A lost context reports its error only once, so `lostContext` checks all contexts of the page.
 CONTEXTS = """
 const contexts = [], getContext = HTMLCanvasElement.prototype.getContext;
 HTMLCanvasElement.prototype.getContext = function (...wanted) {
@@ -142,7 +142,7 @@ class WebGlHost(Chromium, raster.FragmentHost):
     def __init__(self, limit: float = 300.0) -> None:
         super().__init__(self.name, limit)
         self._points = lru_cache(maxsize=POINTS)(self._capture)
-        # Ask for the device at once: there may be no WebGL2.
+        # Request the device now, since the browser may lack WebGL2.
         try:
             self._ask("identify")
         except NotRun:

@@ -30,7 +30,7 @@ from mxeon.shaders.scene import Scene, sphere
 
 Socket: TypeAlias = float | Sequence[float]  # value of a Blender node's input
 
-PICTURES = 64  # cached: the checks of a node request some again
+PICTURES = 64  # cached pictures; the checks of a node request some again
 
 # Cycles has no surface coordinates on a point cloud: this block sets the globals `u`, `v` and `dPdu` as in
 # `mxeon.shaders.scene`.

@@ -44,7 +44,7 @@ class Blender(Worker):
         super().__init__(name, interpreter(name), Path(__file__).with_name("worker.py"), limit)
 
     def render(self, folder: Path, text: str = "", **frame: object) -> list[str]:
-        """Lines printed while it renders a shader's text, if any, to PICTURE in a folder."""
+        """Render a shader's text, or a node, to PICTURE in a folder; return the printed lines."""
         if text:
             (folder / "shader.osl").write_text(text, encoding="utf-8")
             frame["shader"] = str(folder / "shader.osl")

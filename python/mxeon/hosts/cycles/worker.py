@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import bpy  # only then can Blender's other modules be found
+import bpy  # first, since it makes Blender's other modules importable
 
 # isort: split
 import _cycles

@@ -38,7 +38,7 @@ vector mxeon_view()
 """
 TROUBLE = ("ERROR", "WARNING")  # first words of Blender's messages
 ROOT = "root"
-SHADERS, POINTS = 8, 1 << 14  # cached shaders, and points of each
+SHADERS, POINTS = 8, 1 << 14  # cached shaders, and cached points per shader
 VIEWED = re.compile(r"\bI\b")  # matches texts that read the view
 PRINT = f'printf("mxeon %d {ROOT} %s\\n", MXEON_ROW, mxeon_text({{0}}));'
 

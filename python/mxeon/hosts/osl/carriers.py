@@ -70,7 +70,7 @@ CLOSURES = {
 }
 
 
-# What Blender's OSL prints before and after the label of the closure that carries it.
+# Text that Blender's OSL prints before and after the label of a closure.
 BEFORE, AFTER = '(1, 1, 1) * holdout ("label", "', '")'
 # OSL truncates formatted closures after 1024 characters, and Blender truncates lines. So each closure is printed where
 # it is made, and its label is the hash of its text.
@@ -107,7 +107,7 @@ def prelude(text: str) -> str:
         _function("mxeon_layer", LAYER, closure, closure),
         _function("__operator__add__", SUM, closure, closure),
     ]
-    # Weights and shares; this `mix` hides the one of stdosl.h.
+    # Operations on weights and shares; this `mix` hides stdosl.h's.
     for kind in ("float", "color"):
         lines += [
             "#pragma osl nowarn",

@@ -18,8 +18,8 @@ from mxeon.hosts.osl.carriers import CLOSURES, MIX, MULTIPLE, OPERATIONS
 Array: TypeAlias = NDArray[np.float64]
 Argument: TypeAlias = "Array | str | ClosureTree | None"  # None is the closure without light
 
-DEEPEST = 200  # nesting of closures
-LONGEST = 1 << 20  # characters of an expanded label
+DEEPEST = 200  # maximum nesting of closures
+LONGEST = 1 << 20  # maximum characters of an expanded label
 LABEL = re.compile(r"@-?\d+")
 NUMBER = re.compile(r"(?<=[<| ])-?(?:\d+(?:\.\d+)?(?:e[-+]?\d+)?|nan|inf)(?=[>| ])")
 TOKEN = re.compile(r"(\w+)<|(#(?: #)*)|'([^'<>|]*)'|([|>])")
@@ -31,13 +31,13 @@ class ClosureTree:
 
     name: str  # key of CLOSURES or OPERATIONS
     parts: tuple[ClosureTree | None, ...] = ()  # operands of an operation
-    # By name, (N,) or (N, 3); an operation has only `factor`.
+    # Values by name, (N,) or (N, 3); an operation has only `factor`.
     arguments: Mapping[str, Array | str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class TreeRows:
-    """Numbers of the points with the same shape of closures, and their tree."""
+    """Rows of the points whose closures have the same shape, and their tree."""
 
     rows: NDArray[np.intp]
     tree: ClosureTree | None

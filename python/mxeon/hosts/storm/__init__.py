@@ -25,7 +25,7 @@ from mxeon.shaders.methods import STORM
 from mxeon.shaders.scene import Scene
 
 REPORT = re.compile(r"^(?:Warning|Error)\b.*? in file .* : (.*)|^(?:Warning|Error)\b.*? -- (.*)")
-COMPILE = "Failed to compile shader"  # begins a report
+COMPILE = "Failed to compile shader"  # first words of Storm's error message
 CLOSURES = ("BSDF", "EDF", "VDF")
 
 

@@ -70,7 +70,7 @@ class Canvas:
         self.device = self._call("glGetString", c_char_p, RENDERER).decode()
 
     def clear(self, size: int) -> None:
-        """Draw into this frame from now on; it is black, and `size` pixels wide and high."""
+        """Start a black frame, `size` pixels wide and high."""
         if size != self._size:
             self._size, buffers = size, (c_uint * 2)()
             self._call("glGenFramebuffers", None, 1, byref(self._name))
@@ -87,7 +87,7 @@ class Canvas:
         self._call("glClear", None, BOTH)
 
     def pixels(self) -> Pixels:
-        """Its pixels, (size, size, 3), row 0 at the top."""
+        """Pixels of the frame, (size, size, 3), row 0 at the top."""
         image = np.zeros((self._size, self._size, 4), np.float32)
         self._call("glBindFramebuffer", None, FRAMEBUFFER, self._name)
         memory = c_void_p(image.ctypes.data)
