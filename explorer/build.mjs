@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bundles the page into one HTML template, into which Python puts the data.
+// Bundles the page into one HTML template, to which Python adds the data.
 
 import { createHash } from "node:crypto";
 import { readFile, writeFile } from "node:fs/promises";
@@ -7,7 +7,7 @@ import { build } from "esbuild";
 
 const TEMPLATE = "../python/mxeon/explorer/explorer.html";
 
-// GLSL functions whose vec3 is a direction (wo, wi) or a color: as JavaScript, for one channel in float64.
+// Translates GLSL to JavaScript for one channel in float64. Each vec3 is a wo, a wi or a color.
 const float64 = (glsl) =>
   glsl
     .replace(/\/\/.*|^#include.*/gm, "")
@@ -49,7 +49,7 @@ const { outputFiles } = await build({
 const text = (suffix) => outputFiles.find((file) => file.path.endsWith(suffix)).text.trim();
 const hash = (content) => `'sha256-${createHash("sha256").update(content).digest("base64")}'`;
 
-// Nothing in a script element may end it.
+// The script must not contain text that ends its element.
 const script = text(".js").replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
 const style = text(".css");
 const parts = {

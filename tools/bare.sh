@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Runs README's commands on a bare machine: an empty Debian root that holds Python, venv, git and a clone of this
-# commit. It needs root and the Debian package mmdebstrap.
+# Runs README's commands on a bare machine: a minimal Debian with Python, venv, git and a clone of this commit.
+# It needs root and the Debian package mmdebstrap.
 # usage: tools/bare.sh [--all] [--keep FOLDER] [--copy PATH]...
 #   --all          also run every test, build eonlib's archive, and install the package with pip
 #   --keep FOLDER  use the root in this folder, made if it does not exist
@@ -22,7 +22,7 @@ options() {
 }
 options "$@"
 
-# The lines that run in the root: README's first block of commands, as a reader would paste it.
+# Print the commands to run in the root: the first block of README and, with --all, more.
 commands() {
     sed -n '/^```sh$/,/^```$/p' "$top/README.md" | sed '1d; /^```$/,$d'
     [ -z "$all" ] || cat <<'END'
@@ -37,7 +37,7 @@ END
 }
 
 if [ "${MXEON_BARE:-}" ]; then
-    # Mounts and processes end with the name spaces of this process.
+    # Mounts and processes disappear with this process, because they are in its namespaces.
     cd "$MXEON_BARE"
     mount -t proc proc proc
     mount --rbind /sys sys

@@ -21,7 +21,7 @@ interface Codec<T> {
   readonly read: (text: string, first: T) => T | undefined;
 }
 
-const DIGITS = 5; // precision of numbers in an address: finer than a picture shows
+const DIGITS = 5; // digits of numbers in an address; more would not be visible
 
 function short(value: number): string {
   return String(Number(value.toPrecision(DIGITS)));
@@ -105,7 +105,7 @@ const FIELDS: { readonly [K in keyof Omit<State, "inputs">]: [string, Codec<Stat
   probe: ["probe", probe],
 };
 
-const INPUT = "input:"; // followed by the source, a colon and the uniform
+const INPUT = "input:"; // prefix of keys such as "input:SOURCE:UNIFORM"
 
 /** The address of a view, without "#". */
 export function toAddress(state: State, data: PageData): string {

@@ -49,7 +49,7 @@ export function App({ data, tell }: AppProps) {
   useKeys(state, change);
   useLayoutEffect(() => tell(stage ?? null, state, setState), [stage, state]);
 
-  // Slow computations follow the view when it rests.
+  // Slow computations wait until the view is at rest.
   const rest = useRest(stage, state, dragging);
   const calm = rest ?? state;
   const worst = useWorst(rest, sources) ?? facingPoint(state);
@@ -65,7 +65,7 @@ export function App({ data, tell }: AppProps) {
   const evidence = useEvidence(stage, sources, calm, pair, measured, errors[0]);
   const differ = rest && stage && state.shape === "sphere" ? onSphere(stage, rest, worst) : null;
   const view: ViewProps = { data, sources, state, change };
-  // During a drag the picture has priority: numbers follow at rest.
+  // During a drag the picture has priority; numbers are updated afterwards.
   const still = dragging ? calm : state;
   const controls = useMemo(() => {
     const own: ViewProps = { ...view, state: still };

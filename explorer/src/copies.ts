@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts to copy: the material as MaterialX, its shader, and a value in Python.
+// Texts for the copy buttons: a MaterialX document, its shader, and Python code for a value.
 
 import type { PageData, Source } from "./data";
 import type { Model } from "./models/table";
@@ -22,7 +22,7 @@ export function materialX(
   return withValues(node, valuesOf(node, state, flagged));
 }
 
-/** A document with other input values. */
+/** A MaterialX document with the given input values. */
 function withValues(
   source: Extract<Source, { kind: "shader" }>,
   values: ReadonlyMap<string, Value>,
@@ -78,7 +78,7 @@ export function pythonLine(of: Model, { wo, wi }: Pair, state: State): string {
   );
 }
 
-/** Copy a text, with the older method where the page may not use the clipboard. */
+/** Copy a text; uses the older method if the page may not use the clipboard. */
 export async function copy(text: string): Promise<boolean> {
   try {
     await navigator.clipboard.writeText(text);

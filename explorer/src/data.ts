@@ -53,16 +53,16 @@ export interface ShaderSource {
   readonly group: string;
   readonly library: string; // "eonlib", "stock"
   readonly pixel: string;
-  readonly paths: string; // its text for path tracers, or ""
+  readonly paths: string; // GLSL for path tracers, or ""
   readonly inputs: readonly Port[];
   /** Uniforms that the page's own controls set; "" for missing ones. */
   readonly controls: { readonly color: string; readonly roughness: string; readonly flag: string };
   readonly meant: Models | null; // the intended models; null unless it is one diffuse node
   readonly actual: Models | null; // the model of this library's code, according to the diagnosis
   readonly document: string; // MaterialX text for the copy button
-  readonly pages: readonly string[]; // as in ModelSource
+  readonly pages: readonly string[]; // names of the pages about its defects
   readonly reference: ReferenceTable | null; // null if no model covers all of its lobes
-  readonly checked: Checked | null; // null if it did not run
+  readonly checked: Checked | null; // null if the check did not run
 }
 
 /** Result of `mxeon check` for a material: its pictures on gl compared with the reference. */
@@ -77,11 +77,11 @@ export interface ReferenceTable {
   // Light reflected in white surroundings, for PageData.views, 3 each.
   readonly white: readonly number[];
   readonly bounds: { readonly direct: number; readonly white: number }; // tolerances for shaders
-  readonly forms: readonly ShaderForm[]; // functions that shaders may have instead
+  readonly forms: readonly ShaderForm[]; // other functions that shaders may implement
 }
 
 /**
- * Another function that a shader may have; its values have the same layout as in ReferenceTable.
+ * Another function that a shader may implement; values have the same layout as in ReferenceTable.
  */
 export interface ShaderForm {
   readonly title: string;
@@ -108,7 +108,7 @@ export interface PageData {
   readonly pages: string;
   /** Whether `mxeon explore` serves the page, so that it can show dropped files. */
   readonly served: boolean;
-  readonly warnings: readonly string[]; // about its documents
-  /** Surroundings that the reader provided: like MaterialX's, 32-bit floats, top row first. */
+  readonly warnings: readonly string[]; // warnings about the page's documents
+  /** The reader's own environment map, in MaterialX's layout: 32-bit floats, top row first. */
   readonly sky: Texels | null;
 }

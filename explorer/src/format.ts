@@ -36,7 +36,7 @@ export function toHex(color: Vec3): string {
   return `#${color.map(code).join("")}`;
 }
 
-/** A hexadecimal sRGB color as a linear color with four decimals, finer than its codes. */
+/** A hexadecimal sRGB color as a linear color with four decimals, which distinguish all codes. */
 export function fromHex(hex: string): [number, number, number] {
   const one = (start: number): number => {
     const x = parseInt(hex.slice(start, start + 2), 16) / 255;

@@ -5,7 +5,7 @@ declare module "*.glsl" {
   export default text;
 }
 
-// The functions of the models' GLSL for one channel, which build.mjs translates to float64.
+// GLSL functions of the models for one channel, which build.mjs translates to JavaScript.
 declare module "glsl:models" {
   type Direction = readonly [number, number, number];
   type Value = (wo: Direction, wi: Direction, rho: number, parameter: number) => number;

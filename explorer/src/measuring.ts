@@ -9,7 +9,7 @@ import type { Measured } from "./ui/probe_panel";
 import type { Errors, Evidence } from "./verdict";
 import { actualModel, hasTable, SIDES, sourceOf, type Sources } from "./view";
 
-const REST = 120; // milliseconds without a change
+const REST = 120; // milliseconds without a change until a view is at rest
 const MEASURE_DELAY = 60;
 const RETRY = 100;
 
@@ -49,7 +49,7 @@ export function useMeasured(
     if (!stage || moving) return;
     let timer = 0;
     const ask = (): void => {
-      const free = state.paths || stage.isSettled(state); // paths take long
+      const free = state.paths || stage.isSettled(state); // do not wait for paths, which take long
       const read = free ? stage.evaluate({ wo: [...of.wo], wi: [...of.wi] }, state) : null;
       setMeasured({ of, values: read });
       if (!read?.left || !read.right) timer = window.setTimeout(ask, RETRY);

@@ -36,13 +36,13 @@ export function values(of: Model, { wo, wi }: Pair, color: Vec3, roughness: numb
   return [one(color[0]), one(color[1]), one(color[2])];
 }
 
-/** The difference a - b of the channel with the largest difference. */
+/** The difference a - b in the channel where it is largest. */
 export function apart(a: Vec3, b: Vec3): number {
   const each = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
   return each.reduce((most, one) => (Math.abs(one) > Math.abs(most) ? one : most));
 }
 
-/** Smaller errors are float32 roundings, of which a shader's value accumulates dozens. */
+/** Errors below this are float32 roundings; a shader's value accumulates dozens of them. */
 const ROUNDING = 64 * 2 ** -24;
 
 /** Whether two values differ by more than rounding. */
@@ -50,7 +50,7 @@ export function isOther(value: Vec3, other: Vec3): boolean {
   return !(Math.abs(apart(value, other)) < ROUNDING);
 }
 
-/** A point on the sphere, seen along -z. */
+/** A point on the sphere, viewed along -z. */
 export interface Point extends Pair {
   readonly normal: Triple;
   readonly apart: number;

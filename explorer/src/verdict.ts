@@ -143,7 +143,7 @@ function byReference(source: ShaderSource, { able, errors }: Evidence): Verdict 
   return { kind: "wrong", badge: "wrong", text: `${off}${named}.` };
 }
 
-/** A sentence about a model that is not the intended one. */
+/** A sentence about how the actual model differs from the intended one. */
 function wrong(actual: Model, meant: Model, state: State): string {
   const { color, roughness } = state;
   const here = Math.abs(worstPoint(actual, meant, state).apart);

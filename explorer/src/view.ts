@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions of a view and its data: the model on each side, and what follows from it.
+// Functions of a view and its data, such as the models and titles of both sides.
 
 import type { PageData, ShaderSource, Source, Triple } from "./data";
 import { model, rhoFromAlbedo, type Model, type ModelName } from "./models/table";
@@ -10,7 +10,7 @@ export const SIDES = ["left", "right"] as const;
 /** Letters that name the sides for readers. */
 export const LETTER: Readonly<Record<SideName, string>> = { left: "A", right: "B" };
 
-/** The embedded data, by id. */
+/** The sources of the page, by id. */
 export type Sources = ReadonlyMap<string, Source>;
 
 export function sourcesOf(data: PageData): Sources {
@@ -80,7 +80,7 @@ export function inversionModel(state: State, sources: Sources): Model {
   return meantModel(sourceOf(sources, state.left), state.left, state) ?? model("eon");
 }
 
-/** The color to enter for an albedo. */
+/** The color that gives an albedo. */
 export function enter(
   of: Model,
   wanted: Readonly<Triple>,
@@ -141,7 +141,7 @@ export function valuesOf(source: ShaderSource, state: State, side: Side): Map<st
   return values;
 }
 
-/** The common part of a material's ids, without the library. */
+/** A material's id without the library. */
 export function stemOf(id: string): string {
   return id.replace(/[^/]*$/, "");
 }

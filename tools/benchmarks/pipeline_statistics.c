@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <vulkan/vulkan.h>
 
-enum { MOST = 64, AMD = 0x1002 };  // entries of any list; Vulkan's number of the vendor
+enum { MOST = 64, AMD = 0x1002 };  // maximum entries of a list; Vulkan's vendor ID
 
 static void check(VkResult result, const char *call)
 {
@@ -201,5 +201,5 @@ int main(int count, char **words)
     VkDevice device = make_device(amd_device());
     VkPipelineLayout layout = make_layout(device, count - 4, words + 4);
     print_statistics(device, compile(device, words + 1, (uint32_t)atoi(words[3]), layout));
-    return 0;  // the process ends: nothing is destroyed by hand
+    return 0;  // the end of the process frees all objects
 }

@@ -170,9 +170,7 @@ class Wall:
         self.hosts: dict[str, str] = {}
         self.references: dict[tuple[str, str, str], Path] = {}
         self.images: dict[tuple[str, str, str, str, str], Path] = {}
-        self.facets: dict[
-            tuple[str, str, str, str, str], Path
-        ] = {}  # references rendered on a polyhedron
+        self.facets: dict[tuple[str, str, str, str, str], Path] = {}  # polyhedral references
         self.results: dict[tuple[str, str, str], Result] = {}
         for folder in folders:
             report = read_results(folder)
@@ -246,7 +244,7 @@ class Wall:
         )
 
     def rough(self) -> str:
-        """Section of each renderer's rough diffuse nodes; equal pictures of a renderer appear once."""
+        """Section of rough diffuse nodes by renderer; equal pictures of a renderer appear once."""
         reference = pixels(self.references[PORTRAIT, EON, BACK.name])
         tiles: dict[tuple[str, float], Tile] = {}
         for each in self.images:

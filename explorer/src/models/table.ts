@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The models and known defects, one row each as in python/mxeon/models/table.py; their functions are
-// the GLSL of the page in float64.
+// The models and known defects, one row each as in python/mxeon/models/table.py. Their functions
+// are translated from the page's GLSL to float64.
 
 import * as glsl from "glsl:models";
 import type { Vec3 } from "../data";
@@ -19,7 +19,7 @@ export interface Model {
   readonly parameter: "roughness" | "sigma" | null;
   readonly albedoDir?: AlbedoDir; // closed form, if known
   readonly albedoAvg?: AlbedoAvg;
-  /** Only defects: the intended model, and where the defect differs from it. */
+  /** For defects only: the intended model, and where the defect differs from it. */
   readonly meant?: string;
   readonly wrong?: string;
 }
@@ -196,7 +196,7 @@ export function albedoAvg(of: Model, rho: number, parameter: number): number {
   return sum;
 }
 
-/** Color to enter for one channel to have this albedo, at normal incidence or on average. */
+/** Color of one channel that gives this albedo, at normal incidence or on average. */
 export function rhoFromAlbedo(
   of: Model,
   seen: number,

@@ -69,8 +69,8 @@ export class Engine {
   private readonly sources: ReadonlyMap<string, Source>;
   private readonly programs: gpu.Programs;
   private readonly tables: Record<SideName, gpu.Target>;
-  private readonly pixel: gpu.Target; // target of a single value,
-  private readonly upright: WebGLTexture; // and of the normal at its point
+  private readonly pixel: gpu.Target; // target for a single value
+  private readonly upright: WebGLTexture; // normal at the point of that value
   private readonly one: gpu.Target; // geometry of a single pixel
   private readonly drawn = new Map<string, string>(); // inputs of each pass when it was last drawn
   private targets: Targets;

@@ -132,7 +132,7 @@ function setUniform(
   else if (type === gl.FLOAT_MAT4) gl.uniformMatrix4fv(location, false, numbers);
 }
 
-/** Format of a texture: of its texels, its channels and their numbers. */
+/** Format of a texture: internal format, channels and number type. */
 export interface Format {
   readonly inner: number;
   readonly outer: number;

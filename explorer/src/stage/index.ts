@@ -44,7 +44,7 @@ export type Status =
   | { readonly kind: "lost" }
   | { readonly kind: "restored" };
 
-const MOST_PIXELS = 1.6e6; // each takes 150 bytes
+const MOST_PIXELS = 1.6e6; // each pixel takes 150 bytes
 const ATTRIBUTES: WebGLContextAttributes = {
   alpha: true,
   antialias: false,
@@ -62,7 +62,7 @@ function fitted({ clientWidth, clientHeight }: HTMLCanvasElement): Size {
 
 /** A stage on a canvas; null unless WebGL2 can draw into float32 frames. */
 export function createStage(canvas: HTMLCanvasElement, data: PageData): Stage | null {
-  // Resizing the canvas after creating its context waits for the driver.
+  // Resize the canvas before creating its context; later it would have to wait for the driver.
   [canvas.width, canvas.height] = fitted(canvas);
   const gl = canvas.getContext("webgl2", ATTRIBUTES) as WebGL2RenderingContext | null;
   if (!gl?.getExtension("EXT_color_buffer_float")) return null;
@@ -144,7 +144,7 @@ export class Stage {
     return this.engine?.check(source) ?? null;
   }
 
-  /** Error of a source in the latest picture, or "". */
+  /** Error message of a source in the latest picture, or "". */
   failure(source: string): string {
     return this.engine?.errors.get(source) ?? "";
   }

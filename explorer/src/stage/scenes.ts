@@ -10,8 +10,8 @@ import type { Shape, State } from "../state";
 type Viewed = Pick<State, "shape" | "turn" | "tilt" | "zoom" | "comparison">;
 
 export interface Camera {
-  readonly axes: readonly [Vec3, Vec3, Vec3]; // right, up and back, in the world
-  readonly eye: Vec3; // in the world frame
+  readonly axes: readonly [Vec3, Vec3, Vec3]; // right, up and back, in the world frame
+  readonly eye: Vec3; // position in the world frame
   readonly distance: number; // distance of the eye from the target
   readonly span: number; // half of the frame's smaller side, relative to the subject's radius
 }
@@ -23,7 +23,7 @@ interface View {
   readonly span: number;
 }
 
-const SIDE_SPAN = 1.5; // leaves room for two shapes in a picture 4/3 as wide as high
+const SIDE_SPAN = 1.5; // leaves room for two shapes in a picture with aspect ratio 4:3
 const FAR = 1e8; // far enough that normalize(eye - position) is the z axis in float32
 
 const VIEWS: Record<Shape, View> = {
@@ -59,7 +59,7 @@ export function isUnshadowed(shape: Shape): boolean {
 export function camera({ shape, turn, tilt, zoom, comparison }: Viewed): Camera {
   const { pitch, distance, target, span } = VIEWS[shape];
   const part = span * (comparison === "side" ? SIDE_SPAN : 1);
-  if (shape === "sphere") [turn, tilt, zoom] = [0, 0, 1]; // its pixels match the gl host's
+  if (shape === "sphere") [turn, tilt, zoom] = [0, 0, 1]; // as on the gl host
   const [up, around] = [((pitch + tilt) * Math.PI) / 180, (turn * Math.PI) / 180];
   const [sine, cosine, S, C] = [Math.sin(up), Math.cos(up), Math.sin(around), Math.cos(around)];
   const back: Vec3 = [S * cosine, sine, C * cosine];
@@ -80,12 +80,12 @@ export function toWorld({ axes }: Camera, view: Vec3): Triple {
   return [along(0), along(1), along(2)];
 }
 
-/** Convert a place in the frame to a side's own picture; side by side, the frame shows both. */
+/** Convert a position in the frame to a side's picture; side by side, the frame shows both. */
 export function fromSide({ comparison }: Viewed, x: number): number {
   return comparison === "side" ? x + (x < 0.5 ? 0.25 : -0.25) : x;
 }
 
-/** Convert a place in a side's own picture to the frame, on its left if side by side. */
+/** Convert a position in a side's picture to the frame; side by side, to its left half. */
 export function toSide({ comparison }: Viewed, x: number): number {
   return comparison === "side" ? x - 0.25 : x;
 }

@@ -13,8 +13,8 @@ export interface SkyMap {
 }
 
 const RADIANCE_ROWS = 64;
-const IRRADIANCE_ROWS = 32; // a cosine lobe shows no finer detail
-const BRIGHTNESS = 0.6; // leaves headroom for the light at exposure 0
+const IRRADIANCE_ROWS = 32; // rows of the irradiance map; a cosine lobe blurs finer detail
+const BRIGHTNESS = 0.6; // scale that leaves headroom for the light at exposure 0
 const SUMMED_ROWS = 32; // rows of the radiance map that is integrated for the irradiance
 
 function mixed(a: Vec3, b: Vec3, share: number): Triple {
@@ -78,7 +78,7 @@ const RADIANCE: Record<"studio" | "sky", (w: Vec3) => Triple> = { studio, sky };
 /** The radiance map of the surroundings; a single pixel if they are uniform. */
 export function radianceMap(name: Surroundings, own: Texels | null): SkyMap {
   if (name === "own") {
-    // The link comes from a page with custom surroundings.
+    // Without a map, this link comes from a page with a custom environment.
     if (!own) return radianceMap("studio", null);
     const bytes = Uint8Array.from(atob(own.rgba), (each) => each.charCodeAt(0));
     return { ...own, pixels: new Float32Array(bytes.buffer) };
@@ -100,7 +100,7 @@ export function irradianceMap(radiance: SkyMap): SkyMap {
     directions(SUMMED_ROWS).flatMap(({ direction, solidAngle }) => [...direction, solidAngle]),
   );
   return mapOf(IRRADIANCE_ROWS, ([x, y, z]) => {
-    // Four million terms before the first picture: allocate no objects in this loop.
+    // This loop adds four million terms before the first picture, so it must not allocate objects.
     let [red, green, blue, weights] = [0, 0, 0, 0];
     for (let k = 0; k < incoming.length; k += 4) {
       const cosine = x * incoming[k]! + y * incoming[k + 1]! + z * incoming[k + 2]!;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of the canvas' size, for all passes.
+// Render targets of the canvas' size, for all passes.
 
 import * as gpu from "./gpu";
 import type { Size } from "./paths";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Color and roughness, the resulting albedo, and the color to enter for a given albedo.
+// Color and roughness, the resulting albedo, and the color that gives an albedo.
 
 import { useMemo } from "preact/hooks";
 import type { Triple, Vec3 } from "../data";
@@ -98,7 +98,7 @@ function Albedos({ of, color, roughness }: AlbedosProps) {
   );
 }
 
-/** The color to enter for a given albedo, if the material is one rough diffuse lobe. */
+/** The color that gives an albedo, if the material is one rough diffuse lobe. */
 export function Wanted(props: ViewProps) {
   const { sources, state } = props;
   const of = meantModel(sourceOf(sources, state.left), state.left, state);

@@ -19,9 +19,7 @@ from mxeon.errors import NotRun
 from mxeon.shaders.document.policy import DEFAULT
 from tools.site.ledger import figure, measured, write_measured
 
-CHECKED = [
-    each for each in issues().values() if each.rows
-]  # issues whose pages have a table of checks
+CHECKED = [each for each in issues().values() if each.rows]  # issues with a table of checks
 # Renderers whose own nodes do not use MaterialX.
 OWN_NODES = ("three", "babylon", "shadewire", "three-gpu-pathtracer")
 
