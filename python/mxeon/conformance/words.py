@@ -71,7 +71,7 @@ def _short(number: float, digits: int = 2) -> str:
     return f"{float(f'{number:.{digits}g}'):g}"
 
 
-# --- tables: names of scenes and regions, faults of models, and other defects -----------------------
+# --- tables: names of scenes and regions, faults of models, and other defects ---------------------
 
 LIGHTS = {"side": "light from the side", "front": "light from the front"}
 LIGHTS |= {"back": "light from behind", "furnace": "a white environment"}

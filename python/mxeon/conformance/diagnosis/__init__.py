@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The explanation of a failure: a known model, defect or fault that gives the values, or the wrong region."""
+"""Explains failures by a model, defect or fault that gives the values, or by the wrong region."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -32,23 +32,23 @@ from mxeon.models.shading_model import UP
 
 Measure: TypeAlias = Callable[[Case], Iterable[Compared]]
 
-EXCHANGES = (NO_FAULT,)  # no faults except exchanged inputs and a factor
-PLACELESS = Ability.MEDIUM | Ability.OUTPUT  # nodes without view and light
-# After these causes, the check's own values are searched for an input range.
+EXCHANGES = (NO_FAULT,)  # tries no faults except exchanged inputs and a scale factor
+PLACELESS = Ability.MEDIUM | Ability.OUTPUT  # nodes that depend on neither view nor light
+# If one of these causes is found, the check's own values are searched for a wrong input range.
 SINGLY_RIGHT, UNKNOWN, OTHER_AVERAGE, UNMASKED = UNTOLD = tuple(
     Cause(Kind.UNKNOWN, key) for key in ("singly_right", "unknown", "other_average", "unmasked")
 )
-WORST = 32  # pairs with one changed input, and least number of wrong pairs
+WORST = 32  # number of the worst pairs that a cure is tried on, all of which must be wrong
 CURES = 2  # maximum number of reported inputs
-DIMMING = ("weight", "occlusion")  # inputs that reduce any error
-SHOWN = 0.1  # least share of the light that remains after changing another input
-# An explanation is complete up to the first share of the distance to any other, and is
-# reported as the nearest up to the second.
+DIMMING = ("weight", "occlusion")  # inputs that can reduce any error
+SHOWN = 0.1  # smallest fraction of light that must remain after a cure
+# An explanation is complete if its distance is below SAME times that of any other explanation,
+# and it is reported as the nearest below NEAR times.
 SAME, NEAR = 0.03, 0.3
-FAR = 0.2  # another model must be nearer than this share of the distance to the claimed model
-NAMED = 0.5  # the closest model is reported up to this share of the values' magnitude
+FAR = 0.2  # another model's distance must be below this share of the claimed model's distance
+NAMED = 0.5  # the closest model is named if its distance is below this share of the values
 INEXACT = 30.0  # up to this many tolerances, the expected model counts as inexact
-LEAST_LIGHT = 1e-3  # cosine of the light below which its factors are indistinguishable
+LEAST_LIGHT = 1e-3  # below this cosine of the light, faults of the cosine look alike
 
 
 def defect(key: str, *names: str) -> Diagnosis:
@@ -57,7 +57,7 @@ def defect(key: str, *names: str) -> Diagnosis:
 
 
 def causes_of(parts: Iterable[tuple[Cause, Compared]], tolerance: Tolerance) -> Diagnosis:
-    """The diagnosis with the causes of those parts that are wrong."""
+    """The diagnosis whose causes belong to the parts that are wrong."""
     wrong = (cause for cause, each in parts if tolerance.wrong(each).any())
     return Diagnosis(tuple(dict.fromkeys(wrong)))
 
@@ -70,12 +70,12 @@ def explain(
     tolerance: Tolerance,
     measure: Measure | None = None,
 ) -> Diagnosis:
-    """The explanation of values by candidates, and by faults of the first one, the node's own model.
+    """Explain values by candidates, or by faults of the first candidate, the node's own model.
 
-    `candidates` are functions that may give the values, starting with the node's own model. A value is correct
-    within the tolerance. `measure` compares the values of a case.
+    `candidates` are functions that may give the values, starting with the node's own model. A value
+    is correct if it is within the tolerance. `measure` compares the values of a case.
     """
-    if infinite := not_finite(cases):  # NaN has no distance; finite values are judged on their own
+    if infinite := not_finite(cases):  # NaN has no distance; explain only finite values
         finite = [each.where(np.isfinite(each.measured.sum(axis=1))) for each in cases]
         rest = NO_DIAGNOSIS
         if any(tolerance.wrong(each).any() for each in finite):
@@ -83,16 +83,16 @@ def explain(
         return Diagnosis((*infinite, *rest.causes), rest.distances)
     few = case.backend.counts.diagnosed
     short = [Compared(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
-    # Many faults do not change the inputs of the own model.
+    # Many faults leave the inputs of the node's own model unchanged, so its values are cached.
     own = replace(candidates[0], values=Remembered(candidates[0].values))
     candidates = [own, *candidates[1:]]
     models = {each.title: _distance(short, each, NO_FAULT, tolerance) for each in candidates}
     ranking = sorted(models.items(), key=lambda item: item[1])
-    # Search for a fault of the first candidate if no other one explains the values.
+    # Search for a fault of the node's own model if no other candidate explains the values.
     if ranking[0][0] == own.title or ranking[0][1] > tolerance.value:
         names = [each.name for each in case.spec.inputs if each.name not in DIMMING]
         exchanged = exchanges(names) if faults else ()
-        # The factor that brings the expected values closest to the measured ones.
+        # The factor that brings the expected values closest to the measured values.
         weighed = [(each, np.maximum(1.0, np.abs(each.expected)) ** 2) for each in short]
         squares = sum(np.sum(each.expected**2 / scale) for each, scale in weighed)
         products = sum(np.sum(each.expected * each.measured / scale) for each, scale in weighed)
@@ -106,7 +106,7 @@ def explain(
         if least <= SAME * models[own.title] and least <= enough:
             return Diagnosis((faults[order[0]].cause(least),), models)
     nearest = next(each for each in candidates if each.title == ranking[0][0])
-    # The model that is nearest on average may still be far from the values that are wrong.
+    # The model that is nearest on average may still be far from the wrong values.
     near, far = (
         max(tolerance.metric(each.measured, model.values(each.batch)).max() for each in short)
         for model in (nearest, own)
@@ -124,8 +124,8 @@ def _distance(
 ) -> float:
     """Root-mean-square distance between the measured values and a candidate with a fault.
 
-    Roughness above 1, which not every model supports, and light up to LEAST_LIGHT are excluded. With the
-    tolerance of a mean, values are noisy and means are compared.
+    Pairs with roughness above 1, which not every model supports, and with light up to LEAST_LIGHT
+    are excluded. If the tolerance is for a mean, values are noisy and their means are compared.
     """
     errors = []
     for case in cases:
@@ -151,7 +151,7 @@ def _model(
     measure: Measure | None,
     explains: bool,
 ) -> tuple[Cause, ...]:
-    """The closest model, which may explain all wrong values; or the wrong region; or that no model is close."""
+    """Causes: the closest model if it explains the values, the wrong region, or no close model."""
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     (first, least), (_, rival) = ranking[:2]
     # Another model explains all values.
@@ -163,7 +163,7 @@ def _model(
             if spec.flag is not None and reference.diffuse_model(spec.model).title == first
         )
         return (Cause(Kind.MODEL, first, values=next(flags, ()), rms=least),)
-    # The own model is correct except in a region or input range, or is not accurate enough.
+    # The values match the own model except in a region or range, or are not accurate enough.
     if not wrong.any():
         return (SINGLY_RIGHT,)
     if place := smallest(cases, tolerance):
@@ -202,7 +202,7 @@ def _model(
         point = {name: point[name] for name in ("wo", "wi")}
     if first == own and mostly:
         return (replace(share, point=point),)
-    # Values whose error is as large as black's resemble no model.
+    # Values that are as far from every model as from black resemble no model.
     black = Candidate("", lambda batch: np.zeros((len(batch.wo), 1)))
     far = _distance(cases, black, NO_FAULT, tolerance)
     near = least < NAMED * (far if first == own else min(far, dict(ranking)[own]))
@@ -213,7 +213,7 @@ def _model(
 
 
 def searched(cause: Cause, cases: Sequence[Compared], tolerance: Tolerance) -> Cause:
-    """An unknown cause, or the region or input range that contains all wrong values."""
+    """The region or input range that contains all wrong values; without one, the given cause."""
     if place := place_of(cases, tolerance):
         return correct_except(cases, tolerance, place)
     if cause == SINGLY_RIGHT and tolerance.metric in (absolute, relative, scaled):
@@ -224,12 +224,12 @@ def searched(cause: Cause, cases: Sequence[Compared], tolerance: Tolerance) -> C
 def _cures(
     case: Case, cases: Sequence[Compared], tolerance: Tolerance, measure: Measure
 ) -> dict[str, float]:
-    """Values of single inputs that make the worst values correct."""
+    """Inputs that make the worst pairs correct if changed alone, each with its new value."""
     most = max(cases, key=lambda each: np.count_nonzero(tolerance.wrong(each)))
     worst = np.argsort(tolerance.metric(most.measured, most.expected))[-WORST:]
-    pairs = Ability.PAIRS in case.backend.abilities  # pictures always contain all points
+    pairs = Ability.PAIRS in case.backend.abilities  # a picture cannot be restricted to some points
     batch, found = most.batch.where(worst) if pairs else most.batch, {}
-    # An input that only darkens values that should be dark is not a cure.
+    # Making all values dark is not a cure.
     light = np.maximum(np.abs(most.expected), np.abs(most.measured))[worst]
     least = SHOWN * min(float(light.mean()), 1.0)
     for port in case.spec.inputs:
@@ -247,30 +247,30 @@ def _cures(
 
 
 def not_finite(cases: Sequence[Compared]) -> tuple[Cause, ...]:
-    """Causes for non-finite values; empty if all are finite."""
+    """The cause for non-finite values, with their region; empty if all are finite."""
     zeros = list(map(regions.unbounded, cases))
     if not any(EXACT.wrong(each).any() for each in zeros):
         return ()
     return (Cause(Kind.NOT_FINITE, region=place_of(zeros, EXACT)),)
 
 
-# Comparisons by quantity.
+# Comparisons, one per quantity.
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """Measured and expected values of a quantity, with candidates for their explanation."""
 
-    quantity: str  # its error is the tolerance
+    quantity: str  # quantity whose tolerance applies
     compared: Callable[[Case], Iterable[Compared]]
-    candidates: Callable[[Case], Sequence[Candidate]]  # possible explanations, own model first
-    faults: Sequence[Fault] = ()  # possible faults between the inputs and the own model
+    candidates: Callable[[Case], Sequence[Candidate]]  # own model first
+    faults: Sequence[Fault] = ()  # faults to try between inputs and own model
 
     def __call__(self, case: Case) -> Iterable[Compared]:
         return self.compared(case)
 
     def diagnose(self, case: Case) -> Diagnosis:
-        """The explanation of a case, cached: several checks of a node fail for the same reason."""
+        """The explanation of a case, cached because several checks of a node fail alike."""
         known = case.explained
         if self not in known:
             tolerance = case.tolerance(self.quantity, "value")
@@ -287,7 +287,7 @@ def _backs(case: Case) -> Iterator[Compared]:
 
 
 def _alike(case: Case) -> Sequence[Candidate]:
-    """Candidates for values, in the unit in which errors are uniform."""
+    """Candidates for values, rescaled to the unit in which errors are uniform."""
 
     def alike(candidate: Candidate, batch: Batch) -> Array:
         values = candidate.values(batch)
@@ -297,7 +297,7 @@ def _alike(case: Case) -> Sequence[Candidate]:
 
 
 def _transmittances(case: Case) -> Iterator[Compared]:
-    """Light through a medium, and the throughput of a surface over it, compared with its transmittance."""
+    """Light through a medium, and through a surface above it, against its transmittance."""
     spec, evaluate = case.of(emission.MediumSpec), case.evaluating.evaluate
     [batch] = case.batches
     yield case.compared(batch)
@@ -313,12 +313,12 @@ VALUES = attrgetter("valued.value_candidates")
 ALBEDOS, RESTS = (methodcaller("candidates", each) for each in ("albedo", "throughput"))
 VALUE = Comparison("value", values, VALUES, faults.DIRECT_FAULTS)
 ALBEDO = Comparison("albedo", albedos, ALBEDOS, faults.ENVIRONMENT_FAULTS)
-# Throughput of a layer, for light from above and for light through the base.
+# Comparisons of a layer's throughput, for light from above and for light through the base.
 THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), RESTS, EXCHANGES)
 TRANSMISSION = Comparison(
     "throughput", lambda case: throughputs(case, "transmission"), RESTS, EXCHANGES
 )
-# Output of a utility node, or emission from the front.
+# Comparison of a utility node's output, or of emission from the front.
 OUTPUT = Comparison(
     "value", lambda case: map(case.valued.alike, values(case)), _alike, faults.COLOR_FAULTS
 )
@@ -326,9 +326,9 @@ BACK = Comparison("value", _backs, _alike)
 TRANSMITTANCE = Comparison("value", _transmittances, VALUES)
 
 
-# Parts around a model: throughput, frame and environment.
+# Diagnoses of what surrounds a model: throughput, frame and environment.
 
-# The irradiance found by each kind of wrong lookup.
+# Irradiance that each kind of wrong lookup returns.
 LOOKUPS: dict[str, Callable[[Batch], Array]] = {
     "opposite": lambda batch: sky(-batch.normal),
     "viewer": lambda batch: sky(batch.world(batch.wo)),
@@ -346,7 +346,7 @@ LOOKUPS: dict[str, Callable[[Batch], Array]] = {
 
 
 def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) -> Diagnosis:
-    """The nonzero outputs, with their values, regions and branches."""
+    """The diagnosis of throughputs that must be 0: each nonzero output, its region and branches."""
     found: dict[Cause, list[str]] = {}
     for (output, branch), compared in passed.items():
         values = np.concatenate([each.measured[EXACT.wrong(each)] for each in compared])
@@ -359,7 +359,7 @@ def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) ->
 
 
 def diagnose_frame(case: Case) -> Diagnosis:
-    """Whether the normal is dropped or not turned, in the first wrong branch."""
+    """The diagnosis of the first wrong branch: a dropped normal, a wrong region or a dead axis."""
     tolerance = case.tolerance("frame")
     for compared, branch in zip(frames(case), ("direct", "environment", ""), strict=False):
         if not tolerance.wrong(compared).any():
@@ -371,7 +371,7 @@ def diagnose_frame(case: Case) -> Diagnosis:
         if not tolerance.wrong(dropped).any():
             causes = defect("normal_of_surface").causes
         else:
-            # The wrong region, or the axis without effect.
+            # Report the wrong region, or an axis without effect.
             causes = not_finite([compared]) or _region([compared], tolerance)
             axes = ("normal", "tangent", "curve_direction")
             dead = (found for name in axes for found in without_effect(case, name))
@@ -382,7 +382,7 @@ def diagnose_frame(case: Case) -> Diagnosis:
 
 
 def _beside_equal(case: Case, compared: Compared, branch: str) -> tuple[Cause, ...]:
-    """The cause that the worst turned pair is correct if all pixels share its inputs, if true."""
+    """A cause if the worst rotated pair becomes correct when all pixels share its inputs."""
     tolerance, output = case.tolerance("frame"), case.direct if branch == "direct" else case.albedo
     worst = np.full(4, tolerance.metric(compared.measured, compared.expected).argmax())
     same = compared.where(worst)
@@ -396,12 +396,12 @@ def _region(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[Cause, ...
 
 
 def ignored(name: str) -> Callable[[Case], Diagnosis]:
-    """Whether an input is dropped; otherwise the explanation of the values."""
+    """A diagnosis that the input has no effect; otherwise the explanation of the values."""
     return lambda case: Diagnosis(without_effect(case, name) or VALUE.diagnose(case).causes)
 
 
 def without_effect(case: Case, name: str) -> tuple[Cause, ...]:
-    """The cause that an existing input has no effect; empty if it has one."""
+    """A cause if the case has this input and it has no effect; otherwise empty."""
     dead = name in case.changes and name in dead_inputs(case)
     return defect("input_ignored", name).causes if dead else ()
 
@@ -410,7 +410,7 @@ def diagnose_surroundings(compared: Compared, tolerance: Tolerance) -> Diagnosis
     batch, measured, expected = compared
     irradiances = {
         **{key: found(batch) for key, found in LOOKUPS.items()},
-        # With reversed normals the sky is 1 minus itself.
+        # Reversing a normal replaces the sky by 1 minus the sky.
         "other_side": 1.0 - expected,
         "viewer_side": sky(batch.normal),
     }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known model-independent faults between a node's inputs and a model."""
+"""Known faults between a node's inputs and its model, which do not depend on the model."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -19,13 +19,13 @@ CONSTANTS = (0.1, 0.25, 0.3, 0.5, 0.75, 1.0)  # possible hard-coded roughnesses
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault that changes a model's input batch or its values."""
+    """A fault that changes the batch that a model receives, or the values that it returns."""
 
     key: str  # key of `mxeon.conformance.words.FAULTS`
     batch: Callable[[Batch], Batch] = lambda batch: batch
     values: Callable[[Batch, Array], Array] = lambda batch, values: values
-    names: tuple[str, ...] = ()  # affected inputs; numbers likewise
-    numbers: tuple[float, ...] = ()
+    names: tuple[str, ...] = ()  # affected inputs or channels, for the sentence
+    numbers: tuple[float, ...] = ()  # numbers for the sentence
 
     def cause(self, rms: float) -> Cause:
         return Cause(Kind.FAULT, self.key, self.names, self.numbers, rms=rms)
@@ -35,7 +35,7 @@ NO_FAULT = Fault("")
 
 
 def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Batch]:
-    """A change of one input; batches without this input stay unchanged."""
+    """A function that changes one input of a batch; batches without the input stay unchanged."""
 
     def batch(batch: Batch) -> Batch:
         if name not in batch.inputs:
@@ -46,7 +46,7 @@ def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Bat
 
 
 def _scaled(scale: Callable[[Batch], Array]) -> Callable[[Batch, Array], Array]:
-    """A change of values by a factor per pair; 0 where the factor has no value."""
+    """A function that scales values by a factor per pair, which counts as 0 where not finite."""
 
     def values(batch: Batch, values: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -118,13 +118,13 @@ ENVIRONMENT_FAULTS = (
 
 
 def exchanges(names: Iterable[str]) -> Iterator[Fault]:
-    """Exchanges of two inputs, or of all inputs of two nodes, named before a slash."""
+    """Faults that exchange two inputs, or all inputs of two nodes, named before a slash."""
     for pair in combinations(dict.fromkeys(name.split("/")[0] for name in names), 2):
         yield Fault("inputs_exchanged", partial(_exchanged, *pair), names=pair)
 
 
 def _exchanged(one: str, other: str, batch: Batch) -> Batch:
-    """A batch with two inputs exchanged, each clamped to its range."""
+    """A batch in which two inputs are exchanged and clamped to their ranges."""
     changes, inputs = {}, batch.inputs
     for name in inputs:
         node, *port = name.split("/")
@@ -143,7 +143,7 @@ def scaled_by(factor: float) -> Fault:
 
 
 def normal_ignored(batch: Batch) -> Batch:
-    """A batch in turned frames, as seen by a node that uses the surface's normal, +z."""
+    """A batch in rotated frames, converted to the frame of the surface's normal, +z."""
     wo, wi = batch.world(batch.wo), batch.world(batch.wi)
     side = np.where(wo[:, 2:] < 0.0, -1.0, 1.0)
     return replace(batch, wo=wo * side, wi=wi * side, frame=None)

@@ -13,21 +13,21 @@ from mxeon.conformance.tolerance import Compared, Tolerance, checksum, count_of,
 
 COLORS = ("color", "tint", "color0")  # names of a node's color input
 INDICES = {"index": "ior", "extinction": "extinction"}
-# Inputs that regions depend on, by the first word of the regions' names.
+# Inputs that named regions depend on, by the first word of the region's name.
 INPUT_OF = {"weight": "weight", "roughness": "roughness", "cuticle": "cuticle_angle", **INDICES}
 ABOUT = {"color": COLORS, **{name: (port,) for name, port in INPUT_OF.items()}}
 # Inputs whose ranges are never reported.
 UNREPORTED = ("normal", "tangent", "curve_direction", "position", "surface_normal")
-USUAL = {"weight": np.ones(1), "occlusion": np.ones(1)}  # defaults for batches without them
+USUAL = {"weight": np.ones(1), "occlusion": np.ones(1)}  # defaults for inputs a batch lacks
 CHANNELS = "red", "green", "blue"
 EXACT = count_of(Quantity.VALUES)
-# Largest share of the correct values in an input range with all wrong values, usually and if the
-# input is known to be the cause.
+# Largest share of all correct values that a range with all wrong values may contain: usually
+# RIGHT, or WEAK if the input is known to be the cause.
 RIGHT, WEAK = 0.4, 0.7
-CLEARER = 0.5  # a range with two ends must reduce that share by this factor over a one-sided range
-CHANCE = 12.0  # least logarithm of the odds against finding a range by chance
-LARGEST = 0.6  # largest share of the pairs, or of their values, in a reported region
-DENSITY = 0.1  # least share of wrong pairs in a region
+CLEARER = 0.5  # a two-sided range must reduce that share by this factor over a one-sided range
+CHANCE = 12.0  # smallest log odds against finding a range by chance
+LARGEST = 0.6  # largest share of all pairs or values that a reported region may contain
+DENSITY = 0.1  # smallest share of wrong pairs in a region
 UPRIGHT = 1e-3  # a half vector counts as upright up to this tangent; its cosine rounds to about 1
 COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
 
@@ -40,13 +40,13 @@ def place_of(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
 def correct_except(
     cases: Sequence[Compared], tolerance: Tolerance, place: Region | None = None
 ) -> Cause:
-    """The number of wrong pairs, and the region that contains them."""
+    """A cause with the number of wrong pairs, and the region that contains them if given."""
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     return Cause(Kind.REGION, region=place, wrong=int(np.count_nonzero(wrong)), of=len(wrong))
 
 
 def unbounded(compared: Compared) -> Compared:
-    """0 for finite values and NaN otherwise, compared with 0."""
+    """A comparison with 0 in which finite values become 0 and all others NaN."""
     zeros = np.where(np.isfinite(compared.measured), 0.0, np.nan)
     return Compared(compared.batch, zeros, np.zeros_like(zeros))
 
@@ -66,9 +66,9 @@ def smallest(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
 
 
 def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -> Region | None:
-    """The input range with all wrong values and the fewest correct ones; None if none separates them.
+    """The input range with all wrong and the fewest correct values; None if there is no clear one.
 
-    Each channel of a color is judged separately, with the same channel of the inputs.
+    Color channels are judged separately, each with the same channel of color inputs.
     """
     found = []
     for _, measured, right in cases:
@@ -80,7 +80,7 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
     wrong = np.asarray(bad.any(axis=0))
     bad = bad[:, wrong]
     best: Region | None = None
-    if bad.all():  # vacuously true without values
+    if bad.all():  # also true if there are no values
         return best
     channels = tuple(each for each, is_wrong in zip(CHANNELS, wrong, strict=False) if is_wrong)
     if wrong.all():
@@ -100,7 +100,7 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
                 share, least = float(mask[~bad].mean()), most
                 if low < high and first == low and last == high:
                     least *= CLEARER
-                # Logarithm of the odds against all wrong values being in the range by chance.
+                # Log odds against all wrong values being in the range by chance.
                 odds = -np.log(max(mask.mean(), 1.0 / mask.size)) * (bad.any(axis=1).sum() - 1)
                 dense = odds * min(bad[mask].mean() / DENSITY, 1.0) >= CHANCE
                 if share < least and dense:
@@ -109,7 +109,7 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
 
 
 def _parts(name: str, columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]]:
-    """Numbers of an input for each value, or each of its channels, by a row of `words.PARTS`."""
+    """Parts of an input that may have a range: keys of `words.PARTS`, each with its numbers."""
     if columns.shape[1] == len(wrong) == len(CHANNELS):
         yield "value", columns[:, wrong]
     elif columns.shape[1] == 1:
@@ -123,7 +123,7 @@ def _parts(name: str, columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]
 
 
 def unreached(values: Mapping[str, Sequence[float]]) -> tuple[Region, ...]:
-    """The regions that a node with constant inputs cannot be in, if all their inputs are known."""
+    """The regions that a node never reaches because of its constant inputs, `values`."""
     one = np.array([[0.0, 0.0, 1.0]])
     inputs = {name: np.array([each if len(each) > 1 else each[0]]) for name, each in values.items()}
     batch = Batch(one, one, inputs)
@@ -138,7 +138,7 @@ def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     s = dot - mu_o * mu_i
     half = wo + wi
     upright = np.abs(half[:, :2]).max(axis=1) <= UPRIGHT * half[:, 2]
-    # Singularities and cancellations of formulas.
+    # Directions at which formulas have singularities or cancellations.
     yield Region("viewer_above_1"), mu_o > 1.0
     yield Region("light_above_1"), mu_i > 1.0
     yield Region("both_on_horizon"), (mu_o == 0.0) & (mu_i == 0.0)
@@ -147,7 +147,7 @@ def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     yield Region("mirror"), (wo * [-1.0, -1.0, 1.0] == wi).all(axis=1)
     yield Region("half_vector_upright"), upright
     yield Region("viewer_along_tangent"), (np.abs(wo) == [1.0, 0.0, 0.0]).all(axis=1)
-    # The cosine of the view or of the light, then both cosines.
+    # Regions by the cosine of the view or the light, then by both cosines.
     for name, mu in (("viewer", mu_o), ("light", mu_i)):
         yield Region(f"{name}_along_normal"), mu >= 1.0
         yield Region(f"{name}_cosine_above", low=0.99), mu > 0.99
@@ -159,7 +159,7 @@ def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     for limit in COSINES:
         both = (mu_i >= 0.0) & (np.maximum(mu_o, mu_i) <= limit)
         yield Region("cosines_within", low=0.0, high=limit), both
-    # Side of the light, and angle between view and light.
+    # Regions by the side of the light, and by the angle between view and light.
     yield Region("light_below_horizon"), mu_i < 0.0
     yield Region("light_above_horizon"), mu_i > 0.0
     yield Region("dot_above", low=0.999), dot > 0.999
@@ -176,7 +176,7 @@ def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     weight, occlusion = (np.broadcast_to(given[name], count) for name in USUAL)
     colors = [batch.inputs[name] for name in COLORS if name in batch.inputs]
     color = np.broadcast_to(colors[0] if colors else 0.5, (count, 3))
-    # Weight and occlusion.
+    # Regions by weight, occlusion and roughness.
     yield Region("weight_negative"), weight < 0.0
     yield Region("weight_zero"), weight == 0.0
     yield Region("weight_not_positive"), weight <= 0.0
@@ -191,13 +191,13 @@ def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     yield Region("roughness_largest"), roughness >= 0.999999 * roughness.max()
     yield Region("roughness_above_1"), roughness > 1.0
     yield Region("roughness_positive"), roughness > 0.0
-    # Node-specific inputs.
+    # Regions by inputs that only some nodes have.
     for name, port in INDICES.items():
         index = _rows(batch.inputs.get(port, 1.0), count)
         yield Region(f"{name}_zero"), np.asarray((index == 0.0).any(axis=1))
     if "cuticle_angle" in batch.inputs:
         yield Region("cuticle_tilted"), _rows(batch.inputs["cuticle_angle"], count)[:, 0] != 0.5
-    # Colors and normals.
+    # Regions by color and by normal.
     yield Region("color_white"), (color == 1.0).all(axis=1)
     yield Region("color_black"), (color == 0.0).all(axis=1)
     yield Region("color_gray"), (color == color[:, :1]).all(axis=1)
@@ -214,9 +214,9 @@ HALF = 0.5  # cosine that splits views and lights into two regions
 
 
 def errors(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[tuple[Errors, ...], str]:
-    """Errors of all samples, then below and above the median of each input; and a checksum of the samples.
+    """Errors of all samples, then below and above each input's median; and the samples' checksum.
 
-    For colors and two alphas, the larger component is used.
+    For colors and pairs of alphas, the largest component is used.
     """
     batches = [each.batch for each in cases]
     rows = np.concatenate([tolerance.metric(*each[1:]) for each in cases])
@@ -240,7 +240,7 @@ def errors(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[tuple[Error
 
 
 def _columns(batches: Sequence[Batch]) -> Iterator[tuple[str, list[Array]]]:
-    """Inputs that all batches have, with a row for each of their pairs; without those that are never reported."""
+    """Reportable inputs that all batches have, with a row for each pair of each batch."""
     rows = [({**USUAL, **batch.inputs}, len(batch.wo)) for batch in batches]
     for name in batches[0].inputs:
         if name not in UNREPORTED and all(name in inputs for inputs, _ in rows):
@@ -248,7 +248,7 @@ def _columns(batches: Sequence[Batch]) -> Iterator[tuple[str, list[Array]]]:
 
 
 def _rows(values: ArrayLike, count: int) -> Array:
-    """Values of an input, numbers or colors, with a row for each pair."""
+    """Numbers or colors of an input as a table with one row per pair, (count, components)."""
     array = np.asarray(values, np.float64)
     if array.shape[:1] == (count,):
         return array.reshape(count, -1)

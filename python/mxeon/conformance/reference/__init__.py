@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The NumPy models as a host, in float64: the reference of every other host."""
+"""The NumPy models in float64 as a host, which is the reference for all other hosts."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import TRANSMISSION, inner_lobes
 from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
 
-SCENES = 4  # cached scenes' points, as many as a run has pictures
+SCENES = 4  # number of scenes whose points are cached, enough for the pictures of a run
 
-# Size of pattern pictures, and how many are drawn to find a wrong pattern.
+# Size of pattern pictures, and maximum number drawn to find a wrong pattern.
 PATTERN_SIZE, PATTERNS_DRAWN = 32, 16
-OTHER = 0.01  # least reported difference of a pattern, above the errors of filters and powers
-LATTICE = 32  # rows and columns of judged pixels if each has a different material
-MOST = 2000  # up to this many pixels are all judged then; an integral takes a millisecond
+OTHER = 0.01  # smallest reported difference of a pattern, above errors of filters and powers
+LATTICE = 32  # number of judged rows and columns in large pictures whose material varies
+MOST = 2000  # maximum pixels of such a picture to judge all; an integral takes a millisecond
 
 PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # generators draw at most three components
 TARGETS = ("glsl", "essl", "vulkan", "wgsl")  # targets whose shaders can draw a node's value
 
 
 class HostValues:
-    """Values of a shader's nodes at the pixels of a picture, drawn by a host; NotRun if it cannot.
+    """Values of a shader's nodes at a picture's pixels, drawn by a host; NotRun if it cannot.
 
-    The reference does not know patterns: if it has no function for a node, the judged host
-    draws the node's value, as an output of a separate document, and the reference
-    continues from there.
+    The reference has no functions for most pattern nodes. In their place, the judged host draws
+    the node's value as the output of a separate document, and the reference continues with this
+    value.
     """
 
     def __init__(self, host: base.Host, shader: Shader, library: str, policy: Policy) -> None:
@@ -51,7 +51,7 @@ class HostValues:
     def __call__(self, size: int, elements: Elements, kind: str, output: str = "") -> Array:
         """Values of a node in an unlit picture, (size, size, components).
 
-        An output is shown as a surface that emits its color.
+        The picture shows an output as a surface that emits the output's color.
         """
         shown, document = elements[-1], self._shader.document
         name = shown.getNamePath()
@@ -75,13 +75,13 @@ class HostValues:
 
 @dataclass(frozen=True, eq=False)
 class ExpectedPicture:
-    """The expected picture of a host."""
+    """The picture that a correct host would render."""
 
     image: NDArray[np.float64]
-    # Computed pixels; all others have the value of a neighbor.
+    # Mask of computed pixels; all other pixels copy a neighbor.
     judged: NDArray[np.bool_]
-    measured: tuple[str, ...]  # node inputs with values from the host
-    lobes: tuple[ShownLobe, ...] = ()  # visible lobes
+    measured: tuple[str, ...]  # node inputs whose values come from the host
+    lobes: tuple[ShownLobe, ...] = ()  # lobes with a nonzero weight
 
 
 class Reference(base.Host):
@@ -105,10 +105,10 @@ class Reference(base.Host):
     def expected(
         self, shader: Shader, scene: Scene, values: HostValues | None = None, stride: int = 1
     ) -> ExpectedPicture:
-        """The expected picture of a host, with some inputs of lobes measured on that host.
+        """The expected picture of a host; `values` measures some inputs of lobes on that host.
 
-        With measured values and too many materials, only every `stride`-th row and column is computed. Raise NotRun as
-        `picture` does.
+        Only every `stride`-th row and column is computed; with `values`, the stride grows if there
+        are too many materials. Raise NotRun as `picture` does.
         """
         mask = sphere(scene.size).mask
         chosen = mask & _lattice(scene.size, stride)
@@ -134,7 +134,7 @@ class Reference(base.Host):
             shown = shader.document.getDescendant(shader.element)
             if values is None or not shown.isA(mx.Output) or shown.getType() in LIT:
                 raise
-            # Patterns are drawn as the color of an emitting surface; other types are black.
+            # The host draws patterns as the color of an emitting surface; other types are black.
             if shown.getType() in PATTERNS:
                 image = values(scene.size, [shown], "color3")
             return ExpectedPicture(image, mask, (shown.getName(),))
@@ -143,7 +143,7 @@ class Reference(base.Host):
         return ExpectedPicture(image, chosen, tuple(graph.measured), tuple(graph.lobes))
 
     def other_node(self, shader: Shader, values: HostValues) -> tuple[str, ...]:
-        """Category and name of the first pattern node that a host evaluates differently; empty if there is none."""
+        """Category and name of the first pattern node that a host evaluates differently, or ()."""
         scene = Scene(NAME, VIEW, size=PATTERN_SIZE)
         mask = sphere(scene.size).mask
 
@@ -163,8 +163,8 @@ class Reference(base.Host):
     def _values(self, query: base.Query) -> NDArray[np.float64]:
         """Values of the document's lobes; see `mxeon.hosts.base.Host.evaluate`.
 
-        The branch "opacity" is "transmission" with MaterialX's method of that name. Raise NotRun unless the request is
-        the response to a light or to a uniform environment, or the transmitted share of the latter.
+        The branch "opacity" is "transmission" by MaterialX's method "opacity". Raise NotRun unless
+        the query is for the response to a light or a uniform environment, transmission included.
         """
         shader, wo, wi, inputs, branch, output, irradiance, _ = query
         branches = ("direct", "environment", "transmission", "opacity")
@@ -187,7 +187,7 @@ def _lattice(size: int, stride: int) -> NDArray[np.bool_]:
 
 @lru_cache(maxsize=2 * SCENES)
 def _shown(scene: Scene, stride: int, most: float) -> ShadingPoints:
-    """The points of a picture, and their light.
+    """The points and the light of a picture.
 
     Raise NotRun if the light is an image.
     """
@@ -204,5 +204,5 @@ def _shown(scene: Scene, stride: int, most: float) -> ShadingPoints:
     return ShadingPoints(wo, wi, strength, normal, tangents(normal), texcoord, most, True)
 
 
-# Any target works, because the document behind the shader is evaluated.
+# Any target works here, because the reference evaluates the shader's document.
 ROW = Row("reference", target=Reference.target, engine="conformance.reference.Reference")

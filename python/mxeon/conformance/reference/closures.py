@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A shader's closures, evaluated by the models as OSL's documentation defines them."""
+"""Evaluates a shader's closures with the models, as OSL's documentation defines the closures."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ Arguments: TypeAlias = Mapping[str, Array]
 THROUGH, GRAPH = "transmission", "graph"  # branches of `Host.evaluate`
 ONE = np.ones((1, 1))
 ROUNDED = 1e-4  # smaller components of unit vectors count as roundings
-LEAST_HAIR = 1e-12  # the model is a delta function below this roughness
-GGX = "ggx"  # the only supported distribution
+LEAST_HAIR = 1e-12  # below this roughness, the hair model is a delta function
+GGX = "ggx"  # the only supported microfacet distribution
 EMISSION, MEDIUM, HAIR = "uniform_edf", "anisotropic_vdf", HAIR_NODE.category
 LIGHTLESS = (EMISSION, MEDIUM, "transparent")  # closures that scatter no light at the surface
 SCHLICK = node("schlick")
 MICROFACETS = {row.category: row for row in (node("dielectric"), node("conductor"), SCHLICK)}
 OTHERS = (node("burley"), node("translucent"), HAIR_NODE)
-# Closures have the names of their nodes, with one exception.
+# Models by closure name, which is the node's category except for subsurface scattering.
 BY_CLOSURE = (
     MICROFACETS | {row.category: row for row in OTHERS} | {"subsurface_bssrdf": SUBSURFACE_NODE}
 )
-# Closures with a keyword, by default 0, that selects the model.
+# Closures whose model depends on a keyword, which is 0 by default.
 FLAGGED = {
     OREN_NAYAR: (FLAG, (DIFFUSE[False], DIFFUSE[True])),
     "sheen_bsdf": ("mode", (node("conty_kulla"), node("zeltner"))),
@@ -51,14 +51,14 @@ FLAGGED = {
 
 @dataclass(frozen=True)
 class Views:
-    """Points to shade, with what their light depends on."""
+    """Points to shade, with the occlusion and the branch of their light."""
 
     points: ShadingPoints
-    occlusion: Array  # share of a light that reaches the surface from above
+    occlusion: Array  # fraction of the light from above that reaches the surface
     branch: str  # branch of `mxeon.hosts.base.Host.evaluate`
 
     def bsdf(self, tree: ClosureTree | None, layered: bool) -> Bsdf:
-        """Value of closures, and their throughput if they may be layered."""
+        """Value of a closure tree, and its throughput if `layered`."""
         if tree is None or tree.name in LIGHTLESS:
             return NOTHING
         if tree.name in FLAGGED:  # the keyword defaults to 0
@@ -74,7 +74,7 @@ class Views:
             medium = _coefficient(second, "extinction", MEDIUM)
             if medium is None or not _only_medium(second):
                 return layering.layer(self.bsdf(first, True), self.bsdf(second, layered))
-            # A medium attenuates light that passes the surface.
+            # A medium below a surface attenuates the light that passes through the surface.
             passed, surface = transmittance(medium, 0.0, media.METER), self.bsdf(first, layered)
             value = surface.value * (passed if self.branch == THROUGH else 1.0)
             return Bsdf(value, surface.throughput * passed)
@@ -89,7 +89,7 @@ class Views:
         return Bsdf(factor * scaled.value, 1.0 - factor * (1.0 - scaled.throughput))
 
     def _lobe(self, closure: ClosureTree, row: PbrNode, layered: bool) -> Bsdf:
-        """A lobe in its frame; a layer passes 1 - E of its top, without tints, as in MaterialX's text."""
+        """Evaluate a lobe in its frame. Layers pass 1 - E without tints, as in MaterialX's text."""
         if (facets := closure.arguments.get("distribution", GGX)) != GGX:
             rule = f"must be {GGX}, as that of the node; got {facets}"
             raise ShaderError(f"osl: distribution of {closure.name} {rule}")
@@ -102,11 +102,11 @@ class Views:
         if np.any(opposite & ((self.points.wo * self.points.normal).sum(axis=1) > ROUNDED)):
             rule = "must be the node's, or face the viewer; got the opposite"
             raise ShaderError(f"osl: normal of {closure.name} {rule}")
-        if names[1] not in closure.arguments:  # any vector not parallel to the normal
+        if names[1] not in closure.arguments:  # use any vector that is not parallel to the normal
             tangent = np.where(np.abs(normal[:, :1]) > 0.9, UP, ALONG)
         wo, wi = self.points.directions(normal, tangent)
         inputs = _inputs(closure, row)
-        # Schlick's curve has no separate tint, but the closure does.
+        # The closure has a reflection tint that the model of Schlick's curve lacks.
         tinted = row is SCHLICK
         tint = np.asarray(closure.arguments["reflection_tint"], np.float64) if tinted else ONE
         try:
@@ -120,7 +120,7 @@ class Views:
                 value = np.zeros(wo.shape)
             seen = albedo_at(row.albedo, row, wo, white(inputs)) if layered else None
             if seen is not None and closure.name in microfacets.TRANSMISSIONS:
-                # Mode T has a black tint of its reflection, mode R of its transmission.
+                # In mode T, the reflection tint is black; in mode R, the transmission tint.
                 tints = (
                     closure.arguments[f"{each}_tint"] for each in ("reflection", "transmission")
                 )
@@ -137,7 +137,7 @@ def radiance(tree: ClosureTree | None) -> Array:
 
 
 def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Array | None:
-    """Sum of an argument over all closures with a name, weighted as in the tree; None without any."""
+    """Sum of an argument over all closures of this name, with the tree's weights; or None."""
     if tree is None:
         return None
     if tree.name == name:
@@ -159,7 +159,7 @@ def _only_medium(tree: ClosureTree | None) -> bool:
 
 
 def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Array) -> Bsdf:
-    """A blend of two lobes by the share of the second; lobes without a share are not evaluated."""
+    """A mix of two lobes, with `share` of the second; lobes without a share are not evaluated."""
     if not np.any(share):
         return first()
     return second() if np.all(share == 1.0) else layering.mix(second(), first(), share)
@@ -175,7 +175,7 @@ def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
             rough = np.stack([given[f"variance_{lobe}"], given[f"scale_{lobe}"]], axis=-1)
             given[name] = np.clip(rough, LEAST_HAIR, None)
     if closure.name in MICROFACETS:
-        # OpenPBR exceeds 1 for anisotropic lobes; shaders clamp to 1.
+        # OpenPBR computes alphas above 1 for anisotropic lobes; shaders clamp them to 1.
         alphas = np.stack([given["roughness_x"], given["roughness_y"]], axis=-1)
         given["roughness"] = np.clip(alphas, 0.0, 1.0)
         given["tint"] = given.get("reflection_tint", np.ones((1, 3)))
@@ -187,13 +187,13 @@ def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
 
 
 def column(values: ArrayLike) -> Array:
-    """Numbers as (N, 1), colors unchanged."""
+    """Values as a table: numbers become a column, (N, 1); colors, (N, 3), stay unchanged."""
     array = np.asarray(values, np.float64)
     return array if array.ndim == 2 else array.reshape(-1, 1)
 
 
 def evaluate(trees: Iterable[TreeRows], query: Query) -> Array:
-    """Values of a shader's closures in a uniform environment; see `Host.evaluate`."""
+    """Values of a shader's closures under a light or a uniform environment; see `Host.evaluate`."""
     _, wo, wi, inputs, branch, output, *_ = query
     values = np.zeros((len(wo), 3))
     normal = np.broadcast_to(np.asarray(inputs.get("normal", UP), np.float64), wo.shape)

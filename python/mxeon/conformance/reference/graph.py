@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Material graphs evaluated in NumPy, vectorized over the points of a picture.
+"""Evaluates material graphs in NumPy, vectorized over the points of a picture.
 
-A graph may contain lobes with a model and their combinations; emissions; images; the
-operations in surface shaders; and nodes that are nodegraphs of these. Any other node raises
-NotRun with its name, unless a mix skips it.
+A graph may contain lobes with a model and their combinations, emissions, images, operations used
+in surface shaders, and nodes whose nodegraphs contain only these. Any other node raises NotRun
+with its name, unless a mix skips it.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ from mxeon.shaders.document import drawn_values, graphs
 from mxeon.shaders.document.values import color_spaces
 from mxeon.shaders.inner_lobes import Nodes, Path
 
-# Types that a generator draws as a color, and their components.
+# Number of components of each type that generated shaders can draw as a color.
 DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
-# Values of a node, by its type and the name of its output.
+# Function that measures a node's values, given its elements, its type and the name of its output.
 Measure: TypeAlias = Callable[[drawn_values.Elements, str, str], Array]
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
-# Values of unconnected inputs: black, and for lobes zero, which passes all light.
+# Values of unconnected inputs: black, or for a BSDF an absent lobe, which passes all light.
 NO_LIGHT = np.zeros(3)
 UNCONNECTED: dict[str, Value] = {"BSDF": nodes.NOTHING, "VDF": None}
 UNCONNECTED |= dict.fromkeys(("EDF", "surfaceshader"), NO_LIGHT)
-CHANNELS = {"float": 1, "color3": 3}  # channels of an image, by its type
+CHANNELS = {"float": 1, "color3": 3}  # number of channels of an image by the node's type
 UTILITIES = {row.category: row for row in utilities.UTILITIES}
 
 
@@ -55,25 +55,25 @@ class Graph(Nodes):
         points: ShadingPoints,
         inputs: Mapping[str, ArrayLike] | None = None,  # replace the document's values
         emits: bool = True,  # whether emission and opacity count
-        # Values of nodes without a function; None: they are not run.
+        # Measures values of nodes without a function; if None, such nodes raise NotRun.
         measure: Measure | None = None,
     ) -> None:
         super().__init__()
         self._document, self._points, self._inputs = document, points, inputs or {}
         self._emits, self._measure = emits, measure
-        self.measured: dict[str, None] = {}  # inputs, each after the name of its node
+        self.measured: dict[str, None] = {}  # names of measured inputs: node.input
         self.lobes: list[nodes.ShownLobe] = []
         self._shader: Path | None = None  # the surface shader, if it is a nodegraph
-        self._tops: list[Path] = []  # tops of layers, which need throughputs
-        self._hiding: set[Path] = set()  # tops and their parts
+        self._tops: list[Path] = []  # tops of layers, whose throughputs are needed
+        self._hiding: set[Path] = set()  # tops of layers, and all their parts
         self._steps: dict[Path, Step] = {}
 
     def element(self, name_path: str) -> Array:
-        """Value of the renderable element at a name path, (N, 3).
+        """Value of the renderable element with this name path, (N, 3).
 
         Raise NotRun if the graph contains an unsupported node.
         """
-        # Ignore non-finite values: another node may skip them.
+        # Ignore warnings about non-finite values, since another node may skip the values.
         with np.errstate(divide="ignore", invalid="ignore"):
             path = self._root(name_path)
             self._parts([path])
@@ -81,7 +81,7 @@ class Graph(Nodes):
             return np.asarray(nodes.fitted("color3", self._evaluate(path)), np.float64)
 
     def patterns(self, name_path: str) -> Iterator[tuple[list[mx.Element], Array]]:
-        """Drawable nodes that a renderable element depends on, sources first, with their values."""
+        """Drawable nodes that a renderable element depends on, with their values; sources first."""
         order = TopologicalSorter(self._parts([self._root(name_path)])).static_order()
         for path in [each for each in order if each in self.elements]:
             if self.elements[path].isA(mx.Node) and self.elements[path].getType() in DRAWN:
@@ -97,7 +97,7 @@ class Graph(Nodes):
         return graphs.reachable(roots, lambda path: self._step(path)[1])
 
     def _evaluate(self, root: Path) -> Value:
-        """Value at a path, without recursion or repeated evaluation."""
+        """Value at a path, computed without recursion; each node is evaluated once."""
         parts = self._parts([root])
         uses = Counter(part for inner in parts.values() for part in inner)
         values: dict[Path, Value] = {}
@@ -135,7 +135,7 @@ class Graph(Nodes):
 
     @cached_property
     def _operations(self) -> dict[str, nodes.Operation]:
-        """Nodes that compute numbers or colors, some of them from the points: inputs and function."""
+        """Inputs and function of each node that computes numbers or colors, by category."""
         known = nodes.OPERATIONS | nodes.VOLUMES | {"surfacematerial": (("surfaceshader",), same)}
         for row in emissions.EMISSIONS:
             ports = tuple("base" if name == emissions.BASE else name for name in row.inputs)
@@ -147,14 +147,14 @@ class Graph(Nodes):
         def surface(bsdf: Bsdf, opacity: float | Array = 1.0, edf: float | Array = 0.0) -> Array:
             return np.asarray((bsdf.value + edf) * opacity, np.float64)
 
-        ports = ("bsdf", "opacity", "edf")  # the last two only count where it emits
+        ports = ("bsdf", "opacity", "edf")  # opacity and edf are read only if they count
         known["surface"] = ports[: 1 + self._emits + emits], surface
         unlit = ("emission", "emission_color", "opacity")
         known["surface_unlit"] = unlit, lambda *values: prod(values) * (not self._points.behind)
         return known
 
     def _inside(self, path: Path, node: mx.Node, output: str = "") -> Path:
-        """Path inside a node's nodegraph of the given output, or of its only one."""
+        """Path inside a node's nodegraph that is connected to an output, or to the only output."""
         graph = node.getImplementation()
         outputs = graph.getOutputs() if graph and graph.isA(mx.NodeGraph) else []
         found = [each for each in outputs if each.getName() == output] or outputs
@@ -174,7 +174,7 @@ class Graph(Nodes):
         return lobe, self._sources(path, names)
 
     def _combination(self, path: Path, node: mx.Node) -> Step:
-        """Step of a node that combines lobes; a mix skips lobes without a share."""
+        """Step of a node that combines lobes; a mix skips a lobe whose share is 0."""
         category = node.getCategory()
         ports, operation = nodes.COMBINATIONS[category]
         if category == "mix":
@@ -201,7 +201,7 @@ class Graph(Nodes):
         return tuple(self._source(path, name) for name in names)
 
     def _source(self, path: Path, name: str) -> Path:
-        """Path of an input's value: the connected node, or a constant."""
+        """Path of an input's source, which is the connected node or a constant."""
         owner = path
         while (given := self._given(path, name)) is None:
             port = self._port(path, name)
@@ -212,13 +212,13 @@ class Graph(Nodes):
             return self._constant(path, name, given)
         if not port.getConnectedNode():
             return self._constant(path, name, self._written(path, name, port))
-        # An input is measured by name if a lobe, or a node around a lobe, uses it.
+        # An input that a lobe or a node around a lobe reads may be measured, under this name.
         scatters = any(each.getType() in drawn_values.CLOSURES for each in self._along(owner, path))
         shown = f"{port.getParent().getName()}.{name}" if scatters else ""
         return self._connected(path[:-1], port, shown)
 
     def _given(self, path: Path, name: str) -> Array | None:
-        """Value passed in for an input, (N, 1) for one number per point; or None."""
+        """Value of an input that the caller replaces, or None; numbers are (N, 1)."""
         lobe = path in self.elements and self.elements[path].getCategory() in LOBES
         if name not in self._inputs or not (path == self._shader if self._shader else lobe):
             return None
@@ -229,10 +229,10 @@ class Graph(Nodes):
         return value if wide else np.reshape(value, (-1, 1))
 
     def _connected(self, around: Path, port: mx.PortElement, shown: str = "") -> Path:
-        """Path that an input or output within another path is connected to.
+        """Path to which an input or output inside another path is connected.
 
-        If a value comes from a node without a function, and is an input with the name `shown`,
-        the whole value is measured.
+        If the value needs a node without a function, and the input has a name, `shown`, the value
+        is measured instead.
         """
         path, kind = self.upstream(around, port), port.getType()
         assert path
@@ -266,7 +266,7 @@ class Graph(Nodes):
         return constant
 
     def _along(self, path: Path, outer: Path = ()) -> list[mx.Element]:
-        """Elements at a path and around it, outermost first, starting at the depth of another path."""
+        """Elements along a path, outermost first, starting at the depth of the path `outer`."""
         ends = range(max(len(outer), 1), len(path) + 1)
         return [self.elements[path[:end]] for end in ends if path[:end] in self.elements]
 
@@ -280,10 +280,10 @@ class Graph(Nodes):
         element = self.elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
         declared = nodedef.getActiveInput(name) if nodedef else port
-        if declared and declared.hasDefaultGeomPropString():  # this is its only source
+        if declared and declared.hasDefaultGeomPropString():  # the property is the only source
             return self._points.geometry(declared.getDefaultGeomPropString())
         value = port.getValue()
-        if value is None and declared:  # MaterialX ignores the connection
+        if value is None and declared:  # MaterialX ignores an unresolved connection
             value = declared.getValue()
         if port.getType() in UNCONNECTED:
             return UNCONNECTED[port.getType()]
@@ -300,7 +300,7 @@ class Graph(Nodes):
         return constant * float(scales.get(port.getUnit(), 1.0))
 
     def _image(self, node: mx.Node) -> Array:
-        """Values of an image node: texel centers at half-integers, v = 0 at the bottom."""
+        """Values of an image node. Texel centers are at half-integers; v = 0 is at the bottom."""
         if self._points.texcoord is None or node.getInput("texcoord") is not None:
             raise NotRun("reference: images are read at the sphere's own coordinates only")
         file = node.getInput("file")
@@ -320,7 +320,7 @@ class Graph(Nodes):
 
 
 def _applied(node: mx.Node, operation: Callable[..., Value], *values: Value) -> Value:
-    """Value of a node whose operation is a function of its inputs; other libraries' graphs may pass invalid ones."""
+    """Apply a node's operation; OutsideModel if a library's graph passes invalid inputs."""
     try:
         return nodes.fitted(node.getType(), operation(*values))
     except ValueError as error:
@@ -328,7 +328,7 @@ def _applied(node: mx.Node, operation: Callable[..., Value], *values: Value) -> 
 
 
 def _rows(names: Iterable[str], values: Iterable[Array], count: int = 1) -> dict[str, Array]:
-    """Inputs of a model with at least `count` rows, one per point; numbers have one axis."""
+    """Inputs of a model with one row per point, at least `count` rows; numbers have one axis."""
     columns = [np.atleast_2d(np.asarray(value, np.float64)) for value in values]
     count = max(count, *map(len, columns))
     rows = (np.broadcast_to(each, (count, each.shape[1])) for each in columns)
@@ -344,15 +344,15 @@ def _radiance(
 
 
 def _utility(row: utilities.UtilityNode, *values: Array) -> Array | Mapping[str, Array]:
-    """The only output of a utility node, or all by name."""
+    """The only output of a utility node, or all its outputs by name."""
     outputs = row.value(_rows(row.inputs, values))
     return next(iter(outputs.values())) if len(outputs) == 1 else outputs
 
 
 def _linear(element: mx.Element, value: Array) -> Array:
-    """Color in the document's space, by the generators' color management; alpha is unchanged.
+    """A color converted to the document's color space as generators do; alpha is unchanged.
 
-    Raise NotRun if this requires a transform other than the decoding of sRGB.
+    Raise NotRun if the conversion is anything but the decoding of sRGB.
     """
     spaces = color_spaces(element)
     if spaces is None:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of a document: BSDFs as rows of the models, nodes that combine them, and nodes that compute numbers.
+"""Functions of a document's nodes: BSDFs with a model, their combinations, and number operations.
 
-For every other node that is not a nodegraph of these, a host draws the values: see `HostValues`.
+For any other node that is not a nodegraph of these, a host draws the values: see `HostValues`.
 
-A value is an array with its components on the last axis; a number is () or (N, 1). A function's result is
-repeated over the components of the node's type, so that a number becomes a color.
+A value is an array with its components on the last axis; a number is () or (N, 1). If a function
+returns a number but the node's type has several components, the number is repeated.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, value_text
 
 Albedo: TypeAlias = Callable[[Array, Inputs], Array]
 
-# An albedo is interpolated over a picture if its last coefficients are below this, well below the errors
-# of the fits; the degrees are in sqrt(mu) and in cos(2 phi).
+# An albedo is interpolated over a picture if the last coefficients of its series are below TAIL,
+# which is well below the errors of fits. The degrees are in sqrt(mu) and in cos(2 phi).
 TAIL = 1e-6
 ISOTROPIC = ((32, 0), (64, 0), (128, 0), (256, 0))
 ANISOTROPIC = ((24, 12), (48, 32))
-AT_ONCE = 1 << 12  # arguments of a series per block
-KEPT = 4  # cached lobes of a scene's pictures, up to 2.5 megabytes each
-SEPARATE = 1000  # up to this many directions, individual albedos are as fast
+AT_ONCE = 1 << 12  # number of arguments for which a series is summed at once
+KEPT = 4  # maximum cached lobes of a scene's pictures, up to 2.5 megabytes each
+SEPARATE = 1000  # below this number of directions, a series is no faster than individual albedos
 
 
 class ManyMaterialsError(Exception):
@@ -62,12 +62,12 @@ def _directions(mu: Array, phi: Array) -> Array:
 
 
 def _interpolated(series: Array, wo: Array, low: float, turns: bool) -> Array:
-    """Sums of a series (X, Y, 3) in sqrt(mu) from `low` on and cos(2 phi), (N, 3)."""
+    """Sums of a series (X, Y, 3) in sqrt(mu), over [low, 1], and in cos(2 phi), (N, 3)."""
     root = np.sqrt(np.minimum(wo[:, 2], 1.0))
     u = np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0)
     x, y = np.square(wo[:, 0]), np.square(wo[:, 1])
     v = np.zeros_like(u) if turns else (x - y) / np.maximum(x + y, 1e-300)
-    # A picture contains many equal directions.
+    # Sum once for equal directions, which a picture has many of.
     each, indices = np.unique(np.round(u + 1j * v, 13), return_inverse=True)
     parts = np.array_split(each, 1 + len(each) // AT_ONCE)
     sums = [chebyshev.chebval2d(part.real, part.imag, series).T for part in parts]
@@ -95,8 +95,8 @@ def _series(
     return None
 
 
-COSINES = np.linspace(-1.0, 1.0, 1025)  # grid for the blur, interpolated linearly
-REACHES = (1e-6, 1e3)  # range of mean free paths over the sphere's radius
+COSINES = np.linspace(-1.0, 1.0, 1025)  # nodes of the linearly interpolated blur
+REACHES = (1e-6, 1e3)  # range of mean free paths, relative to the sphere's radius
 
 
 def _dark(wo: Array, *_: object) -> Array:
@@ -104,7 +104,7 @@ def _dark(wo: Array, *_: object) -> Array:
 
 
 def _not_reflected(category: str, wo: Array, inputs: Inputs) -> Array:
-    """Share of a uniform environment that passes through microfacets."""
+    """Fraction of a uniform environment that microfacets transmit."""
     functions = TRANSMISSIONS[category]
     rest = 1.0 - functions.reflected(wo, microfacets.isotropic(inputs))
     return np.asarray(functions.tint(inputs) * np.maximum(rest, 0.0))
@@ -112,7 +112,7 @@ def _not_reflected(category: str, wo: Array, inputs: Inputs) -> Array:
 
 def _spread(wo: Array, wi: Array, inputs: Inputs) -> Array:
     """Radiance of subsurface scattering, relative to the irradiance of a distant light."""
-    # The mean free path for isotropic scattering.
+    # Mean free path of the equivalent isotropic scattering.
     count = len(wi)
     forward = np.broadcast_to(inputs["anisotropy"], (count,))[:, np.newaxis]
     radius = np.broadcast_to(inputs["radius"], (count, 3))
@@ -127,15 +127,15 @@ def _spread(wo: Array, wi: Array, inputs: Inputs) -> Array:
 
 @lru_cache(maxsize=64)
 def _blur(reach: float) -> Array:
-    """The blurred cosine at COSINES."""
+    """The cosine of the light after diffusion, at COSINES."""
     return diffusion_blur(COSINES, reach)
 
 
-# Transmitted share of a uniform environment, by name of the row.
+# Transmitted fraction of a uniform environment, by name of the model's row.
 LET_THROUGH: dict[str, Callable[[Array, Inputs], Array]] = {
     row.name: partial(_not_reflected, row.category) for row in TRANSMISSION_NODES
 }
-# Share of a white environment that a lobe with two alphas reflects by MaterialX's sum, by category.
+# Fraction of a white environment that MaterialX's sum reflects for two alphas, by category.
 SUMS: dict[str, Callable[[Array, Inputs], Array]] = {
     row.category: partial(node_albedo, row.category, summed=True) for row in MICROFACET_NODES
 }
@@ -159,20 +159,22 @@ class ShadingPoints:
     wo: Array  # unit vectors to the viewer, in world space
     wi: Array | None  # unit vectors to a distant light; None in a uniform environment
     strength: float  # irradiance of the light, or radiance of the environment
-    normal: Array  # the surface's axes, orthogonal unit vectors in world space
-    tangent: Array
+    normal: Array  # unit normal of the surface, in world space
+    tangent: Array  # unit vector orthogonal to the normal, in world space
     texcoord: Array | None = None
-    # Maximum points with different materials and integrated albedos; more raise ManyMaterialsError.
+    # Maximum points if materials vary and albedos are integrals; more raise ManyMaterialsError.
     most: float = np.inf
     round: bool = False  # whether these are points of the unit sphere
     behind: bool = False  # whether only transmitted light counts
-    opacity: bool = False  # whether lobes that only transmit pass all light, minus the reflection of layers above
+    opacity: bool = (
+        False  # whether transmission-only lobes pass all light that layers above them pass
+    )
     searched: bool = False  # whether eonlib's environment sum uses both alphas for masking
 
     def lobe(
         self, node: PbrNode, inputs: Inputs, layered: bool, normal: Array, tangent: Array
     ) -> Bsdf:
-        """Lobe of weight one, and its throughput if `layered`; see `directions`."""
+        """A lobe with weight 1 in a frame, and its throughput if `layered`."""
         own = np.array_equal(normal, self.normal) and np.array_equal(tangent, self.tangent)
         wo, wi = self.own if own else self.directions(normal, tangent)
 
@@ -184,15 +186,15 @@ class ShadingPoints:
 
         if not own:
             return scattered()
-        # Cache the latest ones: another library's document repeats them.
+        # Cache the latest lobes, since the same document with another library repeats them.
         key = node, layered, *((name, contents(each)) for name, each in inputs.items())
         return self._known.value(key, scattered)
 
     def scattered(self, node: PbrNode, wo: Array, wi: Array | None, inputs: Inputs) -> Array:
         """Light that a lobe sends to the viewer, from directions in its frame, (N, 3).
 
-        It is f |cos(theta_i)| under a distant light, 0 on the dark side; in an environment, the directional albedo or
-        the transmitted share.
+        Under a distant light, it is f |cos(theta_i)|, and 0 on the dark side. In an environment, it
+        is the directional albedo or the transmitted fraction.
         """
         if wi is None:
             share = LET_THROUGH.get(node.name) if self.behind else node.integral or node.albedo
@@ -211,7 +213,7 @@ class ShadingPoints:
         return value
 
     def _albedo(self, albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-        """Albedo at each direction. For a picture of one material it comes from a series, unless it is fast to compute."""
+        """Albedo at each direction. Slow albedos of one material over a picture use a series."""
         closed = not node.fitted and node.integral is None
         varied = any(len(value) > 1 for value in inputs.values())
         if varied and not closed and len(wo) > self.most:
@@ -237,7 +239,7 @@ class ShadingPoints:
         return ALBEDOS.value((contents(upright), *key), integrated)
 
     def geometry(self, name: str) -> Array:
-        """A property of the surface by MaterialX's name; raises NotRun if it is unknown."""
+        """A geometric property by its MaterialX name; raises NotRun if it is unknown."""
         normal, tangent = self.normal, self.tangent
         known = {"Nworld": normal, "Tworld": tangent, "Bworld": np.cross(normal, tangent)}
         known |= {"UV0": self.texcoord} if self.texcoord is not None else {}
@@ -254,9 +256,9 @@ class ShadingPoints:
         return Recent(KEPT)
 
     def directions(self, normal: Array, tangent: Array) -> tuple[Array, Array | None]:
-        """Directions to the viewer and the light in a frame with the normal turned to the viewer.
+        """Local directions to viewer and light, in a frame whose normal faces the viewer.
 
-        Raise OutsideModel if a normal is no unit vector.
+        Raise OutsideModel if a normal is not a unit vector.
         """
         length = np.linalg.norm(normal, axis=-1)
         if (wrong := np.ravel(length)[np.ravel(~(np.abs(length - 1.0) <= UNIT))]).size:
@@ -266,18 +268,18 @@ class ShadingPoints:
         z = np.where((self.wo * normal).sum(axis=-1, keepdims=True) < 0.0, -1.0, 1.0) * normal
         x = tangent - (tangent * z).sum(axis=-1, keepdims=True) * z
         axes = np.stack(np.broadcast_arrays(x, np.cross(z, x), z), axis=1)
-        with np.errstate(invalid="ignore"):  # values reveal a tangent along the normal
+        with np.errstate(invalid="ignore"):  # NaN if the tangent is along the normal
             axes = np.asarray(axes / np.linalg.norm(axes, axis=2, keepdims=True))
         return _within(axes, self.wo), None if self.wi is None else _within(axes, self.wi)
 
 
 def at(inputs: Inputs, points: NDArray[np.intp]) -> dict[str, Array]:
-    """Inputs at some of the points; the models evaluate shared inputs once."""
+    """Inputs at some of the points; an input with one row for all points keeps its row."""
     return {name: each[points] if len(each) > 1 else each for name, each in inputs.items()}
 
 
 def albedo_at(albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-    """An albedo of a lobe; without a closed form, computed once for equal views and inputs."""
+    """An albedo of a lobe. Without a closed form, equal views and inputs are computed once."""
     wo = np.minimum(wo, 1.0)  # rounding may exceed 1
     if not node.fitted and node.integral is None:
         return np.asarray(np.broadcast_to(albedo(wo, inputs), wo.shape))
@@ -288,7 +290,7 @@ def albedo_at(albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array
 
 
 def _within(axes: Array, directions: Array) -> Array:
-    """Directions in a frame with the axes as rows, as unit vectors (N, 3)."""
+    """Unit vectors (N, 3): the directions in a frame whose axes are the matrix rows."""
     local = (axes @ directions[:, :, np.newaxis])[:, :, 0]
     return np.asarray(local / np.linalg.norm(local, axis=1, keepdims=True), np.float64)
 
@@ -313,10 +315,10 @@ COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
 
 @dataclass(frozen=True, eq=False)
 class ShownLobe:
-    """A lobe of a picture with a nonzero weight."""
+    """A lobe that a picture shows with a nonzero weight."""
 
     category: str  # category of the node
-    inputs: Mapping[str, Array]  # same as for `node_lobe`
+    inputs: Mapping[str, Array]  # inputs as passed to `node_lobe`
 
 
 def node_lobe(
@@ -333,7 +335,7 @@ def node_lobe(
     uniform = points.wi is None and row.name in LET_THROUGH
     if row in INNER_NODES and not (points.round or uniform):
         raise NotRun(f"reference: there is no model for this mode of node {node.getCategory()!r}")
-    # Inputs that the model lacks must have their defaults.
+    # An input that the model lacks must have its default value.
     known = {"weight", "normal", "tangent", "curve_direction", FLAG, *FILM, *row.inputs, *row.fixed}
     for port, value in inputs.items():
         default = node.getNodeDef().getActiveInput(port).getValue()
@@ -343,7 +345,7 @@ def node_lobe(
     film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()
     arguments = {port: _argument(node, port, inputs[port], weight) for port in (*row.inputs, *film)}
     if row.name == "qon":
-        # MaterialX stores pi / 2 as a float32 that is slightly larger: only this value is lowered.
+        # MaterialX stores pi / 2 as a float32, which is slightly larger; lower only this value.
         rounded = np.float32(arguments["roughness"]) == np.float32(np.pi / 2.0)
         arguments["roughness"] = np.where(rounded, np.pi / 2.0, arguments["roughness"])
     tangent = inputs.get("tangent", inputs.get("curve_direction", points.tangent))
@@ -356,7 +358,7 @@ def node_lobe(
 
 
 def _outside(node: mx.Node, words: str) -> OutsideModel:
-    """The error for a value outside a node's model, with the note on its input if the document has the value."""
+    """The error for a value that a node's model does not cover; it names the document's input."""
     document = f"{label(node.getDocument())}: "
     for port in node.getInputs():
         if text := out_of_range(port):
@@ -375,16 +377,16 @@ def _row(node: mx.Node, inputs: Mapping[str, Array]) -> PbrNode:
 
 
 def _argument(node: mx.Node, port: str, value: Array, weight: Array) -> Array:
-    """Value of an input as (1,) or (N,) if it is a number, otherwise with its components.
+    """Value of an input: numbers as (1,) or (N,), others as (1, C) or (N, C) with C components.
 
-    Points where the lobe has no weight, and the value may be NaN, get another point's value.
+    Points at which the lobe's weight is 0 take another point's value, since theirs may be NaN.
     """
     kind = node.getNodeDef().getActiveInput(port).getType()
     if kind not in WIDTHS:
         array = np.reshape(np.asarray(value, np.float64), -1)
     else:
         array = np.atleast_2d(np.asarray(value, np.float64))
-        if port == "roughness":  # OpenPBR exceeds 1 for anisotropic lobes; shaders clamp to 1
+        if port == "roughness":  # OpenPBR's alphas can exceed 1; shaders clamp them to 1
             array = np.clip(array, 0.0, 1.0)
         array = np.broadcast_to(array, (len(array), WIDTHS[kind]))
     idle = weight[:, 0] == 0.0
@@ -406,16 +408,16 @@ def plain(value: Plain) -> Array | bool | str | None:
 
 # --- nodes that compute numbers -------------------------------------------------------------------
 
-# Value of a node or input: numbers, a flag, a text, a lobe, outputs by name, or None.
+# Value of a node or input: an array, a flag, a string, a lobe, outputs by name, or None.
 Value: TypeAlias = Array | bool | str | Bsdf | Mapping[str, Array] | None
-Operation: TypeAlias = tuple[tuple[str, ...], Callable[..., Value]]  # its inputs, the function
+Operation: TypeAlias = tuple[tuple[str, ...], Callable[..., Value]]  # inputs and their function
 
 # Number of components of each type with more than one.
 WIDTHS = {"vector2": 2, "color3": 3, "vector3": 3, "color4": 4, "vector4": 4}
 
 
 def fitted(kind: str, value: Value) -> Value:
-    """Value with a type's components: numbers are repeated, missing components are 0 or opaque."""
+    """Value with its type's components: a number is repeated; missing ones are 0, or alpha 1."""
     width = WIDTHS.get(kind, 1)
     if width == 1 or value is None or isinstance(value, str):
         return value
@@ -456,7 +458,7 @@ def _rotate3d(value: Array, amount: Array, axis: Array) -> Array:
 def _normalmap(
     value: Array, scale: Array, normal: Array, tangent: Array, bitangent: Array
 ) -> Array:
-    """World-space unit vector from one in the surface's frame, encoded as a color."""
+    """World-space normal from a color that encodes a vector in the surface's frame."""
     x, y, z = np.moveaxis(2.0 * value - 1.0, -1, 0)[..., np.newaxis]
     scale = np.atleast_1d(scale)
     turned = tangent * x * scale[..., :1] + bitangent * y * scale[..., -1:] + normal * z
@@ -465,7 +467,7 @@ def _normalmap(
 
 
 def _when(compare: Callable[..., NDArray[np.bool_]]) -> Operation:
-    """One of two values, selected by comparing two others."""
+    """The operation that selects in1 if value1 and value2 compare as true, otherwise in2."""
 
     def choose(value1: Array, value2: Array, in1: Array, in2: Array) -> Array:
         return np.where(compare(value1, value2), in1, in2)
@@ -508,7 +510,7 @@ OPERATIONS: dict[str, Operation] = {
 
 # --- volumes --------------------------------------------------------------------------------------
 
-# Volume nodes below a layer, represented by their transmittance.
+# Volume nodes that may lie below a layer; their value is the transmittance.
 VOLUMES: dict[str, Operation] = {
     "absorption_vdf": (("absorption",), lambda a: transmittance(a, 0.0, METER)),
     "anisotropic_vdf": (("absorption", "scattering"), lambda a, s: transmittance(a, s, METER)),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The results of a conformance run as plain data: checks, pictures, albedos, and the verdict on all.
+"""The results of a conformance run as plain data: checks, pictures, and the overall verdict.
 
-`mxeon.conformance.words` makes sentences from them; no code reads such a sentence.
+`mxeon.conformance.words` turns results into sentences; no code parses these sentences.
 """
 
 from __future__ import annotations
@@ -33,25 +33,25 @@ DIFFERS: Final = "differs"
 FAILED: Final = "failed"
 NOT_RUN: Final = "not run"
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
-# Exit statuses of a run.
+# Exit status of a run by its verdict.
 STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
-# Replaces the path of a document: one material of each node, as every host renders it.
+# Stands for the path of a document in pictures of one material of each node.
 PORTRAIT = "portrait"
-SOURCE = "source"  # replaces the host if none has to run
-SHADER_FUNCTIONS = "shader twins"  # replaces the node for the functions of a library
+SOURCE = "source"  # stands for the host in checks of text, which run no host
+SHADER_FUNCTIONS = "shader twins"  # stands for the node in checks of a library's functions
 RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
-REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # patterns of the files of a report
+REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # file patterns of a report
 DIRECT = ("value", "lobe")  # checks of a node in direct light; each node has one of them
 VISIBLE = 0.01  # approximate smallest visible contrast, as a share of white or of a highlight
 
 
 @dataclass(frozen=True)
 class Control:
-    """A deliberately wrong variant of a check on the same host; it has to fail.
+    """A deliberately wrong variant of a check on the same host, which must fail.
 
     - `variant`: The change that makes it wrong.
-    - `error`: The error that the check measured on it.
-    - `caught`: Whether the check failed on it, as it must.
+    - `error`: The error of the variant, as measured by the check.
+    - `caught`: Whether the check failed on the variant, as it must.
     """
 
     variant: str
@@ -63,17 +63,17 @@ class Kind(Enum):
     """Kinds of causes."""
 
     NONE = ""
-    MODEL = "model"  # a known model or defect, the nearest to the values
-    FAULT = "fault"  # a fault between the inputs and the correct model, which reproduces the values
+    MODEL = "model"  # the known model or defect nearest to the values
+    FAULT = "fault"  # a fault between inputs and the correct model that reproduces the values
     ACCURACY = "accuracy"  # the correct model, but not accurate enough
     REGION = "region"  # the inputs with wrong values
     NOT_FINITE = "not finite"  # the inputs without finite values
-    CURE = "cure"  # inputs and values that make the worst values correct
+    CURE = "cure"  # input values that make the worst samples correct
     DEFECT = "defect"  # another known defect
     UNKNOWN = "unknown"
     TEXT = "text"  # the message of a compiler, a renderer or a document
     FOLLOWS = "follows"  # a consequence of another failure, which has its own result
-    INPUT = "input"  # a value of the document outside its model
+    INPUT = "input"  # an input value in the document that the model does not cover
     CONTROL = "control"  # the negative control passed
 
 
@@ -82,8 +82,8 @@ class Region:
     """A set of pairs and inputs.
 
     - `name`: Name of a row of `mxeon.conformance.words.REGIONS`, or of an input.
-    - `part`: Part of the input that has the range, a row of `words.PARTS`; "" for a row of `REGIONS`.
-    - `low`, `high`: Ends of the range; None where it has none.
+    - `part`: Part of the input that has the range, a row of `words.PARTS`; "" for named regions.
+    - `low`, `high`: Ends of the range; None for an open end.
     - `channels`: Wrong channels of a color; () for all.
     """
 
@@ -113,13 +113,13 @@ class Cause(BriefRepr):
     """One fact about wrong values.
 
     - `key`: Title of a model, or key of a row of the tables in `mxeon.conformance.words`.
-    - `names`, `values`: The inputs, functions or files that it is about, and numbers.
+    - `names`, `values`: Inputs, functions or files that the fact concerns, and its numbers.
     - `branch`: Branch of the light, if only one is wrong.
-    - `region`: Where it holds; None for everywhere.
-    - `wrong`, `of`: Number of wrong pairs, and of all.
-    - `rms`: Root-mean-square distance between the values and those that the cause predicts.
+    - `region`: Region in which the fact holds; None if it holds everywhere.
+    - `wrong`, `of`: Number of wrong pairs, and of all pairs.
+    - `rms`: Root-mean-square distance between measured values and values that the cause predicts.
     - `point`: Directions and inputs at the worst point, by name.
-    - `text`: Words of another program.
+    - `text`: Message of another program.
     """
 
     kind: Kind
@@ -136,7 +136,7 @@ class Cause(BriefRepr):
 
     @property
     def identity(self) -> tuple[object, ...]:
-        """The common part of two causes that only differ in numbers."""
+        """A key that is equal for causes that only differ in numbers."""
         region = self.region and (self.region.name, self.region.part, self.region.channels)
         return self.kind, self.key, self.names, self.branch, region
 
@@ -148,7 +148,7 @@ NO_CAUSE = Cause(Kind.NONE)
 class Diagnosis(BriefRepr):
     """The explanation of a failure.
 
-    - `causes`: The known causes; the one that explains most comes first.
+    - `causes`: The known causes, starting with the one that explains most.
     - `distances`: Root-mean-square distance to every known model and defect, by title.
     - `permitted`: Whether a function that the specification permits reproduces all values.
     """
@@ -181,10 +181,10 @@ NO_DIAGNOSIS = Diagnosis()
 
 @dataclass(frozen=True)
 class Errors:
-    """Errors of a check's samples, or of those in a region.
+    """Errors of a check's samples, or only of samples in a region.
 
-    - `of`, `wrong`, `not_finite`: Number of samples, of those beyond the tolerance, and of those
-      without a finite error.
+    - `of`, `wrong`, `not_finite`: Number of samples, of samples beyond the tolerance, and of
+      samples without a finite error.
     - `largest`, `rms`: Largest and root-mean-square finite error.
     - `region`: None for all samples.
     """
@@ -199,12 +199,12 @@ class Errors:
 
 @dataclass(frozen=True)
 class Difference:
-    """Difference between a picture and the reference: a share of white, or of the reference if it
-    is brighter.
+    """Difference between a picture and the reference, relative to white, or to the reference where
+    that is brighter.
 
-    - `scene`: The light.
+    - `scene`: Name of the scene, which determines the light.
     - `largest`: Difference at the worst pixel, positive if too bright; infinite if it is not finite.
-    - `highlight`: Whether the reference is brighter than white there.
+    - `highlight`: Whether the reference is brighter than white at the worst pixel.
     - `visible`: Share of the object's pixels whose difference exceeds VISIBLE.
     """
 
@@ -230,21 +230,21 @@ class Result(BriefRepr):
     - `check`, `claim`: Key of the check and the sentence that it tests.
     - `subject`: A node and its flag, or a document and its element.
     - `verdict`: PASSED, FAILED or NOT_RUN; DIFFERS if the specification permits the error.
-    - `error`, `tolerance`: Measured and allowed; a check passes at error <= tolerance.
-    - `quantity`: What was measured, with its unit; None if nothing was.
-    - `derivation`: Derivation of the tolerance.
+    - `error`, `tolerance`: Measured and largest accepted error; passed means error <= tolerance.
+    - `quantity`: The measured quantity with its unit; None if nothing was measured.
+    - `derivation`: Derivation of the tolerance from its terms.
     - `worst`: The inputs and values at the worst point, by name.
-    - `errors`: Errors of all samples, then those in each region; () if it passed or has no samples.
+    - `errors`: Errors of all samples, then of each region; () if passed or without samples.
     - `samples`: Checksum of the samples; "" without `errors`.
     - `diagnosis`: The explanation of a failure.
-    - `difference`: Difference of a material's worst picture, whose `error` is weighted; None for other checks.
-    - `control`: None only if the check did not run.
-    - `reason`: Why it did not run.
-    - `claimed`, `model`: Titles of the model that a renderer's own node claims, and of its published
-      form that was judged.
-    - `measured`: Inputs of a document's nodes whose values come from the host itself, since nodes of
-      patterns have no model; see `mxeon.conformance.reference.HostValues`.
-    - `pages`: Names of the pages of `docs/upstream/` on the defects that it shows.
+    - `difference`: Unweighted difference of a material's worst picture; None for other checks.
+    - `control`: The control; None only if the check did not run.
+    - `reason`: Reason that the check did not run.
+    - `claimed`, `model`: Title of the model that a renderer's own node claims, and of the published
+      form of that model that was judged.
+    - `measured`: Inputs of a document's nodes whose values come from the host, since patterns have
+      no model; see `mxeon.conformance.reference.HostValues`.
+    - `pages`: Names of the pages of `docs/upstream/` on the defects that the result shows.
     - `seconds`: Time of its task, shared equally among the task's results.
 
     Raises ValueError if the verdict is unknown, or an error is negative or has no tolerance.
@@ -290,7 +290,7 @@ class Result(BriefRepr):
 
     @property
     def location(self) -> str:
-        """Host and library."""
+        """The host and the library, in words."""
         return f"{self.host} with {self.library}"
 
     @property
@@ -300,12 +300,12 @@ class Result(BriefRepr):
 
     @property
     def follows(self) -> bool:
-        """Whether another failure, which has its own result, prevented it from running."""
+        """Whether the check could not run because of a failure that has its own result."""
         return self.diagnosis.kind is Kind.FOLLOWS
 
     @property
     def within(self) -> bool:
-        """Whether there is an error that is at most the tolerance."""
+        """Whether the error was measured and is within the tolerance."""
         return self.error is not None and self.error <= (self.tolerance or 0.0)
 
 
@@ -318,19 +318,19 @@ def assert_verdict(word: object) -> Verdict:
 
 @dataclass(frozen=True)
 class Picture:
-    """A host's picture of one element, and the reference's if the models can compute it.
+    """A host's picture of one element, and the reference picture if the models can compute it.
 
     - `image`: Linear radiance, (size, size, 3), float32; see `mxeon.shaders.scene` for its scale.
     - `reference`: The same from the NumPy models; None if the material has unsupported lobes.
-    - `metadata`: Its origin: version, host, device, library, document, element, scene.
-    - `judged`: 1 in the pixels that were compared, else 0, (size, size, 1); None if all were.
+    - `metadata`: Origin of the picture: version, host, device, library, document, element, scene.
+    - `judged`: 1 for compared pixels, 0 for others, (size, size, 1); None if all were compared.
     """
 
     document: str
     element: str
     host: str
     library: str
-    scene: str  # the light
+    scene: str  # name of the scene, which determines the light
     image: NDArray[np.floating] = field(repr=False)
     reference: NDArray[np.floating] | None = field(repr=False)
     metadata: dict[str, str] = field(repr=False)
@@ -355,8 +355,8 @@ class Picture:
     def difference_map(self) -> NDArray[np.float64]:
         """Absolute `mxeon.io.images.difference` of each pixel, (size, size).
 
-        Pixels between those of a judged lattice take the difference of the nearest one; other
-        pixels that were not judged are NaN.
+        In a judged lattice, pixels in between take the difference of the nearest lattice pixel;
+        other pixels that were not judged are NaN.
         """
         if self.reference is None:
             raise ValueError(f"{self.element}: a difference needs a reference; there is none")
@@ -373,22 +373,22 @@ class Picture:
 
 
 def report_files(folder: AnyPath) -> Iterator[Path]:
-    """The files of the report in a folder, and of its journal."""
+    """The files of the report and of the journal in a folder."""
     for pattern in (*REPORT, "journal/*"):
         yield from Path(folder).glob(pattern)
 
 
 @dataclass(frozen=True)
 class Scope:
-    """What a run judges, and the software versions.
+    """The subjects of a run, and the software versions.
 
-    - `version`, `software`: Version of mxeon, and versions of other software: Python, NumPy, MaterialX, ...
-    - `contents`: Titles of the nodes of each document that the user gave, by its path.
-    - `unreached`: For each of these documents, the regions that a node's inputs are not in, by the node's title.
-    - `refused`: The faults of each document that could not be judged, by its path; if other libraries
-      can read it, the key names the library behind it: "clay.mtlx with stock".
-    - `libraries`: By folder that was judged as a library: its files, under "folder", and those of
-      MaterialX that complete it, under "MaterialX", unless it is loaded before all of them.
+    - `version`, `software`: Version of mxeon, and versions of Python, NumPy, MaterialX and others.
+    - `contents`: Titles of the nodes in each document that the user gave, by the document's path.
+    - `unreached`: Regions that a node's inputs never reach, by document and by the node's title.
+    - `refused`: The faults of each document that could not be judged, by its path. If other
+      libraries can read it, the key also names the library: "clay.mtlx with stock".
+    - `libraries`: Files of each folder that was judged as a library: its own files under "folder",
+      and under "MaterialX" files that complete the folder, unless it is loaded before MaterialX.
     - `compared`: Libraries judged for comparison; the verdict ignores their failures.
     - `unjudged`: Subjects that no check judges, with reasons.
     """
@@ -409,13 +409,13 @@ class Scope:
 class Run(Scope):
     """All measurements of one `mxeon check`, and whether it passed.
 
-    Use `passed` for the overall result. It does not follow from `results`, which lack refused
-    documents and include failures of libraries that are judged for comparison.
+    Use `passed` for the overall result. It cannot be derived from `results` alone, which lack
+    refused documents and include failures of libraries that are judged for comparison.
 
     - `notes`: Warnings for readers, e.g. about features that a host cannot render.
     - `missing`: Unfinished tasks of an interrupted run.
-    - `seconds`: Time from the first document to the last result; None for a run that is read.
-    - `policy`: That of the documents, if a report still has to draw them in the studio.
+    - `seconds`: Time from the first document to the last result; None for a run read from disk.
+    - `policy`: Policy for the documents, if a report still has to draw them in the studio.
     """
 
     hosts: tuple[Identity, ...]
@@ -454,19 +454,19 @@ class Run(Scope):
 
     @property
     def verdict(self) -> Verdict:
-        """FAILED if a check failed, else NOT_RUN if one is missing or anything was refused, else PASSED.
+        """FAILED if a check failed, NOT_RUN if one is missing or a document refused, or PASSED.
 
         Libraries that are judged for comparison do not count.
         """
         if self.counts[FAILED]:
             return FAILED
-        # Without the missing checks, nothing has passed.
+        # A run with missing checks has not passed.
         missing = self.counts[NOT_RUN] or not self.judged or self.missing or self.refused
         return NOT_RUN if missing else PASSED
 
     @cached_property
     def counts(self) -> dict[Verdict, int]:
-        """The number of checks with each verdict, without libraries judged for comparison."""
+        """Number of checks by verdict, without libraries judged for comparison."""
         tally = Counter(each.verdict for each in self.judged)
         return {verdict: tally[verdict] for verdict in VERDICTS}
 
@@ -500,7 +500,7 @@ class Run(Scope):
 
     @property
     def summary(self) -> str:
-        """The verdict in words, the judged MaterialX (with its folder unless it is installed), and the time."""
+        """The verdict in words, the judged MaterialX version and folder, and the time."""
         return str(_words().summary(self))
 
 

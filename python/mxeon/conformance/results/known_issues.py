@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known defects: the row at the head of each page of the ledger, and the results that it explains."""
+"""Known defects: data at the top of each page in docs/upstream, and the results they explain."""
 
 import json
 import math
@@ -19,54 +19,54 @@ from mxeon.io.records import UNREADABLE, strict_converter
 from mxeon.shaders.library import data_folder
 
 STOCK, EONLIB = "stock", "eonlib"
-RENDERER_NODES = "its own nodes"  # replaces the library
+RENDERER_NODES = "its own nodes"  # stands for the library in results of a renderer's own nodes
 Row = tuple[str, str]  # key of a check, and subject
-Table = Mapping[str, Sequence[str]]  # the checks of subjects
+Table = Mapping[str, Sequence[str]]  # subject -> keys of checks
 GENERATED_GLSL = ("webgl", "vulkan", "wgsl", "slang")  # hosts that draw the same GLSL as "gl"
-# A page begins with its row as TOML in a comment, unless that is empty, then its title.
+# A page begins with its row as TOML in a comment, which may be missing, and its title.
 PAGE = re.compile(r"(?:<!--\n(?P<row>.*?)\n-->\n)?(?P<text># (?P<title>[^\n]*)\n.*)", re.DOTALL)
 
 
 @dataclass(frozen=True)
 class Issue:
-    """A defect: the row of its page, whose keys are these fields, and its measurements in
+    """A defect: its page's row, whose keys are these fields, and its measurements from
     `measured.json`.
 
-    In a page, `rows`, `implied` and `repaired` are tables: a subject, or several with `; ` between
-    them, and their checks. So may the key of a cause in `remains` be several.
+    In a page, `rows`, `implied` and `repaired` are tables from one subject, or several separated
+    by `; `, to checks. The key of a cause in `remains` may also be several, separated by `; `.
     """
 
-    page: str  # the file without suffix
-    title: str  # the heading, which states the defect
+    page: str  # file name without suffix
+    title: str  # heading of the page, which states the defect
     text: str = field(repr=False)  # the page without the row
-    group: (
-        str  # a part of the index, see tools/site/ledger/pages.py; by default the name's first word
-    )
-    host: str = ""  # the host that shows it, by default "gl"; "source" for generated text; "" if no check does
-    also: tuple[str, ...] = ()  # additional hosts that show it, besides GENERATED_GLSL for "gl"
-    # The library whose results show it: EONLIB for graphs, which need correct lobes;
+    # Section of the index, by default the page name's first word; see tools/site/ledger/pages.py.
+    group: str
+    # Host that shows the defect, by default "gl"; "source" for generated text, "" without a check.
+    host: str = ""
+    also: tuple[str, ...] = ()  # additional hosts with the defect; "gl" implies GENERATED_GLSL
+    # Library whose results show the defect: EONLIB for graphs, which need correct lobes, or
     # RENDERER_NODES.
     library: str = STOCK
-    unavoidable: bool = False  # every library has it: no text, or none of ours, can repair it
-    differs: bool = False  # the specification permits both
-    rows: tuple[Row, ...] = ()  # results that all fail: the page's table
-    # Other results that fail or differ, or may, because of it on those hosts.
+    unavoidable: bool = False  # every library has the defect, because no library can repair it
+    differs: bool = False  # the specification permits both behaviors
+    rows: tuple[Row, ...] = ()  # results that all fail, listed in the page's table
+    # Other results on these hosts that fail or differ, or may do so, because of the defect.
     implied: tuple[Row, ...] = ()
-    # Results that pass with its patch: by default `rows`, except for `remains`.
+    # Results that pass with the patch; by default `rows` without `remains`.
     repaired: tuple[Row, ...] = ()
-    # Results that pass with its patch, or still fail for one of these causes.
+    # Results that pass with the patch, or still fail for one of these causes.
     remains: Mapping[Row, tuple[Cause, ...]] = field(default_factory=dict, hash=False)
-    needs: tuple[str, ...] = ()  # pages whose patches are required for that
+    needs: tuple[str, ...] = ()  # pages whose patches must also be applied
     kind: str = ""  # kind of the patch: "choice", "NaN" or "compiles"
-    pull: int = 0  # the pull request that repairs it after the release
-    cause: Cause | None = None  # first cause in the diagnosis of the first of `rows`
-    patch: tuple[str, ...] = ()  # a file of MaterialX, with a text before and after the patch
-    # The largest measured errors.
+    pull: int = 0  # number of the pull request that repairs the defect after the release
+    cause: Cause | None = None  # first cause in the diagnosis of the first row
+    patch: tuple[str, ...] = ()  # a file of MaterialX, and a piece of its text before and after
+    # The largest measured error of each result.
     sizes: Mapping[Row, float] = field(default_factory=dict, hash=False)
 
     @property
     def hosts(self) -> tuple[str, ...]:
-        """The hosts that show it."""
+        """All hosts that show the defect."""
         return (self.host, *self.also, *(GENERATED_GLSL if self.host == "gl" else ()))
 
     @property
@@ -76,14 +76,14 @@ class Issue:
 
 
 def folder() -> Path:
-    """The folder of the pages: inside an installed package, else in the checkout."""
+    """The folder of the pages, in the installed package or in the checkout."""
     installed = data_folder() / "upstream"
     return installed if installed.is_dir() else data_folder() / "docs" / "upstream"
 
 
 @cache
 def issues() -> Mapping[str, Issue]:
-    """The defects by page, read at the first failure."""
+    """All defects by page; they are read when a check first fails."""
     measured = json.loads((folder() / "measured.json").read_text("utf-8"))
     pages = sorted(path for path in folder().glob("*.md") if path.stem != "README")
     names = {path.stem: path.read_text("utf-8") for path in pages}
@@ -115,7 +115,7 @@ def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
 
 @cache
 def _converter() -> cattrs.Converter:
-    """A converter that reads rows, whose tables give the checks of each subject."""
+    """A converter that reads rows and their tables of subjects and checks."""
     converter = strict_converter({})
 
     def remains(entries: Sequence[dict[str, Any]]) -> dict[Row, tuple[Cause, ...]]:
@@ -146,10 +146,10 @@ def _pairs(table: Table) -> tuple[Row, ...]:
     )
 
 
-# Hosts whose closures are their own, with every library.
+# Hosts that use their own closures with every library.
 OWN_CLOSURES = tuple(row.name for row in hosts.HOSTS if row.way == "functions")
-LEFT = 30.0  # smaller errors of the correct model have a different cause than the issue
-SPREAD = 1.5  # engines, drivers and versions of MaterialX may exceed an issue's size by this factor
+LEFT = 30.0  # an error this many times smaller than the issue's has another cause
+SPREAD = 1.5  # engines, drivers and MaterialX versions may exceed an issue's error by this factor
 
 
 def issues_of(result: Result) -> tuple[Issue, ...]:
@@ -158,7 +158,7 @@ def issues_of(result: Result) -> tuple[Issue, ...]:
 
 
 def blamed(result: Result) -> list[set[str]]:
-    """Lobes that make a combination of lobes fail, a set for each page or cause; () for a lobe's own failure."""
+    """Lobes that make a combination fail, a set for each page or cause; [] for a single lobe."""
     if _is_lobe(result.subject):
         return []
     if pages := issues_of(result):
@@ -175,8 +175,8 @@ def _is_lobe(subject: str) -> bool:
 def with_pages(result: Result, materialx: str = "") -> Result:
     """A result with the pages of the issues that explain it, if any.
 
-    `materialx` is the folder whose `libraries` were judged instead of the installed ones: a copy of
-    MaterialX's libraries has the issues of stock, except those that it repairs.
+    `materialx` is the folder whose `libraries` were judged instead of the installed ones. A copy of
+    MaterialX's libraries has the issues of stock, except those that the copy repairs.
     """
     if result.verdict not in (FAILED, DIFFERS):
         return replace(result, pages=())
@@ -189,24 +189,24 @@ def with_pages(result: Result, materialx: str = "") -> Result:
         and (result.check, result.subject) in (*issue.rows, *issue.implied)
         and _explains(issue, result, materialx)
     ]
-    # Points that the text leaves open explain no failure by themselves.
+    # Issues on points that the specification leaves open do not explain a failure by themselves.
     left_open = result.verdict == FAILED and all(issue.differs for issue in found)
     return replace(result, pages=() if left_open else tuple(issue.page for issue in found))
 
 
 def _explains(issue: Issue, result: Result, materialx: str) -> bool:
-    """Whether an issue explains a measurement, by its size, its diagnosis and its text."""
+    """Whether an issue explains a result's error, diagnosis and shader text."""
     row = result.check, result.subject
-    # Hosts that only render pictures measure relative errors, which cannot be compared with a size
-    # in another unit.
+    # Hosts that only render pictures measure relative errors, which cannot be compared with sizes
+    # in other units.
     sized = result.host == issue.host or result.quantity is not Quantity.RELATIVE
     if result.error is None and issue.sizes:  # the shader does not compile, for example
         return False
     size = issue.sizes.get(row, math.inf)
     if sized and (result.error or 0.0) > SPREAD * size:
         return False
-    # If the node's own model is nearest and the defect is many times larger, it is repaired; the
-    # remaining error has another cause.
+    # If the node's own model is nearest and the issue's error is many times larger, the issue is
+    # repaired, and the remaining error has another cause.
     own, *others = result.diagnosis.distances.values() or (math.inf,)
     if sized and own < min(others, default=own) and (result.error or 0.0) < size / LEFT:
         return False

@@ -11,7 +11,7 @@ _SCALED = "pi f cos, relative above 1"
 
 
 class Quantity(Enum):
-    """A quantity: its key in results.json, its unit, and the meaning of the unit, or "" if it is obvious."""
+    """A quantity: its key in results.json, its unit, and what the unit means if not obvious."""
 
     # Values in direct light.
     VALUE = "value", _SCALED, _LARGE
@@ -24,7 +24,7 @@ class Quantity(Enum):
     PICTURE = "picture", "pi f cos, times cos(theta_o)", f"{_WHITE}; {_RIM}"
     FITTED_PICTURE = "fitted_picture", f"{_SCALED}, times cos(theta_o)", f"{_LARGE}; {_RIM}"
     KIT = "kit", "times what noise, pixels and the mesh allow"
-    # Values that only depend on the view.
+    # Quantities that do not depend on the light's direction.
     ALBEDO = "albedo", "albedo", _ALL
     MEAN_ALBEDO = "mean_albedo", "mean albedo", _ALL
     VALUE_OR_ALBEDO = "value_or_albedo", "pi f cos or albedo", f"{_WHITE}; {_ALL}"
@@ -68,12 +68,12 @@ class Quantity(Enum):
 
     @property
     def counted(self) -> bool:
-        """Whether it is a count of faults, none of which is permitted."""
+        """Whether the quantity is a count of faults, which must be 0."""
         return self in COUNTS
 
     @property
     def of_views(self) -> bool:
-        """Whether it does not depend on the light's direction."""
+        """Whether the quantity only depends on the view, not on the light's direction."""
         return self in ALBEDOS
 
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from mxeon.conformance.results import Picture, Verdict, assert_verdict
 from mxeon.io import files, records
 
-# NumPy parses the header of a file with `ast`, which in Python 3.11 fails at times when two threads use it:
+# NumPy parses file headers with `ast`, which can fail in Python 3.11 when two threads use it:
 # https://github.com/python/cpython/issues/106905.
 READING = Lock()
 IMAGES = ("image", "reference", "judged")  # fields of a picture
@@ -21,7 +21,7 @@ IMAGES = ("image", "reference", "judged")  # fields of a picture
 
 @dataclass(frozen=True)
 class StoredImage:
-    """Pixels in a file, read again by every `np.asarray`, so that a run keeps none of them in memory."""
+    """Pixels in a file; each `np.asarray` reads them again, so that a run keeps none in memory."""
 
     path: Path  # its stem is the file's SHA-256
 
@@ -46,11 +46,11 @@ class StoredImage:
 def make_converter(folder: Path | None = None) -> cattrs.Converter:
     """A converter between the dataclasses of `mxeon.conformance.results` and the types of JSON.
 
-    Pictures are written as the names of their files in a folder, if there is one.
+    If `folder` is given, pictures are written as the names of their files in it.
     """
     own = {} if folder is None else {Picture: _in_files(folder)}
     converter = records.strict_converter(own)
-    # Messages for an invalid verdict list the valid ones.
+    # The message for an invalid verdict lists the valid verdicts.
     converter.register_structure_hook_func(
         lambda kind: kind == Verdict, lambda word, _: assert_verdict(word)
     )
@@ -73,6 +73,6 @@ def _in_files(folder: Path) -> records.Overrides:
 
 
 def images_of(picture: Picture) -> dict[str, ArrayLike]:
-    """The images of a picture, by field."""
+    """The images of a picture by field name, without missing ones."""
     images = {name: getattr(picture, name) for name in IMAGES}
     return {name: image for name, image in images.items() if image is not None}

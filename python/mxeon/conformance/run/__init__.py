@@ -183,7 +183,7 @@ def _inputs(files: Sequence[AnyPath], libraries: Iterable[str], policy: Policy) 
 
 
 def read_run(folder: AnyPath) -> Run:
-    """The completed part of the run in a folder; ValueError if it has no journal of this version."""
+    """The completed part of a folder's run; ValueError if it has no journal of this version."""
     return to_run(*read_journal(folder))
 
 

@@ -79,7 +79,7 @@ class Journal:
         self._held = True
 
     def _clear(self) -> None:
-        """Move an earlier run's results away; delete those to resume: `report make` remakes them."""
+        """Move earlier results away; when resuming, delete those that `report make` recreates."""
         there = [name for name in (RESULTS, JUNIT, PAGE) if (self._folder / name).is_file()]
         if self._path.exists() and self._resume:
             for name in there:

@@ -122,7 +122,7 @@ def _answers(
 
 @cache
 def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
-    """Every spec with a node in its mode, except SENTENCES, which run only if the user names them."""
+    """Every spec with a node in its mode; without SENTENCES, which only run if users name them."""
     rows = (row for row in ALL_SPECS if row not in surface_texts.SENTENCES)
     return tuple((row, node_of(row.document(), row.node)) for row in rows)
 
