@@ -116,8 +116,8 @@ class Query(NamedTuple):
 class Host(Engine):
     """An engine that executes generated shaders; hosts override the methods that they support.
 
-    Unsupported methods raise `Unsupported`; a shader that the host's compiler refuses raises `ShaderError`. Only `compile`
-    knows the target, the profile and the lights. Results are in the order of the request, as linear radiance or 1/sr.
+    Unsupported methods raise `Unsupported`; shaders that the compiler refuses raise `ShaderError`.
+    Results are in the order of the request, as linear radiance or 1/sr.
     """
 
     target: ClassVar[str]
@@ -168,7 +168,7 @@ class Host(Engine):
         self.methods = UNCHOSEN if self.fixed else methods
 
     def table(self, shader: Shader) -> dict[str, Array]:
-        """Texels of the albedo table that a shader reads, by sampler; it clamps and interpolates."""
+        """Texels of a shader's albedo table, by sampler; the sampler clamps and interpolates."""
         return {TABLE: self._tables(shader.table)} if shader.table else {}
 
     @cached_property
@@ -182,7 +182,7 @@ class Host(Engine):
     def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the unit sphere with a shader on it: linear, row 0 at the top, 0 off the sphere.
 
-        Raises NotRun if rendering fails or is not supported; InputError for `paths` unless it traces paths.
+        Raises NotRun if the host fails or cannot render a scene; InputError for unsupported paths.
         """
         raise self._unsupported("pictures of a sphere", "gl")
 

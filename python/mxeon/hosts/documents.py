@@ -35,7 +35,7 @@ STEEPEST = (
 def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArray[np.float32]]:
     """The quads of a picture of `size` x `size` pixels, four vertices each, counterclockwise.
 
-    Each has one normal, so every pixel shows an exact point, `place` half widths from its center. A quad lies in the
+    Each has one normal, so a pixel shows an exact point, `place` half widths from its center. A quad lies in the
     tangent plane and covers the pixel, so derivatives of positions equal the sphere's. Derivatives of "texcoord" have
     the same directions but are smaller, so textures are read at full size. Row 0, at the top, comes first.
     """
@@ -62,8 +62,8 @@ def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArr
     }
 
 
-# Side of a quad in pixels if blocks of 2 x 2 must lie in one of its two triangles, and the offset of the pixel that is
-# read: right of the diagonal and below the center.
+# Side of a quad in pixels if 2 x 2 blocks must lie in one of its two triangles, and the offset of
+# the pixel that is read: right of the diagonal and below the center.
 PIXEL_BLOCK, PLACE = 4, (0.25, -0.25)
 PICTURES = 64  # cached pictures; the checks of a node request some again
 

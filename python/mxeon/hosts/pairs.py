@@ -65,7 +65,7 @@ class PairHost(base.Host):
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
-        """Radiance of pairs, (N, 3); the shader ends with the OSL statement `last`.
+        """Radiance of pairs, (N, 3); `last` with {output} is the shader's last OSL statement.
 
         `light` is LAMP with irradiance 1 on a facing surface, SKY with uniform radiance 1, or DARK.
         """

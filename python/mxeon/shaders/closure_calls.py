@@ -60,7 +60,7 @@ def leftover(text: str) -> str:
 def _functions(
     library: str, profile: str | None, target: str
 ) -> Mapping[str, dict[str, list[str]]]:
-    """Functions of each source of a library for a target and their nodedefs, except MaterialX's own and their replacements."""
+    """Functions in a library's sources for a target, with their nodedefs, except MaterialX's."""
     functions: dict[str, dict[str, list[str]]] = defaultdict(dict)
     if root(library):
         return functions

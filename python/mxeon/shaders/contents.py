@@ -34,7 +34,7 @@ class ShownNode:
     values: tuple[tuple[str, tuple[float, ...]], ...] = ()
 
     def has(self, other: "ShownNode") -> bool:
-        """Whether it may be in the mode that another node's inputs select."""
+        """Whether this node may be in the mode that `other`'s inputs select."""
         return (
             (self.category, self.type) == (other.category, other.type)
             and set(other.inputs) <= set(self.inputs)
@@ -80,7 +80,7 @@ def _kind(source: mx.InterfaceElement | None) -> str:
 
 
 def _shown(walk: Walk, path: Path) -> ShownNode:
-    """A node of a walk."""
+    """The node at a path of a walk, as a ShownNode."""
     node = walk.elements[path]
     inputs = definition.getActiveInputs() if (definition := node.getNodeDef()) else ()
     ports = [(port.getName(), port.getType()) for port in inputs]

@@ -15,9 +15,9 @@ LANGUAGES = ("glsl", "osl")
 GLSL_WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "atan2": "atan"}
 Parts = dict[str, list[str]]  # tokens of functions and constants by name
 FAMILY = "oren_nayar_family"
-ALL = "eon_sampling"  # includes all the others
+ALL = "eon_sampling"  # file that includes every other file
 STEMS = ("eon", FAMILY, "ltc_sampling", ALL)
-TWINS = (ALL, "ggx_albedo", "conty_kulla_albedo")  # include all text shared by two languages
+TWINS = (ALL, "ggx_albedo", "conty_kulla_albedo")  # include all text that GLSL and OSL share
 INCLUDE = re.compile(r'^#include "((?:\.\./)?(?:lib/|sampling/)?\w+\.\w+)"$', re.MULTILINE)
 SIGNATURE = re.compile(r"^(?:float|vec3|color|vector)\s+(\w+)\s*\(([^)]*)\)\s*(?={)", re.MULTILINE)
 EACH = "mxeon_each"  # the function that `dispatched` adds
@@ -35,7 +35,7 @@ def has_functions(library: str, language: str = "glsl") -> bool:
 
 
 def twins(language: str, library: str) -> str:
-    """Text of a library's files that two languages share, with expanded includes."""
+    """Text of a library's files that GLSL and OSL share, with expanded includes."""
     stems = [
         stem
         for stem in TWINS
@@ -45,7 +45,7 @@ def twins(language: str, library: str) -> str:
 
 
 def parts(text: str) -> Parts:
-    """Functions and constants of a text, in GLSL's words."""
+    """Functions and constants of a text, with GLSL's names of types."""
     found = dict(re.findall(r"^#define (\w+) (.+)$", text, re.MULTILINE))
     for match, body in _definitions(text):
         found[match[1]] = match[0] + re.sub(r"^#.*\n?", "", body, flags=re.MULTILINE)
@@ -109,7 +109,7 @@ def signatures(text: str) -> Mapping[str, tuple[tuple[str, str], ...]]:
 
 
 def uses(text: str) -> Mapping[str, frozenset[str]]:
-    """Functions that each function of a text calls, directly or through others."""
+    """Functions that each function of a text calls, directly or indirectly."""
     known: dict[str, frozenset[str]] = {}
     for match, body in _definitions(text):
         words = set(re.findall(r"\w+", body)) & known.keys()

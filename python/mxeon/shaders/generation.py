@@ -156,8 +156,8 @@ def generate(
     Warns ApproximationWarning if the profile cannot express one of the document's models;
     CodeWarning if the document contains its own shader code, which the policy must permit;
     MissingFileWarning if a shader names a file that does not exist; the name is not changed;
-    DocumentWarning as in `mxeon.shaders.document.reading.read_document`, and if MaterialX gives
-    nodes the values of another.
+    DocumentWarning as in `mxeon.shaders.document.reading.read_document`, and if MaterialX gives a
+    node the values of another node.
 
         >>> text = '''<materialx version="1.39">
         ...   <eon_diffuse_bsdf name="clay" type="BSDF"/>

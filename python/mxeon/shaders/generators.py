@@ -30,7 +30,7 @@ HARDWARE = tuple(
 
 LIGHTS = ("directional", "point", "spot")  # light types 1, 2 and 3
 CLIENT_OPTIONS = ("hwShadowMap", "hwAmbientOcclusion", "hwTransparency")
-BOOLEANS = "WGSL does not allow boolean types"  # printed for each, although the text has an integer
+BOOLEANS = "WGSL does not allow boolean types"  # printed needlessly per boolean
 
 
 def generator_of(

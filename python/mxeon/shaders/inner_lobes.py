@@ -96,7 +96,7 @@ class Walk(Nodes):
         self.shown = tuple(path for path in graph if path not in self._dark)
 
     def parts(self, path: Path) -> tuple[Path, ...]:
-        """Paths of the nodes that a node's light comes from."""
+        """Paths of the nodes that contribute to a node's light."""
         node = self.elements[path]
         if self._constant(path, "weight") == 0.0 or not self.emits(path):
             self._dark.add(path)
@@ -115,7 +115,7 @@ class Walk(Nodes):
         return tuple(source for source in sources if source)
 
     def emits(self, path: Path) -> bool:
-        """Whether a node may emit light: False only for EDFs that are black in any case."""
+        """Whether a node may emit light; False only for EDFs that are always black."""
         node = self.elements[path]
         if node.getType() != "EDF":
             return True

@@ -55,7 +55,7 @@ def documents_folder(part: str = "eonlib") -> Path:
 
 @cache
 def kind_of(library: str) -> str:
-    """The entry of LIBRARIES that a library is, or is a copy of by its documents; otherwise OVERLAY.
+    """The entry of LIBRARIES that a library is, or whose documents it copies; otherwise OVERLAY.
 
     A folder that replaces MaterialX's libraries, or a part of them, is "stock".
     """
@@ -237,7 +237,7 @@ def implementations(
     """Nodedef, target and file of the implementations that MaterialX chooses for what eonlib ships; "" for no file.
 
     One for each nodedef in the documents of "eonlib" or "diffuse", and of a profile, on each target that
-    they implement; graphs for all targets do not count for an implementation for one.
+    they implement; a graph for all targets does not count for a single target.
     """
     data = document.getDataLibrary() or document
     targets = {each.getName(): each.getMatchingTargets() for each in data.getTargetDefs()}

@@ -123,7 +123,7 @@ def origins(library: str) -> dict[str, tuple[str, ...]]:
 def root(library: str) -> str:
     """Folder whose `libraries` replace MaterialX's own for a library; "" for the installed ones.
 
-    Each process makes its own and removes it when it ends.
+    Each process creates its own folder and removes it when the process ends.
     """
     known = None if library in LIBRARIES else tree(library)
     return _root(known.folder) if known and known.links else ""
@@ -218,7 +218,7 @@ def check_sources(document: mx.Document, library: str, search: mx.FileSearchPath
         folders = mx.FileSearchPath(str(local))
         folders.append(search)
         path = str(folders.find(name).getNormalized().asString())
-        if path not in known and os.path.lexists(path):  # MaterialX reports a missing one if used
+        if path not in known and os.path.lexists(path):  # MaterialX reports missing files if used
             known.add(path)
             names = filter(None, map(included, _text(path).split("\n")))
             waiting += [(each, Path(path).parent) for each in names]

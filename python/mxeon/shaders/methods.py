@@ -14,12 +14,12 @@ CHOICES = {
 }
 MOST_ITERATIONS = 64
 TABLE_SIZE = 64  # rows and columns of MaterialX's table of albedos
-# Targets whose text of the table does not compile: its defect, why, and the page in docs/upstream.
+# Targets whose albedo-table text does not compile: defect, cause, and page in docs/upstream.
 UNTABLED = {
     "essl": ("xy / u_albedoTableSize", "divides a vec2 by an int", "genessl_albedo_table"),
     "wgsl": ("texture(u_albedoTable,", "reads an undeclared sampler", "genwgsl_albedo_table"),
 }
-# Options of the command.
+# Options of the command, by method.
 OPTIONS = {
     "environment": "--environment",
     "transmission": "--transmission",

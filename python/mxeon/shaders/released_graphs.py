@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The graphs of the installed MaterialX, and how another one differs."""
+"""The nodegraphs of the installed MaterialX, and their differences from a custom build's."""
 
 import sys
 from collections.abc import Iterator, Mapping
@@ -13,7 +13,7 @@ from mxeon.shaders.library import load_library
 
 @cache
 def hidden() -> mx.Document | None:
-    """The data libraries of the MaterialX that is installed, where a custom build hides it."""
+    """The data libraries of an installed MaterialX that a custom build hides, or None."""
     known = [path for each in sys.path if (path := Path(each, "MaterialX", "libraries")).is_dir()]
     if not known or known[-1].samefile(Path(mx.__file__).with_name("libraries")):
         return None
@@ -24,7 +24,7 @@ def hidden() -> mx.Document | None:
 
 
 def installed() -> mx.Document:
-    """The data libraries of the MaterialX that is installed, which a custom build only hides."""
+    """The data libraries of the installed MaterialX, even if a custom build hides it."""
     return hidden() or load_library("stock")
 
 
@@ -59,7 +59,7 @@ def port_text(port: mx.PortElement) -> str:
 
 
 def differences(own: Mapping[str, str], right: Mapping[str, str]) -> tuple[str, ...]:
-    """The differences between two graphs, three texts each: the name and both values."""
+    """The differences between two graphs, each as the name and both values."""
     return tuple(
         text
         for name in {**right, **own}

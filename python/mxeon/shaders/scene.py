@@ -143,7 +143,7 @@ class VisiblePoints:
     """The visible points of a shape, one per position in the frame."""
 
     mask: NDArray[np.bool_]  # pixels on the shape
-    position: Floats  # outside the mask, in the plane of the sphere's rim
+    position: Floats  # points; those outside the mask lie in the plane of the rim
     normal: Floats  # outward unit vector; outside the mask, the normal of the nearest rim point
     # latitude-longitude coordinates in [0, 1], (0.5, 0.5) facing the viewer, v upwards
     texcoord: Floats

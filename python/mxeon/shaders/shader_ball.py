@@ -12,7 +12,7 @@ from mxeon.io.images import Floats
 from mxeon.shaders.scene import VisiblePoints
 
 CENTER, RADIUS = np.array([0.0, 0.2, 0.0]), 0.72
-BELT_HEIGHT = 0.13  # half the height of the belt
+BELT_HEIGHT = 0.13  # half of the belt's height
 GROOVE, FILLET = 0.035, 0.02  # radii of the grooves next to the belt and of rounded edges
 FOOT_HEIGHT, FOOT_RADIUS = 0.1, 0.5
 GROUND = -0.6 - FOOT_HEIGHT  # height of the floor, under the foot

@@ -35,7 +35,7 @@ ARGUMENT = re.compile(r"\s*(?:(\w+)\s*:(?!:))?(.*)", re.DOTALL)
 
 
 class Clash(NamedTuple):
-    """A name that two sources define, and the nodedefs that use them."""
+    """A name that two sources define, and the nodedefs that use these sources."""
 
     name: str
     nodes: tuple[str, str]
@@ -70,7 +70,7 @@ def definitions(path: Path) -> Mapping[Definition, str]:
         head, body, _ = chunk.partition("{")
         function = FUNCTION.search(head) if body else None
         if function is None and token[0] == "}":
-            continue  # a structure or an initializer, which ends with ;
+            continue  # closes a structure or an initializer
         start = token.end()
         if conditions:
             continue
@@ -116,7 +116,7 @@ def source_of(element: mx.Element | None) -> Source | None:
 
 
 def whole(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ...]:
-    """An implementation as the texts of all its files."""
+    """Texts of all files of an implementation."""
     names = sorted(
         f"{each.getName()} {each.getImplementationName()}" for each in element.getInputs()
     )
@@ -127,7 +127,7 @@ def whole(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, .
 
 
 def said(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ...]:
-    """An implementation as the functions and constants that its function uses."""
+    """Texts of the functions and constants that an implementation's function uses."""
     if (source := source_of(element)) is None:
         return whole(element, search)
     known: dict[str, list[str]] = defaultdict(list)

@@ -80,7 +80,7 @@ def _copied(document: mx.Document) -> mx.Document:
     copy.copyContentFrom(document)
     copy.setSourceUri(document.getSourceUri())
     copy.setDataLibrary(document.getDataLibrary())
-    for each in (*copy.getLooks(), *copy.getLookGroups()):  # they refer to materials
+    for each in (*copy.getLooks(), *copy.getLookGroups()):  # looks refer to materials
         copy.removeChild(each.getName())
     for graph in _own_graphs(copy):
         for node in graph.getNodes() if graph.hasColorSpace() else ():
@@ -90,7 +90,7 @@ def _copied(document: mx.Document) -> mx.Document:
 
 
 def _own_graphs(document: mx.Document) -> list[mx.NodeGraph]:
-    """Its own nodegraphs; getNodeGraphs also returns those of the shared data library."""
+    """The document's own nodegraphs; getNodeGraphs also returns the data library's."""
     return [each for each in document.getChildren() if each.isA(mx.NodeGraph)]
 
 

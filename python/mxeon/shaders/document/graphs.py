@@ -39,7 +39,7 @@ def reachable(
 
 
 def heights(graph: Graph[Key], order: Iterable[Key]) -> dict[Key, int]:
-    """Number of keys on the longest path from each key to one without parts, both included."""
+    """Number of keys on the longest path from each key to a key without parts, including both."""
     height: dict[Key, int] = {}
     for key in order:
         height[key] = 1 + max((height[part] for part in graph[key]), default=0)
@@ -75,7 +75,7 @@ def check_shaders(
 def upstream(
     document: mx.Document, elements: Iterable[mx.Element], roots: Iterable[mx.Element]
 ) -> list[mx.Node]:
-    """The nodes upstream of some elements of a document, including these."""
+    """The given elements of a document and all nodes upstream of them."""
     start = [each.getNamePath() for each in roots]
     paths = reachable(start, lambda path: _upstream(document, path))
     nodes = (each for each in elements if each.isA(mx.Node))

@@ -34,7 +34,7 @@ class CodeWarning(UserWarning):
 
 
 class MissingFileWarning(DocumentError, UserWarning):
-    """Missing files that a shader names; an error once they must be read."""
+    """Missing files that a shader names: a warning, and an error when they must be read."""
 
 
 def numbers(element: mx.ValueElement) -> tuple[float, ...]:
@@ -68,7 +68,7 @@ def warn_of_files(inputs: Iterable[tuple[str, str]], document: mx.Document) -> N
 def same_names(element: mx.Element) -> tuple[str, ...]:
     """Upstream nodes that share a name in different nodegraphs but have different inputs, two per text.
 
-    MaterialX gives all of them the first one's values, because names of shader inputs omit the nodegraph.
+    MaterialX gives all of them the first one's values: names of shader inputs omit the nodegraph.
     """
     nodes = [element, *(edge.getUpstreamElement() for edge in element.traverseGraph())]
     first: dict[tuple[str, str], mx.Node] = {}

@@ -9,7 +9,7 @@ from mxeon.io.files import names_of
 
 SEARCH_PATH = "MATERIALX_SEARCH_PATH"  # environment variable, MaterialX's own
 
-# Limits, also options of the command, and the things that they count.
+# Limits and what they count; each is also an option of the command.
 LIMITS = {
     "size": "bytes in a document and everything it includes",
     "length": "characters in one attribute",
@@ -59,15 +59,15 @@ class Policy:
     one node of 2,490 inputs in 80 shaders                      9
     7 nodegraphs of 2,500 inputs, all unused                    7
     3,000 outputs of one nodegraph                              5
-    3,000 materials, whose names differ in `_` and `:` alone    3
+    3,000 materials whose names only differ in `_` and `:`      3
     200,000 attributes                                          2
     ======================================================  =====
 
     The time grows with the square of the number of file names (94 s at 50,000), of outputs of a
     nodegraph, of unused inputs of an element, and of definitions that inherit each other (50 s at
     10,000); with tokens times names of files; and doubles with each nodegraph that uses another
-    twice, which `nodes` counts. On a stack of 8 MiB it took chains of 100,000 nodes and 3,000
-    nodegraphs within each other; a thread may have a hundredth of that.
+    twice, which `nodes` counts. A stack of 8 MiB was enough for chains of 100,000 nodes and 3,000
+    nested nodegraphs; a thread may have a hundredth of that stack.
     """
 
     outside: bool = False
@@ -100,7 +100,7 @@ class Policy:
 
     @property
     def options(self) -> dict[str, str]:
-        """Its values, by the command's options."""
+        """Values of the policy, by the command's options."""
         prefixes = dict.fromkeys(LIMITS, "max") | {"outside": "allow", "code": "allow"}
         folders = {"path": self.path, "definitions": self.definitions}
         values = vars(self) | {n: os.pathsep.join(each) or "none" for n, each in folders.items()}

@@ -242,13 +242,13 @@ class _Reader:
 
 
 def _raise(faults: Sequence[str]) -> None:
-    """Raise DocumentError if there are faults, with the first ones."""
+    """Raise DocumentError with the first faults, if there are any."""
     if faults:
         raise DocumentError(*dict.fromkeys(faults))
 
 
 def _types(document: mx.Document) -> Iterator[str]:
-    """Faults of members that crash a generator or that shaders cannot have."""
+    """Faults of type members that crash a generator or that shaders do not support."""
     for each in filter(lambda child: child.isA(mx.TypeDef), document.getChildren()):
         for member in each.getChildren():
             if member.getAttribute("type") == "filename":
@@ -265,7 +265,7 @@ def _types(document: mx.Document) -> Iterator[str]:
 
 
 def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Policy) -> Iterator[str]:
-    """Wrong values and violations of MaterialX's rules, which MaterialX would silently replace by defaults."""
+    """Wrong values, which MaterialX would replace by defaults, and violations of its rules."""
     told = set()
     for each in elements:
         text, fault = each.getValueString() if each.isA(mx.ValueElement) else "", ""
@@ -341,7 +341,7 @@ def _undefined(document: mx.Document, nodes: Iterable[mx.Node]) -> Iterator[str]
 
 
 def _missing(nodes: Iterable[mx.Node], policy: Policy) -> Iterator[str]:
-    """Files of nodes' inputs that may be read but do not exist."""
+    """Files that nodes' inputs name and may read, but that do not exist."""
     for each in (port for node in nodes for port in node.getInputs()):
         port = each.getInterfaceInput() if each.hasInterfaceName() else each
         if port and port.getType() == "filename" and (name := port.getValueString()):

@@ -82,7 +82,7 @@ def file_fault(element: mx.ValueElement, policy: Policy) -> str:
 
 
 def missing_fault(document: mx.Document, path: str, name: str) -> str:
-    """The message that the file of an input does not exist; "" if it does."""
+    """A message that the file of an input does not exist, or ""."""
     if files(folder(document) / name):
         return ""
     rule = f'{label(document)}: input "{path}" must name a file that exists; got {name}'
@@ -106,7 +106,7 @@ def foreign_code(document: mx.Document) -> list[mx.Implementation]:
 
 
 def code_faults(document: mx.Document, policy: Policy) -> Iterator[str]:
-    """Faults for code that the policy forbids, or forbids in these files."""
+    """Faults for code that the policy forbids, either entirely or in these files."""
     home = folder(document)
     for element in foreign_code(document):
         prefix = location(element)
@@ -153,7 +153,7 @@ def _libraries() -> dict[Path, str]:
 def named_files(document: str, policy: Policy) -> list[str]:
     """A document, and all files named by it and its includes."""
     home, seen, texts = Path(os.path.realpath(document)).parent, {document: None}, [document]
-    for text in texts:  # includes are appended to it
+    for text in texts:  # the loop appends included texts
         folders = {home, Path(os.path.realpath(text)).parent, Path.cwd(), *map(Path, policy.path)}
         # Documents with too many elements are refused, so their files do not matter.
         for key, name in islice(_names(_text(text, policy)), 6 * policy.elements):

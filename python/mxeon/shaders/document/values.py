@@ -60,7 +60,7 @@ def members(kind: str, document: mx.Document) -> tuple[tuple[str, str], ...]:
 def flat(
     name: str, kind: str, value: Plain, document: mx.Document
 ) -> Iterator[tuple[str, str, Plain]]:
-    """Name, type and value of a shader's input, or of each member of a structure, unless it is text."""
+    """Name, type and value of a shader's input, or of each member of a structure; no text."""
     if parts := members(kind, document):
         values = value if isinstance(value, tuple) else ()
         for (part, inner), member in zip(parts, values, strict=False):
@@ -89,7 +89,7 @@ def _members(text: str, kind: str, document: mx.Document) -> tuple[Plain, ...]:
 
 
 def split(text: str, separator: str) -> list[str]:
-    """Texts between the separators that are in no bracket, up to a bracket that closes without an opening.
+    """Texts between the separators outside brackets, up to the first unmatched closing bracket.
 
     >>> split("a;b;{c;d}} e", ";")
     ['a', 'b', '{c;d}']
@@ -130,7 +130,7 @@ INTEROP = {
 
 
 def color_spaces(element: mx.Element) -> tuple[str, str] | None:
-    """Color space of an element and of its document; None if MaterialX leaves its values alone."""
+    """Color space of an element and of its document; None if its values are not transformed."""
     known = LEGACY | (INTEROP if mx.getVersionIntegers() >= INTEROP_VERSION else {})
     space, target = (
         known.get(name, name)

@@ -78,7 +78,7 @@ def _broken(element: mx.Element, name: str, text: str, choices: Choices) -> str:
 
 
 def _choices(document: mx.Document) -> Collection[str]:
-    """Names of inputs whose text is written unquoted somewhere, and of the inputs that feed them."""
+    """Names of inputs whose text a generator writes unquoted, and of inputs connected to them."""
     inputs = [
         each
         for tree in (document, document.getDataLibrary())
