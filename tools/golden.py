@@ -6,7 +6,7 @@
     python tools/golden.py compare out/before.jsonl out/after.jsonl
 
 A line is one check: host, library, subject and key; verdict, tolerance, whether its control was
-caught, diagnosis and pages. Numbers in a diagnosis keep two digits, since others differ by engine.
+caught, diagnosis and pages. Numbers in a diagnosis keep two digits, because engines differ in more.
 """
 
 import argparse

@@ -6,7 +6,7 @@ python -m tools.materialx_suite CHECKOUT BUILD WORK [NAME=VALUE ...]
 CHECKOUT is a clone of MaterialX in the version of the installed package, BUILD a build of it with
 MATERIALX_BUILD_TESTS and the GLSL renderer. Neither is changed: each library gets a folder in WORK
 with links to them, and a copy of the suite's `_options.mtlx`, in which NAME=VALUE replaces a value.
-renderGeometry=dome.obj is half a sphere of 60 faces for OpenGL on a CPU. Results in WORK are reused,
+renderGeometry=dome.obj is half a sphere of 60 faces for OpenGL on a CPU. Results in WORK are kept,
 so a second call only writes docs/materialx_suite.md and its pictures.
 """
 
@@ -100,7 +100,7 @@ def stage(folder: Path, checkout: Path, build: Path) -> None:
         shutil.copytree(checkout / name, folder / name, copy_function=os.symlink)
     (folder / OPTIONS).unlink()  # `run_tests` writes its own
     (folder / "bin").mkdir()
-    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # it finds data from its own path
+    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # finds data next to itself
     # MaterialX reads files before subfolders, so eonlib's documents take precedence.
     for path in documents_folder().rglob("*.mtlx") if folder.name == EONLIB else ():
         (folder / "libraries" / path.name).symlink_to(path)

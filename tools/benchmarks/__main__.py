@@ -37,7 +37,7 @@ def main(arguments=None):
     for name in options.groups or QUICK:
         sizes = dict(QUICK[name]) if options.quick else {}
         try:
-            with patch.dict(os.environ, {CACHE: "true"}):  # measure real compilations
+            with patch.dict(os.environ, {CACHE: "true"}):  # do not reuse cached shaders
                 group = import_module(f"tools.benchmarks.{name}").measure(**sizes)
         except NotRun as reason:
             print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)

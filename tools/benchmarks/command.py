@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Benchmarks of the command line: imports, `--help`, and `mxeon check` with a cold and a warm cache.
+"""Benchmarks of the command line: imports, `--help`, and `mxeon check` with a cold or warm cache.
 
 Each row of JOBS has its own folder for the driver's shader cache, so rows do not affect each other.
 """

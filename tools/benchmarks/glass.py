@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random walks through a rough glass ball in a white furnace, sampled by eonlib's path tracing code.
+"""Random walks through a rough glass ball in a white furnace, sampled by eonlib's path tracing.
 
     python -m tools.benchmarks.glass
 
@@ -39,7 +39,7 @@ ROWS = {
 
 
 def walks(text, rng):
-    """Total weights of walks that start in a parallel beam, and the largest weight of one sample."""
+    """Total weights of walks that start in a parallel beam, and the largest weight of a sample."""
     mu = np.sqrt(rng.random(WALKS))
     total, largest, active = np.zeros(WALKS), 0.0, np.arange(WALKS)
     weights, inside = np.ones(WALKS), False
@@ -60,7 +60,7 @@ def walks(text, rng):
 
 
 def main():
-    """Print a Markdown table: mean and deviation of the walks' weights, largest weight of a sample."""
+    """Print a Markdown table: mean and deviation of walks' weights, largest sample's weight."""
     print("| node, alpha | mean | deviation | largest draw |\n|---|---|---|---|")
     for name, document in ROWS.items():
         total, largest = walks(paths(open_engine("gl"), document), np.random.default_rng(1))

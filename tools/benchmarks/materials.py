@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Generated materials with eonlib and with stock MaterialX: source, compilation, frame time."""
+"""Compilation and frame times of generated materials, eonlib / stock."""
 
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
@@ -23,7 +23,7 @@ from tools.benchmarks.rounds import Group, clock_of, figure, interleave
 SIZE = 512
 FIRST = 8  # width and height of the first frame in pixels
 FRAMES = 3  # timed frames per library and process, after one warm-up frame
-PROCESSES = 7  # in one process of six, llvmpipe's code is 1/6 to 2/5 slower
+PROCESSES = 7  # median of these: in one of six, llvmpipe's code is 1/6 to 2/5 slower
 MESH = 128  # squares along a side of the mesh; its cost is negligible
 LIBRARIES = ("eonlib", "stock")
 
@@ -117,7 +117,7 @@ class Frame:
 
 
 def run(node, size, libraries):
-    """Device, seconds to compile and seconds per frame, both by library; called in a new process."""
+    """Device, seconds to compile, and seconds per frame by library; called in a new process."""
     host = gl.GlHost()
     device = host.identity().device
     clock = clock_of(device)

@@ -2,8 +2,8 @@
 """Registers, instructions and estimated cycles of materials on an AMD GPU, eonlib / stock.
 
 No GPU is needed: Mesa's driver RADV compiles for the chip in `RADV_FORCE_FAMILY`, and reports its
-statistics. Shaders have one light, because the compiler may unroll the loop over lights for only one
-library. The loop of films is removed for cycles, since their estimate counts its body eight times.
+statistics. Shaders have one light, because the compiler may unroll the loop over lights for one
+library only. The loop of films is removed for cycles, since their estimate counts its body eight times.
 """
 
 import os
@@ -22,7 +22,7 @@ from tools.benchmarks.materials import BARE, DIFFUSE, LIBRARIES, NODES, OTHERS
 from tools.benchmarks.rounds import Group, figure
 
 COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin", "-S")
-HEADER = 5  # words before the first instruction; an instruction's high half is its length in words
+HEADER = 5  # words before the first SPIR-V instruction; an instruction begins with its length
 CHIP = "navi21"
 PROGRAM = Path(__file__).with_name("pipeline_statistics.c")
 DRIVERS = Path("/usr/share/vulkan/icd.d")

@@ -23,7 +23,7 @@ PRINTED = ("uniform", "cosine", "eon_cltc", "eon")
 
 
 def narrow(polar):
-    """Radiance of a narrow light at a polar angle in degrees; angles > 0 are on the viewer's side."""
+    """Radiance of a narrow light at a polar angle in degrees, positive on the viewer's side."""
     towards = np.array([np.sin(np.radians(polar)), 0.0, np.cos(np.radians(polar))])
     return lambda wi: np.exp(200.0 * (wi @ towards - 1.0))
 
@@ -61,7 +61,7 @@ def print_throughput():
 
 
 def print_lighting(name):
-    """Print the ratio of a sampler's variance to the exact sampler's at r = 1, by light and view."""
+    """Print ratios of a sampler's variance to the exact sampler's at r = 1, by light and view."""
     rows = {}
     for title, light in RADIANCES.items():
         ratios = [
@@ -72,7 +72,7 @@ def print_lighting(name):
 
 
 def print_color():
-    """Print the largest relative variance per channel at r = 1 if samples are exact for a gray rho."""
+    """Print the channels' largest relative variance at r = 1 if samples are exact for gray."""
     rows = {}
     for rho in ((1e-6, 1e-6, 1e-6), (0.1, 0.1, 0.1), (0.5, 0.5, 0.5), (0.8, 0.2, 0.05)):
         found = []

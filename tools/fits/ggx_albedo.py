@@ -51,7 +51,7 @@ def _slope(count, x):
 
 
 def graded(degree=DEGREE, panels=PANELS):
-    """Nodes and weights on [0, 1] in panels, each a quarter of the next."""
+    """Nodes and weights on [0, 1] in panels; each panel is a quarter as wide as the next."""
     x, w = legendre(degree)
     ends = [0.0] + [4.0 ** (k - panels + 1) for k in range(panels)]
     pairs = list(pairwise(ends))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fit of the light that passes the visible facets of GGX to the less dense side, for indices n below 1.
+"""Fit of the light that GGX facets transmit into a thinner medium, with an index n below 1.
 
 Facets beyond the critical angle reflect everything, so no single cosine can represent all of them.
 Let tau be the cotangent of the angle between view and facet, and tau_c its critical value,
@@ -12,9 +12,9 @@ exceeds. This tau has a closed form by the same distribution: if a share Q excee
 
     k (tau_m / tau - tau / tau_m) = w = (Q - 1/2) / sqrt(Q (1 - Q)),  2 k tau / tau_m = sqrt(w^2 + 4 k^2) - w.
 
-Along the normal, GGX's share 1 / (1 + alpha^2 tau_c^2) is S with k = 1/2. For a smooth surface, S is
-the distribution of GGX's slopes in one direction, with 2 k = mu s / alpha. The fit is, with mu the
-cosine of the view and s its sine,
+Along the normal, GGX's share 1 / (1 + alpha^2 tau_c^2) is S with k = 1/2. For a smooth surface, S
+is the distribution of GGX's slopes in one direction, with 2 k = mu s / alpha. The fit is, with mu
+the cosine of the view and s its sine,
 
     tau_m^2 = (mu^2 + a alpha^2) / (s^2 + b alpha^2),  k^2 = k_0 + k_1 mu^2 s^2 / alpha^2.
 
@@ -43,7 +43,7 @@ from mxeon.shaders.functions import source_file
 SEED, COUNT = 5, 2500  # random views and roughnesses
 LEAST = 1e-4  # smallest cosine and roughness
 INDICES = (0.33, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.93, 0.95, 0.98)
-POWERS = (4, 8, 16)  # norms of the errors have twice these exponents, and approach the maximum norm
+POWERS = (4, 8, 16)  # half the exponents p of successive p-norms, which approach the largest error
 SCALE = 30.0  # scales errors to about 1
 
 

@@ -130,7 +130,7 @@ def fits():
 
 
 def errors(shader, seed):
-    """Errors in a random set by name: largest errors of values and albedos, errors of their means."""
+    """Errors in a random set by name: of values and albedos, the largest and that of the mean."""
     token = SEED.set(seed)
     [batch] = batches = shader.batches(shader.counts)
     [views] = shader.views(batches, shader.counts)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of `genglsl/lib/thin_film.glsl` against all orders and exact averages: python -m tools.fits.thin_film.
 
-The shader sums only orders that matter, and averages over the hemisphere and over the visible facets
-by three cosines each. Each cosine stands for a range, within which fringes partly cancel. The script
-finds the largest errors for films of up to 1000 nm on each kind of substrate, and cosines from 0.1.
+The shader sums only orders that matter, and averages over the hemisphere and over visible facets
+by three cosines each. Each cosine stands for a range, within which fringes partly cancel. This
+prints the largest errors for films of up to 1000 nm on each kind of substrate, and cosines from 0.1.
 
-A check measures the root mean square error of a set of films. Other sets, drawn in the same way, give
-its tolerance, which is at most a third of the largest error of a single film. So the check detects a
+A check measures the root mean square error of a set of films. Other sets, drawn in the same way,
+give its tolerance, which is at most a third of the largest error of a single film. So it detects a
 wrong digit, which affects all films, even if its effect is below the largest error of one film.
 """
 
@@ -31,9 +31,9 @@ CLEAR = {
 }
 DARK = 1e-3  # errors are relative to the reflectance, but at least to this one
 STEP = 1e-6  # relative change of the thickness for difference quotients
-# The shader's values, from `thin_film_nodes.py`. NODES: cosines, weights and widths of the nodes for
-# F_ss. FACETS: polynomials for the nodes of visible facets: the mean of the cosines, the reach of the
-# nodes around the mean, and the bend of their positions.
+# The shader's values, from `thin_film_nodes.py`. NODES: cosines, weights and widths of the nodes
+# for F_ss. FACETS: polynomials for the nodes of visible facets: the mean of their cosines, the reach
+# of the nodes around the mean, and the bend of their positions.
 NODES = (
     (0.17999, 0.55701, 0.88292),
     (0.10982, 0.43737, 0.4528),
@@ -55,8 +55,8 @@ LEAST_PATH, LEAST_LOST = (
     1e-12,
 )  # least path difference in m, and least share of escaping light
 # Parameters of the search for the largest error.
-SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # films per step; steps of evolution
-KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # worst films to keep; step sizes from them
+SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # seed, films per step, steps of evolution
+KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of worst films; sizes of steps from them
 NUMBERS = 10  # numbers that describe a film, its substrate and its view
 COLORED = 17  # NUMBERS, color82, color90 and the exponent of Schlick's curve
 FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # sizes of steps with COLORED numbers
@@ -74,14 +74,14 @@ WHITE = {"color82": 1.0, "color90": 1.0}
 
 
 def shader_curve(category, material, mu, width=0.0):
-    """`thin_film_fresnel`: mean of a film's curve over cosines around mu with a deviation `width`."""
+    """`thin_film_fresnel`: mean of a film's curve over cosines around mu with deviation `width`."""
     # Evaluate both interfaces at each cosine.
     films = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
     mu, thickness, n = np.broadcast_arrays(mu, *films)
     opd = film.path_difference(mu, thickness, n)
     spread = (2.0 * film.METERS * thickness) ** 2 * width * mu / np.maximum(opd, LEAST_PATH)
     interfaces = SUBSTRATES[category](mu, n, TEXT, **substrate(material))
-    # `means`: reflectance averaged over all phases. `weights` and `sizes`: amplitudes of the orders.
+    # `means` are reflectances averaged over phases; `weights` and `sizes` give orders' amplitudes.
     pairs = [np.broadcast_arrays(r12**2, R23) for r12, _, R23 in interfaces]
     lost = [np.maximum(1.0 - first * second, LEAST_LOST) for first, second in pairs]
     means = [R + (1.0 - R) ** 2 * S / each for (R, S), each in zip(pairs, lost, strict=True)]
@@ -128,7 +128,7 @@ def decay(mu, var, opd, spread):
 def order_count(weights, sizes, opd, spread, least):
     """Number of orders that the shader sums; at least one.
 
-    s-polarization bounds the reflectances, p-polarization the transmittances of both interfaces.
+    s-polarized light has the largest reflectances, p-polarized light the largest transmittances.
     """
     k2 = np.exp(-2.0 * decay(*NARROWEST[2:], opd, spread))
     along_p, along_s = weights[0], sizes[1]
@@ -191,7 +191,7 @@ def kept(category, material, _, mu):
 
 
 def average_errors(category, material, *_):
-    """Errors of F_ss as a sum over three cosines."""
+    """Errors of F_ss by the shader's sum over three cosines."""
     exact = film_curve(category).average(**material)
     return np.abs(average(category, material) - exact).max(axis=0)
 
@@ -205,13 +205,13 @@ def average(category, material, nodes=NODES):
 
 
 def visible_errors(category, material, alpha, mu):
-    """Errors of the average over the visible facets as a sum over three cosines."""
+    """Errors of the average over visible facets by the shader's sum over three cosines."""
     exact = visible_average(category, material, alpha, mu)
     return np.abs(visible_mean(category, material, alpha, mu) - exact).max(axis=0)
 
 
 def albedo_errors(category, material, alpha, mu):
-    """Errors of an albedo: of the average over visible facets, plus F_ss's times the lost light."""
+    """Errors of the albedo: `visible_errors`, plus the errors of F_ss times 1 - E_ss."""
     lost = 1.0 - ggx_albedo_dir(mu, alpha)
     return visible_errors(category, material, alpha, mu) + lost * average_errors(category, material)
 
@@ -255,7 +255,7 @@ MIRRORS = {
 
 
 def facets(mu, alpha, coefficients):
-    """Mean of the cosines between visible facets and view; reach and bend of the nodes around it."""
+    """Mean of the cosines between visible facets and view; the nodes' reach and bend around it."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), 1.0
     polynomials = np.reshape(coefficients, (3, -1)) @ monomials(mu, alpha)
     mean, reach, bend = (a * b for a, b in zip(factors, polynomials, strict=True))

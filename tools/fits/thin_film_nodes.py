@@ -27,7 +27,7 @@ SCALE = 1e3  # scales squared errors to about 1
 
 
 def random_films(count, ranges=fit.FILMS, seed=SEED):
-    """Category, materials, roughnesses and views of random films, for each category."""
+    """For each category: its name, and materials, roughnesses and views of random films."""
     rng = np.random.default_rng(seed)
     for category in fit.MIRRORS:
         unit = rng.random((fit.NUMBERS, count))

@@ -3,10 +3,10 @@
 
 `dielectric_over_eon` is a `layer`: EON receives the light that the dielectric does not reflect, and
 returns it without loss. `varnished` has closed forms for exits and internal reflections. The random
-walks here go between EON and GGX facets, and from facet to facet as in [Heitz2016], so the interface
-loses no light. For each rho, the script prints the ratios of both models' albedos to the walk's, the
-largest error of `varnished`, and its ratios for the light that EON returns into each of twelve bins of
-the hemisphere.
+walks here go between EON and GGX facets, and from facet to facet as in [Heitz2016], so the
+interface loses no light. For each rho, the script prints the ratios of both models' albedos to the
+walk's, the largest error of `varnished`, and its ratios for the light that EON returns into each of
+twelve bins of the hemisphere.
 """
 
 from itertools import product

@@ -12,7 +12,7 @@ from tools.site import explorer, field
 from tools.site.ledger.pages import filled
 
 ROOT = Path(__file__).resolve().parents[2]
-# Pages of the site from files of the repository whose links are relative to its root.
+# Pages of the site by name, and their files, whose links are relative to the repository's root.
 OUTSIDE = {
     "index.md": "README.md",
     "changelog.md": "CHANGELOG.md",

@@ -26,9 +26,9 @@ COMMAND = ("--node", "all", *surface_texts.OPTIONS, "--library", "eonlib", "--li
 def record(versions):
     """Data for the pages; `versions` has the results by version.
 
-    It has, for each version, the number of results by library, node and verdict, and the results of
-    eonlib that do not pass; for each page about MaterialX on gl or in its texts, whether all its rows
-    pass. Sentences of surface shaders' texts are not counted, because surfaces.md has their verdicts.
+    By version, it has the number of results per library, node and verdict, and the results of eonlib
+    that do not pass; by page about MaterialX on gl or in its texts, whether all of its rows pass.
+    Sentences of surface shaders' texts are not counted, because surfaces.md has their verdicts.
     """
     found = {
         "commit": (MAIN.parent / "commits.txt").read_text().split(" ", 2)[:2],

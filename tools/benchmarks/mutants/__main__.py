@@ -2,7 +2,7 @@
 """Runs `mxeon check` on mutants of eonlib, and writes which check detects each to out/mutants.
 
     python -m tools.benchmarks.mutants [--only PATTERN] [--resume]    the rows of the table
-    python -m tools.benchmarks.mutants --seed N [--share 0.1]         a share of the operators' mutants
+    python -m tools.benchmarks.mutants --seed N [--share 0.1]         some of the operators' mutants
 
 Exit status: 0, or 1 if other mutants survive than those listed.
 """

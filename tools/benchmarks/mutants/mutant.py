@@ -38,7 +38,7 @@ class Mutant:
     place: tuple[int, int] = (0, 0)  # start and end of the operator's match in the file
 
     def texts(self) -> dict[str, str]:
-        """Texts of the mutated files by path; for functions shared with OSL, the OSL twin changes too."""
+        """Texts of the mutated files by path, including the OSL twin of a GLSL file."""
         texts = {self.file: self._replaced(self.file, re.escape(self.old), self.new)}
         twin = self.file.replace("glsl", "osl")
         if self.file.startswith("genglsl/") and Path(self.file).stem in TWINS:

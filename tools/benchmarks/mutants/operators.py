@@ -73,7 +73,7 @@ def _digest(mutant: Mutant) -> tuple[str, str]:
 
 @cache
 def every() -> tuple[Mutant, ...]:
-    """All mutants of the operators. Known survivors get their reason from the table or SURVIVORS."""
+    """All mutants of the operators. Known survivors have a reason from the table or SURVIVORS."""
     table = {_digest(each): each.reason for each in read_table() if each.survives}
     listed = tomllib.loads(SURVIVORS.read_text(encoding="utf-8"))["survivors"]
     reasons = {

@@ -225,7 +225,7 @@ class SchemataHost(gl.GlHost):
 
 
 def _numbers_at(text: str, error: str) -> set[int]:
-    """Numbers of the mutants on each line with a compiler error, or on the nearest line before it."""
+    """Numbers of the mutants on each line with a compiler error, or on the last line before it."""
     lines, found = text.splitlines(), set[int]()
     for place in map(int, ERROR.findall(error)):
         numbers = (NUMBER.findall(line) for line in reversed(lines[max(0, place - 12) : place]))
@@ -249,7 +249,7 @@ LAST = (
     *("frame", "finite", "layer", "integral", "energy", "states", "lossless", "domain", "sky"),
     *("narrow_lobes", "tilted_lobes", "wide_lobes", "straight_views", "low_index", "each_lobe"),
 )
-COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # several lobes, which are also checked alone
+COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # their lobes are also checked separately
 UNWRITTEN = "unwritten"
 OSL_TWINS = {
     source_file("osl", stem).relative_to(ROOT).as_posix()
@@ -292,7 +292,7 @@ def is_another_text(mutant: Mutant) -> bool:
 
 
 def noticed(host: SchemataHost, asked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
-    """Number of each detected mutant and the check that detected it; the mutant is then removed."""
+    """Numbers of detected mutants, with the checks that detected them; removes these mutants."""
     seen: set[int] = set()
     for title, composed, text, ask in asked:
         own = [each for each in host.numbers_in(text) if not composed or each not in seen]
@@ -327,7 +327,7 @@ def subjects(host: SchemataHost) -> Iterator[Subject]:
 
 
 def _rows(case: Case, turn: int) -> Callable[[], list[tuple[Check, Tolerance]]]:
-    """A cached function that returns the checks of a turn with their tolerances."""
+    """A cached function that returns one of three groups of checks, with their tolerances."""
 
     @cache
     def rows() -> list[tuple[Check, Tolerance]]:
@@ -353,7 +353,7 @@ class Functions:
             self._rows.append((row.key, probe.tolerance(row), scale, scale * values[::EACH]))
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Execute on the host. The call that evaluates every function is recorded with fewer points."""
+        """Execute on the host, and record the call of all functions with fewer points."""
         if function == EVERY:
             points = np.arange(len(np.asarray(arguments[0]))) % EACH == 0
             self._asked = source, function, *(np.asarray(each)[points] for each in arguments)

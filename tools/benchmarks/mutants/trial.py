@@ -39,8 +39,8 @@ TEXT, TESTS = "text", "tests"  # used instead of a host's name
 
 # Checks on Cycles cannot detect all of these mutants; tests run the code in Blender's OSL.
 PROFILE, PROFILE_TESTS = "genosl/cycles/", ("tests/hosts/test_osl.py",)
-PATH, PATH_TESTS = "genglsl/path/", ("tests/shaders/test_path_tracing.py",)  # no check runs it
-LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls lookups of environments without including them
+PATH, PATH_TESTS = "genglsl/path/", ("tests/shaders/test_path_tracing.py",)  # checks do not run it
+LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups, which no source includes
 ENVIRONMENT_TESTS = (
     "tests/conformance/test_conformance.py::test_other_lobes_are_lit_alike_by_eonlib_s_lookups",
     "tests/hosts/test_document_hosts.py::"
@@ -55,7 +55,7 @@ TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # its mistakes also fail s
 
 
 def trial(mutant: Mutant, judge: Judge) -> dict[str, Any]:
-    """Verdict on a mutant, and the failed checks of the first task that fails, with the first cause."""
+    """Verdict on a mutant, failed checks of the first task that fails, and the first cause."""
     if mutant.tests:
         named = tuple(f"{MODEL_TESTS}/{name}" for name in mutant.tests)
         return by_tests(mutant, (named,) if mutant.equivalent else (named, (MODEL_TESTS,)))
@@ -207,7 +207,7 @@ def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
 
 @cache
 def _tasks(host: str) -> tuple[Task, ...]:
-    """All tasks of a host with eonlib, grouped by subject, because each subject compiles one shader.
+    """All tasks of a host with eonlib, grouped by subject, because a subject compiles one shader.
 
     Subjects are in reverse order, so that transmission, which runs most of the code, comes early.
     Films come last, because their failures take longest to diagnose.
@@ -274,7 +274,9 @@ MODEL_TESTS = "tests/models"
 OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
 FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
 WIDTH = {"COLUMNS": "200"}  # wide enough for whole messages of pytest
-BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}  # a copy lacks this folder
+BLENDER = {
+    "MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"
+}  # copies of mxeon lack this folder
 GOOD, NO_TEST = 0, 5  # exit statuses of pytest
 
 
@@ -291,7 +293,7 @@ def by_tests(mutant: Mutant, steps: Sequence[tuple[str, ...]]) -> dict[str, Any]
 
 
 def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
-    """Name and message of the first test that fails with the package in a folder; None if all pass."""
+    """Name and message of the first test that fails with the package in a folder, or None."""
     ended = subprocess.run(
         [sys.executable, "-m", "pytest", *OPTIONS, *tests],
         cwd=ROOT,
@@ -309,4 +311,4 @@ def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
     return test or "import", f"{file}: {message}" if message else file
 
 
-_first_failure = cache(_failure)  # for the unchanged package, with a cache
+_first_failure = cache(_failure)  # cached, since the original package does not change

@@ -27,12 +27,12 @@ TALLY = "{count} claims; verdicts: {holds} holds, {part} holds in part, {fails} 
 # Result of a measurement: a sentence for the page, and the values to compare with the limits.
 Measured = tuple[str, ArrayLike]
 Measure = Callable[[], Measured]
-ROUNDING = 1e-12  # largest difference of two equal formulas in float64
+ROUNDING = 1e-12  # largest difference between two forms of one formula
 
 
 @dataclass
 class Section:
-    """Claims under one heading; each function measures and returns a row with COLUMNS."""
+    """Claims under one heading; `rows` has a function per claim that measures its table row."""
 
     heading: str
     rows: list[Callable[[], tuple[str, ...]]] = field(default_factory=list)

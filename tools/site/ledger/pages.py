@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Additions of the site to the ledger: the list of pages, figures, diffs of patches, versions."""
+"""Adds the list of pages, figures, diffs of patches and versions to the ledger on the site."""
 
 import json
 import re
