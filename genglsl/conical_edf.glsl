@@ -20,7 +20,7 @@ void conical_edf(ClosureData closureData, vec3 color, vec3 N, float inner_angle,
     result = vec3(0.0);
     if (closureData.closureType == CLOSURE_TYPE_EMISSION)
     {
-        // Views of the back count as grazing.
+        // Views from the back count as grazing.
         float mu = max(dot(N, closureData.V), 0.0);
         float inner = conical_edf_cosine(inner_angle);
         float outer = conical_edf_cosine(outer_angle);

@@ -82,7 +82,7 @@ vec3 eon_albedo_dir(float mu, vec3 rho, float roughness)
     return rho * (vec3(1.0) - loss);
 }
 
-// value / divisor, a cosine or sine; 0 for divisors up to 1e-37: it might overflow, and
+// value / divisor, a cosine or sine; 0 up to 1e-37: the quotient might overflow, and
 // infinity times 0 is NaN.
 float oren_nayar_quotient(float value, float divisor)
 {

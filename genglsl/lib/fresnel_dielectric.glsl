@@ -6,7 +6,7 @@
 float eonlib_fresnel_dielectric(float mu, float ior)
 {
     float n2 = ior * ior;
-    float g2 = (ior - 1.0) * (ior + 1.0) + mu * mu;  // n^2 + mu^2 - 1 loses mu^2 at grazing
+    float g2 = (ior - 1.0) * (ior + 1.0) + mu * mu;  // n^2 + mu^2 - 1 would lose mu^2 at grazing
     float g = sqrt(max(g2, 0.0));
     float s = (mu - g) / (mu + g);
     float p = (n2 * mu - g) / (n2 * mu + g);
@@ -27,7 +27,7 @@ float eonlib_fresnel_dielectric_avg(float ior)
 // The cosine at which the curve equals its average over the visible facets: mu + alpha^2 / (mu + alpha) N / D. Indices
 // are clamped to the domain.
 // Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], index of refraction in [1.03, 3].
-// Largest absolute error of the albedo: 0.003, in [1.05, 2.5] 0.0017.
+// Largest absolute error of the albedo: 0.003; 0.0017 in [1.05, 2.5].
 float ggx_cosine_dielectric(float mu, float alpha, float ior)
 {
     float n = clamp(ior, 1.03, 3.0);

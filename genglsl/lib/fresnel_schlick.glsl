@@ -19,7 +19,7 @@ vec3 eonlib_fresnel_schlick_dip(vec3 color0, vec3 color82, vec3 color90, float e
 
 // The cosine at which (1 - c)^exponent equals its average: mu + alpha^2 / (mu + alpha) N / D. Exponents are clamped to
 // the domain. Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], exponent 1 to 10.
-// Largest absolute error of the albedo: 0.0032, at exponent 5 0.0019.
+// Largest absolute error of the albedo: 0.0032; 0.0019 at exponent 5.
 float ggx_cosine_schlick(float mu, float alpha, float exponent)
 {
     float x = mu / (mu + alpha);

@@ -6,7 +6,7 @@
 #include "thin_film.glsl"
 
 // F_ss: cosine, weight and width of its nodes. Source: tools/fits/thin_film_nodes.py. Domain: films up to 1000 nm
-// with index in [1, 2.5]. Largest error: 3.61e-2, for a vanishing film 4.4e-3.
+// with index in [1, 2.5]. Largest error: 3.61e-2; 4.4e-3 for a vanishing film.
 #define FILM_AVERAGE_1 vec3(0.17999, 0.10982, 0.19938)
 #define FILM_AVERAGE_2 vec3(0.55701, 0.43737, 0.13743)
 #define FILM_AVERAGE_3 vec3(0.88292, 0.4528, 0.088681)

@@ -57,7 +57,7 @@ float microfacet_stretched(MicrofacetLobe lobe, vec3 w)
     return length(microfacet_local(lobe, w) * vec3(lobe.roughness, 1.0));
 }
 
-// Divisors, cosines and alphas, are clamped. Retroreflection mirrors wo about the normal.
+// Clamps the divisors, cosines and alphas. Retroreflection mirrors wo about the normal.
 MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness,
                                bool retroreflective)
 {

@@ -9,7 +9,7 @@
 #include "libraries/pbrlib/genglsl/mx_mix_bsdf.glsl"
 #include "libraries/pbrlib/genglsl/mx_layer_vdf.glsl"
 
-// Response of two closures and factors.
+// Response of two scaled closures.
 void path_combine(vec3 a, vec3 factor_a, vec3 b, vec3 factor_b, inout BSDF result)
 {
     if (path_asked != PATH_VALUE)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hair for path tracers. M_p is drawn as in [dEon2013], N_p, a logistic cut at +-pi, by its inverse distribution. A
-// cuticle tilts the light, so a draw is tilted back, perhaps past the end of the fiber.
+// Hair for path tracers. M_p is drawn as in [dEon2013]; N_p, a logistic cut at +-pi, by its inverse distribution. The
+// cuticle tilts the light, so draws are tilted back, perhaps past the end of the fiber.
 
 #include "lib/questions.glsl"
 #include "../chiang_hair_bsdf.glsl"

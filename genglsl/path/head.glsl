@@ -4,10 +4,10 @@
 struct Point
 {
     vec3 position;
-    vec3 normal;   // shading, unit
+    vec3 normal;   // shading normal, unit
     vec3 tangent;  // unit, orthogonal to normal
     vec2 texcoord;
-    bool inside;   // wo lies inside a solid of this material, where light refracts in reverse
+    bool inside;   // whether wo lies inside a solid of this material and refracts in reverse
 };
 
 #define PATH_NOTHING 0

@@ -22,7 +22,7 @@ vec3 material_evaluate(Point p, vec3 wo, vec3 wi)
     return path_root * path_out.a;
 }
 
-// Density in 1/sr of wi as material_sample draws it; its integral is the share of draws that are not lost.
+// Density in 1/sr with which material_sample draws wi; its integral is the share of draws that are not lost.
 float material_pdf(Point p, vec3 wo, vec3 wi)
 {
     path_ask(PATH_PDF, p, wo, wi, vec3(0.0));

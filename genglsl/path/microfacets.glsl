@@ -7,15 +7,15 @@
 // share, as in MaterialX's own transmission of an environment.
 //
 // Inside a solid a facet may lose its light: it neither reflects into the solid nor refracts out of it. Its partner,
-// the facet after the spherical cap of visible normals [Dupuy2023] is turned upside down, replaces it. That map keeps
+// its image if the spherical cap of visible normals [Dupuy2023] is turned upside down, replaces it. That map keeps
 // areas and is its own inverse, so a facet whose partner loses its light is drawn exactly twice as often.
 //
-// Light into a thinner medium takes the paths of light from there in reverse. If P is the share that passes from
+// Light into a thinner medium reverses the paths of light that comes from it. If P is the share that passes from
 // outside and p the density of refracted directions, then n^2 mu_i T(wi, wo) = P(wo) p(wo, wi) mu_o. With p by visible
 // normals this is
 //   T(wi, wo) = P(wo) G_1(wo) / G_1(wi) p(wi, wo).
-// The rest is reflected: once by facets with the curve from outside and F = 1 beyond the critical angle; what remains
-// by facets that reflect everything.
+// The rest is reflected: first once, by the curve from outside with F = 1 beyond the critical angle; what remains, by
+// facets that reflect everything.
 
 #include "lib/questions.glsl"
 #include "../lib/microfacet_transmission.glsl"
@@ -142,7 +142,7 @@ MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec
     return lobe;
 }
 
-// Density of wi by visible normals: G_1 D / (4 mu_o) for reflection. For refraction, facets per solid angle of wi are
+// Density of wi by visible normals: G_1 D / (4 mu_o) for reflection. For refraction, the Jacobian of h by wi is
 // n^2 |wi . h| / |wo + n wi|^2: [Walter2007], Eq. (17).
 float path_facet_pdf(MicrofacetLobe lobe, bool through)
 {
@@ -202,7 +202,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     bool valued = path_asked == PATH_VALUE;
     if (path_is_denser())
     {
-        vec3 curve = vec3(1.0); // transmission over a dielectric's
+        vec3 curve = vec3(1.0); // transmittance over a dielectric's
         if (valued && !below)
         {
             float n = 1.0 / path_eta;
@@ -219,7 +219,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     }
     if (scatter_mode != 1)
     {
-        // A lobe below must be drawn even at full reflection: the few facets that refract the view need draws.
+        // In draws the lobe below keeps its full weight: few facets may refract the view, but they must be drawn.
         bsdf.throughput = path_is_denser() && !valued ? vec3(1.0) : max(1.0 - albedo * weight, 0.0);
         bsdf.response = microfacet_lossless(lobe) * F.value * factor * scale;
     }

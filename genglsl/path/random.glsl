@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers for tracers that have none of their own.
+// Random numbers for path tracers without a generator.
 
 // One round of the generator below.
 uvec4 path_mixed(uvec4 v)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sheen for path tracers. Zeltner's lobe, a linearly transformed cosine, is drawn by its own map; Conty and
-// Kulla's, brightest at the horizon, uniformly over the hemisphere.
+// Kulla's, brightest at the horizon, uniformly by solid angle.
 
 #include "lib/questions.glsl"
 #include "../sheen_bsdf.glsl"
 
-// X axis of the frame with wo at azimuth 0: zeltner_lobe.
+// X axis of the frame with wo at azimuth 0, as in zeltner_lobe.
 vec3 path_sheen_across(vec3 N)
 {
     vec3 Y = cross(N, path_wo);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exact importance sampling of EON with two random numbers, no table and no iteration.
 //
-// eon_sample -> wi and eon_pdf, the density of wi in 1/sr; directions and random numbers as
+// eon_sample -> wi and eon_pdf, the density of wi in 1/sr; directions and random numbers are as
 // in ltc_sampling. On the disk below the hemisphere, with wo at azimuth 0, EON is the sum of four
 // parts: docs/sampling.md. v is a random number in [0, 1); mu_o and S_o are cosine and sine of wo.
 

@@ -50,7 +50,7 @@ vec3 eon_albedo_dir_approx(float mu, vec3 rho, float roughness)
     return rho * (vec3(1.0) - roughness * fon_loss_approx(mu) * (vec3(1.0) - rho) / D);
 }
 
-// The average of eon_albedo_dir, in which H enters linearly.
+// The average of eon_albedo_dir, which is linear in H.
 vec3 eon_albedo_avg(vec3 rho, float roughness)
 {
     vec3 D = eon_denominator(rho, roughness);

@@ -117,7 +117,8 @@ class Host(Engine):
     """An engine that executes generated shaders; hosts override the methods that they support.
 
     Unsupported methods raise `Unsupported`; shaders that the compiler refuses raise `ShaderError`.
-    Results are in the order of the request, as linear radiance or 1/sr.
+    Only `compile` knows the target, the profile and the lights. Results are in the order of the
+    request, as linear radiance or 1/sr.
     """
 
     target: ClassVar[str]

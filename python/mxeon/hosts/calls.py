@@ -73,8 +73,8 @@ LIT = "lit"  # branch: several lights, then an environment on both sides, in one
 # Inputs of LIT: number of lights (up to 2), direction of the second in world space, and whether an environment follows.
 LIGHTS, SECOND_LIGHT, SKY = "mxeon_lights", "mxeon_second", "mxeon_sky"
 # Steps 0 and 1 are lights, 2 is the reflected and 3 the transmitted environment. All branches share
-# one program, which compiles as fast as a program for one branch. STEPS holds the first step, the end,
-# and the irradiance of a light, or -1 for throughput.
+# one program, which compiles as fast as a program for one branch. STEPS holds the first step, the
+# end, and the irradiance of a light, or -1 for throughput.
 STEPS = "mxeon_steps"
 LOOP = """{type} mxeon_sum = {type}(0.0);
 for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxeon_step)

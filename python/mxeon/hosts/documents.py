@@ -35,7 +35,7 @@ STEEPEST = (
 def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArray[np.float32]]:
     """The quads of a picture of `size` x `size` pixels, four vertices each, counterclockwise.
 
-    Each has one normal, so a pixel shows an exact point, `place` half widths from its center. A quad lies in the
+    Each has one normal and shows an exact point, `place` half widths from the pixel's center. A quad lies in the
     tangent plane and covers the pixel, so derivatives of positions equal the sphere's. Derivatives of "texcoord" have
     the same directions but are smaller, so textures are read at full size. Row 0, at the top, comes first.
     """

@@ -170,8 +170,8 @@ class GlHost(FragmentHost):
     ) -> dict[str, moderngl.Texture | moderngl.TextureArray]:
         """Textures for the samplers of a program; samplers of one array share a texture.
 
-        An environment map is clamped at its poles. A check's uniform map repeats: clamping would turn
-        a NaN coordinate into a number and hide it from the check.
+        An environment map is clamped at its poles. A check's uniform map repeats: clamping would
+        turn a NaN coordinate into a number and hide it from the check.
         """
         made: dict[tuple[int, bool], moderngl.Texture] = {}
         own: dict[str, moderngl.Texture | moderngl.TextureArray] = {}

@@ -16,7 +16,7 @@ uniform sampler2D tracer_environment;
 uniform bool tracer_mapped; // the environment is a map; texels are drawn by their light
 uniform sampler2D tracer_drawn; // 256 x 256 texel indices, each repeated in proportion to its light
 uniform sampler2D tracer_chance; // probability of drawing each texel
-uniform mat3 tracer_foot; // rotates the picture's frame to the frame of the ball's foot
+uniform mat3 tracer_foot; // rotates the picture's frame to the shader ball's foot
 uniform mat3 tracer_belt; // rotates the foot's frame to the belt's
 
 out vec4 tracer_radiance; // rgb: radiance; a: its squared channel mean
