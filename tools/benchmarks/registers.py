@@ -3,7 +3,7 @@
 
 No GPU is needed: Mesa's driver RADV compiles for the chip in `RADV_FORCE_FAMILY`, and reports its
 statistics. Shaders have one light, because the compiler may unroll the loop over lights for one
-library only. The loop of films is removed for cycles, since their estimate counts its body eight times.
+library only. The loop of films is removed for cycles, whose estimate counts its body eight times.
 """
 
 import os

@@ -3,7 +3,7 @@
 
 The shader sums only orders that matter, and averages over the hemisphere and over visible facets
 by three cosines each. Each cosine stands for a range, within which fringes partly cancel. This
-prints the largest errors for films of up to 1000 nm on each kind of substrate, and cosines from 0.1.
+prints the largest errors for films of up to 1000 nm on each kind of substrate and cosines from 0.1.
 
 A check measures the root mean square error of a set of films. Other sets, drawn in the same way,
 give its tolerance, which is at most a third of the largest error of a single film. So it detects a
@@ -32,8 +32,8 @@ CLEAR = {
 DARK = 1e-3  # errors are relative to the reflectance, but at least to this one
 STEP = 1e-6  # relative change of the thickness for difference quotients
 # The shader's values, from `thin_film_nodes.py`. NODES: cosines, weights and widths of the nodes
-# for F_ss. FACETS: polynomials for the nodes of visible facets: the mean of their cosines, the reach
-# of the nodes around the mean, and the bend of their positions.
+# for F_ss. FACETS: polynomials for the nodes of visible facets: mean of their cosines, reach of the
+# nodes around the mean, and the bend of their positions.
 NODES = (
     (0.17999, 0.55701, 0.88292),
     (0.10982, 0.43737, 0.4528),

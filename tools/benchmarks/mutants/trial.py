@@ -274,9 +274,7 @@ MODEL_TESTS = "tests/models"
 OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
 FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
 WIDTH = {"COLUMNS": "200"}  # wide enough for whole messages of pytest
-BLENDER = {
-    "MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"
-}  # copies of mxeon lack this folder
+BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}  # copies lack the folder
 GOOD, NO_TEST = 0, 5  # exit statuses of pytest
 
 
