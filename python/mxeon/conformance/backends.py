@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ways of evaluating a node on an engine: supported nodes, samples, and additional errors.
+"""Backends, the ways to evaluate a node on an engine: supported nodes, samples and added errors.
 
 An engine evaluates arbitrary pairs of directions, returns closures, renders one pair of directions
 per pixel, or renders pictures of a sphere. Every backend returns values in the same form, so each
@@ -84,8 +84,8 @@ class Backend(ABC):
     plain: ClassVar[tuple[str, ...]] = ()
     whole: ClassVar[bool] = False  # whether controls and expensive checks use all samples
     fewer: ClassVar[Counts | None] = None  # upper limits of a spec's sample counts
-    own_errors: ClassVar[Errors | None] = None  # errors that replace the spec's
-    methods: ClassVar[Methods] = UNCHOSEN  # lighting methods that the engine fixes
+    own_errors: ClassVar[Errors | None] = None  # errors used instead of the spec's
+    methods: ClassVar[Methods] = UNCHOSEN  # lighting methods fixed by the engine
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
         self.host, self.spec, self.library = host, spec, library
@@ -137,7 +137,7 @@ class Backend(ABC):
         return "", ""
 
     def judged(self) -> Spec:
-        """The spec to judge: with a renderer's variants, or in the form closest to its values."""
+        """The spec to judge, with a renderer's variants or in the form closest to its values."""
         return self.spec
 
     def take(self, draw: Callable[[Counts], T]) -> T:
@@ -183,7 +183,7 @@ class Backend(ABC):
 
     @cached_property
     def integrals(self) -> Array:
-        """Integrals of the equations for the materials in `integrated`, (N, 3)."""
+        """Integrals of the model's equations for the materials in `integrated`, (N, 3)."""
         batch, weights = self.integrated
         views = batch.where(np.arange(len(weights)) * weights.shape[1])
         return cast(ScatteringSpec, self.spec).integral(views)
@@ -286,7 +286,7 @@ class Evaluating(Backend):
     def together(
         self, batch: Batch, irradiance: NDArray[np.float32] | None, client: Client, two: bool
     ) -> Array:
-        """Values of one or two lobes under several lights and an environment, or the only light."""
+        """Values of one or two lobes, lit by lights and an environment, or by a single light."""
         shader = self.two if two else self.shader
         if "lights" in self.plain:
             return np.pi * self.evaluate(batch, "direct", shader=shader)
@@ -425,7 +425,7 @@ class Closures(Evaluating):
 
     @property
     def unset(self) -> tuple[str, ...]:
-        """Frame inputs of a surface shader's lobes: its text reads the surface's frame instead."""
+        """Frame inputs of a surface shader's lobes, which read the surface's frame instead."""
         names = self.spec.names if Ability.MATERIAL in self.spec.requires else ()
         return tuple(each for each in names if each.endswith(("normal", "tangent")))
 
@@ -463,13 +463,13 @@ class Functions(Evaluating):
 # Renderers in which each pixel shows one pair of directions.
 
 SMOOTH = ("eon", "qon", "burley")  # models without a sharp lobe at any roughness
-# Smallest sine times cosine of a view far enough from its mirror and its opposite direction.
+# Views need at least this sine times cosine to be far from their mirror and opposite directions.
 OBLIQUE = 0.25
 FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=32, mirrored=1 << 10)
-FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # value from its source
+FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # stated in OpenImageIO's source
 POINT = 3.0 * EYE / NEAREST  # roundings of a point 40 from the eye and 1/2 from the light
 FLAT_SLOPE = 8.0  # largest slope of the diffuse models
-# 2 divided by the smallest alpha, plus 3 for Fresnel and shadowing.
+# Largest slope of microfacets: 2 / smallest alpha, plus 3 for Fresnel and shadowing.
 SHARP_SLOPE = 2.0 / samples.LEAST_TURNED + 3.0
 FLAT, SHARP = (
     sum_of(roundings(each * POINT, f"of a point, times the slope {each:g}"), FAST_ARC_COSINE)
@@ -591,7 +591,7 @@ class Rendered(Shown):
 
 
 class Traced(Rendered):
-    """Cycles lighting a point with closures for pbrlib's lobes; see CyclesPictures for diffuse."""
+    """Cycles, which lights a point with its own closures; CyclesPictures judges diffuse nodes."""
 
     abilities = Ability.LOBE | Ability.COMBINATION | Ability.PAIRS
     variants = CYCLES_VARIANTS
@@ -646,7 +646,7 @@ def _with_variants(backend: type[Rendered], spec: Spec) -> Spec:
     return replace(spec, row=replace(spec.row, variants=variants))
 
 
-# Hosts that render pictures: the lit points of a sphere are the pairs.
+# Hosts that render pictures of a sphere, whose lit points serve as pairs.
 
 PICTURE_SIZE = 128
 HALF_CUT = Term(2.0**-10, "half floats, cut off")  # llvmpipe truncates instead of rounding
@@ -669,7 +669,7 @@ FOUR_PICTURES = Term(
 )
 HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR_PICTURES, *DRAWN_LOBE.terms, exact=True)
 
-# A point is a ray's origin plus its length, both at most 2: three roundings of 2^-23 together. A
+# A pixel's point, a ray's origin plus its length, both at most 2, has three roundings of 2^-23. A
 # grazing ray divides this error by its cosine, and cos(theta_i) divides it by the other cosine.
 CYCLES_RAY = sum_of(
     roundings(3.0 * 2.0 / RIM**2, "of a pixel's point, over the least cosine squared"),
@@ -678,7 +678,7 @@ CYCLES_RAY = sum_of(
     metric=relative,
 )
 # Measured at 256 samples per pixel, seeds 0 to 15, roughness 1 and reflectance 1: a pixel is off by
-# 1.3e-3 rms; the mean of 3212 pixels deviates by 3.1e-5, 1.34 times that of independent pixels.
+# 1.3e-3 rms, the mean of 3212 pixels by 3.1e-5 rms: 1.34 times as much as independent pixels.
 CYCLES_MEAN = "four standard errors of the mean of 12836 pixels, each off by 1.3e-3, times 1.4"
 CYCLES_NOISE = sum_of(
     Term(4.0 * 1.4 * 1.3e-3 / math.sqrt(12_836), CYCLES_MEAN),
@@ -720,7 +720,7 @@ class Pictures(Backend):
 
 
 class Spheres(Pictures):
-    """Pictures per light and material; lit points away from rim and terminator are the samples."""
+    """One picture per light and material; its lit points off rim and terminator are samples."""
 
     scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
     whole = True
@@ -749,7 +749,7 @@ class Spheres(Pictures):
 
 @lru_cache(maxsize=8)  # a check renders many pictures of few documents
 def _compile(host: Host, text: str, library: str, methods: Methods) -> Shader:
-    from mxeon.shaders.generation import ApproximationWarning  # loads MaterialX
+    from mxeon.shaders.generation import ApproximationWarning  # this import loads MaterialX
 
     with warnings.catch_warnings():  # approximations are not judged: see CyclesPictures.points
         warnings.simplefilter("ignore", ApproximationWarning)
@@ -769,7 +769,7 @@ def picture_pairs(scene: Scene) -> Pairs:
 
 
 def lit_pairs(normal: Array, scene: Scene) -> Pairs:
-    """Directions at points with normals in a picture, and the mask of the points to judge."""
+    """Directions at points with these normals in a picture, and the mask of points to judge."""
     wo = local_directions(normal, VIEW)
     wi = wo if scene.light is None else local_directions(normal, scene.light)
     return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)
@@ -786,7 +786,7 @@ class CyclesPictures(Spheres):
     }
 
     def points(self, scene: Scene) -> Pairs:
-        """The points where the host's closure may be the model: s >= 0 if it is front-lit only."""
+        """Points where the host's closure may match the model: only s >= 0 if it is front-lit."""
         wo, wi, mask = super().points(scene)
         if front_lit_only(self.host.name, self.spec.model):
             mask = mask & (wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1] >= 0.0)
@@ -817,7 +817,7 @@ class Drawn(Spheres):
 
 
 class Half(Drawn):
-    """Exact pictures with half-float colors: Storm, with its default modes."""
+    """Exact pictures with half-float colors, as Storm renders them by default."""
 
     exact: ClassVar[Errors] = {"value": HALF, "albedo": HALF_ALBEDO, "lambert": HALF}
     lobe_error = HALF_LOBE
@@ -828,7 +828,7 @@ class Half(Drawn):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        """Errors of pictures; no albedo of pbrlib's nodes: their furnace sums other directions."""
+        """Errors of pictures, without pbrlib's albedos, for which Storm sums other directions."""
         own = super().errors(spec)
         return {**own, "albedo": None} if Ability.LOBE in spec.requires else own
 
@@ -849,7 +849,7 @@ PICTURE_RADIANCE = sum_of(
 
 
 class DarkPictures(Pictures):
-    """An emitting surface in the dark, one picture for each material of its samples."""
+    """Pictures of an emitting surface in the dark, one for each material of its samples."""
 
     abilities = Ability.SURFACE | Ability.LIGHT
 
@@ -861,7 +861,7 @@ class Frames(Pictures):
 
 
 class EmissionPictures(Spheres):
-    """An EDF node on a sphere in the dark."""
+    """Pictures of an EDF node on a sphere in the dark."""
 
     abilities = Ability.EMISSION | Ability.LIGHT
     scenes = (Scene("dark"),)
@@ -887,7 +887,7 @@ class UtilityOsl(Evaluating):
         return {**spec.errors, "value": spec.errors.get("osl_value", spec.errors["value"])}
 
 
-# Backends by `way` of a host's row; the first one that supports a spec evaluates it. `mxeon.survey`
+# Backends by the `way` in a host's row; the first that supports a spec evaluates it. `mxeon.survey`
 # adds backends for renderers with their own materials.
 BACKENDS: dict[str, tuple[type[Backend], ...]] = {
     "pairs": (Evaluating, LobesBelow, DarkPictures, Frames),
@@ -907,7 +907,7 @@ def ways_of(host: str) -> tuple[type[Backend], ...]:
 
 
 def own_nodes(host: str) -> tuple[Spec, ...]:
-    """The judged nodes that a renderer defines, or (); imports its backends and checks."""
+    """Judged nodes that a renderer defines, otherwise (); also imports its backends and checks."""
     row = host_row(host)
     if row not in RENDERERS:
         return ()

@@ -141,7 +141,7 @@ class Check:
             causes = diagnosis.causes
             if diagnosis.first in UNTOLD and (compared := compared_of(self.measure(case))):
                 causes = (searched(diagnosis.first, compared, tolerance),)
-            # Permitted functions only excuse open checks.
+            # A permitted function excuses errors only in open checks.
             permitted = self.open and diagnosis.permitted
             if permitted and not isinstance(self.measure, Comparison) and diagnosis.distances:
                 permitted = self.gives(case, diagnosis.first.key, tolerance)
@@ -163,7 +163,7 @@ def judge(
     """The result of a check: `measure(False)` measures the subject, `measure(True)` the control.
 
     `place` is the result to return if the check does not run; a shader error makes it fail.
-    `variant` describes the control. Renderer warnings join the diagnosis; others are shown.
+    `variant` describes the control. Renderer warnings join the diagnosis; other warnings show.
     """
     try:
         with warnings.catch_warnings(record=True) as records:

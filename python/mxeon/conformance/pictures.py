@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compares pictures of documents' materials with the reference, and draws each node once."""
+"""Compares pictures of documents' materials with the reference, and draws samples of nodes."""
 
 import warnings
 from collections.abc import Callable, Iterable, Sequence
@@ -320,7 +320,7 @@ def _known(shader: Shader) -> Diagnosis | None:
 
 
 def _assert_judged(shader: Shader, host: Host) -> None:
-    """Raise NotRun if the host renders another material or its own closures, which have checks."""
+    """Raise NotRun if the host renders another material, or closures that have separate checks."""
     if reason := host.unread(shader):
         raise NotRun(f"{host.name}: {reason}: the picture is shown and only has to be finite")
     own = sorted(categories(inner_nodes(shader.document)) & set(BSDF_NODES))
@@ -381,7 +381,7 @@ def _judge_match(
 
 
 def _worst_pixel(case: Shown) -> Pixel:
-    """Largest error times cos(theta_o), its pixel, and all errors."""
+    """Largest error times cos(theta_o), the pixel where it occurs, and all errors."""
     scene, image, (reference, mask) = case[0], case[1], (case[2].image, case[2].judged)
     wo, _ = _directions(scene, mask)
     measured, expected = (each[mask].astype(np.float64) for each in (image, reference))

@@ -44,10 +44,10 @@ SIZE, PICTURED = 24, 3  # size and number of pictures that compare rearranged lo
 ATTRIBUTES = ("type", "defaultgeomprop", "uniform", "unit", "unittype", "colorspace", "enum")
 RANGE = ("uimin", "uimax")
 COMPONENTS = {"float": 1, "integer": 1, "boolean": 1, "vector2": 2, "color3": 3, "vector3": 3}
-JOINED = {"color4": "color3", "vector4": "vector3"}  # four- to three-component types
+JOINED = {"color4": "color3", "vector4": "vector3"}  # four-component type -> three-component type
 NUMBERS = (*COMPONENTS, *JOINED)  # types that are compared by values
 SHADED = ("BSDF", "EDF", "surfaceshader")  # types that are compared by pictures
-SHADERS = ("surfaceshader", "volumeshader", "displacementshader")  # types that stay unconnected
+SHADERS = ("surfaceshader", "volumeshader", "displacementshader")  # inputs left unconnected
 ALPHA = ("hwTransparency",)  # option that adds an alpha to shaders
 # Scenes with a light, with an uneven environment, and with alpha.
 UNEVEN = Client(radiance=sky_map(), irradiance=sky_map())
@@ -186,7 +186,7 @@ class Comparison:
         self.unjudged: list[tuple[str, str]] = []
 
     def definitions(self, changed: bool = False) -> list[Cause]:
-        """Differences of definitions, units and properties; a control sets `changed` to alter one.
+        """Differences of definitions, units and properties; `changed` adds one, as a control.
 
         Nodes that eonlib defines are also compared with eonlib's definitions.
         """
@@ -326,7 +326,7 @@ class Comparison:
         raise NotRun("its text is not MaterialX's, and nothing evaluates it")
 
     def _values_apart(self, own: Subject, right: Subject) -> float:
-        """The largest difference between two values; NotRun if `right` does not compile."""
+        """The largest difference of two subjects' values; NotRun if `right` does not compile."""
         try:
             expected = self._values(right)
         except (DocumentError, ShaderError) as error:
@@ -445,7 +445,7 @@ def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
         graph.copyContentFrom(place[0])
         for output in graph.getOutputs():
             graph.removeOutput(output.getName())
-        for each in graph.getNodes():  # a number does not depend on lobes
+        for each in graph.getNodes():  # numbers cannot depend on lobes
             if each.getType() in CLOSURES and kind not in CLOSURES:
                 graph.removeNode(each.getName())
         graph.setNodeDefString(name)
@@ -483,7 +483,7 @@ def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
 
 
 def distance(own: Array, right: Array) -> float:
-    """The largest difference, relative above 1, infinite if only one value is finite.
+    """The largest difference: relative for values above 1, infinite if only one value is finite.
 
     In the last half of the rows, with inputs outside [0, 1], only finite values count: graphs that
     agree in [0, 1] may differ for the root of a negative number.
@@ -508,7 +508,7 @@ def check_release(
         return (), ((f"{SUBJECT} of {library}", why),)
     place = Result(RELEASE, CLAIM, SUBJECT, host.name, library, NOT_RUN)
     with TemporaryDirectory() as folder:
-        image = str(Path(folder, "image.exr"))  # its four channels are different
+        image = str(Path(folder, "image.exr"))  # image with four different channels
         write_exr(image, generator().random((8, 8, 4), np.float32), {})
         comparison = Comparison(host, library, release, image)
 

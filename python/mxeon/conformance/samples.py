@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pairs of directions with a node's inputs: random and exact ones, turned frames, and an uneven sky.
+"""Random and special pairs of directions with a node's inputs, rotated frames, and a sky map.
 
 All numbers are float32 values stored in float64, so that float32 engines see the same samples.
 """

@@ -37,7 +37,7 @@ class FunctionCheck(NamedTuple):
     claim: str
     names: str  # pattern of function names; the first matching row judges a function
     error: tolerance.Tolerance
-    turns: bool = False  # whether its functions rotate by the engine's sine and cosine
+    turns: bool = False  # whether the functions rotate by the engine's sine and cosine
 
 
 # fmt: off
@@ -156,7 +156,7 @@ def random_columns() -> Columns:
     azimuth, elevation = 2.0 * np.pi * rng.random(POINTS), 0.5 * np.pi * _unit(rng)
     mu, roughness = np.clip(wo[:, 2], GRAZING, 1.0), unit["roughness"]
     rho, value = np.stack([_unit(rng) for _ in range(3)], axis=-1), 2.0 * _unit(rng) - 1.0
-    divisors = _unit(rng)  # log-uniform down to 1e-36 in a quarter; shaders treat 1e-37 as 0
+    divisors = _unit(rng)  # a quarter is log-uniform down to 1e-36; shaders treat 1e-37 as 0
     divisors[CORNERS : POINTS // 4] = 10.0 ** (-36.0 * divisors[CORNERS : POINTS // 4])
     u1, u2 = unit["u1"], unit["u2"]
     # fmt: off
@@ -174,7 +174,7 @@ def random_columns() -> Columns:
 
 
 def _unit(rng: np.random.Generator) -> Array:
-    """24-bit numbers in [0, 1), like shaders' random numbers; the first are ends of the range."""
+    """24-bit numbers in [0, 1), like shaders' random numbers; the first are at the ends."""
     numbers = rng.integers(0, 1 << 24, POINTS).astype(np.float64)
     numbers[:CORNERS] = (numbers[:CORNERS] % 2.0) * (2.0**24 - 1.0)
     return numbers * 2.0**-24

@@ -21,7 +21,7 @@ from mxeon.hosts import base, calls
 from mxeon.models.nodes.node import Node as NodeRow
 from mxeon.shaders import nodes
 
-COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type
+COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # array shape by type
 CHANGED_COLOR = (0.9, 0.1, 0.6)
 F = TypeVar("F")  # type of a row's function
 
@@ -47,7 +47,7 @@ class Input:
     variable: str = ""  # shader variable that supplies the default; hosts set it instead
     default: ArrayLike = 1.0  # value in documents that must set the input
     beyond: tuple[float, ...] = ()  # values outside the range that hosts also pass
-    ends: tuple[float, float] = (-np.inf, np.inf)  # range to which the node clamps
+    ends: tuple[float, float] = (-np.inf, np.inf)  # range to which the node clamps the input
 
 
 def color(name: str, *materials: ArrayLike, edges: tuple[float, ...] = (0.0, 1e-3, 1.0)) -> Input:
@@ -114,7 +114,7 @@ class Ability(Flag):
     MEDIUM = auto()
     IMPLEMENTATION = auto()  # a node without values, judged only by having an implementation
     OUTPUT = auto()
-    # Required by checks: pairs at the edges of the domain, and branches of lighting.
+    # Abilities that checks require: pairs at the edges of the domain, and branches of lighting.
     CLIENT = auto()  # running the shader's complete main() with a client's bindings
     PAIRS = auto()
     LIGHT = auto()
@@ -124,7 +124,7 @@ NO_ABILITY = Ability(0)
 
 
 class EngineError(NamedTuple):
-    """A term for an engine's own function, measured on each engine."""
+    """An error of an engine's built-in function, measured on each engine."""
 
     words: str
     measure: Callable[[base.Host], float]
@@ -142,10 +142,10 @@ ZERO = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Spec(ABC):
-    """A node in one mode."""
+    """A node in one mode, with everything that a check needs to know about it."""
 
     requires: ClassVar[Ability]
-    coarse: ClassVar[int] = 1  # divisor of the size of pictures
+    coarse: ClassVar[int] = 1  # pictures are smaller by this factor
     rim: ClassVar[float] = samples.RIM  # smallest cosine judged in pictures
 
     title: str  # unique title for reports
@@ -155,9 +155,9 @@ class Spec(ABC):
     errors: Mapping[str, Tolerance] = field(default_factory=dict)  # tolerances by quantity
     # Errors outside the usual range of an input: by quantity, input and value.
     outside_errors: Mapping[tuple[str, str, float], Tolerance] = field(default_factory=dict)
-    libraries: tuple[str, ...] = ()  # libraries that it applies to; () for all
+    libraries: tuple[str, ...] = ()  # libraries that the spec applies to; () for all
     claim: str = ""  # claim that replaces its checks' own; "" for none
-    closure: bool = True  # whether eonlib's OSL uses a renderer's own closure for it
+    closure: bool = True  # whether eonlib's OSL uses a renderer's closure for the node
     counts: Counts = USUAL
     # Input values of all evaluations, unless a batch sets them.
     fixed: Values = field(default_factory=dict)
@@ -242,7 +242,7 @@ class ValueSpec(Spec):
 class LobeSpec(ValueSpec):
     """A node that scatters light."""
 
-    curved: ClassVar[bool] = False  # whether it depends on the surface's curvature
+    curved: ClassVar[bool] = False  # whether values depend on the surface's curvature
     # Axes of `checks.states` on which only the first state is supported, and unsupported states.
     plain: ClassVar[tuple[str, ...]] = ()
 
@@ -281,7 +281,7 @@ class LobeSpec(ValueSpec):
         """Pairs and inputs at the edges of the domain."""
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs, with a quarter of each direction grazing; special pairs; and outside pairs."""
+        """Random pairs, whose directions are grazing in a quarter; special pairs; outside pairs."""
         rng, count = generator(), counts.pairs
         pairs = directions(rng, count), directions(rng, count)
         return (
@@ -389,7 +389,7 @@ ARGUMENTS = 1 << 14  # number of arguments per measured function
 
 @dataclass(frozen=True)
 class EngineFunction:
-    """A built-in function of engines."""
+    """A built-in shader function, whose error is measured on each engine."""
 
     name: str  # ending of the name of the GLSL function that wraps the expression
     expression: str  # GLSL expression in x, or in x and y

@@ -176,7 +176,7 @@ class Tolerance:
         return replace(self, terms=(*self.terms, *terms))
 
     def term(self, words: str, factor: float = 1.0) -> Term:
-        """This tolerance as a term of another one."""
+        """This tolerance as a term of another tolerance."""
         return Term(factor * self.value, words)
 
     def scale(self, expected: Array) -> Array:

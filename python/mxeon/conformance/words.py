@@ -49,7 +49,7 @@ def listed(names: Sequence[str]) -> str:
 
 
 def enumerated(names: Sequence[str]) -> str:
-    """All names of a non-empty list.
+    """All names of a non-empty list, joined by commas and "and".
 
     >>> enumerated(["a"]), enumerated(["a", "b", "c"])
     ('a', 'a, b and c')
@@ -491,7 +491,7 @@ def excess(result: Result) -> str:
 
 
 def look(result: Result) -> str:
-    """The appearance of a material in its pictures."""
+    """The appearance of a material in its pictures, in words."""
     if result.verdict == results.NOT_RUN:
         return f"not judged: {result.reason}"
     if result.verdict != results.PASSED:

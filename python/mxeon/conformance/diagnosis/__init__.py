@@ -48,7 +48,7 @@ SAME, NEAR = 0.03, 0.3
 FAR = 0.2  # another model's distance must be below this share of the claimed model's distance
 NAMED = 0.5  # the closest model is named if its distance is below this share of the values
 INEXACT = 30.0  # up to this many tolerances, the expected model counts as inexact
-LEAST_LIGHT = 1e-3  # below this cosine of the light, faults of the cosine look alike
+LEAST_LIGHT = 1e-3  # faults of the light's cosine are indistinguishable up to this cosine
 
 
 def defect(key: str, *names: str) -> Diagnosis:
@@ -57,7 +57,7 @@ def defect(key: str, *names: str) -> Diagnosis:
 
 
 def causes_of(parts: Iterable[tuple[Cause, Compared]], tolerance: Tolerance) -> Diagnosis:
-    """The diagnosis whose causes belong to the parts that are wrong."""
+    """A diagnosis with the cause of each part that is wrong."""
     wrong = (cause for cause, each in parts if tolerance.wrong(each).any())
     return Diagnosis(tuple(dict.fromkeys(wrong)))
 
@@ -154,7 +154,7 @@ def _model(
     """Causes: the closest model if it explains the values, the wrong region, or no close model."""
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     (first, least), (_, rival) = ranking[:2]
-    # Another model explains all values.
+    # Report another model if it explains all values.
     if explains and least <= max(tolerance.value, SAME * rival):
         flags = (
             (float(spec.flag),)
@@ -263,7 +263,7 @@ class Comparison:
 
     quantity: str  # quantity whose tolerance applies
     compared: Callable[[Case], Iterable[Compared]]
-    candidates: Callable[[Case], Sequence[Candidate]]  # own model first
+    candidates: Callable[[Case], Sequence[Candidate]]  # candidates, starting with the own model
     faults: Sequence[Fault] = ()  # faults to try between inputs and own model
 
     def __call__(self, case: Case) -> Iterable[Compared]:
@@ -359,7 +359,7 @@ def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) ->
 
 
 def diagnose_frame(case: Case) -> Diagnosis:
-    """The diagnosis of the first wrong branch: a dropped normal, a wrong region or a dead axis."""
+    """The diagnosis of the first wrong branch: an ignored normal or axis, or a wrong region."""
     tolerance = case.tolerance("frame")
     for compared, branch in zip(frames(case), ("direct", "environment", ""), strict=False):
         if not tolerance.wrong(compared).any():

@@ -46,7 +46,7 @@ def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Bat
 
 
 def _scaled(scale: Callable[[Batch], Array]) -> Callable[[Batch, Array], Array]:
-    """A function that scales values by a factor per pair, which counts as 0 where not finite."""
+    """A function that scales values by a factor per pair; factors that are not finite become 0."""
 
     def values(batch: Batch, values: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):

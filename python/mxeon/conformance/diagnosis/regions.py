@@ -11,14 +11,14 @@ from mxeon.conformance.results import Cause, Errors, Kind, Quantity, Region
 from mxeon.conformance.samples import Array, Batch, Mask
 from mxeon.conformance.tolerance import Compared, Tolerance, checksum, count_of, errors_of, relative
 
-COLORS = ("color", "tint", "color0")  # names of a node's color input
+COLORS = ("color", "tint", "color0")  # possible names of a node's color input
 INDICES = {"index": "ior", "extinction": "extinction"}
 # Inputs that named regions depend on, by the first word of the region's name.
 INPUT_OF = {"weight": "weight", "roughness": "roughness", "cuticle": "cuticle_angle", **INDICES}
 ABOUT = {"color": COLORS, **{name: (port,) for name, port in INPUT_OF.items()}}
 # Inputs whose ranges are never reported.
 UNREPORTED = ("normal", "tangent", "curve_direction", "position", "surface_normal")
-USUAL = {"weight": np.ones(1), "occlusion": np.ones(1)}  # defaults for inputs a batch lacks
+USUAL = {"weight": np.ones(1), "occlusion": np.ones(1)}  # defaults of inputs a batch lacks
 CHANNELS = "red", "green", "blue"
 EXACT = count_of(Quantity.VALUES)
 # Largest share of all correct values that a range with all wrong values may contain: usually

@@ -28,8 +28,8 @@ SCENES = 4  # number of scenes whose points are cached, enough for the pictures 
 # Size of pattern pictures, and maximum number drawn to find a wrong pattern.
 PATTERN_SIZE, PATTERNS_DRAWN = 32, 16
 OTHER = 0.01  # smallest reported difference of a pattern, above errors of filters and powers
-LATTICE = 32  # number of judged rows and columns in large pictures whose material varies
-MOST = 2000  # maximum pixels of such a picture to judge all; an integral takes a millisecond
+LATTICE = 32  # number of judged rows and columns in a picture that exceeds MOST
+MOST = 2000  # maximum judged pixels whose material varies; an integral takes a millisecond
 
 PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # generators draw at most three components
 TARGETS = ("glsl", "essl", "vulkan", "wgsl")  # targets whose shaders can draw a node's value
@@ -85,7 +85,7 @@ class ExpectedPicture:
 
 
 class Reference(base.Host):
-    """The models of `mxeon.models.table` and the nodes of `mxeon.models.nodes`."""
+    """A host with the models of `mxeon.models.table` and the nodes of `mxeon.models.nodes`."""
 
     name, target = "reference", "glsl"
 
@@ -156,7 +156,7 @@ class Reference(base.Host):
                 own = drawn(elements, elements[-1].getType(), "")
                 if np.abs(own - right).max() > OTHER * max(1.0, np.abs(right).max()):
                     return elements[-1].getCategory(), elements[-1].getName()
-        except NotRun:  # such nodes cannot be compared
+        except NotRun:  # patterns that cannot be drawn are not compared
             pass
         return ()
 

@@ -31,7 +31,7 @@ Arguments: TypeAlias = Mapping[str, Array]
 THROUGH, GRAPH = "transmission", "graph"  # branches of `Host.evaluate`
 ONE = np.ones((1, 1))
 ROUNDED = 1e-4  # smaller components of unit vectors count as roundings
-LEAST_HAIR = 1e-12  # below this roughness, the hair model is a delta function
+LEAST_HAIR = 1e-12  # smallest hair roughness; smaller ones would give a delta function
 GGX = "ggx"  # the only supported microfacet distribution
 EMISSION, MEDIUM, HAIR = "uniform_edf", "anisotropic_vdf", HAIR_NODE.category
 LIGHTLESS = (EMISSION, MEDIUM, "transparent")  # closures that scatter no light at the surface
@@ -137,7 +137,7 @@ def radiance(tree: ClosureTree | None) -> Array:
 
 
 def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Array | None:
-    """Sum of an argument over all closures of this name, with the tree's weights; or None."""
+    """Sum of an argument over all closures of this name, with the tree's weights, or None."""
     if tree is None:
         return None
     if tree.name == name:

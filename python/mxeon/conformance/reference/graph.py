@@ -53,7 +53,7 @@ class Graph(Nodes):
         self,
         document: mx.Document,
         points: ShadingPoints,
-        inputs: Mapping[str, ArrayLike] | None = None,  # replace the document's values
+        inputs: Mapping[str, ArrayLike] | None = None,  # values that replace the document's
         emits: bool = True,  # whether emission and opacity count
         # Measures values of nodes without a function; if None, such nodes raise NotRun.
         measure: Measure | None = None,
@@ -276,7 +276,7 @@ class Graph(Nodes):
         raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
 
     def _written(self, path: Path, name: str, port: mx.Input) -> Value:
-        """Value of an unconnected input, in the document's color space and in meters."""
+        """Value of an unconnected input, converted to the document's color space and to meters."""
         element = self.elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
         declared = nodedef.getActiveInput(name) if nodedef else port

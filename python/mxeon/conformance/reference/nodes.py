@@ -48,7 +48,7 @@ ISOTROPIC = ((32, 0), (64, 0), (128, 0), (256, 0))
 ANISOTROPIC = ((24, 12), (48, 32))
 AT_ONCE = 1 << 12  # number of arguments for which a series is summed at once
 KEPT = 4  # maximum cached lobes of a scene's pictures, up to 2.5 megabytes each
-SEPARATE = 1000  # below this number of directions, a series is no faster than individual albedos
+SEPARATE = 1000  # minimum directions for which a series is faster than individual albedos
 
 
 class ManyMaterialsError(Exception):
@@ -67,7 +67,7 @@ def _interpolated(series: Array, wo: Array, low: float, turns: bool) -> Array:
     u = np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0)
     x, y = np.square(wo[:, 0]), np.square(wo[:, 1])
     v = np.zeros_like(u) if turns else (x - y) / np.maximum(x + y, 1e-300)
-    # Sum once for equal directions, which a picture has many of.
+    # A picture has many equal directions, so sum the series once for each distinct direction.
     each, indices = np.unique(np.round(u + 1j * v, 13), return_inverse=True)
     parts = np.array_split(each, 1 + len(each) // AT_ONCE)
     sums = [chebyshev.chebval2d(part.real, part.imag, series).T for part in parts]
@@ -95,7 +95,7 @@ def _series(
     return None
 
 
-COSINES = np.linspace(-1.0, 1.0, 1025)  # nodes of the linearly interpolated blur
+COSINES = np.linspace(-1.0, 1.0, 1025)  # cosines at which the blur is computed
 REACHES = (1e-6, 1e3)  # range of mean free paths, relative to the sphere's radius
 
 
@@ -166,9 +166,7 @@ class ShadingPoints:
     most: float = np.inf
     round: bool = False  # whether these are points of the unit sphere
     behind: bool = False  # whether only transmitted light counts
-    opacity: bool = (
-        False  # whether transmission-only lobes pass all light that layers above them pass
-    )
+    opacity: bool = False  # whether transmission-only lobes pass all light that reaches them
     searched: bool = False  # whether eonlib's environment sum uses both alphas for masking
 
     def lobe(
@@ -280,7 +278,7 @@ def at(inputs: Inputs, points: NDArray[np.intp]) -> dict[str, Array]:
 
 def albedo_at(albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
     """An albedo of a lobe. Without a closed form, equal views and inputs are computed once."""
-    wo = np.minimum(wo, 1.0)  # rounding may exceed 1
+    wo = np.minimum(wo, 1.0)  # rounded cosines may exceed 1
     if not node.fitted and node.integral is None:
         return np.asarray(np.broadcast_to(albedo(wo, inputs), wo.shape))
     varied = [np.reshape(each, (len(wo), -1)) for each in inputs.values() if len(each) > 1]
@@ -304,7 +302,7 @@ LOBES = {
 
 NOTHING = Bsdf(np.zeros(3), np.ones(3))  # an absent lobe
 
-# Nodes that combine lobes: category -> inputs, and a function of them.
+# Nodes that combine lobes: category -> names of inputs, and a function of their values.
 COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
     "layer": (("top", "base"), layering.layer),
     "mix": (("fg", "bg", "mix"), layering.mix),
@@ -326,7 +324,7 @@ def node_lobe(
 ) -> Bsdf:
     """Lobe of a node; raises NotRun for input values that the models do not cover."""
     # A lobe without a weight scatters nothing.
-    weight = np.reshape(inputs.get("weight", np.ones(1)), (-1, 1))  # hair has none
+    weight = np.reshape(inputs.get("weight", np.ones(1)), (-1, 1))  # hair has no weight
     if (beyond := weight[~((weight >= 0.0) & (weight <= 1.0))]).size:
         raise _outside(node, f"weight must lie in [0, 1]; got {beyond[0]:g}")
     if not weight.any():
@@ -477,7 +475,7 @@ def _when(compare: Callable[..., NDArray[np.bool_]]) -> Operation:
 
 UNARY, BINARY = ("in",), ("in1", "in2")
 
-# Category -> inputs, and a function of them.
+# Operations: category -> names of inputs, and a function of their values.
 OPERATIONS: dict[str, Operation] = {
     "constant": (("value",), same),
     "convert": (UNARY, lambda value: np.asarray(value, np.float64)),

@@ -49,7 +49,7 @@ VISIBLE = 0.01  # approximate smallest visible contrast, as a share of white or 
 class Control:
     """A deliberately wrong variant of a check on the same host, which must fail.
 
-    - `variant`: The change that makes it wrong.
+    - `variant`: The deliberate mistake, in words.
     - `error`: The error of the variant, as measured by the check.
     - `caught`: Whether the check failed on the variant, as it must.
     """
@@ -66,8 +66,8 @@ class Kind(Enum):
     MODEL = "model"  # the known model or defect nearest to the values
     FAULT = "fault"  # a fault between inputs and the correct model that reproduces the values
     ACCURACY = "accuracy"  # the correct model, but not accurate enough
-    REGION = "region"  # the inputs with wrong values
-    NOT_FINITE = "not finite"  # the inputs without finite values
+    REGION = "region"  # the region of pairs and inputs with wrong values
+    NOT_FINITE = "not finite"  # the region of pairs and inputs without finite values
     CURE = "cure"  # input values that make the worst samples correct
     DEFECT = "defect"  # another known defect
     UNKNOWN = "unknown"
@@ -172,7 +172,7 @@ class Diagnosis(BriefRepr):
 
     @property
     def distance(self) -> float:
-        """Root-mean-square distance to the best match; infinite without one."""
+        """Root-mean-square distance to the best match; infinite without any match."""
         return min(self.distances.values(), default=np.inf)
 
 
@@ -186,7 +186,7 @@ class Errors:
     - `of`, `wrong`, `not_finite`: Number of samples, of samples beyond the tolerance, and of
       samples without a finite error.
     - `largest`, `rms`: Largest and root-mean-square finite error.
-    - `region`: None for all samples.
+    - `region`: Region of the samples; None for all samples.
     """
 
     of: int
@@ -245,7 +245,7 @@ class Result(BriefRepr):
     - `measured`: Inputs of a document's nodes whose values come from the host, since patterns have
       no model; see `mxeon.conformance.reference.HostValues`.
     - `pages`: Names of the pages of `docs/upstream/` on the defects that the result shows.
-    - `seconds`: Time of its task, shared equally among the task's results.
+    - `seconds`: Duration of the result's task, divided equally among the task's results.
 
     Raises ValueError if the verdict is unknown, or an error is negative or has no tolerance.
     """
@@ -431,7 +431,7 @@ class Run(Scope):
 
     @property
     def passed(self) -> bool:
-        """Whether everything that was requested ran and nothing failed or was refused."""
+        """Whether every requested check ran, and nothing failed or was refused."""
         return self.exit_status == errors.PASSED
 
     @property
@@ -505,7 +505,7 @@ class Run(Scope):
 
 
 def _words() -> ModuleType:
-    """The module that makes sentences from results; it imports this one."""
+    """The module that makes sentences from results, imported late because it imports this one."""
     from mxeon.conformance import words
 
     return words

@@ -200,7 +200,7 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
     # Hosts that only render pictures measure relative errors, which cannot be compared with sizes
     # in other units.
     sized = result.host == issue.host or result.quantity is not Quantity.RELATIVE
-    if result.error is None and issue.sizes:  # the shader does not compile, for example
+    if result.error is None and issue.sizes:  # e.g. the shader does not compile
         return False
     size = issue.sizes.get(row, math.inf)
     if sized and (result.error or 0.0) > SPREAD * size:

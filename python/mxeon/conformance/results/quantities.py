@@ -11,7 +11,7 @@ _SCALED = "pi f cos, relative above 1"
 
 
 class Quantity(Enum):
-    """A quantity: its key in results.json, its unit, and what the unit means if not obvious."""
+    """A quantity: its key in results.json, its unit, and the unit's meaning unless obvious."""
 
     # Values in direct light.
     VALUE = "value", _SCALED, _LARGE

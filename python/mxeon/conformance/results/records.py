@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Results as JSON and back, for reports and journals."""
+"""Conversion of results to JSON and back, for reports and journals."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -30,7 +30,7 @@ from mxeon.shaders.methods import UNCHOSEN, Methods
 
 __all__ = ["check", "read_run", "to_run", "work"]
 
-EVALUATING = tuple(row.name for row in HOSTS if row.way == "pairs")  # hosts for any library
+EVALUATING = tuple(row.name for row in HOSTS if row.way == "pairs")  # hosts of all libraries
 
 Outcomes = Iterable[tuple[int, Findings]]
 Executor = Callable[[Sequence[Task]], Iterable[tuple[int, pool.Outcome]]]
@@ -274,7 +274,7 @@ def _executor(
 def _subject(task: Task) -> tuple[str, str, str]:
     """A key for tasks that share shader, samples and diagnosis, so they run in one worker.
 
-    Expected values do not depend on the library; it counts only for hosts that open one at a time.
+    Expected values do not depend on the library; only some hosts must reopen for another library.
     """
     return task.host, "" if task.host in EVALUATING else task.library, task.subject
 

@@ -49,7 +49,7 @@ class Journal:
         self._exit = ExitStack()
         self._converter = make_converter(self._path.parent)
         self._held = False
-        self.findings: dict[int, Findings] = {}  # by the task's number in the plan
+        self.findings: dict[int, Findings] = {}  # keys are task numbers in the plan
 
     def __enter__(self) -> Self:
         if os.path.lexists(self._folder):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The judge: executes tasks in sequence and keeps its hosts open."""
+"""The judge, which executes the tasks of a run one after another."""
 
 import os
 import time
@@ -41,7 +41,7 @@ def one_result(
     diagnosis: results.Diagnosis = results.NO_DIAGNOSIS,
 ) -> Findings:
     """Findings of a task without a measurement, which only state a reason or a diagnosis."""
-    if task.check == plan.STUDIO:  # judges nothing
+    if task.check == plan.STUDIO:  # this task judges nothing
         return Findings(notes=((f"not drawn in the studio: {reason}", Path(task.subject).name),))
     if not (claim := CLAIMS.get(task.check)):
         own_nodes(task.host)  # adds the checks of a renderer
@@ -57,7 +57,7 @@ class Judge:
         self._policy, self._opened = policy, opened
         self._hosts: dict[str, base.Engine | NotRun] = {}  # open hosts, or why they cannot run
         self._reference = reference.Reference()
-        self._case = lru_cache(maxsize=1)(_case)  # one, since pairs take much memory
+        self._case = lru_cache(maxsize=1)(_case)  # a single case, since pairs take much memory
 
     def work(self, task: Task) -> Findings:
         """Findings of a task; errors include documents that cannot be read.
@@ -74,7 +74,7 @@ class Judge:
             return replace(findings, results=tuple(found))
         except InterfaceError as reason:
             return one_result(task, results.NOT_RUN, reason=str(reason))
-        except DocumentError as reason:  # the document is mxeon's own
+        except DocumentError as reason:  # the refused document is mxeon's own
             refused = results.Cause(results.Kind.DEFECT, "own_document_refused", text=str(reason))
             return one_result(task, results.FAILED, diagnosis=results.Diagnosis((refused,)))
 
@@ -127,7 +127,7 @@ class Judge:
         found = (check.judge(case),)
         images: tuple[results.Picture, ...] = ()
         if task.check in results.DIRECT:
-            with suppress(NotRun, ShaderError):  # the check itself reports these
+            with suppress(NotRun, ShaderError):  # the check reports these errors itself
                 images = pictures.comparison_pictures(case)
         return Findings(found, images)
 
@@ -159,5 +159,5 @@ def _copy(task: Task) -> str:
 def _case(host: base.Engine, title: str, library: str, seed: int, methods: Methods) -> Case:
     spec = next(each for each in own_nodes(host.name) or ALL if each.title == title)
     backend = backend_of(host.name, spec)
-    assert backend is not None  # otherwise the task would not exist
+    assert backend is not None  # tasks exist only for specs with a backend
     return make_case(backend, host, spec, library)

@@ -95,7 +95,7 @@ def read_documents(
     for (file, library), lines in faults.items():
         if all((file, each) in faults for each in libraries):
             refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
-        else:  # another library can read it
+        else:  # another library can read the file
             refused[f"{file} with {library}"] = tuple(f"{line} (with {library})" for line in lines)
     unreached_by_file = {
         file: {title: tuple(sorted(each, key=repr)) for title, each in found.items() if each}
@@ -122,7 +122,7 @@ def _answers(
 
 @cache
 def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
-    """Every spec with a node in its mode; without SENTENCES, which only run if users name them."""
+    """Each spec with its node in the judged mode, except SENTENCES, which users must name."""
     rows = (row for row in ALL_SPECS if row not in surface_texts.SENTENCES)
     return tuple((row, node_of(row.document(), row.node)) for row in rows)
 
@@ -178,7 +178,7 @@ class Findings:
     unjudged: tuple[tuple[str, str], ...] = ()
 
     def answer(self, task: Task) -> bool:
-        """Whether these findings can belong to a task: not empty, and all from its host."""
+        """Whether these findings can belong to a task: not empty, with its host and library."""
         records: list[Result | Picture] = [*self.results, *self.pictures]
         location = (task.host, task.library)
         return bool(records or self.errors or self.unjudged or task.check == STUDIO) and all(
