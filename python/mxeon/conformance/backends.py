@@ -502,8 +502,8 @@ def _is_shown(batch: Batch, rim: float = RIM) -> Mask:
 class Shown(Evaluating):
     """A renderer, or a host restricted to the pairs and inputs that renderers support.
 
-    Both cosines are at least RIM, and no lobe is so sharp that the pixel position matters. Roughness is at
-    most 1, as in OSL's stdosl.h, weights are not negative, and there is no occlusion.
+    Both cosines are at least RIM, and no lobe is so sharp that the pixel position matters.
+    Roughness is at most 1, as in OSL's stdosl.h; weights are not negative; occlusion is absent.
     """
 
     fewer = FEW_RENDERED
@@ -653,8 +653,8 @@ HALF_CUT = Term(2.0**-10, "half floats, cut off")  # llvmpipe truncates instead 
 # Relative error of a lobe per angular error of a ray's point: 2 / alpha for a distribution, with
 # alpha at least 0.4, plus 3 for Fresnel, shadowing and the cosine.
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
-# Each of two cosines has five roundings. They count 20 times in s / t, since cosines are at least 0.05, and
-# once each in s and in the cosine factor.
+# Each of two cosines has five roundings. Their errors count 20 times in s / t, as cosines are at
+# least 0.05, and once each in s and in the cosine factor.
 TWO_COSINES = roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)")
 EXACT = sum_in(Quantity.DIFFERENCE, roundings(28, "(14, of numbers up to 2)"), TWO_COSINES)
 EXACT_ALBEDO = sum_in(Quantity.ALBEDO, roundings(21 * 1.02, "of numbers up to 1.02"))

@@ -163,7 +163,7 @@ def values(case: Case) -> Iterator[Compared]:
 
 
 def albedos(case: Case) -> Iterator[Compared]:
-    """The environment branch compared with the directional albedo, or with MaterialX's fit of it."""
+    """The environment branch, compared with the directional albedo or MaterialX's fit of it."""
     spec, fitted = case.spec, case.backend.prefiltered
     for batch in case.views:
         if fitted and isinstance(spec, microfacets.FacetSpec):

@@ -110,7 +110,7 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host, scene: 
 
 
 def _others(lobes: tuple[ShownLobe, ...], direct: bool) -> list[Term]:
-    """Additional errors due to inputs of lobes: a film, an index below 1, and narrow lobes of hair and sheen."""
+    """Additional errors due to a film, an index below 1, and narrow lobes of hair and sheen."""
 
     def some(name: str, condition: Callable[[np.ndarray], np.ndarray], category: str = "") -> bool:
         """Whether an input satisfies a condition at any point, in all lobes or in one category."""

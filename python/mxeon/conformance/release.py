@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Comparison of a library with the installed MaterialX release: definitions, units, graphs and texts of nodes.
+"""Compares definitions, units, graphs and texts of a library with the installed MaterialX release.
 
-Nodes with a model are judged by their model. For everything else the release is the reference: nodes that are
-written differently are evaluated for the same inputs and must have the same values. A library that lacks nodes of
-the release is an older version and is not compared. A library with additional nodes in MaterialX's own
-documents may be a newer version, so its differences are permitted.
+Nodes with a model are judged by their model. For everything else, the release is the reference:
+nodes written differently are evaluated for the same inputs and must have the same values. A library
+that lacks nodes of the release is an older version and is not compared. A library with additional
+nodes in MaterialX's own documents may be a newer version, so its differences are permitted.
 """
 
 from collections.abc import Iterator, Sequence
@@ -501,7 +501,7 @@ def distance(own: Array, right: Array) -> float:
 def check_release(
     host: Host, library: str
 ) -> tuple[tuple[Result, ...], tuple[tuple[str, str], ...]]:
-    """The result of comparing a library with the installed release, and the parts that are not judged."""
+    """The result of comparing a library with the installed release, and the parts not judged."""
     release = released(library)
     if release is None:
         why = f"the library lacks nodes of MaterialX {mx.getVersionString()}: it is an older one"

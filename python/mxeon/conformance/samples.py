@@ -50,7 +50,7 @@ class Counts:
     mirrored: int = 1 << 11  # views with lights near the mirror direction
 
     def varied(self) -> "Counts":
-        """The same counts for seed 1, otherwise up to 1/8 fewer, so that shaders cannot recognize them."""
+        """Equal counts for seed 1, else up to 1/8 fewer, so that shaders cannot recognize them."""
         share = 1.0 - (SEED.get() - 1) * GOLDEN_RATIO % 1.0 / 8.0
         names = "pairs", "few", "albedos", "mirrored"
         return replace(self, **{name: math.ceil(share * getattr(self, name)) for name in names})

@@ -295,7 +295,7 @@ class Result(BriefRepr):
 
     @property
     def explanation(self) -> str:
-        """The reason for a failure in words: its size, the diagnosis, and the page about the defect."""
+        """The reason for a failure in words: its size, the diagnosis, and the defect's page."""
         return str(_words().explanation(self))
 
     @property

@@ -93,7 +93,7 @@ def issues() -> Mapping[str, Issue]:
 def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
     """The defect of a page, with its measurements.
 
-    Raises CheckError if the page does not begin with a row or a title, or the row has an unknown key.
+    Raises CheckError if the page does not begin with a row or title, or the row has an unknown key.
     """
     parts = PAGE.fullmatch(text)
     if not parts:
