@@ -112,7 +112,7 @@ class DocumentHost(base.Host):
         return (*raster.approximations(shader), *filter(None, [self.unread(shader)]))
 
     def unread(self, shader: Shader) -> str:
-        """Subsurface lobes, which need a curvature: each quad has one normal."""
+        """Report subsurface lobes: they need a curvature, but each quad has a single normal."""
         if SUBSURFACE in inner_lobes(shader):
             return (
                 f"subsurface scattering depends on the curvature, and {self.name} draws flat quads"
@@ -125,7 +125,7 @@ class DocumentHost(base.Host):
 
     @abstractmethod
     def _check(self, error: str, printed: Sequence[str]) -> None:
-        """Raise NotRun or ShaderError for a reply's error or for printed lines."""
+        """Raise NotRun or ShaderError if the reply or the printed lines report an error."""
 
     def _document(self, shader: Shader) -> tuple[str, str]:
         """Text of a shader's document, and the name path of the element to show."""

@@ -39,7 +39,7 @@ def texels_of(path: str | Path) -> int:
 def read_texture(path: str | Path) -> NDArray[np.float32]:
     """Pixels of a texture, row 0 at the bottom, where MaterialX has v = 0.
 
-    For a set of textures, it is the tile [0, 1]^2, which contains all coordinates of a sphere. A single channel is
+    Of a set of textures, it reads the tile [0, 1]^2, which contains all coordinates of a sphere. A single channel is
     repeated for all colors, as in MaterialX, by a view with a last stride of 0. Raises ImageError for more than four
     channels, and warns of non-finite values.
     """

@@ -266,7 +266,7 @@ def run(command: Sequence[str], text: str = "", host: str = "vulkan") -> None:
 
 
 def _std140(members: str, uniforms: raster.Uniforms) -> bytes:
-    """Bytes of a block up to its first structure; no uniforms follow one."""
+    """Bytes of a block up to its first structure; no uniforms follow a structure."""
     data, offset = bytearray(BLOCK_SIZE), 0
     for kind, name in re.findall(r"(\w+) (\w+);", members):
         if kind not in STD140:

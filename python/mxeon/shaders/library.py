@@ -206,7 +206,7 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
     except (mx.Exception, mx.ExceptionParseError, LookupError) as error:
         reason = library_tree.in_words(library, str(error))
         raise InputError(f"{' '.join(('library', library, *definitions))}: {reason}") from None
-    # Materials in the folder would take the place of nodes with their names in other documents.
+    # Materials in the folder would replace nodes of the same name in other documents.
     used = {each.getNodeGraph() for each in document.getImplementations()}
     for graph in document.getNodeGraphs():
         if not graph.getNodeDefString() and graph.getName() not in used:

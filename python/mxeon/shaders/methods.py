@@ -60,7 +60,7 @@ class Methods:
             raise InputError(f"airy must lie in [1, {MOST_ITERATIONS}]; got {self.airy}")
 
     def over(self, host: "Methods") -> "Methods":
-        """These methods, completed by a host's."""
+        """These methods, completed by the host's choices."""
         return replace(host, **dict(self.chosen()))  # type: ignore[arg-type]
 
     def chosen(self) -> Iterator[tuple[str, str | int | bool]]:

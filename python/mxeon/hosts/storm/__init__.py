@@ -46,7 +46,7 @@ class StormHost(DocumentHost):
         return super()._shown(replace(shader, folders=folders), scene, card)
 
     def unread(self, shader: Shader) -> str:
-        """Subsurface lobes, or the enumerated inputs of closures: Storm takes their defaults."""
+        """Report subsurface lobes, or enumerated inputs, for which Storm uses the defaults."""
         if reason := super().unread(shader):
             return reason
         names = []

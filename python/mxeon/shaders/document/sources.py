@@ -39,7 +39,7 @@ def check_sources(
     title, code = label(document), references.foreign_code(document)
     rule = f"{title}: must have"
     size = 0  # total bytes of all files
-    functions = 0  # characters of function sources, includes counted
+    functions = 0  # characters of function sources with their includes
     expressions = max((len(each.getAttribute("sourcecode")) for each in code), default=0)
     known: set[tuple[str, str]] = set()  # names and including folders
     read: set[str] = set()
