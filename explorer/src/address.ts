@@ -17,7 +17,7 @@ import { consistent, firstView, sourcesOf } from "./view";
 
 interface Codec<T> {
   readonly write: (value: T) => string;
-  /** The value of a text; undefined if there is no text. */
+  /** The value that a text represents; undefined if there is no text. */
   readonly read: (text: string, first: T) => T | undefined;
 }
 

@@ -85,7 +85,7 @@ export function useErrors(
   }, [stage, measured, errors]);
 }
 
-/** The row of the reference table with the largest error, for sides without a model in the page. */
+/** Row of the reference tables with the largest error; null unless both sides have such a table. */
 export function farthestRow(sources: Sources, state: State, errors: ErrorsOf): number | null {
   const sides = SIDES.map((side) => sourceOf(sources, state[side]));
   const found = sides

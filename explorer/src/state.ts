@@ -3,7 +3,7 @@
 
 import type { Triple } from "./data";
 
-// "plane": a sphere on a plane
+// "plane" is a sphere on a plane.
 export const SHAPES = ["sphere", "plane", "cloth", "ball", "fiber"] as const;
 export const SURROUNDINGS = ["none", "uniform", "studio", "sky", "own"] as const;
 export const COMPARISONS = ["wipe", "side", "difference", "flicker"] as const;
@@ -29,7 +29,7 @@ export interface State {
   readonly right: Side;
   readonly comparison: Comparison;
   readonly wipe: number; // fraction of the width that shows the left material, in [0, 1]
-  readonly scale: number; // difference that has the last color, in units of the picture's radiance
+  readonly scale: number; // difference at the end of the color scale, as radiance of the picture
   readonly shown: SideName; // difference mode: alternate the two sides
   readonly shape: Shape;
   /**
@@ -58,7 +58,7 @@ export interface State {
   readonly samples: number; // paths per pixel at which path tracing stops
   /** Input values that differ from the document's own, by source id and uniform name. */
   readonly inputs: Readonly<Record<string, Readonly<Record<string, Value>>>>;
-  /** Position of the probe in the picture: [0, 1]^2 from the top left; null for none. */
+  /** Position of the probe in the picture: [0, 1]^2 from the top left; null without a probe. */
   readonly probe: readonly [number, number] | null;
 }
 

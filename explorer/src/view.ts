@@ -22,7 +22,7 @@ export function sourceOf(sources: Sources, side: Side): Source {
   return sources.get(side.source)!;
 }
 
-/** The model of a side; null if only its shader's values can tell. */
+/** The model of a side; null if it is only known from the shader's values. */
 export function actualModel(source: Source, side: Side, state: State): Model | null {
   if (source.kind === "model") return model(source.model);
   return source.actual && !isChanged(source, state) ? model(byFlag(source.actual, side)) : null;

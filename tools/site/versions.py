@@ -26,8 +26,8 @@ COMMAND = ("--node", "all", *surface_texts.OPTIONS, "--library", "eonlib", "--li
 def record(versions):
     """Data for the pages; `versions` has the results by version.
 
-    By version, it has the number of results per library, node and verdict, and eonlib's results that
-    do not pass; by page about MaterialX on gl or in its texts, whether all of its rows pass.
+    By version, it has the number of results per library, node and verdict, and eonlib's results
+    that do not pass; by page about MaterialX on gl or in its texts, whether all of its rows pass.
     Sentences of surface shaders' texts are not counted, because surfaces.md has their verdicts.
     """
     found = {

@@ -45,7 +45,7 @@ export const SHAPE_INDEX: Record<Shape, number> = {
 
 const BEND = -1.9; // height of the center around which the fibers bend: STAGE_BEND of shapes.glsl
 
-/** Height of the bend's center, and 1; both are 0 for shapes with the tangents of a globe. */
+/** The uniform stage_bend: height of the bend's center and 1 for fibers, zeros for other shapes. */
 export function bend(shape: Shape): [number, number] {
   return shape === "fiber" ? [BEND, 1] : [0, 0];
 }

@@ -57,7 +57,7 @@ function Group({ source, data, state, change }: ViewProps & { readonly source: S
 
 interface FieldProps {
   readonly port: Port;
-  readonly alone: boolean; // whether its label is unique, so that its node needs no name
+  readonly alone: boolean; // whether its label is unique, so that the node's name is not shown
   readonly value: Value;
   readonly onChange: (value: Value) => void;
 }

@@ -31,7 +31,7 @@ function brightest(color: Vec3): number {
 
 const RADIUS = 120;
 const REACH = 89; // degrees on each side of the normal
-const STEEPEST = 1.2; // radian from the normal within which the scale contains every value
+const STEEPEST = 1.2; // lights within this angle from the normal, in radian, fit into the plot
 
 /** pi f by the angle of the light, for the probe's viewer. */
 export function Polar({ curves, pair, color, roughness }: PlotProps) {
@@ -46,7 +46,7 @@ export function Polar({ curves, pair, color, roughness }: PlotProps) {
   const lobes = curves.map(({ model }) =>
     angles.map((angle): [number, number] => [(angle * Math.PI) / 180, value(model, angle)]),
   );
-  // Values diverge where both directions graze, so these may exceed the plot.
+  // Exclude grazing lights, whose values may diverge and exceed the plot.
   const inner = lobes.flatMap((lobe) => lobe.filter(([angle]) => Math.abs(angle) < STEEPEST));
   const top = Math.max(...inner.map(([, radius]) => radius), 1e-6);
   const radius = scaleLinear([0, top], [0, RADIUS]).nice(4);

@@ -21,10 +21,10 @@ export interface Measured {
 interface ProbeProps extends ViewProps {
   readonly calm: State; // the last view at rest, to which the values belong
   readonly pair: Pair;
-  readonly row: number | null; // errors for the pairs in the reference tables
-  readonly measured: Measured | null; // null during motion, and if no shader runs
+  readonly row: number | null; // row of the reference tables that belongs to `pair`
+  readonly measured: Measured | null; // null during motion or if no shader runs
   readonly able: boolean; // whether shaders run
-  readonly drawn: boolean; // whether the first picture is done; nothing is plotted before
+  readonly drawn: boolean; // whether the first picture is done; plots wait for it
 }
 
 const DECIMALS = 7;

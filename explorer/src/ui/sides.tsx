@@ -31,7 +31,7 @@ const SAMPLER_TITLES: Readonly<Record<Sampler, string>> = {
   cosine: "cosine sampling",
 };
 
-/** Selects which material of both libraries is compared. */
+/** Selects the material to compare, which both libraries draw. */
 export function Materials({ data, sources, state, change }: ViewProps) {
   const materials = materialsOf(data);
   const stem = stemOf(state.left.source);
@@ -48,7 +48,7 @@ export function Materials({ data, sources, state, change }: ViewProps) {
 }
 
 interface SidesProps extends ViewProps {
-  readonly rest: State | null; // the view of the verdicts; null before the first picture
+  readonly rest: State | null; // the view that was judged; null before the first picture
   readonly evidence: Readonly<Record<SideName, Evidence>>;
 }
 

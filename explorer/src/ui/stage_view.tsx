@@ -12,7 +12,7 @@ import { LightHandle, ProbeMark, WipeHandle } from "./handles";
 import type { ViewProps } from "./sides";
 
 interface StageViewProps extends ViewProps {
-  /** Position of the probe in the picture, [0, 1]^2 from the top left; null for none. */
+  /** Position of the probe in the picture, [0, 1]^2 from the top left; null without a probe. */
   readonly mark: readonly [number, number] | null;
   readonly onStage: (stage: Stage | null) => void;
   readonly onDrag: (dragging: boolean) => void;
