@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests are skipped if a host, program or package is missing, and fail if MXEON_REQUIRE names it.
 
-MXEON_REQUIRE is a comma-separated list of hosts, and `packages` for all programs and Python packages.
-`./run test --all` names everything that it installs.
+MXEON_REQUIRE is a comma-separated list of hosts; `packages` stands for all programs and Python
+packages. `./run test --all` lists everything that it installs.
 """
 
 import os
@@ -19,7 +19,7 @@ VARIABLE, PACKAGES = "MXEON_REQUIRE", "packages"
 
 
 def required():
-    """Hosts that must run, and `packages` if every test must run."""
+    """Names in MXEON_REQUIRE: hosts that must run, and `packages` if every test must run."""
     names = {name for name in os.environ.get(VARIABLE, "").split(",") if name}
     known = (*host_names(), PACKAGES)
     if unknown := names - set(known):
@@ -30,19 +30,19 @@ def required():
 
 
 def missing(name, reason):
-    """Skip the test for this reason; fail if the name is required."""
+    """Skip the test for the given reason; fail it if `name` is required."""
     if name in required():
         pytest.fail(f"{VARIABLE} names {name}: {reason}")
     pytest.skip(reason, allow_module_level=True)
 
 
 def program(name):
-    """Path of a program on PATH; skips the test without it."""
+    """Path of a program on PATH; skips the test if there is none."""
     return shutil.which(name) or missing(PACKAGES, f"no program {name}; ./run test --all has it")
 
 
 def package(name):
-    """A module of a Python package; skips the test without it."""
+    """Import and return a module; skips the test if its package is not installed."""
     try:
         return import_module(name)
     except ImportError as error:
@@ -51,7 +51,7 @@ def package(name):
 
 @contextmanager
 def available(host):
-    """Skip the test if this block reports that a host cannot run; fail if the host is required."""
+    """Skip the test if the `with` block raises NotRun; fail it if the host is required."""
     try:
         yield
     except NotRun as reason:

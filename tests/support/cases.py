@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Directions for tests: fixed seeds, grazing included."""
+"""Random directions for tests, with fixed seeds and grazing angles."""
 
 import numpy as np
 import pytest
 
 
 def named(rows):
-    """Parametrize a test by rows of a table."""
+    """Decorator that runs a test for each row of a table."""
     return pytest.mark.parametrize("row", rows, ids=lambda row: row.name)
 
 
@@ -18,13 +18,13 @@ def direction(mu, phi=0.0):
 
 
 def directions(shape, seed, least=0.0):
-    """Random unit vectors whose cosine with the normal is at least this."""
+    """Random unit vectors whose cosine with the normal is at least `least`."""
     share, turn = np.random.default_rng(seed).random((2, *np.atleast_1d(shape)))
     return direction(least + (1.0 - least) * share, 2.0 * np.pi * turn)
 
 
 def pairs(count, seed):
-    """`wo`, `wi`, `rho` of three channels and a number in [0, 1]; half the cosines near grazing."""
+    """Random `wo`, `wi`, RGB `rho` and roughness; half of the cosines are near grazing."""
     rng = np.random.default_rng(seed)
     mu = rng.random((2, count))
     grazing = rng.random((2, count)) < 0.5
@@ -34,7 +34,7 @@ def pairs(count, seed):
 
 
 def parameter(row, fraction):
-    """Arguments after rho of the functions of a row, at a fraction of the parameter's interval."""
+    """Arguments of a model's functions after rho, at a fraction of the parameter's interval."""
     if row.parameter is None:
         return ()
     low, high = row.interval

@@ -3,8 +3,8 @@
 
     python -m tests.support.client FOLDER OUTPUT [DATA]
 
-Writes the GLSL of each node that the folder implements to OUTPUT/<implementation>.frag, with the
-definitions of MaterialX or of the folder DATA that holds others in `libraries`.
+Writes the GLSL of each node that FOLDER implements to OUTPUT/<implementation>.frag. Definitions
+come from MaterialX, or from DATA/libraries if DATA is given.
 """
 
 import sys
@@ -14,8 +14,8 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenGlsl as mx_glsl
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-SURFACE = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, by type
-FILLED = {"BSDF": "conductor_bsdf", "VDF": "absorption_vdf"}  # inputs of combinations
+SURFACE = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of the surface node, by type
+FILLED = {"BSDF": "conductor_bsdf", "VDF": "absorption_vdf"}  # operands of a combination, by type
 
 
 def main(folder, output, data=None):
@@ -30,7 +30,7 @@ def main(folder, output, data=None):
 
 
 def shader(library, row, path):
-    """GLSL of a document with one node; asserts that it uses the row's implementation."""
+    """GLSL of a document with one node; asserts that it uses the implementation `row`."""
     document = mx.createDocument()
     document.setDataLibrary(library)
     element = rendered(document, document.getNodeDef(row.getNodeDefString()))
@@ -44,7 +44,7 @@ def shader(library, row, path):
 
 
 def rendered(document, definition):
-    """A node of a definition with its operands, or the surface that shows it."""
+    """Add a node with this definition and its operands; returns it, or a surface that uses it."""
     # Add the node, and the operands of a combination.
     kind = definition.getType()
     node = document.addNode(definition.getNodeString(), "node", kind)
@@ -65,7 +65,7 @@ def rendered(document, definition):
 
 
 def connect(document, node, name, kind, category):
-    """Connect an input to a new node of a category."""
+    """Add a node of the given category and connect it to the input `name`."""
     node.addInput(name, kind).setConnectedNode(document.addNode(category, f"node_{name}", kind))
 
 

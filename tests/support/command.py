@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command in a separate process, and its one-line messages."""
+"""Runs mxeon in a separate process and checks its one-line messages."""
 
 import os
 import subprocess
@@ -23,7 +23,7 @@ def run(*arguments, **environment):
 
 
 def output(*command, **options):
-    """The output of a program, which must succeed."""
+    """Run a program, assert that it succeeds, and return its output."""
     command = [*map(str, command)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, **options)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -31,7 +31,7 @@ def output(*command, **options):
 
 
 def wait_for(condition, process):
-    """Wait until a condition holds, while a process runs."""
+    """Wait until a condition holds; fail if the process ends first."""
     end = time.monotonic() + DEADLINE
     while not condition():
         assert time.monotonic() < end

@@ -19,17 +19,17 @@ from mxeon.shaders.nodes import (
 
 
 def material(nodes):
-    """A document of some nodes; `lobe` is the material's BSDF."""
+    """Text of a document with a material whose BSDF is the node named `lobe`."""
     return document_text(nodes + SURFACE)
 
 
 def lobe(category=OREN_NAYAR, name="lobe", **inputs):
-    """A rough diffuse node with values of its inputs."""
+    """Text of a lobe, rough diffuse by default, with the given input values."""
     return lobe_text(category, inputs, name)
 
 
 def surface(category, **inputs):
-    """A document with a surface shader and values of its inputs."""
+    """Text of a document with a surface shader and the given input values."""
     definitions = load_library("stock").getMatchingNodeDefs(category)
     ports = "".join(
         input_text(name, definitions[0].getActiveInput(name).getType(), value)
@@ -39,7 +39,7 @@ def surface(category, **inputs):
 
 
 def connected(name="lobe", **inputs):
-    """A rough diffuse node with inputs connected by the given attributes."""
+    """Text of a rough diffuse node; each input has the given XML attributes."""
     ports = "".join(
         f'<input name="{each}" type="{INPUT_TYPES[each]}" {attributes}/>'
         for each, attributes in inputs.items()
@@ -48,21 +48,21 @@ def connected(name="lobe", **inputs):
 
 
 def written(folder, text):
-    """The file of a document in a folder."""
+    """Write a document to a folder and return its path."""
     path = folder / "look.mtlx"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     return path
 
 
 def including(file):
-    """A document that includes another one."""
+    """Text of a document that includes another one by XInclude."""
     include = f'<xi:include href="{file}"/>'
     space = "http://www.w3.org/2001/XInclude"
     return f'<materialx version="1.39" xmlns:xi="{space}">{include}</materialx>'
 
 
 def refusal(source, policy=DEFAULT):
-    """The one-line refusal of a document."""
+    """Assert that a document is refused in one line, and return the message."""
     with pytest.raises(DocumentError) as refused:
         generate(source, "glsl", policy=policy)
     message = str(refused.value)
@@ -71,12 +71,12 @@ def refusal(source, policy=DEFAULT):
 
 
 def image(file, name="image"):
-    """An image node."""
+    """Text of an image node that reads the given file."""
     return f'<image name="{name}" type="color3"><input name="file" type="filename" value="{file}"/></image>'
 
 
 def textured(files):
-    """A document with a color that is the sum of the images in these files."""
+    """Text of a document whose material's color is the sum of several images."""
     add = (
         '<add name="s{0}" type="color3"><input name="in1" type="color3" nodename="{1}"/>'
         '<input name="in2" type="color3" nodename="i{0}"/></add>'
@@ -87,7 +87,7 @@ def textured(files):
     return material("".join(nodes) + connected(color=f'nodename="{names[-1]}"'))
 
 
-# A rough diffuse node with eonlib's lobe, whose color passes shader code of the studio.
+# Definition of a rough diffuse node whose color is scaled by a studio's own shader code.
 STUDIO = """<materialx version="1.39">
   <nodedef name="ND_studio_rough" node="studio_rough">
     <input name="color" type="color3" value="0.3, 0.1, 0.1"/>
@@ -115,7 +115,7 @@ FADE = "void studio_fade(vec3 color, out vec3 result)\n{\n    result = 0.5 * col
 
 
 def studio(folder):
-    """Write a studio's own definitions to a subfolder of a new folder, which is returned."""
+    """Write a studio's own definitions to folder/studio/nodes, and return folder/studio."""
     nodes = folder / "studio" / "nodes"
     nodes.mkdir(parents=True)
     (nodes / "rough.mtlx").write_text(STUDIO)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the parts of mxeon that need no engine, with POSIX modules, functions and signals removed.
 
-Every module is imported, then each command runs in the working folder. Under `-X warn_default_encoding`, a file
-that mxeon opens in the platform's encoding is an error.
+Every module is imported, then each command runs in the working folder. With
+`-X warn_default_encoding`, opening a file in the platform's encoding is an error.
 """
 
 import os
@@ -47,7 +47,7 @@ NOT_RUN = ("check", "report make")  # exit status 3: only the text of msl is che
 
 
 class Windows(ModuleType):
-    """The module `sys` with the name of another platform."""
+    """Stand-in for the module `sys` that reports the platform as Windows."""
 
     platform = "win32"
 
@@ -67,9 +67,9 @@ def hide() -> None:
 
 
 def import_all() -> None:
-    """Import every module, except those that a renderer's Python runs, and give it another platform.
+    """Import every module that does not run in a renderer's Python, and make it see Windows.
 
-    OpenGL on Linux remains without a display, because an X server may end at any time.
+    OpenGL uses EGL, which needs no display, because an X server may end at any time.
     """
     import glcontext
 

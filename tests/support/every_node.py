@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Judges the nodes of a library on gl with the MaterialX of this process, each by its values.
+"""Judges the values of a library's nodes on gl with the MaterialX that this process imports.
 
 python -m tests.support.every_node LIBRARY [NODE ...]     prints the verdicts as JSON
 """

@@ -20,7 +20,7 @@ sys.path.extend(str(folder) for folder in BUNDLED.glob("python*/site-packages"))
 
 
 def set_up(kit, folder):
-    """Scene with the camera, the sphere of the kit as a mesh, and the format of the pictures."""
+    """Create the scene: the kit's camera, its sphere mesh, and its picture format."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
@@ -44,7 +44,7 @@ def set_up(kit, folder):
 
 
 def set_cycles(scene, samples):
-    """Set Cycles with OSL and a box filter of one pixel."""
+    """Set up Cycles with OSL and a one-pixel box filter."""
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.device = "CPU"
@@ -58,7 +58,7 @@ def set_cycles(scene, samples):
 
 
 def set_material(sphere, source):
-    """Put the compiled OSL file on the sphere."""
+    """Compile an OSL file and assign it to the sphere."""
     compiled = source.with_suffix(".oso")
     assert _cycles.osl_compile(str(source), str(compiled))
     material = bpy.data.materials.new("material")
@@ -74,7 +74,7 @@ def set_material(sphere, source):
 
 
 def set_light(scene, description):
-    """Light the scene exactly like a scene of the kit."""
+    """Light the scene as one of the kit's scenes describes."""
     for lamp in list(bpy.data.lights):
         bpy.data.lights.remove(lamp)
     scene.world = bpy.data.worlds.new("world")

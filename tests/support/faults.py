@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Work that goes wrong on purpose, in processes that the tests of the pool start; full disks."""
+"""Tasks that fail on purpose in processes of the pool, and a simulated full disk."""
 
 import os
 import resource
@@ -17,7 +17,7 @@ def square(item):
 
 
 def misbehave(item):
-    """Misbehave in the way that the item names; a number is squared instead."""
+    """Fail in the way that the item names, or square the item if it is a number."""
     if isinstance(item, int):
         return square(item)
     print(f"about to {item}", file=sys.stderr, flush=True)
@@ -31,7 +31,7 @@ def misbehave(item):
 
 
 def once(item):
-    """Die at the first attempt: the item is a file that the first attempt leaves behind."""
+    """Die on the first attempt, which creates the file that the item names; succeed on the next."""
     path = Path(item)
     if not path.exists():
         path.touch()
@@ -40,7 +40,7 @@ def once(item):
 
 
 class Lost:
-    """A result whose process dies on the first attempt to send it."""
+    """A result that kills its process on the first attempt to send it."""
 
     def __init__(self, item):
         self.item = item
@@ -50,7 +50,7 @@ class Lost:
 
 
 def meet(folder):
-    """Process ID, once another process has begun to work."""
+    """Wait until another process has begun to work, and return this process's ID."""
     Path(folder, str(os.getpid())).touch()
     end = time.monotonic() + 300.0
     while len(os.listdir(folder)) < 2 and time.monotonic() < end:
@@ -59,7 +59,7 @@ def meet(folder):
 
 
 def need(item):
-    """Read the environment variable that the item names."""
+    """Value of the environment variable that the item names; raises NotRun if it is not set."""
     if item not in os.environ:
         raise NotRun(f"{item}: missing")
     return os.environ[item]
@@ -67,7 +67,7 @@ def need(item):
 
 @contextmanager
 def room_for(size):
-    """Limit the size of files in bytes, to simulate a full disk."""
+    """Limit the size of each file to `size` bytes, to simulate a full disk."""
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
     try:

@@ -21,7 +21,7 @@ gauss_legendre = lru_cache(np.polynomial.legendre.leggauss)
 
 
 def rule(edges, count):
-    """Nodes and weights of Gauss-Legendre between adjacent edges, shape (panels, count)."""
+    """Gauss-Legendre nodes and weights between adjacent edges, shape (panels, count)."""
     x, w = gauss_legendre(count)
     edges = np.asarray(edges)[:, np.newaxis]
     half = 0.5 * np.diff(edges, axis=0)
@@ -29,15 +29,15 @@ def rule(edges, count):
 
 
 def directions(theta, phi):
-    """Unit vectors on the grid of the two angles, shape (*theta, *phi, 3)."""
+    """Unit vectors for all combinations of the two angles, shape (*theta, *phi, 3)."""
     theta = theta.reshape(theta.shape + (1,) * phi.ndim)
     parts = (np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta) + 0.0 * phi)
     return np.stack(parts, axis=-1)
 
 
 def hemisphere(mu, count=64):
-    """Directions and weights in solid angle, exact across the kinks of EON for this `mu`."""
-    kink = np.minimum(np.arccos(mu), 0.5 * np.pi)  # no rounding above a right angle
+    """Quadrature directions and solid angles, with panels that end at EON's kinks for `mu`."""
+    kink = np.minimum(np.arccos(mu), 0.5 * np.pi)  # rounding may exceed a right angle
     theta, dtheta = rule(np.unique([0.0, kink, 0.5 * np.pi]), count)
     phi, dphi = rule(0.5 * np.pi * np.arange(-1, 4), count)
     weights = (dtheta * np.sin(theta))[:, :, np.newaxis, np.newaxis] * dphi
@@ -45,7 +45,7 @@ def hemisphere(mu, count=64):
 
 
 def sphere(nodes):
-    """Directions of all lights about the fiber +x, and their solid angles."""
+    """Directions over the full sphere around a fiber along +x, and their solid angles."""
     x, w = np.polynomial.legendre.leggauss(nodes)
     phi = 2.0 * np.pi * (np.arange(2 * nodes) + 0.5) / (2 * nodes)
     sine, angle = (each.ravel() for each in np.meshgrid(x, phi))
@@ -55,12 +55,12 @@ def sphere(nodes):
 
 
 def uniforms(count, seed):
-    """Random numbers, shape (count, 2)."""
+    """Pairs of random numbers in [0, 1), shape (count, 2)."""
     return np.random.default_rng(seed).random((count, 2))
 
 
 def binned(wi, edges, count):
-    """Number of directions in each bin of polar angle times azimuth, and of those below."""
+    """Number of directions below the horizon, then in each bin of polar angle and azimuth."""
     row = np.digitize(np.arccos(np.clip(wi[:, 2], -1.0, 1.0)), edges[1:-1])
     column = np.floor((np.arctan2(wi[:, 1], wi[:, 0]) / (2.0 * np.pi) % 1.0) * count).astype(int)
     bins = np.where(wi[:, 2] < 0.0, 0, 1 + row * count + np.minimum(column, count - 1))
@@ -68,8 +68,8 @@ def binned(wi, edges, count):
 
 
 def probability(sample, pdf, wo, u, count=12, nodes=24):
-    """p-value of a chi-square test of sample(wo, u) against pdf(wo, wi); the lower hemisphere is one bin."""
-    # Count samples, and integrate the density, in bins of equal projected area.
+    """p-value of a sampler's chi-square test against a density; the lower hemisphere is one bin."""
+    # The bins have equal projected area.
     edges = np.arccos(np.sqrt(np.linspace(1.0, 0.0, 9)))
     counts = binned(sample(wo, u)[0], edges, count)
     theta, dtheta = rule(edges, nodes)
@@ -78,7 +78,7 @@ def probability(sample, pdf, wo, u, count=12, nodes=24):
         "ikjl,ik,jl->ij", pdf(wo, directions(theta, phi)), dtheta * np.sin(theta), dphi
     )
     mean = len(u) * np.append(1.0 - bins.sum(), bins)
-    # Pool the bins in which the statistic would not be chi-square.
+    # Pool bins with fewer than 10 expected samples, whose statistic would not be chi-square.
     likely = mean >= 10.0
     statistic = np.sum((counts - mean)[likely] ** 2 / mean[likely])
     rest = mean[~likely].sum()

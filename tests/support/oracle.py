@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The models in 50 digits, from the equations as printed, and independent of `mxeon.models.diffuse`.
+"""The printed equations of the diffuse models in 50 digits, independent of `mxeon.models.diffuse`.
 
-One pair, one channel; arguments and results are mpmath numbers, directions triples of them.
+Each function takes one pair and one channel: mpmath numbers, and triples of them for directions.
 """
 
 import mpmath as mp
@@ -11,7 +11,7 @@ half = mp.mpf(1) / 2
 
 
 def decimal(text):
-    """A printed constant."""
+    """Constant with exactly the printed decimals."""
     return mp.mpf(text)
 
 
@@ -57,7 +57,7 @@ def qon_fujii(wo, wi, rho, sigma):
 
 
 def oren_nayar(wo, wi, rho, sigma):
-    """Coefficients C1, C2, C3 and the interreflection of [OrenNayar1994]."""
+    """BRDF of [OrenNayar1994]: the terms with C1, C2 and C3, and the interreflection."""
     theta_o, theta_i = (mp.atan2(mp.hypot(w[0], w[1]), w[2]) for w in (wo, wi))
     alpha, beta = max(theta_o, theta_i), min(theta_o, theta_i)
     cosine = mp.cos(mp.atan2(wo[1], wo[0]) - mp.atan2(wi[1], wi[0]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Short runs of a few checks, for tests of the processing of results."""
+"""Restricts runs to a few checks, for tests that only process results."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from mxeon.shaders.nodes import EON, OREN_NAYAR
 
 
 def keep_checks(patch, *keys):
-    """Restrict the runs that this process plans to these checks of diffuse nodes."""
+    """Restrict the runs of this process to the checks `keys` of diffuse nodes."""
     others = {*node_names()} - {EON, OREN_NAYAR}
     keep(patch, lambda task: task.check in keys and task.subject.split(",")[0] not in others)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expensive values, computed by one of pytest's processes for all of them."""
+"""Expensive values that one pytest process computes for all of them."""
 
 import os
 import pickle
@@ -11,7 +11,7 @@ import mxeon
 from mxeon.shaders.library import examples_folder
 from tests.support.plans import keep
 
-# Documents that are judged with each library: eonlib must render all examples correctly.
+# Documents judged with each library. All examples are judged with eonlib, which must pass them.
 EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough_base.mtlx")]
 DOCUMENTS = {"eonlib": sorted(examples_folder().glob("*.mtlx")), "stock": EXAMPLES}
 
@@ -20,19 +20,19 @@ _MADE = {}  # values by name, for tests in a single process
 
 
 def shared(factory, name, make):
-    """The value of `make`; with several test processes, the first one computes it."""
+    """Return the result of `make`, called once for all test processes."""
     if "PYTEST_XDIST_WORKER" not in os.environ:
         if name not in _MADE:
             _MADE[name] = make()
         return _MADE[name]
-    path = factory.getbasetemp().parent / f"{name}.pickle"  # a folder of this session
+    path = factory.getbasetemp().parent / f"{name}.pickle"  # this test session's folder
     with FileLock(f"{path}.lock"):
         if not path.exists():
             path.write_bytes(pickle.dumps(make()))
         return pickle.loads(path.read_bytes())
 
 
-# Checks of the text for path tracers, which eonlib alone has.
+# Checks of the text for path tracers, which only eonlib provides.
 DRAWN = (
     *("pdf", "sample", "path_value", "path_inside", "path_energy", "path_leaving", "path_albedo"),
     *("path_emission", "path_random"),
@@ -40,9 +40,9 @@ DRAWN = (
 
 
 def every_node(factory, library):
-    """Results of every node and some documents on gl with a library, computed once for all tests.
+    """Results of all nodes and of DOCUMENTS on gl with a library, computed once for all tests.
 
-    The longest tests judge the text for path tracers.
+    The checks DRAWN are left out, because slower tests cover them.
     """
 
     def make():

@@ -1,64 +1,66 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every tolerance of the tests, as arithmetic of its causes."""
+"""The tolerances of the tests, each computed from its sources of error."""
 
 from math import pi
 
 # Unit roundoff of float64 and float32.
 ROUNDING, ROUNDING_32 = 2.0**-53, 2.0**-24
 
-# Roundings of one function of NumPy: its vector versions are good to 4 ulp.
+# Roundings counted for a call of a NumPy function, whose vectorized versions are off by up to 4 ulp.
 FUNCTION = 8
 
 # --- models and albedos, float64 -------------------------------------------------------------
 
-# Value of a BRDF, in units of the largest of its terms: 1 / pi, or 1 / pi times the largest |s / t|
-# at the same cosines. The longest formula (full Oren-Nayar) has 60 roundings and four functions.
+# Error of a BRDF, in units of its largest term: 1 / pi, or 1 / pi times the largest |s / t| for the
+# same cosines. The longest formula, full Oren-Nayar, has 60 roundings and four functions.
 BRDF = (60 + 4 * FUNCTION) * ROUNDING
 
-# FON's loss H(mu) and albedos, relative: sums of two positive terms.
+# Relative error of FON's loss H(mu) and of its albedos, which are sums of two positive terms.
 LOSS = (7 + FUNCTION) * ROUNDING
 
-# Closed-form albedo <= 1.05 against 128 x 128 terms, absolute: 20 roundings of a term, and 130 of the
-# partial sums; and 64 nodes and weights good to 1e-14 each.
+# Absolute difference of a closed-form albedo <= 1.05 and its quadrature by 128 x 128 terms: 20
+# roundings per term, 130 in partial sums, and an error of 1e-14 in each of 64 nodes and weights.
 QUADRATURE = (20 + 130) * ROUNDING * 1.05 + 64 * 1e-14
 
-# One rounding of a number in [1/2, 1].
+# Relative error of one rounding, for a number in [1/2, 1].
 ONE_ROUNDING = 2.0 * ROUNDING
 
-# Values of sheen and of Burley's model, relative to the value and 1 / pi, times 1 / roughness:
-# 40 roundings and a power of at most 0.5 / roughness, whose base takes 10.
+# Error of sheen and of Burley's model, in units of (value + 1 / pi) / roughness: 40 roundings, and a
+# power with an exponent of at most 0.5 / roughness, whose base has 10 roundings.
 SHEEN = (40 + 2 * FUNCTION + 10) * ROUNDING
 
-# Turning a pair about the normal rounds each component three times, s by 9 roundings of S_o S_i.
+# Error after a rotation about the normal, which rounds each component three times. The error of s
+# grows by 9 roundings of S_o S_i.
 ROTATION = BRDF + 12.0 * ROUNDING
 
-# The approximate loss of [Portsmouth2025], Eq. (14); absolute. In eon_brdf_approx, in 1 / pi,
-# rho^2 r A (1 + c2 r) / ((c1 - c2) D) <= 3.61 stands before two losses of at most c1 = 0.288; in
-# fon_albedo_dir_approx r A <= 0.777 before one, in eon_albedo_dir_approx rho (1 - rho) r / D <= 0.213.
+# Absolute error of the approximate loss, [Portsmouth2025], Eq. (14), and its factor in each
+# function: eon_brdf_approx, in units of 1 / pi, contains two losses of at most c1 = 0.288 with the
+# factor rho^2 r A (1 + c2 r) / ((c1 - c2) D) <= 3.61; fon_albedo_dir_approx contains one with r A
+# <= 0.777, and eon_albedo_dir_approx one with rho (1 - rho) r / D <= 0.213.
 QUARTIC_LOSS = 6.03e-4
 QUARTIC_BRDF = 2 * 3.61 * 0.288 * QUARTIC_LOSS
 QUARTIC_FON_ALBEDO = 0.777 * QUARTIC_LOSS
 QUARTIC_EON_ALBEDO = 0.213 * QUARTIC_LOSS
 
-# eon_brdf_approx against Listing 1, which keeps 1 - E above 1e-7, in 1 / pi: c1 / (c1 - c2) stands
-# before one factor; where both are that small, 1 - <E> > 1.6e-6 divides them.
+# Difference of eon_brdf_approx and Listing 1, in units of 1 / pi. Listing 1 clamps each 1 - E to at
+# least 1e-7. One clamp counts c1 / (c1 - c2) = 1.34 times; two are divided by 1 - <E> > 1.6e-6.
 LISTING_EPSILON = 1.34 * 1e-7 + 1e-14 / 1.6e-6
 
 # --- fits --------------------------------------------------------------------------------------
 
-# The errors stated next to the coefficients: the largest errors of the printed digits, with the
-# last digit rounded up. fon_loss: relative, in float64 and in float32. ROOT: relative.
-# Density of exact samples: relative, for the worse of the two fits.
+# Largest relative errors of fits with their printed digits, as stated next to the coefficients and
+# rounded up: fon_loss in float64, fon_loss in float32, ROOT, and the density of exact samples for
+# the worse of its two fits.
 FIT_LOSS = 2.7e-7
 FIT_LOSS_32 = 5.4e-7
 FIT_ROOT = 1.8e-7
 EON_DENSITY = 1.3e-5
 
-# Weight and relative variance of exact samples, as the project promises.
+# Deviation of an exact sample's weight from 1, and relative variance of the weights, as promised.
 EON_WEIGHT = 5e-5
 EON_VARIANCE = 1e-9
 
-# Arc tangent below tan(pi / 8), relative: the polynomial's error, and the rounding of its eight decimals.
+# Relative error of the arc tangent below tan(pi / 8): the fit's, and that of its eight decimals.
 FIT_ANGLE = 1.9e-8 + 0.6e-8
 
 # --- shader twins, float32 against float64 ---------------------------------------------------
@@ -66,136 +68,136 @@ FIT_ANGLE = 1.9e-8 + 0.6e-8
 TWIN_ALBEDO = 1e-6
 TWIN_VALUE = 2e-6
 
-# Cycles, float32. A point of the sphere is a ray's origin plus its length, both at most 2: three
-# roundings. For grazing rays the error is e / mu, and the test compares e.
+# Error e of a normal in Cycles (float32). A point of the sphere is a ray's origin plus its length,
+# both at most 2: three roundings. For grazing rays the error is e / mu; the test multiplies by mu.
 CYCLES_NORMAL = 3 * 2.0 * ROUNDING_32
 
-# A picture of EON where both cosines exceed the rim, relative: 6 roundings, and 1e-5 of roughness.
+# Relative error of a picture of EON if both cosines exceed 0.1: 6 roundings, and 1e-5 of roughness.
 CYCLES_RIM = 0.1
 CYCLES_EON_RELATIVE = 6 * ROUNDING_32 / CYCLES_RIM**2 + 1e-5
 
-# Mean of the 3212 pixels of a picture in an environment: four times its deviation, rounded up.
+# Error of the mean of 3212 pixels in an environment: four standard deviations, rounded up.
 CYCLES_FURNACE_MEAN = 2e-4
 
-# Mean of the 208 pixels of a small sphere of subsurface under a uniform sky: the error of Cycles' inverse
-# albedo, as measured with 1024 samples, and twice the deviation of a pixel with 64.
+# Error of the mean of 208 pixels of a subsurface sphere under a uniform sky: Cycles' error when it
+# inverts the albedo, measured with 1024 samples, and two standard deviations with 64 samples.
 CYCLES_SUBSURFACE = 0.011 + 2 * 0.05 / 208**0.5
 
 # --- sampling and inversion, float64 ---------------------------------------------------------
 
-# A density against the product or the sum that it stands for, relative.
+# Relative difference between a density and the equivalent product or sum.
 PDF = 20.0 * ROUNDING
 
-# Components and squared lengths of sampled directions, absolute: 12 roundings and two functions of
-# a component, half of a length's error, taken twice, and the sums.
+# Absolute error of components and squared lengths of sampled directions: 12 roundings and two
+# functions per component, half of a length's error, all counted twice, and the sums.
 DIRECTION = 72.0 * ROUNDING
 
-# Directions sampled for a turned view, whose sine is rounded anew. As in float32, stretching makes the
-# difference more than 10 times larger for a thousandth of the samples: for one of 1000 on average, and
-# for more than 10 with a probability of 1e-8.
+# Error of directions sampled for a rotated view, whose sine is rounded again. As in float32, its
+# stretching makes one sample in 1000 exceed this on average, and more than 10 with probability 1e-8.
 TURNED_DIRECTION = 10.0 * DIRECTION
 TURNED_SHARE = 10 / 1000
 
-# A sample's density compared with the density for its direction, relative. Both have a length
-# or its square to the third or fourth power, 6 roundings each, over det M, a difference of terms
-# <= 1.6 that is 0.91 or more. Near the line where CLTC ends its density is a difference, exact to
-# DIRECTION absolutely.
+# Relative difference between the density returned with a sample and the density of its direction.
+# Both divide the third or fourth power of a length or its square (6 roundings each) by det M, a
+# difference of terms <= 1.6 that is at least 0.91. Near the boundary of CLTC, the density is a
+# difference with an absolute error of DIRECTION.
 SAMPLE_PDF = 2 * (4 * (6 + 6) + 6 * 1.8 + 20) * ROUNDING
 
-# Density where a sample is off by TURNED_DIRECTION, absolute: at mu_o 0.3 the largest |s / t| is
-# 3.2, to whose double a density's change adds its cosine's, per radian.
+# Absolute error of a density if its sample is off by TURNED_DIRECTION. At mu_o = 0.3, |s / t| is at
+# most 3.2. Per radian, the density changes by twice that, plus 1 for its cosine, all over pi.
 TURNED_PDF = (1 + 2 * 3.2) / pi * TURNED_DIRECTION
 
-# Height of a clipped cosine, relative: the root of a product of positive terms, with half of the
-# four roundings of the chord's ends and the six of the terms, and the root's own.
+# Relative error of the height of a clipped cosine, the root of a product of positive terms: half of
+# four roundings for the chord's ends and six for the terms, and one rounding of the root.
 RIM = (0.5 * (4 + 6) + 1) * ROUNDING
 
-# Side of the lune, absolute: x and z are at most 1, and off by 4 roundings and a function, and by RIM.
+# Absolute error of the side of the lune: x and z, at most 1, have 4 roundings, a function, and RIM.
 LUNE = (4 + FUNCTION) * ROUNDING + RIM
 
-# Integral of a density with a kink, absolute. The line where CLTC ends, at most pi long, crosses
-# Gauss panels whose nodes are h <= pi/2 / 64 apart; the slope jumps by at most 1 per steradian and
-# radian.
+# Absolute error of the integral of a density with a kink. The boundary of CLTC, at most pi long,
+# crosses Gauss panels whose nodes are h <= pi/2 / 64 apart. Across it, the density's slope per
+# radian jumps by at most 1 per steradian.
 KINK_QUADRATURE = (pi / 2 / 64) ** 2 / 12 * pi
 
-# Inverse of an albedo, relative: the longest chain. There and back: with the albedo's own roundings
-# and rho's twice, since an albedo grows at most twice as fast as rho.
+# Relative errors of an inverted albedo (its longest chain of roundings) and of a round trip, which
+# adds the albedo's roundings and doubles rho's: an albedo grows at most twice as fast as rho.
 RHO = 11.0 * ROUNDING
 ROUND_TRIP = 1e-14
 
 # --- pictures ----------------------------------------------------------------------------------
 
-# On OpenGL, error times cos(theta_o): roundings in the position of a pixel's point and in the value.
+# Error of an OpenGL picture times cos(theta_o): 16 roundings of a pixel's point, 32 of its value.
 PICTURE = (16 + 32) * ROUNDING_32
 
-# Kits of pure noise, 200 of them at a false rate of 1e-3 each: more than 2 are called biased with a
-# probability of 1.1e-3.
+# Maximum number of 200 kits of pure noise that are judged biased. The false-alarm rate of each is
+# 1e-3, so more than 2 have a probability of 1.1e-3.
 KIT_FALSE_ALARMS = 2
 
-# An albedo as a sum over visible normals. SwiftShader's sine and cosine are off by 1.9e-4 and turn
-# a direction twice, 8e-4 in all; the sum changes at most 2.5 times as fast. With 64 directions
-# instead of 1024 it would be off by 3e-2.
+# Error of an albedo summed over visible normals. SwiftShader's sine and cosine are off by 1.9e-4
+# and rotate a direction twice, 8e-4 in all; the sum changes at most 2.5 times as fast. With 64
+# directions instead of 1024, the sum would be off by 3e-2.
 SUMMED_DIRECTIONS = 2.5 * 8e-4
 
-# Two figures with two digits each on a page of upstream, relative: each is off by half a unit of the
-# second digit, 5 % at most, and drivers differ by one unit of the third digit of 0.01.
+# Relative difference of two figures printed with two digits, as on upstream pages. Each is off by
+# half a unit of its second digit, 5 % at most. Drivers differ by a unit of the third digit, 0.01.
 PRINTED = 0.05 + 0.05 + 0.01
 
 # --- microfacet and sheen nodes ------------------------------------------------------------------
 
-# The fits of E_ss and of the Conty-Kulla albedo: their stated errors, plus quadrature.
+# Errors of the fits of E_ss and of the Conty-Kulla albedo: those stated, plus the quadrature's.
 FIT_GGX = 4.92e-4 + 1e-6
 FIT_CONTY_KULLA = 1.51e-3 + 1e-5
 
-# The quadrature of the fits, whose panels end at 4^-9 of the width of the integrand.
+# Error of the quadrature in the fits, whose panels shrink to 4^-9 of the integrand's width.
 FIT_QUADRATURE = 1e-7
 
-# Fresnel reflectance of a dielectric of index >= 1, and its average, relative: at most 40 roundings
-# and a logarithm, in sums whose terms are at most four times the sum.
+# Relative error of the Fresnel reflectance of a dielectric with index >= 1, and of its average: at
+# most 40 roundings and a logarithm, in sums whose terms are at most four times the sum.
 FRESNEL = 4.0 * (40 + FUNCTION) * ROUNDING
 
-# Value of a microfacet BRDF, relative, for alpha >= 0.05. A component of the half vector is off by
-# 2 roundings, by which D moves 2 / alpha times as much; 60 others.
+# Relative error of a microfacet BRDF for alpha >= 0.05: 2 roundings in a component of the half
+# vector, which D multiplies by 2 / alpha, and 60 other roundings.
 MICROFACET = (2 * 2 / 0.05 + 60) * ROUNDING
 
-# Accuracies that docstrings promise: reflectance of a conductor, absolute; E_ss; albedos by slopes, in
-# units of the larger of 1 and the albedo.
+# Errors that docstrings promise: absolute error of a conductor's reflectance; error of E_ss; error
+# of albedos by slopes, in units of the larger of 1 and the albedo.
 CONDUCTOR = 1e-12
 E_SS = 1e-10
 E_SS_SMALL = 2e-8
 SLOPES = 5e-6
-# Albedo for an index below 1, at roughnesses where adaptive quadrature converges to 1e-13.
+# Error of an albedo for an index below 1, at roughnesses where adaptive quadrature reaches 1e-13.
 SPLIT = 100 * 1e-13
 
 # --- transmission, float64 ---------------------------------------------------------------------
 
-# Integrals of a BTDF over a grid of 300 x 300 directions, which has no nodes at the critical angle:
-# measured, 6e-4 at an index of 0.7.
+# Error of a BTDF's integral over a grid of 300 x 300 directions, which has no nodes at the critical
+# angle. At an index of 0.7, 6e-4 was measured.
 REFRACTED_GRID = 1e-3
 
-# Transmittance from the denser side, as its docstring promises.
+# Error of the transmittance from the denser side, as its docstring promises.
 TRANSMITTANCE_CRITICAL = 1e-8
 
-# Averages over 32 Gauss nodes of the cosine, on both sides of the surface.
+# Error of averages over 32 Gauss nodes of the cosine on both sides of the surface.
 REVERSED = 5e-5
 
 # --- Mitsuba, float32 --------------------------------------------------------------------------
 
-# A BTDF: 64 roundings, the fourth power of D by alpha 0.3 among them.
+# Relative error of a BTDF: 64 roundings, including the fourth power in D, divided by alpha = 0.3.
 MITSUBA_BTDF = 64 * ROUNDING_32 / 0.3
 
-# EON, FON and QON: value times cosine, at most 1/pi times some 15 roundings; and the weight of a sample, a
-# quotient of two such values, 3.6e-7 measured.
+# Errors of EON, FON and QON: of value times cosine, which is at most 1 / pi, about 15 roundings; of
+# a sample's weight, a quotient of two such values, 3.6e-7 as measured.
 MITSUBA_EVAL = 3e-7
 MITSUBA_WEIGHT = 1e-6
-# A dielectric over EON, relative where it is larger: the fourth power of the facets' distribution, its
-# square, Fresnel's two squares, visibility and the sums of the curves; 1.0e-6 measured.
+# Relative error of a dielectric over EON, where it exceeds MITSUBA_EVAL: roundings of the facets'
+# distribution (a fourth power and a square), of Fresnel's two squares, of visibility and of the
+# curves' sums; 1.0e-6 was measured.
 MITSUBA_COAT = 24 * ROUNDING_32
-# Its density, in addition: the fraction of samples for the dielectric is as exact as its albedo, 2e-7
-# from the curve and 3 roundings, divided by that albedo; 1.5e-7 measured.
+# Additional relative error of its density. The dielectric's share of samples has the error of the
+# albedo, 2e-7 from the curve and 3 roundings, divided by the albedo; 1.5e-7 was measured.
 MITSUBA_DENSITY = 2e-7 + 3 * ROUNDING_32
 
-# Curves of a dielectric over EON, as their docstring promises.
+# Error of the curves of a dielectric over EON, as their docstring promises.
 COAT = 2e-7
-# Integral of its value at alpha 0.5 by 256 x 256 nodes; the specular lobe at mu 0.1 is the hardest.
+# Error of its integral by 256 x 256 nodes at alpha = 0.5; largest in the specular lobe at mu = 0.1.
 COAT_INTEGRAL = 2e-6

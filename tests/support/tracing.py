@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Execution without line tracing."""
+"""Turns off coverage's line tracing for a block of code."""
 
 from contextlib import contextmanager
 
@@ -8,7 +8,7 @@ from coverage import Coverage
 
 @contextmanager
 def untraced():
-    """Disable the slow tracing of lines meanwhile."""
+    """Context without coverage's slow line tracing."""
     coverage = Coverage.current()
     if coverage is None:
         yield

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Verdicts on one check of one node, or on one document, as in a run; and the words of results."""
+"""Judges one check of one node, or one document, as a run does; and reads diagnoses."""
 
 from mxeon.conformance import words
 from mxeon.conformance.run.judge import Judge
@@ -8,37 +8,37 @@ from mxeon.hosts import open_engine
 from mxeon.shaders.document.policy import DEFAULT
 
 PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
-SOURCE = "source"  # stands for a host in checks of texts
-STOCK, RENDERER_NODES = "stock", "its own nodes"  # names of libraries
-SHADER_FUNCTIONS = "shader twins"  # stands for a node in checks of shader functions
+SOURCE = "source"  # host name in results of text checks
+STOCK, RENDERER_NODES = "stock", "its own nodes"  # library names in results
+SHADER_FUNCTIONS = "shader twins"  # subject of checks of shader functions
 
 
 class Verdicts:
-    """A judge that uses the session's hosts, or a given function from names to hosts."""
+    """Judges nodes and documents on hosts, which a function returns by name."""
 
     def __init__(self, hosts=open_engine):
         self._judge = Judge(DEFAULT, hosts)
 
     def __call__(self, check, subject, host="gl", library="eonlib", **task):
-        """The result of a check of a node, by its title."""
+        """Result of one check of the node with the title `subject`."""
         [result] = self.all(check, subject, host, library, **task)
         return result
 
     def all(self, check, subject, host="gl", library="eonlib", **task):
-        """All results of a task; tasks on texts and functions have several."""
+        """All results of one task; tasks on texts and functions have several."""
         return self._work(check, subject, host, library, **task).results
 
     def texts(self, check, library):
-        """Results of the text checks with this key, by subject."""
+        """Results of the text check with the key `check`, by subject."""
         results = self.all(SOURCE, EVERY_NODE, SOURCE, library)
         return {each.subject: each for each in results if each.check == check}
 
     def unjudged(self, check, library, host="gl"):
-        """Subjects that a task on a whole library does not judge, with the reasons."""
+        """Subjects that a check of a whole library does not judge, with reasons."""
         return dict(self._work(check, EVERY_NODE, host, library).unjudged)
 
     def document(self, path, host="gl", library="eonlib"):
-        """Results, pictures and notes of a document, and the errors of reading it."""
+        """Findings of a document: results, pictures, notes and reading errors."""
         return self._work("picture", str(path), host, library)
 
     def _work(self, check, subject, host, library, **task):
@@ -46,9 +46,9 @@ class Verdicts:
 
 
 def has(result, *wanted):
-    """Whether one cause of a result has all of these: kind, key, branch, region, names and numbers.
+    """Whether a single cause in the diagnosis has all wanted kinds, keys, names and numbers.
 
-    A text with spaces may be part of a title or name; numbers are compared to two digits.
+    A wanted text with spaces may be part of a title or name. Numbers are compared to two digits.
     """
     return not wanted or any(
         all(any(_matches(each, field) for field in _fields(cause)) for each in wanted)
@@ -57,7 +57,7 @@ def has(result, *wanted):
 
 
 def said(result):
-    """The diagnosis of a result in words, for tests of the wording."""
+    """Text of a result's diagnosis."""
     return words.diagnosis(result.diagnosis)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Other versions of MaterialX, each in a folder that comes first on Python's path.
+"""Runs modules with other versions of MaterialX, whose folders come first on Python's path.
 
 A version is downloaded once and kept in `out/materialx`, which git ignores.
 """
@@ -21,18 +21,18 @@ from tools.site.ledger import linked
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = ROOT / "out" / "materialx"
-DOWNLOAD = 300.0  # seconds for 25 MB
-# Changes of MaterialX's data from the release to the main branch.
+DOWNLOAD = 300.0  # timeout of a 25 MB download, seconds
+# Patch that turns the data of MaterialX's release into that of its main branch.
 MAIN = ROOT / "tests" / "materialx_main" / "libraries.patch"
 
 
 def wheel(version):
-    """Folder of a version of MaterialX, "main" for the installed one with the data of its main branch.
+    """Folder of a MaterialX version; "main" is the installed version with the main branch's data.
 
     `./run test --all` installs other versions; the test is skipped if one is not available.
     """
     if version == mx.getVersionString():
-        return ROOT  # contains no MaterialX, so the installed one is found
+        return ROOT  # has no MaterialX, so Python finds the installed one
     folder = KEPT / (_main_name() if version == "main" else version)
     if not folder.is_dir():
         if version != "main" and PACKAGES not in required():
@@ -55,17 +55,17 @@ def _main_name():
 
 
 def _main(folder):
-    """Link to the installed MaterialX, with the data of the main branch."""
+    """Create links to the installed MaterialX, with the main branch's data as files."""
     package = linked(Path(mx.__file__).parent, folder / "MaterialX")
     for file in re.findall(r"^--- a/(.*)$", MAIN.read_text(), re.MULTILINE):
         data = (package / file).read_bytes()
-        (package / file).unlink()  # a link
+        (package / file).unlink()  # removes only the link
         (package / file).write_bytes(data)
     git(package, "apply", MAIN)
 
 
 def git(folder, *arguments):
-    """The output of git in a folder, without settings of the user or of enclosing folders."""
+    """Output of git in a folder, without the user's settings and enclosing repositories."""
     who = {"user.name": "tests", "user.email": "tests@mxeon.invalid", "core.autocrlf": "false"}
     options = [word for name, value in who.items() for word in ("-c", f"{name}={value}")]
     alone = {
@@ -83,14 +83,14 @@ def git(folder, *arguments):
 
 
 def install(version, folder):
-    """Install a version of MaterialX, and nothing else, into a new folder."""
+    """Install a version of MaterialX without its dependencies into a new folder."""
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", folder]
     command += ["--timeout", "30", f"materialx=={version}"]
     subprocess.run(command, check=True, capture_output=True, timeout=DOWNLOAD)
 
 
 def run(folder, *arguments, module="mxeon"):
-    """Run a module as a command with the MaterialX in a folder; returns the finished process."""
+    """Run a module with the MaterialX in `folder`, and return the finished process."""
     paths = [str(folder), *map(str, (ROOT, ROOT / "python"))]
     if os.environ.get("PYTHONPATH"):
         paths.append(os.environ["PYTHONPATH"])
@@ -103,7 +103,7 @@ def run(folder, *arguments, module="mxeon"):
 
 
 def run_with(version, module, *arguments):
-    """The output of a module with a version of MaterialX; asserts success."""
+    """Run a module with a version of MaterialX, assert that it succeeds, and return its output."""
     done = run(wheel(version), *map(str, arguments), module=module)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout

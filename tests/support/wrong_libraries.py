@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Libraries with one wrong text: copies of eonlib, and of all or some of MaterialX's libraries."""
+"""Copies of eonlib and of MaterialX's libraries with one wrong text."""
 
 import re
 import shutil
@@ -12,14 +12,14 @@ STOCK, GLSL = standard_folders()[0], "pbrlib/genglsl"
 
 
 def copy_of_eonlib(folder):
-    """Documents of a copy of eonlib in a folder, next to its sources."""
+    """Copy eonlib to a folder, and return the folder of its documents."""
     for name in ("libraries", "genglsl", "genosl"):
         shutil.copytree(data_folder() / name, folder / name)
     return folder / "libraries"
 
 
 def replace_text(folder, old, new, *files):
-    """Replace all occurrences of a text in these files of a copy; at least one must contain it."""
+    """Replace a text everywhere in the given files; at least one file must contain it."""
     texts = {folder / file: (folder / file).read_text(encoding="utf-8") for file in files}
     assert any(old in text for text in texts.values())
     for path, text in texts.items():
@@ -27,14 +27,14 @@ def replace_text(folder, old, new, *files):
 
 
 def wrong_copy(folder, old, new, *files):
-    """Path of a copy of eonlib with one text replaced in these files."""
+    """Path of a copy of eonlib in which a text is replaced in the given files."""
     library = copy_of_eonlib(folder)
     replace_text(folder, old, new, *files)
     return str(library)
 
 
 def copy_of_stock(folder, *parts):
-    """Folder with a copy of MaterialX's libraries, or of some files and folders at their paths."""
+    """Folder with a copy of MaterialX's libraries, or only of the given files and folders."""
     for part in parts or ["."]:
         (folder / part).parent.mkdir(parents=True, exist_ok=True)
         if (STOCK / part).is_dir():
@@ -45,7 +45,7 @@ def copy_of_stock(folder, *parts):
 
 
 def wrong_stock(folder, file, *changes):
-    """Path of a part of MaterialX's libraries: one file, with some texts replaced."""
+    """Path of a library with a single file of MaterialX's, in which texts are replaced."""
     copy_of_stock(folder, file)
     for old, new in changes:
         replace_text(folder, old, new, file)
@@ -53,21 +53,21 @@ def wrong_stock(folder, file, *changes):
 
 
 def wrong_stock_node(folder, name, old, new):
-    """Path of a part of MaterialX's libraries: a node's GLSL, by name of the node or file, with one text replaced."""
+    """Path of a library with only one node's GLSL from MaterialX, in which a text is replaced."""
     file = name if name.endswith(".glsl") else f"mx_{name}.glsl"
-    if not (STOCK / GLSL / file).is_file():  # the node shares a file
+    if not (STOCK / GLSL / file).is_file():  # nodes may share a file
         rows = (STOCK / GLSL / "pbrlib_genglsl_impl.mtlx").read_text(encoding="utf-8")
         [file] = re.findall(rf'nodedef="ND_{name}" file="([^"]+)"', rows)
     return wrong_stock(folder, f"{GLSL}/{file}", (old, new))
 
 
 def wrong_library(folder, file, old, new):
-    """Path of a library with a text replaced in a file of eonlib or, for a bare name, of MaterialX's GLSL."""
+    """Path of a copy of eonlib or, for a bare file name, MaterialX's GLSL, with a text replaced."""
     if "/" in file:
         return wrong_copy(folder, old, new, file)
     return wrong_stock_node(folder, file, old, new)
 
 
 def place_of(name, language="glsl"):
-    """Path of an eonlib source in a copy, by its stem."""
+    """Path of the eonlib source with the given stem, relative to a copy."""
     return source_file(language, name).relative_to(data_folder())

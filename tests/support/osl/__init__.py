@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A picture of OSL's real programs, recorded from a build, and programs that replay it.
+"""A picture recorded from OSL's real programs, and stand-ins that replay it.
 
     python -c "from tests.support import osl; osl.record()"
 
-records it again with the programs that MXEON_OSLC, MXEON_TESTRENDER and MXEON_TESTSHADE name.
+This command records the picture again with the programs that MXEON_OSLC, MXEON_TESTRENDER and
+MXEON_TESTSHADE name.
 """
 
 from pathlib import Path
@@ -22,8 +23,8 @@ INPUTS = {"color": (0.2, 0.5, 0.8), "roughness": 1.0, FLAG: True}
 VIEWS = np.array([(0.6, 0.0, 0.8), (0.0, 0.28, 0.96), (-0.48, 0.64, 0.6), (0.96, 0.0, 0.28)])
 LIGHTS = np.array([(0.0, 0.6, 0.8), (0.96, 0.0, 0.28), (0.48, -0.6, 0.64), (-0.6, 0.0, 0.8)])
 
-# Replays the recording: help with the recorded title, a compiled shader for each source, and the
-# recorded picture, only for the recorded scene.
+# Scripts of the stand-ins: oslc prints the recorded title and copies sources as compiled shaders;
+# testrender copies the recorded picture if the scene is the recorded one.
 REPLAY = {
     "oslc": """case "$1" in
     --help) echo "{title}"; exit 0 ;;
@@ -46,12 +47,12 @@ def shader():
 
 
 def values(host):
-    """A host's values for the recorded pairs."""
+    """Values that a host returns for the recorded pairs of directions."""
     return host.evaluate(shader(), VIEWS, LIGHTS, {}, "direct")
 
 
 def write_replay(folder):
-    """Write programs that replay the recording; their paths by the variable that names them."""
+    """Write the stand-ins to a folder; returns their paths by environment variable."""
     words = {"title": TITLE, "folder": FOLDER}
     paths = {}
     for name, text in REPLAY.items():
@@ -63,7 +64,7 @@ def write_replay(folder):
 
 
 def record():
-    """Record the picture again; TITLE is the first line of `oslc --help`."""
+    """Record the picture again. TITLE, the first line of `oslc --help`, is changed by hand."""
     with TestrenderHost() as host:
         values(host)
         folder = host._folder
