@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Results of each library on gl."""
+"""Fixtures with the results of eonlib and of stock MaterialX on the gl host."""
 
 import pytest
 
@@ -8,11 +8,11 @@ from tests.support.sharing import every_node
 
 @pytest.fixture(scope="session")
 def run(tmp_path_factory):
-    """Results of eonlib."""
+    """Results of all checks of eonlib on gl."""
     return every_node(tmp_path_factory, "eonlib")
 
 
 @pytest.fixture(scope="session")
 def stock(tmp_path_factory):
-    """Results of stock MaterialX."""
+    """Results of all checks of stock MaterialX on gl."""
     return every_node(tmp_path_factory, "stock")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs: what is judged, not run, or refused."""
+"""Runs: tasks that are judged or not run, and arguments that are refused."""
 
 import re
 
@@ -85,9 +85,7 @@ def test_a_document_is_not_run_on_a_renderer(monkeypatch):
 
 @pytest.mark.whole
 def test_two_libraries_are_asked_the_same(run, stock):
-    """The exceptions are nodes and functions that one of them lacks, defects that neither
-    repairs, and the release itself.
-    """
+    """The checks of both libraries differ only where one lacks a node, a function or a repair."""
     asked = [
         {
             (e.check, e.subject)
@@ -148,9 +146,9 @@ def test_other_lobes_are_lit_alike_by_eonlib_s_lookups(judged, environment):
 @pytest.mark.parametrize(
     "check, methods, verdict, reason",
     [
-        # MaterialX's own sum masks twice, so the library's own lookups are used; stock has none.
+        # MaterialX's sum masks twice, so eonlib brings its own lookups; stock has none.
         ("anisotropic_albedo", Methods("fis", searched=True), NOT_RUN, "library stock: has no genglsl/environment to search"),
-        # Stock has no compensation by the exact average.
+        # Stock does not compensate by the exact average.
         ("environment", Methods("prefilter"), FAILED, ""),
     ],
 )  # fmt: skip

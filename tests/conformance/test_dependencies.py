@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dependencies of a run: it can only be resumed with the same files, options and drivers."""
+"""A run can only be resumed with the same files, options and drivers."""
 
 import re
 
@@ -16,7 +16,7 @@ INCLUDE = '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="part.mtl
 CODE = Policy(code=True)
 TOKEN = '<token name="t" type="string" value="grid.png"/>'
 FILE = '<image name="i{}" type="color3"><input name="file" type="filename" value="{}"{}/></image>'
-# Files of a folder, and the report if a document's dependency on one has changed.
+# Files in a document's folder, and the XML by which the document refers to each.
 NAMES = {
     "grid.png": FILE.format(1, "grid.png", ""),
     "images/grid.png": FILE.format(2, "images/grid.png", ""),
@@ -30,7 +30,7 @@ NAMES = {
 
 
 def run_of(folder, *named):
-    """A folder with a short run on the gl host, and its document, which names files."""
+    """Run the checks on a document that names files; returns the run's folder and the document."""
     text = (examples_folder() / "plaster.mtlx").read_text(encoding="utf-8")
     file = folder / "plaster.mtlx"
     file.write_text(text.replace("</materialx>", f"{''.join(named)}</materialx>"), encoding="utf-8")
@@ -40,14 +40,14 @@ def run_of(folder, *named):
 
 @pytest.fixture
 def run(tmp_path, monkeypatch):
-    """A run of two tasks, whose document names a texture."""
+    """Folder and document of a run with two tasks; the document names a texture."""
     keep_checks(monkeypatch, "lambert", "picture")
     (tmp_path / "grid.png").write_bytes(b"pixels")
     return run_of(tmp_path, TOKEN)
 
 
 def refusal(folder, files, **options):
-    """The message that tells what has changed since a run."""
+    """Part of the refusal to resume a run that lists what has changed."""
     with pytest.raises(InputError, match="holds another run") as error:
         check(files or None, folder=folder, resume=True, **{"policy": CODE} | options)
     return (
@@ -78,7 +78,7 @@ def test_an_option_that_changed_is_named(run):
 
 
 def test_a_driver_that_changed_is_named_once_its_tasks_go_on(run):
-    """The journal gets another name of the driver, and loses its last line."""
+    """The test renames the driver in the journal and drops the last finished task."""
     folder, file = run
     [path] = folder.rglob("*.jsonl")
     lines = path.read_text(encoding="utf-8").splitlines(keepends=True)[:-1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Faulty engines: how a run reports them, and which of their own errors its tolerances cover."""
+"""Faulty engines are reported, and tolerances cover the errors of an engine's own functions."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ EON, SHADER = "oren_nayar_diffuse_bsdf, energy_compensation true", "standard_sur
 
 @pytest.fixture
 def judged_by(gl):
-    """A function that makes a judge for a variant of the gl host."""
+    """Function that returns a judge which uses a given subclass of the gl host."""
     opened = []
 
     def judge(kind):
@@ -86,7 +86,7 @@ def test_what_does_not_run_is_never_passed(judged_by, kind, verdict, check, titl
 
 
 class Rounding(GlHost):
-    """A host with inaccurate power and exponential functions."""
+    """gl host whose power and exponential functions are off by 1e-4."""
 
     def execute(self, source, name, *arguments):
         values = super().execute(source, name, *arguments)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A folder of documents: one verdict for each, and a summary by cause."""
+"""Checking a folder gives one verdict per document, and a summary by cause."""
 
 import shutil
 
@@ -34,7 +34,7 @@ def test_a_folder_stands_for_the_documents_in_it_and_below_it(tmp_path):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("")
     single = str(tmp_path / "b.mtlx")
-    run = check([tmp_path, single], ["msl"])  # none is a MaterialX document
+    run = check([tmp_path, single], ["msl"])  # no file is a MaterialX document
     assert {*run.refused} == {single, str(tmp_path / "sub" / "a.mtlx")}
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Surface shaders with one error in their graph or definition: the check `release` names the part."""
+"""The check `release` names the wrong part of a surface shader's graph or definition."""
 
 import shutil
 
@@ -15,7 +15,7 @@ FILES = {
     "gltf_pbr": "bxdf/gltf_pbr.mtlx",
     "UsdPreviewSurface": "bxdf/usd_preview_surface.mtlx",
 }
-# By category: a text, its replacement, and words of the diagnosis.
+# Errors by node category: a text, its replacement, and words of the diagnosis.
 WRONG = {
     "open_pbr_surface": (
         ('value="1000.0" />', 'value="100.0" />', "in2 of thin_film_thickness_nm is 100 instead of 1000"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The journal of a run: no finished task is lost or repeated, and no unfinished task counts as done."""
+"""The journal of a run loses and repeats no finished task, and counts no unfinished one as done."""
 
 import gc
 import subprocess
@@ -40,7 +40,7 @@ PLAIN = replace(FINDINGS, pictures=())
 
 
 def kept(folder, *numbers, findings=FINDINGS, plan=PLAN):
-    """The journal of a run that contains findings of some tasks."""
+    """Write the journal of a run with these tasks finished, by number; returns its path."""
     with journal(folder, plan) as written:
         for number in numbers:
             written.add(number, findings)
@@ -90,7 +90,7 @@ def test_a_task_whose_picture_is_damaged_is_done_again(tmp_path, content):
 
 
 def refused(folder):
-    """The one-line refusal of a journal."""
+    """Assert that an invalid journal is refused in one line, and return the message."""
     with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 9") as error:
         read_run(folder)
     with pytest.raises(ValueError, match="as mxeon wrote it; .*; run again without --resume$"):
@@ -144,7 +144,7 @@ def test_a_new_run_keeps_the_old_one_in_a_folder(tmp_path):
     (tmp_path / "junit.xml").write_text("old")
     before, files = path.read_bytes(), sorted(tmp_path.rglob("*"))
     journal(tmp_path)
-    assert sorted(tmp_path.rglob("*")) == files  # unchanged until the context is entered
+    assert sorted(tmp_path.rglob("*")) == files  # nothing changes before the context is entered
     with journal(tmp_path) as new:
         assert new.findings == {} and not (tmp_path / "junit.xml").exists()
     assert (tmp_path / PREVIOUS / JOURNAL).read_bytes() == before
@@ -186,7 +186,7 @@ from mxeon.__main__ import main
 from tests.support.plans import keep_checks
 keep_checks(builtins, *{KEPT})
 """
-# A run that waits to be killed once it has stored the findings of three tasks.
+# Code that makes a run wait to be killed after it has stored the findings of three tasks.
 WAITING = """import signal
 from mxeon.conformance.run.journal import Journal
 add = Journal.add
@@ -219,7 +219,7 @@ def test_a_killed_run_is_resumed_to_the_same_end(tmp_path, monkeypatch):
 
 
 def test_threads_read_pixels_at_once(tmp_path):
-    """Garbage may be collected in the middle of CPython's parser, and let another thread run."""
+    """CPython may collect garbage while it parses, which lets another thread run."""
     np.save(tmp_path / "pixels.npy", np.zeros((4, 4, 3), np.float32))
     image, thresholds = StoredImage(tmp_path / "pixels.npy"), gc.get_threshold()
     with ThreadPoolExecutor(1) as pool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""White lobes over a white base reflect all light, for all masks and for both ways in which generators write a mix."""
+"""White lobes over a white base reflect all light, for all masks and both kinds of generators."""
 
 import numpy as np
 import pytest
@@ -16,14 +16,14 @@ from mxeon.shaders.nodes import (
 from tests.support.cases import direction
 
 MU = np.array([0.05, 0.2, 0.5, 0.9])
-FIT = 5.1e-3  # error of the fitted albedo of a dielectric, docs/loading.md
+FIT = 5.1e-3  # error of a dielectric's fitted albedo, see docs/loading.md
 WHITE = input_text("color", "color3", np.ones(3))
 OPAQUE = ("oren_nayar_diffuse_bsdf", "translucent_bsdf", "subsurface_bsdf")
 ROUGH = input_text("roughness", "vector2", (0.3, 0.3))
 
 
 def lobes(opaque):
-    """White opaque lobes and dielectrics, one for each use, and the connected shares."""
+    """Nodes to mix: white opaque lobes, dielectrics, and the shares `half` and `third`."""
     return {
         **{f"white{number}": Node(opaque, "BSDF", text=WHITE) for number in range(4)},
         **{f"clear{number}": Node("dielectric_bsdf", "BSDF", text=ROUGH) for number in range(2)},
@@ -62,7 +62,7 @@ NESTED = {
 
 
 def furnace(gl, monkeypatch, library, folded, opaque, nodes):
-    """Light that a material reflects in a white environment; `folded` generators fold shares into weights."""
+    """Light reflected in a white environment; if `folded`, generators multiply weights by shares."""
     context_of = generation.context_of
 
     def context(*arguments):
@@ -86,7 +86,7 @@ CASES += [(next(iter(NESTED)), each, True) for each in OPAQUE[1:]]
 @pytest.mark.parametrize("name, opaque, folded", CASES)
 def test_white_masks_over_white_reflect_all_light(gl, monkeypatch, name, opaque, folded):
     total = furnace(gl, monkeypatch, "eonlib", folded, opaque, NESTED[name])
-    np.testing.assert_allclose(total, 1.0, atol=2 * FIT)  # two dielectrics
+    np.testing.assert_allclose(total, 1.0, atol=2 * FIT)  # at most two dielectrics
 
 
 def test_of_stock_they_lose_light_where_the_generator_folds(gl, monkeypatch):

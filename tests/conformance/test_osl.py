@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every node of eonlib's OSL is judged by its closures; mutants compiled by the same OSL are detected."""
+"""OSL closures of eonlib's nodes pass their checks; mutants of the same text are detected."""
 
 from copy import copy
 from dataclasses import replace
@@ -14,16 +14,16 @@ from mxeon.shaders.library import examples_folder
 from tests.support.cases import pairs
 from tests.support.verdicts import FAILED, PASSED, Verdicts, said
 
-# Bundled documents without images, which the reference can only read on a sphere.
+# Bundled documents without images; the reference can only read images on a sphere.
 EXAMPLES = (
     *("brushed_metal_wedge", "layered_white_furnace", "mixed_lobes", "openpbr_rough_base"),
     *("plaster", "standard_surface_rough_base", "tempered_steel", "velvet"),
 )
 COLOR82 = ("brushed_schlick_smooth", "brushed_schlick_rough")  # no closure has this input
-# Scaled by the largest pi f cos: 16 float32 roundings of an argument, times 4, because the
-# logarithm of a distribution changes with that of alpha.
+# Error relative to the larger of 1 and pi f cos: 16 float32 roundings of an argument, times 4,
+# because a distribution amplifies the relative error of its alpha.
 GRAPH = 64 * 2.0**-24
-# By title and check: a wrong change of the generated text.
+# Mutations of the generated text by title and check: a text and its replacement.
 WRONG = {
     ("oren_nayar_diffuse_bsdf, energy_compensation true", "value"):
         ('"energy_compensation"', '"energy_conservation"'),
@@ -87,7 +87,7 @@ RIGHT = (
 
 @pytest.fixture
 def changed(hosts):
-    """A function that makes a judge of changed texts; the judge caches no values."""
+    """Function that returns a judge for OSL with a text replaced; the judge caches no values."""
     host = hosts("osl")
 
     def change(old, new):

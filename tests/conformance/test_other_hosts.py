@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes on hosts other than gl: one check for each kind of behavior that depends on the host.
+"""Nodes on other hosts than gl: one check per kind of behavior that depends on the host.
 
-`test_upstream.py` judges the failures on Cycles that the pages of docs/upstream describe.
+`test_upstream.py` covers the failures on Cycles that docs/upstream describes.
 """
 
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of documents: parts that the reference computes, parts that it takes from the host, and messages."""
+"""Pictures of documents: inputs computed by the reference or read from the host, and messages."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ from tests.support.wrong_libraries import wrong_copy, wrong_stock
 
 @pytest.fixture
 def shown(judged, tmp_path):
-    """A function that judges a document of one material; it returns the result, the pictures and the notes."""
+    """Function that judges a document with one material; returns the result, pictures and notes."""
 
     def show(text, library="eonlib"):
         path = written(tmp_path, text)
@@ -30,7 +30,7 @@ def shown(judged, tmp_path):
 
 
 FILM = {"roughness": (0.0, 0.0), "thinfilm_thickness": 550.0, "thinfilm_ior": 1.5}
-# A nodegraph with a color; the graph and its node have the given names.
+# Template of a nodegraph with a color, for given names of the graph and its node.
 COLOR = """<nodegraph name="{graph}">
   <multiply name="{node}" type="color3">
     <input name="in1" type="color3" value="{color}"/>
@@ -45,7 +45,7 @@ SUM += '<input name="in2" type="BSDF" nodename="lobe2"/></add>'
 
 
 def colors(first, second):
-    """Two lobes with colors from two nodegraphs, whose nodes have the given names."""
+    """Document of two lobes, colored by two nodegraphs whose nodes have the given names."""
     red = COLOR.format(graph="red", node=first, color="1, 0, 0")
     green = COLOR.format(graph="green", node=second, color="0, 1, 0")
     return material(red + green + SUM)
@@ -56,7 +56,7 @@ def test_a_film_of_the_index_of_its_schlick_substrate_has_one_phase(shown):
         material(lobe("generalized_schlick_bsdf", color0=(0.04, 0.04, 0.04), **FILM))
     )
     assert result.verdict == "passed"
-    assert result.error < 1e-4  # a film with a different phase would be off by 0.17
+    assert result.error < 1e-4  # with a different phase the error would be 0.17
 
 
 def test_direct_light_shows_a_wrong_curve_of_a_film_on_metal(shown, tmp_path):
@@ -85,7 +85,7 @@ def test_nodes_of_one_name_in_two_nodegraphs_are_named(shown):
     assert any("must have different names" in text for text, _ in notes)
 
 
-# --- patterns that the reference does not know: the host's own values feed its lobes ------------
+# --- unsupported patterns: the reference takes their values from the host -----------------------
 
 LOBE = connected(
     color='nodename="pattern"', roughness='value="1"', energy_compensation='value="true"'
@@ -152,12 +152,12 @@ def test_materials_that_vary_are_judged_and_compared_at_some_of_the_pixels(shown
     result, pictures, _ = shown(material(NOISE + metal))
     furnace = pictures[-1]
     assert 700 < furnace.judged.sum() < 900
-    # Skipped pixels show their neighbors' difference instead of their own.
+    # The difference map fills pixels that are not judged with the difference of judged neighbors.
     assert np.abs(furnace.image - furnace.reference).max() > 10.0 * result.tolerance
     assert np.nanmax(furnace.difference_map()) < 3.0 * result.tolerance
 
 
-# --- light that passes a surface: transmission, volumes and lobes below it -----------------------
+# --- light through a surface: transmission, volumes, and lobes below the surface ------------------
 
 GLASS = {"tint": (0.2, 0.5, 0.9), "scatter_mode": "T"}
 
@@ -174,7 +174,7 @@ HAZE = """<layer name="lobe" type="BSDF"><input name="top" type="BSDF" nodename=
 
 @pytest.fixture
 def lit(reference):
-    """A function that draws a material in a scene with the reference."""
+    """Function that renders nodes in a scene with the reference."""
     return lambda text, scene: reference.picture(
         generate(material(text), "glsl")[0], replace(scene, size=32)
     )
@@ -205,7 +205,7 @@ def test_a_volume_dims_what_is_transmitted_and_not_what_is_reflected(lit):
 def test_lobes_below_the_surface_have_a_picture_like_gl(shown, node):
     result, *_ = shown(material(node))
     assert (result.check, result.verdict) == ("picture", "passed")
-    # JSON takes no NumPy types.
+    # JSON does not support NumPy types.
     assert type(result.tolerance) is float and type(result.control.caught) is bool
 
 
@@ -236,7 +236,7 @@ def test_the_first_wrong_node_of_a_pattern_is_named(shown, tmp_path):
     assert result.verdict == "failed" and has(result, "other_node", "normalmap", "bump")
 
 
-# --- what the models do not cover --------------------------------------------------------------
+# --- nodes that the models do not cover --------------------------------------------------------
 
 OUTSIDE = (("color", "0.5, 1.5, 0.5", "1"), ("weight", "1.5", "1"), ("roughness", "1.6", "pi/2"))
 

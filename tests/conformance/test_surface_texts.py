@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sentences of surface shaders' specifications: graphs follow them, or deviate as a row states."""
+"""Graphs of surface shaders follow each sentence of their specification, or a named deviation."""
 
 from functools import cache
 from pathlib import Path
@@ -18,20 +18,20 @@ from tests.support.verdicts import Verdicts, has
 from tools.site.ledger import apply, linked, patches
 
 pytestmark = pytest.mark.whole
-SAME = 1e-4  # graphs have rounded constants
+SAME = 1e-4  # tolerance for rounded constants in graphs
 INPUTS = sorted({(spec.text.node, port.name) for spec in SENTENCES for port in spec.inputs})
 
 
 @cache
 def shader(node: str, library: str = "stock") -> Shader:
-    """The shader of a material with one surface shader."""
+    """Shader of a material that consists of one surface shader node."""
     [spec, *_] = (each for each in SENTENCES if each.text.node == node)
     [made] = generate(spec.document(), "glsl", library=library)
     return made
 
 
 def shown(spec: SentenceSpec, library: str = "stock") -> np.ndarray:
-    """Float64 values of the graph for the samples of a sentence."""
+    """Values of a shader's graph in float64, for the samples of one sentence."""
     [batch] = spec.batches(Counts())
     branch, _, factor = spec.evaluated
     count, made = len(batch.wo), shader(spec.text.node, library)
@@ -51,9 +51,9 @@ def shown(spec: SentenceSpec, library: str = "stock") -> np.ndarray:
 
 
 def distances(spec: SentenceSpec, values: np.ndarray) -> list[float]:
-    """Largest difference between the values and those of the text, then of each named form."""
+    """Largest differences of values from the specified form and from each named form."""
     [batch] = spec.batches(Counts())
-    forms = spec.value_candidates[:-1]  # the last candidate is black
+    forms = spec.value_candidates[:-1]  # the last form is black
     return [float(np.abs(form.values(batch) - values).max()) for form in forms]
 
 
@@ -68,7 +68,7 @@ def test_each_difference_from_a_text_has_a_name(spec):
 
 @pytest.fixture(scope="module")
 def repaired(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """The data of MaterialX with the ledger's patches of its graphs."""
+    """MaterialX's libraries with the graphs patched as in docs/upstream."""
     package = linked(Path(mx.__file__).parent, tmp_path_factory.mktemp("repaired") / "MaterialX")
     graphs = [path for path in patches("materialx").values() if "/bxdf/" in path.read_text()]
     return str(apply(package, *graphs) / "libraries")
@@ -76,7 +76,7 @@ def repaired(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.mark.parametrize("spec", SENTENCES, ids=lambda spec: spec.title)
 def test_patched_graphs_do_what_their_texts_say(spec: SentenceSpec, repaired: str):
-    """Or forms that a text permits."""
+    """Patched graphs may also use a form that the specification permits."""
     [batch] = spec.batches(Counts())
     own, *others = spec.value_candidates
     forms = [each for each in others if each.permitted]
@@ -86,7 +86,7 @@ def test_patched_graphs_do_what_their_texts_say(spec: SentenceSpec, repaired: st
 
 @pytest.mark.parametrize("title", ["Standard Surface, sheen", "glTF, transmission"])
 def test_a_diagnosis_tells_a_graph_from_its_lobes(judged: Verdicts, title: str):
-    """Stock's sheen is a fit, and its glass has larger errors than its graph; eonlib shows the graph."""
+    """Stock's errors come from its lobes; with eonlib's lobes, only those of the graph remain."""
     assert has(judged("specification", title, library="stock"), "lobes_of_graph")
     assert not has(judged("specification", title), "lobes_of_graph")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every node on gl: eonlib passes, and stock MaterialX fails exactly where its pages say so."""
+"""On gl, eonlib passes every check, and stock MaterialX fails exactly as docs/upstream states."""
 
 from dataclasses import astuple, replace
 from xml.etree import ElementTree
@@ -28,7 +28,12 @@ SHEEN = "sheen_bsdf, mode conty_kulla"
 HALF = ("model", "compensation with F at the half vector and MaterialX's fit of E_ss")
 VIEW = ("model", "compensation with F at the view direction and MaterialX's fit of E_ss")
 MEAN = ("model", "Smith at the geometric mean, and MaterialX's compensation")
-OPEN = {"value": HALF, "integral": HALF, "shape": MEAN, "environment": VIEW}  # values that differ
+OPEN = {
+    "value": HALF,
+    "integral": HALF,
+    "shape": MEAN,
+    "environment": VIEW,
+}  # permitted differences
 AVERAGED = ("model", "MaterialX's fit of its albedo, averaged over the channels")
 CLAMPED_TITLE = "EON with clamped dot(wo, wi)"
 CLAMPED = ("model", CLAMPED_TITLE)
@@ -54,7 +59,7 @@ ABSENT = (
 
 
 def film(choices):
-    """Expected diagnoses of a film with this curve and compensation."""
+    """Expected diagnoses by check of a thin film, for given choices of curve and compensation."""
     return {
         **dict.fromkeys(
             ("value", "film_curve", "film_orders"),
@@ -79,9 +84,9 @@ SURFACE = dict.fromkeys(
 )
 SURFACE |= {"lobes": ("throughput_of_lobes",)}
 FILMS = {"lobes_film": LOBES}
-SPHERE = {"states": ("a surface that bends: a sphere",)}  # Zeltner's lobe along the normal
+SPHERE = {"states": ("a surface that bends: a sphere",)}  # seen along the normal
 PASSED_THROUGH = {"transmitted": UNSHADOWED, "transmitted_finite": NAN, "methods": ()}
-# Failures of stock MaterialX by title, with what one cause of each diagnosis contains.
+# Failures of stock MaterialX by title and check: parts of one cause in the diagnosis.
 STOCK = {
     EON: {"value": CLAMPED, "integral": CLAMPED, "environment": (), **HIDING},
     QON: {"environment": ("model", "QON with MaterialX's fit of its albedo"), **HIDING},
@@ -163,7 +168,7 @@ STOCK = {
     },
     "UsdPreviewSurface, every lobe": SURFACE,
 }  # fmt: skip
-# If the specification permits several functions, a permitted one differs.
+# The verdict is "differs" if the specification permits the function that stock uses.
 FREE = {
     *((title, key) for title in STOCK if "value" in STOCK[title] for key in OPEN if STOCK[title].get(key) == OPEN[key]),
     *((title, key) for title in ("dielectric_bsdf, thin film", "conductor_bsdf, thin film") for key in film("")),
@@ -197,7 +202,7 @@ def test_stock_materialx_fails_where_its_pages_say_and_nowhere_else(stock):
     }
     rows = [(title, check) for title, checks in STOCK.items() for check in checks]
     assert found == {row: DIFFERS if row in FREE else FAILED for row in rows}
-    # `domain` is skipped after errors inside the inputs' ranges, `film_brushed` with two alphas.
+    # `domain` is skipped after errors inside the inputs' ranges, `film_brushed` for two alphas.
     not_run = {
         e.subject
         for e in stock.results
@@ -240,7 +245,7 @@ CHOICE = "genglsl_microfacet_compensation"
 @pytest.mark.parametrize(
     "check, subject, host, library, verdict, error, diagnosis, pages",
     [
-        # A page explains errors of its size and model.
+        # A page explains only errors of the size and model that it states.
         ("value", EON, "gl", "stock", FAILED, 0.369, CLAMPED_MODEL, {"genglsl_clamped_dot"}),
         ("value", EON, "gl", "stock", FAILED, 3.69, CLAMPED_MODEL, set()),
         ("value", EON, "gl", "stock", FAILED, 0.3, OTHER, set()),
@@ -248,13 +253,13 @@ CHOICE = "genglsl_microfacet_compensation"
         ("environment", SHEEN, "gl", "stock", FAILED, 0.0889, FITTED, {"genglsl_conty_kulla_fit"}),
         ("environment", SHEEN, "gl", "stock", FAILED, 1e7, FITTED, set()),
         ("environment", SHEEN, "gl", "stock", FAILED, 0.05, UNKNOWN, set()),
-        # Consequences of a defect in stock link to its page.
+        # A consequence of a defect in stock links to the defect's page.
         ("inputs", QON, "cycles", "stock", FAILED, 0.1, NO_CAUSE, {"cycles_rho_cubed"}),
         ("inputs", QON, "cycles", "eonlib", FAILED, 0.1, NO_CAUSE, set()),
-        # A page about an open point of the text explains no failure by itself.
+        # A page on an ambiguity of the specification explains no failure.
         ("value", "conductor_bsdf", "wgsl", "stock", DIFFERS, 0.1, NO_CAUSE, {CHOICE}),
         ("value", "conductor_bsdf", "wgsl", "stock", FAILED, 0.1, NO_CAUSE, set()),
-        # A failure that no text can avoid has its page with each library.
+        # A failure that no shader text can avoid links to its page for both libraries.
         ("inputs", "conductor_bsdf", "osl", "stock", FAILED, 1.0, NO_CAUSE, {"genosl_dropped_retroreflection"}),
         ("inputs", "conductor_bsdf", "osl", "eonlib", FAILED, 1.0, NO_CAUSE, {"genosl_dropped_retroreflection"}),
         ("value", "sheen_bsdf, mode zeltner", "osl", "stock", FAILED, 1.0, NO_CAUSE, {"genosl_dropped_mode"}),
@@ -272,7 +277,7 @@ def test_a_failure_has_the_pages_that_explain_it(
 
 @pytest.mark.whole
 def test_nothing_reads_a_sentence(stock, monkeypatch, tmp_path):
-    """Only fields determine verdicts, pages, differences, kinds of failures and the field's table."""
+    """Programs read only fields: rewording all sentences changes no verdict, page or table."""
 
     def decided(run):
         (tmp_path / "results.json").write_text(to_json(run))

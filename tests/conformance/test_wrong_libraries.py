@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Copies of the library with one fault each: the check that detects it, and the words that name it."""
+"""Each fault in a copy of the library fails the intended check and is named in the diagnosis."""
 
 import pytest
 
@@ -31,7 +31,7 @@ FLAG = "{{energy_compensation}}"
 
 @pytest.fixture
 def copy(tmp_path):
-    """A function that copies the library with all occurrences of a text in a file replaced."""
+    """Function that replaces a text in a copy of eonlib, and returns the copy's path."""
     library = copy_of_eonlib(tmp_path)
 
     def edited(file="", old="", new=""):
@@ -43,7 +43,7 @@ def copy(tmp_path):
 
 
 def failed(results):
-    """The diagnosis of each failed result in words, by check."""
+    """Texts of the diagnoses of failed results, by check."""
     return {each.check: said(each) for each in results if each.verdict == FAILED}
 
 
@@ -251,8 +251,8 @@ HALVED = (
     TOP.format("half")
     + '\n<input name="base" type="BSDF" nodename="metallic_mix" /></layer><multiply name="coat_half" type="BSDF"><input name="in1" type="BSDF" nodename="coat_bsdf" /><input name="in2" type="float" value="{}" /></multiply><layer name="unused" type="BSDF">'
 )
-# A file, its text and the replacement; the wrong node, its part, and the released and the wrong
-# value.
+# Changes of MaterialX: file, text and replacement; then what the diagnosis contains: the node, the
+# part, and the wrong and the released value.
 CHANGED = {
     "mode of LamaConductor": (f"{BXDF}/lama/lama_conductor.mtlx", SWITCH.format("in1", "in2"), SWITCH.format("in2", "in1"), "LamaConductor", "in1 of eta_switch", "convert_ior"),
     "coat of Disney": (f"{BXDF}/disney_principled.mtlx", COAT.format("clearcoatGloss"), COAT.format("clearcoat"), "disney_principled", "in of coat_roughness", "the input clearcoat", "the input clearcoatGloss"),
@@ -299,7 +299,7 @@ def test_what_differs_from_the_release_is_named_with_its_size(judged, tmp_path, 
 
 
 def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):
-    """This also happens after more libraries than the cache holds."""
+    """The release is also loaded again after more libraries than the cache holds."""
     file, old, new, *wanted = CHANGED["alpha"]
     installed()
     read_library.cache_clear()
@@ -322,7 +322,7 @@ LOSS = (
 )
 SIGNATURE = """void oren_nayar_diffuse_bsdf(ClosureData closureData, float weight, vec3 color, float roughness,
                              vec3 N, bool energy_compensation, inout BSDF bsdf)"""
-# Changes that keep what eonlib computes: its files, a text in them, and the replacement.
+# Changes without effect on eonlib's values: files, a text in them, and the replacement.
 REWRITTEN = {
     "a comment with braces": (SHARED, "// A_F of", "// void main() { } } /* A_F of"),
     "a renamed variable": (SHARED, "sigma2", "squared_sigma"),
@@ -336,7 +336,7 @@ REWRITTEN = {
     "a comment in the document": (("libraries/diffuse/eonlib_genglsl_impl.mtlx",), '<materialx version="1.39">', '<materialx version="1.39" ><!-- <implementation name="IM" /> -->'),
     "a whole number": ((DEFINITIONS,), 'value="0.0"', 'value="0"'),
 }  # fmt: skip
-EDITED = {  # the text for path tracers
+EDITED = {  # changes of the text for path tracers
     "a comment of the paths": ("bool turned = distance(", "// material_pdf( { } }\n        bool turned = distance("),
     "a renamed variable of the paths": ("returned", "sent_back"),
 }  # fmt: skip
@@ -360,7 +360,7 @@ def test_eonlib_written_differently_passes(judged, tmp_path, name):
 
 @pytest.mark.parametrize("title", ["generalized_schlick_bsdf, scatter_mode R", "conductor_bsdf"])
 def test_directions_of_an_environment_by_other_points_pass(judged, tmp_path, title):
-    """The points are those of the R2 sequence, which fill the square as evenly as MaterialX's lattice."""
+    """The R2 sequence replaces MaterialX's lattice, and fills the square as evenly."""
     file = f"genglsl/environment/libraries/{LIB}mx_environment_fis.glsl"
     library = copy_of_eonlib(tmp_path)
     new = "fract(0.5 + float(i + 1) * vec2(0.7548776662466927, 0.5698402909980532))"
@@ -429,7 +429,7 @@ def test_a_run_says_which_texts_and_states_it_does_not_judge(monkeypatch):
     assert "tables of albedos on webgl" in planned and "tables of albedos on gl" not in planned
 
 
-# --- what a client binds --------------------------------------------------------------------------
+# --- resources that a client binds ----------------------------------------------------------------
 
 FRAME, STATES = ("client", "surface, a client's frame"), "states"
 CLEAR, MIRROR = "dielectric_bsdf, scatter_mode T", "generalized_schlick_bsdf, scatter_mode R"

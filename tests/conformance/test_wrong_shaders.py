@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Libraries with one wrong line each: the intended check fails, and its diagnosis contains the cause."""
+"""Each wrong line in a shader fails the intended check, whose diagnosis contains the cause."""
 
 import pytest
 
@@ -8,14 +8,14 @@ from tests.support.sharing import DRAWN
 from tests.support.verdicts import DIFFERS, FAILED, has
 from tests.support.wrong_libraries import wrong_library, wrong_stock
 
-# Files of eonlib are given by path, those of MaterialX by name.
+# Paths name files of eonlib; bare names are files of MaterialX.
 LOBE, FACETS = "genglsl/lib/oren_nayar_lobe.glsl", "genglsl/lib/microfacet_lobe.glsl"
 CLEAR = "genglsl/lib/microfacet_transmission.glsl"
 HAIR, FILM = "genglsl/chiang_hair_bsdf.glsl", "genglsl/lib/thin_film.glsl"
 FILMED, HALF = "genglsl/lib/microfacet_film.glsl", "genglsl/lib/half_vector.glsl"
 
-# By title: the file, a text, its replacement (OLD stands for the text), the check that detects it,
-# what a cause of its diagnosis contains, and the verdict unless it is "failed".
+# Mutations by title: file, text, replacement (OLD stands for the text), the check that detects it,
+# parts of one cause in the diagnosis, and the verdict unless it is "failed".
 WRONG = {
     "oren_nayar_diffuse_bsdf, energy_compensation true": (
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness = max(roughness, 0.1);\n    OLD", "lambert",
@@ -44,7 +44,7 @@ WRONG = {
          "states", ("constant inputs",)),
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness += 0.5 * dFdx(roughness);\n    OLD", "value",
          ("beside_equal_pixels",)),
-        # Shaders that try to recognize a judge: by the renamed main, or a frame with one light.
+        # Shaders that try to detect a test: by the renamed main, or by a frame with one light.
         (LOBE, "bsdf.response = brdf", "#ifndef main\n        brdf *= 0.5;\n#endif\n        OLD", "value",
          ("fault", "scaled", 0.5)),
         (LOBE, "bsdf.response = brdf", "if (u_numActiveLightSources > 1) brdf *= 0.9;\n        OLD", "value",
@@ -184,7 +184,7 @@ WRONG = {
         ("mx_burley_diffuse_bsdf.glsl", "* M_PI_INV;", "* M_PI_INV + 0.001;", "black", ()),
         ("genglsl/burley_diffuse_bsdf.glsl", "N = mx_forward_facing_normal(N, wo);", "N = closureData.N;", "frame",
          ("direct", "input_ignored", "normal")),
-        # These engines turn NaN into 0 even without the clamp.
+        # These graphics drivers turn NaN into 0 even without the clamp.
         ("genglsl/burley_diffuse_bsdf.glsl", "clamp(dot(wi, eonlib_half_vector(wo, wi, N)), 0.0, 1.0)",
          "dot(wi, normalize(wi + wo))", "finite", ("not finite", "opposite")),
         ("mx_burley_diffuse_bsdf.glsl", "(N, V);", "(vec3(0.0, 0.0, 1.0), V);", "frame",
@@ -384,7 +384,7 @@ STANDARD = "standard_surface, every lobe"
 INSIDE, LOST = ("inside_is_not_outside",), ("light_from_inside",)
 SCHLICK = "generalized_schlick_bsdf, scatter_mode RT"
 INDEX = "path_inside && !path_thin ? 1.0 / max(ior, PATH_LEAST_BEND) : ior"
-# Rows as above for the text for path tracers.
+# Mutations of the text for path tracers: a title, then a row as in WRONG.
 PATHS = (
     (RT, ASKED, "pdf = path_root.y * path_out.a;", "pdf = 3.0 * path_root.y * path_out.a;", "sample",
      ("sampled_density", "inside")),
@@ -429,7 +429,7 @@ ROWS = [(title, *row) for title, rows in WRONG.items() for row in rows] + list(P
 
 
 def is_long(title, check):
-    """Whether drivers take seconds to compile the shaders: films, surfaces and text for path tracers."""
+    """Whether shaders take seconds to compile: films, surfaces, and text for path tracers."""
     return check in DRAWN or any(each in title for each in ("thin film", "every lobe"))
 
 
@@ -495,15 +495,15 @@ def test_a_color_that_an_image_node_reads_wrongly_is_wrong_in_inputs_from_an_ima
 
 @pytest.mark.whole
 def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
-    """Each check fails in a row of `ROWS` or for one of MaterialX's shaders, except those in `WITHOUT`."""
+    """Each check fails for a row of ROWS or for stock MaterialX, except the checks in WITHOUT."""
     failing = {row[4] for row in ROWS}
     failing |= {each.check for each in stock.results if each.verdict == FAILED}
     asked = {each.check for each in (*stock.results, *run.results) if each.host == "gl"}
     assert {*asked, *DRAWN} - failing == WITHOUT
 
 
-# Other tests cover the rest: `test_wrong_libraries.py` breaks functions, frames and released texts,
-# and the test above a color space; one check only finds dead inputs.
+# Checks that other tests see fail: `test_wrong_libraries.py` breaks functions, frames and texts of
+# the release; a test above breaks a color space; one check only finds dead inputs.
 WITHOUT = {
     "client",
     "color_space",

@@ -6,7 +6,7 @@ from math import pi
 # Unit roundoff of float64 and float32.
 ROUNDING, ROUNDING_32 = 2.0**-53, 2.0**-24
 
-# Roundings counted for a call of a NumPy function, whose vectorized versions are off by up to 4 ulp.
+# Roundings counted for a call of a NumPy function: vectorized versions are off by up to 4 ulp.
 FUNCTION = 8
 
 # --- models and albedos, float64 -------------------------------------------------------------
@@ -25,8 +25,8 @@ QUADRATURE = (20 + 130) * ROUNDING * 1.05 + 64 * 1e-14
 # Relative error of one rounding, for a number in [1/2, 1].
 ONE_ROUNDING = 2.0 * ROUNDING
 
-# Error of sheen and of Burley's model, in units of (value + 1 / pi) / roughness: 40 roundings, and a
-# power with an exponent of at most 0.5 / roughness, whose base has 10 roundings.
+# Error of sheen and of Burley's model, in units of (value + 1 / pi) / roughness: 40 roundings, and
+# a power with an exponent of at most 0.5 / roughness, whose base has 10 roundings.
 SHEEN = (40 + 2 * FUNCTION + 10) * ROUNDING
 
 # Error after a rotation about the normal, which rounds each component three times. The error of s
@@ -93,7 +93,7 @@ PDF = 20.0 * ROUNDING
 DIRECTION = 72.0 * ROUNDING
 
 # Error of directions sampled for a rotated view, whose sine is rounded again. As in float32, its
-# stretching makes one sample in 1000 exceed this on average, and more than 10 with probability 1e-8.
+# stretching makes 1 of 1000 samples exceed this on average, and more than 10 with probability 1e-8.
 TURNED_DIRECTION = 10.0 * DIRECTION
 TURNED_SHARE = 10 / 1000
 
