@@ -62,7 +62,7 @@ NESTED = {
 
 
 def furnace(gl, monkeypatch, library, folded, opaque, nodes):
-    """Light reflected in a white environment; if `folded`, generators multiply weights by shares."""
+    """Light reflected in a white environment; if `folded`, weights include the shares of mixes."""
     context_of = generation.context_of
 
     def context(*arguments):

@@ -33,7 +33,7 @@ OPEN = {
     "integral": HALF,
     "shape": MEAN,
     "environment": VIEW,
-}  # permitted differences
+}  # permitted choices
 AVERAGED = ("model", "MaterialX's fit of its albedo, averaged over the channels")
 CLAMPED_TITLE = "EON with clamped dot(wo, wi)"
 CLAMPED = ("model", CLAMPED_TITLE)

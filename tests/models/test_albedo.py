@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The albedos: limits, invariants, agreement with quadrature and with 50 digits."""
+"""Albedos: limits, invariants, and agreement with quadrature and 50-digit arithmetic."""
 
 import mpmath as mp
 import numpy as np
@@ -22,7 +22,7 @@ from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS, diffuse_model
 from tests.support import oracle, tolerances
 from tests.support.cases import named, parameter
 
-# The closed range, dense at both ends.
+# Cosines over the closed range [0, 1], dense at both ends.
 MU = np.unique(
     np.concatenate(
         [

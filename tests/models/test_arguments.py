@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bad arguments of every public function of the models, found by introspection."""
+"""Every public function of the models, found by introspection, refuses bad arguments."""
 
 import functools
 import re
@@ -18,13 +18,13 @@ from mxeon.models.transmission import refraction_direction
 from tests.fuzz import arguments
 
 PAGES = Path(__file__).resolve().parents[2] / "docs" / "api"
-# Functions on the API pages that accept no arrays.
+# Functions on the API pages that do not accept arrays.
 NO_ARRAYS = {"layer", "add", "model", "model_names"}
 
 
 @pytest.fixture(scope="module")
 def rows():
-    """Rows of bad arguments by function, so that any pytest process may test a function."""
+    """Rows of bad arguments by function, so that each function is a test of its own."""
     found = defaultdict(list)
     for row in arguments.rows():
         found[row[0]].append(row)
@@ -41,7 +41,7 @@ def test_the_least_number_above_zero_counts_as_zero():
     for function in arguments.functions().values():
         for name in arguments.tried(function, arrays=True):
             least, zero = (result(function, name, value) for value in (arguments.SMALLEST, 0.0))
-            if least and zero and name != "thickness":  # the specification has a jump at 0
+            if least and zero and name != "thickness":  # the specified model jumps at 0
                 for a, b in zip(least, zero, strict=True):
                     np.testing.assert_allclose(a, b, 1e-9, 1e-12, err_msg=f"{function} {name}")
 
@@ -65,7 +65,7 @@ def test_every_function_on_the_pages_is_tried():
     paths = re.findall(
         r"^::: (mxeon\.(?:models|albedo|inversion|sampling)[\w.]*\.[a-z]\w+)$", text, re.M
     )
-    paths = [each for each in paths if ".surfaces." not in each]  # these take a light and inputs
+    paths = [each for each in paths if ".surfaces." not in each]  # surfaces take a light and inputs
     names = {path.rpartition(".")[2] for path in paths if not ismodule(resolve_name(path))}
     tried = {name.rpartition(".")[2] for name in arguments.functions()}
     assert len(names) > 90
@@ -73,7 +73,7 @@ def test_every_function_on_the_pages_is_tried():
 
 
 def computed(function, values):
-    """The arrays that a function returns, or "refused"."""
+    """The arrays that a function returns, or "refused" if it raises an error."""
     try:
         with warnings.catch_warnings(action="ignore"), np.errstate(all="ignore"):
             result = arguments.call(function, values)
@@ -92,7 +92,7 @@ def test_every_function_computes_in_float64_whatever_the_type_of_its_arguments(k
         base = arguments.base(function)
         for name in arguments.tried(function, arrays=True):
             if isinstance(base[name], int | float | tuple | np.ndarray):
-                # A number that float64 cannot represent, if the type has more digits.
+                # If the type has more digits than float64, the value needs them.
                 exact = np.asarray(base[name], np.longdouble) * (1.0 - np.longdouble(2.0) ** -57)
                 value = exact.astype(kind)
                 found = computed(function, base | {name: value})

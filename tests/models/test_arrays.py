@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays of other libraries: values and gradients of every function that accepts them.
+"""Values and gradients of every function that accepts PyTorch or JAX arrays.
 
-Tests of a library that is not installed are skipped. Gradients are compared with differences of the
-same function in NumPy, where these are reliable.
+Tests are skipped if the library is not installed. Gradients are compared with finite differences
+of the same function where these are reliable.
 """
 
 import inspect
@@ -34,9 +34,9 @@ PAIRS = (
     "ggx_",
     "btdf",
     "transmittance_dir",
-)  # parts of the names of functions whose roughness is a pair
+)  # name parts of functions whose roughness has two components
 INTERFACES = "dielectric_over_eon", "varnished"
-# JAX needs seconds to compile these; their factors have their own functions.
+# Functions that JAX takes seconds to compile; the functions of their factors are tested instead.
 COATS = ("brdf", "albedo_dir", "sample", "pdf")
 LONG = (
     "chiang_hair_bcsdf",
@@ -44,30 +44,30 @@ LONG = (
 )
 LONG += ("film_albedo_dir", "dielectric_albedo_dir", "conty_kulla_albedo_dir", "transmittance_dir")
 ROWS, FEW = 48, 4
-# Functions with thousands of nodes per row.
+# Functions that sum thousands of quadrature nodes per row.
 FACETS = ("dielectric_albedo_dir", "conductor_albedo_dir", "schlick_albedo_dir")
 QUADRATURES = (*FACETS, "film_albedo_dir", "transmittance_dir", "ggx_albedo_dir_anisotropic")
 QUADRATURES += ("conty_kulla_albedo_dir",)
 SEED = 11
-GRADIENT = 1e-7  # truncation of float64 differences, relative to the larger of 1 and the gradient
-WIDTH = 1e-4  # width of one step of the differences
-OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)  # up to three steps, in two widths
+GRADIENT = 1e-7  # error of finite differences, relative to the larger of 1 and the gradient
+WIDTH = 1e-4  # step of the finite differences
+OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)  # three single and three double steps on each side
 RELIABLE = 2e-8  # maximum disagreement of two step widths for a reliable derivative
-COMPARED = 0.6  # minimum fraction of partial derivatives that differences can judge
-# A film's curve is clamped between thousands of nodes; roots of differences are noise.
+COMPARED = 0.6  # minimum fraction of partial derivatives that are compared
+# Minimum fractions for functions with kinks: clamped curves at thousands of nodes, roots of noise.
 CUT = {"film_albedo_dir": 0.3, "diffusion_blur": 0.0}
-NOISE = {"diffusion_blur": 2e-8}  # error of the root of a difference, whose rounding is 2^-53
-VALUE = 1e-12  # another library's sines and powers, relative to the larger of 1 and the value
+NOISE = {"diffusion_blur": 2e-8}  # error of the root of a difference with a rounding of 2^-53
+VALUE = 1e-12  # difference of libraries, relative to the larger of 1 and the value
 
 
 def has_mapping(function):
-    """Whether the inputs come by name in one argument."""
+    """Whether a function takes its inputs as one mapping."""
     each = inspect.signature(function).parameters.get("inputs")
     return each is not None and each.kind is each.POSITIONAL_OR_KEYWORD
 
 
 def named(function):
-    """A function whose named inputs are separate arguments."""
+    """The function with a separate argument for each key of `inputs`."""
     parameters = inspect.signature(function).parameters
     if not has_mapping(function):
         return function
@@ -84,15 +84,14 @@ DOCUMENTED = set(table.public().values())
 PORTABLE = {
     name: named(function)
     for name, function in arguments.functions().items()
-    # Other tests cover wrong variants (by name, with the catalog) and quadratures of any function
-    # (with one of theirs).
+    # Other tests cover the wrong variants in the catalog, and quadratures that take a function.
     if inspect.unwrap(function) is not function
     and function in DOCUMENTED
     and "core.quadrature" not in name
 }
 
 
-# The arguments of `film_reflectance` have only one substrate.
+# `film_reflectance` for two kinds of substrates with separate arguments, like the other functions.
 def film_conductor(
     mu: "ArrayLike",
     thickness: "ArrayLike",
@@ -121,7 +120,7 @@ def film_schlick(
 
 PORTABLE |= {each.__name__: each for each in (film_conductor, film_schlick)}
 COMPENSATED = ("dielectric_brdf", "conductor_brdf", "generalized_schlick_brdf")
-# Ends of ranges for tests, if a range has none, or its slopes diverge there.
+# Ends of ranges for tests, if a range is unbounded or slopes diverge at its end.
 LOW = (
     dict.fromkeys(("eumelanin_color", "pheomelanin_color", "hair_color"), 0.05)
     | dict.fromkeys(("separation", "radius", "reach"), 0.2)
@@ -168,8 +167,8 @@ def pytorch():
 def jax():
     library = package("jax")
     library.config.update("jax_enable_x64", True)
-    # Optimizing code for a single call does not pay, and emitting fused loops takes twice as long
-    # as the rest. With one module, shared code is compiled once.
+    # Code for a single call is not worth optimizing. Emitting fused loops takes twice as long as
+    # the rest of the compilation. With one module, shared code is compiled once.
     library.config.update("jax_disable_most_optimizations", True)
     options = {"xla_cpu_use_fusion_emitters": False, "xla_cpu_parallel_codegen_split_count": 1}
     jit = partial(library.jit, compiler_options=options)
@@ -197,12 +196,12 @@ def library(request):
 
 
 def count(function):
-    """Number of rows for testing a function."""
+    """Number of random rows with which a function is tested."""
     return FEW if function.__name__.endswith(QUADRATURES) else ROWS
 
 
 def directions(rng, below, rows=ROWS):
-    """Unit vectors; the first ones are along the normal or grazing."""
+    """Random unit vectors; some are along the normal or grazing."""
     w = rng.normal(size=(rows, 3))
     w[: max(rows // 12, 1)] = 0.0, 0.0, 1.0
     w[max(rows // 12, 1) : max(rows // 4, 2), 2] = 0.0
@@ -212,7 +211,7 @@ def directions(rng, below, rows=ROWS):
 
 
 def sampled(function):
-    """Arguments by name, each row inside its range or at an end of it, and the switches."""
+    """Random array arguments by name, inside their ranges or at an end, and the other arguments."""
     rng, arrays, switches, rows = np.random.default_rng(SEED), {}, {}, count(function)
     values, names = dict(arguments.base(inspect.unwrap(function))), table.arrays(function)
     if has_mapping(function):
@@ -224,7 +223,7 @@ def sampled(function):
             or name not in names
             or name == "light"
         ):
-            switches[name] = value  # one value for all rows
+            switches[name] = value  # the same for all rows
         elif np.shape(value) == (3,) and name[0] in "wn":
             arrays[name] = directions(rng, value[2] < 0.0, rows)
         else:
@@ -238,10 +237,10 @@ def sampled(function):
             ends = rng.choice([low, min(1.0, high), high], shape)
             arrays[name] = np.where(rng.random(shape) < 0.25, ends, inside)
     for name in [name for name, value in switches.items() if isinstance(value, dict)]:
-        switches |= switches.pop(name)  # named inputs
+        switches |= switches.pop(name)  # inputs by name become arguments
     value = arguments.call(inspect.unwrap(function), arguments.base(inspect.unwrap(function)))
-    channels = 0 if isinstance(value, tuple) else np.ndim(value)  # samplers have no channels
-    channels = channels or function.__name__.startswith(INTERFACES)  # their samplers take a color
+    channels = 0 if isinstance(value, tuple) else np.ndim(value)  # samplers return no channels
+    channels = channels or function.__name__.startswith(INTERFACES)  # except for interfaces
     for name in COLORS & set(arrays) if channels else ():
         if arrays[name].ndim < 2 and (name.startswith(TINTS) or "conductor" in function.__name__):
             arrays[name] = arrays[name][:, np.newaxis]
@@ -249,7 +248,7 @@ def sampled(function):
 
 
 def whole(value):
-    """A single array: a sampler's direction components and density; both arrays of a pair."""
+    """Stack a tuple of results into one array, such as a sampler's direction and density."""
     if not isinstance(value, tuple):
         return value
     w, pdf, *others = value
@@ -261,7 +260,7 @@ def whole(value):
 
 
 def scalar(value, axes=1):
-    """One number per row: the first channel, or the sum of all results of a sampler."""
+    """One number per row: the first channel, or the sum of a sampler's results."""
     value = whole(value).sum(-1) if isinstance(value, tuple) else value
     while value.ndim > axes:
         value = value[..., 0]
@@ -269,7 +268,7 @@ def scalar(value, axes=1):
 
 
 def moved(function, arrays, switches, name):
-    """Scalars of all rows by offset, for each component of an array that is moved; a single call computes all."""
+    """For each component of an array, `scalar` of all rows by offset, from a single call."""
     array = arrays[name]
     rows, size = len(array), array[0].size
     several = np.tile(array.reshape(rows, size), (size, len(OFFSETS), 1, 1))
@@ -280,7 +279,7 @@ def moved(function, arrays, switches, name):
         for each, value in arrays.items()
     }
     values[name] = several.reshape(values[name].shape)
-    # Map over the rows: traced values may leave their range, and directions the sphere.
+    # vmap traces the values, so offsets may leave ranges and directions need not be unit vectors.
     torch = package("torch")
     row = torch.func.vmap(
         lambda *a: scalar(function(**dict(zip(values, a, strict=True)), **switches), 0)
@@ -290,7 +289,7 @@ def moved(function, arrays, switches, name):
 
 
 def slopes(f, step):
-    """Slopes from above and from below, to third order, with the given number of steps."""
+    """Third-order one-sided derivatives, forward then backward, with `step` times WIDTH."""
     with np.errstate(invalid="ignore"):
         return [
             s
@@ -301,7 +300,7 @@ def slopes(f, step):
 
 
 def differences(function, arrays, switches, name):
-    """For each component, the derivatives of all rows by differences, and which of them are reliable."""
+    """For each component, finite differences of all rows, and which rows are reliable."""
     for k, f in enumerate(moved(function, arrays, switches, name)):
         low, high, _ = RANGES[name] if name in RANGES else RANGES["mu" if k == 2 else "cos_theta"]
         x = arrays[name].reshape(len(arrays[name]), -1)[:, k]
@@ -309,7 +308,7 @@ def differences(function, arrays, switches, name):
         usable = [x + reach <= high, x - reach >= low]
         best = np.where(usable[0], fine[0], fine[1])
         spread = np.zeros(len(x))
-        with np.errstate(invalid="ignore"):  # beyond an end of the range
+        with np.errstate(invalid="ignore"):  # offsets beyond the range give NaN
             for side, each in ((0, coarse[0]), (0, fine[0]), (1, coarse[1]), (1, fine[1])):
                 spread = np.maximum(spread, np.where(usable[side], np.abs(each - best), 0.0))
         yield best, spread <= RELIABLE * np.maximum(1.0, np.abs(best))
@@ -325,7 +324,7 @@ def differences(function, arrays, switches, name):
     ],
 )
 def test_gradients_are_finite_and_those_of_differences(make, name):
-    with untraced() if make is jax else nullcontext():  # other tests reach the same lines
+    with untraced() if make is jax else nullcontext():  # PyTorch's tests trace the same lines
         assert_gradients(make(), name, False)
 
 
@@ -333,12 +332,12 @@ def test_gradients_are_finite_and_those_of_differences(make, name):
 def test_gradients_of_the_compensation_are_those_of_differences(name):
     assert_gradients(
         pytorch(), f"mxeon.models.microfacet.{name}", True
-    )  # JAX needs seconds to compile its polynomials
+    )  # JAX takes seconds to compile the polynomials
 
 
-@lru_cache(maxsize=4)  # both libraries test the same function
+@lru_cache(maxsize=4)  # PyTorch and JAX share the reference
 def reference(name, compensate):
-    """Arguments of a function, its values in NumPy, and derivatives by each component of each array."""
+    """Arguments, values by NumPy, and finite differences of a function by array and component."""
     function = PORTABLE[name]
     arrays, switches = sampled(function)
     switches |= {"compensate": True} if compensate else {}
@@ -347,7 +346,7 @@ def reference(name, compensate):
 
 
 def assert_gradients(library, name, compensate):
-    """Compare the gradients by every array with reliable differences."""
+    """Compare a library's gradients with the reliable finite differences."""
     function = PORTABLE[name]
     arrays, switches, expected_value, slopes = reference(name, compensate)
     value, found = library.gradients(partial(function, **switches), arrays)
@@ -360,9 +359,9 @@ def assert_gradients(library, name, compensate):
         if function.__name__.endswith("_anisotropy"):  # the larger alpha is clamped at 1
             kink = (function(**arrays)[:, 0] == 1.0) & (arrays["anisotropy"] == 0.0)
         if function.__name__.endswith("transmittance_dir") and argument == "roughness":
-            # A mirror's transmittance counts as 0.
+            # The transmittance of a perfectly smooth surface is defined as 0.
             kink = (arrays["roughness"] == 0.0).any(axis=1)
-        if function.__name__ == "film_schlick":  # the curve is clamped from 0 on
+        if function.__name__ == "film_schlick":  # the curve is clamped at 0
             kink = (arrays["color0"] * arrays["color90"] == 0.0)[:, 0]
         columns, judged = gradient.reshape(count(function), -1).T, 0
         for k, column in enumerate(columns):
@@ -383,7 +382,7 @@ def assert_gradients(library, name, compensate):
 
 
 def assert_values(value, expected, allowed=VALUE):
-    """Compare values with those of the same function in NumPy."""
+    """Compare a library's values with NumPy's."""
     assert value.shape == expected.shape
     error = np.abs(value - expected) / np.maximum(1.0, np.abs(expected))
     assert (error <= allowed).all()
@@ -447,7 +446,7 @@ def test_precision_is_that_of_the_arrays(library):
     single = library.array(np.array([0.5], np.float32))
     value = lambert_brdf(np.array([[0.6, 0.0, 0.8]]), [0, 0, 1], single)
     assert library.numpy(value).dtype == np.float32 and tuple(value.shape) == (1, 1)
-    # Integer types have no precision.
+    # Integer types have no floating-point precision.
     whole = lambert_brdf(library.array([0, 0, 1]), [0, 0, 1], 0.5)
     assert library.numpy(whole).dtype in (np.float32, np.float64)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models by their names: inputs of MaterialX, shapes, functions, messages."""
+"""`mxeon.model`: inputs as in MaterialX, shapes, functions and messages of every model."""
 
 import re
 
@@ -20,16 +20,16 @@ from tests.support.hemispheres import hemisphere
 
 WO, WI = np.array([0.6, 0.0, 0.8]), np.array([-0.36, 0.48, 0.8])
 MANY = np.array([[0.6, 0.0, 0.8], [0.0, 0.8, 0.6], [0.0, 0.0, 1.0], [0.0, 0.6, 0.8], WI])
-TRANSMITTED = 3e-4  # quadrature error of the albedo, 2e-4, plus that of the values
+TRANSMITTED = 3e-4  # quadrature errors: 2e-4 of the albedo, the rest of the values
 MODES = {"mode", "scatter_mode", "distribution", "energy_compensation"}
 FRAME = {"weight", "normal", "tangent", "curve_direction", "retroreflective"}
 LIGHT = {"front": WI, "back": WI * [1.0, 1.0, -1.0], "all sides": WI}
 every_model = pytest.mark.parametrize("name", MODELS)
 SAMPLED = [name for name in MODELS if "sample" in MODELS[name].functions]
-# Input channels with these values for samplers; others have their defaults.
+# Values for tests of samplers, by input and number of channels; other inputs have their defaults.
 ROUGH = {("roughness", 0): 0.5, ("roughness", 2): (0.3, 0.6), ("alpha", 0): 0.3}
-OTHER_ALBEDO = ("burley_lambert",)  # a different albedo is its defect
-MASS = 2e-3  # noise of a density's share below the horizon
+OTHER_ALBEDO = ("burley_lambert",)  # wrong models whose albedo differs
+MASS = 2e-3  # noise of the share of samples below the horizon
 
 
 @pytest.mark.parametrize("category", DEFAULTS)
@@ -39,7 +39,7 @@ def test_inputs_have_the_names_order_and_defaults_of_the_definition(category):
     ports = [port for port in definition.getActiveInputs() if port.getName() not in left]
     assert list(DEFAULTS[category]) == [port.getName() for port in ports]
     for port in ports:
-        text = port.getValueString() or "0.0, 0.0, 0.0"  # an EDF has no value
+        text = port.getValueString() or "0.0, 0.0, 0.0"  # EDF inputs have no default
         numbers = [float(each) for each in text.split(",")]
         assert np.ravel(DEFAULTS[category][port.getName()]).tolist() == numbers
     assert mx.getVersionString() == "1.39.5"
@@ -49,7 +49,7 @@ def test_inputs_have_the_names_order_and_defaults_of_the_definition(category):
 def test_inputs_are_in_the_order_of_their_node(name):
     row = MODELS[name]
     names = [each.name for each in row.parameters]
-    order = list(DEFAULTS.get(row.node, names))  # a layer has no defaults
+    order = list(DEFAULTS.get(row.node, names))  # layers have no defaults
     assert names == sorted(names, key=order.index)
     for each in row.parameters:
         low, high = each.interval
@@ -76,11 +76,11 @@ def test_every_drawn_direction_has_a_value_and_its_density(name):
     grid = np.stack(np.meshgrid(*[np.arange(count)] * 2), axis=-1).reshape(-1, 2)
     wi, pdf = row.sample(wo, (grid + k.random(grid.shape)) / count, **inputs)
     assert np.allclose(row.pdf(wo, wi, **inputs), pdf, rtol=1e-9)
-    # Values are 0 where the model scatters no light.
+    # Values are 0 on a side to which the model scatters no light.
     value, below = row.bsdf(wo, wi, **inputs), wi[:, 2] < 0.0
     if row.lights != "all sides":
         assert not value[below if row.lights == "front" else ~below].any()
-    # The mean weight is the albedo. The density's integral over the upper side and the share of samples below add to 1.
+    # The mean weight is the albedo. The density above and the share of samples below add up to 1.
     cosine = 1.0 if name == "hair" else np.abs(wi[:, 2:])
     weights = value * cosine / pdf[:, np.newaxis]
     error = np.abs(weights.mean(axis=0) - row.albedo_dir(0.4, **inputs))
@@ -192,7 +192,7 @@ def test_an_anisotropic_albedo_depends_on_the_azimuth():
     albedo = mxeon.model("schlick").albedo_dir(0.3, color0=0.04, **inputs)
     assert abs(albedo[0] - albedo[1]).min() > 0.01
     white = mxeon.model("schlick").albedo_dir(0.3, **inputs)
-    assert abs(white - 1.0).max() < 1e-9  # all facets reflect everything
+    assert abs(white - 1.0).max() < 1e-9  # white facets reflect all light
 
 
 def test_numbers_have_no_channels_and_colors_keep_theirs():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A dielectric over EON, and EON under a varnish: their curves and albedos."""
+"""Curves and albedos of a dielectric over EON, and of EON under a varnish."""
 
 import numpy as np
 import pytest
@@ -27,8 +27,8 @@ from tests.support.tolerances import COAT, COAT_INTEGRAL
 
 CLAY = {"rho": np.array([0.7, 0.35, 0.12]), "roughness": 0.6}
 DIELECTRIC = {"alpha": 0.3, "ior": 1.5}
-CURVES = 2e-5  # error of a varnish: its curves have 28 nodes; alpha 0.01, index 1.02
-# Value, directional and average albedo of each interface, and the error of the average.
+CURVES = 2e-5  # error of a varnish's curves by 28 nodes at alpha 0.01, index 1.02
+# Functions of each interface (value, directional albedo, average albedo), and the average's error.
 INTERFACES = (
     (
         dielectric_over_eon_brdf,
@@ -47,7 +47,7 @@ COSINES = np.append([0.0, 1e-10, 1e-8, 1e-6, 1e-5, 1e-4], np.geomspace(1e-3, 1.0
 def test_curves_are_those_of_a_finer_quadrature(monkeypatch, alpha, ior):
     coat = constant_coat(alpha, ior)
     missing, reflected = coat.at(COSINES)
-    # Repeat the integration with more nodes that crowd closer to grazing.
+    # Integrate again with more nodes, which are denser near grazing.
     finer = {"LEAST_SCALE": 0.0, "SLOPE_NODES": 40, "PANELS": 6, "QUADRANT": 120}
     for name, value in finer.items():
         monkeypatch.setattr(slopes, name, value)
@@ -77,7 +77,7 @@ def test_the_directional_albedo_is_the_integral_of_the_value(interface, mu, alph
 def test_the_average_albedo_is_the_average(interface, alpha, ior):
     _, albedo_dir, albedo_avg, error = interface
     x, weight = gauss_legendre(400)
-    mu = (0.5 + 0.5 * x) ** 2  # the nodes crowd at grazing
+    mu = (0.5 + 0.5 * x) ** 2  # nodes are dense near grazing
     E = albedo_dir(mu, **CLAY, alpha=alpha, ior=ior)
     average = (0.5 * weight * 4.0 * (0.5 + 0.5 * x) ** 3) @ E
     assert np.abs(albedo_avg(**CLAY, alpha=alpha, ior=ior) - average).max() < error

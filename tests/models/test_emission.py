@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Emission of surfaces: the printed equations and the variants of the nodes."""
+"""Emission models agree with the printed equations, and their variants differ."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The hair model: normalization of its lobes, its furnace, 50 digits, and Mitsuba's own implementation."""
+"""Hair: normalization, white furnace, and agreement with 50-digit arithmetic and with Mitsuba."""
 
 import mpmath as mp
 import numpy as np
@@ -17,19 +17,19 @@ from mxeon.models.nodes.lobes import FORMS, READINGS, TILTED, materialx_longitud
 from tests.support.availability import package
 from tests.support.hemispheres import sphere
 
-ROUND = 1e-14  # 45 roundings of float64
+ROUND = 1e-14  # relative error: 45 roundings of float64
 PICK = {"roughness_R": (0.5, 0.6), "roughness_TT": (0.3, 0.4), "roughness_TRT": (0.8, 0.9)}
 VIEWS = np.array([[0.0, 0.0, 1.0], [0.6, 0.3, 0.0], [-0.95, -0.2, 0.0]])
 VIEWS[:, 2] = np.sqrt(1.0 - (VIEWS[:, :2] ** 2).sum(axis=1))
 
 
 def inclined(theta):
-    """Sine and cosine of an inclination."""
+    """Sine and cosine of an inclination `theta`."""
     return np.sin(theta), np.cos(theta)
 
 
 def furnace(wo, **inputs):
-    """The integral of the values over all lights, (C,)."""
+    """Integral of the scattering function over the sphere, one value per channel."""
     wi, weights = sphere(96)
     return (weights[:, np.newaxis] * chiang_hair_bcsdf(wo, wi, **PICK | inputs)).sum(axis=0)
 
@@ -62,7 +62,7 @@ def test_the_longitudinal_function_is_normalized(v):
 @pytest.mark.parametrize("s", [0.01, 0.3, 2.0, 100.0])
 def test_the_azimuthal_function_is_normalized(s):
     x, w = np.polynomial.legendre.leggauss(400)
-    phi = np.pi * x * x * x  # dense inside narrow lobes
+    phi = np.pi * x * x * x  # nodes are dense inside narrow lobes
     norm = (3.0 * np.pi * x * x * w * azimuthal(phi, s)).sum()
     assert norm == pytest.approx(1.0, abs=1e-6)
     turned, near = azimuthal(0.4 + np.pi * np.array([4.0, 0.0]), s)
@@ -93,7 +93,7 @@ def test_a_furnace_with_absorption_returns_the_attenuations():
 
 
 def test_only_a_tilt_of_the_viewer_keeps_the_furnace():
-    # The text's tilt of two degrees costs 2 % of the light in a slanted view of rough hair.
+    # With the specified tilt of two degrees, rough hair loses 2 % of the light in a slanted view.
     cuticle = 0.5 + 2.0 / 180.0
     tilted = np.pi * furnace(VIEWS[2], cuticle_angle=cuticle)
     np.testing.assert_allclose(tilted, 0.9775, atol=1e-3)
@@ -109,11 +109,11 @@ def test_the_sign_of_a_tilted_cosine_has_no_effect():
 
 
 def test_the_ten_terms_of_materialx_are_off_by_2_percent():
-    # At a = 12 the series lacks its tenth power of x^2 and all higher ones.
+    # MaterialX's series for a < 12 lacks the tenth and higher powers of x^2.
     sine, cosine, v = np.array(0.0), np.array(1.0), np.array(1.0 / 11.9)
     exact = longitudinal(sine, cosine, sine, cosine, v)
     assert materialx_longitudinal(sine, cosine, sine, cosine, v) / exact < 0.982
-    v = np.array(1.0 / 12.1)  # half of the term 1 / (8 x) is missing
+    v = np.array(1.0 / 12.1)  # the expansion for a > 12 lacks half of 1 / (8 x)
     short = materialx_longitudinal(sine, cosine, sine, cosine, v)
     assert short / longitudinal(sine, cosine, sine, cosine, v) == pytest.approx(0.9944, abs=1e-3)
 
@@ -128,7 +128,7 @@ def test_each_form_has_other_values(form):
 
 @pytest.mark.parametrize("tilt", [0.0, 3.0])
 def test_mitsuba_has_the_values_of_the_model(tilt):
-    """Mitsuba's hair follows [Chiang2016]: without the factor 1/pi, and with the viewer tilted."""
+    """Mitsuba follows [Chiang2016]: its hair has no factor 1/pi and tilts the viewer."""
     mi = package("mitsuba")
     mi.set_variant("scalar_rgb")
     absorption, beta = (0.1, 0.2, 0.3), 0.6
@@ -148,7 +148,7 @@ def test_mitsuba_has_the_values_of_the_model(tilt):
     point = mi.SurfaceInteraction3f()
     for wo, wi in zip(VIEWS[1:], [[0.2, -0.5, 0.4], [0.1, 0.3, -0.9]], strict=True):
         wi = np.array(wi) / np.linalg.norm(wi)
-        point.wi = mi.Vector3f(*wo[[1, 0, 2]])  # Mitsuba's fiber is along +y
+        point.wi = mi.Vector3f(*wo[[1, 0, 2]])  # Mitsuba's fibers run along +y
         value = np.array(bsdf.eval(mi.BSDFContext(), point, mi.Vector3f(*wi[[1, 0, 2]])))
         expected = np.pi * chiang_hair_bcsdf(
             wo,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reflectance as the exact inverse of albedo."""
+"""Reflectances computed from an albedo are its exact inverse."""
 
 import mpmath as mp
 import numpy as np
@@ -19,7 +19,7 @@ both = pytest.mark.parametrize("function", [NORMAL, AVERAGE])
 
 
 def on_grid(function):
-    """Values for all colors (last axis) and roughnesses (first axis)."""
+    """Values of a function for all colors (last axis) and roughnesses (first axis)."""
     return function(EDGES, EDGES)
 
 
@@ -53,7 +53,7 @@ def test_albedos_return_to_the_color():
 
 
 def exact_normal(color, r):
-    """Eq. (30), by mpmath."""
+    """Solution of [Portsmouth2025], Eq. (30), by mpmath."""
     c1, c2 = mp.mpf(1) / 2 - 2 / (3 * mp.pi), mp.mpf(2) / 3 - 28 / (15 * mp.pi)
     normal, mean = 1 / (1 + c1 * r), (1 + c2 * r) / (1 + c1 * r)
     a, b = mean - normal, normal + color * (1 - mean)
@@ -61,7 +61,7 @@ def exact_normal(color, r):
 
 
 def exact_average(color, r):
-    """Eq. (33), by mpmath."""
+    """Solution of [Portsmouth2025], Eq. (33), by mpmath."""
     c1, c2 = mp.mpf(1) / 2 - 2 / (3 * mp.pi), mp.mpf(2) / 3 - 28 / (15 * mp.pi)
     return color / (color + (1 + c2 * r) / (1 + c1 * r) * (1 - color))
 

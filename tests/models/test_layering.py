@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The algebra of layers: its albedos, its identities and its domain."""
+"""Layering operators: albedos, identities, and the domain in which albedos stay below 1."""
 
 import numpy as np
 
 from mxeon.models.core.layering import Bsdf, add, layer, mix, multiply, throughput
 
-# Values with the cosine, integrated: a lobe that reflects E has value E and throughput 1 - E. The
-# numbers are multiples of 1/64, so that the sums and products below are exact.
+# Lobes by their albedo E: value E, throughput 1 - E. All numbers are multiples of 1/64, so the sums
+# and products below are exact.
 A, B = (Bsdf(np.array(e), throughput(e)) for e in ([0.25, 0.5, 0.0], [0.5, 0.125, 1.0]))
-TREE = 1e-13  # 6 levels with up to 2^6 lobes: 400 roundings of numbers up to the albedo, doubled
+TREE = 1e-13  # trees of 6 levels: 400 roundings, doubled
 NOTHING, BLACK = Bsdf(np.zeros(3), np.ones(3)), Bsdf(np.zeros(3), np.zeros(3))
 
 
@@ -34,13 +34,13 @@ def test_a_sum_that_reflects_more_than_all_light_hides_what_lies_below():
 
 
 def tree(rng, depth):
-    """A random combination of lobes, and its albedo by the equations of the text."""
+    """A random combination of lobes, and its albedo by the specified equations."""
     kind = rng.choice(("layer", "mix", "add", "multiply")) if depth else "lobe"
     if kind == "lobe":
         albedo = rng.random(3)
         return Bsdf(albedo, throughput(albedo)), albedo
     (one, E), (other, E_other) = tree(rng, depth - 1), tree(rng, rng.integers(depth))
-    if kind == "layer":  # the base is black if E exceeds 1
+    if kind == "layer":  # an albedo above 1 hides the base
         return layer(one, other), E + np.where(E < 1.0, 1.0 - E, 0.0) * E_other
     if kind == "mix":
         w = rng.random()
@@ -62,4 +62,4 @@ def test_every_tree_of_combinations_keeps_the_albedo_of_the_text():
         white = layer(lobe, Bsdf(np.ones(3), np.zeros(3))).value
         assert np.all(np.abs(white - np.maximum(albedo, 1.0)) <= TREE * scale)
         above += np.count_nonzero(albedo > 1.0)
-    assert 500 < above < 2500  # out of 3000 albedos, so that both sides of 1 are tested
+    assert 500 < above < 2500  # of 3000 albedos, so both sides of 1 are tested

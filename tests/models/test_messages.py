@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages for invalid arguments: one row for each rule, of functions with checks of their own.
+"""Messages for invalid arguments, one row per rule.
 
 `test_arguments` tries every bad value with every function; this module tests the wording.
 """
@@ -30,7 +30,7 @@ def coated(**changes):
 
 
 RULES = {
-    # Ranges; the message gives the place of the first bad element.
+    # Ranges: the message names the first element that is out of range.
     "roughness must lie in [0, 1]; got 1.2": lambda: models.eon_brdf(UP, UP, 1.0, 1.2),
     "roughness must lie in [0, 1]; got -0.5 at index (2,)": lambda: models.eon_brdf(
         UP, UP, 1.0, [0.0, 1.0, -0.5]
@@ -50,7 +50,7 @@ RULES = {
     ),
     "weight must lie in [0, inf); got -0.5": lambda: multiply(LOBE, -0.5),
     "alpha must lie in [0.01, 1]; got 0.001": lambda: coated(alpha=0.001),
-    # Directions.
+    # Directions: unit length and sides of the surface.
     "wi must be unit vectors to 1e-06; got squared length 4.0 at index (1,)": (
         lambda: models.lambert_brdf(UP, [UP, [0.0, 0.0, 2.0]], 1.0)
     ),
@@ -66,7 +66,7 @@ RULES = {
     "wi must not point above the horizon (z <= 0); got z = 0.8": lambda: translucent_btdf(
         UP, [0.6, 0, 0.8], 1.0
     ),
-    # Kinds of arguments.
+    # Types of arguments.
     "rho must be real numbers; got 'red'": lambda: models.lambert_brdf(UP, UP, "red"),
     "rho must be real numbers; got 1j": lambda: models.lambert_brdf(UP, UP, 1j),
     "rho must be real numbers; got [[1.0], [1.0, 0.5]]": lambda: models.lambert_brdf(
@@ -87,7 +87,7 @@ RULES = {
     "reading must be one of text, unclamped": lambda: schlick_ior(0.5, "mean"),
     "no model 'phong'; see mxeon.models.table.DIFFUSE_MODELS": lambda: diffuse_model("phong"),
     "category must be one of roughness_anisotropy, ": lambda: node("nothing"),
-    # Shapes.
+    # Shapes of arguments.
     "wo must have shape (..., 3); got shape (2,)": lambda: models.lambert_brdf([1.0, 0.0], UP, 1.0),
     "wi must have shape (..., 3); got shape ()": lambda: models.lambert_brdf(UP, 1.0, 1.0),
     "u must have shape (..., 2); got shape (3,)": lambda: sampling.cosine_sample([0.1, 0.2, 0.3]),

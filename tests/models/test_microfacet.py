@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Microfacet BRDFs: limits, invariants, agreement with the printed equations in 50 digits."""
+"""Microfacet BRDFs: limits, invariants, and agreement with the printed equations in 50 digits."""
 
 import mpmath as mp
 import numpy as np
@@ -45,18 +45,18 @@ every_node = pytest.mark.parametrize("name", BRDFS)
 
 
 def pairs(count, seed=1):
-    """Random directions and roughness, alpha >= 0.05."""
+    """Random pairs of directions, and roughness with alpha >= 0.05."""
     rng = np.random.default_rng(seed)
     return *directions((2, count), rng), 0.05 + 0.95 * rng.random((count, 2))
 
 
 def fresnel_exact(name, c, channel):
-    """Fresnel reflectance as the specification prints it."""
+    """Fresnel reflectance by the printed equations of the specification."""
     if name == "generalized_schlick_bsdf":
         r0, t, r90 = (mp.mpf(color[channel]) for color in COLORS)
         m = mp.mpf(1) / 7
         a = (r0 + (r90 - r0) * (1 - m) ** 5) * (1 - t) / (m * (1 - m) ** 6)
-        return max(r0 + (r90 - r0) * (1 - c) ** 5 - a * c * (1 - c) ** 6, 0)  # OpenPBR's curve
+        return max(r0 + (r90 - r0) * (1 - c) ** 5 - a * c * (1 - c) ** 6, 0)  # curve of OpenPBR
     if name == "dielectric_bsdf":
         g = mp.sqrt(mp.mpf(1.5) ** 2 + c * c - 1)
         ratio = (c * (g + c) - 1) / (c * (g - c) + 1)
@@ -144,7 +144,7 @@ def test_values_are_finite_on_the_closed_domain(name):
     values = BRDFS[name](wo, wi, alpha)
     assert np.isfinite(values).all()
     assert name == "generalized_schlick_bsdf" or (values >= 0.0).all()
-    assert (values[..., 0, :, :] == 0.0).all()  # a mirror has no value
+    assert (values[..., 0, :, :] == 0.0).all()  # values of a perfect mirror are 0
 
 
 def test_the_distribution_covers_the_surface_once():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Albedos of the microfacet BRDFs: limits, invariants, agreement of independent quadratures."""
+"""Albedos of microfacet BRDFs: limits, invariants, and agreement of independent quadratures."""
 
 from itertools import pairwise
 
@@ -28,7 +28,7 @@ from tests.support.hemispheres import hemisphere
 ALPHA = np.geomspace(1e-4, 1.0, 9)
 MU = np.unique(np.concatenate([np.geomspace(1e-4, 1.0, 13), 1.0 - np.geomspace(1e-12, 0.1, 4)]))
 GOLD = [0.183, 1.373], [3.424, 1.77]
-CUBICS = 5e-13  # twice the rounding of (1 - E_ss) / E_ss; its polynomials are exact to 1e-10
+CUBICS = 5e-13  # twice the rounding error of (1 - E_ss) / E_ss
 COLORS = [0.9, 0.2], 0.5, 1.0
 EXACT = {"epsabs": 1e-13, "epsrel": 1e-12, "limit": 200}
 NODES = {
@@ -93,7 +93,7 @@ def test_the_albedo_lies_between_its_limits_on_the_closed_domain():
 def test_the_table_of_what_facets_miss_agrees_with_the_quadrature():
     rng = np.random.default_rng(0)
     mu, alpha = rng.random((2, 3000)) ** [[6.0], [3.0]]
-    # Small alphas with cosines at both ends and in proportion to alpha.
+    # Small alphas: cosines near 0, near 1, and proportional to alpha.
     small = np.geomspace(1e-9, 1e-4, 6)[:, None]
     mu = np.concatenate([mu, (small * [0.0, 0.1, 1.0, 10.0, 1e3]).ravel(), np.ones(30)])
     alpha = np.concatenate([np.maximum(alpha, small[0]), np.repeat(small, 10)])
@@ -171,7 +171,7 @@ def test_the_albedo_is_converged_at_a_critical_angle(ior, monkeypatch):
 )
 def test_the_albedo_agrees_with_a_quadrature_around_the_view_at_a_critical_angle(mu, alpha, ior):
     def around(c):
-        """The integrand over the azimuths of h around wo, with cosine c."""
+        """Integrand over azimuths of half vectors around wo whose cosine with wo is c."""
         slope = np.sqrt((1.0 - c * c) * (1.0 - mu * mu))
         horizon = (mu / (2.0 * c) - c * mu) / slope
         if horizon >= 1.0:
@@ -186,7 +186,7 @@ def test_the_albedo_agrees_with_a_quadrature_around_the_view_at_a_critical_angle
         return D * c * 2.0 * mu_i / (smith[0] * mu_i + smith[1] * mu)
 
     def share(t, low, high):
-        c = low + (high - low) * t * t * (3.0 - 2.0 * t)  # F has a square root at a critical angle
+        c = low + (high - low) * t * t * (3.0 - 2.0 * t)  # F starts like a square root
         return fresnel_dielectric(c, ior) * around(c) * 6.0 * t * (1.0 - t) * (high - low)
 
     theta, quarter = np.arccos(mu), 0.5 * np.pi
@@ -263,7 +263,7 @@ def test_a_sum_over_visible_normals_is_the_albedo_but_for_its_masking():
         wi, _ = ggx_sample(np.broadcast_to(wo, (count, 3)), rng.random((count, 2)), alpha)
         mean = np.full(2, np.sqrt(alpha.prod()))
         lit = wi[:, 2] > 0.0
-        # The density is D G_1 / (4 mu_o); the sum weighs each normal by G_2 / G_1 of the mean alpha.
+        # The density is D G_1 / (4 mu_o). MaterialX's sum weights by G_2 / G_1 of the mean alpha.
         weight = np.where(lit, ggx.smith_g2(wo[2], np.abs(wi[:, 2]), mean[0]), 0.0)
         weight = weight / ggx.smith_g1(wo[np.newaxis], mean[np.newaxis])
         found = slopes.slope_nodes(wo[:, np.newaxis], alpha[:, np.newaxis], summed=True)[1].sum()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The models: limits, invariants, agreement with 50 digits, the closed domain, and evaluation."""
+"""Diffuse models: limits, invariants, agreement with 50 digits, domain ends, and array handling."""
 
 import tracemalloc
 
@@ -23,18 +23,18 @@ ALL = DIFFUSE_MODELS + KNOWN_DEFECTS
 
 
 def digits(numbers):
-    """The same numbers with 50 digits."""
+    """Convert numbers to mpmath's 50 digits."""
     return [mp.mpf(float(number)) for number in numbers]
 
 
 def largest_quotient(wo, wi):
-    """The larger of 1 and the largest possible |s / t| for the cosines of a pair."""
+    """Upper limit of |s / t| for the cosines of a pair, at least 1."""
     mu_o, mu_i = wo[..., 2], wi[..., 2]
     return np.maximum(1.0, 1.0 / np.maximum(mu_o, mu_i))
 
 
 def assert_same(value, again, wo, wi):
-    """Assert that values of the same pairs are equal, although NumPy may compute functions in another order."""
+    """Assert that two evaluations agree; NumPy's vector functions may round differently."""
     scale = largest_quotient(np.atleast_2d(wo), np.atleast_2d(wi))
     assert (np.pi * np.abs(value - again) <= 2.0 * tolerances.BRDF * scale[..., np.newaxis]).all()
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Variants in renderers' own nodes: where they are correct, and how they are wrong."""
+"""Variants that renderers use in their own nodes: where they are correct, and how they fail."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from mxeon.models.table import OTHERS, PARAMETRIZATIONS, diffuse_model
 from tests.support.cases import directions
 
 WO, WI = directions((2, 1000), seed=1, least=0.05)
-# Converts a roughness to the model's parameter, by the last word of its name.
+# Parameters that correspond to a roughness of 0.6, by the last word of the model's name.
 PARAMETERS = {"half_pi": 0.3 * np.pi, "slope": 0.6 / np.sqrt(2.0), "squared": 0.36}
 
 

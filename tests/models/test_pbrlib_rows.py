@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rows of hair and films, and MaterialX's circle for subsurface scattering."""
+"""Nodes for hair and films, and MaterialX's circle for subsurface scattering."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ METAL = {
     "extinction": np.full((2, 3), 3.0),
     "roughness": np.full((2, 2), 0.4),
 }
-# The polynomial for a film's curve in the docstring of `film_albedo_dir`.
+# Error of the polynomial for a film's curve, as in the docstring of `film_albedo_dir`.
 CURVE = 1e-4
 
 

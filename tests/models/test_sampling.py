@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Samplers: limits, invariants, and the agreement of samples, densities and models."""
+"""Samplers: limits, invariants, and agreement of samples with densities and models."""
 
 import numpy as np
 import pytest
@@ -61,12 +61,12 @@ def test_the_four_parts_of_eon_sum_to_one(mu, roughness):
 
 
 def assert_same_density(pdf, again):
-    """Assert that two densities only differ by rounding."""
+    """Assert that two densities are equal up to rounding."""
     np.testing.assert_allclose(pdf, again, rtol=tolerances.SAMPLE_PDF, atol=tolerances.DIRECTION)
 
 
 def turned(w, angle):
-    """`w` turned about the normal."""
+    """The direction `w` rotated about the normal."""
     x, y, z = np.moveaxis(w, -1, 0)
     c, s = np.cos(angle), np.sin(angle)
     return np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
@@ -102,7 +102,7 @@ def test_arguments_broadcast(name):
 
 @every_sampler
 def test_edges_give_unit_directions_above_the_horizon_and_finite_pdf(sampler):
-    # Numbers one ulp from 0 and 1, and numbers whose squares underflow.
+    # Random numbers one ulp from 0 and 1, and numbers whose squares underflow.
     edges = np.array([0.0, 5e-324, 1e-200, 2.0**-53, 1e-9, 0.25, 0.5, 0.75, 1.0 - 2.0**-53])
     u = np.stack(np.meshgrid(edges, edges), axis=-1)
     for mu in (*edges, 1.0):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The distribution of samples matches their density.
+"""Samples are distributed according to their density.
 
-The seeds are fixed. FALSE_ALARM is the probability that a test of this file fails by chance, split
-evenly among the comparisons.
+Seeds are fixed. With random seeds, a test of this file would fail by chance with the probability
+FALSE_ALARM, which the comparisons share evenly.
 """
 
 from functools import partial
@@ -16,7 +16,7 @@ from tools.paper.samplers import BY_NAME, SAMPLERS, Sampler
 
 FALSE_ALARM = 1e-4
 
-# The exact sampler for gray surfaces.
+# Exact sampler for gray surfaces.
 GRAY = [
     Sampler(f"eon_{rho}", partial(eon_sample, rho=rho), partial(eon_pdf, rho=rho), f"rho = {rho}")
     for rho in (0.0, 0.5)
@@ -29,7 +29,7 @@ every_sampler = pytest.mark.parametrize("sampler", ALL, ids=lambda sampler: samp
 
 
 def chi_square(sampler, density, mu, roughness):
-    """p-value of samples of one sampler against the density of another, with a seed for each comparison."""
+    """p-value of a sampler's samples against a density; each comparison has its own seed."""
     u = uniforms(100_000, [ALL.index(sampler), SCENES.index((mu, roughness))])
     sample, pdf = (partial(each, roughness=roughness) for each in (sampler.sample, density.pdf))
     return probability(sample, pdf, direction(mu), u)

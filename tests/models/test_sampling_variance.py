@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Variance and largest value of the samplers' throughput weights.
 
-At unit reflectance the weight is f cos(theta_i) / p, with mean 1. For the exact sampler, it is 1
-everywhere if p is the density that the sampler returns; here p is the true density of its samples,
-which differs slightly because of two fits.
+At unit reflectance the weight is f cos(theta_i) / p, with mean 1. The exact sampler returns a
+density p for which the weight is 1 everywhere. Here p is the true density of its samples, which
+differs slightly because of two fits.
 """
 
 import numpy as np
@@ -21,14 +21,14 @@ from tools.paper.samplers import BY_NAME
 
 UNBIASED = [BY_NAME[name] for name in ("uniform", "cosine", "eon_cltc", "eon")]
 ANGLES = (0.0, 1e-3, 0.03, 0.1, 0.3, 0.6, 0.9, 1.0)
-# Down to where cosine sampling is nearly exact.
+# At the smallest roughness, cosine sampling is nearly exact.
 ROUGHNESS = (1e-9, 1e-6, 1e-3, 0.05, 0.25, 0.5, 0.75, 1.0)
-# Roots of a random number, the variable of the fits, dense at both ends.
+# The fits' variable, a root of a random number, dense at both ends of [0, 1].
 ROOTS = np.sin(0.5 * np.pi * (np.arange(4001) + 0.5) / 4001) ** 2
 
 
 def weights_of(sampler, mu, roughness):
-    """Throughput weights over the hemisphere where the pdf is positive, and probabilities."""
+    """Throughput weights at quadrature nodes with a positive pdf, and the nodes' probabilities."""
     wi, solid_angle = hemisphere(mu, 32)
     pdf = sampler.pdf(direction(mu), wi, roughness)
     wi, pdf, solid_angle = wi[pdf > 0.0], pdf[pdf > 0.0], solid_angle[pdf > 0.0]
@@ -37,12 +37,12 @@ def weights_of(sampler, mu, roughness):
 
 
 def largest(name, quantity, roughness, cosines):
-    """Largest value of a quantity of weights and probabilities, over the polar angle."""
+    """Maximum over views of a quantity computed from weights and probabilities."""
     return max(quantity(*weights_of(BY_NAME[name], mu, roughness)) for mu in cosines)
 
 
 def variance(weight, probability):
-    """Variance of a weight with mean 1."""
+    """Variance of throughput weights, whose mean is 1."""
     return (weight - 1.0) ** 2 @ probability
 
 
@@ -54,7 +54,7 @@ def test_mean_weight_is_one(sampler, mu, roughness):
 
 
 def multiple_error():
-    """Cosines, and the relative error of the density with which `multiple` draws them."""
+    """Cosines drawn by the fit MULTIPLE, and the relative error of their density."""
     w = Polynomial([0.0, 1.0])
     a, b, c, d, e, f = eon_sampling.MULTIPLE
     t = 1.0 - w**2
@@ -62,13 +62,13 @@ def multiple_error():
     np.testing.assert_allclose(
         eon_sampling.eon_multiple_cosine(t(ROOTS)), mu(ROOTS), atol=tolerances.DIRECTION
     )
-    # The random number is t^3, its derivative by w is -6 w t^2.
+    # The random number is t^3, and its derivative with respect to w is -6 w t^2.
     slope = mu.deriv()(ROOTS) / (-6.0 * ROOTS * t(ROOTS) ** 2)
     return mu(ROOTS), 1.0 / (slope * 2.0 * fon_loss(mu(ROOTS)) * mu(ROOTS) / (C1 - C2)) - 1.0
 
 
 def upper_error(mu_o):
-    """Cosines, and the relative error of the density with which `upper` draws them."""
+    """Cosines drawn by the fit UPPER, and the relative error of their density."""
     y = Polynomial([0.0, 1.0])
     fit = y * (1.0 + (1.0 - y) * Polynomial(eon_sampling.UPPER))
     S_o = np.sqrt((1.0 - mu_o) * (1.0 + mu_o))
@@ -78,13 +78,13 @@ def upper_error(mu_o):
     mu = eon_sampling.eon_upper_cosine(ROOTS, mu_o, y_o)
     S = np.sqrt((1.0 - mu) * (1.0 + mu))
     np.testing.assert_allclose(mu, 1.0 - scale * fit(y_o * ROOTS), atol=tolerances.DIRECTION)
-    # The random number is y^2.5.
+    # The random number is y^2.5, where y is in ROOTS.
     slope = scale * y_o * fit.deriv()(y_o * ROOTS) / (2.5 * ROOTS**1.5)
     return mu, K_o / (slope * S * (1.0 - mu)) - 1.0
 
 
 def excess(mu, roughness):
-    """Relative excess of the density of exact samples over `eon_pdf`, with its probabilities."""
+    """Relative excess of exact samples' true density over `eon_pdf`, and probabilities."""
     wi, solid_angle = hemisphere(mu, 32)
     mu_i, s = wi[:, 2], direction(mu)[0] * wi[:, 0]
     multiple = roughness * fon_loss(mu_i) * fon_loss(mu) / (C1 - C2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sheen, Burley and transmission: limits, invariants, agreement with 50 digits and quadrature."""
+"""Sheen, Burley, translucence: limits, invariants, agreement with 50 digits and quadrature."""
 
 import mpmath as mp
 import numpy as np
@@ -50,7 +50,7 @@ def conty_kulla_exact(wo, wi, roughness):
 
 
 def zeltner_albedo_exact(x, y):
-    """The printed Gaussian in 50 digits."""
+    """Zeltner's albedo, the printed Gaussian, in 50 digits."""
     c = [mp.mpf(number) for number in (0.0206607, 1.58491, 0.0379424, 1.32227)]
     s = y * (c[0] + c[1] * y) / (c[2] + y * (c[3] + y))
     c = [mp.mpf(number) for number in (0.193854, 1.14885, 1.7932, 0.95943, 0.046391)]
@@ -61,7 +61,7 @@ def zeltner_albedo_exact(x, y):
 
 
 def zeltner_exact(wo, wi, roughness):
-    """The printed equations in 50 digits, with the cosine of D_o, divided by that of wi."""
+    """Zeltner's printed equations in 50 digits; D_o includes a cosine, divided by that of wi."""
     wo, wi = ([mp.mpf(float(v)) for v in w] for w in (wo, wi))
     x, y = wo[2], max(mp.mpf(float(roughness)), mp.mpf(0.01))
     c = [mp.mpf(number) for number in (2.58126, 0.813703, 0.310327, 2.60994)]
@@ -116,7 +116,7 @@ def test_conty_kulla_albedo_has_its_closed_forms_at_grazing_and_along_the_normal
 
 
 def test_conty_kulla_albedo_is_the_integral_of_the_value():
-    # Cosines on both sides of the value from which the inner integral is by quadrature, too.
+    # The cosines cover both methods for the inner integral: closed form and quadrature.
     mu, roughness = np.array([0.02, 0.1, 0.24, 0.26, 0.7]), np.array([0.05, 0.1, 0.3, 0.5])
     wo, wi, weights = zip(*(hemisphere_nodes(m, 128) for m in mu), strict=True)
     truth = [
@@ -124,7 +124,7 @@ def test_conty_kulla_albedo_is_the_integral_of_the_value():
         for o, i, w in zip(wo, wi, weights, strict=True)
     ]
     error = np.abs(conty_kulla_albedo_dir(mu[:, None], roughness) - truth).max()
-    assert error < 2.0 * tolerances.QUADRATURE  # albedos up to 1.5
+    assert error < 2.0 * tolerances.QUADRATURE  # albedos reach 1.5
 
 
 def test_zeltner_albedo_is_the_integral_of_the_value():
@@ -145,5 +145,5 @@ def test_transmission_is_lamberts():
 
 
 def test_the_rule_of_conty_kulla_integrates_what_ends_in_a_root():
-    x, weights = _rule.__wrapped__()  # a fresh rule, since other tests may have cached it
+    x, weights = _rule.__wrapped__()  # other tests may have cached the rule
     np.testing.assert_allclose([weights.sum(), weights @ np.sqrt(x)], [1.0, 2.0 / 3.0], rtol=1e-10)

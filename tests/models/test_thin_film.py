@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Thin films: limits, the transfer-matrix method, and the error of the specification's approximation."""
+"""Thin films: limits, the transfer-matrix method, and errors of the specified approximation."""
 
 from dataclasses import replace
 
@@ -26,14 +26,14 @@ from tests.support.availability import package
 MU = np.linspace(0.05, 1.0, 40)
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 WHITE, HALF = np.ones(3), np.full(3, 0.5)
-AVERAGED = 2e-5  # error of F_ss by a polynomial through 14 values, from a search in random films
-HEIGHTS = 1.3e-3  # the sensitivities' heights add up to 1 plus this
-ORDERS = 1e-8  # error of the sum of all orders, for cosines above 0.05
-TRANSFER = 1e-12  # difference of two computations of the amplitudes
-# Errors for dielectrics and for metals, as on the page.
+AVERAGED = 2e-5  # largest error of F_ss by a 14-node polynomial in random films
+HEIGHTS = 1.3e-3  # excess over 1 of the summed heights of the sensitivities
+ORDERS = 1e-8  # error of the summed orders for cosines above 0.05
+TRANSFER = 1e-12  # relative difference from the package tmm
+# Errors of XYZ for dielectrics and for metals, with all orders and with two, as documented.
 XYZ_ALL, XYZ_TWO = (0.012, 0.017), (0.016, 0.07)
-CURVE = 1e-4  # error of a polynomial of degree 48
-# Index and extinction of substrates: diamond, glass, water, a dark metal and a bright one.
+CURVE = 1e-4  # error of a curve's polynomial of degree 48
+# Substrates by index and extinction: diamond, glass, water, a dark metal, and a bright metal.
 SUBSTRATES = ((2.4, 0.0), (1.5, 0.0), (1.33, 0.0), (2.9, 3.1), (0.2, 3.4))
 
 VISIBLE = np.arange(360.0, 831.0)  # nm
@@ -43,7 +43,7 @@ def film_spectrum(wavelength, mu, thickness, n2, n, k):
     """Reflectance of a thin film on a substrate for unpolarized light of one wavelength, in nm."""
     sin2, n3 = (1.0 - mu) * (1.0 + mu), n + 1j * k
     c2 = np.sqrt(1.0 - sin2 / n2**2)
-    w3 = np.sqrt(n3**2 - sin2 + 0j)  # n3 times the cosine in the substrate
+    w3 = np.sqrt(n3**2 - sin2 + 0j)  # n3 times the cosine of refraction
     turn = np.exp(4j * np.pi * n2 * c2 * thickness / wavelength)
     s = amplitude(mu, n2 * c2), amplitude(n2 * c2, w3)
     p = amplitude(n2 * mu, c2), amplitude(n3**2 * c2, n2 * w3)
@@ -52,20 +52,20 @@ def film_spectrum(wavelength, mu, thickness, n2, n, k):
 
 
 def film_spectrum_xyz(*film):
-    """Color of a thin film in CIE XYZ under light of equal energy, by a sum in steps of 1 nm."""
+    """CIE XYZ color of a thin film under equal-energy light, summed in steps of 1 nm."""
     spectrum = film_spectrum(VISIBLE, *(np.asarray(each)[..., np.newaxis] for each in film))
     weights = np.stack([np.interp(VISIBLE, WAVELENGTHS, each) for each in CIE_1931.T], axis=-1)
     return spectrum @ (weights / weights.sum(axis=0))
 
 
 def amplitude(above, below):
-    """Reflected amplitude by the admittances of both sides; no step reflects none."""
+    """Reflected amplitude between two admittances; 0 if they are equal."""
     total = above + below
     return (above - below) / np.where(total == 0.0, 1.0, total)
 
 
 def grid():
-    """Cosine, thickness and index of the film, and index and extinction, each of shape (5, 4, 26, 8)."""
+    """Cosine, film thickness, film index, substrate index, extinction; shape (5, 4, 26, 8) each."""
     ior, extinction = np.array(SUBSTRATES).T.reshape(2, -1, 1, 1, 1)
     thickness, index = np.linspace(0.0, 2000.0, 26)[:, None], np.array([1.0, 1.33, 1.6, 2.3])
     cosine = np.linspace(0.05, 1.0, 8)
@@ -73,7 +73,7 @@ def grid():
 
 
 def text_xyz(orders):
-    """XYZ of the grid according to the text, shape (..., 3)."""
+    """XYZ of the grid by the specified approximation, shape (..., 3)."""
     mu, thickness, index, ior, extinction = grid()
     opd = formulas.path_difference(mu, thickness, index)
     both = formulas.over_index(mu, index, ior, extinction)
@@ -81,7 +81,7 @@ def text_xyz(orders):
 
 
 def errors(orders):
-    """Differences between the text's XYZ and the exact ones, of dielectrics and of metals."""
+    """Largest errors of the specified XYZ, for dielectrics and for metals."""
     error = np.abs(text_xyz(orders) - film_spectrum_xyz(*grid()))
     metal = np.array(SUBSTRATES)[:, 1] > 0.0
     return error[~metal].max(), error[metal].max()
@@ -99,14 +99,14 @@ def conductor(mu, thickness, index, ior, extinction, form=TEXT):
 
 
 def schlick(mu, thickness, index, color0, form=TEXT):
-    """A curve with white `color82` and `color90` and exponent 5."""
+    """Reflectance of a film on Schlick's curve with white `color82` and `color90` and exponent 5."""
     film = {"thinfilm_thickness": thickness, "thinfilm_ior": index}
     inputs = {"color0": color0, "color82": 1.0, "color90": 1.0, "exponent": 5.0, **film}
     return film_reflectance("generalized_schlick_bsdf", mu, inputs, form)
 
 
 def bare(thickness):
-    """Reflectances of the three substrates with and without a film of the same thickness."""
+    """Reflectances of three substrates under a film of this thickness, and without a film."""
     return (
         (dielectric(MU, thickness, 1.4, 1.8), fresnel_dielectric(MU, 1.8)[:, np.newaxis]),
         (conductor(MU, thickness, 1.4, *GOLD), fresnel_conductor(MU, *GOLD)),
@@ -155,7 +155,7 @@ def test_wavelengths_agree_with_the_transfer_matrix_method():
 
 
 def test_the_airy_terms_of_one_wavelength_are_the_transfer_matrix():
-    # With all orders and no damping: the geometric series replaces the sensitivities.
+    # All orders without damping form a geometric series, which replaces the sensitivities.
     for index, extinction in ((1.5, 0.0), (1.1, 0.0), (0.2, 3.4), (2.9, 3.1)):
         arrays = [np.full_like(MU, value) for value in (1.4, index, extinction)]
         opd, total = formulas.path_difference(MU, 350.0, arrays[0]), 0.0
@@ -212,8 +212,8 @@ def test_tristimulus_values_stay_in_0_to_1_with_all_orders():
 
 def test_the_matrix_is_the_printed_one_after_a_bradford_adaptation():
     d65 = np.linalg.solve(XYZ_TO_REC709, np.ones(3))
-    with np.printoptions():  # colour changes how arrays print in every doctest of the process
-        colour = package("colour")  # a slow import, kept out of test collection
+    with np.printoptions():  # colour would change how arrays print in doctests
+        colour = package("colour")  # imported here because it is slow
     adaptation = colour.adaptation.matrix_chromatic_adaptation_VonKries(np.ones(3), d65, "Bradford")
     np.testing.assert_allclose(XYZ_TO_REC709_E, XYZ_TO_REC709 @ adaptation, atol=5e-8)
     np.testing.assert_allclose(XYZ_TO_REC709_E.sum(axis=1), 1.0, atol=3e-7)
@@ -258,7 +258,7 @@ def test_equal_inputs_of_all_directions_have_the_values_of_each(row):
 
 @pytest.mark.parametrize("film", [(150.0, 1.4, 1.8), (600.0, 1.4, 1.8), (358.6, 1.925, 1.093)])
 def test_the_average_of_a_curve_is_weighted_by_the_cosine(film):
-    # The last film's curve is clamped at 0 between kinks, in two channels.
+    # In two channels, the last film's curve is clamped at 0 between kinks.
     names = ("thinfilm_thickness", "thinfilm_ior", "ior")
     material = dict(zip(names, map(np.array, film), strict=True)) | {"tint": np.ones(1)}
     mu = (np.arange(2000) + 0.5) / 2000

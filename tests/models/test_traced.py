@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Transformations of PyTorch and JAX applied to the functions of every model.
+"""Functions of every model under transformations of PyTorch and JAX.
 
-Each row of the catalog is tested with all its functions. At the ends of every input no step makes a
-NaN and gradients are finite; inside, gradients equal NumPy's differences. `vmap`, `jit` and
-`compile` return NumPy's values.
+All functions of all models are tested. At the ends of input ranges, no operation returns NaN, and
+gradients are finite. Inside the ranges, gradients match finite differences of NumPy's values.
+`vmap`, `jit` and `compile` return NumPy's values.
 """
 
 from contextlib import nullcontext
@@ -21,8 +21,8 @@ from tests.support.tracing import untraced
 
 SEED, ROWS = 5, 3
 STEP, SLOPE = 1e-5, 3e-5  # step of central differences, and their error near a kink
-VALUE = 1e-11  # relative to the larger of 1 and the value
-# Ranges of inputs by quantity, and their ends; the others lie in [0.3, 0.7] and end at 0 and 1.
+VALUE = 1e-11  # absolute and relative difference of values
+# Ranges by quantity, and their ends. The default range is [0.3, 0.7], and its ends are 0 and 1.
 INSIDE = {"ior": (1.2, 2.0), "extinction": (1.0, 3.0), "thinfilm_thickness": (200.0, 900.0)}
 INSIDE |= {
     "thinfilm_ior": (1.2, 1.9),
@@ -36,14 +36,14 @@ FUNCTIONS = [
     (name, function)
     for name in model_names()
     for function in mxeon.model(name).functions
-    if function != "brdf"  # another name of bsdf
+    if function != "brdf"  # brdf is an alias of bsdf
 ]
-# JAX needs seconds to trace the sums of one film; test_arrays.py compiles the curves of the others.
+# Films that JAX does not trace, since it takes seconds for one; test_arrays.py covers their curves.
 OTHER_FILMS = ("conductor_film", "schlick_film")
 
 
 def vectors(row, function, ends=False):
-    """Arguments before the inputs, one per row: along the normal, at the horizon and between, or inside."""
+    """Arguments before the inputs; with `ends`, views include the normal and the horizon."""
     rng, mu = np.random.default_rng(SEED), np.array([1.0, 0.0, 0.6] if ends else [0.7, 0.3, 0.9])
     wo = direction(mu, [0.0, 0.3, 2.0])
     wi = np.roll(wo, 1, axis=0) * (-1.0, 1.0, 1.0)
@@ -54,7 +54,7 @@ def vectors(row, function, ends=False):
 
 
 def one_for_all(parameter):
-    """Whether an input is one number for all pairs."""
+    """Whether an input has one value for all rows."""
     return parameter.quantity.startswith("coat_")
 
 
@@ -68,10 +68,7 @@ def inside(row):
 
 
 def at_ends(row, function):
-    """Arguments with one input, or all, at an end of its range: the rows of a single call.
-
-    For an input that is one number for all pairs, each end is a separate call.
-    """
+    """Calls with one input or all inputs at an end of their ranges; one call if rows may differ."""
     middle, ends = inside(row), {}
     for each in row.parameters:
         low, high, _ = RANGES[each.quantity]
@@ -87,12 +84,12 @@ def at_ends(row, function):
 
 
 def numbers(result):
-    """One array of a result: a sample's density."""
+    """The array of a result; the density if the result is a sample."""
     return result[1] if isinstance(result, tuple) else result
 
 
 def no_nan(torch):
-    """Context in which PyTorch fails at any NaN, even in a result that is discarded."""
+    """Context in which PyTorch fails at the first NaN, even in a discarded result."""
     from torch.utils._python_dispatch import TorchDispatchMode
 
     class NoNan(TorchDispatchMode):
@@ -106,7 +103,7 @@ def no_nan(torch):
 
 
 def assert_slopes(function, inputs, found):
-    """Compare gradients of the sum with differences by each component, for all rows at once."""
+    """Compare gradients of the summed result with finite differences by each component."""
     for name, gradient in found.items():
         array, rowwise = inputs[name], len(np.shape(inputs[name])) > 0
         for index in np.ndindex(array.shape[1:] if rowwise else ()):
@@ -136,17 +133,17 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
         found = {k: none[k] if t.grad is None else t.grad.numpy() for k, t in tensors.items()}
         return value.detach().numpy(), found
 
-    # Inside the ranges: values and slopes match NumPy.
+    # Inside the ranges, values and slopes match NumPy.
     given, inputs = vectors(row, function), inside(row)
     value, found = gradients(given, inputs)
     np.testing.assert_allclose(value, numbers(model(*given, **inputs)), VALUE, VALUE)
     assert_slopes(partial(model, *given), inputs, found)
-    # At the ends: results are finite and NumPy issues no warning, which would be an error.
+    # At the ends, results are finite, and NumPy issues no warning, which would be an error.
     for given_there, inputs_there in at_ends(row, function):
         value_there, slopes = gradients(given_there, inputs_there, no_nan(torch))
         plain = numbers(model(*given_there, **inputs_there))
         assert all(np.isfinite(each).all() for each in (value_there, plain, *slopes.values()))
-    # Row by row.
+    # vmap over the rows returns the same values.
     if given and not any(map(one_for_all, row.parameters)):
         arrays = [torch.tensor(each) for each in (*given, *inputs.values())]
         count = len(given)
@@ -159,11 +156,9 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
     ("name", "function"), [each for each in FUNCTIONS if each[0] not in OTHER_FILMS]
 )
 def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
-    """Only traces functions for `jit`, `vmap` and derivatives; compiling the derivatives of films
-    and facets takes minutes.
+    """Functions are traced but not compiled, which would take minutes for films and facets.
 
-    In forward mode, which takes a third of the time: in reverse mode, JAX transposes the same
-    steps.
+    Forward mode takes a third of the time of reverse mode, in which JAX transposes the same steps.
     """
     jax = package("jax")
     jax.config.update("jax_enable_x64", True)
@@ -172,11 +167,11 @@ def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
     axes = {each.name: None if one_for_all(each) else 0 for each in row.parameters}
 
     def change(given, inputs):
-        """The sum, and its derivative if all inputs grow equally."""
+        """Summed result, and its derivative when all inputs are scaled by the same factor."""
         model = partial(getattr(row, function), *given)
         return jax.jvp(lambda inputs: numbers(model(**inputs)).sum(), (inputs,), (inputs,))
 
-    with untraced():  # the PyTorch tests cover the same lines
+    with untraced():  # PyTorch's tests trace the same lines
         found = jax.eval_shape(jax.vmap(change, in_axes=(0, axes)), given, inputs)
     assert [each.shape for each in found] == [(ROWS,)] * 2
 

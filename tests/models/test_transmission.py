@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Refraction and the microfacet BTDF: limits, invariants, agreement with quadrature and Mitsuba."""
+"""Microfacet BTDF: limits, invariants, and agreement with quadrature and Mitsuba."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ GRID = 300
 
 
 def below():
-    """Directions below the horizon, and weights that integrate with |mu|."""
+    """Quadrature directions below the horizon, and weights that include the cosine."""
     x, w = np.polynomial.legendre.leggauss(GRID)
     mu, weight = 0.5 * (1.0 + x), 0.5 * w
     phi = 2.0 * np.pi * (np.arange(GRID) + 0.5) / GRID
@@ -95,7 +95,7 @@ def test_the_transmittance_is_the_integral_of_the_btdf(ior, alpha, mu):
 
 
 def around(wo, cosine, count):
-    """Unit vectors at cosines from a direction, at even azimuths, (N, count, 3)."""
+    """Unit vectors at given cosines with `wo` and `count` even azimuths, shape (N, count, 3)."""
     across = np.cross(wo, [0.0, 1.0, 0.0])
     across /= np.linalg.norm(across)
     phi = 2.0 * np.pi * np.arange(count) / count
@@ -108,12 +108,12 @@ def around(wo, cosine, count):
 @pytest.mark.parametrize("alpha", [(0.5, 0.5), (1.0, 1.0), (0.3, 0.6)])
 @pytest.mark.parametrize("mu", [1.0, 0.9])
 def test_the_transmittance_below_index_1_is_a_sum_over_the_critical_cone(mu, alpha, shadow):
-    # Facets that transmit lie within 30 degrees of the view, and send all light down.
+    # All facets that transmit lie within 30 degrees of the view and send light down.
     ior, wo = 0.5, np.array(direction(mu, 0.4))
     least = np.sqrt(1.0 - ior**2)
     x, w = np.polynomial.legendre.leggauss(64)
     t = 0.5 * (1.0 + x)
-    # 1 - F starts like a square root.
+    # At the critical angle, 1 - F starts like a square root.
     cosine, weight = least + (1.0 - least) * t * t, w * t * (1.0 - least)
     wh = around(wo, cosine, 128)
     wi = refraction_direction(wo, wh, ior)
@@ -129,8 +129,8 @@ def test_the_transmittance_below_index_1_is_a_sum_over_the_critical_cone(mu, alp
 
 @pytest.mark.parametrize("alpha", [0.1, 0.4, 1.0])
 def test_as_much_light_leaves_a_solid_as_enters(alpha):
-    # n^2 times the cosine-weighted average from inside equals the one from outside, for traced
-    # paths and for integrated light.
+    # The cosine-weighted average from outside equals n^2 times that from inside, for traced paths
+    # and for integrated light.
     n, (x, w) = 1.5, np.polynomial.legendre.leggauss(32)
     mu, weight = 0.5 * (x + 1.0), 0.5 * w * (x + 1.0)
 
@@ -146,7 +146,7 @@ def test_as_much_light_leaves_a_solid_as_enters(alpha):
 @pytest.mark.parametrize("ior", INDICES)
 def test_radiance_over_the_squared_index_is_reciprocal(ior):
     wo, wi = pairs()
-    # F(wi, wo), towards the side with index 1.
+    # Light travels from wi to wo, towards the side with index 1.
     there = dielectric_btdf(wo, wi, 1.0, [0.3, 0.6], ior)
     back = dielectric_btdf(DOWN * wi, DOWN * wo, 1.0, [0.3, 0.6], 1.0 / ior) / ior**2
     np.testing.assert_allclose(there, back, rtol=1e-9, atol=1e-12)
@@ -197,7 +197,7 @@ def test_microfacets_neither_reflect_nor_transmit_more_than_all_light(ior):
 
 
 def test_no_light_passes_between_directions_that_no_facet_joins():
-    # No index bends light below the surface back to the side that it came from.
+    # Refraction never sends light back to its own side.
     bent = (direction(0.3), direction(0.3) * DOWN)
     assert dielectric_btdf(*bent, 1.0, [0.5, 0.5], 1.5)[0] == 0.0
 
@@ -245,7 +245,7 @@ def test_mitsuba_agrees_but_for_the_masking_function(mode):
 
 
 def _mitsuba(mi, bsdf, mode, wo, wi):
-    """Mitsuba's value times cosine for a pair."""
+    """Mitsuba's BSDF value times cosine for one pair of directions."""
     point = mi.SurfaceInteraction3f()
     point.wi = mi.Vector3f(wo)
     return bsdf.eval(mi.BSDFContext(mode), point, mi.Vector3f(wi))[0]

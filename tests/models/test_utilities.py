@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The utility nodes that feed the lobes: limits, inverses and domains."""
+"""Utility nodes that compute inputs of lobes: limits, inverses and domains."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def test_anisotropy_stretches_along_the_tangent_and_keeps_the_geometric_mean():
     inside = x < 1.0
     assert (x >= y).all()
     assert np.allclose((x * y)[inside], SHARES[0][inside] ** 4, rtol=1e-14, atol=0.0)
-    aspect = 1.0 - np.minimum(SHARES[1], 0.98)  # inverse of the longer axis over the shorter
+    aspect = 1.0 - np.minimum(SHARES[1], 0.98)  # ratio of the shorter axis to the longer
     assert np.allclose(y[inside], (aspect * x)[inside], rtol=1e-14, atol=0.0)
     assert np.array_equal(roughness_anisotropy(SHARES[0], 0.0), SHARES[0][:, None] ** 2 * [1, 1])
     assert np.array_equal(roughness_anisotropy(0.5, 1.0), roughness_anisotropy(0.5, 0.98))
@@ -54,18 +54,18 @@ def test_an_artistic_index_has_the_form_of_the_paper():
     ior, extinction = artistic_ior(r, g)
     square = (r * (ior + 1.0) ** 2 - (ior - 1.0) ** 2) / (1.0 - r)
     assert np.abs(extinction**2 - square).max() < 1e-14 * 400.0**2 / 0.01
-    assert artistic_ior(0.5, 0.0)[1] == 0.0  # a dielectric
+    assert artistic_ior(0.5, 0.0)[1] == 0.0  # dielectrics have no extinction
 
 
 def test_a_blackbody_has_luminance_1_and_the_colors_of_a_library():
-    with np.printoptions():  # colour changes how arrays print in every doctest of the process
+    with np.printoptions():  # colour would change how arrays print in doctests
         colour = package("colour")
     shape = colour.SpectralShape(360, 830, 1)
     observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
     for kelvin in (800.0, 1667.0, 4000.0, 25000.0):
         light = colour.sd_blackbody(kelvin, shape)
         xyz = np.asarray(colour.sd_to_XYZ(light, observer, method="Integration"))
-        # Integrals in steps of 5 nm and of 1 nm.
+        # The integrals have steps of 5 nm and of 1 nm.
         assert np.abs(blackbody_xyz(kelvin) - xyz / xyz[1]).max() < 5e-5
         assert blackbody(kelvin) @ [0.2126729, 0.7151522, 0.0721750] == pytest.approx(1, abs=1e-6)
 

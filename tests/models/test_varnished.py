@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """EON under a varnish: energy, reciprocity, edge cases, and random walks of light.
 
-The seeds are fixed. FALSE_ALARM is the probability that the comparisons with random walks fail by
-chance.
+Seeds are fixed. With random seeds, the comparisons with random walks would fail by chance with the
+probability FALSE_ALARM.
 """
 
 import numpy as np
@@ -30,7 +30,7 @@ WHITE = {"rho": 1.0, "roughness": 0.6}
 VARNISH = {"alpha": 0.3, "ior": 1.5}
 EDGES = [{"rho": [0.0, 1.0], "roughness": r, "alpha": a, "ior": n}
          for r in (0.0, 1.0) for a in (0.01, 1.0) for n in (1.0, 4.0)]  # fmt: skip
-# Errors stated by the module: of the albedo, and of twelfths of the hemisphere.
+# Errors that the module states for the albedo and for twelfths of the hemisphere.
 WALKED, SHAPED = 0.012, 0.21
 PATHS = 1 << 14
 
@@ -65,7 +65,7 @@ def test_light_that_walks_has_the_albedo_and_under_a_layer_another(ior, alpha, r
     assert (error < WALKED + noise).all() and error[-1] < 1e-4
     off = dielectric_over_eon_albedo_dir(*inputs) - total.mean(axis=0)
     assert off[2] > WALKED + noise[2]
-    # Compare twelfths of the hemisphere; without an interface they differ.
+    # Compare the light in twelfths of the hemisphere; without an interface it differs.
     walked = walked_bins(total, out)
     noise = deviate * np.sqrt(walked_bins(total**2, out) / PATHS) / walked
     for n, right in ((ior, True), (1.0, False)):
@@ -92,7 +92,7 @@ def test_a_fit_finds_the_pigment_where_the_layer_finds_another():
     value = varnished_brdf(wo, wi, **inputs)
     fit = fit_brdf(MeasuredBrdf(wo, wi, value, 0.01 * value), "varnished")
     for name, right in inputs.items():
-        name = {"rho": "color"}.get(name, name)  # the model's name for it
+        name = {"rho": "color"}.get(name, name)  # the model names rho `color`
         assert fit.values[name] == pytest.approx(right, abs=1e-4)
     layer = fit_brdf(MeasuredBrdf(wo, wi, value, 0.01 * value), "dielectric_over_eon")
     assert (layer.values["color"] < 0.8 * CLAY["rho"]).all()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Participating media: attenuation, and the phase function."""
+"""Participating media: attenuation and phase function."""
 
 import numpy as np
 import pytest
@@ -9,13 +9,13 @@ from mxeon.models.nodes.media import AMOUNT, COMBINED_MEDIA, FACTOR, FIRST, MEDI
 
 ANISOTROPIES = (-0.999999, -0.9, -0.3, 0.0, 1e-9, 0.3, 0.9, 0.999999)
 ROUNDING = 1e-13
-MOMENT = 1e-10  # error of the quadrature below
+MOMENT = 1e-10  # quadrature error of `moments`
 
 
 def moments(g):
-    """Integrals over all directions of the phase function, and of it times the cosine.
+    """Integrals over the sphere of the phase function, and of the phase function times the cosine.
 
-    Nodes are uniform in the logarithm of 1 - cos, or of 1 + cos for g < 0: dense at the peak.
+    Nodes are uniform in log(1 - cos), or log(1 + cos) for g < 0, so they are dense at the peak.
     """
     x, w = np.polynomial.legendre.leggauss(400)
     low = np.log((1.0 - abs(g)) ** 2 * 1e-12)
@@ -34,7 +34,7 @@ def test_the_phase_function_integrates_to_1_and_has_the_mean_cosine_g(g):
 
 
 def phase(cosine, g):
-    """The density of a deflection by the angle with this cosine."""
+    """Phase function of the cosine of the deflection angle."""
     x = np.sqrt(1.0 - np.square(cosine))
     return volume.hg_pdf([0.0, 0.0, 1.0], np.stack([x, 0.0 * x, -np.asarray(cosine)], axis=-1), g)
 
@@ -49,7 +49,7 @@ def test_the_phase_function_is_the_printed_one():
 def test_the_peak_does_not_cancel():
     e = 1e-12
     peak = (2.0 - e) * e / (4.0 * np.pi * e**3)
-    # The rounding of 1 - e dominates.
+    # The rounding error of 1 - e dominates.
     assert np.isclose(phase(1.0, 1.0 - e), peak, rtol=1e-3)
     last = np.nextafter(1.0, 0.0)
     assert np.isfinite(phase([-1.0, 0.0, 1.0], last)).all()
