@@ -54,7 +54,7 @@ def test_white_surfaces_vanish_in_a_white_environment(model, inputs):
 
 @pytest.mark.parametrize("weight", ["transmission_weight", "base_metalness", "subsurface_weight"])
 def test_clear_glass_and_mixtures_lose_no_light(weight):
-    """White glass transmits what it does not reflect; white metal and scattering reflect all light."""
+    """White glass transmits what it does not reflect; white metal and scattering lose no light."""
     p = open_pbr.parameters(**{weight: 1.0}, base_color=WHITE, subsurface_color=WHITE)
     total = open_pbr.surface(Light(VIEWS), p) + open_pbr.surface(Light(VIEWS, behind=True), p)
     np.testing.assert_allclose(total, 1.0, atol=1e-6)

@@ -99,7 +99,7 @@ def conductor(mu, thickness, index, ior, extinction, form=TEXT):
 
 
 def schlick(mu, thickness, index, color0, form=TEXT):
-    """Reflectance of a film on Schlick's curve with white `color82` and `color90` and exponent 5."""
+    """Reflectance of a film on a Schlick curve with white `color82` and `color90`, exponent 5."""
     film = {"thinfilm_thickness": thickness, "thinfilm_ior": index}
     inputs = {"color0": color0, "color82": 1.0, "color90": 1.0, "exponent": 5.0, **film}
     return film_reflectance("generalized_schlick_bsdf", mu, inputs, form)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes that documents show: in nodegraphs, inside surface shaders, and in their modes."""
+"""Nodes that a run finds in documents: in nodegraphs, inside surface shaders, and by mode."""
 
 import pytest
 
@@ -21,7 +21,7 @@ GRAPH = """<nodegraph name="graph">
 
 @pytest.fixture(autouse=True)
 def nothing_else(monkeypatch):
-    """Documents are read without judging any node."""
+    """Restrict runs to reading documents, without checks of nodes."""
     keep_checks(monkeypatch, "host")
 
 

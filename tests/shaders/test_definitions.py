@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A studio's own definitions, loaded in addition to the library."""
+"""Definitions of a studio's own nodes are loaded in addition to the library."""
 
 import OpenImageIO as oiio
 import pytest
@@ -17,7 +17,7 @@ CLOTH = material('<studio_rough name="lobe" type="BSDF"/>')
 
 @pytest.fixture
 def given(tmp_path):
-    """A folder of definitions, and a document."""
+    """Folder of a studio's definitions, and the path of a document that uses them."""
     return studio(tmp_path), written(tmp_path, CLOTH)
 
 

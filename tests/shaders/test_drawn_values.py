@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents whose values are drawn leave the shared data library unchanged."""
+"""Documents made to render values leave the shared data library unchanged."""
 
 import MaterialX as mx
 import pytest
@@ -7,7 +7,7 @@ import pytest
 from mxeon.shaders.document.drawn_values import emission_document, value_document
 from mxeon.shaders.library import load_library
 
-COLORED = "NG_disney_principled"  # a nodegraph of the library with its own color space
+COLORED = "NG_disney_principled"  # a library nodegraph with a color space
 
 
 @pytest.mark.parametrize("make", [value_document, emission_document])

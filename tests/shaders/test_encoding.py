@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text encoding of documents: UTF-8 is read as in MaterialX, and anything else is refused in one line."""
+"""Documents in UTF-8 are read as in MaterialX; other encodings are refused in one line."""
 
 import re
 
@@ -23,7 +23,7 @@ REFUSED = ("utf-16", "utf-16-le", "utf-32", "utf-32-be", "latin-1")
 
 
 def stock(path):
-    """Text of a document as MaterialX reads it."""
+    """Text of a document after MaterialX itself has read it."""
     document = mx.createDocument()
     mx.readFromXmlFile(document, str(path))
     return mx.writeToXmlString(document)

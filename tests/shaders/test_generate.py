@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Generated shaders: every target, every input, and all compilers that run here."""
+"""Generated shaders: all targets, all inputs, and the installed compilers."""
 
 import json
 import os
@@ -53,13 +53,13 @@ of_each_example = pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: pat
 
 
 def pixel(text, target, **options):
-    """The one pixel shader of a document."""
+    """Pixel stage of a document that has a single material."""
     [shader] = generate(text, target, **options)
     return shader.stages["pixel"]
 
 
 def kept(source):
-    """Non-constant variables outside a shader's functions, or in MSL outside its context's."""
+    """Global variables of a shader that are not constant; in MSL, members of its context."""
     text = re.sub(
         r"//.*|/\*[\s\S]*?\*/|^ *#.*(\\\n.*)*|struct GlobalContext\s*{",
         "",
@@ -77,7 +77,7 @@ def kept(source):
 
 
 def validate(shader, target, folder):
-    """Assert that glslangValidator accepts every stage."""
+    """Assert that glslangValidator accepts both stages of a shader."""
     files = []
     for stage, suffix in (("pixel", "frag"), ("vertex", "vert")):
         files.append(folder / f"{shader.name}.{suffix}")
@@ -86,7 +86,7 @@ def validate(shader, target, folder):
 
 
 def every_lobe():
-    """A material with every BSDF node of pbrlib and both of ours, and their names."""
+    """Material that sums all BSDF nodes of pbrlib and eonlib's EON node, and the nodes' names."""
     stock = load_library("stock").getNodeDefs()
     names = sorted({each.getNodeString() for each in stock if each.getAttribute("bsdf")} | {EON})
     nodes, total = "", "none"
@@ -121,7 +121,7 @@ def test_our_nodes_compile_together_with_every_bsdf_node_of_pbrlib(target, tmp_p
 
 
 def translated(source, language, folder):
-    """Errors of spirv-cross for a pixel stage, or of glslang for the HLSL; empty if there are none."""
+    """Errors of spirv-cross for a pixel stage, or of glslang for the resulting HLSL; "" if none."""
     compiler, translator = program("glslangValidator"), program("spirv-cross")
     glsl, module, text = (folder / f"pixel.{suffix}" for suffix in ("frag", "spv", language))
     glsl.write_text(source, encoding="utf-8")
@@ -159,7 +159,7 @@ ON_VULKAN = [spec for spec in ALL if spec not in ABSENT]
 def test_every_node_and_surface_translates_from_spirv(spec, language, tmp_path):
     source = pixel(spec.within("eonlib").document(), "vulkan", lights=True)
     assert translated(source, language, tmp_path) == ""
-    if spec.title == "gltf_pbr" and language == "hlsl":  # control: HLSL lacks this function
+    if spec.title == "gltf_pbr" and language == "hlsl":  # control: HLSL lacks asinh
         wrong = source.replace("step(vec2(0.0), v)", "asinh(v)")
         assert wrong != source and "not supported on HLSL" in translated(wrong, language, tmp_path)
 
@@ -167,13 +167,13 @@ def test_every_node_and_surface_translates_from_spirv(spec, language, tmp_path):
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.stem)
 def test_a_source_keeps_no_state(path):
     text = path.read_text(encoding="utf-8")
-    if path.stem == "head":  # only the interface for path tracers has state
+    if path.stem == "head":  # state is permitted here
         text = re.sub(r"^\w+ path_\w+;.*$", "", text, flags=re.MULTILINE)
     assert kept(text) == set() and not re.search(r"\bstatic\b", text)
     assert kept(text + "vec3 last = vec3(0.0);\nfloat value;") == {"vec3 last", "float value"}
 
 
-# Patterns of wrong code by title; some engines may never show the error.
+# Patterns of wrong code by title. Some engines hide the errors, so the text is searched.
 WRONG = {
     "a derivative after a return, which some pixels have taken": r"(?s)\breturn;(?:(?!\n}).)*\b(?:fwidth|dFd[xy])\(",
     "the half vector of opposite directions": r"normalize\(w[io] \+ w[io]\)",
@@ -187,15 +187,15 @@ def test_no_source_has(wrong):
     assert [name for name, text in texts.items() if re.search(wrong, text)] == []
 
 
-# Global names of a text: functions, structures, macros and variables.
+# Names of functions, structures, macros and global variables in a text.
 NAMES = re.compile(
     r"^(?:closure )?(?:#define |struct |\w+ (?=\w+(?:\(|;|\[|$)))(\w+)", re.MULTILINE
 )
-CLOSURES = {"BSDF", "EDF", "VDF"}  # inputs of these types are not variables
+CLOSURES = {"BSDF", "EDF", "VDF"}  # inputs of these types become no variables
 
 
 def test_no_name_in_a_source_is_one_that_materialx_makes_for_a_node():
-    """An input of a node becomes `node_input` in the text, and so does an output."""
+    """MaterialX names the variables of inputs and outputs `node_input` and `node_output`."""
     ports = {
         port.getName()
         for nodedef in load_library().getNodeDefs()
@@ -213,8 +213,8 @@ def test_no_name_in_a_source_is_one_that_materialx_makes_for_a_node():
     assert found == ["thin_film_weight", "hair_scale"]
 
 
-# Patterns that C++ does not compile, by title: a structure is not a function, and an array needs an
-# address space.
+# Patterns of code that is invalid in Metal, by example: structures are not functions, and array
+# parameters need an address space.
 NOT_METAL = {
     "ThinFilmComplex(re, im)": r"\b(?!GlobalContext)({})\(",
     "void f(float a, vec3 A[4])": r"[(,]\s*(?!(?:const )?(?:thread|device|constant) )(?:const )?\w+ \w+\[\d*\]\s*[,)]",
@@ -286,7 +286,7 @@ def test_lines_with_the_words_are_left_out_of_what_libraries_print(capfd):
     with lines_left_out("of no use"):
         os.write(ERROR, b"this is of no use\nthis is\n")
     assert capfd.readouterr().err == "this is\n"
-    generate(material(lobe()), "wgsl")  # the flag is a boolean there
+    generate(material(lobe()), "wgsl")  # the flag is a boolean in WGSL
     assert capfd.readouterr().err == ""
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents from strangers: forbidden ones are refused in one line, with a remedy."""
+"""Hostile documents are refused in one line that gives a remedy."""
 
 import warnings
 from dataclasses import replace
@@ -33,7 +33,7 @@ FETCH = BOMB.replace('"ha"', 'SYSTEM "../secret.mtlx"')
 
 @pytest.fixture
 def home(tmp_path):
-    """A document's folder with a link out of it, and the files outside."""
+    """Folder for a document, with a link that leads out of it, and files outside."""
     folder = tmp_path / "documents"
     folder.mkdir()
     (folder / "link").symlink_to(tmp_path)
@@ -106,7 +106,7 @@ def test_generating_reports_code_and_running_it_needs_the_option(home, capsys):
 ROW = material(row(8, ("in1",)))
 SMALL = material(lobe())
 
-# A limit, a document, and the smallest value with which it is accepted.
+# Name of a limit, a document, and the smallest limit that accepts the document.
 LIMITED = (
     ("size", SMALL, len(SMALL)),
     ("length", SMALL, len("oren_nayar_diffuse_bsdf") - 10),

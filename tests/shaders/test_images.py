@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Textures and environments: correct orientation, and conversion to irradiance."""
+"""Environments are read, and converted to irradiance."""
 
 import numpy as np
 import OpenImageIO as oiio
@@ -7,8 +7,8 @@ import pytest
 
 from mxeon.hosts.textures import irradiance, read_latlong
 
-# Sums over a map of 64 x 128 pixels miss the integral of a cosine by the squared angle of a pixel,
-# (pi / 64)^2, over 12 (midpoint rule); this is ten times that.
+# Ten times the error of the midpoint rule for a cosine on 64 x 128 pixels, which is the squared
+# angle of a pixel, (pi / 64)^2, over 12.
 SUM = 10.0 * (np.pi / 64.0) ** 2 / 12.0
 
 
@@ -27,7 +27,7 @@ def test_a_sky_over_a_black_ground_lights_what_faces_it(shape):
     found = irradiance(radiance)
     assert found.shape == (32, 64, 3) and np.isfinite(found).all()
     assert found[0].min() > found[-1].max()
-    if rows % 2 == 0 and rows < 640:  # (1 + cos(theta)) / 2 at the middle of each row
+    if rows % 2 == 0 and rows < 640:  # exact: (1 + cos(theta)) / 2
         polar = np.pi * (np.arange(32) + 0.5) / 32
         expected = 0.5 * (1.0 + np.cos(polar))
         np.testing.assert_allclose(found[:, 0, 0], expected, rtol=0.0, atol=SUM)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lobes below the surface: the materials that have them, and the warnings about their pictures."""
+"""Materials with lobes below the surface are recognized, and their pictures cause warnings."""
 
 from dataclasses import replace
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The data library eonlib: what MaterialX finds with it, for every order, mode and client."""
+"""MaterialX finds eonlib's implementations for every load order, mode and client."""
 
 import re
 import subprocess
@@ -31,7 +31,7 @@ BOTH = (
     '<input name="in2" type="BSDF" nodename="second"/></add>'
 )
 
-# The function that a target's shader calls for each node.
+# Text by which each target's shader calls the functions of two nodes.
 CALLS = {
     "glsl": ("oren_nayar_diffuse_bsdf(closureData, ", "eon_diffuse_bsdf(closureData, "),
     "osl": ('"energy_compensation", first_energy_compensation)', '"energy_compensation", 1)'),
@@ -54,14 +54,14 @@ for name in sys.argv[1:]:
 
 
 def loaded(folders):
-    """A document with the libraries of some folders, loaded in order."""
+    """Document into which the libraries of several folders are loaded in order."""
     document = mx.createDocument()
     mx.loadLibraries(folders, mx.getDefaultDataSearchPath(), document)
     return document
 
 
 def listed(folders):
-    """Nodedefs and targets of the implementations in some folders, read as XML."""
+    """Pairs of nodedef and target that the folders implement, read as XML."""
     roots = [
         ElementTree.parse(path).getroot() for each in folders for path in each.rglob("*.[mx]*l*")
     ]
@@ -126,8 +126,8 @@ def test_eons_graph_serves_only_the_targets_without_an_implementation_of_their_o
     assert all(definition.getImplementation(target).isA(mx.NodeGraph) for target in found)
 
 
-# Changes of the graph: a text, its replacement, and the checks that then fail on a target with only
-# the graph.
+# Changes of EON's graph: a text, its replacement, and the checks that fail if a target uses the
+# graph.
 CHANGES = (
     ('type="boolean" value="true"', 'type="boolean" value="false"', {"value", "environment"}),
     ('interfacename="weight"', 'value="1.0"', {"inputs", "value"}),
@@ -142,7 +142,7 @@ def test_eons_graph_is_eon_and_the_checks_notice_each_change_of_it(old, new, not
     copy = copy_of_eonlib(tmp_path)
     replace_text(copy, ' nodedef="ND_eon_diffuse_bsdf"', "", "diffuse/eonlib_genglsl_impl.mtlx")
     graph = copy / "diffuse" / "eonlib_ng.mtlx"
-    graph.write_text(graph.read_text().replace(old, new, 1))  # EON's occurs first in the file
+    graph.write_text(graph.read_text().replace(old, new, 1))  # EON's graph comes first
     judge = Verdicts()
     verdicts = {
         key: judge(key, EON, library=str(copy)).verdict
@@ -187,7 +187,7 @@ def test_generateshader_takes_the_profile_before_the_library(tmp_path):
 
 
 def test_usd_finds_the_library_by_its_plugin_search_path(monkeypatch):
-    with available("cycles"):  # Blender brings a USD with MaterialX
+    with available("cycles"):  # Blender includes a USD with MaterialX
         python = interpreter()
     monkeypatch.setenv("PXR_MTLX_PLUGIN_SEARCH_PATHS", OURS)
     done = subprocess.run(

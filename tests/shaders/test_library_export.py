@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Copies of eonlib: they are self-contained, and every version of MaterialX can use them."""
+"""Exported copies of eonlib are self-contained and work with every version of MaterialX."""
 
 import json
 import zipfile
@@ -18,12 +18,12 @@ from tests.support.wheels import run_with
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
-    """Folder of a copy of eonlib."""
+    """Folder of an exported copy of eonlib."""
     return export_library(tmp_path_factory.mktemp("export") / "copy")
 
 
 def contents(folder):
-    """Bytes of each file by its path in a folder."""
+    """Contents of all files below a folder, by relative path."""
     files = filter(Path.is_file, Path(folder).rglob("*"))
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
@@ -31,7 +31,7 @@ def contents(folder):
 def test_a_copy_is_eonlib_with_its_license_and_recipes(copy):
     found, whole = contents(copy), {}
     for name in ("libraries", *SOURCE_FOLDERS):
-        # A folder of the same name would hide MaterialX's own.
+        # A folder named `libraries` would hide MaterialX's.
         inside = name.replace("libraries", "documents")
         files = contents(data_folder() / name)
         whole |= {f"{inside}/{file}": data for file, data in files.items()}
@@ -60,7 +60,7 @@ def test_the_shaders_of_every_node_of_a_copy_compile(copy, tmp_path, version):
     output(program("glslangValidator"), *shaders)
 
 
-# In these versions, GLSL adds a medium's transmission to that of the layer above it.
+# GLSL of these versions adds a medium's transmission to that of the layer above.
 MEDIA = dict.fromkeys(TESTED[:-1], "transmittance, ")
 
 

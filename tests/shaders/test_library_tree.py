@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Complete and partial copies of MaterialX's libraries that replace the installed ones."""
+"""Complete and partial copies of MaterialX's libraries can replace the installed libraries."""
 
 import json
 import shutil
@@ -26,12 +26,12 @@ PARTS = {"pbrlib": ["pbrlib"], "a node and its lib": BURLEY, "a file of lib": BU
 
 @pytest.fixture(autouse=True)
 def few_programs(monkeypatch):
-    """Skip the checks that compile their own programs."""
+    """Leave out checks that compile additional programs."""
     keep(monkeypatch, lambda task: task.check not in (*DRAWN, "states"))
 
 
 def findings(libraries, nodes, hosts=("gl",)):
-    """By library: verdict, error, diagnosis and pages of each check."""
+    """Verdict, error, diagnosis and pages of each check, for each library."""
     run = mxeon.check(None, hosts, libraries, nodes=nodes)
     found = {library: {} for library in libraries}
     for each in run.results:
@@ -63,8 +63,8 @@ def test_an_export_of_eonlib_has_its_verdicts(gl, tmp_path, part, name):
     assert tree(str(copy)).kind == OVERLAY
 
 
-# A fault in a copy: the file, a text, its replacement, the node, the first check that fails, and
-# words of the message.
+# Faults in a copy: file, text, replacement, node, the check that is reported first, and words of
+# the message.
 FAULTS = {
     "a file of lib": (LIB, "D = mx_", "D = 3.0 * mx_", "sheen_bsdf", "value", "3 times the right"),
     "an implementation": (

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text for path tracers: values match the rasterizer, and densities match the samples, for nodes
-and surface shaders.
+"""Shader text for path tracers: values match the rasterizer, and densities match the samples.
 
-The checks `pdf`, `sample`, `path_value` and `path_inside` of `mxeon check` judge every node; these
-tests cover edge cases and use more samples.
+`mxeon check` judges every node by the checks `pdf`, `sample`, `path_value` and `path_inside`.
+These tests use more samples, and cover edge cases and surface shaders.
 """
 
 import shutil
@@ -24,7 +23,7 @@ from tests.support.verdicts import PASSED
 from tests.support.wrong_libraries import copy_of_eonlib
 from tools.benchmarks import glass
 
-DEVIATION = 5.0  # standard deviations; chance exceeds this once in 3.5 million tests
+DEVIATION = 5.0  # standard deviations; exceeded by chance once in 3.5 million tests
 COLOR = {"color": (0.8, 0.4, 0.2)}
 ROUGH = {"roughness": (0.5, 0.3)}
 FIBER = {
@@ -34,8 +33,8 @@ FIBER = {
     "roughness_TRT": (0.5, 0.6),
     "absorption_coefficient": (0.1, 0.3, 0.5),
 }
-# Films, turned modes and an index below 1, which the checks of nodes do not sample; and a node of
-# every other kind.
+# A node of every kind, including films, retroreflection and an index below 1, which `mxeon check`
+# does not sample.
 NODES = {
     "diffuse": ("oren_nayar_diffuse_bsdf", COLOR | {"roughness": 0.7, "energy_compensation": True}),
     "zeltner": ("sheen_bsdf", COLOR | {"roughness": 0.4, "mode": "zeltner"}),
@@ -83,7 +82,7 @@ SURFACES = {
 DOCUMENTS = {name: material_text(*row) for name, row in NODES.items()}
 DOCUMENTS |= {name: surface(name, **inputs) for name, inputs in SURFACES.items()}
 view = partial(direction, phi=0.3)
-# Drivers take seconds to compile a surface shader's text.
+# Drivers take seconds to compile a surface shader.
 SURFACE_NAMES = [pytest.param(name, marks=pytest.mark.whole) for name in SURFACES]
 every_surface = pytest.mark.parametrize("name", SURFACE_NAMES)
 every_document = pytest.mark.parametrize("name", [*NODES, *SURFACE_NAMES])
@@ -100,16 +99,16 @@ def directions(rng, count):
 
 @pytest.fixture(scope="module")
 def materials(gl):
-    """The compiled material of each document."""
+    """Function that compiles a document's material by name, once."""
     known = {}
     return lambda name: known.setdefault(name, paths(gl, DOCUMENTS[name]))
 
 
 def leaves(material, mu, count, **options):
-    """Deviation of samples from their density, in standard deviations."""
+    """Deviation of a material's samples from their density, in standard deviations."""
     wo = view(mu)
     drawn = material.values("wi", wo, u=uniforms(count), **options)
-    # Light that passes straight through has no density.
+    # Light that passes straight through has no density, so it is left out.
     if material.values("opacity", wo)[0, 0] < 1.0:
         drawn = drawn * (np.linalg.norm(drawn + wo, axis=1, keepdims=True) >= 1e-6)
     return deviation(
@@ -130,8 +129,8 @@ def test_a_quarter_million_draws_have_their_density(materials, name):
     assert leaves(materials(name), 0.9, 1 << 18) < DEVIATION
 
 
-# Error of the rasterizer's albedo, in addition to the noise of 2^16 samples: films 0.07; tilted
-# fibers have no closed form.
+# Errors of the rasterizer's albedo, in addition to the noise of 2^16 samples. Films are fitted, and
+# tilted fibers have no closed form.
 ALBEDO_ERRORS = {
     "soap": 0.07,
     "bubble": 0.05,
@@ -169,7 +168,7 @@ def test_draws_of_hair_find_the_light_that_tilted_cuticles_fold(gl, angle):
     assert (abs(densities.mean(axis=0) - 1.0) < 5.0 * densities.std(axis=0) / 2.0**9).all()
 
 
-# Variance over squared mean of walks through a ball of glass, and the largest weight of a sample.
+# Random walks through a glass ball: variance over squared mean, and the largest sample weight.
 VARIANCES = {
     "dielectric_bsdf, 0.1": (0.036, 1.83),
     "dielectric_bsdf, 0.4": (0.21, 1.8),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes: unit vectors, sizes within their range, and points of the sphere under the pixel centers."""
+"""Points of the sphere and the shader ball lie under the pixel centers, with their normals."""
 
 import numpy as np
 import pytest
@@ -12,14 +12,14 @@ def test_points_of_the_shader_ball_lie_on_it_with_their_normals():
     points = shader_ball_at(*pixel_centers(64))
     seen = points.position[points.mask]
     assert np.abs(distance(seen)).max() <= CLOSE
-    # Points outside the picture's frame do not exist: nothing covers visible points.
+    # Nothing lies in front of a visible point.
     assert (distance(seen + [0.0, 0.0, 0.01]) > 0.0).all()
     outward = seen - CENTER @ OBJECT
     ball = np.abs(np.linalg.norm(outward, axis=-1) - RADIUS) <= CLOSE
     assert 0.7 < ball.mean() < 0.9
-    # Central differences of a sphere's distance are off by less than their squared step over it.
+    # The error of a normal by central differences is less than the squared step over the distance.
     away = np.abs(points.normal[points.mask][ball] * RADIUS - outward[ball]).max(axis=-1)
-    assert np.percentile(away, 98) <= STEP + 2.0 * CLOSE  # the rest is at the edge of a groove
+    assert np.percentile(away, 98) <= STEP + 2.0 * CLOSE  # 2 % lie at edges of grooves
 
 
 def test_nothing_shows_between_the_ball_and_the_foot_behind_its_edge():

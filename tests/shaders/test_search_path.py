@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files named by documents: where they are searched, and how missing ones are reported."""
+"""Files that documents name are found on the search path, and missing files are reported."""
 
 from pathlib import Path
 
@@ -26,7 +26,7 @@ def picture(path, channels=TINT):
 
 @pytest.fixture
 def home(tmp_path):
-    """A document's folder, and `shared` next to it with pictures and part of another document."""
+    """Folder for a document; next to it, `shared` holds pictures and a document to include."""
     picture(tmp_path / "shared/maps/a.exr")
     picture(tmp_path / "shared/set.1001.exr")
     picture(tmp_path / "shared/tile.u1_v1.exr")

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sizes of generated shaders with eonlib relative to stock MaterialX, independent of the machine."""
+"""Generated shaders with eonlib do not grow, relative to those of stock MaterialX."""
 
 import pytest
 
 from tests.support.availability import available
 from tools.benchmarks.registers import compiled, sources
 
-# Measured ratios of text size and of SPIR-V instructions. An increase of 5 % fails; so does a
-# decrease of 10 %, after which they must be measured again.
+# Measured ratios of eonlib to stock: length of the text, and number of SPIR-V instructions. An
+# increase of 5 % fails. So does a decrease of 10 %, which must be measured again.
 SIZES = {
     "oren_nayar": (0.95, 1.07),
     "dielectric_bsdf": (1.79, 1.79),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shader sources in documents: the files that they may include, and the messages for others."""
+"""Shader sources of documents may include some files; others are refused with a message."""
 
 import os
 from pathlib import Path
@@ -22,12 +22,12 @@ USE = '<own name="own" type="color3"/>' + connected(color='nodename="own"')
 BODY = "void own(out vec3 result) { result = vec3(0.123); }\n"
 OTHER = "float other(float x) { return 2.0 * x; }\n"
 SECRET = "// canary\n"
-pytestmark = pytest.mark.filterwarnings("ignore")  # warnings about documents' own code
+pytestmark = pytest.mark.filterwarnings("ignore")  # MaterialX warns about documents' own code
 
 
 @pytest.fixture
 def home(tmp_path):
-    """A document with its own source, a link out of its folder, and the files outside."""
+    """Folder of a document with its own source, links that lead out of it, and files outside."""
     folder = tmp_path / "documents"
     (folder / "lib").mkdir(parents=True)
     (folder / "link").symlink_to(tmp_path)
@@ -39,13 +39,13 @@ def home(tmp_path):
 
 
 def write(folder, file, attributes="", more=""):
-    """Write the document."""
+    """Write a document whose node is implemented by a shader file."""
     node = NODEDEF + IMPLEMENTATION.format("", file, attributes) + more + USE
     (folder / "look.mtlx").write_text(material(node))
 
 
 def including(home, *names, text=BODY):
-    """Make the document's source include files."""
+    """Write a shader source that includes the named files."""
     lines = "".join(f'#include "{name}"\n' for name in names)
     (home / "own.glsl").write_text(lines + text)
 
@@ -60,7 +60,7 @@ def refusal(home, policy=CODE):
     return str(refused.value)
 
 
-# --- what it may include ------------------------------------------------------------------------
+# --- permitted files ----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("target", sorted({"glsl", "essl", "vulkan", "msl"} & set(TARGETS)))
@@ -74,7 +74,7 @@ def test_a_source_includes_others_of_its_folder_and_of_the_libraries(home, targe
     assert "mx_ggx_dir_albedo(" in text
 
 
-# --- what it may not include --------------------------------------------------------------------
+# --- forbidden files ----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("depth", [0, 1, 5])
@@ -179,7 +179,7 @@ def test_text_in_all_shaders_is_limited(home):
 
 @pytest.fixture
 def folder(tmp_path):
-    """A library of one node, with its source next to its document."""
+    """Folder of a library with one node, whose shader source is in the same folder."""
     folder = tmp_path / "library"
     folder.mkdir()
     node = NODEDEF + IMPLEMENTATION.format("", "own.glsl", 'function="own"')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Inputs of every type come out of shaders as plain Python values, and can be set in programs."""
+"""Shaders list inputs of every type as plain Python values, which hosts can set."""
 
 from dataclasses import replace
 
@@ -66,7 +66,7 @@ def host(request, hosts):
 
 
 def brightness(host, nodes, **values):
-    """Brightness of a material in a white furnace with these input values, by path."""
+    """Brightness of a material in a white furnace; `values` maps paths of inputs to values."""
     found = generate(material(nodes), host.target, lights=True, policy=TRUSTED)[0]
     inputs = (replace(each, value=values.get(each.path, each.value)) for each in found.inputs)
     shader = replace(found, inputs=tuple(inputs))

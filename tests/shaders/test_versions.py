@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Other versions of MaterialX: mxeon examines the version itself instead of a list."""
+"""mxeon accepts a version of MaterialX by its functions instead of a list of versions."""
 
 import MaterialX as mx
 import pytest
@@ -23,7 +23,7 @@ CACHES = (
 
 @pytest.fixture
 def fresh():
-    """Reload libraries and generators as in a new process, before and after the test."""
+    """Clear caches of libraries and generators before and after the test."""
     for cache in CACHES:
         cache.cache_clear()
     yield
@@ -33,7 +33,7 @@ def fresh():
 
 @pytest.fixture
 def other_interface(fresh, monkeypatch, tmp_path):
-    """A checkout whose oren_nayar_diffuse_bsdf has one parameter more than MaterialX passes."""
+    """Make oren_nayar_diffuse_bsdf take one parameter more than MaterialX passes."""
     old, new = "float weight, vec3 color", "float gain, float weight, vec3 color"
     wrong_copy(tmp_path, old, new, "genglsl/oren_nayar_diffuse_bsdf.glsl")
     monkeypatch.setattr(library, "data_folder", lambda: tmp_path)

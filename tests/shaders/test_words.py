@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of a document that reaches generated source must consist of plain words."""
+"""Text that reaches generated source from a document must consist of plain words."""
 
 from functools import lru_cache
 
@@ -12,17 +12,17 @@ from tests.fuzz import reach
 from tests.support.documents import lobe, material, refusal, written
 from tests.support.sharing import shared
 
-SOME = ("glsl", "osl", "mdl")  # one target of each family of generators
-CLASSES = (*SOME, "msl", "slang")  # essl, vulkan and wgsl inherit from glsl's generator
+SOME = ("glsl", "osl", "mdl")  # one target per family of generators
+CLASSES = (*SOME, "msl", "slang")  # essl, vulkan and wgsl share the generator of glsl
 IMAGE = '<image name="image" type="color3"><input name="{}" type="{}" value="{}"/></image>'
 KINDS = [kind for kind in vars(mx).values() if hasattr(kind, "CATEGORY")]
 
 
 @pytest.fixture(scope="module", autouse=True)
 def furnished(tmp_path_factory):
-    """A working folder with the files that documents name, each read once for all targets.
+    """Enter a folder with the files that documents name; documents are read once for all targets.
 
-    Values of inputs are omitted, because they are not source text.
+    Input values are not collected, because they are not source text.
     """
     folder = tmp_path_factory.mktemp("reach")
     reach.furnish(folder)
@@ -35,7 +35,7 @@ def furnished(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def materials(furnished, tmp_path_factory):
-    """The document of materials, and the places that reach source."""
+    """Root of the document with materials, and the places whose text reaches source."""
     root = reach.documents()["materials"]
     groups = reach.present(root)
     return root, shared(tmp_path_factory, "reach", lambda: reach.reached(root, groups, CLASSES))
@@ -57,7 +57,7 @@ def test_text_that_reaches_source_in_materials_is_words(materials):
 
 def test_text_that_reaches_source_in_outputs_is_words():
     root = reach.documents()["outputs"]
-    groups = reach.present(root)  # names, types and values are judged alike everywhere
+    groups = reach.present(root)  # names, types and values need no second test
     texts = [each for each in groups if each[0].attribute not in ("name", "type", "value")]
     found = reach.reached(root, texts, SOME)
     assert ("materialx", "namespace") in named(root, found)
