@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests. Each pytest process uses one thread of BLAS and of PyTorch, whose waiting threads spin."""
+"""Tests of mxeon. BLAS and PyTorch use one thread per pytest process, because idle threads spin."""
 
 import os
 
-# Set before NumPy is imported, because BLAS reads it then.
+# BLAS reads this variable when NumPy is imported.
 os.environ.setdefault("OMP_NUM_THREADS", "1")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hosts for the tests, opened once per session when a test first needs them."""
+"""Fixtures and hooks for all tests; each host is opened once, when a test first needs it."""
 
 import atexit
 import gc
@@ -23,11 +23,10 @@ from tests.support.verdicts import Verdicts
 
 
 def pytest_configure():
-    """Restore signals that nohup or a background job ignores, and refuse unknown hosts.
+    """Set up signals and Mesa for the tests, and refuse unknown names in MXEON_REQUIRE.
 
-    Otherwise every command that the tests start would inherit the ignored signals. Mesa's software
-    driver compiles shaders without optimizing them, which is faster and changes no bit of their
-    values.
+    Commands would inherit signals that nohup or a background job ignores, so defaults are restored.
+    Mesa's software driver skips optimization, which is faster and changes no value of a shader.
     """
     os.environ.setdefault("GALLIVM_PERF", "nopt")
     for number in ENDING:
@@ -42,10 +41,9 @@ def pytest_configure():
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection():
-    """Import the models, whose lines are traced, then collect without tracing.
+    """Import the models with line tracing on, and collect the tests with tracing off.
 
-    Garbage collection is disabled meanwhile, and skips the objects that exist then until the
-    process ends.
+    Garbage collection is off meanwhile, and later ignores the objects that exist by then.
     """
     for module in walk_packages(models.__path__, f"{models.__name__}."):
         import_module(module.name)
@@ -59,20 +57,20 @@ def pytest_collection():
 
 
 def pytest_make_parametrize_id(val):
-    """A function's name as its id; the default contains an address, which differs between workers."""
+    """Use a function's name as its id; pytest's default has an address that differs per worker."""
     return getattr(val, "__name__", None)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item):
-    """Trace lines only in the tests of the models, which must cover all lines by themselves."""
+    """Trace lines only in tests of the models, which must cover all lines of the models."""
     with nullcontext() if "models" in item.path.parts else untraced():
         return (yield)
 
 
 @pytest.fixture(scope="session", autouse=True)
 def one_worker():
-    """Run commands in this process with one worker, because other tests use the other processors."""
+    """Limit commands in this process to one worker; other tests use the other processors."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("os.cpu_count", lambda: 1)
         yield
@@ -80,8 +78,8 @@ def one_worker():
 
 @pytest.fixture(scope="session", autouse=True)
 def temporary(tmp_path_factory):
-    """Temporary files that Blender or killed processes leave are deleted with the tests' folders."""
-    folder = tmp_path_factory.getbasetemp() / "t"  # short, for the sockets of a browser
+    """Put temporary files below pytest's folder, which deletes what killed processes leave."""
+    folder = tmp_path_factory.getbasetemp() / "t"  # short: paths of a browser's sockets are limited
     folder.mkdir()
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TMPDIR", str(folder))
@@ -91,7 +89,7 @@ def temporary(tmp_path_factory):
 
 @pytest.fixture(scope="session", autouse=True)
 def optimized_pictures():
-    """Storm draws for much longer than its driver compiles, so its driver optimizes."""
+    """Let the driver optimize for Storm, which takes much longer to render than to compile."""
     start = Worker.start
 
     def optimized(worker):
@@ -107,14 +105,14 @@ def optimized_pictures():
 
 @pytest.fixture(scope="session")
 def hosts():
-    """A function that opens a host by name, once per session."""
+    """Function that returns a host by name and opens it once per session."""
     opened = {}
 
     def host(name):
         if name not in opened:
             with available(name), ExitStack() as failed:
                 engine = failed.enter_context(open_engine(name, reference_host.ROW))
-                engine.identity()  # some engines do not start before this
+                engine.identity()  # starts the engine
                 failed.pop_all()
                 opened[name] = engine
         return opened[name]
@@ -126,17 +124,17 @@ def hosts():
 
 @pytest.fixture(scope="session")
 def judged(hosts):
-    """A function that judges one check of one node; see `Verdicts`."""
+    """Function that judges one check of one node; see `Verdicts`."""
     return Verdicts(hosts)
 
 
 @pytest.fixture(scope="session")
 def gl(hosts):
-    """The gl host."""
+    """The host that evaluates shaders with OpenGL."""
     return hosts("gl")
 
 
 @pytest.fixture(scope="session")
 def reference(hosts):
-    """The reference host."""
+    """The host that evaluates the models in float64."""
     return hosts("reference")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The short summary of a run, and the progress lines while it works."""
+"""The summary that `mxeon check` prints, and its progress lines."""
 
 import json
 import os
@@ -59,7 +59,7 @@ BENT, LAYER = (
     stock(key="layering", diagnosis=quoted("X")),
 )
 FIRST = f"0.37 (value)\ncause: gl with stock: {EON} "
-# Failures of the node with stock, fields of its picture, and the summary's words and last line.
+# Failures of stock's node, fields of the picture's result, and words and last line of the summary.
 ANSWERS = (
     ((stock(),), {}, f"{RIGHT}.", NOTHING),
     ((BENT,), {}, f"{RIGHT} for inputs that this material does not use.", NOTHING),
@@ -118,7 +118,7 @@ def test_what_fails_for_other_inputs_than_the_documents_comes_last():
         contents={"a.mtlx": (GLASS,), "b.mtlx": (GLASS,)},
         unreached={"a.mtlx": {GLASS: (ZERO,)}},
     )
-    # The document b may have the index 0.
+    # Only document a is known not to reach the index 0.
     assert run.is_elsewhere(wrong, "a.mtlx") and not run.is_elsewhere(wrong)
     [entry] = json.loads(to_json(run))["elsewhere"]
     assert entry == {
@@ -143,7 +143,7 @@ def test_a_lobe_that_a_document_lacks_makes_no_combination_wrong_for_it():
         assert run.is_elsewhere(layer) == elsewhere
     named = replace(layer, pages=(), diagnosis=caused("defect", "throughput_of_lobes", sheen))
     assert replace(run, contents={"a.mtlx": ("layer", metal)}).is_elsewhere(named)
-    # A defect that does not name its lobe, or has no page, counts for every document.
+    # A defect without a page, or without a named lobe, counts for every document.
     for counts in (replace(layer, pages=("genglsl_add_throughput",)), replace(layer, pages=())):
         assert not replace(run, contents={"a.mtlx": ("layer", metal)}).is_elsewhere(counts)
 
@@ -179,7 +179,7 @@ def test_every_document_appears_those_that_look_wrong_first():
     assert all(any(each in line for line in lines) for each in documents)
 
 
-# --- what is judged -------------------------------------------------------------------------------
+# --- judged and refused documents -----------------------------------------------------------------
 
 
 def test_a_document_alone_has_its_nodes_judged_and_no_others(monkeypatch):
@@ -211,7 +211,7 @@ def test_nothing_says_of_a_refused_document_that_it_passed(tmp_path, monkeypatch
     keep_checks(monkeypatch, "value", "picture")
     shutil.copy(PLASTER, tmp_path / "good.mtlx")
     (tmp_path / "bad.mtlx").write_text(textured(["no.png"]))
-    # The texture is inside a definition, so only the picture reads it.
+    # The texture is inside a definition, so it is only missed when the picture is rendered.
     inner = image("no.png") + '<output name="out" type="color3" nodename="image"/>'
     graph = '<nodedef name="ND_t" node="t"><output name="out" type="color3"/></nodedef>'
     graph += f'<nodegraph name="NG_t" nodedef="ND_t">{inner}</nodegraph><t name="t" type="color3"/>'
@@ -250,7 +250,7 @@ def test_a_document_that_one_library_lacks_is_refused_in_its_column(tmp_path, mo
     assert printed.out.startswith(f"{file} with stock was not checked: 1 error. ")
     assert "with stock MaterialX" in printed.out and "refused" in printed.out
     assert printed.err.endswith("(with stock)\n")
-    # If stock only serves as a comparison, the document's result is eonlib's.
+    # If stock is only a comparison, the result of the document is eonlib's.
     assert main(["check", str(file), "--workers", "0"]) == 0
     printed = capsys.readouterr()
     assert printed.err == "" and "not judged" in printed.out and "(with stock)" in printed.out

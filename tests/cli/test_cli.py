@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command: its output, the files it leaves behind, and its exit status."""
+"""Commands of mxeon: output, written files, and exit status."""
 
 import json
 import re
@@ -25,11 +25,11 @@ from tests.support.plans import keep, keep_checks
 
 MIRROR = material(lobe("generalized_schlick_bsdf", roughness=(0.0, 0.0)))
 
-# --- status -------------------------------------------------------------------------------------
+# --- exit status --------------------------------------------------------------------------------
 
 
 def pattern(line):
-    """A pattern for a line on a page. It ignores files, errors, counts of checks and ellipses."""
+    """Pattern for a printed line that ignores files, errors, counts of checks and ellipses."""
     rest = r"\.\.\.|(?<=load )\w+|(?<=: )docs|(?<=EON, )[\d.e-]+|(?= To fix)|\s{2,}|\d+(?= checks| of )|(?<= of )\d+"
     return ".*".join(map(re.escape, re.split(rest, line)))
 
@@ -55,7 +55,7 @@ def test_check_passes_writes_a_report_and_answers_as_the_pages_show(tmp_path, ca
         ".journal.lock",
         "upstream",
     }
-    # Stock MaterialX fails here, but it only serves as a comparison, for every reader of the run.
+    # Stock MaterialX fails, but it is only a comparison, so the verdict is eonlib's.
     found = json.loads((tmp_path / "report" / "results.json").read_text())
     assert (found["verdict"], found["compared"]) == ("passed", ["stock"])
     assert {each["library"] for each in found["results"] if each["verdict"] == "failed"} == {
@@ -129,7 +129,7 @@ def test_render_shows_a_shader_ball_in_a_studio_where_the_host_can_and_says_so_i
     assert (fallback in one_line(error)) if "reference" in options else not error
 
 
-# --- what the commands do -----------------------------------------------------------------------
+# --- effects of commands ------------------------------------------------------------------------
 
 
 def test_generate_writes_a_file_for_each_stage_and_material(tmp_path, capsys):
@@ -146,14 +146,14 @@ def test_generate_writes_a_file_for_each_stage_and_material(tmp_path, capsys):
 
 @pytest.mark.parametrize("host", ["gl", "webgl"])
 def test_an_environment_image_ends_at_its_poles(host, hosts, tmp_path):
-    hosts(host)  # skips if it cannot run
+    hosts(host)  # skips the test if the host cannot run
     document, sky, output = (str(tmp_path / name) for name in ("a.mtlx", "sky.exr", "a.exr"))
     Path(document).write_text(MIRROR)
     rows = np.linspace(1.0, 0.0, 8, dtype=np.float32)  # white above, black below
     oiio.ImageBuf(np.broadcast_to(rows[:, None, None], (8, 16, 3)).copy()).write(sky)
     options = ["--host", host, "--environment", sky, "--size", "128", "--output", output]
     assert main(["render", document, *options]) == PASSED
-    # A mirror shows a pole where its normal is tilted by 45 degrees.
+    # A mirror reflects a pole of the sky where its normal is tilted by 45 degrees.
     pixels = oiio.ImageBuf(output).get_pixels(oiio.FLOAT)
     above, below = pixels[16:22, 61:67], pixels[106:112, 61:67]
     np.testing.assert_allclose(above, 1.0, atol=2.0**-7)
@@ -178,7 +178,7 @@ def test_library_prints_the_folder_and_how_to_load_it(capsys, tmp_path):
 def test_invert_prints_rho(option, function, capsys):
     assert main(["invert", "0.8", "0.4", "0.1", "--roughness", "0.7", *option]) == PASSED
     printed = np.array(capsys.readouterr().out.split(), dtype=float)
-    # Nine digits are printed.
+    # The command prints nine digits.
     assert np.abs(printed - function([0.8, 0.4, 0.1], 0.7)).max() <= 5e-10
 
 

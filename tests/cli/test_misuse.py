@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Misuse and failures of the command: one line, the documented exit status, and nothing written."""
+"""Misuse and failures print one line, return the documented exit status, and write no file."""
 
 import json
 

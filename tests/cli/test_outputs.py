@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Outputs that would overwrite inputs, or files that nobody named."""
+"""Commands refuse outputs that would overwrite inputs, or files that no argument names."""
 
 import os
 import re
@@ -20,7 +20,7 @@ from tests.support.command import CLAY, PLASTER, one_line
 from tests.support.documents import textured
 from tests.support.results import PREVIOUS, Run
 
-# The files of `inputs`, by their role in a command.
+# Files in the folder `inputs`, by role in a command.
 FILES = {
     "document": "look.mtlx",
     "include": "part.mtlx",
@@ -43,7 +43,7 @@ MATERIAL = ("document", "include", "texture", "set of textures", "source", "incl
 TRUSTED = ("library", "library's source", "definitions")
 REPORTED = ("results", "picture", "journal")
 OPTIONS = ("--library", "lib", "--definitions", "defs", "--workers", "0")
-# Each command that writes: its arguments without the output, the name of an output, and its inputs.
+# Commands that write: arguments without the output, name of an output, and roles of the inputs.
 WRITING = {
     "render": (
         ["render", "look.mtlx", "--environment", "sky.exr", *OPTIONS, "--output"],
@@ -75,7 +75,7 @@ REPLACING = [(command, kind) for command, (*_, kinds) in WRITING.items() for kin
 
 @pytest.fixture
 def inputs(tmp_path, monkeypatch):
-    """A working folder with a file of each kind. No engine starts there."""
+    """Working folder with a file for each role, in which no engine can start."""
     for name in FILES.values():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(name)
@@ -103,7 +103,7 @@ def content(folder):
 
 
 def refused(arguments, folder, capsys):
-    """The one-line refusal of arguments; asserts that no file in a folder changes."""
+    """Assert that arguments are refused in one line and no file changes; returns the line."""
     before = content(folder)
     assert main(arguments) == MISUSE
     assert content(folder) == before
@@ -153,7 +153,7 @@ def test_a_report_goes_to_no_folder_that_holds_what_is_read(
 
 LOOK = f"{FILES['document']} --workers 0"
 RENDER, OSL = f"render {LOOK} --output a.exr", "generate --target osl --outputPath out --workers 0"
-# Invalid options and outputs that cannot be written are reported before any engine starts.
+# Commands with invalid options or outputs, which are refused before any engine starts.
 WRONG = {
     f"{OSL} {CLAY} --element loam": "element must be one of",
     f"{OSL} nowhere.mtlx": "must be a readable file",
@@ -215,7 +215,7 @@ def test_what_is_wrong_is_said_first(command, words, inputs, capsys):
     assert words in refused(shlex.split(command), inputs, capsys)
 
 
-# What a host says.
+# Message of a host.
 UNDRAWN = {
     "--environment sky.hdr": "sky.hdr",
     "--size 0": "size must lie in [1, 8192]",
@@ -264,7 +264,7 @@ def test_a_refused_run_leaves_no_results_of_an_older_one(command, inputs, capsys
     }
 
 
-STEERING = "::error::a\x1b[31m\nb"  # a name with control sequences for a runner and a terminal
+STEERING = "::error::a\x1b[31m\nb"  # would control a runner and a terminal
 
 
 @pytest.mark.parametrize(
@@ -298,7 +298,7 @@ def test_functions_that_write_refuse_likewise(inputs):
 
 
 def test_a_second_run_replaces_its_own_outputs(tmp_path, monkeypatch):
-    """It may also write below the folder of a library that it reads."""
+    """Outputs may also lie below the folder of a library that the command reads."""
     monkeypatch.chdir(tmp_path)
     os.mkdir("lib")
     (tmp_path / "lib" / "own.mtlx").write_text('<materialx version="1.39"></materialx>')
@@ -308,7 +308,7 @@ def test_a_second_run_replaces_its_own_outputs(tmp_path, monkeypatch):
 
 
 GENERATE = f"generate {PLASTER} --target osl --workers 0 --outputPath out"
-# Commands that write a folder, and names in the folder at which a link may be planted.
+# Commands that write a folder, and names in it where an attacker may plant a link.
 FOLDERS = {
     GENERATE: ("plaster.ochre_plaster.osl",),
     "kit export out --size 64": ("kit.json", "README.md", "sphere.obj", "materials", "renders"),

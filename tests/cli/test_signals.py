@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Signals that end a command: one line, the usual status, and nothing left behind."""
+"""A signal ends a command with one line, the usual exit status, and no files left behind."""
 
 import os
 import signal
@@ -17,7 +17,7 @@ CHECK = ["check", PLASTER, "--workers", "1", "--report", "report"]
 
 
 def start(folder, *arguments, code="from mxeon.__main__ import main; sys.exit(main())"):
-    """Start a command with `folder`/tmp for its temporary files; it receives signals as in a terminal."""
+    """Start a command in its own process group, with `folder`/tmp for temporary files."""
     (folder / "tmp").mkdir()
     return subprocess.Popen(
         [sys.executable, "-c", f"import sys\n{code}", *arguments],
@@ -30,7 +30,7 @@ def start(folder, *arguments, code="from mxeon.__main__ import main; sys.exit(ma
 
 
 def wait_for_results(folder, process):
-    """Wait until a command that checks with a report in `folder` has written results."""
+    """Wait until a `check` with a report in `folder` has written results."""
     journal = folder / "report" / "journal" / "items.jsonl"
     wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 1, process)
 
@@ -55,11 +55,11 @@ def test_a_killed_command_leaves_its_folder_to_the_next_one(tmp_path):
     process = start(tmp_path, *CHECK)
     folder = tmp_path / "tmp"
     wait_for_results(tmp_path, process)
-    process.send_signal(signal.SIGSTOP)  # if it kept running, it would end and remove its folder
+    process.send_signal(signal.SIGSTOP)  # prevents that it ends and removes its folder
     [made] = folder.glob("mxeon-pool-*")
-    os.utime(made, (0, 0))  # folders younger than a minute are kept anyway
+    os.utime(made, (0, 0))  # folders younger than a minute are always kept
     alive = subprocess.run(GENERATE, cwd=tmp_path, env=os.environ | {"TMPDIR": str(folder)})
-    assert alive.returncode == 0 and list(folder.glob("mxeon-pool-*"))  # the folder is in use
+    assert alive.returncode == 0 and list(folder.glob("mxeon-pool-*"))  # a folder in use is kept
     process.kill()
     process.communicate(timeout=DEADLINE)
     for each in folder.iterdir():
@@ -70,7 +70,7 @@ def test_a_killed_command_leaves_its_folder_to_the_next_one(tmp_path):
 
 def test_a_signal_before_the_workers_work_ends_them_too(tmp_path):
     process = start(tmp_path, *CHECK)
-    # Python itself tries the folder with a file of a random name, without a prefix.
+    # Only mxeon's folders contain a hyphen; Python tests TMPDIR with a file of a random name.
     wait_for(lambda: list((tmp_path / "tmp").glob("*-*")), process)
     os.killpg(process.pid, signal.SIGTERM)
     _, errors = process.communicate(timeout=DEADLINE)

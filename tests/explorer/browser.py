@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pages of the explorer in a headless Chromium. Requests and messages of a page fail its test."""
+"""Explorer pages in headless Chromium. A page's network requests and messages fail the test."""
 
 from contextlib import contextmanager
 
 from mxeon.hosts.webgl import FLAGS, is_root, program
 from tests.support.availability import package
 
-# Blocks all access except to this machine.
+# Flags that block network access except to this machine.
 LOCAL = tuple(each.replace("~NOTFOUND", "~NOTFOUND, EXCLUDE 127.0.0.1") for each in FLAGS)
 
 # A small window, for software drivers.
@@ -21,14 +21,14 @@ sync_playwright = package("playwright.sync_api").sync_playwright
 
 @contextmanager
 def launched(flags=LOCAL):
-    """A new browser."""
+    """Context with a new Chromium browser."""
     with sync_playwright() as playwright, started(playwright.chromium, flags) as browser:
         yield browser
 
 
 @contextmanager
 def started(kind, flags):
-    """A browser of a kind that playwright supports, with these flags."""
+    """Context with a browser of one of playwright's kinds, started with the given flags."""
     browser = kind.launch(executable_path=program(), args=flags, chromium_sandbox=not is_root())
     yield browser
     browser.close()
@@ -36,9 +36,9 @@ def started(kind, flags):
 
 @contextmanager
 def opened(browser, address, allowed=(), drawn=True, **options):
-    """The page of the explorer at an address, opened by `watched`.
+    """Context with an explorer page in a new browser context, watched by `watched`.
 
-    Pages that need not draw have no WebGL, which takes a software driver most of its time.
+    If `drawn` is false, the page has no WebGL, which is slow with a software driver.
     """
     context = browser.new_context(**(SMALL | options))
     page = context.new_page()
@@ -52,9 +52,9 @@ def opened(browser, address, allowed=(), drawn=True, **options):
 
 @contextmanager
 def watched(page, address, allowed=()):
-    """Open an address in a page; requests, and messages that are not permitted, fail the test."""
+    """Open an address; network requests and messages that are not allowed fail the test."""
     asked, said = [], []
-    page.set_default_timeout(600_000.0)  # allows for a busy machine
+    page.set_default_timeout(600_000.0)  # milliseconds, for busy machines
     page.on("request", lambda request: asked.append(request.url))
     page.on("console", lambda message: said.append(message.text))
     page.on("pageerror", lambda error: said.append(str(error)))
@@ -68,9 +68,9 @@ def watched(page, address, allowed=()):
 
 
 def until(page, expression, argument=None, seconds=600):
-    """Wait until an expression is true, and return its value.
+    """Wait until a JavaScript expression is true, and return its value.
 
-    Playwright's own function needs features that the page's policy forbids.
+    The page's security policy forbids features that playwright's own function needs.
     """
     for _ in range(20 * seconds):
         if value := page.evaluate(expression, argument):
@@ -80,12 +80,12 @@ def until(page, expression, argument=None, seconds=600):
 
 
 def state(page):
-    """The page's current view."""
+    """State of the page's current view."""
     return page.evaluate("mxeon.state()")
 
 
 def shows(page, **fields):
-    """Assert that the page soon shows a view with these fields."""
+    """Wait until the view has the given fields; fail if it never does."""
     try:
         until(page, HAS, fields)
     except AssertionError:
@@ -94,11 +94,11 @@ def shows(page, **fields):
 
 
 def show(page, **patch):
-    """Show the current view with other fields."""
+    """Change fields of the current view."""
     page.evaluate("patch => mxeon.show({...mxeon.state(), ...patch})", patch)
 
 
 def judged(page, side, badge):
-    """Assert that the verdict on a side soon has a badge; the page reads back values first."""
+    """Wait until the verdict on a side has the given badge, which needs values read back."""
     text = "side => document.querySelector(`.side.${side} .verdict strong`).textContent"
     until(page, f"([side, badge]) => ({text})(side) === badge", [side, badge])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of the explorer's stage as arrays, and the views for testing it."""
+"""Sets views of the explorer's stage, and reads its pictures as arrays."""
 
 import base64
 
@@ -13,9 +13,9 @@ from tests.explorer.browser import opened, show, shows, until
 
 RHO = (0.8, 0.4, 0.1)
 ROUGHNESS = 0.9
-LIGHTS = {"side": (60.0, 20.0), "back": (125.0, 10.0)}  # azimuth and elevation
+LIGHTS = {"side": (60.0, 20.0), "back": (125.0, 10.0)}  # azimuth and elevation in degrees
 VIEWPORT = {"width": 200, "height": 170}
-# Scales the page's clock: at speed 0 no device is slow, so pictures are never coarse.
+# Scales the page's clock. At speed 0 no frame is slow, so pictures keep their resolution.
 CLOCK = """speed => {
     globalThis.clock ??= performance.now.bind(performance);
     performance.now = () => speed * globalThis.clock();
@@ -31,14 +31,14 @@ READ = """side => {
 
 
 def written(file, *names):
-    """URL of a page with some of the examples."""
+    """Write a page with the named examples, and return its URL."""
     documents = [document_sources(str(examples_folder() / f"{name}.mtlx")) for name in names]
     write_text(file, page(page_data(documents)))
     return file.as_uri()
 
 
 def opened_stage(browser, address, **options):
-    """The page, as narrow as a phone, so that the picture is small."""
+    """Context with a page as narrow as a phone, whose picture is small."""
     return opened(browser, address, **({"viewport": VIEWPORT} | options))
 
 
@@ -47,7 +47,7 @@ def side(source, flag=True, sampler="exact"):
 
 
 def view(stage, left, right=None, light="side", **patch):
-    """Show two sources under one of LIGHTS or none, and wait until the picture is final."""
+    """Show two sources, under one of LIGHTS or no light, and wait until the picture is final."""
     azimuth, elevation = LIGHTS[light or "side"]
     common = {
         "left": left,
@@ -71,19 +71,19 @@ def view(stage, left, right=None, light="side", **patch):
 
 
 def settle(stage):
-    """Wait until the picture is final."""
+    """Wait until the stage has drawn the final picture."""
     until(stage, "mxeon.stage.isSettled(mxeon.state())")
 
 
 def frame(stage, name=None, size=None):
-    """Result of `read`, top row first; with paths, the picture has other dimensions."""
+    """Radiance of a side, top row first; path tracing has a different `size` than the stage."""
     width, height = size or stage.evaluate("Object.values(mxeon.stage.size())")
     data = np.frombuffer(base64.b64decode(stage.evaluate(READ, name)), dtype=np.float32)
     return data.reshape(height, width, 4)[::-1]
 
 
 def picture(stage, name="left"):
-    """The square around the sphere, which matches the gl host's picture."""
+    """Square around the sphere, with the same pixels as a picture of the gl host."""
     whole = frame(stage, name)
     diameter = stage.evaluate("mxeon.stage.diameter()")
     top, left = ((length - diameter) // 2 for length in whole.shape[:2])
@@ -93,7 +93,7 @@ def picture(stage, name="left"):
 
 
 def towards(light):
-    """Unit vector towards one of LIGHTS."""
+    """Unit vector towards a light in LIGHTS."""
     azimuth, elevation = np.radians(LIGHTS[light])
     return (
         float(np.sin(azimuth) * np.cos(elevation)),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Accessibility of the page: axe-core, and browsers without WebGL2."""
+"""The page is accessible: axe-core finds no problem, and it works without WebGL2."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from tests.explorer.browser import opened, show, started, state
 from tests.explorer.stage import written
 from tests.explorer.test_build import MODULES, needs_modules
 
-# Chromium has no WebGL without a graphics driver.
+# Flags that disable WebGL by removing all graphics drivers.
 NO_GRAPHICS = ("--disable-gpu", "--disable-software-rasterizer", "--no-proxy-server")
 VIEWS = {
     "light": {},
@@ -23,13 +23,13 @@ VIEWS = {
 
 @pytest.fixture(scope="module")
 def documents(tmp_path_factory):
-    """URL of a page with two documents."""
+    """URL of an explorer page with two documents."""
     file = tmp_path_factory.mktemp("documents") / "explorer.html"
     return written(file, "clay", "standard_surface_rough_base")
 
 
 def findings(page):
-    """Problems that axe-core finds in the page's current state."""
+    """Accessibility problems that axe-core finds in the page's current state."""
     return [
         f"{each['id']}: {each['help']}: {each['nodes'][0]['html']}"
         for each in page.evaluate("axe.run()")["violations"]
@@ -38,7 +38,7 @@ def findings(page):
 
 @pytest.fixture(scope="module")
 def checked(browser, documents):
-    """The page with axe-core, which the page's own policy would block."""
+    """Explorer page with axe-core loaded; its security policy, which would block it, is off."""
     needs_modules()
     with opened(browser, documents, bypass_csp=True) as page:
         page.add_script_tag(path=MODULES / "axe-core" / "axe.min.js")

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The view in the address: it survives a round trip, and invalid addresses do no harm."""
+"""The address stores the view and restores it; invalid addresses do no harm."""
 
 import pytest
 
 from tests.explorer.browser import opened, show, state, until
 
-# Every field of a view, with a value that differs from the first one.
+# All fields of a view, with values that differ from those of the first view.
 CHANGED = {
     "left": {"source": "model/qon", "flag": False, "sampler": "cosine"},
     "right": {"source": "variant/cycles_rho_cubed/4", "flag": False, "sampler": "cltc"},

@@ -17,7 +17,7 @@ TEMPLATE = files("mxeon.explorer").joinpath("explorer.html")
 
 
 def needs_modules():
-    """Skip the test if Node or the packages are not installed; fail if `./run test --all` should have installed them."""
+    """Skip the test if Node or its packages are missing; fail it if they are required."""
     if not NODE or not MODULES.is_dir():
         missing(PACKAGES, "explorer/node_modules: must be installed; ./run test --all does it")
 

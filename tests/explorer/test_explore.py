@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon explore`: the page that it writes, and the arguments that it refuses."""
+"""`mxeon explore` writes a page, and refuses invalid arguments."""
 
 import json
 import os
@@ -37,13 +37,13 @@ from tests.support.documents import textured, written
 from tests.support.verdicts import FAILED
 
 Error = package("playwright.sync_api").Error
-LARGEST = 2 * 2**20  # bytes of the page without documents
+LARGEST = 2 * 2**20  # maximum bytes of a page without documents
 CLAY = str(examples_folder() / "clay.mtlx")
 NASTY = "</script><script>globalThis.hit = 1</script><!--"
 
 
 def data_of(text):
-    """The data of a page, as a browser would read them."""
+    """Data embedded in a page, parsed as a browser does."""
     data = json.loads(re.search(r'type="application/json">(.*?)</script>', text, re.DOTALL)[1])
     for each in data["sources"]:
         if each.get("reference") is not None:
@@ -93,7 +93,7 @@ def test_code_of_a_document_needs_a_permission(tmp_path, capsys):
 
 @pytest.fixture
 def nasty(tmp_path):
-    """A document in which every visible word is hostile."""
+    """Document whose visible texts all try to run a script."""
     file = tmp_path / "<img src=x onerror='globalThis.hit=1'>&quot;.mtlx"
     escaped = NASTY.replace("<", "&lt;").replace(">", "&gt;")
     text = material_text(OREN_NAYAR, {"color": (0.5, 0.5, 0.5)})
@@ -163,7 +163,7 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
     own = [each for each in data_of(out.read_text())["sources"] if each["id"][:9] == "document/"]
     titles = "With eonlib", "Stock MaterialX"
     for result, title, source in zip(found, titles, own, strict=True):
-        # The worst pixel of the worst picture, computed from the definition.
+        # Compute the difference at the worst pixel of the worst picture, by its definition.
         sizes = {}
         for each in run.pictures:
             if (each.library, each.document) == (result.library, f"{name}.mtlx") and (
@@ -175,7 +175,7 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
                 sizes[each.scene] = apart.max(), seen
         worst, size = max(sizes, key=lambda scene: sizes[scene][0]), result.difference
         assert (size.scene, abs(size.largest), size.visible) == (worst, *map(approx, sizes[worst]))
-        # All reports take the sentence from there: terminal, page, table, JUnit, JSON and explorer.
+        # Terminal, page, table, JUnit, JSON and explorer all state this difference.
         sentence, look = words.difference(size), words.look(result)
         assert entries[result.library]["difference"] == vars(size)
         assert f"<b>{title}</b> on gl: {look}" in report
@@ -200,7 +200,10 @@ def test_inputs_have_the_ranges_of_their_definitions():
     (source, *_) = document_sources(str(examples_folder() / "standard_surface_rough_base.mtlx"))
     ports = {port.path.rpartition("/")[2]: port for port in source.inputs}
     assert (ports["base"].min, ports["base"].max, ports["base"].label) == (0.0, 1.0, "Base")
-    assert (ports["specular_IOR"].min, ports["specular_IOR"].max) == (0.0, 3.0)  # uimin, uisoftmax
+    assert (ports["specular_IOR"].min, ports["specular_IOR"].max) == (
+        0.0,
+        3.0,
+    )  # uimin and uisoftmax
     assert ports["base_color"].value == (0.5, 0.24, 0.13)
     assert source.meant is None and source.controls.color == ""
 
@@ -218,7 +221,7 @@ def test_images_are_read_once_and_smaller_the_more_a_page_has_of_them(tmp_path, 
     assert {port.image.width for port in source.inputs if port.image} == {8, 32} and len(reads) == 4
 
 
-# Drops files, given by names and base64, that the page creates itself.
+# JavaScript that drops files on the page, given by name and base64.
 DROP = """files => {
     const data = new DataTransfer();
     for (const [name, text] of files) {
@@ -234,21 +237,21 @@ def drop(page, *files):
 
 
 def shown(page, expression):
-    """Wait while a page reloads itself."""
+    """Value of an expression once it is true, even if the page reloads itself meanwhile."""
     page.wait_for_load_state()
     for _ in range(600):
         try:
             return until(page, expression)
-        except Error:  # the page was unloaded meanwhile
+        except Error:  # the page was being reloaded
             page.wait_for_timeout(100)
     raise AssertionError(expression)
 
 
 @pytest.fixture
 def server():
-    """Start `mxeon explore`, and return the address that it prints."""
+    """Address that a running `mxeon explore` prints."""
     command = [sys.executable, "-m", "mxeon", "explore", "--workers", "0"]
-    env = os.environ | {"BROWSER": "true"}  # a browser that does nothing
+    env = os.environ | {"BROWSER": "true"}  # command that does nothing
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=env) as process:
         yield process.stdout.readline().split()[0]
         process.send_signal(signal.SIGINT)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lobes of the page: verdicts from values that the browser read back, and a stable layout."""
+"""The page judges lobes by values that the browser reads back, and keeps its layout."""
 
 from dataclasses import replace
 
@@ -9,12 +9,11 @@ from mxeon.explorer import page, page_data
 from mxeon.io.files import write_text
 from tests.explorer.browser import DRAWN, opened, show, until
 
-# Diagnoses of MaterialX's own GLSL on gl, as on the pages of docs/upstream. One lobe of each
-# family, because a software driver needs a second for each; test_references.py judges all of them
-# on another host.
+# Verdicts on MaterialX's GLSL, as in docs/upstream. Only one lobe per family is judged, because a
+# software driver takes a second for each; test_references.py judges all lobes on the gl host.
 STOCK = {
     "shader": "wrong",
-    "lobe/sheen_zeltner": "correct",  # only wrong under other lobes, and with a tilted normal
+    "lobe/sheen_zeltner": "correct",  # wrong only in a layer, and with a tilted normal
     "lobe/schlick": "differs",
     "lobe/film_dielectric": "differs",
     "lobe/hair": "wrong",
@@ -24,7 +23,7 @@ PLAIN = {"shape": "sphere", "surroundings": "none"}
 
 
 def choose(sheet, key):
-    """Compare both libraries on a material, with settings that draw quickly."""
+    """Compare both libraries on a material in a view that is fast to draw."""
     sheet.get_by_role("group", name="eonlib beside stock MaterialX").locator(
         f"input[value='{key}/']"
     ).check(force=True)
@@ -32,7 +31,7 @@ def choose(sheet, key):
 
 
 def kinds(sheet):
-    """Kind of each verdict."""
+    """Kinds of the verdicts on both sides."""
     return [
         sheet.locator(f".side.{side} .verdict").get_attribute("class").split()[1]
         for side in ("left", "right")
@@ -48,7 +47,7 @@ def test_a_lobe_is_judged_by_its_values(page, key, stock):
 
 @pytest.fixture(scope="module")
 def mistaken(tmp_path_factory):
-    """URL of a page whose reference of sheen is one percent too bright."""
+    """URL of a page on which the reference for sheen is one percent too bright."""
     data = page_data(pages="upstream/{}.html")
     sources = tuple(map(brightened, data.sources))
     file = tmp_path_factory.mktemp("mistaken") / "page.html"

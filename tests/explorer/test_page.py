@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Using the page: every control works by mouse and by keyboard; the probe; texts to copy."""
+"""Controls work by mouse and keyboard, the probe shows values, and texts can be copied."""
 
 import re
 import sys
@@ -13,13 +13,13 @@ from mxeon.models import eon_brdf
 from tests.explorer.browser import DRAWN, judged, show, shows, state, until
 from tests.support.command import output
 
-# A checksum of all pixels.
+# JavaScript for a checksum of all pixels.
 PIXELS = "mxeon.stage.read().reduce((sum, value, k) => (31 * sum + value * (1 + k)) % 65521, 0)"
 
 
 @contextmanager
 def redrawn(page):
-    """Assert that the drawn radiance changes."""
+    """Context that asserts that the drawn radiance changes."""
     before = page.evaluate(PIXELS)
     yield
     until(page, f"before => {PIXELS} !== before", before)
@@ -27,7 +27,7 @@ def redrawn(page):
 
 @contextmanager
 def recolored(page):
-    """Assert that the picture on the screen changes, but not its radiance."""
+    """Context that asserts that the screen changes while the radiance stays the same."""
     canvas = page.locator("canvas")
     before, radiance = canvas.screenshot(), page.evaluate(PIXELS)
     yield
@@ -131,19 +131,19 @@ def test_paths_have_samplers_and_count_their_samples(page):
     until(
         page, "document.querySelector('.picture .status').textContent.startsWith('2 of 2 samples')"
     )
-    # Noise is only reported for 16 samples or more.
+    # The status reports noise only for 16 samples or more.
     assert "noise" not in page.locator(".picture .status").inner_text()
 
 
 def in_sight(page):
-    """Bounding box of the picture, scrolled into view."""
+    """Scroll the picture into view, and return its bounding box."""
     canvas = page.locator("canvas")
     canvas.scroll_into_view_if_needed()
     return canvas.bounding_box()
 
 
 def drag(page, start, end):
-    """Drag in the picture between two places in [0, 1]^2."""
+    """Drag the mouse between two places in the picture, given in [0, 1]^2."""
     box = in_sight(page)
     (x0, y0), (x1, y1) = (
         (box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in (start, end)
@@ -185,7 +185,7 @@ def test_the_viewer_is_dragged_around_and_scrolls_closer(page):
 
 
 def pixels(page, **view):
-    """Radiance of the left side in a view."""
+    """Radiance of the left side after fields of the view are changed."""
     show(page, **view)
     shows(page, **view)
     until(page, DRAWN)
@@ -195,12 +195,12 @@ def pixels(page, **view):
 def test_a_turned_viewer_sees_a_turned_light_alike(page):
     even = {"surroundings": "uniform", "elevation": 50}
     ahead = pixels(page, shape="ball", azimuth=40, turn=0, **even)
-    # The cut rotates out of view.
+    # The ball's cut rotates out of view.
     assert not np.allclose(pixels(page, azimuth=130, turn=90, **even), ahead)
-    # The shape is rotationally symmetric, and so is the floor.
+    # The plane and the floor are rotationally symmetric.
     ahead = pixels(page, shape="plane", azimuth=40, turn=0, **even)
     aside = pixels(page, azimuth=130, turn=90, **even)
-    # Rounding decides at rims and at the edge of the shadow.
+    # A few pixels at rims and at the edge of the shadow depend on rounding.
     assert (np.abs(aside - ahead) > 1e-3).mean() < 5e-3
 
 
@@ -227,11 +227,11 @@ def test_a_click_probes_a_point(page):
     shows(page, probe=None)
 
 
-# A shader's value has fewer than 64 float32 roundings.
+# Relative error of a shader's value: at most 64 float32 roundings.
 SHADER = 64 * 2**-24
 
 
-# The texts of the table's rows, once the values of both shaders are known.
+# JavaScript for the texts of the table's rows, false until values of both shaders are known.
 READ = """(() => {
     const rows = [...document.querySelectorAll('.values tbody tr')].map(
         row => [...row.querySelectorAll('td')].map(cell => cell.innerText));
@@ -254,7 +254,7 @@ def test_the_probe_shows_the_value_of_the_shader_and_the_reference(page):
     value, reference = (numbers(rows[row][0]) for row in (0, 1))
     wo, wi = wo / np.linalg.norm(wo), wi / np.linalg.norm(wi)
     expected = np.pi * eon_brdf(wo, wi, [0.8, 0.4, 0.1], 1.0) * wi[2]
-    assert np.allclose(reference, expected, atol=1e-3)  # directions are shown with four digits
+    assert np.allclose(reference, expected, atol=1e-3)  # directions have four digits
     assert np.allclose(value, reference, atol=SHADER)
     assert "rounding" in rows[2][0]
 

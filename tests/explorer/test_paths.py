@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Path tracing on the stage: in a white furnace every pixel is white, with models and with generated text."""
+"""Path tracing on the stage makes white furnaces white, with models and with generated text."""
 
 from io import BytesIO
 
@@ -26,14 +26,14 @@ def stage(browser, tmp_path_factory):
 
 
 def traced(stage, left, right=None, **patch):
-    """Both sides after SAMPLES paths per pixel, and the last status of each kind."""
+    """Show both sides, trace all samples, and return the last status of each kind."""
     stage.evaluate("said.length = 0")
     view(stage, left, right, **({"paths": True, "samples": SAMPLES} | patch))
     return {status["kind"]: status for status in stage.evaluate("said")}
 
 
 def whole(stage, name):
-    """The pixels whose paths all hit the sphere, and the cosines at their centers."""
+    """Pixels whose paths all hit the sphere, and the cosines at their centers."""
     status = stage.evaluate("said.findLast(status => status.kind === 'drawn')")
     pixels = frame(stage, name, (status["width"], status["height"]))
     height, width = pixels.shape[:2]
@@ -41,7 +41,7 @@ def whole(stage, name):
     y, x = np.mgrid[:height, :width] + 0.5
     squared = ((x - width / 2) ** 2 + (y - height / 2) ** 2) * 4 / diameter**2
     kept = (pixels[..., 3] == 1.0) & (squared < 1.0)
-    # All pixels that lie entirely inside.
+    # All pixels entirely inside the sphere's outline are kept.
     assert kept.sum() > np.pi / 4 * (diameter - np.sqrt(2.0)) ** 2
     return pixels[kept][:, :3], np.sqrt(1.0 - squared[kept])
 
@@ -58,7 +58,7 @@ def test_a_white_furnace_keeps_every_exact_path(stage, sources, source):
 
 
 def test_generated_text_is_traced_like_its_model(stage, sources):
-    """It also follows the sliders: color and roughness come from the view."""
+    """Generated text takes color and roughness from the view, like the model."""
     traced(stage, side("shader/eonlib"), side(sources["eon"]), samples=256)
     text, model = (whole(stage, name)[0].mean(axis=0) for name in ("left", "right"))
     np.testing.assert_allclose(text, model, 0.01)

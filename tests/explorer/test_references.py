@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reference tables of a page: they contain the models' values, which correct shaders match."""
+"""Reference tables of a page contain the models' values, which correct shaders match."""
 
 import numpy as np
 import pytest
@@ -11,13 +11,13 @@ from mxeon.models.diffuse import eon_albedo_dir
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
-# Lobes whose defects only show under other lobes, or with a tilted normal.
+# Lobes of stock whose defects are visible only in layers, or with a tilted normal.
 ALIKE = ("lobe/sheen_zeltner",)
 COLOR = (0.8, 0.4, 0.1)
 
 
 def errors(host, text, library, reference):
-    """Largest errors in direct light and in white surroundings, computed as on a page."""
+    """Largest errors in direct light and in white surroundings, computed like the page's verdicts."""
     shader = host.compile(text, library=library)[0]
     direct = np.pi * host.evaluate(shader, WO, WI, {}, "direct")
     white = host.evaluate(shader, SEEN, SEEN, {}, "environment")
@@ -46,7 +46,7 @@ def test_the_values_are_those_of_the_model():
     text = material_text(OREN_NAYAR, {"color": COLOR, "roughness": 0.7, FLAG: True})
     reference = reference_of(generate(text, "essl", lights=True)[0])
     expected = np.pi * WI[:, 2:] * eon_brdf(WO, WI, COLOR, 0.7)
-    # half a unit of the last of seven digits
+    # The tables have seven digits: half a unit of the last one.
     assert np.allclose(np.reshape(reference.direct, (-1, 3)), expected, rtol=5e-7, atol=1e-16)
     white = eon_albedo_dir(SEEN[:, 2], COLOR, 0.7)
     assert np.allclose(np.reshape(reference.white, (-1, 3)), white, rtol=5e-7)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pixels of the stage in a browser match the models, the hosts and exact albedos."""
+"""Pixels of the stage match the models, the gl host and exact albedos."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ from tests.explorer.stage import (
 from tests.support.tolerances import TWIN_ALBEDO, TWIN_VALUE
 
 DOCUMENTS = ("brick", "mixed_lobes")
-PLAIN = 48 * 2.0**-24  # 16 roundings of a point, and 32 of the value
+PLAIN = 48 * 2.0**-24  # 16 roundings of a point, and 32 of its value
 ROWS = DIFFUSE_MODELS + KNOWN_DEFECTS
 
 
@@ -38,7 +38,7 @@ def parameter_of(row):
 
 
 def exact(row, size, light):
-    """The model's picture in float64."""
+    """Picture of a sphere by a model in float64."""
     points = sphere(size)
     normal = points.normal[points.mask]
     wo, wi = local_directions(normal, VIEW), local_directions(normal, towards(light))
@@ -51,7 +51,7 @@ def exact(row, size, light):
 
 
 def error(measured, expected):
-    """Largest difference times cos(theta_o), as in the checks of pictures."""
+    """Largest difference of two pictures times cos(theta_o), as in the check `picture`."""
     cosine = sphere(len(measured)).normal[..., 2:]
     return (np.abs(measured - expected) * cosine).max()
 
@@ -67,7 +67,7 @@ def test_pixels_of_every_model_are_those_of_numpy(stage, sources, row):
 
 
 def white(row, mu):
-    """Directional albedo by cosine, in closed form if there is one."""
+    """Directional albedo by cosine, in closed form or as the stage interpolates it."""
     arguments = (RHO, *parameter_of(row))
     if row.albedo_dir:
         return row.albedo_dir(mu, *arguments)
@@ -84,8 +84,8 @@ def test_in_uniform_surroundings_pixels_are_the_albedo(stage, sources, name):
     measured = picture(stage)
     points = sphere(len(measured))
     mu = points.normal[points.mask][:, 2]
-    # One variant's clamp has a kink across the rectangles of 16 nodes, which are h apart: a jump of
-    # 1 in the slope costs h^2 / 12 per unit of the kink's length, which is at most pi.
+    # A variant's clamp makes a kink of length <= pi across panels of 16 nodes. With nodes h
+    # apart, a slope that jumps by 1 adds an error of h^2 / 12 per unit of length.
     kink = (np.pi / 2 / 16) ** 2 / 12 * np.pi if row.name == "eon_clamped" else 0.0
     assert np.abs(measured[points.mask] - white(row, mu)).max() < TWIN_ALBEDO + kink
     assert np.abs(measured[points.mask] - 1.01 * white(row, mu)).max() > TWIN_ALBEDO + kink
@@ -96,8 +96,8 @@ def compiled(host, library, flag):
     return host.compile(text, library=library)[0]
 
 
-# MaterialX's own EON uses arc cosines, which Mesa's driver computes to 1.6e-4 (measured). An albedo
-# falls by up to 1 / 4 per radian, and two of them are multiplied.
+# Error of MaterialX's EON, which multiplies two albedos of arc cosines. Mesa's arc cosine is off by
+# 1.6e-4 (measured), and an albedo falls by up to 1 / 4 per radian.
 ARC_COSINE = 2 * 1.6e-4 / 4
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The functions that the page makes from its GLSL match NumPy's."""
+"""JavaScript functions that are translated from the page's GLSL match NumPy's."""
 
 import numpy as np
 import pytest
@@ -12,8 +12,8 @@ from tests.support.hemispheres import uniforms
 from tests.support.tolerances import FIT_ANGLE, FIT_LOSS
 
 ROWS = DIFFUSE_MODELS + KNOWN_DEFECTS
-# The fits of the GLSL: a value has two factors of the loss; full Oren-Nayar squares two angles instead, and the
-# slopes of its other terms add 3 and 2.
+# Relative error from the GLSL's fits. A value has two factors with the loss; full Oren-Nayar
+# squares two angles, and the slopes of its other terms add 3 and 2.
 VALUE = max(2 * FIT_LOSS, (4 + 3 + 2) * FIT_ANGLE)
 RHO = (0.0, 0.3, 0.8, 1.0)
 PARAMETERS = (0.0, 0.2, 0.7, 1.0)
@@ -22,7 +22,7 @@ COSINES = (0.0, 1e-3, 0.05, 0.3, 0.77, 1.0)
 
 @pytest.fixture(scope="module")
 def pairs():
-    """Pairs of directions, including grazing and equal ones."""
+    """Pairs of directions, including grazing and equal directions."""
     wo, wi = (uniform_sample(uniforms(150, seed))[0] for seed in (7, 8))
     grazing = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
     return np.vstack([wo, grazing, wi[:9]]), np.vstack([wi, grazing[::-1], wi[:9]])
@@ -71,7 +71,7 @@ def test_albedos_are_numpys(undrawn, row):
         if row.albedo_avg:
             assert (
                 np.abs(np.array(avgs[k]) - row.albedo_avg(RHO, *arguments)).max() < 1e-12
-            )  # no fit
+            )  # computed without fits
 
 
 @pytest.mark.parametrize(

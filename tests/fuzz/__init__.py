@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Things that `mxeon` must never do, with any document, command line or file."""
+"""Fuzzer for effects that `mxeon` must never have, with any document, command line or file."""

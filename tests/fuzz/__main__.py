@@ -15,7 +15,7 @@ from mxeon.jobs import pool
 from tests.fuzz.families import COUNTS, cases
 from tests.fuzz.trial import judged
 
-LIMIT = 300.0  # seconds for one case on a busy machine
+LIMIT = 300.0  # time limit of a case in seconds, for busy machines
 STATUSES = {0: "accepted", 1: "failed", 2: "refused", 3: "not_run"}
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every public function of the models with bad values: which are refused, and in which words.
+"""Calls every public function of the models with bad values.
 
-The functions are found by introspection: all that accept arrays. A value must be refused by a
-ValueError whose first words are arguments of the signature, or give finite results.
+Functions that accept arrays are found by introspection. A bad value must give finite results, or
+be refused by a ValueError whose first words are arguments of the function.
 """
 
 import importlib
@@ -33,8 +33,8 @@ FILM = {"tint": np.ones(3), "ior": 1.5, "roughness": (0.5, 0.4), "thinfilm_thick
 PAIR, FIVE = (0.5, 0.4), np.array(5.0)
 LOBE = Bsdf(np.array(0.5), np.array(0.5))
 
-# Valid values by argument name; the first one that fits the function is used. Other arguments have
-# 0.5, or their defaults.
+# Valid values by argument name, of which the first that the function accepts is used. Other
+# arguments have their defaults, or 0.5.
 COLOR, BSDF = ((0.5, 0.4, 0.3),), (LOBE,)
 VALID = {
     **dict.fromkeys(("wo", "wh", "normal"), ((0.6, 0.0, 0.8),)),
@@ -49,7 +49,7 @@ VALID = {
     "category": ("dielectric_bsdf",),
     "inputs": (FILM | {"thinfilm_ior": 1.4}, {"tint_R": 0.5}),
     "lobe": (Lobe(factor=uncompensated),),
-    "compensate": (False,),  # faster than compensating
+    "compensate": (False,),  # compensation is slow
     "curve": (SCHLICK_CURVE,),
     "at": (lambda cosine, ior, **colors: schlick(cosine, **colors),),
     "brdf": (lambda wo, wi, rho, *parameter: rho * wi[..., :1],),
@@ -58,7 +58,7 @@ VALID = {
     "vectors": (COLORS,),
     "numbers": ({"exponent": FIVE}, {"exponent": FIVE, "ior": np.array(1.5)}, {}),
 }
-CHECKS = ("_", "checked", "unpack")  # prefixes of functions that check arguments for others
+CHECKS = ("_", "checked", "unpack")  # name prefixes of private functions and of checks
 PLUMBING = (
     "mxeon.models.core.arguments",
     "mxeon.models.catalog",
@@ -68,12 +68,12 @@ PLUMBING = (
     "mxeon.models.microfacet.node_",
     "mxeon.models.shading_model",
     "mxeon.models.surfaces",
-)  # prefixes of names without functions to try
-TAKEN = (bool, str, float, int)  # types of arguments to try, besides arrays
+)  # prefixes of full names that are left out
+TAKEN = (bool, str, float, int)  # argument types that get bad values, in addition to arrays
 
 ACCEPTED, REFUSED = 0, 2
 SMALLEST, LEAST = math.ulp(0.0), np.finfo(np.float64).tiny
-# No argument accepts all of these, and most accept few.
+# Bad values. Most arguments accept few of them, and none accepts all.
 BAD = (
     None, True, False, "x", "", "0.5", b"x", {}, [], (), {0.5}, print, Decimal("0.5"),
     Fraction(1, 2), 1j, math.nan, math.inf, -math.inf, SMALLEST, 1e-320, LEAST, -SMALLEST, -0.0, 0.0,
@@ -85,7 +85,7 @@ BAD = (
 
 @cache
 def functions():
-    """Public functions of the models that take arrays, by their full names."""
+    """Public functions of the models that accept arrays, by full name."""
     return {
         f"{module.__name__}.{name}": each
         for module in modules()
@@ -97,14 +97,14 @@ def functions():
 
 
 def modules():
-    """The package of the models, and all of its modules."""
+    """The package `mxeon.models` and all its modules."""
     package = mxeon.models
     names = (each.name for each in pkgutil.walk_packages(package.__path__, f"{package.__name__}."))
     return [package, *map(importlib.import_module, names)]
 
 
 def rows():
-    """Function, argument, index of a bad value, and whether it only replaces an element."""
+    """Test cases: function, argument, index in BAD, and whether it replaces only one element."""
     for name, function in functions().items():
         for argument in tried(function):
             first = _part(base(function), argument)
@@ -118,7 +118,7 @@ def rows():
 def tried(function, arrays=False):
     """Names of the arguments that get bad values: arrays, numbers, switches and choices.
 
-    Keys of a mapping follow a dot.
+    A key of a mapping is appended after a dot.
     """
     for name, each in _parameters(function).items():
         if _is_array(each) or (not arrays and each.annotation in TAKEN):
@@ -128,7 +128,7 @@ def tried(function, arrays=False):
 
 
 def judged(row):
-    """The equivalent exit status of a command, and any fault in the response to a row."""
+    """ACCEPTED or REFUSED, and the fault or "", for a row of `rows`."""
     name, argument, place, inside = row
     function = functions()[name]
     values = dict(base(function))
@@ -144,13 +144,13 @@ def judged(row):
 
 
 def _part(values, argument):
-    """The value of an argument; for `name.key`, the value of that key in a mapping."""
+    """Value of an argument; for `name.key`, the value under that key of a mapping."""
     name, _, key = argument.partition(".")
     return values[name][key] if key else values[name]
 
 
 def answer(function, values):
-    """ACCEPTED or REFUSED, and any fault in a function's response."""
+    """Call a function; returns ACCEPTED or REFUSED, and its fault or ""."""
     parameters = _parameters(function)
     more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
     try:
@@ -169,7 +169,7 @@ def answer(function, values):
 
 
 def call(function, values):
-    """Result of a function for arguments by name."""
+    """Call a function with arguments by name, positional ones included."""
     parameters = _parameters(function)
     more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
     named = {name: value for name, value in values.items() if name not in more}
@@ -180,7 +180,7 @@ def call(function, values):
 
 @cache
 def base(function):
-    """Valid arguments of a function."""
+    """Valid arguments of a function, by name."""
     parameters, reasons = _parameters(function), []
     for chosen in product(*map(_valid, parameters.values())):
         values = dict(zip(parameters, chosen, strict=True))
@@ -192,7 +192,7 @@ def base(function):
 
 @cache
 def _parameters(function):
-    """Parameters by name, with types instead of the types' names."""
+    """Parameters of a function by name, with evaluated annotations."""
     return inspect.signature(function, eval_str=True).parameters
 
 
@@ -208,7 +208,7 @@ def _is_array(parameter):
 
 
 def _inside(valid, value):
-    """A valid array with its first element replaced; directions keep their length."""
+    """Copy of a valid array in which the first element is replaced."""
     array = np.array(valid)
     array[0] = value
     return array

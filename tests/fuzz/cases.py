@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cases from a seed and a number: files in a folder, and the arguments of a command."""
+"""Random cases for the fuzzer, made from a seed and a number."""
 
 import random
 import re
@@ -11,7 +11,7 @@ from tests.fuzz.words import CANARY
 TARGETS = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang", "osl", "mdl")
 OUT = "../out"
 
-# Command lines to mutate. Slow commands use a host that does not exist.
+# Command lines to mutate. Commands that would be slow name a host that does not exist.
 COMMANDS = (
     ("generate", "base.mtlx", "--target", "osl", "--outputPath", OUT),
     ("generate", "base.mtlx", "--target", "glsl", "--element", "look", "--json", "--outputPath", OUT),
@@ -39,7 +39,7 @@ COMMANDS = (
 
 @dataclass(frozen=True)
 class Case:
-    """One trial."""
+    """One test of the fuzzer: files and links in a folder, and a command line."""
 
     name: str
     files: tuple[tuple[str, bytes], ...]
@@ -49,7 +49,7 @@ class Case:
 
 
 def case(seed, number):
-    """The case of that number."""
+    """Random case that depends only on the seed and the number."""
     rng = random.Random(f"{seed}-{number}")
     files = [("base.mtlx", document(rng))]
     if rng.random() < 0.15:
@@ -68,7 +68,7 @@ def _including(rng):
 
 
 def _document(rng, data):
-    """Arguments that read the document for a random purpose."""
+    """Random command line that generates shaders from a document or renders it."""
     kind = rng.random()
     names = re.findall(r'<surfacematerial name="(\w+)"', data.decode(errors="replace"))
     if kind < 0.2:
@@ -84,7 +84,7 @@ def _document(rng, data):
 
 
 def _command(rng):
-    """A mutated command line."""
+    """Random command line, mutated from COMMANDS."""
     arguments = list(rng.choice(COMMANDS))
     for _ in range(rng.choice((1, 1, 2, 4))):
         place = rng.randrange(len(arguments))
@@ -104,7 +104,7 @@ def _command(rng):
     return tuple(arguments)
 
 
-# Files around the working folder of every case.
+# Files next to the working folder, which no case may read.
 SECRET = f'<materialx version="1.39"><constant name="{CANARY}" type="float"/></materialx>'
 AROUND = (
     ("secret.mtlx", SECRET),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Malformed documents, mutated as trees of elements and as bytes."""
+"""Malformed documents, made by mutating valid documents as XML trees and as bytes."""
 
 from copy import deepcopy
 from functools import cache
@@ -48,13 +48,13 @@ GRAPH = f"""<materialx version="1.39" {XI}>{NODEDEF}
 
 @cache
 def originals():
-    """Texts to mutate: the bundled documents, and one with nodegraphs."""
+    """Texts to mutate: the bundled documents, and a document with nodegraphs."""
     files = sorted(examples_folder().glob("*.mtlx"))
     return tuple(file.read_text(encoding="utf-8") for file in files) + (GRAPH,) * 3
 
 
 def document(rng):
-    """Bytes of a mutated document."""
+    """Bytes of a randomly mutated document."""
     text = rng.choice(originals())
     if rng.random() < 0.8:
         root = ElementTree.fromstring(text)
@@ -71,7 +71,7 @@ def document(rng):
 
 
 def _written(root):
-    """The tree as text, with a declaration of its includes' prefix."""
+    """Text of a tree, which declares the prefix of XInclude if it is used."""
     text = ElementTree.tostring(root, encoding="unicode")
     if "xi:" in text and "xmlns:xi" not in text:
         text = text.replace("<materialx", f"<materialx {XI}", 1)
@@ -79,7 +79,7 @@ def _written(root):
 
 
 def word(rng, root=None):
-    """A random word: odd, a path, or one used elsewhere in the document."""
+    """Random value: an odd word, a path, a type, or a value from the document."""
     kind = rng.random()
     if kind < 0.45 or (root is None and kind < 0.8):
         return rng.choice(VALUES)
@@ -111,7 +111,7 @@ def _path(rng, root):
 
 
 def _number(rng, root):
-    """A number in place of another."""
+    """Replace a number by a random number."""
     numbers = [each for each in root.iter() if each.get("type") in ("float", "color3")]
     element = rng.choice(numbers or [root])
     number = rng.choice(("0", "1", "0.5", "1e-30", "1e30", "-1", "3", "1e39", "0.99999999"))
@@ -119,7 +119,7 @@ def _number(rng, root):
 
 
 def _connect(rng, root):
-    """Connect an input to any node of its type."""
+    """Connect a random input to a random node of its type."""
     inputs = [each for each in root.iter("input") if "type" in each.attrib]
     port = rng.choice(inputs or [root])
     fitting = [each for each in root.iter() if each.get("type") == port.get("type")]
@@ -129,7 +129,7 @@ def _connect(rng, root):
 
 
 def _text(rng, root):
-    """A word for an input that accepts any text."""
+    """Add a node with a random word in an input that accepts any text."""
     category, name = rng.choice(TEXTS)
     node = ElementTree.Element(category, {"name": "text", "type": "color3"})
     attributes = {"name": name, "type": "string", "value": rng.choice(VALUES)}

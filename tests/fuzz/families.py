@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Families of cases: each is a product of tables, from which some are drawn.
+"""Families of cases, each of which is a sample of a product of tables.
 
-A family covers its tables evenly: every way to include every file, every kind of file name. Only `mutated` draws
-documents and command lines at random; `found` contains faults of earlier runs.
+Tables list, for example, all ways to include a file, or kinds of file names. Two families have no
+tables: `mutated` has random documents and command lines, and `found` has faults of earlier runs.
 """
 
 import random
@@ -18,7 +18,7 @@ COUNTS = {"found": len(FOUND), "mutated": 20_000, "includes": 1000, "names": 400
 
 
 def cases(family, count=None):
-    """All cases of a family, or a sample if there are more than `count`."""
+    """All cases of a family, or a random sample if there are more than `count`."""
     rows, to_case = {
         "found": (FOUND, lambda _, found: found),
         "mutated": (range(20_000), lambda _, number: case(SEED, number)),
@@ -63,7 +63,7 @@ FILES = (
     "file:///etc/hostname", "link/documents/part1.glsl",
 )  # fmt: skip
 DEPTHS = (0, 1, 3, 15, 16, 400)
-BROUGHT = ("own.glsl", *FILES)  # files that the implementation itself names
+BROUGHT = ("own.glsl", *FILES)  # files named by the implementation element
 
 LINKS = (("linked.glsl", "../secret.glsl"), ("zero.glsl", "/dev/zero"), ("pipe.glsl", ""))
 OTHERS = (
@@ -75,7 +75,7 @@ OTHERS = (
 
 
 def includes():
-    """The way a source includes, the included file, the depth, the target and the function."""
+    """Rows: implementation's file, form of the include, included file, depth, target, function."""
     for row in product(WAYS, FILES, DEPTHS, FUNCTIONS):
         yield "own.glsl", *row, 'function="own" '
     for name, target in product(BROUGHT, FUNCTIONS):
@@ -84,7 +84,7 @@ def includes():
 
 
 def including(rng, row):
-    """A document and its chain of sources, each of which includes the next."""
+    """Case with a document and a chain of shader sources that include each other."""
     name, way, file, depth, target, function = row
     links = [WAYS[0].format(f"part{number}.glsl") for number in range(depth)]
     first, *parts = (f"{line}\n" for line in (*links, way.format(file)))
@@ -102,7 +102,7 @@ def including(rng, row):
     return Case(f"{way} {file} {depth}", encoded + OTHERS, arguments, LINKS)
 
 
-# --- names that confuse a terminal or a runner --------------------------------------------------------
+# --- file names that confuse a terminal or a runner -------------------------------------------
 
 NAMES = (
     "::error::a", "  ::add-mask::a", "\t::stop-commands::a", "a\n::error::b", "a\r::error::b",
@@ -111,7 +111,7 @@ NAMES = (
 )  # fmt: skip
 CLAY = (examples_folder() / "clay.mtlx").read_bytes()
 ENCODINGS = ("utf-8", "ascii", "latin-1", "cp1252", "shift_jis", "utf-16")
-# Commands for a document with such a name.
+# Commands that read a document by its name.
 READERS = (
     ("check", "{}", "--host", "msl", "--workers", "0"),
     ("check", "{}", "--host", "msl", "--workers", "0", "--full"),
@@ -125,7 +125,7 @@ READERS = (
 
 
 def named(_, row):
-    """A document whose name has this stem, for a command in a terminal of this encoding."""
+    """Case with an oddly named document, for a command whose terminal has the given encoding."""
     stem, command, encoding = row
     file = f"./{stem}.mtlx" if stem.startswith("-") else f"{stem}.mtlx"
     arguments = tuple(each.format(file) if "{}" in each else each for each in command)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Faults found by the fuzzer and the search for limits, as small cases that reproduce them."""
+"""Small cases that reproduce faults found by the fuzzer and by the search for limits."""
 
 from tests.fuzz.cases import OUT, Case
 from tests.fuzz.words import POISON
@@ -20,7 +20,7 @@ RENDER = ("render", "base.mtlx", "--host", "reference", "--size", "4", "--output
 
 
 def row(count, names):
-    """A lobe's color after a row of nodes, each connected to the previous one by these inputs."""
+    """Lobe whose color comes from a chain of nodes; each uses the previous node in all `names`."""
     port = '<input name="{}" type="color3" nodename="a{}"/>'
     nodes = (
         ADD.format(number, "".join(port.format(name, number - 1) for name in names if number))
@@ -45,7 +45,7 @@ def _inherited(count):
     return "".join(rows) + f'<i{count - 1} name="lobe" type="BSDF"/>'
 
 
-# A title, the nodes of the document, and the command.
+# Title, nodes of the document, and command.
 ROWS = (
     (
         "a lobe in an input",

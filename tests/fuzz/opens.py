@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that MaterialX itself opens while it generates the fuzzer's cases.
+"""Lists the files that MaterialX itself opens while it generates the fuzzer's cases.
 
-strace sees every file that a process opens, and Python's audit hook those that Python opens, which
-are mxeon's. MaterialX opened the rest, which must lie in the libraries or in the documents' folder.
-In a bare run, sources are not checked: a control that must be detected.
+strace reports all files that a process opens. Python's audit hook reports files opened by mxeon.
+MaterialX opened the rest, which must lie in the libraries or in the documents' folder. A bare run
+does not check sources; it is a control in which forbidden files must be detected.
 """
 
 import codecs
@@ -26,13 +26,13 @@ from tests.fuzz.families import cases
 from tests.fuzz.trial import trial
 
 ROOT = Path(__file__).resolve().parents[2]
-# Missing files, opened before and after as marks.
+# Missing files that are opened to mark the start and the end of the cases in the log.
 START, END = "/the cases begin here", "/the cases end here"
-MACHINE = ("/sys/devices/system/cpu/online",)  # read by the C library
-# Words in documents for which MaterialX might wait forever.
+MACHINE = ("/sys/devices/system/cpu/online",)  # opened by the C library
+# Names of files at which MaterialX might wait forever.
 ENDLESS = (b"pipe", b"zero", b"/dev/", b"/proc/")
 OPEN = re.compile(rb'open(?:at2?)?\((?:AT_FDCWD, |\d+(?:<[^>]*>)?, )?"((?:[^"\\]|\\.)*)"(.*)')
-# Files in a case's folder; its links lead out of it.
+# Paths of files in a case's folder, except through links that lead out of it.
 OWN = re.compile(
     r"(?:/mxeon-fuzz-[^/]+/documents/|^)(?!/|\.\./|linked|zero|pipe|link/(?!documents/))"
 )
@@ -40,7 +40,7 @@ SEED = 3
 
 
 def selected(count, bare):
-    """Cases whose documents are generated: the family of includes, and mutated ones."""
+    """Random cases that run `generate`, from the family `includes` and from mutated documents."""
     mutated = (case(SEED, number) for number in range(count))
     tried = [*cases("includes", count), *mutated]
     tried = [each for each in tried if each.arguments[0] == "generate"]
@@ -51,7 +51,7 @@ def selected(count, bare):
 
 
 def opens(count, bare=False):
-    """Paths that MaterialX itself opened, with counts."""
+    """Count how often MaterialX itself opened each path."""
     with tempfile.TemporaryDirectory(prefix="mxeon-opens-") as folder:
         log, audit = Path(folder, "strace"), Path(folder, "audit")
         command = ["strace", "-f", "-qq", "-s", "4096", "-e", "trace=open,openat,openat2"]
@@ -62,13 +62,13 @@ def opens(count, bare=False):
 
 
 def strangers(paths):
-    """Those paths that are neither in the libraries nor in a case's own folder."""
+    """Paths that lie neither in the libraries nor in a case's folder."""
     others = (path for path in paths if not OWN.search(path) and path not in MACHINE)
     return sorted(path for path in others if not library_path(path))
 
 
 def _traced(log):
-    """Files opened between the marks, one path per line."""
+    """Count the paths in strace's log between the two marks."""
     lines = log.split(START.encode())[1].split(END.encode())[0].splitlines()
     found = (OPEN.search(line) for line in lines)
     return Counter(
@@ -83,15 +83,15 @@ def _line(path):
 
 
 def generate(count, bare, audit):
-    """Generate the cases, and write the files that Python opens meanwhile."""
+    """Run the cases, and write a list of the files that Python opens meanwhile."""
     paths = []
-    for target in generation.TARGETS:  # loads each generator's own files first
+    for target in generation.TARGETS:  # loads the files of each generator
         with contextlib.redirect_stderr(None):
             generation.generate(examples_folder() / "clay.mtlx", target)
     if bare:
         generation.check_sources = lambda *_: None
     tried = selected(count, bare)
-    trial(tried[0])  # loads the command's own files first
+    trial(tried[0])  # loads the files of the command
     sys.addaudithook(lambda event, seen: event == "open" and paths.append(seen[0]))
     with contextlib.suppress(OSError):
         os.open(START, os.O_RDONLY)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Finds the attributes of a document that reach generated source, by generating for every target.
 
-In a document that uses every kind of element, each attribute gets a unique word; attributes whose
-words occur in a shader reach it. Attributes that name each other are changed together.
+The document uses every kind of element. Each attribute gets a unique word, and reaches source if
+its word occurs in a shader. Attributes that refer to each other are changed together.
 """
 
 import re
@@ -26,8 +26,8 @@ XI = "http://www.w3.org/2001/XInclude"
 ElementTree.register_namespace("xi", XI)
 EVERY = Path(__file__).with_name("every.mtlx")
 POISON = "poison"
-GAP = "gap00000gap"  # placeholder for hostile text in a written document
-# Text that ends a string or a line, or has a meaning outside a string.
+GAP = "gap00000gap"  # placeholder for hostile text
+# Hostile texts: some end a string or a line, the rest have a meaning outside strings.
 BREAKING = tuple(each + POISON for each in ("\n#define ", "\r", '"', "\\", '\\"', "\x7f"))
 MEANING = tuple(
     each + POISON for each in (" ", ";", "(", ")", ",", "=", "//", "/*", "*/", "#", "$", "{", "-")
@@ -36,20 +36,20 @@ MARK = re.compile(r"mark\d{5}x|77\d{5}")
 QUOTED = re.compile(r'"[^"]*"')
 
 
-# Attributes that hold a document together: each is marked alone, and judged everywhere.
+# Attributes by which elements refer to each other. Each is marked separately.
 APART = NAMES | {"name", "value"}
 
 
 @dataclass(frozen=True)
 class Place:
-    """An attribute of an element, which is identified by its index in the document."""
+    """An attribute of the element with the given index in a document."""
 
     number: int
     attribute: str
 
 
 def documents():
-    """Roots of documents that use every kind of element, once with materials and once with outputs."""
+    """Roots of two documents that use every kind of element: one with materials, one with outputs."""
     whole, outputs = (ElementTree.parse(EVERY).getroot() for _ in range(2))
     for kind in ("surfacematerial", "surface", "backdrop", "look", "lookgroup"):
         outputs.remove(outputs.find(kind))
@@ -57,7 +57,7 @@ def documents():
 
 
 def furnish(folder):
-    """Write the files that documents name to a folder, which must be the working folder."""
+    """Write the files that the documents name to the working folder."""
     for name in ("f/a.png", "f/c.png", "b.png"):
         path = Path(folder, name)
         path.parent.mkdir(exist_ok=True)
@@ -67,7 +67,7 @@ def furnish(folder):
 
 @cache
 def attributes(root):
-    """Names of attributes used by a document, MaterialX's Python module and libraries, or the fuzzer."""
+    """Attribute names in a document, MaterialX's Python module, its libraries, and the fuzzer."""
     kinds = [kind for kind in vars(mx).values() if isinstance(kind, type)]
     named = {
         getattr(kind, name) for kind in kinds for name in dir(kind) if name.endswith("_ATTRIBUTE")
@@ -78,7 +78,7 @@ def attributes(root):
 
 
 def present(root):
-    """Places with text, in groups that are marked together."""
+    """Attributes that a document has, in groups to be marked together."""
     groups = defaultdict(list)
     for number, element in enumerate(root.iter()):
         for name in element.attrib:
@@ -87,7 +87,7 @@ def present(root):
 
 
 def absent(root):
-    """Places that could have text, in groups that are marked together."""
+    """Attributes that a document lacks but could have, in groups to be marked together."""
     elements = list(root.iter())
     return tuple(
         [Place(number, name) for number, each in enumerate(elements) if name not in each.attrib]
@@ -97,7 +97,7 @@ def absent(root):
 
 
 def reached(root, groups, targets=TARGETS):
-    """The places of a document whose words appear in source, and how: bare, quoted or in a comment."""
+    """Places whose words appear in source, each with contexts: bare, quoted or comment."""
     found = defaultdict(set)
     for places in groups:
         _search(root, places, targets, found)
@@ -105,7 +105,7 @@ def reached(root, groups, targets=TARGETS):
 
 
 def unjudged(root, found, targets=TARGETS):
-    """Hostile texts that reach a shader, or are refused without naming their place."""
+    """Hostile texts that reach a shader, or are refused without naming the place."""
     elements = list(root.iter())
     ways, alike = defaultdict(set), {}
     for place, each in found.items():
@@ -128,7 +128,7 @@ def unjudged(root, found, targets=TARGETS):
 
 
 def _written(root, place):
-    """Text of a document with a GAP at the end of an attribute."""
+    """Text of a document in which GAP is appended to an attribute."""
     root = deepcopy(root)
     element = list(root.iter())[place.number]
     element.set(place.attribute, element.get(place.attribute, "") + GAP)
@@ -136,26 +136,26 @@ def _written(root, place):
 
 
 def _escaped(text):
-    """Text as it stands in an attribute."""
+    """Text escaped for an XML attribute."""
     line = ElementTree.tostring(ElementTree.Element("x", a=text), encoding="unicode")
     return line.removeprefix('<x a="').removesuffix('" />')
 
 
 def _judged(element, place, document, targets):
-    """Whether hostile text is refused in a line that names its place, or never reaches source."""
+    """Whether hostile text is refused in a line that names the place, or never reaches source."""
     for target in targets:
         try:
             sources = _sources(document, target)
         except DocumentError as error:
             said = str(error)
-            if "must give" in said:  # refused for this target only
+            if "must give" in said:  # only this target refuses it
                 continue
-            # The message about a bad prefix names the file that it affects.
+            # For a bad prefix, the message names the file instead.
             named = "file" if place.attribute == "fileprefix" else element.tag
             return named in said and "must" in said and all(map(str.isprintable, error.args))
-        except ValueError:  # a malformed number
+        except ValueError:  # the value is a malformed number
             continue
-        except InterfaceError:  # it reached source, which may not contain `$`
+        except InterfaceError:  # `$` in source raises this error
             return False
         if any(POISON in source for source in sources):
             return False
@@ -163,7 +163,7 @@ def _judged(element, place, document, targets):
 
 
 def _search(root, places, targets, found):
-    """Mark places: all at once, then in halves for targets that refuse that."""
+    """Mark all places at once; for targets that refuse the document, search both halves."""
     refused = []
     text, marks = _marked(root, places)
     for target in targets:
@@ -171,7 +171,7 @@ def _search(root, places, targets, found):
             sources = _sources(text, target)
         except DocumentError as error:
             refused.append(target)
-            if "must give" not in str(error):  # refused independently of the target
+            if "must give" not in str(error):  # all targets refuse it
                 refused = list(targets)
                 break
             continue
@@ -184,7 +184,7 @@ def _search(root, places, targets, found):
 
 
 def _sources(document, target):
-    """Texts of all stages, without messages about missing files."""
+    """Texts of all stages of a document's shaders; warnings are ignored."""
     with warnings.catch_warnings(action="ignore"):
         shaders = generate(document, target)
     return [source for each in shaders for source in each.stages.values()]
@@ -192,7 +192,7 @@ def _sources(document, target):
 
 def _note(source, marks, found):
     for line in source.splitlines():
-        if "mark" not in line and "77" not in line:  # a fast test
+        if "mark" not in line and "77" not in line:  # fast rejection
             continue
         for mark in MARK.finditer(line):
             before = line[: mark.start()]
@@ -202,14 +202,14 @@ def _note(source, marks, found):
 
 
 def _context(before):
-    """The context of a mark: string, comment or code, according to the rest of its line."""
+    """Context of a mark, given the text before it in its line: quoted, comment or bare."""
     if "//" in QUOTED.sub("", before):
         return "comment"
     return "quoted" if before.count('"') % 2 else "bare"
 
 
 def _marked(root, places):
-    """A document with marks in these places, and the place of each mark."""
+    """Text of a document with marks in the given places, and the place of each mark."""
     root, marks, aliases = deepcopy(root), {}, {}
     elements = list(root.iter())
     for place in places:
@@ -228,7 +228,7 @@ def _marked(root, places):
 
 
 def _word(old, number, place):
-    """A new value of the same kind as the old one, and the mark in it."""
+    """New value of the same kind as the old value, and the mark that it contains."""
     if old.strip().isdigit():
         return f"77{number:05}", f"77{number:05}"
     mark = f"mark{number:05}x"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One trial: runs the command in its own folder, and looks for all forbidden effects."""
+"""Runs the command of a case in a new folder, and looks for forbidden effects."""
 
 import contextlib
 import io
@@ -18,22 +18,22 @@ from tests.fuzz.words import CANARY, POISON
 
 STATUSES = (0, 2, 3)
 OUTPUTS = ("--outputPath", "--output", "--report")
-# Commands that use a process per document, which hides crashes; and those that may exit with 1 for
-# a failed check.
+# MAKING: commands that run documents in processes, which would hide crashes. JUDGING: commands that
+# may exit with 1 if a check fails.
 MAKING = ("generate", "render")
 JUDGING = ("check", "kit", "report", "render", "library")
-LONGEST_LINE = 1200  # a message of 1000 characters, its prefix, and a path
+LONGEST_LINE = 1200  # characters of a message (1000), its prefix, and a path
 MEMORY = 6 * 2**30
 
 
 def judged(tried):
-    """Exit status of a case and its fault, in a process with limited memory."""
+    """Run a case in this process with limited memory; returns the result of `trial`."""
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     return trial(tried)
 
 
 def trial(tried):
-    """Exit status of a case, and the fault of `mxeon` in one line, or ""."""
+    """Exit status of a case, and its forbidden effects in one line, or "" if there are none."""
     with tempfile.TemporaryDirectory(prefix="mxeon-fuzz-") as folder:
         root = Path(folder).resolve()
         home = _prepared(root, tried)
@@ -47,15 +47,15 @@ def trial(tried):
 
 
 def _outputs(arguments):
-    """Paths that a command line asks to write."""
-    if arguments[:2] == ("report", "make"):  # a run writes its report beside the journal
+    """Paths that a command line permits mxeon to write."""
+    if arguments[:2] == ("report", "make"):  # this command writes to the run's folder
         return [path for path in arguments[2:3] if "\0" not in path]
     pairs = itertools.pairwise(arguments)
     return [path for option, path in pairs if option in OUTPUTS and "\0" not in path]
 
 
 def _prepared(root, tried):
-    """The working folder with a link that leads out of it, and files outside."""
+    """Create and return a case's working folder, with a link out of it, and files outside."""
     home = root / "documents"
     shutil.copytree(examples_folder() / "textures", home / "textures")
     (home / "link").symlink_to(root)
@@ -63,7 +63,7 @@ def _prepared(root, tried):
     (home / "results.json").write_text('{"format": 5, "results": [{"host": "gl"}], "pictures": []}')
     for name, text in AROUND:
         (root / name).write_text(text)
-    if tried.arguments[:1] == ("render",):  # this command does not create the folder
+    if tried.arguments[:1] == ("render",):  # render does not create folders
         (home / OUT).mkdir()
     for name, data in tried.files:
         (home / name).parent.mkdir(parents=True, exist_ok=True)
@@ -75,7 +75,7 @@ def _prepared(root, tried):
 
 
 def _called(arguments, encoding):
-    """Exit status, output and errors; a traceback counts as an error."""
+    """Exit status, or a traceback, then output and error output of a command."""
     from mxeon.cli import main
 
     out, err = (io.TextIOWrapper(io.BytesIO(), encoding, newline="") for _ in range(2))
@@ -116,7 +116,7 @@ def _faults(root, named, before, status, out, err):
 
 
 def _contents(root):
-    """All files below a folder; targets of the link are below it, too."""
+    """Contents of all files below a folder, by relative path; links are not followed."""
     paths = (Path(each) / name for each, _, names in os.walk(root) for name in names)
     files = (path for path in paths if path.is_file() and not path.is_symlink())
     return {str(file.relative_to(root)): file.read_bytes() for file in files}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Words that mutations insert into documents and command lines: programs often fail on them."""
+"""Words that often make programs fail, for mutated documents and command lines."""
 
-POISON = "poison()"  # must only occur in a shader within source that the document may bring
-CANARY = "canary-5f1e"  # content of files outside the document's folder
+POISON = "poison()"  # forbidden in shaders, except in a document's own permitted source
+CANARY = "canary-5f1e"  # text in files outside the document's folder
 
 VALUES = (
     "", " ", "0", "-1", "1", "2", "1.5707964", "nan", "inf", "-inf", "1e999", "1e-400", "0x10",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers from npm in a browser: their pictures, their models, and repairs of their defects."""
+"""Renderers from npm in a browser: pictures, models, and repairs of their defects."""
 
 import pytest
 
@@ -16,7 +16,7 @@ from tools.site import ledger
 from tools.site.ledger import measure
 
 QUARTIC = "EON with the paper's quartic"
-# The nodes with tested pictures: one for each engine of a host.
+# Nodes whose pictures are tested, one per engine of a host.
 PICTURED = {"three": three.NODES[:2], "babylon": babylon.NODES[:4:3]}
 PAGE = """
 export async function draw({ task }) {
@@ -40,7 +40,7 @@ of_each_issue = pytest.mark.parametrize(
 
 @pytest.fixture
 def own(judged):
-    """A function that judges a check of one of a host's own nodes."""
+    """Function that judges one check of a renderer's own node."""
     return lambda host, check, title: judged(check, title, host, RENDERER_NODES)
 
 
@@ -60,7 +60,7 @@ def test_each_defect_is_as_its_page_says(own, issue):
 
 @pytest.fixture(scope="module")
 def repaired(tmp_path_factory):
-    """Hosts by name, with all repairs applied."""
+    """Judges by host, for renderers with all repairs applied."""
     opened = {}
     diffs = {
         "three": ledger.patches("three.js").values(),
@@ -74,7 +74,7 @@ def repaired(tmp_path_factory):
             installed = browser.modules_folder(package, name) / package
             modules = tmp_path_factory.mktemp(name)
             ledger.apply(ledger.linked(installed, modules / package), *diffs[name])
-            # A requirement of the package.
+            # Link the packages that this package requires.
             for other in browser.modules_folder(package, name).iterdir():
                 if not (modules / other.name).exists():
                     (modules / other.name).symlink_to(other)
@@ -102,9 +102,9 @@ def test_a_page_that_throws_goes_on_and_one_that_hangs_is_ended(tmp_path):
     page._script = script
     with pytest.raises(NotRun, match="^three: no such material$"):
         page.ask({"task": "throw"})
-    # Errors of this browser, not of the network.
+    # A failure would come from the browser, not from the network.
     assert page.ask({"task": "fetch"})["status"] in (0, 404)
-    page._limit = 1000.0  # milliseconds, now that the browser runs
+    page._limit = 1000.0  # milliseconds; the browser has started
     with pytest.raises(NotRun, match="^three: the browser fails; .*1000ms"):
         page.ask({"task": "hang"})
     assert page._page is None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The patch for Cycles' kernel: its header, compiled with a few types of ours, is EON once patched."""
+"""The header of Cycles' kernel for Oren-Nayar is EON once our patch is applied."""
 
 from pathlib import Path
 
@@ -15,14 +15,14 @@ from tests.support.command import output
 from tools.site.ledger import ROOT, apply, patches_of
 
 PROGRAM = Path(support.__file__).with_name("oren_nayar.cpp")
-FLOAT32 = 2e-6  # error of values up to 1: the arc cosine in G, and ten roundings
+FLOAT32 = 2e-6  # error of values up to 1: arc cosine in G, ten roundings
 PAIRS = 500
 KERNEL = ".venv-cycles/lib/*/site-packages/bpy/*/scripts/addons_core/cycles/source/kernel"
 FILE = "closure/bsdf_oren_nayar.h"
 
 
 def kernel():
-    """Folder of the sources of Cycles' kernel in Blender's module."""
+    """Folder with the sources of Cycles' kernel in Blender's Python module."""
     found = list(ROOT.glob(KERNEL))
     if not found:
         raise NotRun(f"no folder {ROOT / KERNEL}")
@@ -31,7 +31,7 @@ def kernel():
 
 @pytest.fixture(scope="module")
 def values(tmp_path_factory):
-    """A function of patches: pi f cos of random pairs by the header with the patches, and by the model."""
+    """Function that returns pi f cos of random pairs by the patched header, and by the model."""
     with available("cycles"):
         folder = kernel()
     rng = np.random.default_rng(5)
@@ -42,12 +42,12 @@ def values(tmp_path_factory):
 
     def run(*patches):
         target = tmp_path_factory.mktemp("kernel")
-        for name in ("types.h", "sample/mapping.h"):  # PROGRAM defines their types and functions
+        for name in ("types.h", "sample/mapping.h"):  # PROGRAM replaces these headers
             (target / "kernel" / name).parent.mkdir(parents=True, exist_ok=True)
             (target / "kernel" / name).touch()
         (target / FILE).parent.mkdir()
         (target / FILE).write_bytes((folder / FILE).read_bytes())
-        apply(target, *patches, strip=4)  # a/intern/cycles/kernel
+        apply(target, *patches, strip=4)  # strips a/intern/cycles/kernel
         command = [program("g++"), "-std=c++17", f"-I{target}", PROGRAM, "-o", target / "program"]
         output(*command)
         found = output(target / "program", input=lines).split()

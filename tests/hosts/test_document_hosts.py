@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Storm and MaterialX's own renderer: the models from all sides, the defects of stock, and failures."""
+"""Storm and MaterialX's renderer: models from all sides, defects of stock, and failures."""
 
 from dataclasses import replace
 
@@ -21,10 +21,10 @@ HOSTS = {"storm": storm.StormHost, "materialx": materialx.MaterialXHost}
 DOCUMENT = examples_folder() / "eon_node.mtlx"
 SMALL = replace(FRONT, size=16)
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
-# Half floats: 2^-11 of a value, twice; and of a sum over an environment, twice that.
+# Errors of half floats: two roundings of 2^-11 in a value, and twice as many in an environment.
 HALF, HALF_SURROUNDINGS = 2.0**-10 + 248 * 2.0**-24, 2.0**-9 + 2e-6
 LOBE = "genglsl/lib/oren_nayar_lobe.glsl"
-TEXTURED = 2.0**-8  # the precision that OpenGL requires of filter weights
+TEXTURED = 2.0**-8  # precision that OpenGL requires for filter weights
 BROKEN = ("float s = dot(wo, wi) - mu_o * mu_i;", "float s = no_such_function(wo);", LOBE)
 
 
@@ -73,11 +73,11 @@ def test_materialx_binds_the_table_of_albedos_that_it_is_given(hosts, gl):
         [shader] = each.compile(text, library="stock", methods=Methods("prefilter", albedo="table"))
         pictures.append(each.picture(shader, replace(FURNACE, size=16)))
     assert np.abs(pictures[0] - pictures[1]).max() <= HALF_SURROUNDINGS - HALF
-    assert pictures[0][sphere(16).mask][:, 0].min() > 0.9  # gold in red
+    assert pictures[0][sphere(16).mask][:, 0].min() > 0.9  # red of gold
 
 
 def test_the_dome_of_storm_is_given_what_its_sum_loses(on_storm):
-    """Otherwise it would be too dark by eight tolerances."""
+    """Without the brighter dome, Storm's picture would be too dark by eight tolerances."""
     white = material_text(OREN_NAYAR, {"color": (1.0, 1.0, 1.0), "roughness": 0.0})
     [shader] = on_storm.compile(white)
     picture = on_storm.picture(shader, replace(FURNACE, size=16))[sphere(16).mask]
@@ -113,8 +113,8 @@ def test_stock_is_wrong_from_behind(host, judged):
 
 
 GLASS = surface("open_pbr_surface", transmission_weight=1.0, specular_roughness=0.8)
-# As opacity, T passes all light, and the layer of R over it subtracts what is reflected. The wrong copy
-# subtracts it twice.
+# With transmission as opacity, mode T passes all light, and the layer of R above it subtracts the
+# reflected light. This copy subtracts it twice.
 BELOW = (
     "bool below = scatter_mode == 1;",
     "bool below = false;",
@@ -150,8 +150,8 @@ METAL = lobe("generalized_schlick_bsdf", color0=WHITE, color82=WHITE, roughness=
 CONDUCTOR = lobe("conductor_bsdf", roughness=(0.4, 0.4))
 
 
-# Lines that are only compiled with `genglsl/environment`, so no check on another host detects their
-# mutants.
+# Mutations of lines that only compile with `genglsl/environment`, which checks on other hosts do
+# not use.
 PREFILTER = "genglsl/environment/libraries/pbrlib/genglsl/lib/mx_environment_prefilter.glsl"
 DIM = (
     "$envRadiance) * $envLightIntensity",
@@ -174,7 +174,7 @@ FITTED = (
 def test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo(
     on_storm, gl, text, change, tmp_path
 ):
-    """The host only brightens the dome for diffuse lobes, by 1 / 0.984."""
+    """Storm's dome is brightened, by 1 / 0.984, for diffuse lobes only."""
     points = sphere(16)
     facing = points.mask & (points.normal[..., 2] > 0.05)
     view = direction(points.normal[facing][:, 2])
@@ -186,7 +186,7 @@ def test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo(
         found = on_storm.picture(shader, replace(FURNACE, size=16))[facing]
         return np.abs(found - np.clip(found, expected, expected / 0.984)).max()
 
-    assert error("eonlib") <= 8e-3  # a conductor's average uses the ends of its curve
+    assert error("eonlib") <= 8e-3  # error of a conductor's average from the ends of its curve
     assert min(error("stock"), error(wrong_copy(tmp_path, *change))) >= 0.02
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OpenGL pictures: exact points, correct orientation, and the requested light."""
+"""OpenGL pictures have exact points, the correct orientation, and the requested light."""
 
 import subprocess
 import sys
@@ -56,20 +56,20 @@ def test_the_shader_ball_is_drawn_at_its_points(gl):
 
 def test_a_texture_stands_upright(gl, reference, tmp_path):
     texels = np.zeros((8, 16, 3), dtype=np.float32)
-    texels[:4, :, 0], texels[4:, :, 2] = 0.9, 0.6  # red above, blue below
+    texels[:4, :, 0], texels[4:, :, 2] = 0.9, 0.6  # red above blue
     oiio.ImageBuf(texels).write(str(tmp_path / "flag.exr"))
     nodes = image_node(tmp_path / "flag.exr", "flag") + connected(color='nodename="flag"')
     front = Scene("front", light=(0.0, 0.0, 1.0))
     image, expected = (picture(host, nodes, front) for host in (gl, reference))
     top, bottom = image[SIZE // 4, SIZE // 2], image[3 * SIZE // 4, SIZE // 2]
     assert top[0] > 0.5 > top[2] and bottom[2] > 0.4 > bottom[0]
-    # Precision of filter weights.
+    # OpenGL requires this precision for filter weights.
     assert np.abs(image - expected)[sphere(SIZE).mask].max() <= 2.0**-8
 
 
 def test_an_environment_image_lights_by_its_irradiance(gl, tmp_path):
     sky = np.zeros((32, 64, 3), dtype=np.float32)
-    sky[:16] = [0.2, 0.4, 1.0]  # blue from above, nothing from below
+    sky[:16] = [0.2, 0.4, 1.0]  # bluish light from above
     oiio.ImageBuf(sky).write(str(tmp_path / "sky.exr"))
     white = lobe(EON, color=(1.0, 1.0, 1.0))
     image = picture(gl, white, Scene("sky", environment=tmp_path / "sky.exr"))
