@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Python API for users: names and paths, the summary of a run, and the example of its page."""
+"""The Python API: arguments with names and paths, summaries of runs, and the documented example."""
 
 import pickle
 import re
@@ -30,8 +30,8 @@ def checked(**names):
     return mxeon.check(**{"files": CLAY, "hosts": "msl"} | names)
 
 
-# Every public parameter that takes names or paths: a call with it, a valid value, and whether it
-# takes several.
+# Public parameters that accept names or paths: a call, a valid value, and whether several values
+# are accepted.
 NAMES = {
     "files": (lambda x: checked(files=x), CLAY, True),
     "hosts": (lambda x: checked(hosts=x), "msl", True),
@@ -57,7 +57,7 @@ NAMES = {
 
 @pytest.fixture
 def short(monkeypatch, tmp_path):
-    """Runs of one check, in an empty working folder."""
+    """Restrict runs to one check, and enter an empty working folder."""
     keep_checks(monkeypatch, "document")
     monkeypatch.chdir(tmp_path)
 
@@ -93,7 +93,7 @@ def test_an_argument_that_is_refused_names_the_parameter(short):
             checked(**names)
 
 
-# --- the answer of a run ----------------------------------------------------------------------
+# --- summaries of runs ------------------------------------------------------------------------
 
 
 REFUSED = {"refused": {"cut.mtlx": ("cut.mtlx: must be XML",)}}
@@ -102,7 +102,7 @@ REFUSED = {"refused": {"cut.mtlx": ("cut.mtlx: must be XML",)}}
 STOCK = {"compared": ("stock",)}
 ALLOWED = "1 differs, but the specification allows it."
 DIRECTIONS = caused("defect", "other_directions")
-# Results, other fields of the run, its exit status and sentence, and words of the error.
+# Results, other fields of the run, exit status, sentence of the summary, and words of the error.
 RUNS = (
     ([], {}, 3, "No check ran.", ""),
     ([made(NOT_RUN)], {}, 3, "No check ran.", ""),
@@ -166,7 +166,7 @@ def test_no_repr_prints_arrays_or_text_of_shaders(monkeypatch):
         assert "array" not in repr(each) and len(repr(each)) < 300, repr(each)
 
 
-# --- what there is ----------------------------------------------------------------------------
+# --- public names -----------------------------------------------------------------------------
 
 
 def test_dir_shows_public_names_alone_and_defaults_are_plain():
@@ -177,7 +177,7 @@ def test_dir_shows_public_names_alone_and_defaults_are_plain():
         assert {type(each) for each in defaults} <= {type(None), str, int, float, bool, tuple}
 
 
-# --- the page ---------------------------------------------------------------------------------
+# --- the example in docs/api/conformance.md ---------------------------------------------------
 
 [GATE] = re.findall(
     r"```python\n(.*?)```", (ROOT / "docs/api/conformance.md").read_text("utf-8"), re.DOTALL
@@ -206,7 +206,7 @@ MISTAKES = {
 
 @pytest.mark.whole
 def test_a_type_checker_passes_the_gate_and_finds_mistakes_in_it(tmp_path):
-    """The example is checked like a user's file: strictly, and without the checkout's settings."""
+    """mypy checks the example strictly, without the checkout's settings, like a user's file."""
     wrong = GATE
     for right, (mistake, _) in MISTAKES.items():
         wrong = wrong.replace(right, mistake)

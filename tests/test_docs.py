@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The documentation: a site without dead links that needs no network, and a README that works."""
+"""The site has no dead links and needs no network, and names in the documentation exist."""
 
 import os
 import re
@@ -24,7 +24,7 @@ from tools.site.__main__ import made
 ROOT = Path(__file__).resolve().parents[1]
 PROSE = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "tools/fits/README.md")
 QUIET = os.environ | {"NO_MKDOCS_2_WARNING": "1"}
-# Elements for which a browser loads files by itself.
+# Elements that make a browser load a file from another site.
 LOADED = re.compile(
     r"""<(?:script|img|iframe|source)\b[^>]*\ssrc=["']?(?:\w+:)?//"""
     r"""|<link\b(?![^>]*\brel=["']?(?:canonical|prev|next))[^>]*\shref=["']?(?:\w+:)?//"""
@@ -34,13 +34,13 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 FOLDERS = (
     "docs|tests|tools|examples|libraries|genglsl|genosl|python|models|shaders|hosts|conformance"
 )
-PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s:]*[^`<\s:.])(?::([\w.]+))?`")  # no placeholders
+PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s:]*[^`<\s:.])(?::([\w.]+))?`")  # without placeholders
 SCRIPT = re.compile(r"python -m ((?:tests|tools)[\w.]*\w)")
 NAME = re.compile(r"`(mxeon(?:\.\w+)+)")
 
 
 def prose():
-    """Text of all pages by file, except the changelog, which names removed things."""
+    """Texts of all pages by file, without the changelog, which names removed features."""
     files = [ROOT / name for name in PROSE if name != "CHANGELOG.md"]
     files += sorted((ROOT / "docs").rglob("*.md"))
     return {file: file.read_text(encoding="utf-8") for file in files}
@@ -54,7 +54,7 @@ def build(configuration, site):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    """Folder of the built site."""
+    """Folder of the site that mkdocs builds."""
     package("mkdocs")
     folder = tmp_path_factory.mktemp("docs") / "site"
     built = build(ROOT / "mkdocs.yml", folder)
@@ -63,7 +63,7 @@ def site(tmp_path_factory):
 
 
 def test_the_site_has_no_dead_link_and_loads_nothing_from_elsewhere(site):
-    """mkdocs.yml makes a dead link or anchor fail the build."""
+    """The fixture `site` finds dead links: mkdocs.yml makes the build fail."""
     pages = [file.read_text(encoding="utf-8") for file in site.rglob("*.html")]
     styles = [file.read_text(encoding="utf-8") for file in site.rglob("*.css")]
     assert len(pages) > 30 and all("<script" in page for page in pages)
@@ -87,7 +87,7 @@ def test_every_link_of_the_prose_leads_to_a_file(name):
 def test_every_path_that_the_prose_names_exists_and_has_the_name_behind_the_colon():
     paths = {place for text in prose().values() for place in PATH.findall(text)}
     assert len(paths) > 50
-    # Pages on defects name MaterialX's own files; those on design give paths in the package.
+    # Pages on defects name files of MaterialX, and pages on design name files of the package.
     folders = (ROOT, Path(mx.__file__).parent, ROOT / "python/mxeon")
     found = {place: [file for each in folders for file in each.glob(place[0])] for place in paths}
     assert sorted(place for place, files in found.items() if not files) == []
@@ -109,7 +109,7 @@ def test_every_module_that_the_prose_names_exists():
 
 
 def test_every_generated_file_is_that_of_today():
-    """`python -m tools.site` writes them; last digits may differ between machines."""
+    """`python -m tools.site` writes the same files; last digits may depend on the machine."""
     number = re.compile(r"-?\d+(?:\.\d+)?(?:e-?\d+)?")
     files = made()
     for path, text in files.items():

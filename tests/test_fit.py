@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of measured BRDFs: parameters within their errors, MERL files, and refused inputs."""
+"""Fits of measured BRDFs: errors of parameters, MERL files, and refused inputs."""
 
 import re
 import runpy
@@ -25,13 +25,13 @@ CLAY = {"color": np.array([0.7, 0.35, 0.12]), "roughness": 0.62}
 COATED = CLAY | {"alpha": 0.3, "ior": 1.5}
 PAGE_COAT = {"color": [0.55, 0.28, 0.18], "roughness": 0.7, "alpha": 0.25, "ior": 1.45}
 NOISE = 0.05
-# Of 4 or 6 normal deviates in each of 24 fits, one exceeds 4.5 once in 1200 runs. The spread of 96
-# deviates is off by more than 30 % once in 10,000 runs.
+# Each of 24 fits has 4 or 6 normal deviates, one of which exceeds 4.5 once in 1200 runs. The spread
+# of 96 deviates is off by more than 30 % once in 10,000 runs.
 LARGEST_DEVIATE, FITS, SPREAD = 4.5, 24, (0.7, 1.3)
 
 
 def noisy(rng, model, parameters, count=200, known=True):
-    """A measured BRDF of a model, with normal noise; the measurement may know its size."""
+    """Made-up measurement of a model with normal noise, whose size it includes if `known`."""
     wo, wi = directions((2, count), rng, least=0.05)
     value = mxeon.model(model).brdf(wo, wi, **parameters)
     error = NOISE * (value if known else np.full_like(value, 0.2))
@@ -41,7 +41,7 @@ def noisy(rng, model, parameters, count=200, known=True):
 
 
 def deviates(fit, parameters):
-    """Differences from the true parameters, in units of the fit's errors."""
+    """Differences of fitted from true parameters, in units of the fit's errors."""
     pairs = [(fit.values[name] - parameters[name]) / fit.errors[name] for name in fit.values]
     return np.concatenate([np.atleast_1d(each) for each in pairs])
 
@@ -62,7 +62,7 @@ def test_the_parameters_of_a_dielectric_over_eon_lie_within_their_errors():
     fit = fit_brdf(data, "dielectric_over_eon")
     assert np.abs(deviates(fit, COATED)).max() < LARGEST_DEVIATE
     assert max(each.max() for each in fit.errors.values()) < 0.1
-    other = fit_brdf(data, "eon")  # a model that must not fit
+    other = fit_brdf(data, "eon")  # EON must not fit these data
     assert fit.fits and not other.fits and other.scatter > 2.0
     assert (
         str(other)
@@ -95,7 +95,7 @@ ONE = MeasuredBrdf(SIDES[:1], SIDES[1:2], np.array([[0.2, 0.1, 0.05]]), np.array
         (ONE, 0),  # three values for four parameters
         (replace(ONE, error=None), 0),
         (MeasuredBrdf(*(np.repeat(each, 2, 0) for each in (ONE.wo, ONE.wi, ONE.value))), 0),
-        # Black: only the color has an effect.
+        # On a black surface, only the color is determined.
         (MeasuredBrdf(SIDES, SIDES[::-1], np.zeros((3, 1)), 0.001), 1),
     ),
 )
@@ -103,11 +103,11 @@ def test_a_parameter_that_the_data_do_not_determine_has_no_number(data, numbers)
     assert str(fit_brdf(data)).count("+-") == numbers
 
 
-# --- files of MERL ---------------------------------------------------------------------------
+# --- MERL files ------------------------------------------------------------------------------
 
 
 def merl_file(path, value, cells=MERL_CELLS):
-    """A file whose cells contain the values of a function of wo and wi."""
+    """Write a MERL file with the values of a function of wo and wi."""
     grid = np.meshgrid(*((np.arange(n) + 0.5) / n for n in MERL_CELLS), indexing="ij")
     h, d, phi = (each.ravel() for each in grid)
     wo, wi = merl_directions(0.5 * np.pi * h**2, 0.5 * np.pi * d, np.pi * phi)
@@ -127,10 +127,10 @@ def test_a_file_of_merl_is_read_and_fitted(tmp_path):
     assert fit.values["roughness"] == pytest.approx(CLAY["roughness"], abs=1e-6)
 
 
-# --- what is refused -------------------------------------------------------------------------
+# --- refused inputs --------------------------------------------------------------------------
 
 UP = np.array([[0.0, 0.0, 1.0]])
-# Messages by the inputs of a measurement, or by the bytes of a file.
+# Bad inputs by error message: fields of a measurement, or bytes of a file.
 BAD = {
     "wo, wi must have shape (N, 3); got (3,), (1, 3)": {"wo": UP[0]},
     "value must have shape (1, C); got (3,)": {"value": [0.2, 0.1, 0.05]},
@@ -168,7 +168,7 @@ def test_the_example_finds_what_it_put_in(tmp_path, monkeypatch, capsys):
     assert (tmp_path / "fit.png").stat().st_size > 10_000
 
 
-# --- the page --------------------------------------------------------------------------------
+# --- the examples in the documentation -------------------------------------------------------
 
 
 def test_the_blocks_of_the_page_run_one_after_another(tmp_path, monkeypatch, capsys):

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fitted coefficients have their stated errors; the scripts reproduce those of the loss and of the
-angle.
+"""Fitted coefficients have their stated errors; scripts reproduce those of the loss and the angle.
 
 The scripts compute with 40 digits, so a different digit means a different fit, not a different
 machine.
@@ -41,7 +40,7 @@ by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
 
 
 def numbers(pattern, text):
-    """Numbers in the macros whose names match a pattern."""
+    """Values of the macros whose names match a pattern."""
     return [float(each) for each in re.findall(rf"#define EON_{pattern} (\S+)", text)]
 
 
@@ -232,7 +231,7 @@ def test_the_shader_has_the_nodes_of_a_film():
 
 @pytest.mark.whole
 def test_the_nodes_of_a_film_are_what_their_script_finds():
-    near = {"rtol": 1e-3, "atol": 1e-3}  # other libraries' least squares differ in the last digits
+    near = {"rtol": 1e-3, "atol": 1e-3}  # least squares differ in the last digits between machines
     np.testing.assert_allclose(thin_film_nodes.hemisphere(), thin_film.NODES, **near)
     np.testing.assert_allclose(thin_film_nodes.facets(), np.ravel(thin_film.FACETS), **near)
 

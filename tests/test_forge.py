@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Workflows on a forge: the project's own, and the action for others."""
+"""Workflows of the project on a forge, and the action for other projects."""
 
 import os
 import re
@@ -48,11 +48,11 @@ LINES = "--node oren_nayar_diffuse_bsdf\n--host gl  --workers\n0"
 
 
 def ended(library, folder, options=LINES, command=TOOLS / "mxeon", documents="", baseline=""):
-    """Run the action's step that checks, as the forge starts it, for one node."""
-    # Put the command where the action installs it.
+    """Run the step of the action that checks one node, as a forge runs it."""
+    # The action installs the command in this place.
     (folder / "mxeon" / "bin").mkdir(parents=True)
     (folder / "mxeon" / "bin" / "mxeon").symlink_to(command)
-    # Take the step's script.
+    # The step `Check` of the action runs this script.
     steps = yaml.safe_load(ACTION.read_text())["runs"]["steps"]
     [script] = [step["run"] for step in steps if step.get("name") == "Check"]
     (folder / "script.sh").write_text(script)

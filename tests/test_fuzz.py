@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The fuzzer: a subset of its cases has no fault."""
+"""A subset of the fuzzer's cases has no fault."""
 
 import os
 import subprocess
@@ -13,8 +13,9 @@ from tests.fuzz.families import COUNTS, cases
 from tests.fuzz.trial import judged
 from tests.support.availability import program
 
-LIMIT = 60.0  # seconds for one case
-FEW = dict.fromkeys(COUNTS, 12) | {"found": None, "mutated": 50}  # a case may take a second
+LIMIT = 60.0  # timeout of a case in seconds
+# Numbers of cases per family, each of which may take a second.
+FEW = dict.fromkeys(COUNTS, 12) | {"found": None, "mutated": 50}
 
 
 @pytest.mark.parametrize("family", FEW)
@@ -28,7 +29,7 @@ def test_a_slice_of_each_family_ends_without_fault(family):
 
 @pytest.fixture(scope="module")
 def strace():
-    """Skip the test if the system forbids tracing processes."""
+    """Skip the test if the system does not permit tracing processes."""
     command = [program("strace"), "-o", os.devnull, sys.executable, "-V"]
     if subprocess.run(command, capture_output=True).returncode:
         pytest.skip("the system lets no process be traced")

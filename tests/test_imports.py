@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Imports: the layers of the package, and the modules that an import loads."""
+"""Imports respect the layers of the package, and load no more packages than needed."""
 
 import json
 import sys
@@ -25,7 +25,7 @@ print(json.dumps(sorted(new - sys.stdlib_module_names)))
 
 
 def loaded(module):
-    """Third-party packages that the import of a module loads."""
+    """Third-party packages that importing a module loads."""
     return json.loads(output(sys.executable, "-c", NEW_MODULES.format(module)))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Minimal repairs of MaterialX's data: with them, the checks that show the defects pass."""
+"""With the minimal repairs of MaterialX's data, the checks that show the defects pass."""
 
 import json
 import os
@@ -22,7 +22,7 @@ from tools.site import ledger
 
 pytestmark = pytest.mark.whole
 
-# Judges rows of libraries and prints the results.
+# Program that judges rows of the ledger and prints the results.
 JUDGE = """
 import json, sys
 from mxeon.errors import NotRun
@@ -44,9 +44,9 @@ print(json.dumps(results))
 
 ISSUES = issues()
 PATCHES = ledger.patches("materialx")
-# Patches for the main branch: those of pages that no pull request repairs there.
+# Patches for the main branch: defects that no pull request has repaired.
 OF_MAIN = [path for page, path in PATCHES.items() if not ISSUES[page].pull]
-# Pages whose patched files differ on the main branch.
+# Pages whose patched files are different on the main branch.
 CHANGED = re.findall(r"^--- a/(.*)$", MAIN.read_text(), re.MULTILINE)
 ON_MAIN = [
     page
@@ -56,7 +56,7 @@ ON_MAIN = [
 
 
 def rows_of(names):
-    """The rows of pages by host, with other explanations of their failures."""
+    """Rows of several pages by host, with other causes that may explain their failures."""
     return {
         (*row, ISSUES[page].host or "gl"): ISSUES[page].remains.get(row, ())
         for page in names
@@ -65,7 +65,7 @@ def rows_of(names):
 
 
 def is_one_of(found, causes):
-    """Whether the cause of a row's failure is one of these, by kind, key and region."""
+    """Whether the cause of a failure is in `causes`, by kind, key and region."""
     return found in [
         [each.kind.value, each.key, each.region and each.region.name] for each in causes
     ]
@@ -73,7 +73,7 @@ def is_one_of(found, causes):
 
 @pytest.fixture(scope="module")
 def failing(tmp_path_factory):
-    """All results of the release that fail or differ."""
+    """Check, subject and host of each row on stock's pages, which fails or differs unrepaired."""
     with available("gl"):
         on_gl = {(e.check, e.subject) for e in every_node(tmp_path_factory, STOCK).results}
     return [
@@ -85,7 +85,7 @@ def failing(tmp_path_factory):
     ]
 
 
-# The libraries with which the tables of patched pages are judged, if not stock.
+# Libraries for judging rows of pages, if the library is not stock.
 LIBRARIES = {
     (*row, ISSUES[page].host): ISSUES[page].library for page in PATCHES for row in ISSUES[page].rows
 }
@@ -95,9 +95,9 @@ CASES = [(version, row) for version, rows in ROWS.items() for row in sorted(rows
 
 @pytest.fixture(scope="module")
 def judged(tmp_path_factory, failing):
-    """A function that gives verdict and diagnosis of each row with a repaired version.
+    """Function that returns verdict and diagnosis of each row with a repaired version.
 
-    Defects that the main branch has repaired pass there without the patch.
+    On the main branch, repaired defects must pass without a patch.
     """
 
     @cache
@@ -118,7 +118,7 @@ def judged(tmp_path_factory, failing):
 
 
 def verdicts(folder, package, files, rows):
-    """Verdict and diagnosis of each row with a patched package of MaterialX."""
+    """Verdict and diagnosis of each row, judged with a patched MaterialX."""
     ledger.apply(ledger.linked(package, folder / "MaterialX"), *files)
     path = [str(folder), str(ledger.ROOT / "python"), str(ledger.ROOT)]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}
@@ -131,7 +131,7 @@ def verdicts(folder, package, files, rows):
     "version, row", CASES, ids=lambda each: each if each in ROWS else " ".join(each)
 )
 def test_a_repair_makes_the_checks_pass_that_show_the_defect(judged, version, row):
-    """Remaining failures have another cause."""
+    """A check may still fail only if another defect is the cause."""
     verdict, found, _ = judged(version)[row]
     with available(row[2]):
         if verdict == NOT_RUN:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The part of tools/materialx_suite.py that needs no build of MaterialX."""
+"""Tests of tools/materialx_suite.py that need no build of MaterialX."""
 
 import numpy as np
 

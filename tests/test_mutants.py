@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mutation bench: its table fits the sources, and the intended checks detect a subset of the mutants."""
+"""The table of mutants fits the sources, and the intended checks detect a subset of the mutants."""
 
 from contextlib import closing
 from functools import cache
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.whole
 
 TABLE = read_table()
 NAMED = {mutant.name: mutant for mutant in TABLE}
-# The check that should detect each mutant, by its name.
+# Checks that must detect a mutant, by the mutant's name.
 SLICE = {
     "throughput is 0.01": "throughput",
     "environment behind": "surroundings",
@@ -26,8 +26,8 @@ SLICE = {
     "osl: s negated": "languages",
     "average: c2 1e-3 off": "output",
 }
-SHARE = 0.1  # fraction of the operators' mutants
-# Tasks that perform several checks.
+SHARE = 0.1  # tested fraction of the mutants made by operators
+# Tasks by check, for tasks that perform several checks.
 TASKS = {"languages": SOURCE, "densities": "twins"}
 
 
@@ -51,7 +51,7 @@ def test_every_source_and_every_document_of_implementations_has_mutants():
 
 
 def test_a_tenth_of_the_operators_mutants_is_noticed_but_for_those_that_are_listed(gl):
-    """Some listed mutants serve as the control: a check that fails without a mutant would detect them all."""
+    """Listed survivors are the control: a check that always fails would detect them all."""
     tenth = {each.name: each for each in operators.made(1, SHARE) if not each.survives}
     tenth |= {each.name: each for each in operators.made(1, SHARE / 4.0) if each.survives}
     found = schemata.trials(list(tenth.values()))
@@ -71,7 +71,7 @@ def test_mutant_is_killed_by_the_check_meant(gl, judge, name, check):
     assert check in [each.check for each in failures]
 
 
-# The check that should detect each mutant, by its name, for nodes that compile quickly.
+# Checks that must detect a mutant of a node that compiles quickly, by the mutant's name.
 NODES = {
     "blackbody: N1 of X": "output",
     "translucent: environment of the visible side": "surroundings",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Patches for upstream repositories: each belongs to a page and applies; behavior of MaterialX's versions."""
+"""Each patch for an upstream repository belongs to a page of docs/upstream and applies."""
 
 import json
 import re
@@ -23,12 +23,12 @@ MATERIALX = patches("materialx")
 FILES = {page: files for page in ISSUES if (files := patches_of(page))}
 INSTALLED = Path(mx.__file__).parent
 MODULES = packages_folder() / "node_modules"
-HOSTS = {"three.js": "three", "blender": "cycles"}  # hosts that install the files of a project
+HOSTS = {"three.js": "three", "blender": "cycles"}  # hosts that install a project's files
 
 
 def source(project, name):
-    """The installed file for a project's file name."""
-    if project == "openpbr":  # its graph of a surface is part of MaterialX
+    """Installed file that corresponds to a file in a project's repository."""
+    if project == "openpbr":  # MaterialX includes OpenPBR's graph
         return INSTALLED / "libraries" / "bxdf" / Path(name).name
     if project == "blender":
         return kernel() / name.removeprefix("intern/cycles/kernel/")
@@ -36,7 +36,7 @@ def source(project, name):
 
 
 def repository(folder, project, files):
-    """A repository with a project's files, and the tag `release`."""
+    """Create a git repository with a project's installed files, tagged `release`."""
     git(folder, "init", "--quiet")
     for file in files:
         (folder / file).parent.mkdir(parents=True, exist_ok=True)
@@ -48,7 +48,7 @@ def repository(folder, project, files):
 
 
 def changed(*files):
-    """Names of the files that patches change."""
+    """Names of the files that the given patches change."""
     text = "".join(path.read_bytes().decode() for path in files)
     return sorted(set(re.findall(r"^--- a/(.*)$", text, re.MULTILINE)))
 
@@ -65,7 +65,7 @@ def test_the_patches_of_a_project_are_from_pages_and_apply_to_its_release(projec
         except FileNotFoundError as error:
             raise NotRun(f"{project}: {error}") from error
     git(folder, "am", "--quiet", *found.values())
-    # A patch names its files like git, including the last one.
+    # Each index line of a patch has the hash that git gives the patched file.
     for text in (path.read_bytes().decode() for path in found.values()):
         for name in re.findall(r"^index \w+\.\.(\w{40})", text, re.MULTILINE):
             git(folder, "cat-file", "-e", name)
@@ -73,7 +73,7 @@ def test_the_patches_of_a_project_are_from_pages_and_apply_to_its_release(projec
 
 @pytest.fixture(scope="module")
 def materialx(tmp_path_factory):
-    """A repository with the files that MaterialX's patches change: tags `release` and `main`."""
+    """Repository with the files of MaterialX that patches change, tagged `release` and `main`."""
     files = changed(*MATERIALX.values(), MAIN)
     folder = repository(tmp_path_factory.mktemp("repository"), "materialx", files)
     git(folder, "apply", "--index", MAIN)
@@ -83,7 +83,7 @@ def materialx(tmp_path_factory):
 
 
 def applied(folder, tag, *pages):
-    """Apply the patches of pages to a tag of a repository."""
+    """Check out a tag of a repository, and apply the patches of the given pages."""
     git(folder, "checkout", "--quiet", "--detach", tag)
     try:
         git(folder, "am", "--quiet", *(MATERIALX[page] for page in pages))
@@ -93,7 +93,7 @@ def applied(folder, tag, *pages):
 
 
 def test_main_is_upstreams(materialx):
-    """The files there have the hashes that git gave them."""
+    """Files of the tag `main` have the hashes of MaterialX's main branch."""
     names = re.findall(r"^index \w+\.\.(\w{40})", MAIN.read_text(), re.MULTILINE)
     listed = git(materialx, "ls-tree", "-r", "main")
     assert [name for name in names if name not in listed] == []
@@ -105,7 +105,7 @@ def test_all_patches_but_those_that_main_has_apply_to_it(materialx):
 
 @pytest.mark.parametrize("page", MATERIALX)
 def test_a_patch_applies_alone(materialx, page):
-    """It applies to the release, and to main if the defect is still there."""
+    """Each patch applies to the release, and to main unless main has repaired the defect."""
     for tag in ("release", "main")[: 1 if ISSUES[page].pull else 2]:
         applied(materialx, tag, page)
 

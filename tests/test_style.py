@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The style that tools can check: lint, format and types, as pyproject.toml configures them."""
+"""The code passes lint, format and type checks as configured in pyproject.toml."""
 
 import re
 import sys
@@ -37,7 +37,7 @@ FRAGMENT = re.compile(
 
 
 def fragments(text):
-    """Lines with a comment that only completes the code; no continuation lines, no commands in quotes."""
+    """Lines whose comment begins like a fragment; continuation lines and strings are ignored."""
     lines = [line.lstrip() for line in text.splitlines()]
     pairs = zip(["", *lines], lines, strict=False)
     return [

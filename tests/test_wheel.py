@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The wheel and the sdist: their contents, and that they work outside the checkout."""
+"""The wheel and the sdist have the right contents and work outside the checkout."""
 
 import os
 import sys
@@ -23,7 +23,7 @@ DATA = {
     "genglsl": "eonlib/genglsl",
     "genosl": "eonlib/genosl",
     "examples": "examples",
-}  # folders of the checkout, and their paths in the wheel
+}  # paths in the wheel, by folder of the checkout
 SUFFIXES = (".mtlx", ".glsl", ".osl", ".xml", ".png")
 SCRIPT = Path(mx.__file__).parent / "_scripts" / "generateshader.py"
 
@@ -43,7 +43,7 @@ for path in sorted(examples_folder().glob("*.mtlx")):
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
-    """Folder with the sdist and the wheel built from it."""
+    """Folder with the built sdist, and the wheel built from the sdist."""
     folder = tmp_path_factory.mktemp("dist")
     build = [sys.executable, "-m", "build", "--no-isolation", "--outdir", folder, CHECKOUT]
     output(*build, cwd=folder)
@@ -58,7 +58,7 @@ def wheel(built):
 
 @pytest.fixture(scope="module")
 def environment(wheel, tmp_path_factory):
-    """A fresh environment with the wheel; it sees this environment's dependencies."""
+    """New virtual environment with the wheel, which uses the dependencies installed here."""
     folder = tmp_path_factory.mktemp("fresh")
     run([sys.executable, "-m", "venv", "--without-pip", folder], folder)
     python = folder / "bin" / "python"
@@ -70,7 +70,7 @@ def environment(wheel, tmp_path_factory):
 
 
 def run(command, folder):
-    """Output of a command, run in a folder without a checkout on its path."""
+    """Run a command in a folder, without the checkout on Python's path, and return its output."""
     clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     return output(*command, cwd=folder, env=clean)
 
@@ -80,7 +80,7 @@ def test_the_wheel_holds_the_package_with_the_data_of_the_checkout_and_nothing_e
         names = set(archive.namelist())
     parts = {part for name in names for part in name.split("/")}
     assert not parts & {"tests", "__pycache__"}
-    # On other systems, a folder of that name would hide MaterialX's libraries.
+    # Elsewhere in the wheel, a folder named `libraries` would hide MaterialX's.
     libraries = {name.split("/libraries/")[0] for name in names if "/libraries/" in name}
     assert libraries == {"mxeon/data/eonlib/genglsl/environment"}
     assert {name.split("/")[0] for name in names} == {

@@ -28,12 +28,7 @@ SHEEN = "sheen_bsdf, mode conty_kulla"
 HALF = ("model", "compensation with F at the half vector and MaterialX's fit of E_ss")
 VIEW = ("model", "compensation with F at the view direction and MaterialX's fit of E_ss")
 MEAN = ("model", "Smith at the geometric mean, and MaterialX's compensation")
-OPEN = {
-    "value": HALF,
-    "integral": HALF,
-    "shape": MEAN,
-    "environment": VIEW,
-}  # permitted choices
+OPEN = {"value": HALF, "integral": HALF, "shape": MEAN, "environment": VIEW}  # permitted choices
 AVERAGED = ("model", "MaterialX's fit of its albedo, averaged over the channels")
 CLAMPED_TITLE = "EON with clamped dot(wo, wi)"
 CLAMPED = ("model", CLAMPED_TITLE)

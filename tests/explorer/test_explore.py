@@ -200,10 +200,8 @@ def test_inputs_have_the_ranges_of_their_definitions():
     (source, *_) = document_sources(str(examples_folder() / "standard_surface_rough_base.mtlx"))
     ports = {port.path.rpartition("/")[2]: port for port in source.inputs}
     assert (ports["base"].min, ports["base"].max, ports["base"].label) == (0.0, 1.0, "Base")
-    assert (ports["specular_IOR"].min, ports["specular_IOR"].max) == (
-        0.0,
-        3.0,
-    )  # uimin and uisoftmax
+    # The range is from uimin to uisoftmax.
+    assert (ports["specular_IOR"].min, ports["specular_IOR"].max) == (0.0, 3.0)
     assert ports["base_color"].value == (0.5, 0.24, 0.13)
     assert source.meant is None and source.controls.color == ""
 

@@ -17,7 +17,7 @@ COLOR = (0.8, 0.4, 0.1)
 
 
 def errors(host, text, library, reference):
-    """Largest errors in direct light and in white surroundings, computed like the page's verdicts."""
+    """Largest errors in direct light and in white surroundings, computed as on the page."""
     shader = host.compile(text, library=library)[0]
     direct = np.pi * host.evaluate(shader, WO, WI, {}, "direct")
     white = host.evaluate(shader, SEEN, SEEN, {}, "environment")

@@ -49,7 +49,7 @@ class Place:
 
 
 def documents():
-    """Roots of two documents that use every kind of element: one with materials, one with outputs."""
+    """Roots of two documents with every kind of element: one has materials, one only outputs."""
     whole, outputs = (ElementTree.parse(EVERY).getroot() for _ in range(2))
     for kind in ("surfacematerial", "surface", "backdrop", "look", "lookgroup"):
         outputs.remove(outputs.find(kind))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hosts without a working engine are not run: one line names what to install."""
+"""A host without a working engine is not run, and one line names what to install."""
 
 import os
 import sys
@@ -14,12 +14,12 @@ from mxeon.survey import browser
 from tests.support.availability import package
 
 BLENDER, NOWHERE = "MXEON_CYCLES_PYTHON", "/nowhere/python"
-DISPLAY = (  # depends on whether MaterialX's renderer loads
+DISPLAY = (  # one of two messages: no display, or no renderer
     "(no display: .* no Xvfb|MaterialX's renderer does not load .*); "
     "on Debian: apt-get install libgl1 libsm6 libx11-6 xvfb$"
 )
 NPM = f"npm ci --prefix {browser.packages_folder()}$"
-ENVIRONMENTS = [  # host, its environment, and the expected words
+ENVIRONMENTS = [  # host, environment variables, and words of the message
     ("cycles", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; in a checkout: ./run"),
     ("cycles", {BLENDER: sys.executable}, ".*No module named 'bpy'"),
     ("storm", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; in a checkout: ./run"),
@@ -32,7 +32,7 @@ ENVIRONMENTS = [  # host, its environment, and the expected words
     ("webgl", {"MXEON_CHROMIUM": "true"}, "the browser fails; "),
     ("materialx", {"DISPLAY": "", "PATH": ""}, DISPLAY),
 ]
-MODULES = [  # host, a module that imports a package, the package, and the expected words
+MODULES = [  # host, attribute that holds a package, and words of the message
     ("webgl", "webgl.sync_api", r"Playwright is not installed; pip install '\.\[webgl\]'"),
     ("vulkan", "vulkan.wgpu", r"wgpu is not installed; pip install '\.\[vulkan\]'"),
     ("wgsl", "vulkan.wgpu", "wgpu is not installed"),
@@ -65,7 +65,7 @@ def test_what_is_missing_is_named_with_its_remedy(monkeypatch, name, environment
 
 @pytest.fixture
 def no_library(tmp_path):
-    """Folder of a MaterialX whose renderer lacks a library, like its wheel on a minimal system."""
+    """Folder with a MaterialX whose renderer lacks a library, as on a minimal system."""
     folder = tmp_path / "MaterialX"
     folder.mkdir()
     (folder / "__init__.py").write_text("getDefaultDataSearchPath, Exception = str, ValueError\n")
@@ -101,7 +101,7 @@ def test_a_missing_compiler_is_named_with_its_remedy(monkeypatch):
     assert_not_run("vulkan", "no program 'glslangValidator'; .* install glslang-tools")
 
 
-@pytest.mark.parametrize("name", ["vulkan", "wgsl"])  # wgsl uses naga instead of a compiler
+@pytest.mark.parametrize("name", ["vulkan", "wgsl"])  # wgsl needs no glslangValidator
 def test_a_missing_vulkan_driver_is_named_with_its_remedy(monkeypatch, name):
     wgpu = package("wgpu")
     if name == "vulkan":
@@ -120,7 +120,7 @@ def test_a_missing_driver_is_named_with_its_remedy(hosts, monkeypatch):
 
 @pytest.mark.parametrize("workers", [0, 1])
 def test_checks_of_a_missing_renderer_are_not_run(monkeypatch, workers):
-    """The checks that the renderer itself adds are named, too, in this process and in a worker."""
+    """Checks that only this renderer has are listed as not run, with and without workers."""
     monkeypatch.setenv("MXEON_CHROMIUM", "none")
     run = mxeon.check(None, "three-gpu-pathtracer", "stock", nodes="common", workers=workers)
     own = [each for each in run.results if each.check in ("density", "samples")]

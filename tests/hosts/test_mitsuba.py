@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mitsuba plugins: their values, sampling, energy and gradients match the models."""
+"""Values, sampling, energy and gradients of the Mitsuba plugins match the models."""
 
 import re
 from pathlib import Path
@@ -18,9 +18,9 @@ PAGE = Path(__file__).parents[2] / "docs" / "mitsuba.md"
 COAT, VARNISH = "dielectric_over_eon", "varnished"
 PARAMETERS = {"eon": "roughness", "fon": "roughness", "qon": "sigma"}
 COLOR = (0.25, 0.5, 1.0)  # exact in float32
-SAMPLES = 100_000  # samples of a chi-square test
-DEVIATE = 4.5  # standard deviations of a mean: exceeded once in 150,000 tests
-STEP = 2.0**-13  # exact in float32 additions
+SAMPLES = 100_000  # samples per chi-square test
+DEVIATE = 4.5  # standard deviations; a mean exceeds this once in 150,000 tests
+STEP = 2.0**-13  # exact when added in float32
 VIEW, LIGHT = np.array([[0.6, 0.0, 0.8]]), np.array([[-0.48, 0.6, 0.64]])
 MODELS = {
     "eon": models.eon_brdf,
@@ -38,7 +38,7 @@ TEXTURES = ("roughness", "sigma")
 
 @pytest.fixture
 def mi():
-    """Mitsuba in an LLVM variant, with the plugins."""
+    """The package mitsuba in an LLVM variant, with the plugins registered."""
     mitsuba = package("mitsuba")
     mitsuba.set_variant("llvm_ad_rgb")
     with available("mitsuba"):
@@ -47,31 +47,31 @@ def mi():
 
 
 def bsdf(name, color=COLOR, **inputs):
-    """Properties of a plugin with these inputs, and the others from INPUTS."""
+    """Properties of a plugin; inputs that are not given come from INPUTS."""
     rgb = {"type": "rgb", "value": list(color)}
     return {"type": name, "reflectance": rgb} | INPUTS[name] | inputs
 
 
 def expected(name, wo, wi, **inputs):
-    """The model's value times the cosine, with inputs rounded to float32."""
+    """Model's value times cosine, for inputs rounded to float32."""
     values = {key: float(np.float32(each)) for key, each in (INPUTS[name] | inputs).items()}
     return MODELS[name](wo, wi, COLOR, **values) * np.asarray(wi, np.float64)[..., 2:]
 
 
 def allowed(name, value):
-    """Tolerance of a value, relative where a microfacet lobe is larger."""
+    """Tolerance of a value: absolute, or relative for large values of coats."""
     return np.maximum(MITSUBA_EVAL, MITSUBA_COAT * value if name in (COAT, VARNISH) else 0.0)
 
 
 def surface(mi, wo):
-    """Surface points seen from these directions."""
+    """Mitsuba's surface interaction for views from the directions `wo`."""
     point = mi.SurfaceInteraction3f()
     point.wi = mi.Vector3f(np.asarray(wo).T)
     return point
 
 
 def chi_square(mi, angle, functions):
-    """Mitsuba's chi-square test of the functions that its adapter derives from a BSDF."""
+    """Mitsuba's chi-square test of a sample function and a pdf from its BSDF adapter."""
     from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
 
     wi = [float(0.8 * np.sin(angle)), float(0.6 * np.sin(angle)), float(np.cos(angle))]
@@ -83,12 +83,12 @@ def chi_square(mi, angle, functions):
         sample_dim=3,
         sample_count=SAMPLES,
         res=31,
-        ires=8,  # a peak at grazing takes more than 4 nodes of a bin
+        ires=8,  # the default of 4 nodes per bin misses a grazing peak
     )
 
 
 def furnace(mi, bsdf, samples):
-    """Picture of a sphere in a white environment."""
+    """Render a sphere in a white environment with Mitsuba."""
     camera = mi.ScalarTransform4f().look_at([0, 0, 5], [0, 0, 0], [0, 1, 0])
     film = {"type": "hdrfilm", "width": 32, "height": 32, "rfilter": {"type": "box"}}
     picture = mi.render(
@@ -122,7 +122,7 @@ def test_values_are_those_of_the_model(mi, name, inputs):
     rng = np.random.default_rng(7)
     wo, wi = np.float32(directions((2, 512), rng, least=1e-3))
     wo[:8] = wi[-8:] = 0.0, 0.0, 1.0
-    # Near the mirror direction.
+    # Add lights near the mirror direction.
     wi[100:200] = wo[100:200] * [-1, -1, 1] + 0.03 * rng.normal(size=(100, 3))
     wi[:, 2] = np.abs(wi[:, 2])
     wi = (wi / np.linalg.norm(wi, axis=1, keepdims=True)).astype(np.float32)
@@ -192,7 +192,7 @@ def test_an_input_outside_its_range_is_refused(mi, name, inputs, message):
         mi.load_dict(bsdf(name, **inputs))
 
 
-SAMPLED = [  # plugin, inputs, angle of the viewer
+SAMPLED = [  # plugin, inputs, polar angle of the viewer
     *(("eon", {"roughness": each}, angle) for each in (0.3, 1.0) for angle in (0.0, 0.8, 1.5)),
     *((name, {}, angle) for name in (COAT, VARNISH) for angle in (0.0, 1.4)),
 ]
@@ -228,7 +228,7 @@ def test_an_llvm_that_ends_the_process_is_refused_before(mi, monkeypatch):
 
 
 def brightest(picture):
-    """Largest mean over blocks of 8 x 8 pixels."""
+    """Largest mean of a block of 8 x 8 pixels."""
     return np.array(picture).reshape(16, 8, 16, 8, 3).mean(axis=(1, 3, 4)).max()
 
 
@@ -241,6 +241,6 @@ def test_the_example_of_the_page_runs_and_shows_gloss(mi, tmp_path, monkeypatch)
         if "coated.png" in block or "ball.png" in block:
             seen.append(brightest(names["picture"]))
     assert 0.1 < np.array(names["picture"]).mean() < 1.0
-    assert seen[1] > 1.25 * seen[0]  # 1.5 was measured; without a lamp it would be 1
+    assert seen[1] > 1.25 * seen[0]  # measured: 1.5; without a lamp: 1
     for name in ("clay", "ball", "coated"):
         assert (tmp_path / f"{name}.png").stat().st_size > 1000

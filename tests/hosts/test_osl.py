@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OSL as a host: labels and their trees, and messages of the compiler and the engine."""
+"""OSL as a host: trees of closures, the profile for Cycles, and messages of compiler and engine."""
 
 import re
 from dataclasses import replace
@@ -36,7 +36,7 @@ def names(tree):
 
 
 def leaf(tree):
-    """The first closure of a tree."""
+    """First closure in a tree of closures."""
     return leaf(tree.parts[0]) if tree.parts else tree
 
 
@@ -80,13 +80,13 @@ def test_what_no_closure_takes_fails_with_its_words(host, new, message):
         host.trees(altered(shader(), "lobe_roughness)", f"lobe_roughness{new}"), WO, {})
 
 
-# --- what the profile for Cycles calls, in Cycles' meaning -----------------------------------------
+# --- closures of the profile for Cycles, as Cycles evaluates them --------------------------------
 
 COUNT = 256
 
 
 def weighed(tree, factor=1.0):
-    """The closures that scatter or emit, each with the product of its factors."""
+    """Closures of a tree that scatter or emit, each with the product of its factors."""
     if tree is None or tree.name == "transparent":
         return []
     if not tree.parts:
@@ -116,7 +116,7 @@ def for_cycles(host, node, wo, inputs, old="", new=""):
     ],
 )
 def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag, model, largest):
-    """Cycles' closure is FON plus a lobe with one factor of albedo too many; QON only matches for s >= 0."""
+    """Cycles' EON has one factor of albedo too many; its QON matches only for s >= 0."""
     rng = np.random.default_rng(1)
     wo, wi = directions((2, COUNT), rng)
     wi[:, :2] *= np.where((wo[:, :2] * wi[:, :2]).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
@@ -139,7 +139,7 @@ def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag
 
 @pytest.mark.parametrize("soft", [True, False])
 def test_the_cone_for_cycles_is_the_model_on_both_sides(host, soft):
-    """In Cycles, I points to the viewer and the normal faces the viewer, the opposite of OSL's convention."""
+    """Unlike in OSL, I points to the viewer in Cycles, and the normal faces the viewer."""
     rng = np.random.default_rng(1)
     wo, inner = directions(COUNT, rng), 170.0 * rng.random(COUNT)
     wo[::2, 2] *= -1.0
@@ -157,7 +157,7 @@ def test_the_cone_for_cycles_is_the_model_on_both_sides(host, soft):
 
 
 def test_the_walk_for_cycles_has_the_albedo_in_its_weight(host):
-    """Cycles divides the light of a random walk by the albedo."""
+    """The weight must include the albedo, because Cycles divides the walk's light by it."""
     rng = np.random.default_rng(1)
     inputs = {"weight": rng.random(COUNT), "color": rng.random((COUNT, 3))}
     inputs |= {"radius": rng.random((COUNT, 3)), "anisotropy": 2.0 * rng.random(COUNT) - 1.0}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The path tracer: pictures with known noise-free values, on the sphere and the shader ball."""
+"""Pictures of the path tracer have known values, on the sphere and the shader ball."""
 
 from dataclasses import replace
 
@@ -60,7 +60,7 @@ def test_a_picture_with_the_default_samples_has_no_noise(tracer):
     smooth, raw = (traced(tracer, CLAY, scene, Paths(n), "ball") for n in (None, 64))
 
     def contrast(image):
-        """Mean contrast in 2 x 2 pixel blocks of the ball's upper half, where smooth shading cancels."""
+        """Mean noise in blocks of 2 x 2 pixels of the ball's upper half; smooth shading cancels."""
         part = image[6:14, 10:22].mean(axis=-1)
         blocks = part[:-1, :-1] - part[1:, :-1] - part[:-1, 1:] + part[1:, 1:]
         return np.abs(blocks).mean()

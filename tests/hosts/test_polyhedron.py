@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mitsuba: its own BSDFs, and pictures of faceted solids."""
+"""Mitsuba as a renderer: its own BSDFs, judged by pictures of faceted solids."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ from tests.support.plans import keep
 from tests.support.verdicts import PASSED, RENDERER_NODES
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
-FACETS = 7e-5  # relative errors of such pictures, times the light's cosine
+FACETS = 7e-5  # relative error of a picture, times the light's cosine
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +26,7 @@ def host():
         yield host
 
 
-@pytest.mark.usefixtures("host")  # a run would only report that Mitsuba is missing
+@pytest.mark.usefixtures("host")  # skips the test if Mitsuba is missing
 def test_mitsuba_has_the_models_that_it_documents(monkeypatch):
     keep(monkeypatch, lambda task: task.host == "mitsuba")
     report = check([EXAMPLE], ["mitsuba"], nodes=["common"])
@@ -38,7 +38,7 @@ def test_mitsuba_has_the_models_that_it_documents(monkeypatch):
 
 @pytest.mark.parametrize("scene", [FRONT, SIDE, BACK], ids=lambda each: each.name)
 def test_pictures_are_linear_and_have_float_precision(host, scene):
-    """A dark color next to a bright one: 8 bits or a tone curve would be off by far more."""
+    """One channel is very dark: 8-bit pixels or a tone curve would change it by far more."""
     scene = replace(scene, size=64)
     material = mitsuba.NODES[0].made((1.0, 0.02, 1e-4), 0.0)
     picture = host.node(material, scene)[facet_points(64).mask]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""shadewire: its closures are those of stock GLSL, so its failures are, too; `test_upstream.py` has its own two."""
+"""shadewire has the closures and failures of stock GLSL; `test_upstream.py` has its other two."""
 
 from dataclasses import replace
 
@@ -14,11 +14,11 @@ from tests.support.cases import pairs
 from tests.support.documents import lobe, material, surface
 from tests.support.verdicts import DIFFERS, FAILED, PASSED
 
-SAME = 1e-5  # two texts in float32, of values up to 3
+SAME = 1e-5  # difference of two float32 texts, for values up to 3
 EON, FITTED = "oren_nayar_diffuse_bsdf, energy_compensation true", "MaterialX's fit of its albedo"
 WO, WI, COLOR, NUMBER = pairs(1000, 3)
 ALPHA = 0.1 + 0.9 * np.stack([NUMBER, COLOR[:, 0]], axis=1)
-CASES = {  # document, and its inputs
+CASES = {  # documents, and values of their inputs
     "diffuse": (
         material(lobe(energy_compensation="true")),
         {"color": COLOR, "roughness": NUMBER, "weight": COLOR[:, 0]},
@@ -47,7 +47,7 @@ def shadewire(hosts):
 @pytest.mark.parametrize("name", CASES)
 def test_values_and_throughputs_of_pairs_are_those_of_stock_glsl(shadewire, gl, name):
     text, inputs = CASES[name]
-    # Stock folds the weights of mixes in a surface shader into its lobes, which changes throughputs.
+    # In surface shaders, stock multiplies weights of lobes by shares of mixes: other throughputs.
     for output in ("response", "throughput") if "_bsdf" in text else ("response",):
         values = []
         for host in (shadewire, gl):

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""testrender as a host: judged with the real programs if they are named, otherwise with a
-recording.
+"""testrender as a host, judged with real programs if variables name them, or with a recording.
 
-The recording contains the output of OSL's programs; see `tests.support.osl`.
+`tests.support.osl` recorded the output of OSL's programs.
 """
 
 import os
@@ -19,8 +18,8 @@ from mxeon.models import eon_brdf
 from tests.support.verdicts import FAILED, PASSED, has
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
-# Error of pi f cos: 3 roundings of a point at distance 40, seen from a light at 1/2, times 8; and
-# OpenImageIO's arc cosine.
+# Error of pi f cos: 8 times 3 roundings of a point at distance 40, seen from a light at distance
+# 1/2; and OpenImageIO's arc cosine.
 FLAT = 2e-4
 REAL = all(os.environ.get(variable) for variable in programs.VARIABLES.values())
 real = pytest.mark.skipif(not REAL, reason="its variables name no build of OSL")
@@ -28,7 +27,7 @@ real = pytest.mark.skipif(not REAL, reason="its variables name no build of OSL")
 
 @pytest.fixture
 def replay(tmp_path, monkeypatch):
-    """The folder of programs that replay the recording; environment variables name them."""
+    """Folder with stand-ins for OSL's programs, which replay the recording."""
     for variable, path in osl.write_replay(tmp_path).items():
         monkeypatch.setenv(variable, path)
     return tmp_path
@@ -79,7 +78,7 @@ def test_the_recorded_picture_is_the_model(host):
     color, roughness = osl.INPUTS["color"], osl.INPUTS["roughness"]
     expected = np.pi * eon_brdf(wo, wi, np.array(color), roughness) * wi[:, 2:]
     error = np.abs(values - expected).max()
-    assert 0.0 < error < FLAT  # float32: half floats would be off by 2^-11
+    assert 0.0 < error < FLAT  # half floats would be off by 2^-11
     swapped = np.pi * eon_brdf(wo, wi, np.array(color[::-1]), roughness) * wi[:, 2:]
     assert np.abs(values - swapped).max() > FLAT
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Image files: correct orientation, one-line refusals, and the sRGB curve."""
+"""Images are read in the correct orientation or refused in one line; sRGB is decoded exactly."""
 
 import os
 
@@ -44,7 +44,7 @@ def test_a_file_that_is_not_regular_is_refused_and_blocks_nobody(tmp_path, make)
 def test_a_picture_that_is_cut_and_still_read_is_told(tmp_path):
     path = tmp_path / "a.jpg"
     codes = np.arange(64 * 64 * 3, dtype=np.uint32).astype(np.uint8).reshape(64, 64, 3)
-    assert oiio.ImageBuf(codes).write(str(path))  # JPEG is lossy, so the pixels may change
+    assert oiio.ImageBuf(codes).write(str(path))  # JPEG is lossy, so pixels are not compared
     path.write_bytes(path.read_bytes()[:-100])
     with pytest.warns(ImageWarning, match="a.jpg: is damaged; JPEG error: Premature end"):
         assert read_image(path).shape == (64, 64, 3)
@@ -63,7 +63,7 @@ def test_an_environment_that_is_not_finite_is_refused_and_a_texture_is_told(tmp_
         read_texture(path)
 
 
-# Files of a document with images of 4 x 2 pixels, and their total number of pixels.
+# Image files of a document, with 4 x 2 pixels each, and the number of pixels that count.
 TOGETHER = {"one": (["a.exr"], 8), "two": (["a.exr", "b.exr"], 16), "same": (["a.exr"] * 3, 8)}
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files are written completely or not at all, even on full disks, which limit the size of a file."""
+"""Files are written completely or not at all, even if the disk is full."""
 
 import numpy as np
 import OpenImageIO as oiio
@@ -11,7 +11,7 @@ from tests.support.faults import room_for
 
 NOISE = np.random.default_rng(1).random((33, 33, 3))
 IMAGES = {".exr": np.float32(NOISE), ".png": np.uint8(255.0 * NOISE)}
-# Limits: nothing, less than a header, some rows, and all but the last bytes.
+# Room on the disk in bytes: none, less than a header, half of the file, and all but one byte.
 ROOM = {
     "nothing": lambda size: 0,
     "little": lambda size: 100,

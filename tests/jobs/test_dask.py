@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dask clusters: real schedulers and worker processes on this machine."""
+"""Jobs on Dask clusters, with real schedulers and worker processes on this machine."""
 
 import os
 import socket
@@ -22,7 +22,7 @@ from tests.support.plans import keep_checks
 
 ONE_THREAD = ["--nthreads", "1"]
 OTHER_VERSION = "import mxeon\nmxeon.__version__ = '0.0.9'\n"
-# Dask does not close the sockets with which it looks for a free port.
+# Warnings are ignored because Dask leaves sockets open after it looks for a free port.
 pytestmark = [
     pytest.mark.whole,
     pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning"),
@@ -38,8 +38,8 @@ def run(work, items, address, timeout=600.0):
 
 @contextmanager
 def farm(*workers):
-    """A scheduler's address; each worker is given by its additional environment variables."""
-    from distributed import LocalCluster  # a slow import, kept out of test collection
+    """Address of a scheduler; each argument gives a worker's additional environment variables."""
+    from distributed import LocalCluster  # imported here because it is slow
 
     with ExitStack() as stack:
         options = {"n_workers": 0, "dashboard_address": ":0", "protocol": "tcp"}
@@ -66,7 +66,7 @@ def farm(*workers):
 
 @pytest.fixture(scope="module")
 def pair():
-    """Two workers, one of which has a lamp."""
+    """Address of a scheduler with two workers; only one has the variable LAMP."""
     with farm({}, {"LAMP": "on"}) as address:
         yield address
 
@@ -92,7 +92,7 @@ def test_a_worker_killed_at_work_costs_nothing(pair, tmp_path):
 
 def test_a_worker_killed_with_its_result_costs_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr(dask, "FETCH", 1.0)
-    with farm({}) as address:  # a single worker, so no other one can take over
+    with farm({}) as address:  # no other worker can take over
         assert run(Lost, [str(tmp_path / "a")], address) == {0: Outcome("done")}
 
 
@@ -117,7 +117,7 @@ NOBODY, SOMEBODY, TWO_THREADS = (
 
 
 class Client:
-    """A client of a scheduler that responds with these workers, one list after the other."""
+    """Stand-in for a Dask client, which returns prepared lists of workers one after another."""
 
     def __init__(self, *answers):
         self._answers = list(answers)
@@ -163,7 +163,7 @@ def test_a_cluster_that_cannot_go_on_is_one_line(answers, wait, submitted, error
     ],
 )
 def test_an_address_without_an_answer_is_one_line(address, wait, words):
-    with socket.create_server(("127.0.0.1", 0)) as server:  # a server that never answers
+    with socket.create_server(("127.0.0.1", 0)) as server:  # this server never answers
         if address == "listener":
             address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
         with pytest.raises(InputError, match=words):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pool, and batches of documents: a failing worker only costs its own item."""
+"""A worker of the pool that fails loses only its own item; also batches of documents."""
 
 import os
 import signal
@@ -48,7 +48,7 @@ def test_workers_never_hear_of_ctrl_c():
 
 
 def test_no_temporary_file_outlives_the_pool(tmp_path, monkeypatch):
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))  # other tests use the system's folder
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))  # no other test writes to it
     outcomes = run(square, range(4), 1, 60.0)
     next(outcomes)
     assert list(tmp_path.glob("mxeon-pool-*"))
@@ -57,7 +57,7 @@ def test_no_temporary_file_outlives_the_pool(tmp_path, monkeypatch):
 
 
 def _deaf(_):
-    """Whether this process was started with SIGINT blocked."""
+    """Whether SIGINT is blocked in this process."""
     return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Document folders never run code: a Python file beside a document is not imported."""
+"""Commands never import Python files from the folders of documents."""
 
 import subprocess
 import sys
@@ -14,8 +14,8 @@ from mxeon.shaders.library import examples_folder
 from tests.support.availability import available
 from tests.support.faults import square
 
-# Modules that any process may import: the standard library, installed packages, Blender's modules,
-# and those that Python looks for at startup.
+# Names of modules that a process might import: standard library, Blender's modules, and modules
+# that Python looks for at startup. Installed packages are added later.
 NAMES = {*sys.stdlib_module_names, "bpy", "_cycles", "mathutils"}
 NAMES |= {"sitecustomize", "usercustomize", "numpy", "mxeon"}
 PLANT = "import os\nos.write(os.open({!r}, os.O_CREAT | os.O_WRONLY), __file__.encode())\n"
@@ -38,7 +38,7 @@ STATUS = {"check": 3, "kit check": 3}  # msl and an empty kit are not run
 
 
 def plant(folder, names, text):
-    """Plant modules with these names and the same text; links are faster than files."""
+    """Write modules with the same text under several names; links are faster than copies."""
     folder.mkdir(exist_ok=True)
     first, *others = (folder / f"{name}.py" for name in names)
     first.write_text(text)
@@ -47,7 +47,7 @@ def plant(folder, names, text):
 
 
 def run(folder, command):
-    """Run the command as pip installs it, from a folder with a document."""
+    """Run a command by a script like pip's, in a folder with a document."""
     (folder / "in").mkdir(exist_ok=True)
     (folder / "bin").mkdir(exist_ok=True)
     (folder / "bin" / "command").write_text(SCRIPT)
@@ -59,7 +59,7 @@ def run(folder, command):
 
 @pytest.fixture(scope="module")
 def hostile(tmp_path_factory):
-    """A working folder, folders for documents and results, and a report, all full of these modules."""
+    """Working folder in which the folders for documents and results are full of hostile modules."""
     report, hostile = (tmp_path_factory.mktemp(name) for name in ("report", "hostile"))
     assert run(report, COMMANDS["check"]).returncode == 3
     (hostile / "report").symlink_to(report / "out")

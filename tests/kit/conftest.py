@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Kits with pictures of known models, and helpers to read results."""
+"""Helpers that write kits with pictures of known models, and that read results."""
 
 import re
 from functools import cache
@@ -24,7 +24,7 @@ EON, QON, CUBED = (reference.diffuse_model(name).title for name in ("eon", "qon"
 
 @pytest.fixture(scope="module", autouse=True)
 def remembered():
-    """Expected values of a model in a view, computed once for all tests."""
+    """Cache the expected values of models in views for all tests of a module."""
     with pytest.MonkeyPatch.context() as patch:
         for function in (expected, pixel_means):
             once = cache(function)
@@ -36,15 +36,15 @@ def remembered():
 
 @cache
 def means(model, name):
-    """A model's means of the judged pixels of a view."""
+    """Mean values of a model over each judged pixel of a view."""
     return pixel_means(reference.diffuse_model(model), VIEWS[name])
 
 
-EXPORTED = {}  # files of a kit by name, exported once
+EXPORTED = {}  # contents of a kit's files by name, exported once
 
 
 def write_kit(folder):
-    """Write a kit without pictures, to an empty folder or over another kit."""
+    """Write a kit without pictures to an empty folder, or over another kit."""
     if not EXPORTED:
         export_kit(folder, SIZE)
         for file in filter(Path.is_file, folder.rglob("*")):
@@ -55,7 +55,7 @@ def write_kit(folder):
 
 
 def write_pictures(folder, true="eon", false="qon", noise=0.0, seed=1):
-    """Write a kit with pictures of these models, with the given relative noise in each pixel."""
+    """Write a kit with pictures of two models; `noise` is the relative noise of each pixel."""
     rng = np.random.default_rng(seed)
     write_kit(folder)
     for view in VIEWS.values():
@@ -68,7 +68,7 @@ def write_pictures(folder, true="eon", false="qon", noise=0.0, seed=1):
 
 @pytest.fixture
 def kit(tmp_path):
-    """A kit with pictures of EON and QON."""
+    """Folder of a kit with pictures of EON and QON."""
     write_pictures(tmp_path)
     return tmp_path
 
@@ -82,7 +82,7 @@ def read(path):
 
 
 def result_of(run, check, subject):
-    """The only result of a check whose subject starts with the given text."""
+    """The single result of a check whose subject starts with the given text."""
     (result,) = [
         each for each in run.results if each.check == check and each.subject.startswith(subject)
     ]
@@ -90,6 +90,6 @@ def result_of(run, check, subject):
 
 
 def names(run):
-    """The first name in each note, by subject."""
+    """Best matching model in each note, by subject."""
     pattern = r"(.*): best match: (.*) \(rms .*?\), then (.*) \("
     return {match[1]: match[2] for match in map(re.compile(pattern).match, run.notes) if match}

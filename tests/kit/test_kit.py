@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kit: its files, including damaged ones, verdicts on pictures, and Cycles as an external renderer."""
+"""Kits: files, damaged pictures, verdicts, and Cycles as an external renderer."""
 
 import json
 import re
@@ -49,7 +49,7 @@ EXTERNAL_RENDERER = Path(__file__).parents[1] / "support" / "external_renderer.p
 
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory):
-    """A kit that tests must not change."""
+    """Folder of an exported kit, which tests must not change."""
     folder = tmp_path_factory.mktemp("exported")
     export_kit(folder, SIZE)
     return folder
@@ -207,7 +207,7 @@ def test_the_command_exports_and_judges(tmp_path, capsys):
 
 
 def write_osl(kit, library, profile):
-    """The materials of a kit as OSL, made from its documents."""
+    """Write OSL for each material of a kit, generated from its documents; returns the folder."""
     header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
     folder = kit / "osl"
     folder.mkdir()
@@ -221,7 +221,7 @@ def write_osl(kit, library, profile):
 
 
 def external_run(kit, library, profile=None):
-    """Judged Cycles pictures of a new kit."""
+    """Export a kit, render it with Cycles, and return the run that judges the pictures."""
     with available("cycles"):
         python = interpreter()
     export_kit(kit, SIZE)
@@ -274,17 +274,17 @@ def planted(value):
 
 
 def changed(change):
-    """A function that rewrites a picture with changed pixels."""
+    """Function that rewrites a picture file with changed pixels."""
     return lambda path: write_exr(path, change(read(path)), {})
 
 
 def replaced(change):
-    """A function that replaces the bytes of a picture."""
+    """Function that changes the bytes of a picture file."""
     return lambda path: path.write_bytes(change(path.read_bytes()))
 
 
 def channels(*names, x=0, y=0):
-    """A function that rewrites a picture with these channels, or with another origin."""
+    """Function that rewrites a picture file with the given channels and origin."""
     spec = oiio.ImageSpec(SIZE, SIZE, len(names), oiio.FLOAT)
     spec.channelnames, spec.x, spec.y = list(names), x, y
     return lambda path: oiio.ImageBuf(spec).write(str(path))
@@ -297,7 +297,7 @@ def write_png(path):
 
 
 LAYERS = ("a.R", "a.G", "a.B", "b.R", "b.G", "b.B")
-SPOILED = {  # picture: how it is damaged, and the expected diagnosis
+SPOILED = {  # by picture: function that damages it, and words of the diagnosis
     "true_front": (changed(planted(np.nan)), "must be finite numbers; got .* row 32, column 32"),
     "true_side": (changed(lambda image: image[:32]), "must be 64 x 64 pixels; got 64 x 32"),
     "true_back": (

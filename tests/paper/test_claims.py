@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page of claims: which claims of the paper do the measurements refute?"""
+"""Measurements refute the same claims of the paper as the page of claims states."""
 
 import re
 
@@ -8,7 +8,7 @@ import pytest
 from tools.paper.__main__ import SECTIONS
 from tools.paper.claims import page, sampling
 
-# Claims of the paper that no measured value satisfies.
+# Claims of the paper that the measurements refute.
 REFUTED = {
     "with it the albedo stays at most 1",
     "its exact albedo is exact in float32, to 1e-6",

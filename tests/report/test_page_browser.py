@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The report page in a browser: it works without a network, and also without scripts."""
+"""The report page works in a browser without a network, and without scripts."""
 
 from contextlib import contextmanager
 from pathlib import Path
@@ -28,14 +28,14 @@ def address(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def browser():
-    """Headless Chromium."""
+    """Headless Chromium, which stays open during these tests."""
     with available("webgl"), launched() as browser:
         yield browser
 
 
 @contextmanager
 def opened(browser, address, **options):
-    """The page in the browser; any request or console message fails the test."""
+    """Context with the report page; network requests and console messages fail the test."""
     page = browser.new_page(**options)
     with watched(page, address):
         yield page
@@ -53,7 +53,7 @@ def test_a_cell_of_the_matrix_leads_to_its_evidence(browser, address):
         target = cell.get_attribute("href")
         cell.click()
         page.wait_for_selector(f"details{target}[open]")
-        assert page.locator(f"{target} > summary").is_visible()  # passed checks are folded
+        assert page.locator(f"{target} > summary").is_visible()  # was folded before
 
 
 def test_a_failure_leads_to_the_page_on_its_defect(browser, address):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reports: nothing is lost, everything is escaped, and files are complete."""
+"""Reports lose no result, escape all texts, and are written completely."""
 
 import json
 import math
@@ -95,7 +95,7 @@ def run():
 
 
 class Page(HTMLParser):
-    """Elements, identifiers and text of a page."""
+    """Tags, attributes and text of an HTML page."""
 
     def __init__(self, html):
         super().__init__()
@@ -218,7 +218,7 @@ def test_a_sentence_says_how_a_material_looks(run, result, picture, words):
     one = replace(run, results=(judged,), pictures=(shown,))
     text = page_of(one)
     assert words in Page(text).text
-    # A check mark would contradict a visible difference.
+    # A visible difference is marked "within the tolerance" instead of by a check mark.
     assert ('aria-label="within the tolerance"' in text) == (
         words.startswith("up to") and not result
     )
@@ -239,7 +239,7 @@ def test_the_worst_light_is_first_and_its_scale_reaches_its_largest_difference(r
         text.index(each) for each in ("Light from behind, gl", "Light from the side, gl")
     )
     assert first < text.index("≥ 1.3 % of white") < second
-    assert text.count("1 passed") == 2  # once in the header, once in the check's own row
+    assert text.count("1 passed") == 2  # in the header and in the row of the check
 
 
 def test_documents_open_with_the_worst_in_the_studio_and_libraries_with_causes(run):
@@ -263,7 +263,7 @@ def test_documents_open_with_the_worst_in_the_studio_and_libraries_with_causes(r
         page = Page(page_of(replace(shown, contents=contents)))
         assert [each for each in page.values("id") if each in order] == order
     title = "EON in GLSL is wrong for light from behind"
-    assert page.text.count(title) == 3  # once as a cause, and with each check
+    assert page.text.count(title) == 3  # as a cause, and at each check
     node = FAILURE.subject.partition(",")[0]
     assert f"Checks {title} {node} 2 best match: QON {node} 1 " in page.text
     alts = page.values("alt")

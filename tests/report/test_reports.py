@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reports of several runs: regressions, with the exit status, and the page of the field."""
+"""`report diff` finds regressions between two runs; `report field` summarizes several runs."""
 
 import json
 import math
@@ -33,7 +33,7 @@ PLACE = "gl, eonlib, value, clay"
 def made_run(
     verdict=PASSED, error=1e-7, device="llvmpipe", difference=1e-7, subject="clay", **fields
 ):
-    """A run with one check, whose result has these fields."""
+    """Made-up run with one result, which has the given fields."""
     pixels = np.zeros((4, 4, 3))
     picture = Picture("d", "clay", "gl", "eonlib", "side", pixels + difference, pixels, {})
     result = Result("value", "claim", subject, "gl", "eonlib", verdict, error, tolerance=1e-6)
@@ -42,7 +42,7 @@ def made_run(
 
 
 def kept(run, folder):
-    """Write the results of a run to a folder, as `report` reads them, and return its path."""
+    """Write the results of a run to a folder, and return the folder's path."""
     Path(folder).mkdir(exist_ok=True)
     Path(folder, "results.json").write_text(to_json(run))
     return str(folder)
@@ -54,7 +54,7 @@ def read(run):
 
 
 def diff(folder, before, after, *options):
-    """The exit status of `report diff`."""
+    """Exit status of `report diff` for two runs."""
     return main(["report", "diff", kept(before, folder / "a"), kept(after, folder / "b"), *options])
 
 
@@ -80,7 +80,7 @@ CHANGES = [
     (GONE, made_run(FAILED), (WORSE, "1 check: none -> failed at 1e-07")),
     (made_run(), REFUSED, (WORSE, "clay.mtlx: not refused -> refused")),
     (REFUSED, made_run(), (BETTER, "clay.mtlx: refused -> not refused")),
-    # Removing a document removes its checks; moving it does not.
+    # A removed document accounts for a missing check; a moved document does not.
     (
         TWO,
         replace(GONE, documents=TWO.documents[:1]),
@@ -130,7 +130,7 @@ ALL = Errors(1000, 100, 0, 0.3, 0.05)
 
 
 def errors(*regions, samples="a", **changes):
-    """Errors of all samples and of regions; each is ALL with the given changes."""
+    """Fields with errors of all samples and of regions, which are ALL with the given changes."""
     whole, *parts = ({**changes}, *regions)
     found = (replace(ALL, **whole), *(replace(ALL, **{**changes, **each}) for each in parts))
     return {"errors": found, "samples": samples}
@@ -140,11 +140,11 @@ ROUGH, SMOOTH = (Region("roughness", "value", **end) for end in ({"low": 0.5}, {
 HALVES = {"region": SMOOTH}, {"region": ROUGH}
 PAGE, TWO_PAGES = {"pages": ("a",)}, {"pages": ("a", "b")}
 PERMITTED = {"verdict": DIFFERS}
-SEED = {"samples": "b", "of": 900}  # fewer samples, and different ones
+SEED = {"samples": "b", "of": 900}  # different and fewer samples
 INVALID = {"error": math.inf, "tolerance": 0.0, "quantity": Quantity.VALUES}
-# A result before and after, the kind of the change, and part of its line.
+# Result before, result after, kind of the change, and part of the printed line.
 GATE = {
-    # Regressions that keep the largest error.
+    # Regressions that do not change the largest error.
     "light is lost below half of the layers": (errors(), errors(wrong=200, rms=0.1), WORSE, "10 % -> 20 % of"),
     "a page explains it no longer": (errors() | PAGE, errors(), WORSE, "a no longer explains it"),
     "the best match is far, although the page stays": (
@@ -177,7 +177,7 @@ GATE = {
     "a permitted reading with a larger error": (PERMITTED | errors(), PERMITTED | errors(largest=0.6), WORSE, "largest"),
     "does not compile": ({}, {"error": None}, WORSE, "failed at 0.3 -> failed"),
     "no samples, and larger": ({}, {"error": 0.9}, WORSE, "failed at 0.3 -> failed at 0.9; 3 times larger"),
-    # Improvements.
+    # Improvements of a result.
     "another permitted reading, nearer": (
         PERMITTED | errors() | {"diagnosis": QON}, PERMITTED | errors(rms=0.06, largest=0.2) | {"diagnosis": FON},
         "", "",
@@ -190,7 +190,7 @@ GATE = {
     ),
     "a page is found": (errors(), errors() | PAGE, BETTER, "a explains it"),
     "smaller": ({"error": 0.9}, {}, BETTER, "3 times smaller"),
-    # Changes within the noise.
+    # Changes within the noise of samples.
     "the same": (errors(*HALVES), errors(*HALVES), "", ""),
     "another driver": (errors(), errors(rms=0.0505, largest=0.4, wrong=101), "", ""),
     "another seed": (
@@ -203,7 +203,7 @@ GATE = {
     ),
     "another name of the same error": (errors() | {"diagnosis": QON}, errors() | {"diagnosis": FON}, "", ""),
     "other edges that are not finite": (INVALID | {"error": 376.0}, INVALID | {"error": 380.0}, "", ""),
-    # Checks that do not run.
+    # Checks that did not run before or after.
     "lost": ({}, {"verdict": NOT_RUN, "reason": "timed out"}, LOST, "failed at 0.3 -> not run; timed"),
     "found": ({"verdict": NOT_RUN, "reason": "timed out"}, {}, WORSE, "not run -> failed at 0.3"),
     "implied": ({"verdict": NOT_RUN, "diagnosis": caused("follows")}, {}, OTHER, "not run -> failed"),
@@ -230,8 +230,8 @@ def test_the_rules_tell_a_regression_from_noise_and_from_a_repair(row, tmp_path,
 SCHLICK = "generalized_schlick_bsdf"
 ROUGH_NODE = "oren_nayar_diffuse_bsdf, energy_compensation true"
 LIGHT = "bsdf.response = diffuse *"
-# Regressions of MaterialX's own text: the check, the node's title and file, and the text before and
-# after. Most keep the largest error.
+# Regressions of MaterialX's GLSL: check, title of the node, file, text and replacement. Most do not
+# change the largest error.
 PLANTED = {
     "a fifth of the light lost below half of the layers": (
         "layering", f"{SCHLICK}, scatter_mode R", SCHLICK, "= vec3(1.0 - avgDirAlbedo * weight);",
@@ -265,7 +265,7 @@ PLANTED = {
 }  # fmt: skip
 
 
-# Undoing these also raises some samples' errors, because stock is too bright there.
+# Where stock is too bright, undoing these regressions raises the errors of some samples.
 HIDING = {
     "transmission tinted by color0",
     "dark hair for some cuticles",
@@ -311,7 +311,7 @@ def test_a_check_with_a_baseline_is_one_command(tmp_path, capsys):
     document = str(examples_folder() / "clay.mtlx")
     check = ["check", document, "--host", "msl", "--library", "eonlib", "--workers", "0"]
     out, old = str(tmp_path / "out"), tmp_path / "old"
-    assert main([*check, "--report", out, "--annotations"]) == 3  # text for msl is not run
+    assert main([*check, "--report", out, "--annotations"]) == 3  # msl is generated but not run
     assert "\n::warning title=mxeon check::not run" in capsys.readouterr().out
     for name, change, status, text in (
         ("same", {}, 0, "no difference"),
@@ -375,12 +375,12 @@ def test_what_is_no_report_is_one_line(tmp_path, capsys, text, words):
     assert words in capsys.readouterr().err
 
 
-# Rules that the schema cannot state, and the reader's messages.
+# The reader's messages for rules that the schema cannot express.
 TOGETHER = re.compile("counts must be |must have a tolerance|must be at least 0|inhomogeneous")
 
 
 def replacements(value, replace_it):
-    """Copies of a JSON value with one value replaced by wrong or right ones, or one key removed."""
+    """Copies of a JSON value, each with an inner value replaced, or with a key removed or added."""
     for other in (None, True, 7.5, "text", [[]], [True], {"more": [[]]}):
         yield replace_it(other)
     is_list = isinstance(value, list)
@@ -430,7 +430,7 @@ def test_the_schema_and_the_reader_accept_the_same_reports(tmp_path, capsys, mon
 
 
 def refusal_of(folder, capsys):
-    """The one-line refusal of `report diff` for a report."""
+    """Assert that `report diff` refuses a report in one line, and return the message."""
     assert main(["report", "diff", str(folder), str(folder)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and error.startswith("mxeon: ")
@@ -461,7 +461,7 @@ REPORT = to_json(made_run())
 
 
 def edit(folder, change):
-    """A report with a changed results.json."""
+    """Write a results.json to which a change is applied."""
     content = json.loads(REPORT)
     change(content)
     (folder / "results.json").write_text(json.dumps(content))
@@ -474,7 +474,7 @@ def test_names_in_a_report_cannot_steer_the_terminal(tmp_path, capsys):
 
 
 def run_with(*folders, verdict=PASSED):
-    """A run with folders as libraries; only the last may fail."""
+    """Made-up run with folders as libraries; `verdict` is that of the last library."""
     verdicts = [PASSED] * (len(folders) - 1) + [verdict]
     (result,) = made_run().results
     results = tuple(
@@ -489,8 +489,8 @@ def run_with(*folders, verdict=PASSED):
     "before, after",
     [
         (["/old/eonlib"], ["/new/eonlib"]),
-        (["/old/a", "/old/b"], ["/new/b", "/new/a"]),  # matched by name, in any order
-        (["/old/a", "/same/b"], ["/new/c", "/same/b"]),  # the remaining ones matched by position
+        (["/old/a", "/old/b"], ["/new/b", "/new/a"]),  # libraries match by name in any order
+        (["/old/a", "/same/b"], ["/new/c", "/same/b"]),  # unmatched names match by position
     ],
 )
 def test_a_library_that_lies_elsewhere_is_the_same_one(before, after):
@@ -505,7 +505,7 @@ TOLERANCE = 1e-6
 
 
 def made(check, error, **changes):
-    """A result of a check of EON's node on gl."""
+    """Made-up result of a check of EON's node on gl."""
     verdict = PASSED if error <= TOLERANCE else FAILED
     result = Result(
         check, "claim.", EON, "gl", "stock", verdict, error, Quantity.DIFFERENCE, TOLERANCE,
@@ -520,7 +520,7 @@ WRONG = (
     made("furnace", 1e-7),
     made("integral", 0.3, pages=("a", "b")),
     made("black", 0.0),
-    # Makes no claim about rough diffuse models.
+    # Results of other nodes say nothing about rough diffuse models.
     made("value", 0.4, subject="sheen_bsdf, mode zeltner"),
 )
 RUN = Run("0.1.0", {}, (Identity("gl", "OpenGL 4.5", "llvmpipe"),), WRONG)
