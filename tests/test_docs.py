@@ -34,7 +34,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 FOLDERS = (
     "docs|tests|tools|examples|libraries|genglsl|genosl|python|models|shaders|hosts|conformance"
 )
-PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s:]*[^`<\s:.])(?::([\w.]+))?`")  # without placeholders
+PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s:]*[^`<\s:.])(?::([\w.]+))?`")  # skips placeholders
 SCRIPT = re.compile(r"python -m ((?:tests|tools)[\w.]*\w)")
 NAME = re.compile(r"`(mxeon(?:\.\w+)+)")
 

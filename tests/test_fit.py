@@ -92,7 +92,7 @@ ONE = MeasuredBrdf(SIDES[:1], SIDES[1:2], np.array([[0.2, 0.1, 0.05]]), np.array
 @pytest.mark.parametrize(
     ("data", "numbers"),
     (
-        (ONE, 0),  # three values for four parameters
+        (ONE, 0),  # fewer values than parameters
         (replace(ONE, error=None), 0),
         (MeasuredBrdf(*(np.repeat(each, 2, 0) for each in (ONE.wo, ONE.wi, ONE.value))), 0),
         # On a black surface, only the color is determined.

@@ -97,7 +97,7 @@ sys.exit(main())"""
 
 
 def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # like nohup
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # nohup does this
     try:
         with raise_signals():
             os.kill(os.getpid(), signal.SIGHUP)

@@ -56,7 +56,7 @@ def test_a_film_of_the_index_of_its_schlick_substrate_has_one_phase(shown):
         material(lobe("generalized_schlick_bsdf", color0=(0.04, 0.04, 0.04), **FILM))
     )
     assert result.verdict == "passed"
-    assert result.error < 1e-4  # with a different phase the error would be 0.17
+    assert result.error < 1e-4  # another phase would be off by 0.17
 
 
 def test_direct_light_shows_a_wrong_curve_of_a_film_on_metal(shown, tmp_path):

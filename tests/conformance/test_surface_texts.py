@@ -61,7 +61,7 @@ def distances(spec: SentenceSpec, values: np.ndarray) -> list[float]:
 def test_each_difference_from_a_text_has_a_name(spec):
     own, *others = distances(spec, shown(spec))
     if own <= SAME:
-        assert min(others, default=np.inf) > SAME  # the named forms must differ
+        assert min(others, default=np.inf) > SAME  # named forms differ from the text
     else:
         assert min(others) <= SAME
 

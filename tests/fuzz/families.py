@@ -30,7 +30,7 @@ def cases(family, count=None):
     return [to_case(rng, each) for each in drawn]
 
 
-# --- shader sources that include forbidden files, in every way and at every depth --------------------
+# --- shader sources that include forbidden files, in all forms and depths ---------------------
 
 NODE = """<nodedef name="ND_own" node="own"><output name="out" type="color3"/></nodedef>
 <implementation name="IM_own" nodedef="ND_own" file="{}" {}{}/><own name="own" type="color3"/>"""

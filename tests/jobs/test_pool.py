@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A worker of the pool that fails loses only its own item; also batches of documents."""
+"""A failing worker of the pool loses only its own item, also in batches of documents."""
 
 import os
 import signal

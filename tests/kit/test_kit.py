@@ -297,7 +297,7 @@ def write_png(path):
 
 
 LAYERS = ("a.R", "a.G", "a.B", "b.R", "b.G", "b.B")
-SPOILED = {  # by picture: function that damages it, and words of the diagnosis
+SPOILED = {  # picture: function that damages it, and words of the diagnosis
     "true_front": (changed(planted(np.nan)), "must be finite numbers; got .* row 32, column 32"),
     "true_side": (changed(lambda image: image[:32]), "must be 64 x 64 pixels; got 64 x 32"),
     "true_back": (

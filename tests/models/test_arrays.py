@@ -54,7 +54,8 @@ WIDTH = 1e-4  # step of the finite differences
 OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)  # three single and three double steps on each side
 RELIABLE = 2e-8  # maximum disagreement of two step widths for a reliable derivative
 COMPARED = 0.6  # minimum fraction of partial derivatives that are compared
-# Minimum fractions for functions with kinks: clamped curves at thousands of nodes, roots of noise.
+# Smaller fractions for two functions: a film's curve has kinks at thousands of nodes, where it is
+# clamped, and a root amplifies the rounding of differences.
 CUT = {"film_albedo_dir": 0.3, "diffusion_blur": 0.0}
 NOISE = {"diffusion_blur": 2e-8}  # error of the root of a difference with a rounding of 2^-53
 VALUE = 1e-12  # difference of libraries, relative to the larger of 1 and the value

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reflectances computed from an albedo are its exact inverse."""
+"""A reflectance computed from an albedo has exactly this albedo."""
 
 import mpmath as mp
 import numpy as np

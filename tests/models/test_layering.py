@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Layering operators: albedos, identities, and the domain in which albedos stay below 1."""
+"""Layering operators: albedos, identities, and sums that reflect more than all light."""
 
 import numpy as np
 
@@ -62,4 +62,4 @@ def test_every_tree_of_combinations_keeps_the_albedo_of_the_text():
         white = layer(lobe, Bsdf(np.ones(3), np.zeros(3))).value
         assert np.all(np.abs(white - np.maximum(albedo, 1.0)) <= TREE * scale)
         above += np.count_nonzero(albedo > 1.0)
-    assert 500 < above < 2500  # of 3000 albedos, so both sides of 1 are tested
+    assert 500 < above < 2500  # 3000 albedos on both sides of 1

@@ -53,7 +53,7 @@ def test_a_cell_of_the_matrix_leads_to_its_evidence(browser, address):
         target = cell.get_attribute("href")
         cell.click()
         page.wait_for_selector(f"details{target}[open]")
-        assert page.locator(f"{target} > summary").is_visible()  # was folded before
+        assert page.locator(f"{target} > summary").is_visible()  # the click unfolds it
 
 
 def test_a_failure_leads_to_the_page_on_its_defect(browser, address):

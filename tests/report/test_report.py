@@ -239,7 +239,7 @@ def test_the_worst_light_is_first_and_its_scale_reaches_its_largest_difference(r
         text.index(each) for each in ("Light from behind, gl", "Light from the side, gl")
     )
     assert first < text.index("≥ 1.3 % of white") < second
-    assert text.count("1 passed") == 2  # in the header and in the row of the check
+    assert text.count("1 passed") == 2  # once in the header, once in the check's row
 
 
 def test_documents_open_with_the_worst_in_the_studio_and_libraries_with_causes(run):
@@ -263,7 +263,7 @@ def test_documents_open_with_the_worst_in_the_studio_and_libraries_with_causes(r
         page = Page(page_of(replace(shown, contents=contents)))
         assert [each for each in page.values("id") if each in order] == order
     title = "EON in GLSL is wrong for light from behind"
-    assert page.text.count(title) == 3  # as a cause, and at each check
+    assert page.text.count(title) == 3  # once as a cause, and once per check
     node = FAILURE.subject.partition(",")[0]
     assert f"Checks {title} {node} 2 best match: QON {node} 1 " in page.text
     alts = page.values("alt")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Invalid documents: each ends in one line that names the place, the rule and the value."""
+"""An invalid document is refused in one line that names the place, the rule and the value."""
 
 import pytest
 

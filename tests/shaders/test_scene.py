@@ -32,7 +32,7 @@ def test_points_lie_on_the_sphere_under_the_pixel_centres(size):
     points = sphere(size)
     x, y, z = np.moveaxis(points.position, -1, 0)
     np.testing.assert_allclose(x[0], (2.0 * np.arange(size) + 1.0) / size - 1.0, atol=1e-15)
-    np.testing.assert_array_equal(y, -x.T)  # row 0 at the top
+    np.testing.assert_array_equal(y, -x.T)  # row 0 is at the top
     np.testing.assert_array_equal(points.mask, np.hypot(x, y) < 1.0)
     np.testing.assert_allclose((points.position**2).sum(axis=-1)[points.mask], 1.0, atol=1e-15)
     np.testing.assert_array_equal(points.normal[points.mask], points.position[points.mask])
