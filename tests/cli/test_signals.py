@@ -55,7 +55,7 @@ def test_a_killed_command_leaves_its_folder_to_the_next_one(tmp_path):
     process = start(tmp_path, *CHECK)
     folder = tmp_path / "tmp"
     wait_for_results(tmp_path, process)
-    process.send_signal(signal.SIGSTOP)  # prevents that it ends and removes its folder
+    process.send_signal(signal.SIGSTOP)  # a running command would remove its folder
     [made] = folder.glob("mxeon-pool-*")
     os.utime(made, (0, 0))  # folders younger than a minute are always kept
     alive = subprocess.run(GENERATE, cwd=tmp_path, env=os.environ | {"TMPDIR": str(folder)})

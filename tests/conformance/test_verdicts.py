@@ -79,7 +79,7 @@ SURFACE = dict.fromkeys(
 )
 SURFACE |= {"lobes": ("throughput_of_lobes",)}
 FILMS = {"lobes_film": LOBES}
-SPHERE = {"states": ("a surface that bends: a sphere",)}  # seen along the normal
+SPHERE = {"states": ("a surface that bends: a sphere",)}  # wrong along the normal
 PASSED_THROUGH = {"transmitted": UNSHADOWED, "transmitted_finite": NAN, "methods": ()}
 # Failures of stock MaterialX by title and check: parts of one cause in the diagnosis.
 STOCK = {

@@ -47,7 +47,7 @@ def values(tmp_path_factory):
             (target / "kernel" / name).touch()
         (target / FILE).parent.mkdir()
         (target / FILE).write_bytes((folder / FILE).read_bytes())
-        apply(target, *patches, strip=4)  # strips a/intern/cycles/kernel
+        apply(target, *patches, strip=4)  # drop a/intern/cycles/kernel
         command = [program("g++"), "-std=c++17", f"-I{target}", PROGRAM, "-o", target / "program"]
         output(*command)
         found = output(target / "program", input=lines).split()

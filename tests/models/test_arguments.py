@@ -24,7 +24,7 @@ NO_ARRAYS = {"layer", "add", "model", "model_names"}
 
 @pytest.fixture(scope="module")
 def rows():
-    """Rows of bad arguments by function, so that each function is a test of its own."""
+    """Rows of bad arguments by function, so that each function has its own test."""
     found = defaultdict(list)
     for row in arguments.rows():
         found[row[0]].append(row)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Diffuse models: limits, invariants, agreement with 50 digits, domain ends, and array handling."""
+"""Diffuse models: limits, invariants, agreement with 50 digits, ends of domains, and arrays."""
 
 import tracemalloc
 

@@ -137,7 +137,7 @@ def test_clipped_cosine_keeps_the_side_of_the_lune_that_lands_above_the_horizon(
 
 def test_clipped_cosine_keeps_its_digits_on_the_rim():
     rest, u2 = 2.0 ** -np.arange(1.0, 54.0)[:, np.newaxis], np.linspace(0.0, 1.0, 64, False)
-    z = sampling.cltc_clipped(1.0 - rest, u2, np.float64(0.0), rest)[..., 2]  # no clipping
+    z = sampling.cltc_clipped(1.0 - rest, u2, np.float64(0.0), rest)[..., 2]  # d = 0 clips nothing
     np.testing.assert_allclose(z, np.sqrt(rest + 0.0 * u2), rtol=tolerances.RIM)
 
 

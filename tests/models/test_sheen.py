@@ -40,7 +40,7 @@ def test_conty_kulla_has_its_limit_at_roughness_0_and_where_the_half_vector_is_t
 
 
 def conty_kulla_exact(wo, wi, roughness):
-    """The printed equations in 50 digits."""
+    """Printed equations of the Conty-Kulla sheen in 50 digits."""
     wo, wi = ([mp.mpf(float(x)) for x in w] for w in (wo, wi))
     half = [a + b for a, b in zip(wo, wi, strict=True)]
     cosine = half[2] / mp.sqrt(sum(x * x for x in half))
@@ -78,7 +78,7 @@ def zeltner_exact(wo, wi, roughness):
 
 
 def burley_exact(wo, wi, roughness):
-    """The printed equations in 50 digits."""
+    """Printed equations of Burley's diffuse model in 50 digits."""
     wo, wi = ([mp.mpf(float(x)) for x in w] for w in (wo, wi))
     half = [a + b for a, b in zip(wo, wi, strict=True)]
     length = mp.sqrt(sum(x * x for x in half))

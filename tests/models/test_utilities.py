@@ -87,7 +87,7 @@ def test_hair_roughness_ends_at_specular_and_scales_the_variance_alone():
 
 def test_hair_absorbs_by_its_pigments_and_white_hair_absorbs_nothing():
     assert np.array_equal(deon_hair_absorption_from_melanin(0.0, 0.5, *COLORS), np.zeros(3))
-    one = 1.0 - np.exp(-1.0)  # one unit of pigment
+    one = 1.0 - np.exp(-1.0)  # melanin for one unit of pigment
     for redness, pigment in ((0.0, EUMELANIN), (1.0, PHEOMELANIN)):
         assert deon_hair_absorption_from_melanin(one, redness, *COLORS) == pytest.approx(pigment)
     assert np.array_equal(chiang_hair_absorption_from_color(np.ones(3), 0.3), np.zeros(3))

@@ -126,8 +126,8 @@ def test_eons_graph_serves_only_the_targets_without_an_implementation_of_their_o
     assert all(definition.getImplementation(target).isA(mx.NodeGraph) for target in found)
 
 
-# Changes of EON's graph: a text, its replacement, and the checks that fail if a target uses the
-# graph.
+# Changes of EON's graph: a text, its replacement, and the checks that then fail on a target whose
+# only implementation is the graph.
 CHANGES = (
     ('type="boolean" value="true"', 'type="boolean" value="false"', {"value", "environment"}),
     ('interfacename="weight"', 'value="1.0"', {"inputs", "value"}),

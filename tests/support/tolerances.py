@@ -56,7 +56,7 @@ FIT_LOSS_32 = 5.4e-7
 FIT_ROOT = 1.8e-7
 EON_DENSITY = 1.3e-5
 
-# Deviation of an exact sample's weight from 1, and relative variance of the weights, as promised.
+# Excess of an exact sample's weight over 1, and relative variance of weights, as documented.
 EON_WEIGHT = 5e-5
 EON_VARIANCE = 1e-9
 
