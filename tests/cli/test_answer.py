@@ -211,7 +211,7 @@ def test_nothing_says_of_a_refused_document_that_it_passed(tmp_path, monkeypatch
     keep_checks(monkeypatch, "value", "picture")
     shutil.copy(PLASTER, tmp_path / "good.mtlx")
     (tmp_path / "bad.mtlx").write_text(textured(["no.png"]))
-    # The texture is inside a definition, so it is only missed when the picture is rendered.
+    # The texture is inside a definition, so only rendering the picture finds that it is missing.
     inner = image("no.png") + '<output name="out" type="color3" nodename="image"/>'
     graph = '<nodedef name="ND_t" node="t"><output name="out" type="color3"/></nodedef>'
     graph += f'<nodegraph name="NG_t" nodedef="ND_t">{inner}</nodegraph><t name="t" type="color3"/>'

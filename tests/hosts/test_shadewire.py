@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""shadewire has the closures and failures of stock GLSL; `test_upstream.py` has its other two."""
+"""shadewire's closures match stock GLSL; `test_upstream.py` covers its two own failures."""
 
 from dataclasses import replace
 
@@ -47,7 +47,7 @@ def shadewire(hosts):
 @pytest.mark.parametrize("name", CASES)
 def test_values_and_throughputs_of_pairs_are_those_of_stock_glsl(shadewire, gl, name):
     text, inputs = CASES[name]
-    # In surface shaders, stock multiplies weights of lobes by shares of mixes: other throughputs.
+    # In stock's surface shaders, weights include the shares of mixes, so throughputs differ.
     for output in ("response", "throughput") if "_bsdf" in text else ("response",):
         values = []
         for host in (shadewire, gl):

@@ -37,7 +37,7 @@ def directions(theta, phi):
 
 def hemisphere(mu, count=64):
     """Quadrature directions and solid angles, with panels that end at EON's kinks for `mu`."""
-    kink = np.minimum(np.arccos(mu), 0.5 * np.pi)  # rounded down to a right angle
+    kink = np.minimum(np.arccos(mu), 0.5 * np.pi)  # clips a rounding error
     theta, dtheta = rule(np.unique([0.0, kink, 0.5 * np.pi]), count)
     phi, dphi = rule(0.5 * np.pi * np.arange(-1, 4), count)
     weights = (dtheta * np.sin(theta))[:, :, np.newaxis, np.newaxis] * dphi
