@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A client's bindings other than the material: lights, an environment, shadows, and blending.
 
-The whole generated main is drawn, with point and spot lights, a shadow map, ambient occlusion and transparency.
-AXES lists the states; any two states of different axes occur together in some frame.
+Frames run the whole generated main, with point and spot lights, a shadow map, ambient occlusion
+and transparency. AXES lists the states; any two states of different axes meet in some frame.
 
 Expected lights, shadows and alpha follow MaterialX's text, since no specification describes them: at distance d a
 light is divided by (1 + d)^decay, a spot light falls off smoothly between two cosines, and shadows use Chebyshev's
@@ -35,7 +35,7 @@ WHITE_MAP, WARM_MAP = (np.full((1, 1, 3), each, np.float32) for each in (1.0, (0
 NAMES = {"shading/mix": "mix", "front/opacity": "front", "back/opacity": "back"}
 LEAST_VARIANCE = 1e-5  # least variance of depths in a shadow map
 TRANSPARENT = 0.3333  # weight of each channel of the transparency in alpha
-# Depths of the sphere are in [0.2, 0.7] in this map, and w is not 1.
+# A shadow matrix that maps the sphere's depths into [0.2, 0.7]; w is deliberately not 1.
 SHADOW: Matrix = (1.2, 0.1, 0.3, 0.0, 0.2, 1.1, 0.2, 0.0, 0.1, 0.3, -0.6, 0.0, 0.0, 0.0, 0.0, 1.5)
 
 
@@ -80,8 +80,8 @@ BULB = Lamp(type=2, position=(1.0, 2.0, 1.5), color=(0.5, 1.0, 0.2), intensity=2
 # fmt: off
 SPOT = Lamp(type=3, position=(0.0, 1.0, 2.5), direction=(0.0, -0.6, -0.8), color=(0.2, 0.5, 1.0),
             intensity=30.0, inner_angle=0.95, outer_angle=0.8, decay_rate=1.5)
-# Other checks use the first state of each axis. States with the same words up to a colon are also diagnosed
-# together.
+# Other checks use the first state of each axis. States with the same words before a colon are also
+# diagnosed as a group.
 AXES: dict[str, dict[str, Build]] = {
     "methods": {"the default methods": same, "premultiplied mixes without an environment": folded},
     "lights": {
@@ -120,7 +120,7 @@ AXES: dict[str, dict[str, Build]] = {
 
 @lru_cache(maxsize=1)
 def frames() -> tuple[tuple[set[str], Frame], ...]:
-    """The frames with the words of their states, grouped by program."""
+    """All frames, each with the names of its states, sorted by program."""
     found = []
     for states in covering(tuple(map(tuple, AXES.values()))):
         frame = Frame()
@@ -169,7 +169,7 @@ def light(client: Client, methods: Methods, normal: Array) -> Array:
 
 
 def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
-    """Measured and expected colors and alphas of each frame, with the words of its states."""
+    """Measured and expected colors and alphas of each frame, with the names of its states."""
     from mxeon.hosts.raster import ALPHA_THRESHOLD  # loads MaterialX
     from mxeon.shaders.generators import CLIENT_OPTIONS
 
@@ -200,7 +200,7 @@ def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
 
 
 def diagnose(case: Case) -> results.Diagnosis:
-    """The states that all wrong frames share."""
+    """Find the states that all wrong frames share."""
     tolerance, rows = case.tolerance("frame"), list(drawn(case))
     bad = np.array([tolerance.wrong(each).any() for _, each in rows])
     compared = [each for _, each in rows]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a lobe: values and albedos, frame, inputs, edges, and energy; of two lobes; and of hair."""
+"""Checks of lobes (values, albedos, frames, inputs, edges, energy), combined lobes, and hair."""
 
 import math
 from collections.abc import Iterator
@@ -36,10 +36,10 @@ from mxeon.models.nodes.combinations import FACTOR
 from mxeon.models.nodes.lobes import FORMS, TILTED
 from mxeon.shaders.methods import Methods
 
-LEAST_LIGHT = 0.01  # least light of a uniform environment for measurements of an uneven one
-# Texels are pi / 128 high and wide and read at their middles; engines have 8-bit filter weights.
+LEAST_LIGHT = 0.01  # the uneven environment is tested where a uniform one gives more light
+# Texels are pi / 128 on a side and read at their middles; engines filter with 8-bit weights.
 TEXEL = math.sqrt(2.0) * math.pi / samples.SKY_ROWS * 2.0**-8
-# Largest error of an engine's arc sine: llvmpipe's, which is ten times that of other engines.
+# Largest error of an engine's arc sine (llvmpipe). Other engines are ten times as accurate.
 ARC_SINE = 4e-4
 SURROUNDINGS = sum_in(
     Quantity.IRRADIANCE,
@@ -52,7 +52,7 @@ OPAQUE = sum_in(Quantity.THROUGHPUT, roundings(1, "of 1 - weight"))
 
 
 def of_model(*names: str) -> Specs:
-    """The specs of a rough diffuse model, or of a diffuse lobe below other lobes."""
+    """Specs with one of these diffuse models, including diffuse lobes below other lobes."""
     return family(DiffuseModelSpec, lambda spec: spec.model in names)
 
 
@@ -60,12 +60,12 @@ def of_model(*names: str) -> Specs:
 FILMS, TRANSMITTING = family(FilmSpec), family(TransmissionSpec)
 CLEAR = family(TransmissionSpec, lambda spec: spec.reflects)  # also reflect
 DARK = TRANSMITTING - CLEAR  # reflect nothing
-# As opacity, these pass all light.
+# With transmission as opacity, these pass all light.
 UNTINTED = DARK - family(LobeSpec, lambda spec: "tint" in colored(spec))
 COMBINED, SUBSURFACE = family(CombinedSpec), family(SubsurfaceSpec)
 FACETS, BELOW = family(FacetSpec), family(SurfaceLobe)
 PLAIN = family(PbrSpec) - COMBINED - FILMS - TRANSMITTING  # single lobes of pbrlib
-LAYERS = PLAIN & family(PbrSpec, lambda spec: spec.row.layerable)  # pass 1 - E
+LAYERS = PLAIN & family(PbrSpec, lambda spec: spec.row.layerable)  # these pass 1 - E to a base
 RECIPROCAL = PLAIN & family(PbrSpec, lambda spec: spec.row.reciprocal)
 LAMBERT, BURLEY = of_model("lambert"), of_model("burley")
 LOBES = PLAIN | BURLEY | of_model("burley_lambert")
@@ -76,7 +76,7 @@ VALUED = LOBES | FILMS | ROUGH  # one lobe of a node or of a renderer
 
 
 def shows_exactly(spec: Spec, host: str) -> bool:
-    """Whether a host uses exact directions, including the horizon; closures have no film of index 0."""
+    """Whether a host evaluates exact directions, even grazing; closures lack films of index 0."""
     others = ("rendered", "pictures", *["closures"] * (Ability.FILM in spec.requires))
     return all(row.way not in others for row in HOSTS if row.name == host)
 
@@ -84,8 +84,8 @@ def shows_exactly(spec: Spec, host: str) -> bool:
 def finds_albedo(spec: Spec, methods: Methods) -> bool:
     """Whether the environment branch returns a known albedo.
 
-    With a prefiltered environment, films and surface shaders have the errors of MaterialX's fit, and microfacets
-    the errors of its 64 samples, if these replace the fit, or of eonlib's fits of their curves.
+    A prefiltered environment excludes films and surface shaders, due to errors of MaterialX's fit,
+    and microfacets, if they use 64 samples or eonlib's fits of their curves instead.
     """
     sampled = methods.albedo != "analytic" or bool(methods.searched)
     fitted = (sampled and FACETS(spec)) or isinstance(spec, (FilmSpec, SurfaceShaderSpec))
@@ -115,7 +115,7 @@ def surroundings(case: Case) -> Compared:
         batch = batch.altered(color=samples.WHITE)
     level = case.albedo(batch)
     bright = level.min(axis=1) > LEAST_LIGHT
-    if bright.any():  # otherwise the uniform light is wrong
+    if bright.any():  # if all are dark, the uniform light is wrong
         batch, level = batch.where(bright), level[bright]
     with np.errstate(divide="ignore", invalid="ignore"):
         measured = case.albedo(batch, samples.sky_map()) / level
@@ -157,7 +157,7 @@ NOTHING = (*product(["throughput"], BRANCHES), *product(["response"], ["transmis
 
 
 def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
-    """An output of an opaque node; its throughput is 1 - weight, and hair has no weight."""
+    """Outputs of an opaque node: throughputs must be 1 - weight, others 0. Hair has weight 1."""
     for batch in case.few:
         weight = np.array(np.broadcast_to(batch.inputs.get("weight", 1.0), len(batch.wo)))
         if "weight" in batch.inputs:
@@ -170,7 +170,7 @@ def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
 
 
 def reciprocity(case: Case) -> Iterator[Compared]:
-    """f(wo, wi) compared with f(wi, wo), both times both cosines."""
+    """f(wo, wi) compared with f(wi, wo), each multiplied by both cosines."""
     for batch in case.few:
         side = -1.0 if np.all(batch.wi[:, 2] <= 0.0) else 1.0  # light from below
         swapped = replace(batch, wo=side * batch.wi, wi=side * batch.wo)
@@ -180,9 +180,9 @@ def reciprocity(case: Case) -> Iterator[Compared]:
         yield Compared(batch, forward, backward)
 
 
-# --- energy: what a lobe scatters in all, what it lets through, and both of two lobes together ----
+# --- energy: albedo and throughput of a lobe, and their sum when a lobe covers another ------------
 
-ROUNDED = 1e-9  # difference between equal albedos
+ROUNDED = 1e-9  # largest rounding difference of equal albedos
 
 
 def reads(name: str) -> Specs:
@@ -229,7 +229,7 @@ def energy(case: Case) -> Compared:
 
 
 def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
-    """Views of materials under many light directions, and their albedos, (N, 3)."""
+    """Views of materials, and their albedos, (N, 3), summed over many light directions."""
     count, nodes = weights.shape
     values = case.direct(batch).reshape(count, nodes, 3)
     albedo = (weights[..., np.newaxis] * values).sum(axis=1)
@@ -250,7 +250,7 @@ def factor(case: Case) -> Iterator[Compared]:
         yield Compared(beyond, *passed)
 
 
-# --- hair: its lobes apart, where they are wide, narrow, or seen straight --------------------------
+# --- hair: separate lobes in regions where they are wide, narrow, or viewed straight on -----------
 
 
 TENTH = (0.0, 0.1, 0.995)
@@ -266,7 +266,7 @@ def in_region(key: str, case: Case) -> Compared:
 
 
 def explain_region(key: str, case: Case) -> Diagnosis:
-    others = set(FORMS) - {REGIONS[key].form, TILTED}  # indistinguishable there
+    others = set(FORMS) - {REGIONS[key].form, TILTED}  # these forms equal the model in the region
     candidates = [each for each in case.valued.value_candidates if each.title not in others]
     compared = region_values(key, case)
     brightest = min(float(compared.expected.max()), 1.0)
@@ -275,7 +275,7 @@ def explain_region(key: str, case: Case) -> Diagnosis:
     return diagnosis.explain(case, [compared], candidates, DIRECT_FAULTS, error)
 
 
-# --- inputs outside the ranges that the other checks draw from, as far as hosts pass them ---------
+# --- inputs outside the ranges of the other checks, if hosts pass them on -------------------------
 
 PAIRS = 16  # pairs per value
 LEAST_WEIGHT = 0.3  # least weight and occlusion, so that effects stay visible
@@ -283,7 +283,7 @@ TOLERANCES = given(1.0, Quantity.TOLERANCES, "the tolerance of each quantity")
 
 
 def quantities(case: Case, batch: Batch, right: Batch) -> Iterator[tuple[str, Compared]]:
-    """Named values, albedos and throughputs, compared with the expected ones for other inputs."""
+    """Values, albedos and throughputs by name, compared with those expected for `right`."""
     albedo = case.expected_albedo(right)
     yield "value", Compared(batch, case.direct(batch), case.expected(right))
     yield "albedo", Compared(batch, case.albedo(batch), albedo)
@@ -293,9 +293,9 @@ def quantities(case: Case, batch: Batch, right: Batch) -> Iterator[tuple[str, Co
 
 
 def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
-    """Quantities of a few pairs for each input and value, except those already wrong inside the ranges.
+    """Compare a few pairs for each input and value; skip quantities that fail inside the ranges.
 
-    Values are divided by their tolerance.
+    Quantities are divided by their tolerances.
     """
     spec, views = case.of(PbrSpec), case.backend.views[0]
     row, names = np.arange(len(views.wo))[:, np.newaxis], {"weight", "occlusion"}
@@ -341,7 +341,7 @@ def diagnose_domain(case: Case) -> Diagnosis:
     return Diagnosis(tuple(causes))
 
 
-# --- negative colors, as MaterialX's own text takes them -------------------------------------------
+# --- negative colors, as MaterialX's own shaders treat them ---------------------------------------
 
 CLAMPED = FACETS | COMBINED | family(HairSpec)  # negative colors count as 0
 NEGATIVE = 64  # pairs
@@ -349,7 +349,7 @@ LEAST_NEGATIVE = 0.1
 
 
 def colored(spec: LobeSpec) -> list[str]:
-    """Inputs that are reflectances or factors; colors of lobes under combinations belong to the lobes."""
+    """Names of inputs that are reflectances or factors; a combination only has its factor."""
     words = (FACTOR,) if COMBINED(spec) else ("color", "tint")
     colors = (each.name for each in spec.inputs if each.type == "color3")
     return [name for name in colors if name.startswith(words)]
@@ -361,12 +361,12 @@ def unsigned(batch: Batch) -> Batch:
 
 
 def negative(case: Case) -> Iterator[Compared]:
-    """Light with a negative red, compared with red 0, or with the negated light of the positive red.
+    """Light for a negative red, compared with red 0, or with the negated light for positive red.
 
-    EON's light is a rho + b rho^2 / (1 - rho (1 - <E>)); a and b follow from rho and half of it.
+    EON's light is a rho + b rho^2 / (1 - rho (1 - <E>)); light for rho and rho / 2 gives a and b.
     """
     asks = [(case.backend.direct, case.direct)]
-    if not family(HairSpec)(case.spec):  # MaterialX uses its unclamped tint for the albedo
+    if not family(HairSpec)(case.spec):  # MaterialX computes hair's albedo from unclamped tints
         asks.append((case.backend.albedo, case.albedo))
     if TRANSMITTING(case.spec):
         asks.append((case.evaluating.transmitted, case.transmitted))

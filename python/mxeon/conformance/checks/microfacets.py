@@ -33,12 +33,12 @@ if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
 PAIRS = 1 << 12  # pairs near the mirror direction
-LEAST_DIVIDED = 1.2  # least index of dielectrics in ratios of values
-SKIES = 8  # lobes with a measured mean of an uneven sky
-# A lobe whose view sees facets that reflect, and facets with a negative printed curve; they sum to -0.035.
+LEAST_DIVIDED = 1.2  # least index of dielectrics whose values are divided
+SKIES = 8  # lobes whose mean of an uneven sky is measured
+# In this lobe, some facets reflect and others have a negative printed curve; the sum is -0.035.
 DIP: Values = {"color0": (0.06,) * 3, "color82": (0.0,) * 3, "color90": (1.0,) * 3}
 DIP = {**DIP, "weight": 1.0, "exponent": 5.0, "roughness": (0.2, 0.2)}
-LEAST_VALUE = 1e-3  # least pi f cos of values in ratios
+LEAST_VALUE = 1e-3  # least pi f cos of values that are divided
 FACETS = lobes.PLAIN & lobes.FACETS  # uncombined microfacet lobes
 isotropic = controls.with_batch(
     "the roughness is the same in both directions",
@@ -54,7 +54,7 @@ def lossless(case: Case) -> Compared:
 
 
 def shape(case: Case) -> Compared:
-    """Compensation cancels in the ratio."""
+    """Ratios of values for two lights, compared with single scattering: compensation cancels."""
     batch, other = (_clear(each.first(PAIRS)) for each in case.backend.mirrored)
     first, second = (case.of(FacetSpec).single(each) for each in (batch, other))
     lit = np.asarray((np.minimum(first, second) > LEAST_VALUE).any(axis=1))
@@ -136,16 +136,16 @@ def diagnose_sky(case: Case) -> Diagnosis:
 
 
 def anisotropic_albedo(case: Case) -> Iterator[Compared]:
-    """Albedos by the host's methods, and by the library's own lookups if it has any."""
+    """Albedos with the host's methods, and with the library's own environment lookups, if any."""
     yield from albedos(case, case.host.active)
     for methods in searching(case, Methods("fis"), Methods("prefilter")):
         yield from albedos(case, methods, generated(case, methods))
 
 
 def albedos(case: Case, methods: Methods, shader: "Shader | None" = None) -> Iterator[Compared]:
-    """Albedos by a client's methods; the library's own sum also clamps curves below 0.
+    """Albedos with a client's methods. The library's own sum also clamps curves below 0.
 
-    Its prefiltered lobes use fits of their curves, which are coarse for metals; mirrors need none.
+    For prefiltered environments, the library fits curves, coarsely for metals; mirrors need no fit.
     """
     spec = case.of(FacetSpec)
     batch, expected = exact = case.backend.take(spec.stretched)
@@ -197,10 +197,10 @@ SMOOTH_VIEWS = 1 << 9  # views of smooth surfaces
 CHANGED_VIEWS = 1 << 6  # views for changed inputs
 LEAST_SEEN = 0.05  # least cosine of views
 CRITICAL = 0.05  # distance from the critical cosine, where F has an infinite slope
-ROUGH_VIEWS, FACETS_SEEN = 1 << 6, 32  # facets along each of two random numbers
+ROUGH_VIEWS, FACETS_SEEN = 1 << 6, 32  # facets along each axis of the random numbers
 ROUGH = 0.1  # least alpha of rough glass
 LEAST_PASSED = 0.01  # least light whose direction is measured
-# Above this slope of a refracted ray in a cosine, index^2 / cosine, errors are relative to the slope.
+# A refracted ray's slope by a cosine is index^2 / cosine. Above this, errors are relative to it.
 BENT = 1000.0
 REFRACTED = lobes.SURROUNDINGS.plus(roundings(4 * BENT, "four of a cosine, times a slope of 1000"))
 NORMAL = (0.0, 0.0, 1.0)
@@ -209,12 +209,12 @@ ONE = np.ones((1, 3))
 
 
 def with_directions(spec: Spec, methods: Methods) -> bool:
-    """Whether an environment is summed over directions; a prefiltered map is read once, times a fit."""
+    """Whether the environment is summed over directions; prefiltered maps need one lookup."""
     return methods.environment == "fis"
 
 
 def diagnose_transmitted(case: Case) -> Diagnosis:
-    """Whether the light matches the facets, or those divided by G_1 as in MaterialX; and where it is NaN."""
+    """Test whether light matches the visible facets, or these over G_1 as in MaterialX; find NaN."""
     compared, spec = list(transmitted(case)), case.of(TransmissionSpec)
 
     def distance(found: Callable[[Compared], Array]) -> float:
@@ -232,7 +232,7 @@ def diagnose_transmitted(case: Case) -> Diagnosis:
 
 
 def _seen(spec: TransmissionSpec, batch: Batch, masked: bool = False) -> Array:
-    """The mean of 1 - F over the normals seen, (N, 3); divided by G_1 of the view, if that is masked."""
+    """Mean of 1 - F over the visible normals, (N, 3); if `masked`, divided by G_1 of the view."""
     value: Array = batch.strength * spec.functions.passed(batch.wo, batch.inputs, False)
     return value / smith_g1(batch.wo, batch.inputs["roughness"])[:, np.newaxis] if masked else value
 
@@ -240,10 +240,10 @@ def _seen(spec: TransmissionSpec, batch: Batch, masked: bool = False) -> Array:
 def transmitted(case: Case) -> Iterator[Compared]:
     """Light of a uniform environment through the surface, compared with the nearest value within two limits.
 
-    One limit is the light passed by the BTDF, without compensation; the other is all light that is not reflected,
-    with tint and weight. The first is larger for some colors of Schlick's curve, which the text compensates
-    too much. As opacity, a lobe that only transmits
-    passes its tint, and a layer above it subtracts its reflection.
+    One limit is the light passed by the BTDF, without compensation; the other is all light that is
+    not reflected, with tint and weight. The first is larger for some colors of Schlick's curve,
+    which the text overcompensates. With transmission as opacity, a lobe that only transmits passes
+    its tint, and a layer above it subtracts its own reflection.
     """
     spec = case.of(TransmissionSpec)
     for batch in case.views:
@@ -263,8 +263,8 @@ def clear(case: Case) -> Iterator[Compared]:
         yield Compared(white, case.albedo(white) + case.transmitted(white), ONE)
 
 
-# Clients' methods: Storm's, and a prefiltered environment with refraction, as in MaterialXView; for mirrors, with
-# sampled and tabulated albedos. The environment is dim, turned for reflection, and tinted twice for refraction.
+# Methods of clients: Storm's, and MaterialXView's prefiltered environment with refraction; mirrors
+# use sampled and tabulated albedos. BOUND is dim, turned for reflection, and tints light twice.
 OTHERS = (Methods("prefilter", "opacity"), Methods("prefilter", "refraction"))
 SAMPLED = Methods("prefilter", "refraction", "monteCarlo")
 BOUND = Client(turn=states.TURNING, intensity=0.5, two_sided=True)
@@ -279,12 +279,12 @@ def others(case: Case) -> Iterator[Methods]:
             yield replace(SAMPLED, albedo="table")
         return
     yield from OTHERS
-    if CLEAR(case.spec):  # their shaders also have the text of mode T
+    if CLEAR(case.spec):  # their shaders also contain the code of mode T
         yield from searching(case, Methods("fis"), Methods("prefilter"))
 
 
 def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
-    """Each method, and light with a client's methods compared with the node's method-independent values."""
+    """Light with each client's methods, compared with the node's method-independent values."""
     transmits = TRANSMITTING(case.spec)
     for methods in others(case):
         ask = partial(case.evaluating.evaluate, shader=generated(case, methods))
@@ -305,9 +305,9 @@ def shares(case: Case, ask: Callable[..., Array], methods: Methods) -> Iterator[
 
 
 def mirrored(case: Case, ask: Callable[..., Array], methods: Methods) -> Iterator[Compared]:
-    """Light through a mirror by default, reflection of a white mirror, and reflection of turned surroundings.
+    """Throughput, reflection of a white mirror, and reflection of a turned environment.
 
-    A white mirror reflects everything, or what the text sums or tabulates over the albedo.
+    A white mirror reflects everything; from a table, its tabulated albedo over the exact albedo.
     """
     white = {name: np.ones(3) for name in ("color0", "color82", "color90")}
     for batch in case.views:
@@ -349,7 +349,7 @@ def diagnose_methods(case: Case) -> Diagnosis:
 
 
 def modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
-    """Values of each mode compared with mode R or with 0, and the cause of an error."""
+    """Modes T and RT, compared with mode R or with 0, and the cause that a difference shows."""
     spec = case.of(TransmissionSpec)
     only = case.another(spec.reflection) if spec.reflects else None
     none, unlike = 0.0 * ONE, "_unlike_R" * bool(only)
@@ -389,7 +389,7 @@ DENSE, VIEWED = ((1.5, 0.4), (2.0, 1.0)), np.array([0.05, 0.2, 0.5, 0.75, 1.0])
 
 
 def inside(case: Case) -> Iterator[Compared]:
-    """Balance of transmitted light: its average over all views, times the squared index, equals that from outside."""
+    """Light that leaves a denser medium, compared with light that enters by reversed paths."""
     spec, views = case.of(TransmissionSpec), directions_at(VIEWED, 0.5)
     for index, alpha in DENSE:
         rows = case.views[0].first(len(VIEWED))
@@ -407,7 +407,7 @@ def inside(case: Case) -> Iterator[Compared]:
 def refraction(case: Case) -> Compared:
     index = case.of(TransmissionSpec).functions.ior
     batch = _smooth(case)
-    # Views in frames in which a sphere refracts them to the middles of sky texels.
+    # Choose frames in which a solid sphere refracts the views to the middles of sky texels.
     out = through_sphere(batch.wo, index(batch.inputs))
     place = samples.texel_middles(out)
     frames = samples.aimed(np.broadcast_to(np.eye(3), (len(out), 3, 3)), out, place)
@@ -420,7 +420,7 @@ def refraction(case: Case) -> Compared:
 
 
 def seen_sky(case: Case, batch: Batch) -> tuple[Array, Mask]:
-    """Mean of the sky that is seen through the surface, and the pairs that pass enough light to measure it."""
+    """Mean of the sky seen through the surface, and which pairs pass enough light to measure it."""
     level = case.transmitted(batch)
     bright = np.asarray(level.min(axis=1) > LEAST_PASSED)
     seen = case.transmitted(batch, samples.sky_map())
@@ -428,9 +428,9 @@ def seen_sky(case: Case, batch: Batch) -> tuple[Array, Mask]:
 
 
 def rough_refraction(case: Case) -> Compared:
-    """Light of an uneven sky through lobes of two alphas over a uniform one, compared with a mean of the sky.
+    """Light through lobes of two alphas, uneven over uniform sky, compared with a mean sky.
 
-    Each visible facet passes the same share, in the direction in which a solid sphere refracts the view.
+    Each visible facet passes the same share, along the ray that a solid sphere refracts.
     """
     functions, rng = case.of(TransmissionSpec).functions, samples.generator()
     batch = case.few[0].first(ROUGH_VIEWS)
@@ -478,17 +478,17 @@ def _smooth(case: Case) -> Batch:
 
 
 def _edges(case: Case) -> Compared:
-    """Light at the edges of the domain, for every fifth pair, because each requires a sum over directions."""
+    """Light at the edges of the domain, for every fifth pair: each needs a sum over directions."""
     batch = case.backend.edges
     batch = batch.where(np.arange(len(batch.wo)) % 5 == 0)
     return Compared(batch, case.transmitted(batch), np.zeros((1, 3)))
 
 
 def wrong_inputs(case: Case) -> list[str]:
-    """Inputs that wrongly do not change the light through the surface, and those that wrongly do.
+    """Inputs that should change the light through the surface but do not, or the reverse.
 
-    The retroreflective mode only affects reflection. As opacity, a lobe that only transmits passes its tint.
-    With every other method, the albedo of two alphas depends on the tangent.
+    `retroreflective` only affects reflection. With transmission as opacity, only weight and tint
+    affect a lobe that only transmits; otherwise, the tangent affects the albedo of two alphas.
     """
     batch = case.few[0].first(CHANGED_VIEWS)
     dead = dead_inputs(case, batch, lambda each: case.transmitted(each, samples.sky_map()))
@@ -502,9 +502,9 @@ def wrong_inputs(case: Case) -> list[str]:
 
 Function = Callable[[Batch], Array]
 MIRRORED = (-1.0, -1.0, 1.0)
-ROUGHNESSES = (1.0, 0.3)  # much and little compensation
-SMOOTH = (0.04, 0.005)  # almost no compensation; shaders may average over fewer cosines
-LEAST_F = 0.01  # averages are not divided by smaller curves
+ROUGHNESSES = (1.0, 0.3)  # alphas with much and little compensation
+SMOOTH = (0.04, 0.005)  # alphas that need almost no compensation; shaders may sum fewer cosines
+LEAST_F = 0.01  # films with a smaller F are not compared
 THIN_LIMIT = 1e-3  # thickness in nm of a film without effect
 SLANT = 2.0 / 3.0  # mean cosine of a hemisphere, weighted by the cosine
 RARE = 0.5  # index of a film that MaterialX treats as vacuum
@@ -526,11 +526,11 @@ def curves(films: microfacets.Films, case: Case) -> Compared:
 def film_limit(case: Case) -> list[Compared]:
     """Values under a film of index 1, and under a film of thickness THIN_LIMIT, compared with no film.
 
-    A film with an index below 1 counts as index 1, whatever the latter does. Under a thin film, the sum of the
-    five-digit sensitivities is not 1: the same deviation as in the equations is correct.
+    A film with an index below 1 must equal one with index 1, right or wrong. Under a thin film, the
+    five-digit sensitivities do not add up to 1; the deviation of the equations is accepted.
     """
-    # Schlick's curve has no dip under a film: where the dip makes it negative, the film's curve counts as 0.
-    # Use the most visible part of a film, with one alpha, since the masking of two is a separate issue.
+    # Remove the dip of Schlick's curve, which films ignore: where it is negative, films count as 0.
+    # Compare near the mirror direction, with one alpha: masking of two alphas is another issue.
     batch = backends.isotropic(case.backend.mirrored[0].first(case.backend.counts.few))
     batch = _clear(batch, microfacets.LEAST_INDEX, 1.0).altered(thinfilm_thickness=300.0)
     without = batch.altered(thinfilm_thickness=0.0)
@@ -545,13 +545,13 @@ def film_limit(case: Case) -> list[Compared]:
 
 
 def film_energy(case: Case) -> Iterator[Compared]:
-    for batch in case.few[::2]:  # a mirror of index 0 is a separate check for exact directions
+    for batch in case.few[::2]:  # skip exact directions: index 0 is judged elsewhere
         most = case.direct(_mirror(case, batch))
         yield Compared(batch, np.maximum(case.direct(batch), most), most)
 
 
 def diagnose_average(case: Case) -> Diagnosis:
-    """Whether F at one cosine or between its ends replaces the average, or nothing is compensated."""
+    """Test whether F at one cosine or a mean of its ends replaces the average, or k is missing."""
     batch, measured, expected = film_average(case)
     rough = batch.altered(roughness=(max(ROUGHNESSES),) * 2)
     lost, most = (_parts(case, each, rough)[1].max() for each in (case.direct, case.expected))
@@ -600,9 +600,9 @@ def diagnose_visible(case: Case) -> Diagnosis:
 
 
 def visible(films: microfacets.Films, case: Case) -> Compared:
-    """Means F_o over the visible facets of films with a curve away from 0, from albedos E_ss F_o (1 + F_ss k).
+    """Means F_o of F over visible facets, from albedos E_ss F_o (1 + F_ss k); F near 0 is skipped.
 
-    An albedo is divided by a mirror's, E_ss (1 + k) = 1.
+    Albedos are divided by the mirror's albedo, E_ss (1 + k) = 1.
     """
     batch = film_views(case.of(FilmSpec), films)
 
@@ -617,9 +617,9 @@ def visible(films: microfacets.Films, case: Case) -> Compared:
 
 
 def film_brushed(case: Case) -> Compared:
-    """Albedos of two alphas over a mirror's, if albedos of one alpha have the expected film.
+    """Albedos of lobes with two alphas, divided by the mirror's albedo, if film_visible passes.
 
-    The options that the specification leaves open for films are judged by film_visible; here they would fail.
+    Alternatives that the specification permits for films would fail here; film_visible judges them.
     """
     error = case.tolerance("film_visible")
     if not case.control and error.wrong(visible(microfacets.STEEP, case)).any():
@@ -631,8 +631,8 @@ def film_brushed(case: Case) -> Compared:
 def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
     """F at the half vector of mirrored lights, and F_ss, (N, 3) each, from values at two roughnesses.
 
-    A value over that of perfectly reflecting facets is F (1 + F_ss k), k = (1 - E_ss) / E_ss; a
-    perfectly reflecting lobe has F = F_ss = 1.
+    A value divided by the value of perfectly reflecting facets is F (1 + F_ss k), with
+    k = (1 - E_ss) / E_ss; a perfectly reflecting lobe has F = F_ss = 1.
     """
     (first, k), (second, other_k) = (
         _parts(case, direct, batch.altered(roughness=(alpha, alpha))) for alpha in ROUGHNESSES
@@ -642,7 +642,7 @@ def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]
 
 
 def _parts(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
-    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each: values over those of perfect reflectors."""
+    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each, by perfect reflectors."""
     alpha, mu = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))[:, 0], batch.wo[:, 2]
     facets = 0.25 / (alpha * alpha * smith_lambda(mu, alpha))[:, np.newaxis]
     return direct(batch) / facets, direct(_mirror(case, batch)) / facets - 1.0

@@ -35,7 +35,7 @@ def above(case: Case) -> Iterator[Compared]:
 
 
 def between(case: Case) -> Iterator[Compared]:
-    """Light through the lobe below a medium, compared with the medium's share of the light without one."""
+    """Transmitted light, compared with the light without a medium times the transmittance."""
     for batch in case.batches:
         lit = batch.altered(**{"bottom/weight": 1.0})
         clear = {each.name: np.zeros(3) for each in case.spec.inputs if each.type == "vector3"}
@@ -43,7 +43,7 @@ def between(case: Case) -> Iterator[Compared]:
         yield Compared(batch, case.transmitted(lit), whole * case.expected(batch))
 
 
-# --- utility nodes, in units in which the roundings of their values are alike ---------------------
+# --- utility nodes; errors are in units that make their roundings uniform -------------------------
 
 
 def outside(case: Case) -> Compared:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of the text for path tracers: samples match their stated density, and weights their values.
+"""Checks of path-tracing code: samples match the stated density, and weights match the values.
 
 Views are from both sides of the surface. The directions of smooth transmission and reflection are
 nearly constant, so samples are counted around them.
@@ -58,10 +58,10 @@ SCATTERED = """if (what < 0.5)
     if (!kept)
         return vec3(0.0);
     return what < 2.5 ? wi : what < 3.5 ? weight : vec3(pdf);"""
-# Kept separate, because a driver copies the material to each call.
+# Separate from SCATTERED: drivers inline the material into each call.
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
 RANDOM = "return path_random(uvec4(uvec3(u), 7u)).xyz;"
-# Text that returns each value; a value's position is its number `what` in the text.
+# Code that returns each value; the value's position here is its number `what`.
 FUNCTIONS = {
     **dict.fromkeys(("evaluate", "pdf", "wi", "weight", "density"), SCATTERED),
     **dict.fromkeys(("opacity", "emission"), PASSED),
@@ -70,21 +70,21 @@ FUNCTIONS = {
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # targets of mxeon.shaders.path_tracing
 DRAWS = 1 << 15
 ANSWERS = cache.Recent[Array](64)  # a check and its control need the same values
-# Two views that see many and few facets below the critical angle, and one from which a smooth solid
-# transmits no light out.
+# Views that see many and few facets below the critical angle, and one at which no light leaves a
+# smooth solid.
 VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
 VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
-MATERIALS_DRAWN = 6  # materials with counted samples, each at one view
-# Minimum value that samples must find: a sheen's fitted albedo may be 0 where 3e-6 is left.
+MATERIALS_DRAWN = 6  # materials whose samples are counted, each at one view
+# Smallest value that must be sampled: a sheen's fitted albedo may be 0 where the exact one is 3e-6.
 LEAST_LIGHT = 1e-5
 LEAST_DRAWN = 1e-5  # density over value, below which light is never sampled in practice
-# Below this weight of a draw, an albedo, shares of lobes have few digits: a sheen's fit passes 0.
+# Below this sample weight (an albedo), shares of lobes have few digits: a sheen's fit crosses 0.
 LEAST_ALBEDO = 1e-3
 LEAST_COUNTED = 0.2  # minimum roughness of lobes with counted samples: the cells are coarse
-# An input as a shader parameter: a float or a vector of three numbers.
+# Expressions that convert a parameter, a float or a vec3, to an input's type.
 GIVEN = {"boolean": "{} > 0.5", "integer": "int({})", "vector2": "{}.xy"}
 VECTORS = ("vector2", "vector3", "color3")
-# Inputs of the all-lobes materials: alpha below 1, and an emission.
+# These inputs give materials with all lobes an alpha below 1 and an emission.
 MEAN_WEIGHT = 0.3333  # MaterialX's weight of a channel when it turns a transparency into alpha
 OPACITY, EMISSION = 0.6, 0.3
 THIN: dict[str, float | str] = {
@@ -94,8 +94,8 @@ THIN: dict[str, float | str] = {
 }
 WALLS = ("thin_walled", "geometry_thin_walled")
 
-# Glass, and the name of its index of refraction. UsdPreviewSurface reflects by Schlick's curve,
-# which has no index for the denser side.
+# Each node's name of the index, and its inputs for glass. UsdPreviewSurface is left out: its
+# Schlick curve has no index for the denser side.
 GLASS: dict[str, tuple[str, Values]] = {
     "dielectric_bsdf": ("ior", {"tint": (0.9, 0.8, 0.7), "roughness": (0.4, 0.4)}),
     "standard_surface": ("specular_IOR", {"transmission": 1.0, "specular_roughness": 0.5}),
@@ -104,13 +104,13 @@ GLASS: dict[str, tuple[str, Values]] = {
 INDEX = 2.0  # its inverse is exact
 DRAWN = check.family(LobeSpec) - BELOW
 GLASSY = TRANSMITTING | SURFACES  # light enters and leaves a solid
-# Lobes that reflect by an index, which is inverted for light inside.
+# Lobes whose reflection uses an index, which is inverted for light inside.
 UNLIKE_INSIDE = (
     GLASSY
     | check.family(combinations.CombinedSpec)
     | check.family(FacetSpec, lambda spec: "ior" not in spec.types or spec.types["ior"] == "float")
 )
-# Glass with this index, a tint, and its curve from outside.
+# Glass of index INDEX by node: its inputs, its tint, and the inputs of its curve from outside.
 SOLIDS: dict[str, tuple[Values, Values, dict[str, Array]]] = {
     "dielectric_bsdf": (
         {**GLASS["dielectric_bsdf"][1], "ior": INDEX},
@@ -189,7 +189,7 @@ class Paths:
 def paths(
     host: base.Host, document: str, library: str = "eonlib", varied: tuple[str, ...] = ()
 ) -> Paths:
-    """The text of a document; inputs with these names or paths are variables, all others constants."""
+    """A document's code; inputs in `varied` (names or paths) are variables, others constants."""
     from mxeon.shaders.generation import generate
 
     uniforms = bool(varied)
@@ -211,9 +211,9 @@ def paths(
 
 
 def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
-    """Materials with pairs in their own frames: random ones of a node, or a surface shader with all lobes.
+    """Materials with pairs in individual frames: random ones of a node, or a shader with all lobes.
 
-    For a surface shader that supports thin walls, `walls` selects whether it is one.
+    `walls` lists whether a surface shader is a thin wall, if it supports them.
     """
     if is_shader(case.spec):
         yield from shaders(case, *walls)
@@ -245,7 +245,7 @@ def shaders(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
 
 
 def random_materials(case: Case) -> tuple[Paths, Batch]:
-    """Materials of a node with its own normal and tangent, which differ from the surface's."""
+    """Random materials of a node whose normal and tangent inputs differ from the surface's."""
     spec, batch = case.lobe, case.backend.turned
     rng, count = generator(), len(batch.wo)
     own: Values = {each.name: NORMAL for each in spec.inputs if each.type == "vector3"}
@@ -275,25 +275,25 @@ def lattice(count: int) -> Array:
 
 
 def refracted(wo: Array, index: float = 1.5) -> Array:
-    """Direction of the smooth transmission of UsdPreviewSurface; straight on beyond the critical angle."""
+    """Direction in which a smooth surface refracts; straight ahead beyond the critical angle."""
     x, y, _ = -wo / index
     return np.array([x, y, -np.sqrt(1.0 - x * x - y * y)]) if x * x + y * y < 1.0 else -wo
 
 
 def steepness(density: Array) -> Array:
-    """Factor of a direction's rounding: 1 plus the inverse of the alpha of a lobe with this density.
+    """Factor that multiplies a direction's rounding: 1 + 1 / alpha, with alpha from the density.
 
-    GGX facets reflect into 1 / (4 pi alpha^2) at most, whose slope is about the inverse of alpha.
+    GGX facets reflect with a density of at most 1 / (4 pi alpha^2); its slope is about 1 / alpha.
     """
     return 1.0 + np.sqrt(4.0 * np.pi * density)
 
 
 def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
-    """Deviations of samples from their density, in standard deviations, for materials at views.
+    """Deviations of samples from their density, in standard deviations, per material and view.
 
-    Three views suffice for a surface shader, which has one material as a solid and one as a wall,
-    and for a control, which ends at the first failure. Quadrature errors at a low order only
-    increase the deviation.
+    Three views are enough for a surface shader, which has one solid and one thin wall, and for a
+    control, which stops at the first failure. Quadrature errors at a low order only increase the
+    deviation.
     """
     u = random(DRAWS, generator())
     looks = LOOKS[1:2] if case.control else LOOKS
@@ -303,7 +303,7 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
             for name, each in batch.inputs.items()
             if "roughness" in name
         }
-        if "cuticle_angle" in batch.inputs:  # a steep lobe leaves a pole along the fiber
+        if "cuticle_angle" in batch.inputs:  # strong tilts leave a pole along the fiber
             rough["cuticle_angle"] = np.clip(batch.inputs["cuticle_angle"], 0.45, 0.55)
         batch = batch.altered(**rough)
         few = case.control or is_shader(case.spec)
@@ -338,9 +338,9 @@ def pdf(case: Case) -> Measurement:
 
 
 def parts(case: Case) -> Iterator[tuple[Cause, Compared]]:
-    """Weights times densities against values, densities against those of material_pdf, and values without one.
+    """Compare weight times density with value, density with material_pdf; find missed light.
 
-    The first two are relative to their expected values.
+    Errors of the first two are relative to the expected values.
     """
     for text, batch in subjects(case, False, True):
         u, wo = random(len(batch.wo), generator()), batch.world(batch.wo)
@@ -401,12 +401,12 @@ def path_value(case: Case) -> Iterator[Compared]:
         normal = np.broadcast_to(NORMAL, wi.shape)
         shader = is_shader(case.spec)
         if shader and batch.frame is not None:
-            # The graph turns tangents about a normal that may face away: 1 or -1 along the frame's
-            # axis.
+            # The graph turns tangents about the normal, which may face away: it is +z or -z of
+            # the frame.
             normal = np.einsum("nij,ni->nj", batch.frame, batch.inputs["normal"]).round()
         local = replace(batch.altered(normal=normal, tangent=TANGENT), frame=None)
-        # The rasterizer lights nothing from behind, and has no views from inside for lobes with an
-        # index of refraction.
+        # A rasterizer does not light surfaces from behind, and cannot view lobes with an index of
+        # refraction from inside.
         inside = np.arange(len(wi)) % 2 * (not UNLIKE_INSIDE(case.spec))
         wo, own = batch.world(batch.wo), batch.world(wi)
         ask = partial(text.values, wo=wo, wi=own, inside=inside, inputs=batch.inputs)
@@ -425,11 +425,11 @@ def path_value(case: Case) -> Iterator[Compared]:
 
 
 def path_emission(case: Case) -> Iterator[Compared]:
-    """Radiance towards views of both sides, in frames with exchanged axes, which is exact."""
+    """Radiance toward views from both sides, in frames that permute the axes, which is exact."""
     spec = case.of(emission.EmissionSpec)
     thirds = np.stack([np.roll(np.eye(3), turn, axis=0) for turn in range(3)])
     for batch in (*case.batches, case.backend.take(spec.backs)):
-        if "normal" in batch.inputs:  # the axis of a cone comes from a node
+        if "normal" in batch.inputs:  # another node sets a cone's axis
             continue
         frame = thirds[np.arange(len(batch.wo)) % 3]
         axes = {"normal": frame[:, :, 2], "tangent": frame[:, :, 0]}
@@ -481,7 +481,7 @@ def path_inside(case: Case) -> Iterator[Compared]:
 
 
 def clear_draws(case: Case, inside: bool) -> Iterator[tuple[Batch, Array, Array]]:
-    """Directions and weights of samples in a clear solid, at each view."""
+    """Sampled directions and weights at the surface of a clear solid, for each view."""
     values, tint, _ = SOLIDS[case.spec.node]
     [(text, _)] = subjects(case)
     inputs = {**values, "lobe_normal/value": NORMAL, "lobe_tangent/value": TANGENT}
@@ -531,14 +531,14 @@ def path_albedo(case: Case) -> Iterator[Compared]:
 # 6.5 %, and with half of the samples three do.
 CELLS = 16  # divisions of the angle and of the azimuth
 ORDERS = 4, 8, 16, 32, 64, 128  # quadrature nodes per axis of a patch
-# Samples, nodes, and standard deviations; the first look whose score does not exceed them is the last.
+# Each look has samples, quadrature orders and a limit; looks end once a score is within the limit.
 LOOKS = (
     (DRAWS // 2, ORDERS[:1], 2.0),
     (DRAWS // 2, ORDERS[:4], 2.0),
     (DRAWS, ORDERS[:4], 3.0),
     (DRAWS, ORDERS, 0.0),
 )
-CLOSE = 2.0  # expected samples up to which the nodes of a patch must agree
+CLOSE = 2.0  # two orders of a patch must agree within this number of expected samples
 MOST_DEVIATIONS = 6.0  # standard deviations, the tolerance of the check
 CONE = 0.02  # radian, width of the first ring
 LEAST = 1e-7  # radian, distance below which a density is constant
@@ -561,8 +561,8 @@ def deviation(
 
     - `draws`: Unit vectors, (N, 3); zeros for lost samples, whose share is 1 minus the integral.
     - `density`: Density of unit vectors (M, 3), in 1/sr, (M,).
-    - `pole`, `other`: Directions about which nearly all draws of a smooth lobe may lie. A cone about
-      the other is one cell, if it lies apart.
+    - `pole`, `other`: Directions around which a smooth lobe may be sampled. If they are apart, the
+      cone around `other` is one cell.
     - `nodes`: See `density_integrals`.
     """
     count = (CELLS + 1) * CELLS
@@ -608,8 +608,8 @@ def cell(w: Array, pole: Array) -> NDArray[np.int64]:
 def density_integrals(
     density: Callable[[Array], Array], poles: Sequence[Array], close: float, nodes: Sequence[int]
 ) -> Array:
-    """Integrals of a density over patches around a pole, and over those of the cone around a second
-    pole.
+    """Integrals of a density over all patches around a pole, and over the patches of a cone around
+    a second pole.
 
     For each patch, the number of nodes per axis increases along `nodes` until two results agree up
     to `close`, in the patch and next to it: an edge of a density may pass between few nodes.

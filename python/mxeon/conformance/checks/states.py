@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pixels with more than one lobe under one light: their value must be the sum of the values of the parts.
+"""Pixels with several lights or lobes: their value must be the sum of the values of the parts.
 
-AXES lists the states, one line each. Any two states of different axes occur together in some pixels. The
-expected values are the host's own values of the parts, so a wrong model passes, and a failure has one reason.
+AXES lists the states, one line each. Any two states of different axes meet in some pixels. Expected
+values are the host's own values of the parts, so a wrong model passes and a failure has one reason.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -37,7 +37,7 @@ VECTORS = ("normal", "tangent", "position", calls.SURFACE)
 FLAT = calls.NORMAL, calls.TANGENT, (0.0, 0.0, 0.0), calls.NORMAL
 WEIGHTS = (0.0, 0.3, 1.0, 1.0)
 FEW = 6  # combinations in a control
-CLEARER = 0.7  # two states replace one if they have at most this share of its pixels
+CLEARER = 0.7  # report two states, not one, if both meet in fewer than this share of its pixels
 Inputs = Mapping[str, Array]
 Random = np.random.Generator
 Layout = tuple[tuple[int, ...], tuple[int, ...]]  # shape and axis order of a list of pixels
@@ -67,7 +67,7 @@ def same(pixels: Pixels, rng: Random) -> Pixels:
 
 
 def lit(pixels: Pixels, rng: Random, count: int, first: float = 1.0, second: float = 1.0) -> Pixels:
-    """A number of lights; -1 for one on the side that the lobe does not scatter."""
+    """Set the number of lights; -1 moves a light to the side where the lobe does not scatter."""
     wi = pixels.batch.wi
     batch = replace(pixels.batch, wi=wi * [1.0, 1.0, first])
     light = np.roll(wi, 1, axis=0) * [1.0, 1.0, second]
@@ -85,7 +85,7 @@ def framed(
     along: bool = False,
     scaled: bool = False,
 ) -> Pixels:
-    """Frames from random ones; the view may be along the normal, and tangents may lean and have any length."""
+    """Change random frames; options align views with the normal, or let tangents lean and scale."""
     batch = pixels.batch
     assert batch.frame is not None
     frame = make(batch.frame, rng)
@@ -95,8 +95,8 @@ def framed(
         tangent = length * (tangent + rng.uniform(-0.5, 0.5, (len(frame), 1)) * normal)
     axes = {"normal": rounded(normal.T), "tangent": rounded(tangent.T)}
     wo = np.broadcast_to(calls.NORMAL, batch.wo.shape) if along else batch.wo
-    # If an axis is a pole of the environment, its azimuth comes from roundings after the
-    # environment is turned.
+    # Do not turn an uneven environment here: the normal may be its pole, where a turn makes the
+    # azimuth depend on roundings.
     client = CLIENT if make is on_axes and pixels.sky == "uneven" else pixels.client
     batch = replace(batch.altered(**axes), wo=wo, frame=frame)
     return replace(pixels, batch=batch, client=client)
@@ -107,7 +107,7 @@ def upright(frames: Array, rng: Random) -> Array:
 
 
 def on_axes(frames: Array, rng: Random) -> Array:
-    """Frames whose normals are axes in both directions, in any order; tangents may also be axes."""
+    """Frames in random order, with normals along all axes, both ways; some tangents are axes."""
     turns = [np.roll(np.eye(3), shift, axis=0) for shift in range(3)]
     tangents = np.eye(3), np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
     rows = product(tangents, turns, ([1, 1, 1], [1, -1, -1]))
@@ -139,7 +139,7 @@ def bent(pixels: Pixels, rng: Random, columns: float = 0.0, rows: float = 0.0) -
 
 
 def doubled(pixels: Pixels, rng: Random, component: bool = False, swapped: bool = False) -> Pixels:
-    """A second lobe that differs in one input of each pixel, or in one component of it."""
+    """Add a second lobe; in each pixel, one input of it differs, or one component of an input."""
     first = broadcast_inputs(pixels.batch)
     second, words = dict(first), [""] * EACH
     names = [name for name in first if name not in VECTORS]
@@ -154,7 +154,7 @@ def doubled(pixels: Pixels, rng: Random, component: bool = False, swapped: bool 
 
 
 def leaning(pixels: Pixels, rng: Random) -> Pixels:
-    """A second lobe with the same inputs, and with the same normal or one halfway to the viewer in each square."""
+    """Add a lobe with equal inputs; after the first square, its normal is halfway to the viewer."""
     batch = pixels.batch
     assert batch.frame is not None
     normal = batch.frame[:, :, 2]
@@ -171,7 +171,7 @@ def leaning(pixels: Pixels, rng: Random) -> Pixels:
 
 
 def changed(pixels: Pixels, change: Callable[[Array], Array]) -> Pixels:
-    """A copy with changed values of all inputs except the frame, in both lobes."""
+    """Apply a change to all inputs of both lobes except the frame."""
     batch, second = pixels.batch, pixels.second
     inputs, others = (
         {name: each if name in VECTORS else change(each) for name, each in values.items()}
@@ -187,7 +187,7 @@ def constant(pixels: Pixels, rng: Random) -> Pixels:
 
 
 def in_image(pixels: Pixels, rng: Random) -> Pixels:
-    """Inputs rounded to half floats, as in images and textures."""
+    """Round inputs to half floats, the precision of the image that they are read from."""
     halves = changed(pixels, lambda values: values.astype(np.float16).astype(np.float64))
     return replace(halves, image=True)
 
@@ -198,8 +198,8 @@ ANGLE = 37.0 * np.pi / samples.SKY_ROWS
 COSINE, SINE = np.cos(ANGLE), np.sin(ANGLE)
 ROTATION = np.array([[COSINE, 0.0, SINE], [0.0, 1.0, 0.0], [-SINE, 0.0, COSINE]])
 TURNING = tuple((base.TURN @ np.pad(ROTATION, (0, 1))).T.ravel().tolist())
-# Other checks use the first state of each axis. States with the same words up to a colon are also
-# diagnosed together.
+# Other checks use the first state of each axis. States with the same words before a colon are also
+# diagnosed as a group.
 AXES: dict[str, dict[str, Build]] = {
     "lights": {
         "one light": partial(lit, count=1),
@@ -267,7 +267,7 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
     return tuple(found)
 
 
-@lru_cache(maxsize=1)  # a control has the same
+@lru_cache(maxsize=1)  # shared by a check and its control
 def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
     """Pixels with combinations of the states that the node and the engine support."""
     lobe, rng = backend.lobe, samples.generator()
@@ -276,9 +276,9 @@ def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
         plain.add("inputs from an image")
     if "frame" in plain:
         plain.add(TURNED_SKY)
-    if Ability.MATERIAL in lobe.requires:  # its tints are internal
+    if Ability.MATERIAL in lobe.requires:  # surface shaders do not expose tints
         plain.add(TWO_SIDED)
-    if backend.host.active.transmission == "opacity":  # environments do not scale it
+    if backend.host.active.transmission == "opacity":  # the environment does not scale opacity
         plain.add(TWO_SIDED)
     axes = tuple(
         tuple(state for n, state in enumerate(each) if not n or not {name, state} & plain)
@@ -287,14 +287,14 @@ def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
     rows = covering(axes)
     turned = backend.turned
     batch = turned.where(np.arange(EACH * len(rows)) % len(turned.wo))
-    if lobe.curved:  # otherwise light does not leave elsewhere
+    if lobe.curved:  # subsurface light leaves at other points
         batch = batch.altered(**lobe.random_inputs(rng, len(batch.wo)))
     if lobe.types.get("roughness") == "vector2":
         alpha = np.array(batch.inputs["roughness"])
         alpha[::2, 1] = np.roll(alpha[:, 0], 1)[::2]  # two alphas in at least every other pixel
         batch = batch.altered(roughness=alpha)
     if "weight" in lobe.names:
-        # Equal within a square: derivatives are undefined where a lobe is skipped.
+        # Keep weights equal in a square: derivatives are undefined where a lobe is skipped.
         batch = batch.altered(weight=np.repeat(rng.choice(WEIGHTS, len(batch.wo) // 4), 4))
     found = []
     for number, states in enumerate(rows):
@@ -316,7 +316,7 @@ def states(case: Case) -> Iterator[Compared]:
     groups: Sequence[Pixels] = pixels_of(case.backend)
     if case.control:
         groups = [each for each in groups if not each.image][:FEW]
-    # Draw constant inputs separately.
+    # Each group of pixels with constant inputs needs a frame.
     frames: dict[tuple[bool, str, Client, bool, int], list[int]] = {}
     for number, pixels in enumerate(groups):
         alone = number if "constant inputs" in pixels.states else -1
@@ -341,7 +341,7 @@ def states(case: Case) -> Iterator[Compared]:
         yield Compared(pixels.batch, measured[number], expected)
 
 
-# Layouts in a frame of two rows: four pixels per 2 x 2 square, the same transposed, or far apart.
+# Layouts of pixels in a frame of two rows: 2 x 2 squares, transposed squares, or far apart.
 SQUARES, TURNED, APART = ((-1, 2, 2), (1, 0, 2)), ((-1, 2, 2), (2, 0, 1)), ((-1, EACH), (1, 0))
 
 
@@ -362,7 +362,7 @@ def imaged(
     client: Client,
     two: bool,
 ) -> Array:
-    """Light in pixels whose last lobe reads its inputs from an image, each from 2 x 2 equal texels."""
+    """Light in pixels whose last lobe reads its inputs from an image with 2 x 2 equal texels."""
     count, last = len(batch.wo), "second/" if two else "lobe/"
     own = {name.removeprefix("second/"): name for name in batch.inputs if ("/" in name) == two}
     names = [name for name in own if name in case.lobe.types and name not in VECTORS]
@@ -410,10 +410,10 @@ def batch_of(pixels: Pixels) -> Batch:
 
 
 def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
-    """Sums of the separately evaluated parts of pixels, next to pixels with other inputs.
+    """Expected light: sums of separately evaluated parts, next to pixels with other inputs.
 
-    They are on a plane in the surface's frame, except under an uneven sky. If the shape affects them, they are on
-    the same shape, bent the other way on the screen.
+    Parts are on a plane in the surface's frame, except under an uneven sky. Lobes that depend on
+    the shape keep it, with rows and columns of each square exchanged.
     """
     curved = case.lobe.curved
     layout = TURNED if curved else APART
@@ -457,7 +457,7 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
 
 
 def in_turn(batch: Batch, client: Client) -> Batch:
-    """A batch in which the surface is turned instead of the environment."""
+    """Turn the surface of a batch instead of the environment."""
     if client.turn == CLIENT.turn:
         return batch
     frame = (
@@ -478,7 +478,7 @@ def diagnose(case: Case) -> results.Diagnosis:
 
 
 def shared(bad: Mask, pixels: Sequence[set[str]]) -> results.Cause:
-    """The states that all wrong pixels share: one, a pair that meets, or either of two."""
+    """Find the states that all wrong pixels share: one state, two together, or either of two."""
     names = sorted(set().union(*pixels))
     found: dict[tuple[str, ...], Mask] = {
         (name,): np.array([name in each for each in pixels]) for name in names
@@ -506,14 +506,14 @@ def shared(bad: Mask, pixels: Sequence[set[str]]) -> results.Cause:
 
 
 def _words(pixels: Pixels) -> Iterator[set[str]]:
-    """The states of each pixel, except the first ones, in the words of a diagnosis."""
+    """Names of each pixel's states for a diagnosis, without the first state of each axis."""
     common = named(pixels.states, AXES)
     for name in pixels.differ or ("",) * EACH:
         yield common | ({f"two lobes that differ in {name}"} if name else set())
 
 
 def named(states: Iterable[str], axes: Mapping[str, Mapping[str, object]]) -> set[str]:
-    """States other than the first of their axes, and their words before each colon."""
+    """Names of all states but the first of each axis, and of their groups (before a colon)."""
     first = {next(iter(each)) for each in axes.values()}
     parts = [words.split(":") for words in states if words not in first]
     return {":".join(each[: count + 1]) for each in parts for count in range(len(each))}
@@ -525,7 +525,7 @@ ROWS = (
           claim="Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not.",
           applies=check.family(LobeSpec), measure=states, tolerance="states", control=exchanged,
           explain=diagnose, requires=Ability.PAIRS,
-          # As opacity, such a lobe equals its tint: a control could not detect a wrong view.
+          # With opacity, these lobes pass their tint in every view, so the control cannot fail.
           methods=lambda spec, methods: methods.transmission != "opacity" or not DARK(spec)),
 )
 # fmt: on

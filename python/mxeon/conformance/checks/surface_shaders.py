@@ -32,7 +32,7 @@ LOBE_INPUTS = {
 
 
 def diagnose_lobes(case: Case) -> Diagnosis:
-    """The lobe whose removal leaves the smallest error of the worst pairs."""
+    """Find the lobe whose removal corrects the worst pairs."""
     [batch] = case.batches
     compared = values(case)
     wrong = scaled(compared.measured, compared.expected)
@@ -54,7 +54,7 @@ def diagnose_lobes(case: Case) -> Diagnosis:
 
 
 def wrong_layers(case: Case) -> list[str]:
-    """Lobes of a material with a wrong throughput, each judged separately."""
+    """Titles of the material's lobes that have a wrong throughput when judged separately."""
     from mxeon.shaders.document.graphs import categories, inner_nodes
 
     used, found = categories(inner_nodes(case.evaluating.shader.document)), []
@@ -72,8 +72,8 @@ SURFACES, SUM = family(SurfaceShaderSpec), defect("sum_of_lobes")
 def values(case: Case) -> Compared:
     """Values compared with the layer equation.
 
-    Lobes with two alphas are judged by their mean error, or by individual errors relative to the
-    largest error of their fits.
+    Fits for two alphas are coarser: each such error is scaled by VALUE_ERROR / STRETCHED_FIT, or
+    replaced by the mean error of these pairs if that is larger.
     """
     [batch] = case.batches
     expected = case.expected(batch)
@@ -107,18 +107,18 @@ def glass(case: Case) -> Iterator[Compared]:
     through = spec.transmitted(batch, methods.transmission == "opacity")
     measured = case.transmitted(batch)
     yield Compared(batch, measured, through)
-    if methods.environment == "fis":  # else a fit, or no reflection
+    if methods.environment == "fis":  # other methods use a fit or reflect nothing
         yield Compared(batch, measured + case.albedo(batch), through + case.expected_albedo(batch))
 
 
 def misplaced(case: Case) -> list[str]:
-    """Inputs with an effect although the page says none, or the reverse."""
+    """Inputs that have an effect although documented as having none, or the reverse."""
     wrong = set(expected_dead(case)).symmetric_difference(without_effect(case))
     return sorted(wrong.difference(case.backend.unset))
 
 
 def expected_dead(case: Case) -> tuple[str, ...]:
-    """Inputs that may have no effect; as opacity, transmitted light has no roughness."""
+    """Inputs that may have no effect. Transmission as opacity is not blurred by a roughness."""
     spec = case.of(SurfaceShaderSpec)
     blur = ("transmission_extra_roughness",)
     return (*spec.without_effect, *(blur if case.opaque and blur[0] in spec.names else ()))
@@ -128,7 +128,7 @@ def without_effect(case: Case) -> list[str]:
     """Inputs that change neither a value in any branch nor the emission."""
     spec, evaluating = case.of(SurfaceShaderSpec), case.evaluating
     given = {port.path.rsplit("/", 1)[-1]: port.value for port in evaluating.shader.inputs}
-    for name in spec.names:  # inputs without a value in a document
+    for name in spec.names:  # frame inputs have no value in a document
         if name.endswith(("normal", "tangent")):
             given.setdefault(name, TANGENT if "tangent" in name else NORMAL)
     rows = [row for changes in spec.changes.values() for row in changes]
@@ -148,7 +148,7 @@ def without_effect(case: Case) -> list[str]:
     return [name for name, each in zip(spec.names, effective, strict=True) if not each]
 
 
-# The host only gets the first pair.
+# The host evaluates only the first row, and its values count for all rows.
 ignore_changes = controls.Control(
     "every change is dropped",
     lambda case: replace(

@@ -15,7 +15,7 @@ LOBES, LOBES_TOO = (Cause(Kind.DEFECT, key) for key in ("lobes_of_graph", "lobes
 
 
 def diagnose(case: Case) -> Diagnosis:
-    """The form of the text that the shader follows; if its lobes are wrong, the form of its graph in float64."""
+    """Find the reading of the text that the shader follows, or that its graph follows."""
     from mxeon.conformance.reference import Reference
 
     spec, found = case.of(SentenceSpec), SENTENCE.diagnose(case)
