@@ -214,7 +214,7 @@ def with_directions(spec: Spec, methods: Methods) -> bool:
 
 
 def diagnose_transmitted(case: Case) -> Diagnosis:
-    """Test whether light matches the visible facets, or these over G_1 as in MaterialX; find NaN."""
+    """Test whether light matches visible facets, or these over G_1 as in MaterialX; find NaN."""
     compared, spec = list(transmitted(case)), case.of(TransmissionSpec)
 
     def distance(found: Callable[[Compared], Array]) -> float:

@@ -16,7 +16,7 @@ from mxeon.conformance.specs.surface_texts import SENTENCES
 from mxeon.conformance.specs.utilities import INVERSION_SPECS, UTILITY_SPECS
 
 PLAIN_LOBES = (BURLEY, TRANSLUCENT, CONTY_KULLA, ZELTNER, *FACET_SPECS)
-# Every run judges the common ones, and the rest only if the user names them.
+# Every run judges COMMON; the other nodes are judged only if the user names them.
 COMMON: tuple[Spec, ...] = (*PLAIN_LOBES, *COMBINED_SPECS, *INVERSION_SPECS, CLIENT_FRAME)
 # fmt: off
 PBRLIB: tuple[Spec, ...] = (

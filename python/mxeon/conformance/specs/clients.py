@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A material for clients' frames: a mix of two matte surfaces with opacities, one of them a mix of two lobes."""
+"""The material that tests client bindings: a mix of two matte surfaces with opacities."""
 
 from dataclasses import dataclass
 
@@ -25,7 +25,7 @@ class FrameSpec(Spec):
     requires = Ability.CLIENT
 
     def document(self, inputs: Values | None = None) -> str:
-        """The front surface has the opacity `front/opacity` and the mix weight `shading/mix`."""
+        """A document whose inputs `front/opacity`, `back/opacity` and `shading/mix` can be set."""
         make, node = nodes.lobe_text, "oren_nayar_diffuse_bsdf"
         lobes = (make(node, {"color": each}, name) for name, each in LOBES.items())
         weight = nodes.input_text("mix", "float", SHARE)

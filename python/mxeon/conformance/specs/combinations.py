@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes that combine two lobes, or a sum of them: `layer`, `mix`, `add` and `multiply`."""
+"""The nodes `layer`, `mix`, `add` and `multiply`, over two lobes or a sum of them."""
 
 from dataclasses import dataclass, replace
 
@@ -17,7 +17,7 @@ from mxeon.shaders import nodes
 
 PASSES = ZELTNER_THROUGHPUT.term("a throughput between them")
 VALUE = sum_of(ZELTNER_VALUE.term("two values", 2.0), PASSES)
-# Also covers a sum in a mix over a base: its albedo has slopes of at most 1 and 2 by the two.
+# This also covers a mixed sum over a base: its slopes by both albedos are at most 1 and 2.
 THREE_ALBEDOS = ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0)
 ALBEDO = sum_of(THREE_ALBEDOS, quantity=Quantity.ALBEDO)
 THIRD = ZELTNER_VALUE.term("a third value"), ZELTNER_THROUGHPUT.term("its throughput")
@@ -25,7 +25,7 @@ NESTED_VALUE = sum_of(VALUE.term("two values and a throughput"), *THIRD, exact=T
 ERRORS = {
     "albedo": ALBEDO,
     "throughput": ALBEDO,
-    # The same products, with an exact factor.
+    # Both sides compute the same products with an exact factor.
     "factor": sum_of(Term(ROUNDING, "one float32 rounding"), exact=True),
     "frame": sum_of(FLAT_FRAME.term("three lobes in another frame", 3.0)),
 }
@@ -39,7 +39,7 @@ SHEEN = nodes.Node("sheen_bsdf", "BSDF", text=nodes.input_text("mode", "string",
 LOBES = {"top": SHEEN, "base": SHEEN}
 SUM = {"sum": over("add", "top", "base")}
 WHITE_INPUT = nodes.input_text("color", "color3", np.ones(3))
-# Connected opaque lobes and mix weights, which MaterialX folds into the weights of the lobes.
+# Opaque lobes with connected mix weights; MaterialX folds these weights into the lobes' weights.
 MASKED = {
     **dict.fromkeys(
         ("white", "other"), nodes.Node("oren_nayar_diffuse_bsdf", "BSDF", text=WHITE_INPUT)
@@ -53,7 +53,7 @@ MASKED = {
     ),
     "lobe": over("layer", "both", "base"),
 }
-# Row name -> title, and the nodes that combine both lobes.
+# For each row name: its title, and the nodes that combine both lobes.
 # fmt: off
 NETWORKS: dict[str, tuple[str, dict[str, nodes.Node]]] = {
     "layer": ("layer", {"lobe": over("layer", "top", "base")}),
@@ -77,14 +77,14 @@ COLORED = ("multiply_color3", "multiply_sum")  # rows with a color as their fact
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CombinedSpec(PbrSpec):
-    """A node of `mxeon.models.nodes.combinations` with weights 1."""
+    """A node of `mxeon.models.nodes.combinations` whose lobes have weight 1."""
 
     requires = spec.Ability.LOBE | spec.Ability.COMBINATION
     # MaterialX scales a lobe by a connected mix weight wherever the lobe is used.
     plain = ("lobes", "inputs from an image")
 
     def batches(self, counts: samples.Counts) -> tuple[samples.Batch, ...]:
-        """Random and special pairs; pairs outside the domain are judged with the lobes."""
+        """Random and special pairs. Single lobes are already checked outside the domain."""
         rng, count = samples.generator(), counts.pairs
         wo, wi = samples.directions(rng, count), samples.directions(rng, count)
         special = samples.special_directions(rng)
@@ -108,7 +108,7 @@ def _spec(row: PbrNode) -> CombinedSpec:
         spec.color(FACTOR, edges=()) if row.name in COLORED else spec.Input(FACTOR, change=0.3),
     )
     inputs = {each.name: each for each in known}
-    if row.name in SINGLE:  # the functions also read the other lobe
+    if row.name in SINGLE:  # the function reads it, but the node does not use it
         inputs[ROUGHNESS[1]] = replace(inputs[ROUGHNESS[1]], change=None)
     return CombinedSpec(
         **named_mode(row, NETWORKS[row.name][0]),

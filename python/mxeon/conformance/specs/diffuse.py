@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rough diffuse nodes, each mode with its expected model, and the diffuse lobes of surface shaders."""
+"""Specs of the rough diffuse nodes, mode by mode, and of the diffuse lobes of surface shaders."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -25,7 +25,7 @@ PICTURE_INPUTS: tuple[Values, ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
 )
-COUNTS = Counts(nodes=16)  # error 2e-8, the rounding of directions
+COUNTS = Counts(nodes=16)  # the quadrature's error is 2e-8, like rounded directions
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H: tools/fits
 
 VALUE = sum_in(
@@ -33,10 +33,10 @@ VALUE = sum_in(
     roundings(28, "(14, of numbers up to 2)"),
     Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
 )
-# 12 in the longest chain, two in the cosine, and two for the fit of H, which has the factor 0.29.
+# The longest chain has 12 roundings, the cosine two, and the fit of H, times 0.29, two.
 LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
 ENVIRONMENT = sum_in(Quantity.ALBEDO, LARGE_NUMBERS)
-# Five in each of two cosines of at least 1/4, times 4 by s / t, 3 by a sine, and 2 by s and the cosine.
+# Two cosines of at least 1/4 have five roundings each: 4 times in s / t, 3 in a sine, 2 elsewhere.
 FRAME = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     roundings(2 * 28, "of two values"),
@@ -73,16 +73,16 @@ def inputs_of(*names: str) -> tuple[Input, ...]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DiffuseModelSpec(ScatteringSpec):
-    """A node or lobe that must be a rough diffuse model: a row of `mxeon.models.table`."""
+    """A node or lobe whose expected model is a rough diffuse model of `mxeon.models.table`."""
 
-    requires = Ability.OWN  # overridden for library nodes
+    requires = Ability.OWN  # library nodes override this
 
     counts: Counts = COUNTS
     flat: bool = True
 
     @property
     def drawn(self) -> tuple[Input, Input]:
-        """Its inputs; roughness is kept from exceeding the model's maximum by a rounding."""
+        """The inputs. Rounding to float32 must not lift roughness above the model's maximum."""
         largest = reference.diffuse_model(self.model).largest
         most = np.float32(largest)
         high = float(most if most <= largest else np.nextafter(most, np.float32(0.0)))
@@ -98,7 +98,7 @@ class DiffuseModelSpec(ScatteringSpec):
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False
     ) -> dict[str, Array]:
-        """The last colors are gray, except on edges."""
+        """Random inputs. Unless `edged`, the last sixteenth of the colors is gray."""
         inputs = super().random_inputs(rng, count, edged)
         gray = slice(count if edged else count - count // 16, None)
         inputs["color"][gray] = inputs["color"][gray, :1]
@@ -118,7 +118,7 @@ class DiffuseModelSpec(ScatteringSpec):
 
 
 def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
-    """The row of a node with its expected model; the variants are all models that it may be instead."""
+    """The row of a node with its expected model. Its variants are all other known models."""
     known = others + reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS
     rows = {each.name: each for each in known}
     own = reference.diffuse_model(model)
@@ -133,7 +133,7 @@ def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
 
 
 def _limited(function: Callable[..., Array], most: float) -> Callable[..., Array]:
-    """A function of directions and inputs with the roughness limited to the maximum."""
+    """A function of directions and inputs that limits the roughness to `most`."""
     return lambda *given: function(
         *given[:-1], {**given[-1], "roughness": np.minimum(given[-1]["roughness"], most)}
     )
@@ -141,7 +141,7 @@ def _limited(function: Callable[..., Array], most: float) -> Callable[..., Array
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DiffuseSpec(DiffuseModelSpec):
-    """A rough diffuse node and its flag."""
+    """A rough diffuse node with one value of its flag."""
 
     requires = Ability.DIFFUSE
 
@@ -172,18 +172,18 @@ DIFFUSE = (
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceLobe(DiffuseModelSpec):
-    """The diffuse lobe of a surface shader; its other lobes cannot be disabled.
+    """The diffuse lobe of a surface shader whose other lobes cannot be disabled.
 
-    The lobes above only depend on the directions, so other colors isolate the diffuse lobe:
-    a black lobe leaves the other lobes, and a white one at roughness 0, which is Lambert in every
-    model, gives the share of the light that reaches the lobe and returns.
+    The lobes above depend only on the directions, so two renders isolate the diffuse lobe. A black
+    color shows the other lobes. White at roughness 0, Lambert in every model, shows the share of
+    light that reaches the lobe and returns.
     """
 
     requires = Ability.BELOW
     coarse = 4  # the shaders are slow
     rim = LOBE_RIM  # position errors are divided twice
 
-    ports: Mapping[str, str]  # its inputs by the names of a rough diffuse node's
+    ports: Mapping[str, str]  # rough diffuse node's input name -> shader's input name
     set_inputs: tuple[tuple[str, str, str], ...] = ()  # name, type and value of additional inputs
 
     def document(self, inputs: Values | None = None) -> str:
@@ -195,8 +195,8 @@ class SurfaceLobe(DiffuseModelSpec):
 
 
 # fmt: off
-# Title, model, names of color and roughness, and additional inputs. OpenPBR specifies EON, Standard Surface
-# Oren-Nayar, USD Preview Surface and glTF Lambert.
+# Title, model, names of color and roughness, and additional inputs. OpenPBR specifies EON; Standard
+# Surface, Oren-Nayar; USD Preview Surface and glTF, Lambert.
 ROWS: tuple[tuple[str, str, tuple[str, ...], tuple[tuple[str, str, str], ...]], ...] = (
     ("open_pbr_surface", "eon", ("base_color", "base_diffuse_roughness"), ()),
     ("open_pbr_surface, thin-walled", "eon", ("subsurface_color", "base_diffuse_roughness"),
@@ -214,7 +214,7 @@ SURFACE_LOBES = tuple(
         row=model_row(model, node),
         ports=dict(zip(("color", "roughness"), ports, strict=False)),
         set_inputs=given,
-        # The thin-walled lobe is MaterialX's own in every library, so it is judged once.
+        # Every library uses MaterialX's own thin-walled lobe, so judge it once.
         libraries=("stock",) if title != node else (),
         errors={"value": LOBE_VALUE},
     )

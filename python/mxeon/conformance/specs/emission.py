@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The EDF nodes, nodes that combine EDFs, emitting surfaces viewed from both sides, and the VDF nodes."""
+"""Specs of EDF nodes, nodes that combine EDFs, emitting surfaces, and VDF nodes."""
 
 from dataclasses import dataclass, replace
 from functools import partial
@@ -18,13 +18,13 @@ from mxeon.shaders import nodes, scene
 
 
 def title_of(row: emissions.Emission | Medium, kind: str) -> str:
-    """Title of a row; nodes that combine others share their names with nodes of other types."""
+    """Title of a row. It includes the type if nodes for several types share a name."""
     factor = f", in2 {row.name.rpartition('_')[2]}" if row.category == "multiply" else ""
     return f"{row.category}, {kind}{factor}" if "/" in next(iter(row.inputs)) else row.category
 
 
 def inputs_of(row: emissions.Emission | Medium) -> tuple[Input, ...]:
-    """The inputs of the row's functions; a factor has the type in the last word of the row's name."""
+    """The inputs of a row. The last word of the row's name is the type of its factor."""
     kind = row.name.rpartition("_")[2]
     return tuple(INPUTS.get(name) or FACTORS[name, kind] for name in row.inputs)
 
@@ -32,7 +32,7 @@ def inputs_of(row: emissions.Emission | Medium) -> tuple[Input, ...]:
 def chained(
     row: emissions.Emission | Medium, kind: str, source: str, name: str, text: str = ""
 ) -> dict[str, nodes.Node]:
-    """A node with its source nodes, whose names are in the paths of its inputs."""
+    """A node and its source nodes, which the paths of its inputs name."""
     paths = (each.rpartition("/")[0] for each in row.inputs)
     sources = tuple(dict.fromkeys(path for path in paths if path not in ("", name)))
     own = {name: nodes.Node(row.category, kind, sources, text)}
@@ -41,15 +41,15 @@ def chained(
 
 EMITTED = nodes.connection_text("edf", "EDF", "emission")
 EMITTING_TEXT = nodes.node_text("surface", "surfaceshader", "shading", EMITTED)
-SURFACE_COLOR = (0.2, 0.5, 2.0)  # radiance of a surface
+SURFACE_COLOR = (0.2, 0.5, 2.0)  # radiance that the surface emits
 BLACK_LOBE = '  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF" />\n'
-LEAST_FALLOFF = 0.01  # degrees of full angle between the cones
-LEAST_CONE = 1e-3  # least share of a full turn
+LEAST_FALLOFF = 0.01  # least difference of the full angles, in degrees
+LEAST_CONE = 1e-3  # least full angle of narrow cones, as a share of a turn
 EXPONENTS = (0.5, 20.0)
 BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
 INNER, OUTER = "inner_angle", "outer_angle"
 LEAST, LARGEST = 1e-3, 16.0  # coefficients in 1/m that remove 1e-3 and 1 - 1e-7 of the light
-# In pictures the falloff covers half of the sphere, so that it is not steep.
+# For pictures, choose a falloff over half of the sphere, so that it is not steep.
 INPUTS = {
     each.name: each
     for each in (
@@ -80,15 +80,15 @@ FACTORS = {
     (media.FACTOR, "color3"): replace(color(media.FACTOR, edges=()), high=3.0),
 }
 
-# Closer to a hard edge than this cosine, the engine's rounding decides; half of 1 - cos for narrow cones.
+# Closer to a hard edge than this difference of cosines, an engine's rounding decides.
 EDGE = 1e-3
 SMALL = scene.Scene("dark", size=8)
 OPACITIES = (0.0, 0.25, 1.0)
 
 
-# Ten for 1 - cos of both angles, which add up to 1 - mu for a view, and two for differences.
+# 1 - cos of both angles has ten roundings in all, and differences have two.
 CONE_ROUNDINGS = 12
-# Errors by name of the row.
+# Keys are names of rows.
 # fmt: off
 ERRORS = {
     "conical": sum_of(
@@ -113,7 +113,7 @@ power_error = spec.POWER.error(_powers)
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class EmissionSpec(spec.RowSpec[emissions.Value]):
-    """A row of `mxeon.models.nodes.emissions`."""
+    """An EDF node, or a combination of EDFs: a row of `mxeon.models.nodes.emissions`."""
 
     requires = Ability.EMISSION
     coarse = 4  # all pixels of a view are equivalent
@@ -122,7 +122,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
 
     def document(self, inputs: Values | None = None) -> str:
         axis = turned = ""
-        if "normal" in (inputs or {}):  # unconnected normals are ignored
+        if "normal" in (inputs or {}):  # a normal must be connected: values are ignored
             axis = nodes.vector_text("axis", (inputs or {})["normal"])
             turned = nodes.connection_text("normal", "vector3", "axis")
         network = chained(self.row, "EDF", "uniform_edf", "emission", turned)
@@ -130,7 +130,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
         return nodes.document_text(text, "look")
 
     def values(self, function: emissions.Value, batch: Batch) -> Array:
-        """Radiance, (N, 3), with the cosines of views limited to 1."""
+        """Radiance, (N, 3); components of views are clipped to [-1, 1]."""
         return function(np.clip(batch.wo, -1.0, 1.0), spec.broadcast_inputs(batch))
 
     @property
@@ -138,7 +138,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
         return (spec.ZERO,)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views from the front, and cosines from 1 to grazing."""
+        """Random views from the front, and a grid of cosines from 1 to grazing."""
         rng = generator()
         special = samples.directions_at(np.repeat(samples.GRID, 64), 0.0)
         return (self.views(rng, directions(rng, counts.pairs)), self.views(rng, special))
@@ -152,7 +152,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
 
 
 class ConeSpec(EmissionSpec):
-    """An emission inside a cone; the cone's axis is an input."""
+    """An emission inside a cone around an input axis."""
 
     def random_inputs(self, rng: samples.Rng, count: int) -> dict[str, Array]:
         """Half of the cones have a falloff of at least LEAST_FALLOFF degrees; a quarter are narrow.
@@ -168,10 +168,10 @@ class ConeSpec(EmissionSpec):
         return inputs | {INNER: float32(inner), OUTER: float32(outer)}
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """An emission's batches; views in falloffs, or slightly inside and outside the cones; and turned axes."""
+        """Random views, views in falloffs or close to edges of cones, and turned cones."""
         rng, count = generator(), counts.few
         inputs = self.random_inputs(rng, count)
-        inputs[INNER][0] = inputs[OUTER][0] = 0.0  # a cone of one direction, which is the view
+        inputs[INNER][0] = inputs[OUTER][0] = 0.0  # this cone has one direction, the view
         angle = np.where(np.arange(count) % 2, inputs[INNER], inputs[OUTER])
         step = np.where(rng.random(count) < 0.5, -2.0, 2.0) * _edge(angle)
         mu, low = cone_cosine(angle) + step, cone_cosine(inputs[OUTER])
@@ -185,7 +185,7 @@ class ConeSpec(EmissionSpec):
         return *super().batches(counts), _away(near), _away(turned)
 
     def alike(self, compared: Compared) -> Compared:
-        """Scales errors by 1 + the falloff's largest slope at cosines within a rounding of the view's."""
+        """Divide errors by 1 + the falloff's largest slope within a rounding of the view."""
         batch = compared.batch
         inner, outer = (batch.inputs[name] for name in (INNER, OUTER))
         width = np.where(outer > inner, cone_width(inner, outer), np.inf)
@@ -199,7 +199,7 @@ class ConeSpec(EmissionSpec):
 
 
 def _away(batch: Batch) -> Batch:
-    """Views of a batch away from hard edges of cones."""
+    """Drop views that are close to the hard edge of a cone."""
     hard = batch.inputs[OUTER] <= batch.inputs[INNER]
     away = np.abs(np.maximum(batch.wo[:, 2], 0.0) - cone_cosine(batch.inputs[INNER]))
     return batch.where(~hard | (away >= _edge(batch.inputs[INNER])))
@@ -211,17 +211,17 @@ def _edge(angle: Array) -> Array:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AbsentSpec(spec.Spec):
-    """A node that eonlib does not implement: only the existence of an implementation is judged."""
+    """A node of which only the existence of an implementation is judged."""
 
     requires = Ability.IMPLEMENTATION
 
-    text: str  # XML of document nodes that use it
+    text: str  # XML nodes of a document that uses it
 
     def document(self, inputs: Values | None = None) -> str:
         return nodes.document_text(self.text)
 
 
-# A node defined without an implementation: an unlit surface.
+# A definition without any implementation, for a control.
 UNIMPLEMENTED = AbsentSpec(
     title="a node without an implementation",
     node="mxeon_absent",
@@ -240,7 +240,7 @@ ABSENT = (
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class EmittingSurface(spec.ValueSpec):
-    """The node `surface` with an emission, in the dark, with one picture for each of OPACITIES."""
+    """The node `surface` with an emission and no light, in a picture for each of OPACITIES."""
 
     requires = Ability.SURFACE
 
@@ -292,9 +292,9 @@ def _spec(row: emissions.Emission) -> EmissionSpec:
 EMISSION_SPECS = tuple(map(_spec, (*emissions.EMISSIONS, *emissions.COMBINED_EMISSIONS)))
 
 
-# --- media: the VDF nodes, between two lobes that let light through --------------------------------
+# --- media: VDF nodes between two transmitting lobes ----------------------------------------------
 
-# Roundings of the exponential of a sum, of a product, and of the quotient of two such values.
+# An exponential of a sum, a product, and a quotient of two such values have 12 roundings.
 TRANSMITTANCE = sum_of(roundings(12), quantity=Quantity.TRANSMITTANCE)
 TYPES = {"weight": "float", "scatter_mode": "string"}
 TOP, BOTTOM = (
@@ -315,7 +315,7 @@ LAYERS = layer_text("filled", "top", "VDF", "medium") + layer_text(
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MediumSpec(spec.RowSpec[media.Value]):
-    """A row of `mxeon.models.nodes.media`."""
+    """A VDF node, or a combination of VDFs: a row of `mxeon.models.nodes.media`."""
 
     requires = Ability.MEDIUM
 
@@ -327,7 +327,7 @@ class MediumSpec(spec.RowSpec[media.Value]):
         return nodes.document_text(TOP + media + BOTTOM + LAYERS + nodes.SURFACE)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views and inputs, without grazing views, where refraction may fail."""
+        """Random views and inputs, without grazing views, for which refraction may fail."""
         rng, count = generator(), counts.pairs
         wo = samples.turned_directions(rng, count)
         return (Batch(wo, wo * [1.0, 1.0, -1.0], self.random_inputs(rng, count)),)
@@ -348,7 +348,7 @@ ENGINE = (
     EngineError("the engine's exp(), twice", exponential_error, 2.0),
     EngineError("the engine's pow(), twice", power_error, 2.0),
 )
-# By the text, a medium's anisotropy does not affect the transmittance.
+# A medium's anisotropy must not affect the transmittance.
 ANISOTROPY = Input("anisotropy", low=-0.9, high=0.9, default=0.5)
 
 

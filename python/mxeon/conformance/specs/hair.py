@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The hair node: pairs over the whole sphere, pairs in its lobes, and regions where shaders differ."""
+"""The hair node: pairs over the sphere, pairs in its lobes, and regions where shaders differ."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -18,12 +18,12 @@ from mxeon.models.nodes.lobes import BESSEL, CLAMPED, HAIR_NODE, UNIFORM
 from mxeon.models.nodes.node import Scattering
 
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 9)
-LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # smallest values of random pairs
-WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # smallest values of integrated lobes
-MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # largest outputs of the node for artistic roughness
+LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # lower limits of random roughness
+WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # lower limits of integrated lobes
+MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # maximum of chiang_hair_roughness
 FRONT = np.array([1.0, 0.0, 1.0, 0.5])  # share of R, TT, TRT and TRRT+ from the viewer's side
-STEP = 1e-6  # change of an angle in the differences that measure slopes
-LEAST = 0.01  # errors of smaller values are relative to this
+STEP = 1e-6  # change of an angle, in radian, that measures slopes
+LEAST = 0.01  # smaller values have errors relative to this
 
 # fmt: off
 INPUTS = (
@@ -37,20 +37,20 @@ INPUTS = (
     Input("cuticle_angle", change=0.55, often=0.5),
     Input("absorption_coefficient", "vector3", 0.0, 4.0, edges=(0.0,), change=(0.9, 0.1, 0.6)),
     NORMAL,
-    # Its default variable is the surface's tangent.
+    # By default, it is the surface's tangent.
     Input("curve_direction", "vector3", change=(0.6, 0.8, 0.0), variable="tangent"),
 )
 # fmt: on
 
-# Times sqrt(v): from the largest pi f, 1e5, a lobe falls to 1.
+# A lobe falls from the largest pi f, 1e5, to 1 within REACH times sqrt(v).
 REACH = math.sqrt(2.0 * math.log(1e5))
-ANGLE, CHAIN = 12, 48  # roundings of an angle, and of the following operations
+ANGLE, CHAIN = 12, 48  # roundings of an angle, and of all later operations
 
 
 def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Term, ...]:
-    """Error of pi f for lobes at least this wide, with `angle` roundings of an angle.
+    """Error terms of pi f for lobes at least this wide; each angle has `angle` roundings.
 
-    The logarithm of M changes by at most REACH / sqrt(v) in an angle, and that of N by 1 / s'.
+    The largest slopes by an angle are REACH / sqrt(v) for log M, and 1 / s' for log N.
     """
     slope = REACH / math.sqrt(variance) + 1.0 / (SCALE * scale)
     lobe = f"v {variance:g} and s {scale:g}"
@@ -59,10 +59,10 @@ def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Ter
 
 
 VALUE = sum_of(*lobe_terms(LEAST_VARIANCE, LEAST_SCALE), quantity=Quantity.FULL_SPHERE)
-# A turned value is compared with an unturned one; turning adds five roundings to those of each angle.
+# Turned values are compared with unturned ones. Turning adds five roundings to each angle.
 TWO_LOBES = lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5))
 FRAME = sum_of(*TWO_LOBES, quantity=Quantity.FULL_SPHERE)
-# Mean slopes of the logarithms of a Gaussian and of a logistic density.
+# Mean absolute slope of the logarithm of a Gaussian, plus that of a logistic density.
 MEAN_SLOPE = math.sqrt(2.0 / (math.pi * WIDE_VARIANCE)) + 0.5 / (SCALE * WIDE_SCALE)
 MEAN = sum_of(
     roundings(MEAN_SLOPE * ANGLE, "(12 of an angle, times the mean slope of the logarithm)"),
@@ -78,28 +78,28 @@ REGION = sum_in(
 
 LOBE_TINTS = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
 APART: Values = {**LOBE_TINTS, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in separate channels
-STRAIGHT = 0.05  # largest azimuth, in radian, of a view along the normal
-SLANTED = (0.3, 1.2)  # azimuths of all other views
+STRAIGHT = 0.05  # views along the normal have azimuths up to this, in radian
+SLANTED = (0.3, 1.2)  # azimuths of other views, in radian
 
 
 @dataclass(frozen=True)
 class Region:
-    """Views and roughnesses of a check."""
+    """A check of the hair node, by its range of views and roughnesses."""
 
     claim: str
     azimuths: tuple[float, float] = SLANTED  # range of views relative to the normal, in radian
     variances: tuple[float, float] = (0.2, 1.0)
     scales: tuple[float, float] = (0.2, 1.0)
-    tints: Values = field(default_factory=lambda: APART)  # assign lobes to channels
+    tints: Values = field(default_factory=lambda: APART)  # they give each lobe a channel
     tilt: float = 0.05  # largest deviation of `cuticle_angle` from 1/2
     ior: tuple[float, float] | None = None  # range of the index; None for the default range
-    # Title of the form that shaders use there instead of the model, or "".
+    # Title of the approximation that shaders may use there, or "".
     form: str = ""
 
 
 NARROW = partial(Region, variances=(1e-3, 0.1), scales=(0.9, 1.0), form=BESSEL)
 # fmt: off
-# Regions by key of the check.
+# Keys are the names of checks.
 REGIONS = {
     "each_lobe": Region("Each lobe matches the equations: R, TT, and TRT with all higher orders.",
                         tints=LOBE_TINTS, form=UNIFORM),
@@ -134,7 +134,7 @@ class HairSpec(PbrSpec):
         return np.asarray(np.pi * function(batch.wo, batch.wi, broadcast_inputs(batch)) * occlusion)
 
     def sky(self, batch: Batch) -> Array:
-        """R and TRT leave on the side of the light, TT on the opposite side, and the rest on both."""
+        """R and TRT take light from the viewer's side, TT from behind, higher orders from both."""
         inputs = broadcast_inputs(batch)
         A = chiang_hair_attenuation(batch.wo, inputs["ior"], inputs["absorption_coefficient"])
         shares = A * np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)
@@ -143,7 +143,7 @@ class HairSpec(PbrSpec):
         return np.asarray(front * near + (1.0 - front) * far)
 
     def alike(self, compared: Compared) -> Compared:
-        """Values relative to themselves or LEAST, plus their slopes in both directions' inclination and azimuth."""
+        """Divide values by max(value, LEAST) plus the slopes by both directions' two angles."""
         batch = compared.batch
         total = np.maximum(self.value(batch), LEAST)
         for step in np.eye(4) * STEP:
@@ -153,7 +153,7 @@ class HairSpec(PbrSpec):
         return compared.over(total)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs, equally many in the lobes, and special pairs, with roughness above 0."""
+        """Random pairs, as many pairs inside lobes, and special pairs, with roughness above 0."""
         rng, count = generator(), counts.pairs
         wo, inputs = samples.directions(rng, count), self.random_inputs(rng, count)
         free = samples.directions(rng, count) * _sides(rng, count)
@@ -165,11 +165,11 @@ class HairSpec(PbrSpec):
         )
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views of untilted fibers, whose albedo has a closed form."""
+        """Views of fibers without cuticle tilt, whose albedo has a closed form."""
         return tuple(batch.altered(cuticle_angle=0.5) for batch in super().views(batches, counts))
 
     def edges(self, counts: Counts) -> Batch:
-        """Exact directions, including those along the fiber, and inputs on their edges."""
+        """Exact directions, some along the fiber, with inputs at the ends of their ranges."""
         rng = generator()
         along = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
         pairs = np.repeat(along, 4, axis=0), np.tile(along, (4, 1))
@@ -179,7 +179,7 @@ class HairSpec(PbrSpec):
         return Batch(wo, wi, self.random_inputs(rng, len(wo), edged=True))
 
     def turned(self, counts: Counts) -> Batch:
-        """Pairs with individual frames, without narrow lobes, whose position would be uncertain."""
+        """Pairs with individual frames. Rounding displaces narrow lobes, so widen them."""
         batch = super().turned(counts)
         least = LEAST_TURNED**2, LEAST_TURNED
         wide = {name: np.maximum(batch.inputs[name], least) for name in ROUGHNESSES}
@@ -187,7 +187,7 @@ class HairSpec(PbrSpec):
         return replace(batch.altered(**wide), wi=batch.wi * sides)
 
     def region(self, key: str, count: int) -> Batch:
-        """Pairs in the lobes of a row of REGIONS, with a channel per lobe."""
+        """Pairs inside the lobes, for views and roughnesses of a row of REGIONS."""
         rng, row = generator(), REGIONS[key]
         sine = 0.9 * (2.0 * rng.random(count) - 1.0)
         low, high = row.azimuths
@@ -230,12 +230,12 @@ def _turned(direction: Array, inclination: float, azimuth: float) -> Array:
 
 
 def _sides(rng: samples.Rng, count: int) -> Array:
-    """Factors of directions, (count, 3), that flip half of them to the other side of the surface."""
+    """Factors, (count, 3), that flip a random half of directions to the other side."""
     return np.stack([np.ones(count), np.ones(count), rng.choice([-1.0, 1.0], count)], axis=-1)
 
 
 def in_lobes(rng: samples.Rng, wo: Array, inputs: dict[str, Array]) -> Array:
-    """Light directions in one of the lobes R, TT and TRT of each view, float32 values, (N, 3)."""
+    """For each view, a light direction in a random lobe (R, TT or TRT), float32 values, (N, 3)."""
     count = len(wo)
     lobe, chosen = rng.integers(0, 3, count), np.arange(count)
     v, s = (np.stack([inputs[name] for name in ROUGHNESSES])[lobe, chosen]).T

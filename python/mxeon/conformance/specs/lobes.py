@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A mode of a BSDF node of `mxeon.models.nodes`, and error terms that such nodes share."""
+"""Specs of BSDF nodes of `mxeon.models.nodes`, one per mode, and the error terms they share."""
 
 from abc import abstractmethod
 from collections.abc import Callable
@@ -18,24 +18,24 @@ from mxeon.models.nodes.node import ABSORBING, COLORED, Inputs, PbrNode, Scatter
 from mxeon.shaders.nodes import material_text
 
 COUNTS = Counts(pairs=1 << 12, few=1 << 10, diagnosed=1 << 11)
-LEAST_VIEW = 0.02  # least cosine of views with integrated values
-# Weights and normals are not drawn here: samples have their own weights and frames.
+LEAST_VIEW = 0.02  # least cosine of views whose values are integrated
+# Weights and normals have no random range here: batches bring their own weights and frames.
 WEIGHT = spec.Input("weight", change=0.5, materials=(1.0, 0.5))
-# Roughness of lobes other than microfacets.
+# Roughness of every lobe except microfacet lobes.
 ROUGHNESS = spec.Input(
     "roughness", low=samples.LEAST_SHEEN, edges=(0.01, 0.05, 1.0), change=0.3, materials=(0.8, 0.4)
 )
 COLOR = spec.color("color", (0.2, 0.5, 0.8), (0.8, 0.4, 0.1))
 NORMAL = spec.Input("normal", "vector3", change=(0.0, 0.6, 0.8))
 
-# Five roundings in each of three cosines, over the smallest of them.
+# Three cosines have five roundings each, divided by the least cosine.
 FLAT_FRAME = sum_of(roundings(15 / TURNED[0], "of three cosines of at least 1/4, five in each"))
 
 
 def lobe_errors(
     value: Tolerance, albedo: Tolerance, throughput: Tolerance, frame: Tolerance, quadrature: float
 ) -> dict[str, Tolerance]:
-    """Errors of a lobe; `quadrature` is the error of its integrals for the exact equations."""
+    """Tolerances of a lobe; `quadrature` is the quadrature error for the exact equations."""
     sums = Term(quadrature, "the quadrature on the equations")
     integral = sum_in(Quantity.ALBEDO, value.term("an average of values"), sums)
     light = integral.term("an albedo"), throughput.term("a throughput")
@@ -51,13 +51,13 @@ def lobe_errors(
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
-    """A node that scatters light as defined by a row."""
+    """A node that scatters light, with the equations of `row`."""
 
     row: PbrNode
 
     @property
     def black(self) -> Values:
-        """Inputs with which it scatters nothing; empty if it always scatters some light."""
+        """Inputs that make the node scatter nothing; empty if there are none."""
         names = ("color", "tint", "color0", "color90", *TINTS)
         return {name: (0.0, 0.0, 0.0) for name in names if name in self.row.inputs}
 
@@ -69,7 +69,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return material_text(self.node, {**self.mode, **(inputs or {})}, self.node, self.types)
 
     def values(self, function: Scattering, batch: Batch) -> Array:
-        """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the opposite side."""
+        """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the unlit side."""
         side = np.where(batch.wi[:, 2:] < 0.0, -1.0, 1.0) * (-1.0 if self.row.transmits else 1.0)
         wi = batch.wi * np.concatenate([np.ones((len(side), 2)), side], axis=1)
         occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
@@ -89,7 +89,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return samples.sky(self.side * batch.normal)
 
     def integral(self, batch: Batch) -> Array:
-        """Integral of the values, weight included, (N, 3)."""
+        """Integral of the values, including the weight, (N, 3)."""
         return _albedo(self.row.integral or self.row.albedo, batch)
 
     @property
@@ -102,7 +102,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
 
     @property
     def throughput_candidates(self) -> tuple[Candidate, ...]:
-        """1 - E of each model, or all light."""
+        """Candidates for a throughput: 1 - E of each model, or 1."""
 
         def rest(batch: Batch, albedo: Callable[[Array, Inputs], Array], above: bool) -> Array:
             return np.maximum(1.0 - _albedo(albedo, batch if above else uncolored(batch)), 0.0)
@@ -123,13 +123,13 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return spec.draw(rng, count, self.drawn, edged)
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """Inputs that a quadrature can integrate accurately."""
+        """Change inputs where a quadrature would be inaccurate; by default, nowhere."""
         return inputs
 
     def integrated(
         self, counts: Counts, taken: Callable[[dict[str, Array]], dict[str, Array]]
     ) -> tuple[Batch, Array]:
-        """Materials, each lit from the directions of a quadrature, and the quadrature weights."""
+        """Random materials, each lit from all directions of a quadrature, and the weights."""
         rng, count = samples.generator(), counts.materials
         mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(count)
         inputs = self.random_inputs(rng, count)
@@ -141,7 +141,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return self.lit(Batch(wo, wo, taken(self.integrable(inputs))), counts.nodes)
 
     def lit(self, views: Batch, count: int) -> tuple[Batch, Array]:
-        """Each view lit from the directions of a quadrature, and the weights of its values.
+        """Repeat each view for all directions of a quadrature, and return their weights, too.
 
         The weighted sum of pi f cos over a view's directions is its directional albedo.
         """
@@ -155,7 +155,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
 
 
 def named_mode(row: PbrNode, title: str = "") -> spec.Names:
-    """The names of a mode; its title lists the inputs that select it."""
+    """Names of a mode's spec; by default, the title lists the inputs that select the mode."""
     words = [row.category, *(f"{name} {value}" for name, value in row.fixed.items())]
     return spec.named(row, title or ", ".join(words))
 
@@ -173,7 +173,7 @@ class PbrSpec(ScatteringSpec):
 
     @property
     def bounded(self) -> tuple[spec.Input, ...]:
-        """Inputs that are also measured outside their ranges."""
+        """Inputs that are measured outside their ranges, too."""
         return tuple(each for each in self.drawn if each.beyond)
 
     @property
@@ -182,7 +182,7 @@ class PbrSpec(ScatteringSpec):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """Zero; for a lobe that transmits, also a reflection instead."""
+        """Other candidates for a diagnosis: zero and, for a transmitting lobe, a reflection."""
         if not self.row.transmits:
             return (spec.ZERO,)
         opaque = replace(self, row=replace(self.row, transmits=False))
@@ -201,11 +201,11 @@ class PbrSpec(ScatteringSpec):
         return tuple(batch.first(counts.albedos) for batch in views)
 
     def edges(self, counts: Counts) -> Batch:
-        """Exact directions, some with light opposite the view; input edges, including roughness and index 0."""
+        """Exact directions, some with opposite light, and extreme inputs (roughness, index 0)."""
         rng = samples.generator()
         wo, wi = samples.special_directions(rng)
         inputs = self.random_inputs(rng, len(wo), edged=True)
-        # Extinctions of 0 meet indices of 0 and others.
+        # Some extinctions of 0 meet an index of 0, others do not.
         zeros = ("roughness", 0, 4), ("ior", 0, 3), ("extinction", 0, 6), ("extinction", 1, 6)
         for name, start, step in zeros:
             if name in inputs:
@@ -215,10 +215,10 @@ class PbrSpec(ScatteringSpec):
         return Batch(wo, wi, inputs)
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Gauss nodes, concentrated at the horizon and the normal, and uniform azimuths.
+        # Use Gauss nodes that are dense at the horizon and the normal, and uniform azimuths.
         x, w = np.polynomial.legendre.leggauss(count)
         t = 0.5 * (x + 1.0)
-        mu = t * t * (3.0 - 2.0 * t)  # dense at the horizon and around the normal
+        mu = t * t * (3.0 - 2.0 * t)
         slope = 6.0 * t * (1.0 - t) * 0.5 * w
         azimuth = np.arctan2(wo[:, 1], wo[:, 0])[:, np.newaxis, np.newaxis]
         phi = azimuth + 2.0 * np.pi * (np.arange(count) + 0.5) / count
@@ -228,7 +228,7 @@ class PbrSpec(ScatteringSpec):
 
 
 def uncolored(batch: Batch) -> Batch:
-    """A batch without the colors that only absorb."""
+    """Replace the colors that only absorb by white."""
     return batch.altered(**{each: samples.WHITE for each in ABSORBING if each in batch.inputs})
 
 
@@ -237,10 +237,10 @@ def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
     return batch.strength * albedo(batch.wo, spec.broadcast_inputs(batch))
 
 
-# 17 in each factor of Burley's model, ten of them in the cosine of the half vector, and seven in the products.
+# Each factor of Burley's model has 17 roundings (ten in the cosine of wh); the products add 7.
 BURLEY_ROUNDINGS = roundings(2 * 17 + 7, "of the value or 1: 17 in each factor, 7 in the products")
 BURLEY_VALUE = sum_of(BURLEY_ROUNDINGS)
-# Burley's albedo has a closed form; the other flat lobes reflect their color.
+# Burley's albedo has a closed form; the albedo of other flat lobes is their color.
 FLAT_ALBEDO = sum_of(roundings(32, "of the albedo or 1"), quantity=Quantity.ALBEDO)
 FLAT_ERRORS = lobe_errors(BURLEY_VALUE, FLAT_ALBEDO, FLAT_ALBEDO, FLAT_FRAME, quadrature=1e-8)
 

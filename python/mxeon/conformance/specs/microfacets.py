@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The microfacet nodes: dielectric, conductor and generalized Schlick, in scatter modes R, T and RT, and under a film."""
+"""Specs of the microfacet nodes in scatter modes R, T and RT, and under a film."""
 
 import math
 from collections.abc import Mapping
@@ -24,17 +24,17 @@ from mxeon.models.nodes.node import Scattering
 
 COUNTS = replace(lobes.PbrSpec.counts, diagnosed=1 << 8)  # references are slow
 LEAST_ALPHA = 1e-3  # least alpha of random pairs
-LEAST_STRETCHED = 0.05  # least alpha and cosine of anisotropic albedos, whose sums are coarse
-LEAST_INVERTED = 0.1  # least index of a dielectric that is inverted
+LEAST_STRETCHED = 0.05  # least alpha and cosine for anisotropic albedos; sums are coarse
+LEAST_INVERTED = 0.1  # least index of a dielectric before it is inverted
 LEAST_INDEX = 1.05  # least index above 1 in the shaders' fits of averages: tools/fits/ggx_cosine.py
-COSINE_STEP = 2.0**-18  # difference between the cosines of a half vector with two directions
-RIM_COLOR = 0.05  # least color90 in some channel, or |wo + wi|
+COSINE_STEP = 2.0**-18  # largest difference of wo . wh and wi . wh
+RIM_COLOR = 0.05  # least |wo + wi|, unless some channel of color90 is as bright
 LEAST_TANGENT_ALPHA = 0.05  # least alpha with turned tangents, as roundings are divided by it
 LEAST_TANGENT_COSINE = 0.1  # least cosine with turned tangents
-COSINES = np.linspace(0.0, 1.0, 65)  # samples of a curve that may be below 0
+COSINES = np.linspace(0.0, 1.0, 65)  # cosines at which curves are tested for values below 0
 
 # fmt: off
-# The first material's index is bright enough for the controls of pictures.
+# The first material's index reflects enough light for the controls of pictures to fail.
 INDEX = spec.Input("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(2.5, 1.2),
               beyond=(0.0, 0.2, 1.0015, 1.02, 4.0, 10.0, 100.0))
 FILM: Values = {"thinfilm_thickness": 400.0}
@@ -71,29 +71,31 @@ INPUTS = {
     ),
 }
 # fmt: on
-# MaterialX's average is worst for a film around index 1, a bubble. `domain` draws no special light for its row.
+# MaterialX's average is worst for a bubble, a film around index 1. `domain` leaves row 3 unchanged.
 BUBBLE: Values = dict.fromkeys(("weight", "tint", "ior"), 1.0)
 BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
 
-# Largest errors of the shaders' fits, each found by its script in tools/fits.
+# Largest errors of the shaders' fits. Each comment names the script in tools/fits that finds it.
 ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
-SMOOTH_ESS_FIT = 5.3e-5  # the same for smooth lobes, for cosines from 0.05
-ESS_VALUE_FIT = 1.14e-3  # relative error of E_ss, times the value or 1: alpha 0.97, normal view
+SMOOTH_ESS_FIT = 5.3e-5  # E_ss of smooth lobes at cosines from 0.05
+ESS_VALUE_FIT = (
+    1.14e-3  # relative error of E_ss at alpha 0.97 along the normal; scales the value or 1
+)
 METAL_FIT = 4.6e-4  # fresnel_average.py: F_ss of a metal
 # ggx_albedo.py: largest (1 - E_ss) / E_ss, times 1 or the value of perfectly reflecting facets.
 COMPENSATED = 0.6
 LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
 INSIDE_FIT = 2.8e-2  # ggx_inside.py: albedo of a dielectric of index below 1
 PASSING_FIT = 3.4e-2  # ggx_inside.py: share of light from the denser side that passes
-DIP_FIT = 5.9e-3  # ggx_cosine.py: additional error of a full dip at 82 degrees
+DIP_FIT = 5.9e-3  # ggx_cosine.py: error that a full dip at 82 degrees adds
 LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
 
 
 def sum_over(directions: int) -> Term:
-    """Error of a sum over `directions` directions of an environment, drawn for a microfacet lobe, over E_ss.
+    """Error of an environment sum over `directions` samples of a microfacet lobe, divided by E_ss.
 
-    `tools/fits/lattices.py` computes it for three point sets: MaterialX's own has half of this error.
+    `tools/fits/lattices.py` finds it for three point sets; MaterialX's own has half of this error.
     """
     return Term(3.6 / directions, f"a sum over {directions} directions of an environment")
 
@@ -101,7 +103,7 @@ def sum_over(directions: int) -> Term:
 HALF_TEXEL = math.sqrt(2.0) * math.pi / (2 * samples.SKY_ROWS)
 TEXEL = Term(samples.SLOPE * HALF_TEXEL, "the nearest texel, half of one away")
 
-# ggx_anisotropic.py: E_ss, relative, and a dielectric's albedo, where one alpha is up to LARGEST_RATIO times the other.
+# ggx_anisotropic.py: relative error of E_ss, error of a dielectric's albedo, ratio of alphas.
 ANISOTROPIC_FIT, ANISOTROPIC_LOBE_FIT = 2.5e-2, 3.4e-2
 LARGEST_RATIO, LEAST_ANISOTROPIC_COSINE = 50.0, 0.01
 ANISOTROPIC = Term(ANISOTROPIC_FIT, "the fit of E_ss of two alphas")
@@ -116,7 +118,7 @@ HALF_DIP = Term((1.0 - samples.LEAST_COLOR82) * DIP_FIT, "half of the fit of the
 
 
 def compensated(average: float, words: str) -> Tolerance:
-    """Tolerance of values if F_ss has an error."""
+    """Tolerance of values if F_ss has the error `average`."""
     fit = Term(ESS_VALUE_FIT, "the fit of E_ss over E_ss")
     return sum_of(fit, Term(COMPENSATED * average, f"{words}, times 0.6"), exact=True)
 
@@ -128,7 +130,7 @@ MEAN = sum_in(Quantity.ALBEDO, ESS, MEAN_METAL)
 ENVIRONMENT = sum_in(Quantity.ALBEDO, *COMPENSATION, sum_over(1024))
 THROUGHPUT = sum_in(Quantity.ALBEDO, ESS, LOBE)
 SCHLICK_THROUGHPUT = THROUGHPUT.plus(HALF_DIP)
-# Twice the largest slope of the distribution, q^-4 of q^2 = h_z^2 + (h_x / a_x)^2 + (h_y / a_y)^2.
+# The distribution is q^-4 with q^2 = h_z^2 + (h_x / a_x)^2 + (h_y / a_y)^2; use its largest slope.
 FRAME = sum_of(
     roundings(
         2 * 2 * 5 / (2 * samples.TURNED[0] * samples.LEAST_TURNED),
@@ -137,7 +139,7 @@ FRAME = sum_of(
 )
 WEAK = "the fit of a cosine at index 1.03, scaled"
 A_COSINE, THREE_COSINES = "the fit of a cosine, which", "F_ss in three cosines,"
-# Outside the domains of fits: quantity, input, value, and the largest error found there.
+# Outside the domains of fits: quantity, input, its value, the largest error there, and the reason.
 BEYOND: tuple[tuple[str, str, float, float, str], ...] = (
     ("throughput", "ior", 1.0015, 9.3e-3, WEAK),
     ("throughput", "ior", 1.02, 2.9e-3, WEAK),
@@ -165,9 +167,9 @@ ERRORS = {
     "picture_albedo": sum_in(Quantity.ALBEDO, *COMPENSATION, sum_over(256)),
     "anisotropic_albedo": sum_of(*COMPENSATION, ANISOTROPIC, sum_over(1024), quantity=Quantity.ALBEDO),
     "anisotropic_value": VALUE.plus(ANISOTROPIC),
-    # Exact directions have an exact half vector.
+    # Directions are exact here, so the half vector is, too.
     "shape": sum_in(Quantity.RELATIVE, roundings(2 * 64, "of two values")),
-    # The same function, with numbers that only differ in their signs.
+    # Mirroring only changes signs.
     "retroreflection": lobes.BURLEY_VALUE,
     "anisotropy": sum_of(roundings(
         2 * 2 * 2 / (2 * LEAST_TANGENT_COSINE * LEAST_TANGENT_ALPHA),
@@ -179,7 +181,7 @@ ERRORS = {
 QUADRATURE = 6e-4  # quadrature error for the exact equations
 
 
-# At zeros of MaterialX's fit B, curves do not affect its prefiltered sum, and its fit A is this far below 1.
+# Where MaterialX's fit B is 0, curves do not affect its prefiltered sum, and its fit A is below 1 by:
 PREFILTERED = Term(5.06e-2, "MaterialX's fit of prefiltered light")
 
 
@@ -192,7 +194,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
         **lobes.lobe_errors(MEAN, ENVIRONMENT, throughput, FRAME, QUADRATURE),
         **dict.fromkeys(("value", "reciprocity"), VALUE),
         "anisotropic_throughput": throughput.plus(ANISOTROPIC, ANISOTROPIC_LOBE),
-        # The error of the E_ss fit that raises values lowers throughputs.
+        # An error of the E_ss fit cancels: it raises values and lowers throughputs.
         "light": sum_in(Quantity.LIGHT, *throughput.terms[1:], quadrature),
         "methods": ENVIRONMENT.plus(PREFILTERED, few),
         "sky": sum_in(Quantity.IRRADIANCE, Term(2.0 * QUADRATURE, words), sum_over(1024), TEXEL),
@@ -201,7 +203,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FacetSpec(lobes.PbrSpec):
-    """A microfacet node, with large values near the mirror direction."""
+    """A microfacet node, which has large values near the mirror direction."""
 
     counts: Counts = COUNTS
     least_cosine: float = sheen.FIT_COSINE
@@ -214,13 +216,13 @@ class FacetSpec(lobes.PbrSpec):
         return batch.strength * LOBES[self.node].prefiltered(batch.wo, spec.broadcast_inputs(batch))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """A lobe's batches, plus lights near the mirror direction; another check covers two alphas."""
+        """The usual batches, and lights near the mirror direction, all with one alpha per material."""
         others = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
         return tuple(_with_one_alpha(batch) for batch in (*others, self.mirrored(counts)[0]))
 
     @property
     def value_candidates(self) -> tuple[samples.Candidate, ...]:
-        """The row's candidates without masking at the mean alpha, which is equivalent for equal alphas."""
+        """The row's candidates, except masking at the mean alpha: it is right for equal alphas."""
         return tuple(each for each in self.all_candidates if not each.title.startswith(MEAN_ALPHA))
 
     @property
@@ -228,7 +230,7 @@ class FacetSpec(lobes.PbrSpec):
         return super().value_candidates
 
     def anisotropic(self, counts: Counts) -> Batch:
-        """Lights near the mirror direction of materials with two alphas, within the domain of the fits."""
+        """Lights near the mirror direction, for materials with two alphas that the fits cover."""
         batch = self.mirrored(counts)[0]
         alpha = batch.inputs["roughness"]
         least = alpha.max(axis=1, keepdims=True) / LARGEST_RATIO
@@ -239,7 +241,7 @@ class FacetSpec(lobes.PbrSpec):
         return *super().few(batches, counts), batches[-1].first(counts.few)
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views; the smoothest lobes are mirrors, with an albedo but no values; no curve falls below 0."""
+        """Views for albedos. The smoothest lobes become mirrors; curves that fall below 0 are skipped."""
         rows = [(batch, simple(batch.inputs)) for batch in super().views(batches, counts)]
         for _, inputs in rows:
             inputs["roughness"][inputs["roughness"] < LEAST_ALPHA] = 0.0
@@ -250,7 +252,7 @@ class FacetSpec(lobes.PbrSpec):
         )
 
     def mirrored(self, counts: Counts) -> tuple[Batch, Batch]:
-        """Two lights near the mirror direction of each view, from normals that the view sees."""
+        """Two lights near the mirror direction for each view, reflected at normals visible to it."""
         rng, count = generator(), counts.mirrored
         wo, inputs = directions(rng, count), self.random_inputs(rng, count)
         alpha = inputs["roughness"]
@@ -261,7 +263,7 @@ class FacetSpec(lobes.PbrSpec):
         return batches[0].where(known), batches[1].where(known)
 
     def stretched(self, counts: Counts) -> tuple[Batch, Array]:
-        """Views of anisotropic materials, and their albedos."""
+        """Views of random anisotropic materials, and their albedos."""
         rng, count = generator(), counts.materials
         inputs = simple(self.random_inputs(rng, count))
         inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, count)))
@@ -270,17 +272,17 @@ class FacetSpec(lobes.PbrSpec):
         return batch, self.integral(batch)
 
     def stretched_sums(self, counts: Counts) -> tuple[Batch, Array]:
-        """The same views with MaterialX's sums over visible normals, with masking G_2 / G_1 at the mean alpha."""
+        """The views of `stretched`, with MaterialX's sums, which use G_2 / G_1 at the mean alpha."""
         batch, _ = self.stretched(counts)
         albedo = node_albedo(self.node, batch.wo, batch.inputs, summed=True)
         return batch, batch.strength * albedo
 
     def single(self, batch: Batch) -> Array:
-        """Values without compensation, which cancels in ratios for the same view."""
+        """Values without compensation, for ratios in which the compensation cancels."""
         return self.values(partial(LOBES[self.node].value, terms=Lobe(uncompensated)), batch)
 
     def summed(self, pairs: Batch) -> Array:
-        """`single` with the weights of the sum over visible normals, G_2 / G_1 at the mean alpha."""
+        """`single`, weighted as in MaterialX's sum over visible normals: G_2 / G_1 at the mean alpha."""
         alpha = pairs.inputs["roughness"]
         mean = np.sqrt(alpha.prod(axis=1))
         weight = smith_g2(pairs.wo[:, 2], pairs.wi[:, 2], mean)
@@ -289,20 +291,20 @@ class FacetSpec(lobes.PbrSpec):
         return np.asarray(self.single(pairs) * weight[:, np.newaxis])
 
     def turned(self, counts: Counts) -> Batch:
-        """Pairs with individual frames, without sharp lobes, whose position would be uncertain."""
+        """Pairs with individual frames. Rounding displaces sharp lobes, so roughen them."""
         batch = super().turned(counts)
         rough = np.maximum(batch.inputs["roughness"], samples.LEAST_TURNED)
         return denser(batch.altered(roughness=rough))
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """No curve falls below 0: values clamp it, but the fit of the albedo averages the printed curve."""
+        """Remove curves that fall below 0: values clamp them, but the fit of the albedo does not."""
         changed = simple(inputs)
         if "color82" in changed:
             changed["color82"][falls_below_0(changed)] = 1.0
         return changed
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Gauss nodes for the height of the normals that each view sees, and uniform azimuths.
+        # Use Gauss nodes for the height of visible normals, and uniform azimuths.
         x, w = np.polynomial.legendre.leggauss(count)
         height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(count) + 0.5) / count)
         size = height.size
@@ -316,7 +318,7 @@ class FacetSpec(lobes.PbrSpec):
 
 
 def denser(batch: Batch) -> Batch:
-    """Dielectrics denser than air: curves have an infinite slope at a critical angle."""
+    """Invert indices below 1, because curves have an infinite slope at a critical angle."""
     if "tint" not in batch.inputs:
         return batch
     index = np.maximum(batch.inputs["ior"], LEAST_INVERTED)
@@ -324,12 +326,12 @@ def denser(batch: Batch) -> Batch:
 
 
 def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
-    """Inputs whose albedo is the lobe's own and can be integrated.
+    """Change inputs so that the albedo is exact and a quadrature can find it.
 
-    The roughness is isotropic. The index of a dielectric is 1, without reflection, or at least
-    LEAST_INDEX: the shaders' fits begin there (docs/loading.md has their error in between), and
-    nodes^2 directions do not resolve a critical angle. Deep dips at 82 degrees, which make F
-    negative, are excluded.
+    Roughness becomes isotropic. The index of a dielectric becomes 1 or at least LEAST_INDEX, where
+    the shaders' fits begin (docs/loading.md has their error in between); below 1, nodes^2
+    directions do not resolve the critical angle. Deep dips at 82 degrees are removed, because they
+    make F negative.
     """
     changed = dict(inputs)
     changed["roughness"] = np.repeat(inputs["roughness"][:, :1], 2, axis=1)
@@ -347,12 +349,12 @@ def _with_one_alpha(batch: Batch) -> Batch:
 
 
 def _has_curve(batch: Batch) -> samples.Mask:
-    """Pairs whose Fresnel curve is accurate in float32.
+    """Mask of pairs whose Fresnel curve is accurate in float32.
 
-    The lengths of directions differ from 1 by a rounding, so wo . wh and wi . wh differ by the rounding over
-    |wo + wi|. A correct shader may use either, but they differ too much for nearly opposite directions. At grazing
-    only color90 remains; if it is dark, the curve rises from nearly 0 and has few digits. Shaders also clamp the
-    cosine to GRAZING. Where the printed curve is below 0, the text does not define the reflection.
+    A direction's length differs from 1 by a rounding, so wo . wh and wi . wh differ by a rounding
+    over |wo + wi|, too much for nearly opposite directions; a correct shader may use either. At
+    grazing only color90 remains, and if it is dark, the curve has few digits. Shaders clamp the
+    cosine to GRAZING. Where the printed curve is below 0, the text defines no reflection.
     """
     half = np.linalg.norm(batch.wo + batch.wi, axis=1)
     apart = np.abs((batch.wo**2).sum(axis=1) - (batch.wi**2).sum(axis=1))
@@ -362,13 +364,13 @@ def _has_curve(batch: Batch) -> samples.Mask:
 
 
 def is_below_0(batch: Batch) -> samples.Mask:
-    """Pairs with a printed curve below 0 in some channel, as for dark colors with a small color82."""
+    """Mask of pairs whose printed curve is negative in a channel (dark colors, small color82)."""
     cosines = np.minimum(0.5 * np.linalg.norm(batch.wo + batch.wi, axis=1), 1.0)
     return _below_0(batch.inputs, cosines)
 
 
 def falls_below_0(inputs: Mapping[str, Array]) -> samples.Mask:
-    """Materials with a printed curve that is below 0 at some cosine."""
+    """Mask of materials whose printed curve is negative at some cosine."""
     return np.asarray(np.any([_below_0(inputs, each) for each in COSINES], axis=0))
 
 
@@ -381,7 +383,7 @@ def _below_0(inputs: Mapping[str, Array], cosine: Array | float) -> samples.Mask
 
 
 def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
-    """Mirror images of views at normals that they see, (N, 3)."""
+    """Reflect views at normals that are visible to them, (N, 3)."""
     return rounded(sampling.ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0].T)
 
 
@@ -396,7 +398,7 @@ FACET_SPECS = tuple(
 )
 
 
-# Largest slope of a Fresnel curve in the cosine 0.05 away from a critical angle: at index 1.02, cosine 0.05.
+# Largest slope of a Fresnel curve at cosines 0.05 or more from the critical one (index 1.02).
 FRESNEL_SLOPE = 7.3
 
 
@@ -406,9 +408,9 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
     steep = roundings(4 * FRESNEL_SLOPE, "of a cosine, times a Fresnel curve's largest slope, 7.3")
     return {
         "methods": passed.plus(PREFILTERED),
-        "value": passed,  # transmitted light
+        "value": passed,  # here, values are transmitted light
         "light": sum_in(Quantity.LIGHT, reflected, lit),
-        "kept": lobes.BURLEY_VALUE,  # the same function of the same numbers
+        "kept": lobes.BURLEY_VALUE,  # both sides evaluate the same function
         "inside": PASSING.plus(sum_over(1024)),
         "rough_refraction": sum_in(Quantity.IRRADIANCE, sum_over(1024), TEXEL),
         "states": sum_of(roundings(32, "of the same parts in two programs")),
@@ -418,10 +420,10 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TransmissionSpec(FacetSpec):
-    """A node of `mxeon.models.nodes.microfacets`."""
+    """A microfacet node that transmits, in mode T or RT."""
 
     requires = spec.Ability.LOBE | spec.Ability.TRANSMISSION
-    # In another frame, roundings decide which refracted samples are totally reflected.
+    # In other frames, rounding changes which refracted samples are totally reflected.
     plain = ("frame", "shape")
 
     @property
@@ -433,13 +435,13 @@ class TransmissionSpec(FacetSpec):
         return self.row.fixed["scatter_mode"] == "RT"
 
     def ends(self, batch: Batch) -> Array:
-        """Light that passes by the BTDF, and all light that is not reflected, for light of 1, (2, N, 3)."""
+        """Light that the BTDF passes, and all light that is not reflected, (2, N, 3), of light 1."""
         wo, inputs, functions = batch.wo, batch.inputs, self.functions
         rest = functions.tint(inputs) * (1.0 - functions.reflected(wo, inputs))
         return np.stack([functions.passed(wo, inputs, True), np.maximum(rest, 0.0)])
 
     def reversed(self, mu: Array, alpha: float, index: float, inputs: Mapping[str, Array]) -> Array:
-        """Share of the light that passes from the denser side with this index, averaged over the channels, (N,)."""
+        """Share of light that leaves a denser medium of this index, averaged over channels, (N,)."""
 
         def reflected(cosines: Array) -> Array:
             views = samples.directions_at(cosines, 0.0)
@@ -452,7 +454,7 @@ class TransmissionSpec(FacetSpec):
 
     @property
     def reflection(self) -> FacetSpec:
-        """The same node when it only reflects."""
+        """The spec of the same node in mode R."""
         row = replace(self.row, fixed={"scatter_mode": "R"})
         inputs, errors = self.inputs, self.errors
         return FacetSpec(
@@ -474,24 +476,23 @@ TRANSMISSION_SPECS = tuple(
 
 # --- thin films -----------------------------------------------------------------------------------
 
-# Largest errors of the shader's thin film, for cosines from 0.1 and up to 1000 nm, found by
-# tools/fits/thin_film.py.
-# Error of the average over the visible facets, plus the error of F_ss times the lost light. Each is a sum over
-# three cosines.
+# Largest errors of the shader's thin film, for cosines of at least 0.1 and films of up to 1000 nm:
+# tools/fits/thin_film.py. The albedo's error is that of the average over the visible facets, plus
+# that of F_ss times the lost light. Both averages are sums over three cosines.
 FILM_SEEN = 7.82e-2
-FILM_OILED = 6.92e-2  # the same for films with index >= 1.25
+FILM_OILED = 6.92e-2  # FILM_SEEN for film indices of at least 1.25
 FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
-CURVE_ROUNDINGS = 10 * 9.5 + 16  # 10 in a phase, times the curve's slope 9.5, plus 16 in the curve
+CURVE_ROUNDINGS = 10 * 9.5 + 16  # a phase has 10, times the curve's slope 9.5; the curve 16
 
 FILM_ALBEDO = sum_in(
     Quantity.ALBEDO,
     Term(FILM_OILED, "the mean over visible facets and F_ss, in three cosines each"),
     Term(ESS_FIT, "the fit of E_ss"),
 )
-# A metal with a lower index reflects totally below such a film, with fringes that three cosines do not resolve.
+# If a metal's index is lower than the film's, it reflects totally; three cosines miss its fringes.
 FILM_TRAPPED = given(FILM_SEEN - FILM_OILED, Quantity.ALBEDO, "films of a lower index than 1.25")
 
-# Pictures count errors times the cosine of the view, so those at grazing count less.
+# Pictures weight errors by the view's cosine, so errors at grazing count less.
 FILM_SHOWN = sum_in(
     Quantity.PICTURE,
     Term(2.59e-2, "FILM_ALBEDO's, times the cosine"),
@@ -501,7 +502,7 @@ FILM_AVERAGE = 3.61e-2  # largest error of F_ss of a film in three cosines
 
 
 def film_terms(alpha: float) -> tuple[Term, Term]:
-    """Errors in direct light of a lobe under a film: of F_ss, times the light that facets lose, and of the curve."""
+    """Errors of a lobe under a film in direct light: F_ss times the light lost, and the curve."""
     mu = np.linspace(1e-3, 1.0, 64)
     E = ggx_albedo_dir(mu, alpha)
     lost = min(COMPENSATED, float((mu * (1.0 - E) / E).max()))
@@ -509,11 +510,11 @@ def film_terms(alpha: float) -> tuple[Term, Term]:
 
 
 def _mean(value: float, words: str) -> Tolerance:
-    """The largest error over 64 sets of 64 films, from tools/fits/thin_film.py."""
+    """A largest rms error over sets of films, which tools/fits/thin_film.py measures."""
     return given(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
 
 
-# Few films approach it: thin metals at grazing the first, very different indices the second.
+# Few films come close: thin films on metals at grazing for UNSUMMED, very different indices for F_ss.
 UNSUMMED = Term(8e-4, "orders that are not summed")
 FILM_VALUE = sum_of(*compensated(FILM_AVERAGE, "F_ss in three cosines").terms, UNSUMMED)
 # fmt: off
@@ -532,9 +533,9 @@ FILM_ERRORS = {
         Term(8.7e-7, "orders that are not summed, rms over 1024 films of 40 to 100 nm"),
         Term(1.5e-4, "the fit of E_ss at alpha 1e-3 and cosines of 0.1 to 0.2"),
         quantity=Quantity.REFLECTANCE_RMS, metric=tolerance.root_mean_square),
-    # F_ss under a film without effect, compared with its fit without a film.
+    # F_ss is a sum under a film without effect, but a fit without a film.
     "film_limit": sum_of(Term(4.4e-3 * COMPENSATED, "F_ss in three cosines, times 0.6")),
-    # A mirror's share of the compensation differs from a film's.
+    # Compensation differs between a mirror and a film.
     "film_energy": VALUE,
     "retroreflection": lobes.BURLEY_VALUE,
     "film_average": _mean(7e-3, "F_ss in three cosines of films of 50 to 1000 nm"),
@@ -547,7 +548,7 @@ FILM_ERRORS = {
 
 
 class Films(NamedTuple):
-    """A number of lobes under films, in mirrored lights, with ranges of roughness, cosine and thickness."""
+    """A set of films in mirrored lights: its size, and ranges of alpha, cosine and thickness."""
 
     size: int
     alpha: tuple[float, float]
@@ -555,23 +556,23 @@ class Films(NamedTuple):
     thickness: tuple[float, float]  # nm
 
 
-# tools/fits/thin_film.py measures the mean errors of sets of these sizes.
-# Rough lobes under films with few fringes, where masking selects facets with another curve.
+# tools/fits/thin_film.py measures the mean errors of these sets.
+# Rough lobes under films with few fringes: masking changes which part of the curve is visible.
 STEEP = Films(1 << 6, (0.6, 1.0), (0.6, 1.0), (50.0, 100.0))
-FRINGED = STEEP._replace(thickness=(50.0, 1000.0))  # the same with up to many fringes
-# Lobes with similar visible facets, which few cosines represent, under few fringes.
+FRINGED = STEEP._replace(thickness=(50.0, 1000.0))  # STEEP with few to many fringes
+# Glossy lobes with few fringes: their visible facets are similar, so few cosines are enough.
 GLOSSY = STEEP._replace(alpha=(0.03, 0.1))
-# Lobes with two alphas, whose albedos are fitted by isotropic lobes.
+# Lobes with two alphas, whose albedos are fitted by those of isotropic lobes.
 BRUSHED = Films(1 << 5, (0.05, 1.0), (0.1, 1.0), (50.0, 100.0))
-# Smooth lobes, which see the film's curve at one cosine, under films with few significant orders.
+# Smooth lobes, which show the film's curve at one cosine. Few orders matter.
 SHARP = Films(1 << 6, (1e-3, 1e-3), (0.3, 1.0), (200.0, 1000.0))
-# Smooth lobes at grazing under thin films with many significant orders.
+# Smooth lobes at grazing under thin films. Many orders matter.
 ORDERED = Films(1 << 10, (1e-3, 1e-3), (0.1, 0.2), (40.0, 100.0))
 # Averages over a film's curve are slow.
 FILM_COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)
 LEAST_OIL = 1.2  # least index of films with a visible effect
-LEAST_FILM = 1.25  # least index for albedos: below, metals with a lower index reflect totally, in finer fringes
-LEAST_FACET = 0.1  # least cosine with the half vector: near grazing all orders of a film matter
+LEAST_FILM = 1.25  # least index for albedos; below, metals may reflect totally, in finer fringes
+LEAST_FACET = 0.1  # least cosine with the half vector; near grazing, all orders matter
 THICK = (0.0, 1.0, 100.0, 1e4)  # thicknesses at the edges of the domain
 
 
@@ -590,9 +591,9 @@ class FilmSpec(FacetSpec):
         return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
-        """Dielectrics below 1 are raised to 1, a film in air; on edges, a quarter of the films have the dielectric's index.
+        """Raise dielectric indices to 1 (a film in air). If `edged`, some films match the dielectric.
 
-        Below 1, total reflection gives the curve a kink that short averages do not resolve.
+        Below 1, total reflection gives the curve a kink that averages of few nodes do not resolve.
         """
         inputs = super().random_inputs(rng, count, edged)
         if "tint" in inputs:
@@ -608,7 +609,7 @@ class FilmSpec(FacetSpec):
         return super().values(function, batch.altered(thinfilm_ior=index))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random and special pairs without grazing facets, and mirrored pairs."""
+        """Random, special and mirrored pairs, without grazing facets."""
         rng, count = generator(), counts.pairs
         special = _some_special(rng, count)
         random = directions(rng, count), directions(rng, count)
@@ -630,7 +631,7 @@ class FilmSpec(FacetSpec):
     few = spec.ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views of the random pairs, and views for which a film's average over few facets is least exact."""
+        """Views of the random pairs, and views for which an average over few facets is least exact."""
         batch = batches[0].where(batches[0].wo[:, 2] >= self.least_cosine)
         easy = batch.first(counts.albedos)
         easy = replace(easy, inputs=simple(easy.inputs))
@@ -672,14 +673,14 @@ def film_views(owner: lobes.PbrSpec, films: Films) -> Batch:
 
 
 def _steep(batch: Batch) -> np.ndarray:
-    """Pairs whose half vector is not grazing."""
+    """Mask of pairs whose half vector is not grazing."""
     half = batch.wo + batch.wi
     length = np.linalg.norm(half, axis=1)
     cosine = np.abs((half * batch.wo).sum(axis=1)) / np.maximum(length, 1e-12)
     return np.asarray(cosine >= LEAST_FACET)
 
 
-# The engine's error of a film's phases. From 200 nm on, reflectance changes twice as fast as cosines and sines.
+# Error of the engine's cosine and sine. From 200 nm on, it counts twice in the reflectance.
 WAVE_ERROR = spec.EngineError(
     "the engine's own cosine and sine, times 2",
     spec.WAVE.error(lambda: [samples.float32(np.linspace(0.0, FILM_PHASE, spec.ARGUMENTS))], 2.0),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The sheen node: Zeltner's, whose value and albedo are closed forms, and Conty and Kulla's, with fits."""
+"""The sheen node's modes: Zeltner's, with closed forms, and Conty and Kulla's, with fits."""
 
 from dataclasses import replace
 
@@ -18,18 +18,18 @@ BOUNDED = (
     replace(lobes.ROUGHNESS, beyond=(0.0, 1e-3, 2.0), ends=(0.01, 1.0)),
 )
 INPUTS, ZELTNER_INPUTS = ((lobes.WEIGHT, lobes.COLOR, each, lobes.NORMAL) for each in BOUNDED)
-FIT_COSINE = 1e-4  # least cosine of the domain of the fits
+FIT_COSINE = 1e-4  # the fits are valid for cosines from here to 1
 EXPONENT = 1.0 / samples.LEAST_SHEEN  # largest exponent of the sine
 
 ZELTNER_VALUE = sum_of(
     roundings(48, "of the value or 1: an inverse fourth power takes the 8 of a length four times"),
     roundings(10 * 11.6, "in the exponent of the albedo, 11.6 where values are about 1"),
 )
-# The albedo in an environment, and 1 - E, the throughput.
+# Tolerance of the albedo in an environment, and of the throughput 1 - E.
 CLOSED = roundings(32, "of the albedo or 1: 20 in an exponent, times 0.6, and 20 beside it")
 ZELTNER_ALBEDO = sum_of(CLOSED, quantity=Quantity.ALBEDO)
 ZELTNER_THROUGHPUT = sum_of(CLOSED, quantity=Quantity.ALBEDO)
-LOGARITHM = 4 * 0.5 / samples.LEAST_SHEEN  # four roundings of a logarithm, over twice the roughness
+LOGARITHM = 4 * 0.5 / samples.LEAST_SHEEN  # four roundings over twice the least roughness
 
 
 def conty_kulla_value(logarithm: float) -> Tolerance:
@@ -47,9 +47,9 @@ CONTY_KULLA_THROUGHPUT = sum_in(Quantity.ALBEDO, *FIT, exact=True)
 
 
 def power_error(host: Host) -> float:
-    """Error of the sheen due to the engine's power, beyond a logarithm's error, relative if the sheen exceeds 1.
+    """Error that the engine's pow() adds to the sheen, beyond the terms above; relative above 1.
 
-    The sheen, as pi f cos, is at most (2 + n) / 8 times a sine to the power of n, 1 / roughness.
+    With n = 1 / roughness, pi f cos of the sheen is at most (2 + n) / 8 sin^n.
     """
     rng = samples.generator()
     exponent = samples.LEAST_SHEEN ** -rng.random(spec.ARGUMENTS)
@@ -76,7 +76,7 @@ CONTY_KULLA = lobes.PbrSpec(
         **lobes.lobe_errors(
             CONTY_KULLA_VALUE, CONTY_KULLA_ALBEDO, CONTY_KULLA_THROUGHPUT, FLAT_FRAME, 2e-4
         ),
-        # Both orders have identical half vectors and powers.
+        # Exchanging the directions leaves the half vector and the power unchanged.
         "reciprocity": sum_of(roundings(32)),
     },
     outside_errors={("value", "roughness", x): conty_kulla_value(2.0 / x) for x in (1e-3, 1e-4)},

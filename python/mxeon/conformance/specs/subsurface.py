@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subsurface scattering: Lambert on a plane; on a sphere, the profile spreads light."""
+"""Subsurface scattering: on a plane it is Lambert; on a sphere the profile spreads light."""
 
 from dataclasses import replace
 from functools import lru_cache, partial
@@ -15,20 +15,20 @@ from mxeon.models.media import FAR, blur_to
 from mxeon.models.nodes.lobes import SUBSURFACE_NODE, circle_blur
 from mxeon.shaders.scene import BACK, SIDE, VIEW, Scene, local_directions, sphere
 
-LEAST_COSINE = 1e-6  # M_FLOAT_EPS of MaterialX
+LEAST_COSINE = 1e-6  # MaterialX's M_FLOAT_EPS
 COSINES = np.linspace(-1.0, 1.0, 129)
 SCENES = tuple(replace(scene, size=32) for scene in (SIDE, BACK))  # unit sphere
-LEAST_HEIGHT = 0.3  # least height of normals; neighboring pixels are far apart near the rim
-MATERIALS: tuple[Values, ...] = (  # ranges from light everywhere to nearly planar behavior
+LEAST_HEIGHT = 0.3  # least z of normals: near the rim, neighboring pixels are far apart
+MATERIALS: tuple[Values, ...] = (  # light spreads everywhere, or almost nowhere
     {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": -0.5},
     {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
     *(dict[str, ArrayLike](color=(1, 1, 1), radius=each, anisotropy=0.0) for each in np.eye(3)),
 )
-# Alternatives for the radius, and for the length of the far exponential, which is 3.
+# Wrong values that a diagnosis tries: for the radius, and for the far exponential's length, 3.
 EVEN = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
 FARTHER = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 6.0, 9.0, 12.0)
 
-# Straight towards or away from the light, a whole circle becomes lit at once: 9.3e-3 at most.
+# The largest error, 9.3e-3, is on the light's axis, where a whole circle becomes lit at once.
 RINGS = tolerance.given(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
 MEAN_OF_CIRCLES = "twice the mean over a sphere of the errors of six circles"
 RINGS_MEAN = tolerance.given(0.003, Quantity.MEAN, MEAN_OF_CIRCLES, tolerance.mean_error)
@@ -42,7 +42,7 @@ class SubsurfaceSpec(PbrSpec):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """Zero, and MaterialX's implementation."""
+        """Other candidates for a diagnosis: zero, and MaterialX's implementation."""
         return spec.ZERO, Candidate("MaterialX's blur along a circle of radius 100", _blurred)
 
     def spheres(self, counts: Counts) -> tuple[Batch, ...]:
@@ -50,9 +50,9 @@ class SubsurfaceSpec(PbrSpec):
 
 
 def _blurred(batch: Batch) -> Array:
-    """MaterialX on a plane: light below the horizon and in shadow.
+    """MaterialX's result on a plane, which also has light below the horizon and in shadow.
 
-    It is missing where a cosine rounds above 1, since the arc cosine is then not a number.
+    Light is 0 where a cosine rounds above 1, since the arc cosine is then NaN.
     """
     mu = batch.wi[:, 2]
     shadow = 1.0 - np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
@@ -72,7 +72,7 @@ SUBSURFACE = SubsurfaceSpec(
 
 
 def spread(batch: Batch, far: float = FAR, **changes: ArrayLike) -> Array:
-    """Light on a unit sphere by the profile of l / (1 - g), (N, 3), for a batch with changed inputs."""
+    """Light on a unit sphere by the profile for l / (1 - g), (N, 3); `changes` replace inputs."""
     inputs = batch.altered(**changes).inputs
     reach = inputs["radius"] / (1.0 - inputs["anisotropy"])
     light = [np.interp(batch.wi[:, 2], COSINES, _profile(each, far)) for each in reach.tolist()]
@@ -81,12 +81,12 @@ def spread(batch: Batch, far: float = FAR, **changes: ArrayLike) -> Array:
 
 @lru_cache(maxsize=128)
 def _profile(reach: float, far: float) -> Array:
-    """The blurred cosine at COSINES; linear in between, within 2e-4."""
+    """The blurred cosine at COSINES. Linear interpolation between them has an error of 2e-4."""
     return blur_to(COSINES, np.array(max(reach, 1e-9)), far)  # reach 0 only has a limit
 
 
 def _around(batch: Batch) -> Array:
-    """Light on a unit sphere with MaterialX's blur."""
+    """Light on a unit sphere by MaterialX's blur, (N, 3)."""
     mu = np.clip(batch.wi[:, 2], -1.0, 1.0)
     radius = np.broadcast_to(batch.inputs["radius"], batch.wi.shape)
     return np.asarray(batch.inputs["color"] * circle_blur(mu, radius, body=1.0))
@@ -120,7 +120,7 @@ ON_SPHERES = (
 
 
 def _points(scene: Scene, inputs: Values) -> Batch:
-    """Points of a sphere away from its rim, including shadowed ones."""
+    """All points of a sphere that are away from its rim, including shadowed points."""
     normal = sphere(scene.size).normal[inner(scene.size)]
     wo, wi = (local_directions(normal, each) for each in (VIEW, scene.light or VIEW))
     return Batch(wo, wi, samples.arrays(inputs), scene)

@@ -23,8 +23,8 @@ from mxeon.shaders.nodes import document_text, input_text, node_text
 if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
-# Inputs by range, with values of a material in which all lobes contribute; changed values
-# differ from all defaults.
+# Ranges of inputs, with values for a material in which all lobes contribute. Changed values differ
+# from all defaults.
 RANGES = {
     "color": spec.color("", (0.5, 0.6, 0.7), edges=(1.0,)),
     "share": Input("", edges=(0.0, 1.0), change=0.7, materials=(0.5,)),
@@ -35,41 +35,41 @@ RANGES = {
     "thickness": Input("", high=1000.0, change=700.0, materials=(400.0,)),
     "film": Input("", low=100.0, high=1000.0, change=730.0, materials=(400.0,)),
 }
-# Mean free paths below the surface, which only affect curved surfaces: evaluations use a plane.
+# Mean free paths affect only curved surfaces, but evaluations use a plane.
 FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
 TURNED_FRAME = {"normal": (0.48, 0.36, 0.8), "tangent": (0.6, 0.8, 0.0)}
 
 
 def ports_by_range(**names: str) -> tuple[Input, ...]:
-    """Inputs with the given names for each of RANGES."""
+    """Inputs from lists of names (separated by spaces) for the keys of RANGES."""
     rows = ((key, name) for key, words in names.items() for name in words.split())
     return tuple(replace(RANGES[key], name=name) for key, name in rows)
 
 
 def _whole(names: str) -> Values:
-    """Inputs with value 1, including colors."""
+    """Values of 1, or white, for these inputs."""
     return {name: WHITE if "color" in name.lower() else 1.0 for name in names.split()}
 
 
-SPREAD = 0.3  # alpha of the lobe for half of the lights, around the mirror direction
-STRETCHED = "anisotropy"  # part of input names; environment sums are too coarse for them
-# Largest errors due to the fits of all lobes of a material, over 32 sets of a check's size, against the layer
-# equation in float64: tools/fits/surface_shaders.py. They are a third of the sum of the largest errors by each
-# lobe's fits, since no material has all of them. The fits for two alphas change the mean of a set by up to
-# 4e-4.
+SPREAD = 0.3  # alpha of the lobe that draws half of the lights
+STRETCHED = "anisotropy"  # part of names; environment sums are too coarse for anisotropy
+# Largest errors due to the fits of all lobes, over 32 sets of a check's size, compared with the
+# layer equation in float64: tools/fits/surface_shaders.py. They are a third of the sum of each
+# lobe's largest error, since no material reaches all of these. The fits for two alphas change the
+# mean of a set by up to 4e-4.
 VALUE = sum_of(Term(3.5e-3, "the fits of all lobes of a material, over 32 sets of 256 pairs"))
 FITS = Term(2.7e-3, "the fits of all lobes of a material, over 32 sets of 64 views")
 ALBEDO = sum_in(Quantity.ALBEDO, FITS, sum_over(1024))
 STRETCHED_FIT = 0.019  # largest error of a value due to the fits for two alphas
-# The sums for 64 views have independent errors.
+# Sums for different views have independent errors.
 MEAN = sum_of(
     Term(2.4e-4, "the mean of the errors by fits, over 32 sets of 64 views"),
     Term(sum_over(1024).value / 8.0, "sums over 1024 directions, over the root of 64 views"),
     quantity=Quantity.MATERIAL_MEAN,
     metric=mean_scaled,
 )
-# R over T passes (1 - E)^2: its derivative by E is at most 2 for the transmitted light and 1 for
-# the sum.
+# R over T passes (1 - E)^2. The derivative by E is at most 2 for the transmitted light, and at most
+# 1 for the sum of both.
 GLASS = sum_in(
     Quantity.ALBEDO,
     Term(2.0 * microfacets.LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),
@@ -90,25 +90,25 @@ ERRORS = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceShaderSpec(spec.LobeSpec):
-    """A surface shader with all lobes enabled."""
+    """A surface shader whose lobes are all enabled."""
 
     requires = spec.Ability.MATERIAL
     plain = ("frame", "shape", "lobes", "inputs from an image")
 
-    judged: tuple[Input, ...]  # inputs with reference values
-    others: tuple[Input, ...]  # inputs of other lobes and thin films, judged by energy
-    # Inputs that change no value of rasterized targets; docs/upstream/
-    # surface_inputs.md says why.
+    judged: tuple[Input, ...]  # inputs whose effect is compared with the reference
+    others: tuple[Input, ...]  # inputs of other lobes and films, for the checks of energy and films
+    # Inputs that change no value of rasterized targets; see
+    # docs/upstream/surface_inputs.md.
     without_effect: tuple[str, ...]
-    white: Values  # a lossless material by the layer equation
-    glass: Values  # a clear material with any `finish`
-    finish: tuple[str, ...]  # roughness and index of the interface
-    # Additional inputs of the material for a changed input.
+    white: Values  # a material that is lossless by the layer equation
+    glass: Values  # inputs of clear glass
+    finish: tuple[str, ...]  # inputs of glass that may vary: roughness and index
+    # Inputs that must also be set for a changed input to have an effect.
     needs: Mapping[str, Values] = field(default_factory=dict)
     errors: Mapping[str, Tolerance] = field(default_factory=lambda: ERRORS)
     counts: Counts = COUNTS
-    # Inputs without a judged value: an opacity blends the whole surface, not a lobe, with the background,
-    # and an occlusion is set by the evaluation itself.
+    # Inputs that are not varied: an opacity blends the whole surface with the background, and
+    # the evaluation itself sets an occlusion.
     unseen: tuple[str, ...] = ()
     library: str = "eonlib"  # the reference evaluates this library's document
 
@@ -119,7 +119,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
 
     @cached_property
     def further(self) -> Values:
-        """Undrawn inputs, each with a value that differs from the material with all lobes."""
+        """All other inputs, each with a value that differs from its default."""
         from mxeon.shaders.library import load_library
 
         values = dict[str, ArrayLike]()
@@ -176,11 +176,11 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return self._reference(batch, "environment")
 
     def transmitted(self, batch: Batch, opacity: bool) -> Array:
-        """The transmitted share of a uniform environment, by refraction or as opacity."""
+        """Transmitted light of a uniform environment, by refraction or as opacity."""
         return self._reference(batch, "opacity" if opacity else "transmission")
 
     def clear(self, batch: Batch) -> Batch:
-        """The same views of glass, with the materials' roughness and index."""
+        """Replace the materials of a batch by glass, but keep their roughness and index."""
         finish = {name: batch.inputs[name] for name in self.finish}
         return replace(batch, inputs=finish).altered(**self.glass)
 
@@ -197,7 +197,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return Reference().evaluate(self._shader, batch.wo, batch.wi, batch.inputs, branch)
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
-        """Random inputs of all lobes; on edges, where most light leaves."""
+        """Random judged inputs; if `edged`, extreme values of the inputs of all lobes."""
         return draw(rng, count, (*self.judged, *self.others) if edged else self.judged, edged)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
@@ -216,7 +216,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
     few = spec.ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views of isotropic materials; metal curves stay above 0, because MaterialX's sum does not clamp."""
+        """Views of isotropic materials. Skip metal curves below 0, which MaterialX's sum allows."""
         batch = _isotropic(batches[0].first(counts.albedos))
         if "base_metalness" in self.names:  # only OpenPBR's metal has a color at 82 degrees
             color0 = batch.inputs["base_color"] * batch.inputs["base_weight"][:, np.newaxis]
@@ -227,7 +227,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return (batch,)
 
     def edges(self, counts: Counts) -> Batch:
-        """Views of materials in which all lobes contribute."""
+        """Views of materials in which all lobes contribute, with extreme inputs."""
         rng, count = generator(), counts.materials
         wo, inputs = _views(rng, count), self.random_inputs(rng, count, edged=True)
         # QON itself gains up to 1.4 % of light at grazing.
@@ -241,7 +241,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
 
 
 def _views(rng: samples.Rng, count: int) -> Array:
-    """Random directions, limited to cosines at which the sheen's own equations gain no energy, and one at the limit."""
+    """Random directions with cosines at which the sheen gains no energy; one is at the limit."""
     wo = samples.directions(rng, count)
     wo = samples.float32(np.where(wo[:, 2:] < lobes.LEAST_VIEW, [0.6, 0.0, 0.8], wo))
     wo[0] = samples.directions_at(lobes.LEAST_VIEW, 0.0)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sentences of the specifications of four surface shaders, each with a material that shows it.
+"""Sentences from the specifications of four surface shaders, each with a material to test it.
 
-A row fixes some inputs, draws others, and compares the shader with `mxeon.models.surfaces`, written
-from the text. `permitted` are interpretations or simplifications that the text permits; `wrong` are
-others that a diagnosis may name.
+Each row fixes some inputs, draws others at random, and compares the shader with
+`mxeon.models.surfaces`, which is written from the text. `permitted` lists interpretations and
+simplifications that the text permits; `wrong` lists errors that a diagnosis may name.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from mxeon.conformance.specs import microfacets, surface_shaders
 from mxeon.models.surfaces import gltf, lobes, open_pbr, standard_surface, usd_preview
 from mxeon.shaders.nodes import document_text, node_text
 
-Forms = tuple[str, ...]  # formulas that replace the text's, by their names in a model
-PAIRS = 24  # each albedo takes a millisecond
-GRAZING = 0.05  # least cosine of a direction; others are replaced by SLANTED
+Forms = tuple[str, ...]  # names of a model's alternative formulas
+PAIRS = 24  # few, because an albedo takes a millisecond
+GRAZING = 0.05  # SLANTED replaces directions with a smaller cosine
 SLANTED = samples.float32([0.6, 0.0, 0.8])
 TILTED = (0.48, 0.36, 0.8)
 DIRECT, ENVIRONMENT = ("direct", "response", np.pi), ("environment", "response", 1.0)
@@ -49,7 +49,7 @@ class Text:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SentenceSpec(ValueSpec):
-    """A sentence of a text, and a material that shows it; `fixed` and `inputs` are its inputs."""
+    """A sentence of a text. Its material has the inputs `fixed` and random `inputs`."""
 
     requires = Ability.MATERIAL
 
@@ -65,7 +65,7 @@ class SentenceSpec(ValueSpec):
         return self.form()(batch)
 
     def form(self, *but: str) -> Callable[[Batch], Array]:
-        """Values by the text, except for some formulas."""
+        """Values by the text, with the alternative formulas named in `but`."""
         branch, output, factor = self.evaluated
         model = self.text.model
         function = model.emission if output == "radiance" else model.surface
@@ -96,7 +96,7 @@ class SentenceSpec(ValueSpec):
 
 @dataclass(frozen=True)
 class Says:
-    """A row: the sentence, and the inputs that are drawn, by their range in `specs.surface_shaders`."""
+    """A row of the table: a sentence, and the material that tests it; see `SentenceSpec`."""
 
     key: str
     section: str
@@ -105,7 +105,7 @@ class Says:
     fixed: Values = field(default_factory=dict)
     permitted: tuple[str | Forms, ...] = ()
     wrong: tuple[str | Forms, ...] = ()
-    terms: tuple[tolerance.Term, ...] = ()  # additional terms of its tolerance
+    terms: tuple[tolerance.Term, ...] = ()  # additional terms of the tolerance
     inputs: tuple[Input, ...] = ()
 
     def spec(self, text: Text) -> SentenceSpec:
@@ -130,7 +130,7 @@ def _forms(names: str | Forms) -> Forms:
 
 drawn = surface_shaders.ports_by_range
 TWICE, TINTED = "reflection taken twice", "tinted light below the {}"
-FAR = 1e6  # a depth at which the medium takes no light over the distance that shaders assume
+FAR = 1e6  # depth of a medium that absorbs no light over the distance that shaders assume
 THROUGH_COLOR = Input("transmission_color", "color3", low=0.05)  # keeps the logarithm finite
 WEIGHT = Input("specular_weight", high=2.0)
 OPENPBR = Text("OpenPBR Surface", "open_pbr_surface", open_pbr)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The outputs of the utility nodes, which compute numbers and colors for lobes.
+"""Outputs of the utility nodes, which compute numbers and colors for lobes.
 
-Covers pbrlib's, and eonlib's nodes that return the reflectance for which EON has a given albedo.
+They are pbrlib's nodes, and eonlib's nodes that return the reflectance for a given EON albedo.
 
-Errors are relative to the largest component if it exceeds 1; artistic indices use a unit with uniform
-roundings.
+Errors are relative to the largest component if it exceeds 1; artistic indices are scaled so that
+their roundings are uniform.
 """
 
 from collections.abc import Mapping
@@ -26,14 +26,14 @@ from mxeon.models.nodes.node import Variant
 from mxeon.shaders import nodes
 from mxeon.shaders.nodes import INVERSIONS, Node, connection_text, document_text, node_text
 
-NAME, COLOR = "value", "color"  # names of the node and of its conversion to a color
+NAME, COLOR = "value", "color"  # names of two nodes: the utility, its conversion to a color
 TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # input types by shape
 SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # special values of most inputs
 PIGMENTS = (0.01, 0.5, 1.0)
 TEMPERATURES = (800.0, 1000.0, 1667.0, 2222.0, 4000.0, 6504.0, 25000.0)
 BEYOND = (-1.0, 0.0, 0.5, 1.0, 2.0, 1e3)  # values for inputs that may leave their range
 # fmt: off
-# Inputs with their own range or change. A change starts from a document's default.
+# Inputs that need a range or change of their own. Changes start from a document's default.
 INPUTS = {
     each.name: each
     for each in (
@@ -47,7 +47,7 @@ INPUTS = {
 }
 # fmt: on
 
-# 0.98 has half a rounding, over 2 (1 - 0.98) in the aspect; the least alpha, 1e-8, is smaller than either.
+# 0.98 has half a rounding, which the aspect divides by 2 (1 - 0.98). The least alpha is only 1e-8.
 ALPHA = sum_in(
     Quantity.ALPHA, roundings(12), roundings(0.25 / 0.02, "(half of one of 0.98, over 0.04)")
 )
@@ -57,13 +57,13 @@ BLACKBODY = sum_of(
 )
 DECIMALS = Term(3 * 5e-7, "three constants of six decimals")
 REFLECTANCE = sum_in(Quantity.REFLECTANCE, DECIMALS, roundings(12, "of numbers up to 1"))
-# Errors of values, by title or category, and of other quantities.
+# Tolerances of values, by title or category.
 # fmt: off
 VALUES: Mapping[str, Tolerance] = {
     **dict.fromkeys(INVERSIONS, REFLECTANCE),
     **dict.fromkeys(("roughness_anisotropy", "glossiness_anisotropy"), ALPHA),
     "roughness_dual": sum_in(Quantity.ALPHA, roundings(2)),
-    # n_max is at most 1 in this unit.
+    # In this unit, n_max is at most 1.
     "artistic_ior, ior": sum_in(Quantity.INDEX, roundings(16, "four over 1 - sqrt(r), six beside, six in the mix")),
     "artistic_ior, extinction": sum_in(
         Quantity.EXTINCTION, roundings(8 + 16 + 4, "8 of the terms of k^2, 16 of n, 4 of 1 - r and the root")),
@@ -82,16 +82,16 @@ LEAST_LOGARITHM = 1e-4  # smallest argument of measured logarithms
 
 
 def _shares() -> Array:
-    """Numbers in [0, 1], ending with 1."""
+    """Random float32 numbers in [0, 1]; the last one is 1."""
     return float32(np.append(generator().random(FEWER), 1.0))
 
 
-# The 20th and 22nd powers in [0, 1], and logarithms of numbers below 1.
+# Engine errors of the 20th and 22nd powers in [0, 1], and of logarithms of numbers below 1.
 _power_error = spec.POWER.error(lambda: (_shares(), np.resize([22.0, 20.0], FEWER + 1)), 0.0)
 _logarithm_error = spec.LOGARITHM.error(
     lambda: [float32(LEAST_LOGARITHM ** (1.0 - _shares()))], 0.0
 )
-# Errors of engine functions, by node, times the other factor of a product or a slope.
+# Errors of engine functions, by node, each times the slope by which it enters the output.
 # fmt: off
 ENGINE = {
     "chiang_hair_roughness": EngineError("the engine's pow(), times 2 x 3.7 / 5.24", _power_error, 1.5),
@@ -114,7 +114,7 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(  # each scale belongs to one lobe
+        return tuple(  # each scale affects one lobe's output
             name
             for name in self.row.inputs
             if not name.startswith("scale_") or name.endswith(self.output.removeprefix("roughness"))
@@ -153,10 +153,10 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
         return color
 
     def alike(self, compared: Compared) -> Compared:
-        """An artistic index in a unit with uniform roundings; other outputs unchanged.
+        """Scale artistic indices so that their roundings are uniform; keep other outputs.
 
-        n (1 - sqrt(r))^2: a rounding of 1 - sqrt(r) is divided by it in n. And k^2 (1 - r) / (n_max + 1)^2: k^2 is
-        a difference of terms that large, over 1 - r.
+        n becomes n (1 - sqrt(r))^2, since n divides a rounding of 1 - sqrt(r) by it. k becomes
+        k^2 (1 - r) / (n_max + 1)^2: k^2 is a difference of terms of that size, over 1 - r.
         """
         if self.node != "artistic_ior":
             return compared
@@ -169,14 +169,14 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
 
 
 def _batch(inputs: Mapping[str, Array]) -> Batch:
-    """A batch of inputs with arbitrary directions."""
+    """A batch with these inputs and the normal as both directions, which do not matter."""
     count = len(next(iter(inputs.values())))
     up = np.broadcast_to([0.0, 0.0, 1.0], (count, 3))
     return Batch(up, up, inputs)
 
 
 def _inversion(node: str) -> utilities.UtilityNode:
-    """A node of eonlib, with the other inversions and its unchanged input as variants."""
+    """An inversion node of eonlib; variants are the other inversions and the unchanged color."""
 
     def output(name: str) -> utilities.Outputs:
         function = getattr(diffuse, name)
