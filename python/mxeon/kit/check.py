@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Check of the pictures that a renderer made of the kit."""
+"""Check the pictures that a renderer made from the kit."""
 
 import json
 import platform
@@ -30,7 +30,7 @@ from mxeon.models import table
 RENDERER = "renderer"
 LIBRARY = "its own library"
 SOFTWARE = ("numpy", "scipy", "OpenImageIO")
-# Scenes are left out: the last digits of a direction depend on the machine that exported the kit.
+# Keys of kit.json that must match exactly. The last digits of scenes depend on the exporting machine.
 EXACT = ("camera", "sphere", "materials", "pictures")
 READABLE = "The picture is there, of the right size, linear float, and finite."
 
@@ -41,10 +41,10 @@ def check_kit(
     progress: Callable[[Sequence[Question]], Iterable[Question]] = list,
     claims: str = "",
 ) -> Run:
-    """Run of the checks of a kit's pictures, which lie in its folder `renders/`.
+    """Check the pictures in a kit's folder `renders/`, and return the run.
 
-    `claims` is the only model of a renderer, so that pictures of other models are not needed; "" for EON
-    and QON. The run's notes name the nearest models; the one that all pictures show comes first.
+    `claims` is a renderer's only model, so that pictures of other models are not needed, or "" for
+    EON and QON. The run's notes name the nearest models, first a model that all pictures show.
     """
     student_quantile()  # fail early without scipy
     if not renderer.strip() or not renderer.isprintable():
@@ -86,17 +86,17 @@ def check_kit(
             f"{folder / RENDERS}: none of the {len(pictures)} pictures is there: make them as "
             f"{folder / 'README.md'} describes"
         )
-    # Answer the questions, in an order in which each needs the one before.
+    # Answer the questions in order: a wrong setup prevents all others.
     notes, obstacle = [], Diagnosis()
     for question in progress(posed):
-        # With a wrong light or encoding, models cannot be told apart.
+        # A wrong light or encoding makes models indistinguishable.
         result, shown = answer(question, pictures, images, depth, place, obstacle)
         results.append(result)
         if question.key == "setup":
             obstacle = shown
         if shown.causes:
             notes.append(f"{question.title}: {words.diagnosis(shown)}")
-    # If a model is wrong, find out whether all pictures show the same wrong one.
+    # If a model is wrong, find out whether all pictures show the same wrong model.
     wrong = any(each.check == "model" and each.verdict == FAILED for each in results)
     if wrong and (title := one_model(posed, pictures, images, depth)):
         notes.insert(0, f"every picture of a rough material shows one model: {title}")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Faults of a picture that do not depend on the model: encoding, orientation and scale.
 
-They are determined on Lambert under a distant light, whose values every model shares.
+They are found on Lambert under a distant light, for which all models have equal values.
 """
 
 import numpy as np
@@ -12,16 +12,16 @@ from mxeon.io.srgb import srgb_decoded
 from mxeon.kit.expected import Expected
 from mxeon.kit.noise import tiles
 
-LIKENESS = 0.02  # a fault explains a picture up to this rms error over rms value, without noise
-SAME_SCALE = 0.005  # factors nearer to 1 are noise or come from the depth of a mesh
+LIKENESS = 0.02  # a fault explains a picture if rms error without noise over rms value is less
+SAME_SCALE = 0.005  # factors closer to 1 are due to noise or a mesh
 
 
 def _tone_mapped_back(image: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The inverse of x / (1 + x); infinity for values of 1 and more, which it never reaches."""
+    """The inverse of x / (1 + x), whose values are below 1; infinity for other values."""
     return np.divide(image, 1.0 - image, out=np.full_like(image, np.inf), where=image < 1.0)
 
 
-# Faults by their keys in `mxeon.conformance.words.DEFECTS`, each with the function that undoes it.
+# Keys of faults in `mxeon.conformance.words.DEFECTS`, and the functions that undo them.
 FAULTS = (
     ("scaled", lambda image: image),
     ("srgb", lambda image: srgb_decoded(np.clip(image, 0.0, None))),
@@ -36,7 +36,7 @@ FAULTS = (
 def fault(
     name: str, image: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]
 ) -> Diagnosis:
-    """The fault that explains how the picture `name` differs from the model; none within LIKENESS."""
+    """Find the fault that turns the model into the picture `name`, or a known symptom."""
 
     def found(key: str, *factors: float) -> Diagnosis:
         return Diagnosis((Cause(Kind.DEFECT, f"picture_{key}", (name,), factors),))
@@ -50,7 +50,7 @@ def fault(
         if abs(factor - 1.0) > SAME_SCALE:
             return found(key, factor)
         return Diagnosis() if key == "scaled" else found(key)
-    # Many pixels share one largest value although their expected values differ.
+    # A picture is clipped if many pixels share the largest value, but their expected values differ.
     top = image[mask] >= image[mask].max() - 1e-6
     clipped = top.sum() > 20 and np.ptp(model.value[top]) > 0.02
     return found("clipped" if clipped else "unknown")
@@ -59,7 +59,7 @@ def fault(
 def _likeness(
     values: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]
 ) -> tuple[float, float]:
-    """Best factor between values and model, and the error beyond noise; infinite if it is not positive."""
+    """Best factor between values and model, and the error beyond noise (inf for a factor <= 0)."""
     value = model.value
     if not np.isfinite(values).all():
         return 0.0, np.inf

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expected values of a picture of the kit, and the deviation allowed to a correct renderer."""
+"""Expected values of a picture of the kit, and how far a correct renderer may deviate."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -13,20 +13,19 @@ from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.table import Model
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
-# Smallest cosine of either direction that is judged: near the rim and the terminator the value
-# depends on the position within a pixel. With 64 pixels or more, a whole pixel above the cut lies
-# on the sphere.
+# Pixels are judged if both cosines are at least this: near the rim and the terminator, the value
+# depends on the position within a pixel. From 64 pixels on, judged pixels lie fully on the sphere.
 CUT = 0.2
-# Relative rounding of a half, which has 11 bits, and its smallest step.
+# Relative rounding of half floats, which have 11 bits, and their smallest step.
 HALF_ROUNDING, HALF_STEP = 2.0**-11, 2.0**-24
 
-# Cosines at which an albedo is integrated. Between them, 1/128 apart, it is read linearly: its
-# second derivative is below 2 there, the error below 2e-5.
+# Albedos are integrated at these cosines, 1/128 apart, and interpolated linearly. Their second
+# derivative is below 2, so the error is below 2e-5.
 COSINES = np.linspace(CUT / 2.0, 1.0, 117)
 INTERPOLATION = 2e-5
-QUADRATURE_NODES = 16  # reaches 1e-9 on the models
+QUADRATURE_NODES = 16  # the models' albedos have an error of 1e-9
 
-# The nodes of Gauss's rule of two points, in halves of a pixel: exact for cubics.
+# Nodes of the two-point Gauss rule, exact for cubics, in half pixels.
 GAUSS = 1.0 / np.sqrt(3.0)
 
 
@@ -47,11 +46,11 @@ def judged(scene: Scene) -> NDArray[np.bool_]:
 
 
 def expected(row: Model, view: View, depth: float) -> Expected:
-    """Expected values of a view, whose surface may lie up to `depth` below the unit sphere."""
+    """Expected values of a view. The surface may be up to `depth` below the unit sphere."""
     place = sphere(view.scene.size).normal[judged(view.scene)][:, :2]
     value = pixel_means(row, view)
     center = _values(row, view, place)
-    # The normal at a point of a triangle equals the normal of a sphere point further out.
+    # A point of a triangle has the normal of a sphere point that is farther from the axis.
     mesh = _values(row, view, place / (1.0 - depth))
     slack = np.abs(value - center) + np.abs(mesh - center) + HALF_ROUNDING * value + HALF_STEP
     return Expected(value, slack + (INTERPOLATION if view.scene.light is None else 0.0))
@@ -79,7 +78,7 @@ def _values(row: Model, view: View, place: NDArray[np.float64]) -> NDArray[np.fl
 
 @lru_cache(maxsize=64)
 def _albedo_table(row: Model, material: Material) -> NDArray[np.float64]:
-    """Directional albedo at COSINES, (N, 3): in closed form, else by quadrature."""
+    """Directional albedo at COSINES, (N, 3), in closed form if known, else by quadrature."""
     parameter = [material.roughness] if row.parameter else []
     if row.albedo_dir:
         return row.albedo_dir(COSINES, material.color, *parameter)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files of the kit: documents, scenes, a mesh, and a page that explains them."""
+"""Files of the kit: documents, scenes, a mesh, and a page of instructions."""
 
 import json
 import math
@@ -33,16 +33,16 @@ README = "README.md"
 
 @dataclass(frozen=True)
 class KitNode:
-    """The node that the materials of a kit are made of."""
+    """The BSDF node of a kit's materials."""
 
     category: str = OREN_NAYAR
     definition: str = f"ND_{OREN_NAYAR}"  # nodedef
-    flagged: bool = True  # whether it has the input energy_compensation
-    folders: tuple[str, ...] = ()  # library and definitions that define it
+    flagged: bool = True  # whether the node has the input energy_compensation
+    folders: tuple[str, ...] = ()  # library and folders with its definition
 
 
 def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "eonlib") -> KitNode:
-    """A BSDF node with color and roughness, of a library, MaterialX or folders of definitions."""
+    """Find a BSDF node with color and roughness in MaterialX, a library or other definitions."""
     needed = {"color": "color3", "roughness": "float"}
     data = load_library(library, None, definitions)
     lacks = ""
@@ -62,7 +62,7 @@ def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "e
 
 
 def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = KitNode()) -> Path:
-    """Write the kit, return its README.md; replaces an earlier kit, and keeps submitted pictures.
+    """Write the kit and return its README.md. Replace an earlier kit, but keep submitted pictures.
 
     InputError for a size out of range, or a folder that has no name, holds something other than a kit, or has
     a link in place of one of the kit's files.
@@ -98,7 +98,7 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = K
 
 
 def description(pictures: Sequence[View], size: int, node: str = OREN_NAYAR) -> dict[str, Any]:
-    """The numbers of the kit, as kit.json holds them.
+    """The content of kit.json.
 
     `format` rises when a key changes or is removed. A distant light has `direction`, the unit vector towards
     it, and `irradiance`; an environment has `radiance`.

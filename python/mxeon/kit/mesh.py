@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The unit sphere as triangles, for renderers without an exact sphere.
+"""The unit sphere as a triangle mesh, for renderers without an exact sphere.
 
-Each vertex lies on the sphere and is its own normal, so the interpolated normal at a point of
-a triangle has the direction of the point.
+Each vertex is on the sphere and equals its normal, so the interpolated normal at a point has the
+direction of the point.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class Mesh:
 
     @property
     def depth(self) -> float:
-        """Largest depth of the triangles below the sphere."""
+        """Largest distance of a triangle from the sphere."""
         a, b, c = np.moveaxis(self.vertices[self.triangles], 1, 0)
         normal = np.cross(b - a, c - a)
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
@@ -33,13 +33,13 @@ class Mesh:
 
 
 def unit_sphere() -> Mesh:
-    """The unit sphere: an icosahedron whose triangles are split in four, again and again."""
+    """The unit sphere: an icosahedron whose triangles are repeatedly split into four."""
     golden = (1.0 + np.sqrt(5.0)) / 2.0
     rectangle = np.array([[0, 1, golden], [0, -1, golden], [0, 1, -golden], [0, -1, -golden]])
     vertices = np.concatenate([np.roll(rectangle, shift, axis=1) for shift in range(3)])
     mesh = Mesh(_on_sphere(vertices), _faces(vertices))
     for _ in range(SUBDIVISIONS):
-        # Split each triangle in four, and lift the middles of its edges onto the sphere.
+        # Split each triangle into four, and move the middles of its edges onto the sphere.
         edges = mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]]
         pairs, place = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
         middles = _on_sphere(mesh.vertices[pairs].sum(axis=1))
@@ -51,7 +51,7 @@ def unit_sphere() -> Mesh:
 
 
 def _faces(vertices: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Triangles of vertices that are 2 apart, facing outwards."""
+    """Triangles of vertices at distance 2, oriented outward."""
     near = np.isclose(np.linalg.norm(vertices[:, None] - vertices, axis=-1), 2.0)
     triples = combinations(range(len(vertices)), 3)
     faces = np.array(

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Separation of noise from bias: the mean error of each tile of a picture, and its distribution.
+"""Separate noise from bias, by the mean error of each tile of a picture.
 
-A tile of 8 x 8 pixels has up to 16 squares of 2 x 2. A square's contrast, (a - b - c + d) / 2, has the
-variance of a pixel's noise and cancels a smooth error, which the tile's mean error keeps. Under normal noise the
-two are independent, so their quotient follows Student's t.
+A tile of 8 x 8 pixels has up to 16 squares of 2 x 2. A square's contrast, (a - b - c + d) / 2, has
+the variance of a pixel's noise and cancels smooth errors; the tile's mean error keeps them. If noise
+is normal, mean and contrasts are independent, and their quotient follows Student's t.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from mxeon.errors import PackageError, install
 
 TILE = 8
-FEWEST = 8  # squares that a tile needs to be judged
+FEWEST = 8  # minimum squares of a judged tile
 CONFIDENCE = 0.999  # probability that a kit of correct pictures passes
 
 
@@ -31,12 +31,12 @@ class Tiles:
 
     @property
     def pixel_noise(self) -> float:
-        """Standard deviation of a pixel, root mean square over the picture."""
+        """Standard deviation of a pixel's noise, rms over the picture."""
         return float(np.sqrt(np.mean(self.deviation**2 * 4.0 * self.squares[:, None])))
 
 
 def tiles(error: NDArray[np.float64], slack: NDArray[np.float64], mask: NDArray[np.bool_]) -> Tiles:
-    """Tiles of a picture, of errors and slack (N, 3) at the pixels of the mask."""
+    """Tiles of a picture, from errors and slack, (N, 3), at the pixels of a mask."""
     whole = np.asarray(_squares(mask[..., None]).all(axis=(-1, -2)))
     square = _squares(_spread(error, mask))
     contrast = (square @ [1.0, -1.0, -1.0, 1.0]) / 2.0
@@ -52,10 +52,10 @@ def tiles(error: NDArray[np.float64], slack: NDArray[np.float64], mask: NDArray[
 
 
 def ratio(pictures: Sequence[Tiles], share: float = 1.0) -> float:
-    """The largest mean error of a tile, relative to what slack and noise allow.
+    """The largest mean error of a tile, divided by the error that slack and noise explain.
 
-    Above 1 with a probability of at most share (1 - CONFIDENCE) if all pictures are right: each of n mean
-    errors may leave its interval with 1 / n of that (Bonferroni).
+    For correct pictures, it exceeds 1 with a probability of at most share (1 - CONFIDENCE). Each of
+    n mean errors may leave its interval with 1 / n of this probability (Bonferroni).
     """
     stdtrit = student_quantile()
     total = sum(each.mean.size for each in pictures)
@@ -68,7 +68,7 @@ def ratio(pictures: Sequence[Tiles], share: float = 1.0) -> float:
 
 
 def student_quantile() -> Callable[..., NDArray[np.float64]]:
-    """Quantiles of Student's t, by degrees of freedom and probability; needs scipy."""
+    """The quantile function of Student's t (degrees of freedom, probability); needs scipy."""
     try:
         from scipy.special import stdtrit  # scipy.stats is slow to import
     except ModuleNotFoundError as error:
@@ -83,7 +83,7 @@ def _spread(values: NDArray[np.float64], mask: NDArray[np.bool_]) -> NDArray[np.
 
 
 def _squares(image: NDArray[Any]) -> NDArray[Any]:
-    """Squares of 2 x 2 pixels of whole tiles, (tiles, tiles, 16, channels, 4)."""
+    """Split an image into tiles, and these into 2 x 2 squares: (tiles, tiles, 16, channels, 4)."""
     size, half = image.shape[0] // TILE, TILE // 2
     parts = image[: size * TILE, : size * TILE].reshape(size, half, 2, size, half, 2, -1)
     parts = parts.transpose(0, 3, 1, 4, 6, 2, 5)

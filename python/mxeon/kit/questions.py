@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The checks of a renderer's pictures, called questions.
 
-A question passes if the pictures equal the model up to noise, pixel size and mesh, and if a wrong variant with the
-same noise fails.
+A question passes if the pictures equal the model up to noise, pixel size and mesh, and a wrong
+variant with the same noise fails.
 """
 
 from __future__ import annotations
@@ -33,25 +33,25 @@ from mxeon.kit.views import (
 from mxeon.models import table as reference
 from mxeon.shaders.nodes import FLAG
 
-# Models within a renderer's noise of another model: EON's quartic is off by at most 1e-3.
+# Noise hides the difference of these models from others: EON's quartic differs by at most 1e-3.
 TOO_NEAR = ("eon_approx",)
 
 
 @dataclass(frozen=True)
 class ModelDistance:
-    """Distance of a known model or defect from the pictures of one question."""
+    """Distance of a known model or defect from the pictures of a question."""
 
     title: str
     distance: float  # rms of the tiles' mean errors, in units of pi f cos or of albedo
-    ratio: float  # see `mxeon.kit.noise.ratio`; up to 1 the pictures agree
+    ratio: float  # of `mxeon.kit.noise.ratio`; the pictures agree up to 1
 
 
 def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDistance]:
-    """Every known model and defect, nearest first; models with the same values once."""
+    """All known models and defects, nearest first, without duplicates."""
     rows = reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS + reference.PARAMETRIZATIONS
     rows = tuple(row for row in rows if row.name not in TOO_NEAR)
     if all(case.view.scene.light for case in pictures):
-        # Some differ only in their albedo.
+        # Drop models that differ only in the albedo.
         rows = tuple({row.brdf_of: row for row in rows}.values())
     ranking = []
     for row in rows:
@@ -60,7 +60,7 @@ def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDis
         rms = float(np.sqrt(np.mean(np.concatenate([each.mean for each in errors]) ** 2)))
         ranking.append(ModelDistance(row.title, rms, ratio(errors)))
     ranking.sort(key=lambda one: one.distance)
-    # At roughness 1, models in roughness and its square coincide; keep the first.
+    # At roughness 1, models of roughness and of its square coincide; keep the first.
     return [
         one
         for one, before in zip(ranking, [None, *ranking], strict=False)
@@ -69,7 +69,7 @@ def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDis
 
 
 def nearest(ranking: Sequence[ModelDistance]) -> results.Diagnosis:
-    """The nearest model, and models that the pictures cannot tell from it."""
+    """The nearest model, and models that the pictures do not distinguish from it."""
     causes = [results.Cause(results.Kind.MODEL, ranking[0].title, rms=ranking[0].distance)]
     also = tuple(each.title for each in ranking[1:] if each.ratio <= 1.0)
     if ranking[0].ratio > 1.0:
@@ -93,10 +93,10 @@ class Question:
     key: str
     claim: str
     materials: tuple[Material, ...]
-    lit: bool  # distant light, otherwise environment: a rasterizer has a formula for each
+    lit: bool  # distant light; False for an environment, for which rasterizers have other formulas
     variant: str  # describes the negative control
     wrong: Callable[[View], NDArray[np.float64]]  # the control's values (N, 3)
-    model: str = ""  # the same for every material; "" for the model of each material's node
+    model: str = ""  # required model; "" for the model of each material
 
     @property
     def title(self) -> str:
@@ -120,7 +120,7 @@ class JudgedPicture:
 
 
 def _of(name: str, factor: float = 1.0) -> Callable[[View], NDArray[np.float64]]:
-    """A variant: values of a model, times a factor."""
+    """Values of a model times a factor, for a negative control."""
     return lambda view: factor * pixel_means(reference.diffuse_model(name), view)
 
 
@@ -145,11 +145,11 @@ CLAIMS = ("eon", "qon", "fon", "lambert")
 
 
 def questions(claim: str = "") -> tuple[Question, ...]:
-    """The questions to a renderer with only the claimed model, or with the flag for ""."""
+    """Questions for a renderer that claims one model; for "", for one that supports the flag."""
     if not claim:
         return QUESTIONS
     assert_known("claims", claim, CLAIMS)
-    # The materials whose roughness the model takes.
+    # Choose materials with the model's roughness.
     rough = (FALSE,) if claim == "qon" else (TRUE, HALF)
     dropped, acts = ("roughness is dropped", _of("lambert")), ("roughness acts", _of("eon"))
     control = (*(acts if claim == "lambert" else dropped), claim)
@@ -169,7 +169,7 @@ def one_model(
     images: Mapping[str, NDArray[np.float64]],
     depth: float,
 ) -> str:
-    """Title of the model that all pictures of rough materials show; "" if there is none."""
+    """Title of the model that explains all pictures of rough materials; "" if none does."""
     rough = [each for each in posed if each.key == "model"]
     chosen = [view for view in views if any(each.includes(view) for each in rough)]
     if any(view.name not in images for view in chosen):
@@ -186,9 +186,9 @@ def answer(
     place: Mapping[str, Any],
     obstacle: results.Diagnosis = results.NO_DIAGNOSIS,
 ) -> tuple[results.Result, results.Diagnosis]:
-    """The result of a question, and the model or fault that the pictures show.
+    """Answer a question: its result, and the model or fault that the pictures show.
 
-    With an `obstacle`, nothing can be judged.
+    An `obstacle` prevents the answer, and becomes its reason.
     """
     chosen = [view for view in views if question.includes(view)]
     place = {"check": question.key, "claim": question.claim, "subject": question.title, **place}
@@ -242,7 +242,7 @@ def _tiles(
     models: Sequence[Expected],
     wrong: Sequence[NDArray[np.float64]] | None = None,
 ) -> list[Tiles]:
-    """Tiles of the errors, or of the errors of a renderer with wrong values."""
+    """Tiles of the errors; `wrong` values are substituted for those of the model, if given."""
     wrong = wrong or [model.value for model in models]
     return [
         tiles(case.values + other - 2.0 * model.value, model.slack, case.mask)

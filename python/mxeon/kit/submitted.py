@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reading of the pictures that a renderer submitted."""
+"""Read the pictures that a user submits."""
 
 from collections.abc import Sequence
 from os import PathLike
@@ -15,23 +15,23 @@ from mxeon.kit.views import View
 from mxeon.shaders.scene import sphere
 
 CHANNELS = "RGB"
-LEVELS = 255  # steps of an eight-bit value
-ROUNDED = LEVELS * 2.0**-12  # rounding of a half float up to 1, in steps
+LEVELS = 255  # largest eight-bit value
+ROUNDED = LEVELS * 2.0**-12  # rounding of a half float below 1, in eight-bit steps
 FLOATS = ("half", "float", "double")
-# A smooth shading has as many values as pixels; eight bits leave far fewer than one in four.
+# Smooth shading has about as many distinct values as pixels; eight bits leave less than a quarter.
 DISTINCT = 4
 
 
 class Missing(ValueError):
-    """No file holds the picture."""
+    """The picture's file does not exist."""
 
 
 class Unusable(ValueError):
-    """A file that cannot be judged; names the file, the rule and the violation."""
+    """A file cannot be judged; the message names the file, the rule and the violation."""
 
 
 def read_render(folder: str | PathLike[str], view: View) -> NDArray[np.float64]:
-    """The picture of a view: linear float64, 0 off the sphere; else Missing or Unusable."""
+    """Read the picture of a view: linear float64, 0 off the sphere. Raises Missing or Unusable."""
     files = sorted(Path(folder).glob(f"{view.name}.*"))
     if not files:
         raise Missing(f"{view.name}.exr: must be in {folder}; got no such file")
@@ -70,7 +70,7 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
         channels = _channels(file, spec.channelnames)
     except UnicodeDecodeError:
         raise Unusable(f"{file.name}: must have names of channels in UTF-8") from None
-    # Read only these: a small file may have a thousand channels.
+    # Read only these channels: even a small file may have thousands.
     read = [image.read_image(0, 0, each, each + 1, oiio.FLOAT) for each in channels]
     pixels = [each for each in read if each is not None]
     reason = words(image.geterror)
@@ -81,7 +81,7 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
 
 
 def _channels(file: Path, names: Sequence[str]) -> list[int]:
-    """Indices of red, green and blue: unlayered, or in the only layer that has all three."""
+    """Indices of red, green and blue: without a layer, or of the only layer with all three."""
     layers: dict[str, dict[str, int]] = {}
     for index, name in enumerate(names):
         layer, _, channel = name.rpartition(".")
@@ -94,7 +94,7 @@ def _channels(file: Path, names: Sequence[str]) -> list[int]:
 
 
 def _check_depth(file: Path, values: NDArray[np.float64]) -> None:
-    """Refuse eight-bit values: few distinct ones, all of them multiples of 1 / 255 up to 1."""
+    """Refuse eight-bit values: these are few, and all are multiples of 1 / 255 up to 1."""
     distinct = len(np.unique(values))
     steps = values * LEVELS
     whole = values.max() <= 1.0 and np.abs(steps - np.rint(steps)).max() <= ROUNDED

@@ -116,12 +116,12 @@ def mesh_layer(mesh: Mesh) -> str:
 
 
 def scene_layer(view: View, node: str, flagged: bool) -> str:
-    """The scene of one picture; `flagged` sets energy_compensation."""
+    """The USD scene of a picture; `flagged` nodes have the input energy_compensation."""
     material, scene = view.material, view.scene
     if scene.light is None:
         light = DOME.format(radiance=scene.environment)
     else:
-        # A right-handed frame whose z is the direction.
+        # Build a right-handed frame with z along the direction.
         z = np.array(scene.light)
         x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
         x /= np.linalg.norm(x)

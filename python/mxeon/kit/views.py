@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The views of the kit: its materials, each under one or more lights."""
+"""Views of the kit: each material under one or more lights."""
 
 from dataclasses import dataclass, replace
 
 from mxeon.errors import InputError
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Scene
 
-COLOR = (0.2, 0.5, 0.8)  # three channels reveal a wrong power of the color
+COLOR = (0.2, 0.5, 0.8)  # different channels reveal a wrong power of the color
 
-# Below SMALLEST, the points that bound a pixel may miss the sphere; above LARGEST, nothing is gained.
+# With fewer pixels, corners of pixels may miss the sphere; more pixels gain nothing.
 SMALLEST, LARGEST = 64, 2048
 USUAL = 128
 
@@ -24,7 +24,7 @@ class Material:
 
     @property
     def model(self) -> str:
-        """Name of the model that the node stands for with this flag."""
+        """Name of the model that the node must have with this flag."""
         return "eon" if self.energy_compensation else "qon"
 
 
@@ -47,7 +47,7 @@ class View:
         return f"{self.material.name}_{self.scene.name}"
 
 
-# Lambert under a distant light shows light, orientation and encoding, independently of the model.
+# Lambert under a distant light reveals errors of light, orientation and encoding in any model.
 SETUP = View(LAMBERT, SIDE)
 PICTURES = (
     SETUP,
@@ -66,7 +66,7 @@ PICTURES = (
 
 
 def views(size: int) -> tuple[View, ...]:
-    """The views of the kit, `size` pixels wide and high."""
+    """All views, `size` pixels wide and high."""
     if not SMALLEST <= size <= LARGEST:
         raise InputError(f"size must lie in [{SMALLEST}, {LARGEST}]; got {size}")
     return tuple(replace(view, scene=replace(view.scene, size=size)) for view in PICTURES)

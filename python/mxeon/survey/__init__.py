@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers with their own materials: their engines, nodes and checks, and the page that compares them.
+"""Survey of renderers' own materials: engines, nodes, checks, and a page that compares them.
 
-`mxeon.hosts.RENDERERS` has a row for each. The `NODES` of its module are judged.
+`mxeon.hosts.RENDERERS` has a row for each renderer, whose module lists the judged nodes in `NODES`.
 """

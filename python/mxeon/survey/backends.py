@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measurement of renderers' own nodes, by pictures or for pairs."""
+"""Backends for renderers' own nodes, which measure pictures or pairs of directions."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ from mxeon.shaders.scene import FURNACE, Scene, sphere
 from mxeon.survey.facets import facet_points
 from mxeon.survey.specs import Material, RendererSpec
 
-FACET_PIXELS = 7169  # judged pixels of a picture of the polyhedron, each within one facet
+FACET_PIXELS = 7169  # pixels of the polyhedron's picture that lie within one facet
 FEW_CALLS = samples.Counts(1 << 13)  # calls of a renderer's own function
 SHORTEST = (
     2.0**-10
-)  # least length of wo + wi of special pairs, whose cosine Fresnel's formulas square and round
-EXACT_INPUTS: tuple[samples.Values, ...] = (  # dark to white, rough to smooth
+)  # least |wo + wi| of special pairs: Fresnel's formulas square the rounded cosine
+EXACT_INPUTS: tuple[samples.Values, ...] = (  # dark to white, and rough to smooth
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.02, 0.05, 0.1), "roughness": 1.0},
     {"color": (1.0, 0.8, 0.0), "roughness": 0.75},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
     {"color": (0.5, 0.2, 1.0), "roughness": 0.1},
 )
-# EEVEE stores light in 32 bits for three channels; blue has the fewest.
+# EEVEE stores the three channels of light in 32 bits; blue has the fewest bits.
 COARSE_FACETS = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     Term(2.0**-6, "five bits below the leading one, cut off"),
@@ -49,30 +49,30 @@ FACET_NOISE = sum_of(
     quantity=Quantity.MEAN_ALBEDO,
     metric=mean_error,
 )
-# The product of Burley's two factors is at most 25/4.
+# Burley's two factors have a product of at most 25/4.
 FACET_PAIRS = sum_in(Quantity.DIFFERENCE, roundings(16 * 2.5**2, "of numbers up to 25/4"))
 
 
 class Renderer(Protocol):
-    """Operations of an engine on its own nodes; engines support some of them."""
+    """Operations of an engine on its own nodes. An engine may support only some of them."""
 
     def node(self, material: Material, scene: Scene) -> Array:
-        """Picture of the sphere or the polyhedron with a material; see `Host.picture`."""
+        """Render the sphere or the polyhedron with a material; see `Host.picture`."""
 
     def pairs(
         self, material: Material, wo: Array, wi: Array, color: Array, roughness: Array
     ) -> Array:
-        """f cos(theta_i), (N, 3) in 1/sr, for unit vectors with normal +z; the material has placeholders for inputs."""
+        """f cos(theta_i), (N, 3) in 1/sr, for unit vectors, normal +z and input values."""
 
     def sample(self, wo: Array, u: Array, roughness: Array) -> Array:
-        """The renderer's samples (N, 3) for EON, from u (N, 2) in [0, 1)."""
+        """Directions (N, 3) that the renderer samples for EON, from u (N, 2) in [0, 1)."""
 
     def density(self, wo: Array, wi: Array, roughness: Array) -> Array:
         """Density of `sample` in solid angle, (N,)."""
 
 
 class Native(backends.CyclesPictures):
-    """A renderer's own node, on a sphere."""
+    """A renderer's own node, rendered on a sphere."""
 
     abilities = Ability.OWN | Ability.LIGHT
 
@@ -87,7 +87,7 @@ class Native(backends.CyclesPictures):
 
     @property
     def claims(self) -> tuple[str, str]:
-        """Titles of the claimed model and of the form that is checked."""
+        """Titles of the claimed model and of the form that the checks use."""
         claimed, *_ = self.node.forms or (self.node.model,)
         title, own = (reference.diffuse_model(name).title for name in (claimed, self.node.model))
         return title, own
@@ -103,7 +103,7 @@ class Native(backends.CyclesPictures):
 
 
 class Exact(Native):
-    """A node on a sphere whose points and light are exact up to rounding."""
+    """A node on a sphere, for renderers whose points and light are exact up to rounding."""
 
     own_errors: ClassVar[Errors] = {
         "value": backends.EXACT,
@@ -113,7 +113,7 @@ class Exact(Native):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """One light is enough for a control."""
+        """Pictures for a control: one light is enough."""
         return self.batches[:: len(EXACT_INPUTS)]
 
     @property
@@ -125,7 +125,7 @@ class Exact(Native):
         return EXACT_INPUTS
 
     def judged(self) -> Spec:
-        """The spec of the published form nearest to the measured values."""
+        """The spec of the published form that is nearest to the measured values."""
         if not self.node.forms:
             return self.node
         batch = self.batches[0]
@@ -138,11 +138,11 @@ class Exact(Native):
 
 
 class Facets(Exact):
-    """A node on a polyhedron, with noise under an environment."""
+    """A node rendered on the polyhedron; pictures in an environment have noise."""
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """Points in a white environment, for two materials only, because they take long."""
+        """Points in a white environment, for only two materials, because they render slowly."""
         scene = replace(FURNACE, size=self.size)
         names = ("color", "roughness")
         return tuple(
@@ -164,13 +164,13 @@ class Facets(Exact):
 
 
 class CoarseFacets(Facets):
-    """A node on the polyhedron in a renderer that stores light in few bits."""
+    """A node on the polyhedron, for a renderer that stores light in few bits."""
 
     own_errors: ClassVar[Errors] = {"value": COARSE_FACETS, "albedo": COARSE_FACETS}
 
 
 class FacetPairs(Facets):
-    """A node that its renderer evaluates for any pairs; the polyhedron shows its environment."""
+    """A node that can be evaluated for any pair; only environments need the polyhedron."""
 
     own_errors: ClassVar[Errors] = {
         "value": FACET_PAIRS,
@@ -180,7 +180,7 @@ class FacetPairs(Facets):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
+        """Random pairs, special pairs, and pairs outside the domain."""
         rng, spec, count = samples.generator(), self.node, FEW_CALLS.pairs
         random = samples.directions(rng, count), samples.directions(rng, count)
         special = Batch(*samples.special_directions(rng), {})
@@ -210,7 +210,7 @@ class FacetPairs(Facets):
 
 @lru_cache(maxsize=8)
 def facet_pairs(scene: Scene) -> backends.Pairs:
-    """The pixels that lie within one facet of the polyhedron, as pairs."""
+    """Pairs at the pixels that lie within one facet of the polyhedron."""
     points = facet_points(scene.size)
     return backends.lit_pairs(points.normal[points.mask], scene)
 

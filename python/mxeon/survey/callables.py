@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a Python function, for renderers and libraries with bindings."""
+"""Checks of a BRDF that is a Python function, for renderers and libraries with bindings."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from mxeon.errors import InputError, assert_known
 from mxeon.hosts.base import Host, Identity
 from mxeon.models import table as reference
 
-# Checks of values only: a function has no environment branch and no flag.
+# Only checks of values apply: a function has no environment branch and no flag.
 KEYS = ("value", "integral", "black", "reciprocity", "lambert", "inputs", "finite")
 LIBRARY = "callable"
 
@@ -35,7 +35,7 @@ Brdf = Callable[[Array, Array, Array, Array], ArrayLike]  # arguments: wo, wi, r
 
 
 class CallableHost(Host):
-    """A Python function instead of an engine."""
+    """A host that calls a Python function instead of an engine."""
 
     target = ""
 
@@ -48,10 +48,10 @@ class CallableHost(Host):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ClaimedModel(DiffuseModelSpec):
-    """The model that a function claims to be, used instead of a node."""
+    """The model that a function claims to implement; it takes the place of a node."""
 
     def document(self, inputs: samples.Values | None = None) -> str:
-        return ""  # a function needs none
+        return ""  # a function has no document
 
     def batches(self, counts: samples.Counts) -> tuple[Batch, ...]:
         rng = samples.generator()
@@ -62,7 +62,7 @@ class ClaimedModel(DiffuseModelSpec):
 
 
 class Function(backends.Backend):
-    """A function evaluated for pairs."""
+    """A backend that evaluates a function for pairs of directions."""
 
     host: CallableHost
 
@@ -70,7 +70,7 @@ class Function(backends.Backend):
 
     @cached_property
     def edges(self) -> Batch:
-        """Pairs and inputs at the edges of the domain, then all pairs of other checks: their values must be finite."""
+        """Pairs at the edges of the domain, and all pairs of other checks, for `finite`."""
         used = [super().edges]
 
         def note(batch: Batch) -> Batch:
@@ -111,7 +111,7 @@ def _arguments(batch: Batch) -> tuple[Array, Array, Array, Array]:
 
 
 def _finite_rows(found: Compared | Iterable[Compared]) -> Iterator[Compared]:
-    """Values without non-finite rows, which `finite` reports; all values if no row is finite."""
+    """Drop non-finite rows, which `finite` reports; keep all rows if none is finite."""
     for each in [found] if isinstance(found, Compared) else found:
         expected = np.broadcast_to(each.expected, each.measured.shape)
         rows = np.asarray(np.isfinite(each.measured + expected).all(axis=1))
@@ -123,7 +123,7 @@ VALUE_OF_REST = replace(diagnosis.VALUE, compared=lambda case: _finite_rows(diag
 
 
 def _explain_not_finite(case: Case) -> Diagnosis:
-    """Number and region of non-finite values, and the arguments of the first."""
+    """Report the number and region of non-finite values, and the arguments of the first one."""
     found = unbounded(edge_values(case))
     wrong = correct_except([found], EXACT, smallest([found], EXACT))
     point = point_of(found.batch, int(EXACT.wrong(found).argmax()))
@@ -131,7 +131,7 @@ def _explain_not_finite(case: Case) -> Diagnosis:
 
 
 def _of_rest(check: Check) -> Check:
-    """A check of the finite values; `finite` reports the non-finite ones."""
+    """Restrict a check to finite values; `finite` reports the other ones."""
     if check.key == "finite":
         return replace(check, explain=_explain_not_finite)
     if check.key == "inputs":
@@ -150,10 +150,10 @@ def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
       frame with the normal +z; roughness lies in [0, 1], or is sigma, in radian, in [0, pi/2] for
       models that have one: `mxeon.models.table`.
     - `model`: The required model: a row of `mxeon.models.table.DIFFUSE_MODELS` with a parameter.
-    - `name`: Its name in the report; by default the function's own name.
+    - `name`: The function's name in the report; by default its `__name__`.
 
-    Non-finite values fail one check; the other checks judge the finite values. `mxeon.report.write` writes a report of
-    the run; in a test, call its `raise_for_failure`. Raises ValueError for an unknown model or values with a wrong shape.
+    Non-finite values fail one check; other checks judge the finite values. `mxeon.report.write`
+    writes a report; tests call `raise_for_failure`. ValueError for an unknown model or wrong shape.
 
         >>> from mxeon.models import eon_brdf
         >>> {result.verdict for result in check_brdf(eon_brdf).results}
@@ -180,7 +180,7 @@ def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
 
 
 def _checks(model: str) -> tuple[Check, ...]:
-    """Rows of the table that check values of any model."""
+    """The checks that apply to a function with this model."""
     row = reference.diffuse_model(model)
     if not row.parameter:
         assert_known(

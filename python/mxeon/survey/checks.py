@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a renderer's own sampling: its density, and its directions against the density."""
+"""Checks of a renderer's sampler: the density, and whether samples follow the density."""
 
 from collections.abc import Iterator
 from typing import cast
@@ -17,9 +17,9 @@ from mxeon.models.sampling import eon_cltc_pdf
 from mxeon.survey.backends import Renderer
 from mxeon.survey.specs import RendererSpec
 
-# A correct sampler exceeds this once in 3.5 million times.
+# A correct sampler exceeds this in one run of 3.5 million.
 CHI_SQUARE = given(5.0, Quantity.DEVIATIONS, "five standard deviations")
-# Differences in the transformed direction, to the fourth power in the density, lose up to three bits.
+# The density has the fourth power of the transformed direction, which loses three bits.
 OWN_DENSITY = sum_of(
     roundings(48 * 2.0**3, "of a density, three bits of it lost"), quantity=Quantity.DENSITY
 )
@@ -28,7 +28,7 @@ SAMPLES = 1 << 15
 ROUGHNESS = 1.0
 
 
-# Nodes for which a renderer's own sampling can be called.
+# Nodes whose sampling function can be called.
 SAMPLED = family(RendererSpec, lambda spec: spec.sampled and spec.model in ("eon", "eon_fitted"))
 
 
@@ -46,9 +46,9 @@ def _density(case: Case, batch: Batch) -> Array:
 
 
 def samples(case: Case) -> Measurement:
-    """Deviation of the chi-square of directions against their own density, in standard deviations.
+    """Largest deviation of samples from their density, in standard deviations of a chi-square test.
 
-    Drawn for COSINES at ROUGHNESS; a control that fails for one is enough.
+    Views have COSINES, and the material ROUGHNESS. For a control, one view is enough.
     """
     deviations = [_deviation(case, mu) for mu in COSINES[: 1 if case.control else None]]
     worst = int(np.argmax(deviations))
@@ -56,7 +56,7 @@ def samples(case: Case) -> Measurement:
 
 
 def _deviation(case: Case, mu: float) -> float:
-    """Standard deviations by which the counts of one viewer's samples leave their density."""
+    """Deviation of one view's samples from their density, in standard deviations."""
     rng, pole = generator(), np.array([0.0, 0.0, 1.0])
     wo = np.array([np.sqrt(1.0 - mu * mu), 0.0, mu])
     draws = np.broadcast_to(wo, (SAMPLES, 3)), rng.random((SAMPLES, 2)), np.full(SAMPLES, ROUGHNESS)

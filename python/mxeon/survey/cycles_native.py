@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's own nodes: Cycles without OSL, and without MaterialX."""
+"""Blender's own nodes in Cycles, without OSL and MaterialX."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from mxeon.hosts.base import Array, Engine, Identity
 from mxeon.shaders.scene import Scene
 from mxeon.survey.specs import Material, node
 
-# Blender's type and sockets of each node, with only its diffuse lobe.
+# Each node's type and sockets in Blender, set so that only the diffuse lobe remains.
 MATERIALS: dict[str, Material] = {
     "Diffuse BSDF": {
         "kind": "ShaderNodeBsdfDiffuse",

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A convex polyhedron with known normals, for renderers that spread their samples over a pixel.
+"""A convex polyhedron with known normals, for renderers that spread samples over a pixel.
 
-Every pixel inside a facet has one normal, wherever its samples fall. The shape is convex, so facets neither shadow nor
-light each other. Frame and camera are as in `mxeon.shaders.scene`.
+A pixel inside a facet has one normal, wherever its samples fall. The shape is convex, so facets
+neither shadow nor light each other. Frame and camera are the same as in `mxeon.shaders.scene`.
 """
 
 from functools import lru_cache
@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-RINGS, SECTORS = 20, 40  # facets from pole to pole, and around
+RINGS, SECTORS = 20, 40  # number of facets from pole to pole, and around the axis
 AXIS = (0.48, 0.6, 0.64)  # polar axis, tilted so that facets differ in both cosines
-MARGIN = 1.05  # half width of a square that must lie in one facet, in half widths of a pixel
+MARGIN = 1.05  # pixels of this relative size must lie within one facet
 
 
 class Polyhedron(NamedTuple):
@@ -22,11 +22,11 @@ class Polyhedron(NamedTuple):
     vertices: NDArray[np.float64]  # points of the unit sphere
     triangles: NDArray[np.int64]  # indices, counterclockwise from outside
     normals: NDArray[np.float64]  # outward unit normals of the facets, in float64
-    offsets: NDArray[np.float64]  # distances of their planes from the origin
+    offsets: NDArray[np.float64]  # distances of the facets' planes from the origin
 
 
 class Points(NamedTuple):
-    """Normals at the pixels of a picture of the polyhedron."""
+    """Normals at the pixels of a rendered polyhedron."""
 
     normal: NDArray[np.float64]
     mask: NDArray[np.bool_]  # pixels within one facet
@@ -34,21 +34,21 @@ class Points(NamedTuple):
 
 @lru_cache(maxsize=1)
 def polyhedron() -> Polyhedron:
-    """The polyhedron whose vertices are a grid of angles around AXIS.
+    """The polyhedron. Its vertices are a grid of angles around AXIS, rounded to float32.
 
-    Its facets are trapezoids, which are flat, and triangles at the poles. Vertices are rounded to float32.
+    Its facets are trapezoids, which are flat, and triangles at the poles.
     """
     polar, azimuth = np.linspace(0.0, np.pi, RINGS + 1), np.arange(SECTORS) * 2.0 * np.pi / SECTORS
     theta, phi = np.meshgrid(polar[1:-1], azimuth, indexing="ij")
     ring = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
     local = np.concatenate([[[0.0, 0.0, 1.0]], ring.reshape(-1, 3), [[0.0, 0.0, -1.0]]])
-    # Frame of AXIS and two perpendicular axes.
+    # Two axes perpendicular to AXIS complete its frame.
     axis = np.asarray(AXIS) / np.linalg.norm(AXIS)
     across = np.cross([0.0, 0.0, 1.0], axis)
     across /= np.linalg.norm(across)
     frame = np.stack([across, np.cross(axis, across), axis])
     vertices = (local @ frame).astype(np.float32).astype(np.float64)
-    # Corners of the facets; rings at the poles are one vertex.
+    # Find the corners of the facets. At the poles, a ring is a single vertex.
     row, column = np.meshgrid(np.arange(RINGS + 1), np.arange(SECTORS), indexing="ij")
     index = np.clip(1 + (row - 1) * SECTORS + column, 0, 1 + (RINGS - 1) * SECTORS)
     after = np.roll(index, -1, axis=1)
@@ -66,7 +66,7 @@ def polyhedron() -> Polyhedron:
 
 @lru_cache(maxsize=4)
 def facet_points(size: int) -> Points:
-    """Normals at the pixels of a `size` x `size` picture."""
+    """Normals at the pixels of a picture, `size` pixels wide and high."""
     axis = (2.0 * np.arange(size) + 1.0) / size - 1.0
     x, y = np.meshgrid(axis, -axis)
     reach = MARGIN / size
@@ -81,7 +81,7 @@ def facet_points(size: int) -> Points:
 
 
 def _facets(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Index of the facet that each line along z meets first; -1 for none."""
+    """Index of the facet that each ray along -z hits first; -1 for none."""
     _, _, normals, offsets = polyhedron()
     above, below = normals[:, 2] > 0.0, normals[:, 2] < 0.0
     first, top = np.full(x.shape, -1), np.full(x.shape, np.inf)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Comparison of renderers' nodes from any number of reports."""
+"""Comparison of renderers' nodes, from any number of reports."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -33,7 +33,7 @@ from mxeon.survey import specs
 Place: TypeAlias = tuple[str, str, str]  # host, library and node
 
 BACK = "back"
-# Checks by column; the first check that a node has counts. `back` comes from portraits.
+# Checks of each column; the first check that a node has counts. `back` comes from portraits.
 CHECKS = {
     "direct": DIRECT,
     "surroundings": ("environment",),
@@ -58,18 +58,18 @@ class Portrait:
 class Entry:
     """A node of a renderer in one run."""
 
-    mxeon: str  # its version
+    mxeon: str  # version of mxeon
     host: str
     library: str
     node: str
-    version: str  # version and device are "" if the host did not run
+    version: str  # empty, like the device, if the host did not run
     device: str
     claimed: str  # title of the claimed model
-    form: str  # title of the published form that was judged
+    form: str  # title of the published form that the checks used
     cells: Mapping[str, Result]  # keys: columns of CHECKS
-    pages: tuple[str, ...]  # pages of docs/upstream on its defects
+    pages: tuple[str, ...]  # pages of docs/upstream on the node's defects
     portraits: Mapping[str, Portrait]  # keys: scenes
-    report: Path  # folder of its report
+    report: Path  # folder of the report
 
     @property
     def verdict(self) -> Verdict:
@@ -88,25 +88,25 @@ class Entry:
 
     @property
     def cause(self) -> tuple[object, ...]:
-        """The properties that nodes of a renderer share if they share a row of the page."""
+        """Properties of an entry; entries with equal properties share a row of the page."""
         verdicts = tuple((column, cell.verdict) for column, cell in self.cells.items())
         models = self.claimed, self.form, self.found, self.found_around
         return self.host, *models, verdicts, self.pages
 
     @property
     def found(self) -> str:
-        """The model in direct light, or the reason why none is known."""
+        """The model found in direct light, or the reason why none is known."""
         return model_of(self.cells["direct"], self.form or self.claimed)
 
     @property
     def found_around(self) -> str:
-        """The model in a white environment, or "" without that check."""
+        """The model found in a white environment; "" if this was not checked."""
         cell = self.cells.get("surroundings")
         return model_of(cell, self.form or self.claimed) if cell else ""
 
 
 def by_harm(entries: Sequence[Entry]) -> list[list[Entry]]:
-    """Entries with the same cause together, by renderer; the most harmful renderer, row and node first."""
+    """Group entries by renderer and cause; the most harmful renderer, row and node come first."""
     rows: dict[tuple[object, ...], list[Entry]] = {}
     for entry in sorted(entries, key=lambda each: each.harm, reverse=True):
         rows.setdefault(entry.cause, []).append(entry)
@@ -115,7 +115,7 @@ def by_harm(entries: Sequence[Entry]) -> list[list[Entry]]:
 
 
 def model_of(result: Result, expected: str) -> str:
-    """The model found by a check, or its first cause in words."""
+    """The model that a check found, or the first cause of its failure in words."""
     if result.verdict == PASSED:
         return expected
     if result.verdict == NOT_RUN:
@@ -129,7 +129,7 @@ def model_of(result: Result, expected: str) -> str:
 
 
 def reports_in(folder: AnyPath) -> list[Path]:
-    """The folder of a report, or the folders of reports in a folder."""
+    """Folders of reports: the folder itself, or its subfolders."""
     if Path(folder, RESULTS).is_file():
         return [Path(folder)]
     return sorted(path.parent for path in Path(folder).glob(f"*/{RESULTS}"))
@@ -138,8 +138,8 @@ def reports_in(folder: AnyPath) -> list[Path]:
 def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
     """Nodes that claim a rough diffuse model, from the reports in some folders.
 
-    A folder is a report, or contains reports; the last report on a host, version, library and node counts. Raises
-    InputError if a folder has no report, or no report has such a node.
+    A folder is a report, or contains reports; the last report on a host, version, library and node
+    counts. Raises InputError if a folder has no report, or no report has such a node.
     """
     entries = {}
     for folder in folders:
@@ -196,7 +196,7 @@ def _portraits(report: Report, place: Place, folder: Path) -> Iterator[Portrait]
         if (each.document, each.host, each.library, each.element) != (PORTRAIT, *place):
             continue
         if each.reference and each.difference:
-            # For security, only use their names: a report may come from anywhere.
+            # Reports may come from anywhere, so use only the names of their files, not the paths.
             image, model = (
                 folder / "pictures" / Path(file).name for file in (each.exr, each.reference)
             )

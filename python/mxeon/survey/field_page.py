@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page that compares renderers, one self-contained HTML file. Needs the `report` extra."""
+"""The page that compares renderers, a self-contained HTML file. Needs the `report` extra."""
 
 import math
 from collections import Counter
@@ -30,7 +30,7 @@ HEADINGS = {
     "back": ("Back-lit", "worst error of the portrait in light from behind"),
 }
 SCENES = {"side": "light from the side", "back": "light from behind"}
-# Row, entry, image, difference map, its scale, and the largest difference.
+# Row, entry, image, difference map, scale of the map, and largest difference.
 Frame: TypeAlias = tuple[int, Entry, str, str, float, float]
 INPUTS = ("color", "roughness", "wo", "wi", "measured", "expected")
 
@@ -45,7 +45,7 @@ def write_field(entries: Sequence[Entry], file: str | PathLike[str]) -> Path:
 
 
 def frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
-    """Portraits of a scene, from their files; the tolerance is dark in the map."""
+    """Read the portraits of a scene. Differences within the tolerance are dark in the maps."""
     for row, entry in enumerate(entries):
         portrait = entry.portraits.get(scene)
         if portrait is None:
@@ -64,11 +64,11 @@ def render(
     note: str = "",
     frames: Callable[[Sequence[Entry], str], Iterator[Frame]] = frames,
 ) -> Iterator[str]:
-    """Pieces of the page; a picture is read when its piece is due.
+    """Generate the page in pieces; pictures are read one by one.
 
-    `pages` is the address of a page of the ledger with `{}` for its name, "" for no links; `note` follows the counts;
-    `frames` returns the portraits of the rows' first entries. The page loads nothing, runs only its own script, and is
-    complete without it. Text of the reports is escaped.
+    `pages` is the address of a page of the ledger, with `{}` for its name, or "" for no links.
+    `note` follows the counts. `frames` returns the portraits of the rows' first entries. The page
+    loads nothing and runs only its own script, which it does not need. Report text is escaped.
     """
     counts = Counter(entry.verdict for entry in entries)
     rows = by_harm(entries)
@@ -95,16 +95,16 @@ def render(
 
 
 def order(cell: Result | None) -> float:
-    """Number by which a column is sorted: error over tolerance, what did not run last."""
+    """Sort key of a cell: error over tolerance. Checks that did not run come last."""
     ratio = math.inf if cell is None or cell.error is None else share(cell)
     return ratio if math.isfinite(ratio) else 1e30
 
 
 def breakable(name: str) -> Markup:
-    """A name that may break after each underscore."""
+    """A name as HTML, with possible line breaks after underscores."""
     return Markup("_<wbr>").join(name.split("_"))
 
 
 def where(cell: Result) -> dict[str, str]:
-    """The inputs and values at the worst point, in words."""
+    """The inputs and values at the worst point, as text."""
     return {name: vector(cell.worst[name]) for name in INPUTS if name in cell.worst}

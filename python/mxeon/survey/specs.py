@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Specs of renderers' own nodes, with their materials."""
+"""Specs of renderers' own nodes."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ Material: TypeAlias = Mapping[str, Any]  # properties of a renderer's material
 
 BOTH = ("color", "roughness")
 COLOR = ("color",)  # input of a Lambert node
-PUBLISHED = ("eon", "eon_fitted")  # the paper prints EON with the exact albedo, and with a quartic
+PUBLISHED = ("eon", "eon_fitted")  # EON in the paper: with the exact albedo, or a quartic
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RendererSpec(DiffuseModelSpec):
     """A renderer's own node and its documented model.
 
-    In `material`, "{color}" and "{roughness}" stand for the inputs; nothing but the diffuse lobe may depend on
-    them.
+    In `material`, "{color}" and "{roughness}" are placeholders for the inputs. Only the diffuse
+    lobe may depend on them.
     """
 
     material: Material = field(default_factory=dict)
@@ -36,11 +36,11 @@ class RendererSpec(DiffuseModelSpec):
         return replace(self, model=model, row=_row(model, self.node))
 
     def document(self, inputs: Values | None = None) -> str:
-        """None: nothing is generated."""
+        """An empty text, because these nodes have no document."""
         return ""
 
     def made(self, color: Sequence[float], roughness: float) -> Material:
-        """The material with these inputs."""
+        """The material, with its placeholders replaced by these inputs."""
         inputs = {
             "{color}": tuple(map(float, color)),
             "{roughness}": float(roughness),
@@ -66,7 +66,7 @@ def node(
 
 
 def _row(model: str, node: str) -> PbrNode:
-    """The row of a renderer's node; its variants include only one of both Burley models."""
+    """The row of a renderer's node. Its variants include only one of the two Burley models."""
     name = model if model.startswith("burley") else "burley"
     left_out = {"burley", "burley_lambert"} - {name}
     others = tuple(each for each in OTHERS if each.name not in left_out)

@@ -80,7 +80,7 @@ BUBBLE_ROW = 3
 ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
 SMOOTH_ESS_FIT = 5.3e-5  # E_ss of smooth lobes at cosines from 0.05
 ESS_VALUE_FIT = (
-    1.14e-3  # relative error of E_ss at alpha 0.97 along the normal; scales the value or 1
+    1.14e-3  # relative error of E_ss (alpha 0.97, normal view), times the value or 1
 )
 METAL_FIT = 4.6e-4  # fresnel_average.py: F_ss of a metal
 # ggx_albedo.py: largest (1 - E_ss) / E_ss, times 1 or the value of perfectly reflecting facets.
@@ -181,7 +181,7 @@ ERRORS = {
 QUADRATURE = 6e-4  # quadrature error for the exact equations
 
 
-# Where MaterialX's fit B is 0, curves do not affect its prefiltered sum, and its fit A is below 1 by:
+# Where MaterialX's fit B is 0, curves do not affect its prefiltered sum, and A is below 1 by this.
 PREFILTERED = Term(5.06e-2, "MaterialX's fit of prefiltered light")
 
 
@@ -216,7 +216,7 @@ class FacetSpec(lobes.PbrSpec):
         return batch.strength * LOBES[self.node].prefiltered(batch.wo, spec.broadcast_inputs(batch))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """The usual batches, and lights near the mirror direction, all with one alpha per material."""
+        """The usual batches, and lights near the mirror direction, for isotropic materials."""
         others = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
         return tuple(_with_one_alpha(batch) for batch in (*others, self.mirrored(counts)[0]))
 
@@ -241,7 +241,7 @@ class FacetSpec(lobes.PbrSpec):
         return *super().few(batches, counts), batches[-1].first(counts.few)
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views for albedos. The smoothest lobes become mirrors; curves that fall below 0 are skipped."""
+        """Views for albedos; the smoothest lobes become mirrors, curves below 0 are skipped."""
         rows = [(batch, simple(batch.inputs)) for batch in super().views(batches, counts)]
         for _, inputs in rows:
             inputs["roughness"][inputs["roughness"] < LEAST_ALPHA] = 0.0
@@ -252,7 +252,7 @@ class FacetSpec(lobes.PbrSpec):
         )
 
     def mirrored(self, counts: Counts) -> tuple[Batch, Batch]:
-        """Two lights near the mirror direction for each view, reflected at normals visible to it."""
+        """For each view, two lights near the mirror direction, reflected at visible normals."""
         rng, count = generator(), counts.mirrored
         wo, inputs = directions(rng, count), self.random_inputs(rng, count)
         alpha = inputs["roughness"]
@@ -272,7 +272,7 @@ class FacetSpec(lobes.PbrSpec):
         return batch, self.integral(batch)
 
     def stretched_sums(self, counts: Counts) -> tuple[Batch, Array]:
-        """The views of `stretched`, with MaterialX's sums, which use G_2 / G_1 at the mean alpha."""
+        """The views of `stretched` with MaterialX's sums, which mask by the mean alpha."""
         batch, _ = self.stretched(counts)
         albedo = node_albedo(self.node, batch.wo, batch.inputs, summed=True)
         return batch, batch.strength * albedo
@@ -282,7 +282,7 @@ class FacetSpec(lobes.PbrSpec):
         return self.values(partial(LOBES[self.node].value, terms=Lobe(uncompensated)), batch)
 
     def summed(self, pairs: Batch) -> Array:
-        """`single`, weighted as in MaterialX's sum over visible normals: G_2 / G_1 at the mean alpha."""
+        """`single`, weighted as in MaterialX's sums: G_2 / G_1 at the mean alpha."""
         alpha = pairs.inputs["roughness"]
         mean = np.sqrt(alpha.prod(axis=1))
         weight = smith_g2(pairs.wo[:, 2], pairs.wi[:, 2], mean)
@@ -297,7 +297,7 @@ class FacetSpec(lobes.PbrSpec):
         return denser(batch.altered(roughness=rough))
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """Remove curves that fall below 0: values clamp them, but the fit of the albedo does not."""
+        """Remove curves that fall below 0: values clamp them, the albedo's fit does not."""
         changed = simple(inputs)
         if "color82" in changed:
             changed["color82"][falls_below_0(changed)] = 1.0
@@ -435,13 +435,13 @@ class TransmissionSpec(FacetSpec):
         return self.row.fixed["scatter_mode"] == "RT"
 
     def ends(self, batch: Batch) -> Array:
-        """Light that the BTDF passes, and all light that is not reflected, (2, N, 3), of light 1."""
+        """Light that the BTDF passes, and all light not reflected, (2, N, 3), of light 1."""
         wo, inputs, functions = batch.wo, batch.inputs, self.functions
         rest = functions.tint(inputs) * (1.0 - functions.reflected(wo, inputs))
         return np.stack([functions.passed(wo, inputs, True), np.maximum(rest, 0.0)])
 
     def reversed(self, mu: Array, alpha: float, index: float, inputs: Mapping[str, Array]) -> Array:
-        """Share of light that leaves a denser medium of this index, averaged over channels, (N,)."""
+        """Share of light that leaves a denser medium of this index, mean of channels, (N,)."""
 
         def reflected(cosines: Array) -> Array:
             views = samples.directions_at(cosines, 0.0)
@@ -514,7 +514,7 @@ def _mean(value: float, words: str) -> Tolerance:
     return given(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
 
 
-# Few films come close: thin films on metals at grazing for UNSUMMED, very different indices for F_ss.
+# Few films come close: thin films on metals at grazing (UNSUMMED), very different indices (F_ss).
 UNSUMMED = Term(8e-4, "orders that are not summed")
 FILM_VALUE = sum_of(*compensated(FILM_AVERAGE, "F_ss in three cosines").terms, UNSUMMED)
 # fmt: off
@@ -591,7 +591,7 @@ class FilmSpec(FacetSpec):
         return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
-        """Raise dielectric indices to 1 (a film in air). If `edged`, some films match the dielectric.
+        """Raise dielectric indices to 1 (a film in air); some `edged` films match them.
 
         Below 1, total reflection gives the curve a kink that averages of few nodes do not resolve.
         """
@@ -631,7 +631,7 @@ class FilmSpec(FacetSpec):
     few = spec.ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views of the random pairs, and views for which an average over few facets is least exact."""
+        """Views of the random pairs, and views for which averages over few facets are worst."""
         batch = batches[0].where(batches[0].wo[:, 2] >= self.least_cosine)
         easy = batch.first(counts.albedos)
         easy = replace(easy, inputs=simple(easy.inputs))

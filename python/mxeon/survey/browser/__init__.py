@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers from npm in a headless Chromium, each as a page that draws one picture per request.
+"""Renderers from npm. Each is a page in a headless Chromium that draws one picture per request.
 
-The page is an ES module next to this file. It imports the renderer from `node_modules` through a route inside the
-browser: nothing is bundled, and nothing leaves the machine.
+The page is an ES module next to this file. It imports the renderer from `node_modules` through a
+route inside the browser: nothing is bundled, and nothing leaves the machine.
 """
 
 from __future__ import annotations
@@ -47,19 +47,19 @@ window.answer = async (job) => {{
 }};
 </script>"""
 SHARED = {"Access-Control-Allow-Origin": "*"}
-PICTURES = 64  # cached: the checks of a node request some again
+PICTURES = 64  # cached, because the checks of a node share some
 LIMIT = 60.0  # seconds for a picture, including the renderer's start
 TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json"}
 
 
 def packages_folder() -> Path:
-    """Folder of the package.json and the lock file that pin the renderers."""
+    """Folder of the package.json and the lock file, which pin the renderers' versions."""
     installed = data_folder() / "renderers"
     return installed if installed.is_dir() else data_folder() / "tools" / "renderers"
 
 
 def modules_folder(package: str, host: str) -> Path:
-    """The node_modules with a package: MXEON_NODE_MODULES, or the folder next to the lock file."""
+    """Path of node_modules: MXEON_NODE_MODULES, or the folder next to the lock file."""
     folder = Path(os.environ.get(MODULES) or packages_folder() / "node_modules")
     if not (folder / package / "package.json").is_file():
         raise NotRun(
@@ -69,21 +69,21 @@ def modules_folder(package: str, host: str) -> Path:
 
 
 def pixels(answer: webgl.Answer, size: int) -> NDArray[np.float32]:
-    """Picture of an answer, (size, size, 3), row 0 at the top."""
+    """The pixels of a page's answer, (size, size, 3), row 0 at the top."""
     values = np.frombuffer(base64.b64decode(answer["pixels"]), dtype=np.float32)
     return values.reshape(size, size, 4)[..., :3]
 
 
 def material(backend: str, **more: str) -> Material:
-    """Material of a node that a backend draws."""
+    """A material with both inputs, drawn by one of the renderer's backends."""
     return {"color": "{color}", "roughness": "{roughness}", "backend": backend, **more}
 
 
 class PackageHost(webgl.Chromium, base.Engine):
-    """The materials of an npm package, drawn by the page next to a host's module, each in `limit` seconds.
+    """Materials of an npm package, drawn by a page. `limit` is the maximum time of one in seconds.
 
-    The page is an ES module that exports `draw(job)`, which returns `pixels` or `failed`. `imports` maps names in the
-    page to paths in node_modules; `assets` are PNG files by address, which the renderer would load from the network.
+    The page, an ES module next to the host's, exports `draw(job)`, which returns `pixels` or
+    `failed`. `imports` maps names to paths in node_modules; `assets` are PNG files by address.
     """
 
     flags = (*webgl.FLAGS, "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader")
@@ -148,9 +148,9 @@ class PackageHost(webgl.Chromium, base.Engine):
 
 
 class ReadingHost(PackageHost, base.Host):
-    """A package that turns documents into its own materials: `mxeon check FILE --host three`.
+    """A package that loads MaterialX documents: `mxeon check FILE --host three`.
 
-    The GLSL that `compile` makes is not executed. Light is distant, because the packages prefilter their environments.
+    GLSL from `compile` is not executed. Light is distant: packages prefilter environments.
     """
 
     target, fixed = "glsl", True
@@ -165,7 +165,7 @@ class ReadingHost(PackageHost, base.Host):
         policy: Policy = DEFAULT,
         client: Collection[str] = (),
     ) -> tuple[Shader, ...]:
-        """As for any host, with MaterialX's own definitions: the package uses no library."""
+        """Compile with stock MaterialX definitions, because the package uses no library."""
         return super().compile(document, element, library="stock", policy=policy, client=client)
 
     def picture(self, shader: Shader, scene: Scene) -> base.Array:
@@ -178,7 +178,7 @@ class ReadingHost(PackageHost, base.Host):
         return np.where(sphere(scene.size).mask[..., None], image, np.float32(0.0))
 
     def unread(self, shader: Shader) -> str:
-        """Inputs that the package says it ignores, and other warnings; inputs with their default are left out."""
+        """Warnings of the package: inputs that it ignores, unless they have their default value."""
         surface = surface_shader(shader.document, shader.element)
         defaults = {
             each.getName(): each.getValueString() for each in surface.getNodeDef().getActiveInputs()
@@ -193,4 +193,4 @@ class ReadingHost(PackageHost, base.Host):
 
     @abstractmethod
     def read(self, shader: Shader) -> Material:
-        """The page's job for the material of a shader's document."""
+        """The job that makes the page draw a shader's material."""

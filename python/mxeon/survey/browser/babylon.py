@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Babylon.js: its PBRMaterial with each diffuse model, and its OpenPBRMaterial, on two engines."""
+"""Babylon.js: PBRMaterial with each diffuse model, and OpenPBRMaterial, on two engines."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ASSETS = {
     )
 }
 
-# Title, Babylon.js's diffuse model (OpenPBRMaterial has only one), our model, inputs and forms.
+# Title, diffuse model in Babylon.js ("" for OpenPBRMaterial), expected model, inputs, forms.
 MATERIALS = (
     ("PBRMaterial E_OREN_NAYAR", "E_OREN_NAYAR", "eon", BOTH, PUBLISHED),
     ("OpenPBRMaterial", "", "eon", BOTH, PUBLISHED),
@@ -42,7 +42,7 @@ class BabylonHost(browser.ReadingHost):
     imports, assets = IMPORTS, ASSETS
 
     def read(self, shader: Shader) -> Material:
-        """OpenPBRMaterial has the inputs of `open_pbr_surface`, in camel case, with their meaning."""
+        """The inputs in camel case: OpenPBRMaterial has the inputs of `open_pbr_surface`."""
         surface = surface_shader(shader.document, shader.element)
         if surface.getCategory() != OPEN_PBR:
             raise NotRun(f"babylon: it has no {surface.getCategory()}, only {OPEN_PBR}")

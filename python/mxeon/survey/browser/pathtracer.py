@@ -26,7 +26,7 @@ LOBE = "WebGLPathTracer, diffuseEval"
 SHORTER = (
     1.0 - 2.0**-22
 )  # length of a half vector whose product with wo is at most 1 after rounding
-# Materials name a function of WebGPUPathTracer's WGSL, or the length of the half vector for the GLSL.
+# Materials have a function of WebGPUPathTracer's WGSL, or a half vector's length for the GLSL.
 NODES = (
     node("WebGPUPathTracer, eonBrdf", "eon", {"call": "eon"}, forms=PUBLISHED, sampled=True),
     node("WebGPUPathTracer, fonBrdf", "fon", {"call": "fon"}),
@@ -35,7 +35,7 @@ NODES = (
 )
 
 PI = "#define PI 3.141592653589793"
-# Without refraction, no light is lost above the diffuse lobe.
+# Without refraction (f0 = 0), all light reaches the diffuse lobe.
 GLSL = """
 vec3 diffuse_value(vec3 wo, vec3 wi, vec3 rho, float roughness, float scale)
 {
@@ -100,7 +100,7 @@ class GpuPathTracerHost(browser.PackageHost):
         return browser.pixels(answer, size).reshape(-1, 3)[:count]
 
     def _source(self) -> str:
-        """The package's GLSL of the diffuse lobe, and a function that calls it."""
+        """GLSL: the package's diffuse lobe, and a function that calls it."""
         folder = self._modules / PACKAGE / "src" / "shader"
         files = ("structs/surface_record_struct", "common/fresnel_functions")
         texts = [_template(folder / f"{file}.glsl.js") for file in files]
@@ -113,7 +113,7 @@ class GpuPathTracerHost(browser.PackageHost):
 
 
 def _template(path: Path) -> str:
-    """The template string in a module."""
+    """The first template string in a module, which is shader text."""
     try:
         return path.read_text("utf-8").split("`")[1]
     except (OSError, IndexError):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""three.js: its MeshPhysicalMaterial in two renderers, and the materials that it loads."""
+"""three.js: MeshPhysicalMaterial in two renderers, and documents that MaterialXLoader loads."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ IMPORTS = {
     "three/addons/": "three/examples/jsm/",
 }
 
-# Inputs by category: color, roughness, and the weight of all lobes except the diffuse one.
+# For each category, its inputs for color, roughness, and the weight of the lobes above the diffuse.
 INPUTS = {
     "open_pbr_surface": ("base_color", "base_diffuse_roughness", "specular_weight"),
     "standard_surface": ("base_color", "diffuse_roughness", "specular"),
 }
-# OpenPBR specifies EON, Standard Surface Oren-Nayar.
+# OpenPBR specifies EON; Standard Surface specifies Oren-Nayar.
 NODES = (
     node("MeshPhysicalMaterial, WebGLRenderer", "eon", browser.material("webgl"), forms=PUBLISHED),
     node(
@@ -62,7 +62,7 @@ class ThreeHost(browser.ReadingHost):
 
 
 def document(category: str, color: Sequence[float], roughness: float, backend: str) -> str:
-    """MaterialX text of a material with only its diffuse lobe."""
+    """MaterialX text of a material that has only a diffuse lobe."""
     color_input, roughness_input, others = INPUTS[category]
     text = input_text(color_input, "color3", color)
     text += input_text(roughness_input, "float", roughness)

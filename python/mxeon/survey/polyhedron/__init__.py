@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers with a Python package, which render their own nodes on the polyhedron.
+"""Renderers with a Python package, which render their own nodes on a polyhedron.
 
-Each runs in its own process. Their samples spread over a pixel, so they render `mxeon.survey.facets` instead of a sphere.
+Each runs in its own process. Samples spread over a pixel, so a sphere would not do.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from mxeon.shaders.scene import Scene
 from mxeon.survey.facets import polyhedron
 from mxeon.survey.specs import Material
 
-PICTURES = 64  # cached: the checks of a node request some again
+PICTURES = 64  # cached, because the checks of a node share some
 MESH = "polyhedron.npz"
 
 
 class PolyhedronHost(Engine):
-    """A renderer of its own nodes on the polyhedron, in its own process; `limit` is in seconds per request."""
+    """A renderer in its own process; `limit` is the maximum time of a request in seconds."""
 
-    samples: ClassVar[int]  # per pixel under an environment; a distant light needs one
-    script: ClassVar[Path]  # worker
+    samples: ClassVar[int]  # samples per pixel under an environment; a distant light needs one
+    script: ClassVar[Path]  # program of the worker process
     device: ClassVar[str]
     missing: ClassVar[str] = ""  # message if the renderer is not installed
 
@@ -75,7 +75,7 @@ class PolyhedronHost(Engine):
         return values
 
     def _interpreter(self) -> Path:
-        """Path of the Python with the renderer: named by a variable, or this one."""
+        """Path of the Python that has the renderer: an environment variable's, or this one."""
         path = os.environ.get(f"MXEON_{self.name.upper()}_PYTHON")
         python = Path(path or sys.executable)
         if not (python.is_file() and os.access(python, os.X_OK)):

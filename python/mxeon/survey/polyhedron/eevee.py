@@ -10,7 +10,7 @@ from mxeon.survey.cycles_native import MATERIALS
 from mxeon.survey.polyhedron import PolyhedronHost
 from mxeon.survey.specs import COLOR, node
 
-# Blender's manual has the roughness of both nodes for Cycles only.
+# Blender's manual restricts the roughness of both nodes to Cycles.
 NODES = tuple(node(title, "lambert", material, COLOR) for title, material in MATERIALS.items())
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the `mitsuba` host that runs in the process of Mitsuba; see `mxeon.hosts.process`."""
+"""The part of the `mitsuba` host that runs in Mitsuba's process; see `mxeon.hosts.process`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ JsonObject: TypeAlias = dict[str, Any]
 # The BSDFs of `mxeon.mitsuba`.
 PLUGINS = ("eon", "fon", "qon")
 
-# Mitsuba's own BSDFs run in a scalar variant; PLUGINS are compiled, since Python is too slow for single values.
+# Mitsuba's own BSDFs run in a scalar variant. PLUGINS are compiled: scalar Python is too slow.
 OWN, COMPILED = "scalar_rgb", "llvm_ad_rgb"
 
 mi: Mitsuba = import_module("mitsuba")
@@ -25,7 +25,7 @@ mi.set_log_level(mi.LogLevel.Warn)
 
 
 def bsdf(material: JsonObject, **inputs: object) -> JsonObject:
-    """A material's properties for Mitsuba; names of inputs in braces are replaced."""
+    """A material's properties for Mitsuba; `inputs` replace their names in braces."""
     values = {name: inputs.get(str(value).strip("{}"), value) for name, value in material.items()}
     return {
         name: {"type": "rgb", "value": list(value)} if isinstance(value, (list, tuple)) else value
@@ -50,7 +50,7 @@ def evaluate(material: JsonObject, pairs: str) -> Mitsuba:
 
 
 def evaluate_at_once(material: JsonObject, columns: JsonObject) -> Mitsuba:
-    """`evaluate` for all pairs at once, with inputs as texels."""
+    """`evaluate` for all pairs at once, in a compiled variant. Inputs are texels of an image."""
     inputs = {
         name: {
             "type": "bitmap",
@@ -78,7 +78,7 @@ def render(
     environment: float | None,
     samples: int,
 ) -> Mitsuba:
-    """Picture of the mesh with a BSDF on it, float32, row 0 at the top."""
+    """Render the mesh with a BSDF; float32, row 0 at the top."""
     scene = {
         "type": "scene",
         "integrator": integrator(light is not None),
@@ -100,13 +100,13 @@ def render(
 
 
 def integrator(distant: bool) -> JsonObject:
-    """One bounce; samples a distant light, otherwise the BSDF."""
+    """An integrator for one bounce, which samples the light if it is distant, else the BSDF."""
     samples = {"emitter_samples": int(distant), "bsdf_samples": int(not distant)}
     return {"type": "direct", "hide_emitters": True, **samples}
 
 
 def sensor(size: int, samples: int) -> JsonObject:
-    """The square [-1, 1]^2 seen orthographically along -z; the film is linear float32."""
+    """An orthographic camera that looks along -z at [-1, 1]^2, with a linear float32 film."""
     look = mi.ScalarTransform4f().look_at(
         origin=[0.0, 0.0, 2.0], target=[0.0, 0.0, 0.0], up=[0.0, 1.0, 0.0]
     )
@@ -126,7 +126,7 @@ def sensor(size: int, samples: int) -> JsonObject:
 
 
 def polyhedron(path: str, material: JsonObject) -> Mitsuba:
-    """The mesh in a file with a BSDF on it, without vertex normals."""
+    """Load a mesh, without vertex normals, and give it a BSDF."""
     data = np.load(path)
     properties = mi.Properties()
     properties["bsdf"] = mi.load_dict(bsdf(material))
