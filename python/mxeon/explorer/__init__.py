@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The explorer: one self-contained page that draws, compares and probes materials in a browser.
+"""The explorer: a self-contained page that draws, compares and probes materials in a browser.
 
-Its TypeScript program is in `explorer/`, which is built into `explorer.html` here.
+The TypeScript program in `explorer/` is built into `explorer.html` in this folder.
 """
 
 import json
@@ -21,14 +21,14 @@ from mxeon.shaders.functions import source
 
 __all__ = ["document_sources", "page", "page_data", "sky_of"]
 
-TEXTS, PARAGRAPH = ("pixel", "paths", "document"), "\n\n"  # fields stored in the table of texts
+TEXTS, PARAGRAPH = ("pixel", "paths", "document"), "\n\n"  # fields stored in a shared table
 MARK = "%DATA%"  # the template's placeholder for the data
-# JSON escapes of characters with a meaning in HTML, which could end the script element.
+# Escape characters that have a meaning in HTML and could end the script element.
 ESCAPES = str.maketrans({sign: f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u2029"})
 
 
 def page_data(documents: Iterable[tuple[ShaderSource, ...]] = (), pages: str = "") -> PageData:
-    """The data of a page from the `document_sources` of each document.
+    """The data of a page; `documents` has the `document_sources` of each document.
 
     `pages` is the address of a page of `docs/upstream` with {} for its name, or "".
     """
@@ -53,9 +53,9 @@ def page_data(documents: Iterable[tuple[ShaderSource, ...]] = (), pages: str = "
 
 
 def page(data: PageData) -> str:
-    """The page with its data, as one self-contained HTML text.
+    """The page with its data, as self-contained HTML.
 
-    Text of documents is JSON in it, without characters that have a meaning in HTML.
+    Text of documents is escaped JSON, without characters that have a meaning in HTML.
 
         >>> "</b>" in page(PageData("1", "1", "</b>", ()))
         False
@@ -68,7 +68,7 @@ def page(data: PageData) -> str:
 
 
 def _with_texts(fields: dict[str, Any]) -> dict[str, Any]:
-    """The data with each paragraph, reference and image stored once; `explorer/src/texts.ts` undoes it."""
+    """Store each paragraph, reference and image once; `explorer/src/texts.ts` expands them."""
     places: dict[str, int] = {}
     references: list[object] = []
     images: dict[tuple[int, int, str], int] = {}

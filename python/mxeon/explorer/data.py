@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The data of a page: the types of `explorer/src/data.ts`, which describes the fields."""
+"""Types of a page's data, as in `explorer/src/data.ts`, which describes the fields."""
 
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -11,7 +11,7 @@ Direction: TypeAlias = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Models:
-    """Names of a node's models with energy_compensation true and false."""
+    """Names of a node's models, with energy_compensation on and off."""
 
     on: str
     off: str
@@ -50,7 +50,7 @@ class ShaderInput:
 
 @dataclass(frozen=True)
 class Controls:
-    """Uniforms that the controls of the page set; "" for none."""
+    """Names of the uniforms that the page's controls set; "" for none."""
 
     color: str = ""
     roughness: str = ""
@@ -59,7 +59,7 @@ class Controls:
 
 @dataclass(frozen=True)
 class ReferenceBounds:
-    """Tolerances of a shader."""
+    """Tolerances of a shader's values, in direct light and in a white environment."""
 
     direct: float
     white: float
@@ -67,7 +67,7 @@ class ReferenceBounds:
 
 @dataclass(frozen=True)
 class ShaderForm:
-    """A known function other than the model."""
+    """A known function that a shader may implement instead of the model."""
 
     title: str
     permitted: bool
@@ -77,7 +77,7 @@ class ShaderForm:
 
 @dataclass(frozen=True)
 class ReferenceTable:
-    """Float64 values of a material's models, rounded to the digits of `references.py`."""
+    """Reference values of a material, rounded to the digits of `references.py`."""
 
     direct: tuple[float, ...]
     white: tuple[float, ...]
@@ -87,7 +87,7 @@ class ReferenceTable:
 
 @dataclass(frozen=True)
 class Checked:
-    """Verdict of `mxeon check` on gl."""
+    """Verdict of `mxeon check` for a material on gl."""
 
     kind: str  # "correct", "within" a tolerance but visibly off, "wrong", "differs" as permitted, or "unknown" without a reference
     text: str
@@ -127,6 +127,6 @@ class PageData:
 
     @property
     def judged(self) -> bool:
-        """Whether the model of every shader that should have one is known."""
+        """Whether the actual model is known for every shader with an intended model."""
         shaders = (source for source in self.sources if isinstance(source, ShaderSource))
         return all(source.actual or not source.meant for source in shaders)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents as sources of a page: generated ESSL, and inputs with their ranges."""
+"""Sources of a page from documents: generated ESSL, and inputs with their ranges."""
 
 import math
 import warnings
@@ -37,17 +37,17 @@ REFERENCES = 20  # judge at most this many materials of a document: 0.1 s each, 
 LARGEST_IMAGE = 256  # texels on a side: a quarter of a mebibyte
 ALL_IMAGES = (
     64 * LARGEST_IMAGE**2
-)  # texels of a document, 22 MB of a page; more images are scaled down
+)  # texels per document (22 MB of a page); larger images are scaled down
 RANGE = (("uimin", "uisoftmin"), ("uimax", "uisoftmax"))
 
-# Intended models of the diffuse nodes, with the flag and without.
+# Intended models of the diffuse nodes, with the flag on and off.
 MEANT = {OREN_NAYAR: data.Models("eon", "qon"), EON: data.Models("eon", "eon")}
 
 
 def document_sources(
     file: str, policy: Policy = DEFAULT, library: str = LIBRARIES[1]
 ) -> tuple[data.ShaderSource, ...]:
-    """The materials of a document, each with eonlib and, if possible, with `library`.
+    """Sources of a document's materials, with eonlib and, if possible, with `library`.
 
     Raises DocumentError if no shader can be generated from the document, ImageError for a bad image.
     """
@@ -55,7 +55,7 @@ def document_sources(
     sources: list[data.ShaderSource] = []
     contents = read_documents([file], [LIBRARIES[0]], policy, 0, 0.0).contents
     titles = contents.get(file, ())
-    # By element and by file, the same for both libraries.
+    # Both libraries share references, by element, and images, by file.
     references: dict[str, data.ReferenceTable | None] = {}
     images: dict[str, data.Texels | None] = {}
     for half, each in zip(LIBRARIES, (LIBRARIES[0], library), strict=True):
@@ -65,7 +65,7 @@ def document_sources(
             if half == LIBRARIES[0] or library != LIBRARIES[1]:
                 raise
             continue  # a node that stock MaterialX lacks
-        # Read each image once, at a size that leaves room for all of them.
+        # Read each image once, and limit its size so that all images fit.
         check_images(shaders, policy)
         names = image_files(shaders)
         side = min(LARGEST_IMAGE, math.isqrt(ALL_IMAGES // max(len(names), 1)))
@@ -89,11 +89,11 @@ def document_sources(
     return tuple(sources)
 
 
-SKY_ROWS = 128  # twice the rows of the page's own surroundings
+SKY_ROWS = 128  # twice the rows of the page's built-in environment
 
 
 def sky_of(file: str) -> data.Texels:
-    """A latitude-longitude image, turned as `mxeon render` turns it: its middle faces the viewer."""
+    """Read a latitude-longitude image. As in `mxeon render`, its middle faces the viewer."""
     pixels = read_latlong(file)
     whole = oiio.ImageBuf(np.ascontiguousarray(np.roll(pixels, pixels.shape[1] // 2, axis=1)))
     area = oiio.ROI(0, 2 * SKY_ROWS, 0, SKY_ROWS, 0, 1, 0, 3)
@@ -104,7 +104,7 @@ def sky_of(file: str) -> data.Texels:
 
 
 def path_texts(document: str, policy: Policy = DEFAULT) -> dict[str, str]:
-    """Texts of a document's materials for path tracers, by element; none for mixed surfaces."""
+    """Path-tracing code of a document's materials, by element; mixed surfaces have none."""
     with warnings.catch_warnings(), suppress(InterfaceError):
         warnings.simplefilter("ignore")  # reported before
         made = generate(document, "essl", profile="path", uniforms=True, policy=policy)
@@ -116,12 +116,12 @@ KINDS = {PASSED: "correct", DIFFERS: "differs", FAILED: "wrong", NOT_RUN: "unkno
 
 
 def checked_materials(file: str, library: str, policy: Policy = DEFAULT) -> dict[str, data.Checked]:
-    """Verdicts of `mxeon check` on gl by element."""
+    """Verdicts of `mxeon check` on gl, by element."""
     try:
         with open_host("gl") as host, warnings.catch_warnings():
             warnings.simplefilter("ignore")  # reported before
             results, _, _ = judge_document(Path(file), host, Reference(), library, policy)
-    except MxeonError:  # no gl; errors of the document were reported before
+    except MxeonError:  # gl is missing, or an error of the document was already reported
         return {}
     return {
         each.subject.removeprefix(f"{Path(file).name}: "): data.Checked(
@@ -137,7 +137,7 @@ def checked_materials(file: str, library: str, policy: Policy = DEFAULT) -> dict
 
 
 def _pages(titles: Iterable[str], library: str) -> tuple[str, ...]:
-    """Pages on defects that change the picture of nodes, by their titles in checks."""
+    """Names of pages on defects that change pictures of nodes with these titles."""
     return tuple(
         issue.page
         for issue in issues().values()
@@ -149,14 +149,14 @@ def _pages(titles: Iterable[str], library: str) -> tuple[str, ...]:
 
 
 def document_text(document: mx.Document) -> str:
-    """A document and its includes as XML; MaterialX's own writer does not escape `<` in attributes."""
+    """A document with its includes as XML. MaterialX's writer does not escape `<` in attributes."""
     root = _tree(document)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
 def _tree(element: mx.Element) -> ElementTree.Element:
-    """An element with its children, without comments and empty lines."""
+    """Copy an element and its children, without comments and empty lines."""
     named = {"name": element.getName()} if element.getName() else {}
     attributes = {name: element.getAttribute(name) for name in element.getAttributeNames()}
     tree = ElementTree.Element(element.getCategory(), named | attributes)
@@ -173,7 +173,7 @@ def shader_source(
     library: str,
     images: Mapping[str, data.Texels | None] = MappingProxyType({}),
 ) -> data.ShaderSource:
-    """A generated ESSL shader as a source of a page; `images` by file."""
+    """The source of a generated ESSL shader; keys of `images` are files."""
     source = data.ShaderSource(
         id=name,
         title=title,
@@ -197,7 +197,7 @@ def shader_source(
     connected = any(
         each.getConnectedOutput() or each.getConnectedNode() for each in node.getInputs()
     )
-    # The lobe is judged only with weight and opacity 1.
+    # Lobes have an intended model only if weight and opacity are 1.
     factors = {port.path.rpartition("/")[2]: port.value for port in source.inputs}
     whole = factors.get("weight") == factors.get("opacity") == 1.0
     if connected or not (color and roughness and whole):
@@ -206,7 +206,7 @@ def shader_source(
 
 
 def _ports(shader: Shader, images: Mapping[str, data.Texels | None]) -> Iterator[data.ShaderInput]:
-    """Inputs that are numbers or images; members of structures are separate."""
+    """Inputs that are numbers or images; each member of a structure is an input."""
     for port in shader.inputs:
         if port.type == "filename":
             if port.value:
@@ -219,7 +219,7 @@ def _ports(shader: Shader, images: Mapping[str, data.Texels | None]) -> Iterator
 def _by_effect(
     ports: tuple[data.ShaderInput, ...], document: mx.Document
 ) -> tuple[data.ShaderInput, ...]:
-    """Inputs set by the document, then defaults, then inputs without effect (weight 0, defaults of images)."""
+    """Sort inputs: set by the document, defaults, without effect (weight 0, image's default)."""
     values = {port.path: port.value for port in ports}
 
     def rank(port: data.ShaderInput) -> int:
@@ -236,8 +236,8 @@ def _by_effect(
 
 
 def _port(shader: Shader, port: Input) -> data.ShaderInput:
-    """An input without a value, with its label and range."""
-    # The input's own element, and the one in its node's definition.
+    """An input with its label and range, but without its value."""
+    # Attributes come from the input's own element, or else from the definition of its node.
     parent, _, name = port.path.rpartition("/")
     node = shader.document.getDescendant(parent) if parent else None
     definition = node.getNodeDef() if isinstance(node, mx.Node) else None
@@ -252,9 +252,9 @@ def _port(shader: Shader, port: Input) -> data.ShaderInput:
 
     low, high = (next(filter(None, map(_least, map(words, names))), None) for names in RANGE)
     if low and high and not math.isfinite(high[0] - low[0]):
-        low = high = None  # the length of such a slider would overflow
+        low = high = None  # the slider's length would overflow
     label = words("uiname") or name.replace("_", " ")
-    # Enumerated words are numbers in the shader; frames of images do not change here.
+    # Hide enumerations, which are numbers in the shader, and frames of images, which are fixed.
     shown = not (words("enum") or port.type == "filename" or "frame" in port.path)
     limits = low and low[0], high and high[0]
     return data.ShaderInput(port.name, port.type, None, port.path, label, *limits, shown=shown)
@@ -270,14 +270,14 @@ def _least(text: str) -> tuple[float] | None:
 
 
 def _short(value: Plain) -> Plain:
-    """A value with the shortest decimals that give the same float32."""
+    """Round a value to the fewest decimals that give the same float32."""
     if isinstance(value, tuple):
         return tuple(map(_short, value))
     return float(str(np.float32(value))) if isinstance(value, float) else value
 
 
 def _texels(path: str, side: int) -> data.Texels | None:
-    """An image of at most `side` texels on a side; None if there is no such file."""
+    """Read an image, scaled to at most `side` texels on a side; None if the file is missing."""
     if not Path(path).is_file():
         return None
     pixels = read_texture(path)

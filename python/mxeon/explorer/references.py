@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Float64 values of the models at some pairs of directions, with which a browser's values are compared.
+"""Float64 values of the models at fixed pairs of directions, for comparison in a browser.
 
-They are rounded to DIGITS significant digits, an error of 5e-8 of a value, below the roundings of any shader.
+Values are rounded to DIGITS significant digits, a relative error of 5e-8, less than any shader's.
 """
 
 from collections.abc import Iterable, Iterator
@@ -26,8 +26,8 @@ from mxeon.shaders.nodes import DIFFUSE_NODES
 
 DIGITS = 7
 POLES = (8.0, 35.0, 60.0, 80.0)  # degrees from the normal, of both directions
-# Azimuths between the directions, in degrees. Exact mirror pairs are avoided: there, a smooth lobe has no
-# finite value.
+# Azimuths between the directions, in degrees. Smooth lobes have no finite value at exact mirror
+# pairs, so none is at 180.
 AZIMUTHS = (0.0, 100.0, 176.0)
 VIEWS = (0.05, 0.2, 0.4, 0.6, 0.8, 0.98)  # cosines
 LOBES = ("BSDF", "VDF", "surfaceshader")
@@ -40,7 +40,7 @@ def _direction(pole: float, azimuth: float) -> Array:
 
 
 def _float32(directions: Iterable[Array]) -> Array:
-    """Directions (N, 3) rounded to float32, as in a shader."""
+    """Directions, (N, 3), rounded to float32 like those of a shader."""
     return rounded(np.array(list(directions)).T)
 
 
@@ -50,12 +50,12 @@ SEEN = _float32(_direction(float(np.degrees(np.arccos(mu))), 0.0) for mu in VIEW
 
 
 def pairs() -> tuple[tuple[Direction, Direction], ...]:
-    """The wo and wi of every reference."""
+    """The pairs (wo, wi) that all references share."""
     return tuple(zip(_directions(WO), _directions(WI), strict=True))
 
 
 def views() -> tuple[Direction, ...]:
-    """The views of every reference in white surroundings."""
+    """The views in a white environment that all references share."""
     return _directions(SEEN)
 
 
@@ -64,22 +64,22 @@ def _directions(rows: Array) -> tuple[Direction, ...]:
 
 
 def reference_of(shader: Shader) -> ReferenceTable | None:
-    """Values of a shader's material with its own inputs; None if a lobe has no model."""
+    """Reference values of a shader's material; None if a lobe has no model."""
     lobes = lobes_of(shader)
     spec = _spec(lobes)
     try:
-        if spec is HAIR:  # a fiber's curve lies along x
+        if spec is HAIR:  # a fiber's tangent is x
             lights, surroundings = _batches(HAIR, shader)
             direct, white = HAIR.value(lights), HAIR.albedo(surroundings)
         else:
             host = reference.Reference()
             direct = np.pi * host.evaluate(shader, WO, WI, {}, "direct")
             white = host.evaluate(shader, SEEN, SEEN, {}, "environment")
-    except (NotRun, ValueError):  # a lobe without a model, an input outside of the model's domain
+    except (NotRun, ValueError):  # a lobe has no model, or an input is outside its domain
         return None
     if not (np.isfinite(direct).all() and np.isfinite(white).all()):
         return None
-    # The error of a single lobe; for layers, the sums with their throughputs.
+    # Tolerances are those of a single lobe, or the sum over layers and their throughputs.
     errors = []
     for node in lobes:
         rows = (each for each in _rows(node) if _is_of(node, each))
@@ -94,7 +94,7 @@ def reference_of(shader: Shader) -> ReferenceTable | None:
 
 
 def _rows(node: mx.Node) -> tuple[PbrSpec, ...]:
-    """Specs that may describe a node: with a film if the node has one."""
+    """Specs that may describe a node, depending on whether it has a thin film."""
     film = node.getInput(FILM)
     return FILM_SPECS if film is not None and film.getValue() != 0.0 else (*PLAIN_LOBES, HAIR)
 
@@ -110,19 +110,19 @@ def _forms(spec: PbrSpec, shader: Shader) -> Iterator[ShaderForm]:
 
 
 def _others(candidates: tuple[Candidate, ...]) -> list[Candidate]:
-    """Candidates without the spec's own, the first, and without ZERO."""
+    """Candidates except the spec's own model, which is the first, and ZERO."""
     return [each for each in candidates[1:] if each is not ZERO]
 
 
 def _batches(spec: PbrSpec, shader: Shader) -> tuple[Batch, Batch]:
-    """The pairs and the views with the inputs of a one-node shader."""
+    """All pairs and views as batches, with the inputs of a shader of one node."""
     own = {port.path.rpartition("/")[2]: np.asarray(port.value) for port in shader.inputs}
     inputs = {name: own[name] for name in (*spec.row.inputs, "weight") if name in own}
     return Batch(WO, WI, inputs), Batch(SEEN, SEEN, inputs)
 
 
 def lobes_of(shader: Shader, types: tuple[str, ...] = LOBES) -> list[mx.Node]:
-    """The lobes and surface shaders of a material, without `surface` nodes."""
+    """A material's lobes and surface shaders, except `surface` nodes."""
     material = shader.document.getDescendant(shader.element)
     paths = {each.getUpstreamElement().getNamePath() for each in material.traverseGraph()}
     nodes = [shader.document.getDescendant(path) for path in sorted(paths)]
@@ -130,7 +130,7 @@ def lobes_of(shader: Shader, types: tuple[str, ...] = LOBES) -> list[mx.Node]:
 
 
 def _spec(lobes: list[mx.Node]) -> PbrSpec | None:
-    """Spec of a material that is one node with constant inputs; otherwise None."""
+    """The spec of a material with a single lobe and constant inputs; None for other materials."""
     if len(lobes) != 1:
         return None
     [node] = lobes

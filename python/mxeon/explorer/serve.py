@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The explorer's page, served on this machine, with the files that are dropped on it.
+"""A local server of the explorer's page, which also receives files dropped on the page.
 
-Only the page itself can send files: browsers ask a server before they send a PUT from another site,
-and this server does not agree. It checks its own host name, so that no other domain can point here.
+Only the page itself can send files: before a PUT from another site, browsers request permission,
+which this server does not give. It checks the host name, so that no other domain can point here.
 """
 
 from collections.abc import Callable
@@ -13,13 +13,13 @@ from urllib.parse import unquote
 
 from mxeon.errors import MxeonError, one_line
 
-LARGEST = 2**30  # bytes of a file
+LARGEST = 2**30  # maximum bytes of a received file
 
-Make = Callable[[list[str], str | None], str]  # the page of documents and of a map of surroundings
+Make = Callable[[list[str], str | None], str]  # arguments: documents, environment map
 
 
 class Server(ThreadingHTTPServer):
-    """Serves one page; `folder` receives dropped files."""
+    """A server of one page. Dropped files are stored in `folder`."""
 
     daemon_threads = True
 
@@ -30,7 +30,7 @@ class Server(ThreadingHTTPServer):
         self.host = f"127.0.0.1:{self.server_port}"
 
     def receive(self, path: PurePosixPath, content: bytes) -> None:
-        """Store a received file "/files/..." or "/light/..." and show it; raise MxeonError for an invalid one."""
+        """Store a file "/files/..." or "/light/..." and show it; MxeonError if it is invalid."""
         _, kind, *parts = path.parts
         target = self.folder.joinpath(kind, *parts)
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -41,7 +41,7 @@ class Server(ThreadingHTTPServer):
         elif target.suffix.lower() == ".mtlx":
             files = [str(target), *(each for each in files if each != str(target))]
         else:
-            return  # an image, which a document names
+            return  # an image that a document may use
         self.page = self.make(files, light)
         self.files, self.light = files, light
 

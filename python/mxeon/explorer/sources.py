@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Contents of every page: the models, renderers' variants, and lobes of both libraries."""
+"""Sources on every page: models, renderers' variants of them, and lobes of both libraries."""
 
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -49,14 +49,14 @@ LACQUER = """    <input name="base_color" type="color3" value="0.55, 0.12, 0.08"
 
 @dataclass(frozen=True)
 class ComparedMaterial:
-    key: str  # name in addresses
+    key: str  # name in the page's addresses
     title: str
     text: str
-    subjects: tuple[str, ...] = field(default=())  # names of its nodes in checks
+    subjects: tuple[str, ...] = field(default=())  # titles of its nodes in checks
 
     @property
     def pages(self) -> tuple[str, ...]:
-        """Pages on defects of this material in MaterialX's GLSL."""
+        """Names of pages on defects of this material in MaterialX's GLSL."""
         pages = [
             issue.page
             for issue in known_issues.issues().values()
@@ -68,7 +68,7 @@ class ComparedMaterial:
 
 
 def _lobe(key: str, title: str, category: str, inputs: Inputs, *modes: str) -> ComparedMaterial:
-    """A material with one BSDF node, which checks name by its category and mode."""
+    """A material with one BSDF node; checks identify it by its category and modes."""
     text = material_text(category, inputs, types=input_types(category))
     subjects = tuple(f"{category}, {mode}" for mode in modes) or (category,)
     return ComparedMaterial(key, title, text, subjects)
@@ -106,9 +106,9 @@ MATERIALS = (
 
 @lru_cache
 def measured_models(library: str, node: str) -> Models | None:
-    """The nearest models of a node with its flag on and off, as gl evaluates it.
+    """The models that a node is nearest to on gl, with its flag on and off.
 
-    None if gl does not run here, or no known model is near.
+    None if gl does not run here, or no known model is close.
     """
     try:
         with open_host("gl") as host:
@@ -123,7 +123,7 @@ def measured_models(library: str, node: str) -> Models | None:
 
 
 def _nearest(case: Case) -> str:
-    """Name of the model nearest to a case's values; its albedo decides among models with the same BRDF."""
+    """Name of the nearest model by values; the albedo decides among models with the same BRDF."""
     rows = {row.title: row for row in KNOWN_DEFECTS + DIFFUSE_MODELS}
     value, albedo = (
         min(diagnosis.distances.items(), key=lambda item: item[1], default=("", float("inf")))
@@ -139,7 +139,7 @@ GENERATED = "Generated shaders"
 FAMILY = "Models, eonlib's functions"
 VARIANTS = "What renderers do instead"
 
-# Models that are offered first; a node may be either of the first two.
+# The page lists these models first. A rough diffuse node has one of the first two.
 FIRST = ("eon", "qon", "fon", "lambert")
 
 # Renderers with a wrong model: title, actual model, intended model, and page of docs/upstream.
@@ -161,20 +161,20 @@ RENDERERS = (
 
 
 def node_sources() -> tuple[ShaderSource, ...]:
-    """MATERIALS with eonlib and with stock MaterialX."""
+    """Sources of all MATERIALS, with eonlib and with stock MaterialX."""
     return tuple(chain.from_iterable(map(_material_sources, MATERIALS)))
 
 
 @lru_cache
 def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
-    """A material with both libraries."""
+    """Sources of a material with both libraries."""
     shaders = {
         library: generate(material.text, "essl", library=library, lights=True)[0]
         for library in LIBRARIES
     }
     reference = reference_of(shaders["eonlib"])
     [paths] = path_texts(material.text).values()
-    # Permitted forms are only known for single lobes; `mxeon check` judges combinations.
+    # The page knows permitted forms only of single lobes, so `mxeon check` judges combinations.
     several = reference and not reference.forms and OREN_NAYAR not in material.text
     judged = LIBRARIES if several else ()
     with temporary_folder("mxeon-explore-") as folder:
@@ -201,7 +201,7 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
 
 
 def model_sources() -> tuple[ModelSource, ...]:
-    """Models and renderers' variants."""
+    """Sources of the models and of renderers' variants of them."""
     names = [*FIRST, *(row.name for row in DIFFUSE_MODELS if row.name not in FIRST)]
     family = (
         ModelSource(f"model/{name}", diffuse_model(name).title, FAMILY, name, name)

@@ -30,7 +30,7 @@ from mxeon.models import table
 RENDERER = "renderer"
 LIBRARY = "its own library"
 SOFTWARE = ("numpy", "scipy", "OpenImageIO")
-# Keys of kit.json that must match exactly. The last digits of scenes depend on the exporting machine.
+# Keys of kit.json that must match exactly. Last digits of scenes depend on the exporting machine.
 EXACT = ("camera", "sphere", "materials", "pictures")
 READABLE = "The picture is there, of the right size, linear float, and finite."
 

@@ -100,8 +100,8 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = K
 def description(pictures: Sequence[View], size: int, node: str = OREN_NAYAR) -> dict[str, Any]:
     """The content of kit.json.
 
-    `format` rises when a key changes or is removed. A distant light has `direction`, the unit vector towards
-    it, and `irradiance`; an environment has `radiance`.
+    `format` increases when a key changes or is removed. A distant light has `direction`, the unit
+    vector toward it, and `irradiance`; an environment has `radiance`.
     """
     scenes = {view.scene.name: view.scene for view in pictures}
     return {

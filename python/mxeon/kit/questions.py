@@ -242,7 +242,7 @@ def _tiles(
     models: Sequence[Expected],
     wrong: Sequence[NDArray[np.float64]] | None = None,
 ) -> list[Tiles]:
-    """Tiles of the errors; `wrong` values are substituted for those of the model, if given."""
+    """Tiles of the errors; for `wrong` values, their difference from the model is added."""
     wrong = wrong or [model.value for model in models]
     return [
         tiles(case.values + other - 2.0 * model.value, model.slack, case.mask)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Report of a run: results.json, junit.xml, pictures, and a page."""
+"""The report of a run: results.json, junit.xml, pictures, and a page."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from mxeon.report.junit import to_junit
 PAGES = "upstream"  # folder of the pages on defects, next to the report
 
 JSON_FORMAT = 5
-SCHEMA = f"urn:mxeon:results:{JSON_FORMAT}"  # identifies `mxeon.report.schema.schema()`
+SCHEMA = f"urn:mxeon:results:{JSON_FORMAT}"  # identifier of `mxeon.report.schema.schema()`
 
 NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
 REFERENCE = "reference"
@@ -39,30 +39,33 @@ SHARED_METADATA = ("version", "library", "document", "element", "scene", "points
 
 
 def to_json(run: Run) -> str:
-    """A run as JSON text: an object.
+    """A run as JSON text.
 
-    `mxeon report schema` prints its JSON Schema. A number that is not finite is the string "NaN", "Infinity" or
-    "-Infinity"; missing values are null. Keys:
+    `mxeon report schema` prints the JSON Schema. Non-finite numbers are the strings "NaN",
+    "Infinity" and "-Infinity"; missing values are null. The keys of the object:
 
     - $schema: identifier of the JSON Schema.
     - format: version of this layout, raised when a key changes or is removed.
-    - verdict: "passed", "failed" or "not run", or "differs" for a check whose difference the specification
-      permits; counts: number of checks by verdict.
-    - passed: whether everything requested ran and nothing failed; exit_status: of `mxeon check`.
-    - sentence: the verdict in words; seconds: duration of the run, or null.
+    - verdict: "passed", "failed" or "not run"; a check may be "differs", for a difference that the
+      specification permits; counts: number of checks by verdict.
+    - passed: whether everything requested ran and nothing failed; exit_status: of the command.
+    - sentence: the verdict as a sentence; seconds: duration of the run, or null.
     - missing: items that an interrupted run has not finished.
     - refused: refused documents; errors: their faults.
-    - compared: libraries judged for comparison, which verdict, counts and sentence ignore.
-    - version: of mxeon; software: name to version; documents: paths; notes: texts.
-    - libraries: by folder, its own files ("folder"), the files that complete it ("MaterialX").
-    - unjudged: pairs of what no check judges and the reason.
+    - compared: libraries judged only for comparison; verdict, counts and sentence ignore them.
+    - version: version of mxeon; software: versions by name; documents: paths; notes: texts.
+    - libraries: for each folder, its own files ("folder") and files that complete it ("MaterialX").
+    - unjudged: pairs of an item that no check judges, and the reason.
     - hosts: objects of name, version, device.
-    - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an object of variant,
-      error, caught; quantity is null if nothing was measured; diagnosis has causes, the most important first, and distances to the known models. Scripts should
-      compare kinds, keys and regions, not sentences.
-    - elsewhere: objects of document, check, subject, host, library: failures for inputs that the document does not use.
-    - pictures: objects of document, element, host, library, scene; exr, png and reference: paths relative to the JSON
-      file; difference from the reference, an object of scene, largest, highlight, visible. The last two may be null.
+    - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
+      object of variant, error, caught; quantity is null if nothing was measured; diagnosis has
+      causes, most important first, and distances to the known models. Scripts should compare
+      kinds, keys and regions, not sentences.
+    - elsewhere: failures for inputs that a document does not use, as objects of document, check,
+      subject, host, library.
+    - pictures: objects of document, element, host, library, scene; exr, png and reference, which
+      are paths relative to the JSON file; and difference from the reference, which is an object of
+      scene, largest, highlight, visible. Reference and difference may be null.
     """
     data = {
         "$schema": SCHEMA,
@@ -119,14 +122,14 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
 
 
 def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
-    """File names for pictures, without suffix: ASCII, and distinct on file systems that ignore case."""
+    """File names for pictures without suffix: ASCII, and distinct even if case is ignored."""
     names, uses = [], Counter[str]()
     for picture in pictures:
         document = Path(picture.document).stem
         words = (document, picture.element, picture.host, picture.library, picture.scene)
         name = "-".join(NOT_PLAIN.sub("_", word)[:40] for word in words)
         uses[name.lower()] += 1
-        # Only numbered names have a sixth word, so they cannot collide with others.
+        # Only numbered names have a sixth word, so they cannot collide with other names.
         names.append(name if uses[name.lower()] == 1 else f"{name}-{uses[name.lower()]}")
     return tuple(names)
 
@@ -134,12 +137,12 @@ def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
 def write(run: Run, folder: str | PathLike[str]) -> Path:
     """Write report.html, results.json, junit.xml and pictures/ into `folder`.
 
-    Pictures and their references are EXR and PNG files; upstream/ has pages on the defects that explain failures. Each
-    file is written completely or not at all, the page last. Draws the documents in the studio first if `check` had no
-    folder.
+    Pictures and references are EXR and PNG files; upstream/ has pages on defects that explain
+    failures. Each file is written completely or not at all, and the page last. If `check` had no
+    folder, the documents are first drawn in the studio.
 
-    Returns the page, report.html. Raises InputError if it would replace a document, a library or the journal of the run;
-    OSError if a file cannot be written; ImportError without the `report` extra, jinja2 and matplotlib.
+    Returns the page's path. Raises InputError rather than replace a document, a library or the
+    run's journal; OSError if a file cannot be written; ImportError without the `report` extra.
     """
     folder = Path(one_name("folder", folder))
     check_output(folder, _inputs(run), replaced=REPORT)
@@ -170,7 +173,7 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
 
 
 def _inputs(run: Run) -> Iterator[AnyPath]:
-    """The run's documents, libraries and journal."""
+    """Paths of the run's documents, libraries and journal, which must not be replaced."""
     from mxeon.shaders.document.policy import Policy
     from mxeon.shaders.document.references import files_read
 
@@ -182,7 +185,7 @@ def _inputs(run: Run) -> Iterator[AnyPath]:
 
 
 def _write_picture(folder: Path, place: tuple[Picture, str]) -> None:
-    """Write a picture as EXR and as PNG, under a name without an ending."""
+    """Write a picture as EXR and as PNG; `place` has its name without suffix."""
     picture, name = place
     image = np.asarray(picture.image)
     write_exr(below(folder, f"{name}.exr"), image, picture.metadata)
@@ -197,9 +200,9 @@ def require_extra(name: str) -> None:
 
 
 def html(run: Run) -> Generator[str, None, None]:
-    """A run as one self-contained HTML page, in pieces, so that few pictures are in memory at a time.
+    """Generate a run's self-contained HTML page in pieces, to keep few pictures in memory.
 
-    Close it to stop the threads that draw the pictures.
+    Close the generator to stop the threads that draw the pictures.
     """
     require_extra("report.html")
     from mxeon.report.page import render
@@ -226,13 +229,13 @@ def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
 
 
 def _subject(picture: Picture) -> tuple[str, ...]:
-    """Identifies a picture's reference; portraits depend on the points of their host."""
+    """Key of a picture's reference. Portraits depend on the points that their host renders."""
     points = picture.metadata.get("points", "")
     return picture.document, picture.element, picture.library, picture.scene, points
 
 
-# Encoders run without the interpreter's lock.
-THREADS = 4  # each holds a picture or two, and often waits for a disk
+# Threads help because encoders release the interpreter's lock.
+THREADS = 4  # each keeps one or two pictures in memory, and often waits for a disk
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -240,10 +243,10 @@ R = TypeVar("R")
 
 @contextmanager
 def in_threads(work: Callable[[T], R], items: Iterable[T]) -> Iterator[Iterator[R]]:
-    """Results of `work` on every item, in order, computed a few items ahead of the caller.
+    """Run `work` on every item in threads, a few items ahead; iterate over the results in order.
 
-    The first error ends the work, and is raised. The threads end with the block: if garbage collection
-    ended them, it might run in one of them, which would then wait for itself.
+    The first error stops the work and is raised. The threads end with the block. If garbage
+    collection ended them instead, it might run in one of them, which would wait for itself.
     """
     begun = deque[Future[R]]()
     with ThreadPoolExecutor(THREADS) as pool:

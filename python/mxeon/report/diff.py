@@ -37,21 +37,21 @@ from mxeon.report import JSON_FORMAT, SCHEMA
 WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "other")
 RANKS = (PASSED, DIFFERS, FAILED)
 PLACE = ("host", "library", "check", "subject")
-SAMPLED = (Quantity.VALUES, Quantity.PIXELS)  # counts that depend on the samples
-# Largest change of errors of equal samples due to another engine or driver: a factor, and an error
+SAMPLED = (Quantity.VALUES, Quantity.PIXELS)  # counts that depend on the drawn samples
+# Another engine or driver changes errors of the same samples by up to this factor, plus the error
 # of its functions.
 EQUAL, FUNCTIONS = 1.02, 2e-5
-# Largest change of errors due to other samples: standard deviations, and a factor of the rms
-# distance to the best match.
+# Other samples change errors by up to CHANCE standard deviations, and the rms distance to the best
+# match by up to the factor DISTANCE.
 CHANCE, DISTANCE = 6.0, 3.0
 
 
 @dataclass(frozen=True)
 class Growth:
-    """A number of a result that grew or fell by more than noise.
+    """A number of a result that changed by more than noise.
 
     - `key`: A row of `mxeon.conformance.words.GROWTHS`.
-    - `region`: The part of the samples; None for all.
+    - `region`: The region of samples to which the number applies; None for all.
     """
 
     key: str
@@ -66,13 +66,13 @@ class Growth:
 
 @dataclass(frozen=True)
 class Change:
-    """One difference between two reports; a missing entry has the value "none"."""
+    """A difference between two reports. An entry that one of them lacks has the value "none"."""
 
     kind: str  # one of KINDS
     host: str  # host and library are "" for documents and versions
     library: str
     subject: str
-    item: str  # check, document or software
+    item: str  # name of a check, document or software
     before: str
     after: str
     reason: str = ""
@@ -84,7 +84,7 @@ class Change:
 
     @property
     def size(self) -> float:
-        """Logarithm of the largest factor."""
+        """Size of the change: the largest logarithm of a growth's factor, up or down."""
         factors = (each.factor for each in self.growths)
         return max((abs(math.log(each)) if each else math.inf for each in factors), default=0.0)
 
@@ -99,7 +99,7 @@ class Change:
 
 @dataclass(frozen=True)
 class ShownPicture:
-    """A picture of a report and its files; see `mxeon.report.to_json`."""
+    """A picture listed in results.json, with its files; see `mxeon.report.to_json`."""
 
     document: str
     element: str
@@ -114,7 +114,7 @@ class ShownPicture:
 
 @dataclass(frozen=True)
 class Elsewhere:
-    """A failure for inputs that a document does not use."""
+    """A failure for inputs that are not used by a document."""
 
     document: str
     check: str
@@ -125,7 +125,7 @@ class Elsewhere:
 
 @dataclass(frozen=True)
 class Report:
-    """Content of results.json without $schema; see `mxeon.report.to_json`."""
+    """The content of results.json, except $schema; see `mxeon.report.to_json`."""
 
     format: int
     verdict: Verdict
@@ -157,9 +157,9 @@ class Report:
 
 
 def read_results(folder: str | PathLike[str]) -> Report:
-    """Content of a results.json, given by its path or its report's folder.
+    """Read a results.json, given its path or the folder of its report.
 
-    Raises InputError if it is missing, or names its first wrong value.
+    Raises InputError if it is missing or invalid; the message names the first wrong value.
     """
     path = Path(folder) / "results.json" if Path(folder).is_dir() else Path(folder)
     rule = f"{path}: must be the results.json of a report"
@@ -181,14 +181,14 @@ def read_results(folder: str | PathLike[str]) -> Report:
 
 
 def read_report(content: dict[str, object]) -> Report:
-    """The report that `mxeon.report.to_json` wrote."""
+    """Convert JSON that `mxeon.report.to_json` wrote to a report."""
     if (named := content.pop("$schema")) != SCHEMA:
         raise InputError(f"$schema must be {SCHEMA}; got {named!r}")
     return read_strictly(make_converter(), content, Report)
 
 
 def compare(before: Report, after: Report) -> tuple[Change, ...]:
-    """Changes between two reports by kind, host, library and subject; the largest first."""
+    """Changes between two reports, sorted by kind, host, library and subject, largest first."""
     before = _renamed(before, _moved(list(before.libraries), list(after.libraries)))
     names = {Path(each).name for each in (*after.documents, *after.refused)}
     known = {each.name: each for each in before.hosts}
@@ -197,7 +197,7 @@ def compare(before: Report, after: Report) -> tuple[Change, ...]:
     changes = [
         *(Change(OTHER, "", "", "", each, "checked", "removed") for each in sorted(removed)),
         *_results(_by_place(before.results), _by_place(after.results), bool(removed), renewed),
-        *(  # nothing else reports a refused document, which was not judged
+        *(  # refused documents have no results that could be compared
             Change(WORSE, "", "", "", each, "not refused", "refused")
             if each in after.refused
             else Change(BETTER, "", "", "", each, "refused", "not refused")
@@ -228,7 +228,7 @@ def _group(change: Change) -> tuple[str, str, str, str]:
 
 
 def lines(changes: Sequence[Change]) -> Iterator[str]:
-    """Sorted changes as text, grouped by kind, host and library, then by subject."""
+    """Format sorted changes as text, grouped by kind, host and library, then by subject."""
     location: list[str] = []
     for group, rows in groupby(changes, key=_group):
         kind, host, library, subject = group
@@ -242,13 +242,13 @@ def lines(changes: Sequence[Change]) -> Iterator[str]:
 
 
 def to_json(changes: Iterable[Change]) -> list[dict[str, object]]:
-    """Changes as the types of JSON: the fields of Change, and its place."""
+    """Changes as JSON values: the fields of Change, and its place."""
     convert = make_converter().unstructure
     return [convert(each) | {"place": each.place} for each in changes]
 
 
 def annotations(changes: Iterable[Change]) -> Iterator[str]:
-    """Regressions and lost checks as commands to GitHub's log: one per subject, since it shows at most ten."""
+    """Regressions and lost checks as GitHub annotations: one per subject, as GitHub shows ten."""
     for (kind, host, library, subject), rows in groupby(changes, key=_group):
         if level := {WORSE: "error", LOST: "warning"}.get(kind):
             place = f"{host} with {library}" if host else ""
@@ -257,9 +257,9 @@ def annotations(changes: Iterable[Change]) -> Iterator[str]:
 
 
 def _moved(before: Sequence[str], after: Sequence[str]) -> dict[str, str]:
-    """Maps library folders of `before` to the same folders in `after`, which may have moved.
+    """Map library folders of `before` to those of `after`, since folders may have moved.
 
-    Matches by path, then by name, then by position in `--library`.
+    Match them by path, then by name, then by position in `--library`.
     """
     same = {folder: folder for folder in before if folder in after}
     for by_name in (True, False):
@@ -281,7 +281,7 @@ def _renamed(report: Report, libraries: Mapping[str, str]) -> Report:
 
 
 def _by_place(results: Iterable[Result]) -> dict[tuple[str, ...], Result]:
-    """Results by host, library, check and subject; duplicates are numbered."""
+    """Key results by host, library, check and subject; number duplicates."""
     keyed: dict[tuple[str, ...], Result] = {}
     uses: Counter[tuple[str, ...]] = Counter()
     for result in results:
@@ -297,7 +297,7 @@ Results: TypeAlias = Mapping[tuple[str, ...], Result]
 def _results(
     before: Results, after: Results, fewer: bool, renewed: Container[str]
 ) -> Iterator[Change]:
-    """Changes of results; with `fewer` documents, missing checks are not LOST; `renewed` hosts have other drivers."""
+    """Changes of results. With `fewer` documents, checks are never LOST; `renewed` are hosts."""
     for key in (key for key in before if key in after):
         old, new = before[key], after[key]
         kind, reason, growths = _change(old, new)
@@ -315,7 +315,7 @@ def _results(
             if key not in others:
                 worse = WORSE if result.verdict == FAILED else OTHER
                 lost = OTHER if fewer or result.verdict == NOT_RUN else LOST
-                # A host or library that one report lacks is one change.
+                # Report a host or library that is missing in one report as a single change.
                 subject = result.subject if key[:2] in places else ""
                 place = (worse if is_new else lost, result.host, result.library, subject)
                 groups.setdefault(place, []).append(result)
@@ -328,11 +328,11 @@ def _results(
 
 
 def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
-    """Kind of a change of a result ("" for none), the reason if the numbers do not show it, and what grew or fell."""
+    """Kind of a result's change ("" for none), a reason that numbers do not show, and growths."""
     if NOT_RUN in (old.verdict, new.verdict):
         if old.verdict == new.verdict:
             return "", "", ()
-        # The failure that prevents this check is compared on its own.
+        # Another failure prevents this check, and that failure is compared separately.
         if old.follows or new.follows:
             return OTHER, old.reason or new.reason, ()
         if new.verdict == NOT_RUN:
@@ -357,9 +357,9 @@ def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
 
 
 def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
-    """Numbers that are larger than noise explains, of all samples first; the largest error where there are no samples.
+    """Numbers that grew by more than noise, first those of all samples, or else the largest error.
 
-    Changes up to the tolerance, which pass where the rest is right, count nowhere.
+    Changes within the tolerance are ignored: they would pass if the rest were right.
     """
     room = (new.tolerance or 0.0) + FUNCTIONS
     if not (old.errors and new.errors):
@@ -374,7 +374,7 @@ def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
     for now in new.errors[: 1 if permitted else None]:
         if not (was := regions.get(now.region)):
             continue
-        # The variance of a mean square is at most that of errors that are all 0 or the largest.
+        # A mean square has the largest variance if each error is either 0 or the largest error.
         noise = CHANCE * math.hypot(*(x.largest * x.rms / math.sqrt(x.of) for x in (was, now)))
         usual = EQUAL * was.rms if same else math.sqrt(was.rms**2 + noise)
         keys = ("not_finite", *["wrong"] * (now.rms > was.rms + room and not permitted))
@@ -394,9 +394,10 @@ def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
 
 
 def _is_rounded(old: Result, new: Result) -> bool:
-    """Whether another driver's functions explain a failure: a few samples exceed the tolerance, but their rms does not.
+    """Whether another driver explains a failure: a few samples exceed the tolerance, the rms does not.
 
-    Of MaterialX's sheen, 5 of 6957 samples are off by 1.2e-4 on llvmpipe and none on lavapipe, at a tolerance of 2e-5.
+    For MaterialX's sheen and a tolerance of 2e-5, 5 of 6957 samples are off by 1.2e-4 on llvmpipe,
+    and none on lavapipe.
     """
     [whole] = new.errors[:1] or [None]
     few = whole and not whole.not_finite and whole.rms <= (new.tolerance or 0.0)
@@ -404,7 +405,7 @@ def _is_rounded(old: Result, new: Result) -> bool:
 
 
 def _is_farther(old: Result, new: Result) -> bool:
-    """Whether the best match is clearly farther from the values than before, and not negligibly far."""
+    """Whether the best match is clearly farther away than before, and not negligibly far."""
     was, now = old.diagnosis.distance, new.diagnosis.distance
     own = next(iter(new.diagnosis.distances.values()), math.inf)
     factor = SPREAD if old.samples == new.samples else DISTANCE
@@ -412,9 +413,9 @@ def _is_farther(old: Result, new: Result) -> bool:
 
 
 def _is_mended(old: Result, new: Result) -> bool:
-    """Whether a defect that had a page is gone: the node's own model is nearest, as near as the defect was.
+    """Whether a known defect is gone: the node's own model is as near as the defect was.
 
-    With other samples, an error beyond the size of the page may be noise.
+    With other samples, an error that exceeds the size on the defect's page may be noise.
     """
     own = next(iter(new.diagnosis.distances.values()), math.inf)
     nearest = old.samples != new.samples or own == new.diagnosis.distance < math.inf
@@ -422,7 +423,7 @@ def _is_mended(old: Result, new: Result) -> bool:
 
 
 def _facts(before: Report, after: Report) -> Iterator[Change]:
-    """Changes of versions of mxeon, packages and hosts."""
+    """Changes in the versions of mxeon, packages and hosts."""
     old, new = (
         {"mxeon": each.version}
         | each.software

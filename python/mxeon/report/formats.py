@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers, verdicts and explanations on pages of reports."""
+"""Formats of numbers, verdicts and explanations on pages of reports."""
 
 import math
 import re
@@ -16,7 +16,7 @@ from mxeon.conformance import words
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result
 from mxeon.conformance.results.known_issues import Issue, folder, issues_of
 
-# CSS class of each verdict, and a sign for readers who cannot see the color.
+# CSS class of each verdict, and a sign that does not rely on color.
 LOOKS = {
     PASSED: ("passed", "✓"),
     DIFFERS: ("differs", "≠"),
@@ -24,7 +24,7 @@ LOOKS = {
     NOT_RUN: ("not-run", "–"),
 }
 
-# A space between a number and its unit; matches the whole of source text, where spaces stay as they are.
+# Matches spaces between numbers and units. It also matches whole code elements, to skip them.
 SPACES = re.compile(
     r"<(pre|code|script|style)\b.*?</\1>"
     r"|(?<=\d) (?=(?:%|px|[nµm]m|[µm]?s|[kKMG]i?B|degrees|times|codes|paths)(?!\w))",
@@ -33,7 +33,7 @@ SPACES = re.compile(
 
 
 def unbroken(html: str) -> str:
-    """HTML in which a number and its unit stay on one line.
+    """Keep numbers and their units on one line, in HTML.
 
     >>> unbroken("12 % in 3 s of <code>12 % 3 s</code>")
     '12\\xa0% in 3\\xa0s of <code>12 % 3 s</code>'
@@ -52,7 +52,7 @@ def share(result: Result) -> float:
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """A number as text without leading zeros in its exponent, or a dash for None."""
+    """A number as text, without leading zeros in the exponent; a dash for None."""
     return "–" if value is None else re.sub(r"e([+-])0*", r"e\1", f"{value:.{digits}g}")
 
 
@@ -73,7 +73,7 @@ def linked(result: Result) -> Markup:
 
 
 def causes_of(result: Result) -> list[Markup]:
-    """Links to the known issues that explain a failure, or else its diagnosis."""
+    """Links to the known issues that explain a failure; without any, its diagnosis."""
     diagnosis = words.diagnosis(result.diagnosis) or words.excess(result)
     return _links(result) or [Markup.escape(diagnosis)]
 
@@ -84,13 +84,13 @@ def _links(result: Result) -> list[Markup]:
 
 
 def page_address(issue: Issue) -> str:
-    """Address of the page of an issue, on the site or next to the report."""
+    """Address of an issue's page, on the site or next to the report."""
     site = _site()
     return f"{site}/upstream/{issue.page}.html" if site else f"upstream/{issue.page}.md"
 
 
 def link(issue: Issue) -> str:
-    """Address of the page of an issue on the site, or its file if no site is known."""
+    """Address of an issue's page on the site, or path of its file if no site is known."""
     if _site():
         return page_address(issue)
     file = folder().resolve() / f"{issue.page}.md"
@@ -99,7 +99,7 @@ def link(issue: Issue) -> str:
 
 @cache
 def _site() -> str:
-    """Address of the documentation, from the metadata of the package (`project.urls`); "" for none."""
+    """Address of the documentation by the package's metadata (`project.urls`); "" if unknown."""
     try:
         urls = metadata("mxeon").get_all("Project-URL") or []
     except PackageNotFoundError:  # imported from a folder

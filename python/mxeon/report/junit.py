@@ -18,11 +18,12 @@ NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def to_junit(run: Run) -> str:
-    """A run as JUnit XML text: a suite for each host and library, a case for each result.
+    """A run as JUnit XML, with a suite for each host and library, and a case for each result.
 
-    A failed check is a failure of type "known" if a page describes the defect, otherwise "new". Checks that did not run
-    and failures of a compared library are skipped. Refused documents are errors in a separate suite. A library's folder
-    is named without its path, which differs between machines, unless two folders share the name.
+    A failed check has the type "known" if a page describes the defect, otherwise "new". Checks that
+    did not run and failures of a compared library are skipped. Refused documents are errors in a
+    separate suite. Folders of libraries are named without their paths, which differ between
+    machines, unless two folders share a name.
     """
     root = ElementTree.Element("testsuites", name="mxeon")
     folders = {result.library for result in run.results}

@@ -34,11 +34,11 @@ from mxeon.report import in_threads, pieces
 from mxeon.report.formats import causes_of, linked, nearest, vector
 from mxeon.shaders.scene import STUDIO
 
-# Materials with pictures inside the page, about a megabyte each; further ones are linked.
+# Maximum materials with embedded pictures, about a megabyte each; others are links.
 SHOWN_MATERIALS = 60
-LARGE = 512  # pixels on a side of a picture in the studio
+LARGE = 512  # pixels on a side of a studio picture
 LEAST_SCALE = 1e-3  # smallest scale of a difference map: 0.1 % of white
-OPEN_MATERIALS = 8  # further materials open on a click
+OPEN_MATERIALS = 8  # maximum materials shown open; others open on a click
 OPEN_ROWS = 20  # maximum failed rows of checks that are shown open
 WORST_FIRST = (FAILED, NOT_RUN, DIFFERS, PASSED)
 
@@ -48,7 +48,7 @@ Verdicts: TypeAlias = Mapping[tuple[str, str, str], Result]  # keys: subject, ho
 
 @dataclass(frozen=True)
 class CheckResults:
-    """Results of one check on one host with one library, at least one."""
+    """All results of one check on one host with one library, at least one."""
 
     key: str
     anchor: str  # identifier in the page
@@ -61,7 +61,7 @@ class CheckResults:
 
     @property
     def tables(self) -> dict[Quantity | None, list[Result]]:
-        """Results by quantity, the worst first."""
+        """Results grouped by quantity, worst results first."""
         tables: dict[Quantity | None, list[Result]] = {}
         for each in sorted(self.results, key=lambda each: WORST_FIRST.index(each.verdict)):
             tables.setdefault(each.quantity, []).append(each)
@@ -84,7 +84,7 @@ def tally(results: Iterable[Result | CheckResults]) -> str:
 def checks_by_place(
     results: Iterable[Result], prefix: str = "check"
 ) -> dict[Place, list[CheckResults]]:
-    """Checks by host and library, in order of appearance; anchors begin with the prefix."""
+    """Group checks by host and library, in order of appearance; `prefix` begins all anchors."""
     places: dict[Place, dict[str, list[Result]]] = {}
     for result in results:
         place = places.setdefault((result.host, result.library), {})
@@ -101,7 +101,7 @@ def checks_by_place(
 def matrix(
     places: Mapping[Place, Sequence[CheckResults]],
 ) -> list[tuple[str, list[CheckResults | None]]]:
-    """Rows of the table of checks: key, and the CheckResults (or None) of each host and library."""
+    """Rows of the table of checks: a key, and CheckResults or None for each host and library."""
     columns = [{check.key: check for check in checks} for checks in places.values()]
     keys = dict.fromkeys(key for column in columns for key in column)
     return [(key, [column.get(key) for column in columns]) for key in keys]
@@ -117,7 +117,7 @@ def reasons(results: Iterable[Result]) -> dict[str, list[Result]]:
 
 
 def causes(results: Iterable[Result]) -> list[tuple[Markup, list[Result]]]:
-    """Failed checks of nodes by cause, the cause of most failures first."""
+    """Group failed checks of nodes by cause; causes with most failures come first."""
     groups: dict[Markup, list[Result]] = {}
     for each in results:
         if each.verdict == FAILED and each.check != "picture":
@@ -127,12 +127,12 @@ def causes(results: Iterable[Result]) -> list[tuple[Markup, list[Result]]]:
 
 
 def nodes_of(results: Iterable[Result]) -> str:
-    """The nodes that results judge, each once."""
+    """Names of the nodes that results judge, without duplicates."""
     return ", ".join(dict.fromkeys(each.subject.partition(",")[0] for each in results))
 
 
 def materials(run: Run) -> tuple[list[list[Picture]], Verdicts]:
-    """Pictures of each material, and their verdicts; documents before portraits, the worst first."""
+    """Pictures by material, worst first, documents before portraits; and verdicts."""
     verdicts: dict[tuple[str, str, str], Result] = {}
     for each in run.results:
         if each.check in ("picture", "finite", *DIRECT):
@@ -159,9 +159,9 @@ def is_portrait(pictures: Sequence[Picture]) -> bool:
 
 
 def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
-    """A material of the page: a sentence for each host and library, and rows of pictures."""
+    """The page's data of a material: a sentence per host and library, and rows of pictures."""
     subject = f"{pictures[0].document}: {pictures[0].element}"
-    # Stock MaterialX, which users have without eonlib, comes first.
+    # Stock MaterialX comes first: users have it without eonlib.
     by_row: dict[tuple[str, str], list[Picture]] = {}
     found: dict[Place, Result | None] = {}
     for one in sorted(pictures, key=lambda each: each.library != "stock"):
@@ -190,7 +190,7 @@ def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
 
 
 def _pair(pictures: Sequence[Picture]) -> dict[str, Any]:
-    """Large pictures in the studio, and the difference of the first two, relative to the second."""
+    """Large studio pictures, and the difference of the first two, relative to the second."""
     shown = [
         _figure("image", title_of(one.library), "", srgb_encoded(pbr_neutral(one.image)), LARGE)
         for one in pictures[:2]
@@ -205,15 +205,15 @@ def _pair(pictures: Sequence[Picture]) -> dict[str, Any]:
 
 
 def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
-    """Pictures of one scene on one host for each library, the reference, and the differences.
+    """Pictures of a scene on a host: one per library, the reference, and the differences.
 
-    All differences share a scale that ends at the tolerance or above, so correct pixels are dark.
+    All differences share a scale up to at least the tolerance, so correct pixels are dark.
     """
     shown: list[dict[str, Any]] = []
     apart: list[tuple[Picture, NDArray[np.float64]]] = []
     reference = None
     for one in pictures:
-        # Read it once: the pixels of a kept run are in a file.
+        # Read pixels only once: those of a stored run are in files.
         shown.append(_figure("image", title_of(one.library), "", srgb_encoded(one.image)))
         if one.reference is not None:
             reference = one.reference if reference is None else reference
@@ -247,14 +247,14 @@ def _figure(
 
 
 def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, None]:
-    """Pieces of a run's page; `file_of` returns the file of a picture.
+    """Generate a run's page in pieces; `file_of` returns the file of a picture.
 
-    Each picture is read when its piece is due. The page loads nothing, runs only its own script, and is complete without
-    it. Text from documents, shaders and hosts is escaped.
+    Pictures are read one by one. The page loads nothing and runs only its own script, which it does
+    not need. Text from documents, shaders and hosts is escaped.
     """
     checked: list[Result] = []
-    own: list[Result] = []  # functions and source text of the library
-    for each in sorted(run.results, key=run.is_elsewhere):  # inputs that no document uses come last
+    own: list[Result] = []  # results for the library's functions and source text
+    for each in sorted(run.results, key=run.is_elsewhere):  # failures for unused inputs come last
         audits = each.host == SOURCE or each.subject == SHADER_FUNCTIONS
         (own if audits else checked).append(each)
     places, audit = checks_by_place(checked), checks_by_place(own, "audit")

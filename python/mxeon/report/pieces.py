@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pages from templates, and images inside them. Needs the `report` extra."""
+"""HTML pages from templates, and images embedded in them. Needs the `report` extra."""
 
 import base64
 import io
@@ -18,18 +18,18 @@ from PIL import Image
 from mxeon.io.srgb import NOT_FINITE
 from mxeon.report.formats import LOOKS, number, share, unbroken
 
-# Larger pictures show every second, third, ... pixel; the files have all pixels.
+# Pages show only every second, third, ... pixel of larger pictures; files have all pixels.
 SHOWN_SIZE = 256
 DIFFERENCE_COLORS = matplotlib.colormaps["inferno"]
 DIFFERENCE_CODES = DIFFERENCE_COLORS(np.arange(DIFFERENCE_COLORS.N), bytes=True)[:, :3]
 NOT_JUDGED = (96, 99, 104)
-FAST = 1  # zlib's level: a third of the time, and a third more bytes
+FAST = 1  # zlib's level, which takes a third of the time for a third more bytes
 
 
 def generate_page(
     package: str, name: str, filters: Mapping[str, Callable[..., Any]], **values: Any
 ) -> Generator[str, None, None]:
-    """Pieces of a page from a package's template and script; the page runs no other script."""
+    """Generate a page in pieces from a package's template and script, the only one that it runs."""
     environment = Environment(
         loader=ChoiceLoader([PackageLoader(package), PackageLoader("mxeon.report")]),
         autoescape=True,
@@ -46,7 +46,7 @@ def generate_page(
 
 
 def picture_uri(pixels: NDArray[np.uint8], largest: int = SHOWN_SIZE) -> str:
-    """A picture (size, size, 3) as a data URI of a PNG of at most so many pixels on a side."""
+    """Encode a picture, (size, size, 3), as a data URI; `largest` limits the pixels on a side."""
     step = -(-len(pixels) // largest)
     buffer = io.BytesIO()
     shown = np.ascontiguousarray(pixels[::step, ::step])
@@ -55,9 +55,9 @@ def picture_uri(pixels: NDArray[np.uint8], largest: int = SHOWN_SIZE) -> str:
 
 
 def difference_pixels(difference_map: NDArray[np.float64], scale: float) -> NDArray[np.uint8]:
-    """A difference (size, size) in DIFFERENCE_COLORS, which span 0 to `scale`.
+    """Color a difference, (size, size), by DIFFERENCE_COLORS, which span 0 to `scale`.
 
-    Infinity is magenta. NaN marks pixels that were not judged and is gray.
+    Infinite differences are magenta. NaN marks pixels that were not judged; they are gray.
     """
     finite = np.isfinite(difference_map)
     steps = np.where(finite, difference_map, 0.0) * (len(DIFFERENCE_CODES) / scale)

@@ -29,10 +29,10 @@ SIMPLE: dict[Any, Schema] = {
 
 
 def schema() -> Schema:
-    """The JSON Schema of results.json, of draft 2020-12.
+    """The JSON Schema (draft 2020-12) of results.json.
 
-    It states keys and types. `read_results` also requires that counts match the results, that errors have tolerances,
-    that neither is negative, and that the rows of an array have equal lengths.
+    It states keys and types. `read_results` also requires that counts match results, that errors
+    have tolerances, that neither is negative, and that an array's rows have equal lengths.
     """
     records: dict[str, Schema] = {"Number": NUMBER, "Rows": ROWS}
     root = _record(Report, records)
@@ -43,7 +43,7 @@ def schema() -> Schema:
 
 
 def _record(kind: type, records: dict[str, Schema]) -> Schema:
-    """The schema of a dataclass; dataclasses of its fields are added to `records`."""
+    """The schema of a dataclass. Schemas of dataclasses in its fields are added to `records`."""
     types = get_type_hints(kind)
     names = [each.name for each in fields(kind)]
     return {
