@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `mxeon`: arguments in, exit status out. One module per sub-command.
+"""The command `mxeon`, with one module per sub-command.
 
-A sub-command imports what it needs when it runs, so that `mxeon --help` answers at once.
+Sub-commands import packages only when they run, so that `mxeon --help` is fast.
 """
 
 import argparse
@@ -27,15 +27,15 @@ EXAMPLES = (
     "explore my.mtlx --output my.html  # draw and compare them in a browser",
     "library  # how to load eonlib in your renderer",
 )
-LEAST_MEMORY = 2**28  # bytes of address space; with less OpenBLAS aborts the process
+LEAST_MEMORY = 2**28  # bytes of address space; with less, OpenBLAS aborts the process
 COMMANDS = (check, generate, render, explore, library, invert, report, kit)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command with these arguments, by default the process's.
+    """Run the command with these arguments, by default those of the process.
 
-    Returns 0 all passed, 1 a check failed, 2 misuse, 3 something did not run; 128 plus the number of the
-    signal that ended it.
+    Returns 0 if all passed, 1 if a check failed, 2 for misuse, 3 if something did not run, and 128
+    plus the number of a signal that ended the command.
     """
     open_streams()
     try:
@@ -46,7 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def parser() -> argparse.ArgumentParser:
-    """The parser of the command; its result's `run` is the function to call."""
+    """The command's argument parser. The `run` of parsed arguments is the function to call."""
     root = Parser(prog="mxeon", description=DESCRIPTION, examples=EXAMPLES)
     root.add_argument("--version", action="version", version=f"mxeon {mxeon.__version__}")
     commands = root.add_subparsers(required=True, title="commands", metavar="COMMAND")
@@ -56,7 +56,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _run(arguments: Sequence[str]) -> int:
-    """Run the command; return its exit status, and print the reason unless it is 0."""
+    """Run the command; return its exit status, and print a reason unless it is 0."""
     try:
         _check_encoding(arguments)
         options = parser().parse_args(arguments)
@@ -67,20 +67,20 @@ def _run(arguments: Sequence[str]) -> int:
             return int(options.run(options))
     except SystemExit as end:  # the parser has printed the reason
         return int(end.code or 0)
-    except BrokenPipeError:  # the reader of our output has closed it
+    except BrokenPipeError:  # the reader of the output has closed the pipe
         discard(sys.stdout)
-        return 141  # like a program ended by SIGPIPE
+        return 141  # the status of a program that SIGPIPE ends
     except (MxeonError, OSError) as error:
         return fail(*status_of(error))
     except MemoryError:
         return fail(NOT_RUN, "memory must suffice for the work; there is no more")
-    except Exception:  # a bug of ours
+    except Exception:  # a bug in mxeon
         traceback.print_exc()
         return NOT_RUN
 
 
 def _check_memory() -> None:
-    """Raise NotRun if a limit of the process leaves too little memory; Windows has no such limit."""
+    """Raise NotRun if a process limit leaves too little memory; Windows has no such limit."""
     if sys.platform == "win32":
         return
     import resource
@@ -98,7 +98,7 @@ def _check_encoding(arguments: Sequence[str]) -> None:
             argument.encode()
         except UnicodeEncodeError:
             raise InputError(f"arguments must be UTF-8, file names too; got {argument!r}") from None
-        if "\0" in argument:  # only from Python; shells cannot pass it
+        if "\0" in argument:  # possible only from Python, not from a shell
             raise InputError(f"arguments must have no null character; got {argument!r}")
         if not argument or re.fullmatch("--[^=]+=", argument):
             raise InputError(f"arguments must not be empty; got {' '.join(map(repr, arguments))}")

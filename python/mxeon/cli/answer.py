@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The summary that `mxeon check` prints: how materials look, which nodes are wrong, why, and the remedy."""
+"""The summary that `mxeon check` prints: materials, wrong nodes, causes, and remedies."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ if TYPE_CHECKING:
     from mxeon.report.diff import Report
 
 MANY = 20  # maximum documents before they are grouped by cause
-# Maximum lines of each section; the table of nodes has a header.
+# Maximum lines of each section, including the header of the table of nodes.
 LONGEST = {"material": 4, "node": 4, "cause": 3, "note": 2}
 REASONS = 3  # maximum reasons why checks did not run
 UNBOUNDED = 1e3  # larger errors are described in words
 LETTERS = re.compile(r"\(([A-Z]+)\)$")  # abbreviation at the end of a model's title
 REFUSED = "refused"
 NO_REFERENCE = "no reference"
-# The first state that applies decides about a document.
+# States of a document. If several apply, the first one counts.
 STATES = (FAILED, NOT_RUN, REFUSED, DIFFERS, NO_REFERENCE, PASSED)
 QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # a document's own names in a reason
 KEYS = ("picture", "finite", DOCUMENT_KEY)
@@ -60,10 +60,10 @@ def show_run(
     said: Collection[str] = (),
     baseline: Report | None = None,
 ) -> int:
-    """Write a run's report and print its summary; return the exit status.
+    """Write a run's report, print its summary, and return the exit status.
 
-    Document errors in `said` were printed before. With a baseline, changes determine the status
-    instead of failures; a refused document still counts as misuse.
+    Document errors in `said` were already printed. With a baseline, changes determine the status,
+    not failures; a refused document still counts as misuse.
     """
     from mxeon import report
     from mxeon.report import diff
@@ -99,7 +99,7 @@ def show_run(
 
 
 def _annotations(run: Run) -> Iterator[str]:
-    """Failures by their cause, and what did not run, as commands to GitHub's log."""
+    """GitHub annotations for failures, grouped by cause, and for checks that did not run."""
     for line in _failures(replace(run, results=run.judged, compared=())):
         yield words.annotation("error", "mxeon check", one_line(line))
     for reason in _not_run(run, True, []):
@@ -107,7 +107,7 @@ def _annotations(run: Run) -> Iterator[str]:
 
 
 def _line(result: Result) -> str:
-    """A check with its error and tolerance, or the reason why it did not pass."""
+    """A line on a check: its error and tolerance, or the reason why it did not pass."""
     numbers = result.reason or words.explanation(result)
     if result.verdict == PASSED:
         error, tolerance = result.error or 0.0, result.tolerance or 0.0
@@ -117,7 +117,7 @@ def _line(result: Result) -> str:
 
 
 def answer(run: Run, full: bool = False) -> list[str]:
-    """The sections of the summary, each cut at a fixed number of lines unless it is `full`."""
+    """Lines of the summary. Unless it is `full`, each section has a maximum length."""
     many = len(run.contents) + len(run.refused) > MANY
     looks: list[str] = summary_by_cause(run) if many else list(_looks(run))
     idle = _not_run(run, full, [] if many else looks)
@@ -128,13 +128,13 @@ def answer(run: Run, full: bool = False) -> list[str]:
     notes = [one_line(f"note: {note}") for note in run.notes]
     more = []
     for name, section in (("material", looks), ("node", nodes), ("cause", causes), ("note", notes)):
-        # Every one of several documents has its line.
+        # If there are several documents, each has a line.
         whole = full or (name == "material" and len(run.contents) != 1)
         most = len(section) if whole else LONGEST[name]
         lines += section[:most]
         if cut := len(section[most:]):
             more.append(counted(cut, f"more {name}"))
-    # The verdict comes first without documents, or if something was not judged.
+    # Begin with the verdict if there are no documents, or something was not judged.
     begins = run.refused or run.verdict == NOT_RUN or not run.contents
     summary = Line.of(one_line(run.summary), run.verdict)
     lines.insert(0 if begins else len(lines), summary)
@@ -147,12 +147,12 @@ class DocumentVerdict(NamedTuple):
     document: str  # path
     library: str
     verdict: str  # one of STATES
-    cause: str  # worded alike for all documents
-    referenced: bool  # whether all of its pictures have a reference
+    cause: str  # same wording for all documents
+    referenced: bool  # whether all pictures have a reference
 
 
 def summary_by_cause(run: Run) -> list[str]:
-    """A line for each cause with its number of documents and the first of them; the worst come first."""
+    """A line for each cause, worst first, with the number of documents and the first document."""
     verdicts = [*_document_verdicts(run)]
     for document, faults in run.refused.items():
         name = (
@@ -183,7 +183,7 @@ def summary_by_cause(run: Run) -> list[str]:
 
 
 def _document_verdicts(run: Run) -> Iterator[DocumentVerdict]:
-    """Verdicts by document, host and library: the worst result of its pictures."""
+    """Verdicts by document, host and library; the worst result of the pictures counts."""
     for document in run.contents:
         groups: dict[tuple[str, str], list[Result]] = {}
         for each in run.results:
@@ -204,12 +204,12 @@ def _document_verdicts(run: Run) -> Iterator[DocumentVerdict]:
 
 
 def _cause(result: Result, measured: bool) -> str:
-    """Reason of a document's verdict, from the deciding result."""
+    """Reason for a document's verdict, from the result that decides it."""
     if result.verdict == PASSED and result.check == "picture":
         return f"matches the reference{', with inputs that the host computed' * measured}"
     if result.verdict == PASSED and result.check == DOCUMENT_KEY:
         return "shaders are generated"
-    # Leave out its size, which differs from document to document.
+    # Leave out the size of the difference, so that documents with the same cause share a line.
     if result.difference and result.diagnosis.first.key in ("", "other_node"):
         return words.appearance(result.difference)
     reason = result.reason or words.diagnosis(result.diagnosis)
@@ -223,7 +223,7 @@ def is_refused(run: Run, document: str, library: str) -> bool:
 
 
 def _looks(run: Run) -> Iterator[Line]:
-    """Sentences on materials, worst first; materials that look alike share one."""
+    """Sentences on materials, worst first; materials that look the same share a sentence."""
     hosts = {each.host for each in run.results if each.check in KEYS}
     alike: dict[str, list[str]] = {}
     ranks: dict[str, int] = {}
@@ -304,7 +304,7 @@ Rows = dict[tuple[str, str], list[Result]]  # keys: node and host
 
 
 def _rows(run: Run) -> Rows:
-    """Results for the nodes of the documents: failures at their own inputs first, passed ones last."""
+    """Results by node; failures at the documents' own inputs come first, passed ones last."""
     nodes = {title for titles in run.contents.values() for title in titles}
     rows: Rows = {}
     for each in run.results:
@@ -315,7 +315,7 @@ def _rows(run: Run) -> Rows:
 
 
 def _rank(run: Run, result: Result) -> int:
-    """Whether a node is wrong in a document's picture, wrong only for other inputs, or right."""
+    """Rank of a node: wrong in a document, wrong only for inputs that no document uses, right."""
     if result.verdict != FAILED:
         return RIGHT
     if run.is_elsewhere(result):
@@ -334,7 +334,7 @@ def _rank(run: Run, result: Result) -> int:
 
 
 def _table(run: Run, rows: Rows) -> list[str]:
-    """A header and the nodes, a line each, with a column for each library."""
+    """The table of nodes: a header, a line per node, and a column per library."""
     if not rows:
         return []
     hosts = _unique(host for _, host in rows)
@@ -350,13 +350,13 @@ def _table(run: Run, rows: Rows) -> list[str]:
 
 
 def _cell(run: Run, results: Sequence[Result]) -> str:
-    """A node with one library: its model, or that it is wrong, its error, and the check that measured it."""
+    """Text of a table cell: a node's model, or its error and the check that measured it."""
     if not results:
         return "not judged"
     rank = min(_rank(run, each) for each in results)
     chosen = [each for each in results if _rank(run, each) == rank and rank != RIGHT]
     direct = [each for each in results if each.check in DIRECT]
-    # The error in direct light says most.
+    # Prefer the error in direct light, which is the most informative.
     shown = max(
         chosen or direct or results,
         key=lambda each: (each in direct, (each.error or 0.0) / (each.tolerance or 1.0)),
@@ -374,7 +374,7 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
 
 
 def model_of(title: str) -> str:
-    """Model that a node must be, by the node's title; abbreviated if the model has an abbreviation."""
+    """Title of the model that a node must have, or its abbreviation; `title` is the node's."""
     spec = next(row for row in ALL if row.title == title)
     own = spec.value_candidates if isinstance(spec, ValueSpec) else ()
     name = own[0].title if own else "as specified"
@@ -383,7 +383,7 @@ def model_of(title: str) -> str:
 
 
 def _not_run(run: Run, full: bool, looks: Sequence[str]) -> Iterator[str]:
-    """The first reasons (or all) why checks did not run, unless a material's sentence states them."""
+    """Reasons why checks did not run (all if `full`), except those in a material's sentence."""
     reasons: dict[str, list[Result]] = {}
     for each in run.results:
         said = each.check in KEYS and any(one_line(each.reason) in look for look in looks)
@@ -398,7 +398,7 @@ def _not_run(run: Run, full: bool, looks: Sequence[str]) -> Iterator[str]:
 
 
 def _remedy(run: Run) -> Iterator[str]:
-    """Remedy for the documents if it is known: correct an input, load eonlib, or nothing."""
+    """The remedy for the documents, if known: correct an input, load eonlib, or do nothing."""
     shown = [each for each in run.results if each.check in KEYS]
     if not run.contents:
         return
@@ -414,7 +414,7 @@ def _remedy(run: Run) -> Iterator[str]:
         if each.check in KEYS or (each.library not in judged and not run.is_elsewhere(each))
     } | {each.library for each in shown if _is_seen(each)}
     libraries = {each.library for each in run.results}
-    # Defects with a page are not in eonlib.
+    # eonlib does not have the defects that have a page.
     nodes = [issues_of(each) for each in failed if each.check not in KEYS]
     known = all(issues and not any(each.unavoidable for each in issues) for issues in nodes)
     if "stock" in wrong and (
@@ -439,8 +439,8 @@ def _remedy(run: Run) -> Iterator[str]:
 def _failures(run: Run) -> Iterator[Line]:
     """A line for each page or diagnosis that explains failures.
 
-    Compared libraries come last. Then failures at the documents' own inputs come first, then those without a page, then
-    those in the light in which the first picture is most wrong.
+    Compared libraries come last. Otherwise the order is: failures at the documents' own inputs,
+    failures without a page, failures in the light in which the first picture is most wrong.
     """
     groups: dict[tuple[str, str], list[Result]] = {}
     failures = [each for each in run.results if each.verdict == FAILED]
@@ -448,7 +448,7 @@ def _failures(run: Run) -> Iterator[Line]:
 
     def order(result: Result) -> tuple[bool, bool, bool, bool, float]:
         lit = result.check in (INDIRECT if white else DIRECT)
-        # Errors of albedos and throughputs have one scale.
+        # Errors of albedos and throughputs have a common scale.
         size = (result.error or 0.0) if white and lit else 0.0
         known = run.is_elsewhere(result), bool(result.pages)
         return result.library in run.compared, *known, not lit, -size
@@ -458,7 +458,7 @@ def _failures(run: Run) -> Iterator[Line]:
         other = ", for inputs that no document uses" * run.is_elsewhere(each)
         place = f"{kind}: {each.location}{other}"
         groups.setdefault((place, " ".join(each.pages) or words.explanation(each)), []).append(each)
-    # Nodes explain the pictures that show them. A document's own sentence has its picture.
+    # Leave out pictures: failing nodes explain those that show them, and others have a sentence.
     nodes = {(each.location, each.subject.partition(",")[0]) for each in failures}
     shown: dict[str, list[Result]] = {}
     for (place, _), results in groups.items():
@@ -474,18 +474,18 @@ def _failures(run: Run) -> Iterator[Line]:
 
 
 def _tone(run: Run, results: Iterable[Result]) -> Verdict | None:
-    """The verdict of failures for a run, which ignores libraries judged for comparison."""
+    """The verdict of failures; None if all are of libraries that are judged for comparison."""
     return None if all(each.library in run.compared for each in results) else FAILED
 
 
 def _lobes(result: Result) -> set[tuple[str, str]]:
-    """The lobes that a failing picture shows, each with the place of the result."""
+    """The wrong lobes that a failing picture shows, each with the result's host and library."""
     causes = (each for each in result.diagnosis.causes if each.kind is Kind.FOLLOWS)
     return {(result.location, name) for cause in causes for name in cause.names}
 
 
 def _sentence(results: Sequence[Result]) -> str:
-    """The nodes and checks that fail for one reason, and the reason with its page."""
+    """A sentence on the nodes and checks that fail for the same reason, with the reason's page."""
     subjects = list(dict.fromkeys(each.subject for each in results))
     nodes = _unique(each.partition(",")[0] for each in subjects)
     keys = ", ".join(_unique(each.check for each in results))

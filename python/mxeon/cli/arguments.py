@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parser, and the options that several commands share."""
+"""The argument parser, and options that several commands share."""
 
 import argparse
 import itertools
@@ -26,21 +26,21 @@ LIBRARY = (
     "replaces the installed files; any other folder is loaded before them"
 )
 
-MATERIALX = "MXEON_MATERIALX"  # names the folder of --materialx to processes of hosts
+MATERIALX = "MXEON_MATERIALX"  # variable that passes the folder of --materialx to host processes
 
-Commands = Any  # what `add_subparsers` returns; argparse keeps its type private
+Commands = Any  # result of `add_subparsers`, whose type is private
 Run = Callable[[argparse.Namespace], int]
 
 
 class _Format(argparse.RawDescriptionHelpFormatter):
-    """Keeps names with hyphens, such as cycles-native, on one line."""
+    """Help formatter that does not break names at hyphens, such as cycles-native."""
 
     def _split_lines(self, text: str, width: int) -> list[str]:
         return textwrap.wrap(text, width, break_on_hyphens=False)
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser with short help and one-line errors."""
+    """An argument parser with short help and one-line errors."""
 
     def __init__(self, *, examples: Sequence[str] = (), **options: Any) -> None:
         rows = [each.partition("  # ") for each in examples]
@@ -52,7 +52,7 @@ class Parser(argparse.ArgumentParser):
         super().__init__(epilog=epilog, formatter_class=_Format, **options)
 
     def format_help(self, limits: bool = False) -> str:
-        """The help without the options for untrusted documents, or only those options."""
+        """The help: if `limits`, only options for untrusted documents, else all other options."""
         help = self._get_formatter()
         if not limits:
             help.add_text(textwrap.fill(self.description or "", 79))
@@ -71,9 +71,9 @@ class Parser(argparse.ArgumentParser):
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        """Report unknown options first, and print help if the command is missing."""
+        """Report unknown options before other errors, and print help if the command is missing."""
         words = list(sys.argv[1:] if args is None else args)
-        is_command = self.get_default("run") is not None  # no group of commands
+        is_command = self.get_default("run") is not None  # False for a group of commands
         if not (words or is_command):
             self.print_help()
             self.error("choose a command")
@@ -111,7 +111,7 @@ class _HelpLimits(argparse.Action):
 def add_command(
     commands: Commands, name: str, summary: str, run: Run | None, *examples: str
 ) -> argparse.ArgumentParser:
-    """Add a command or an action of a command; a group of actions has no `run`."""
+    """Add a command, or an action of a command. A command with actions has no `run`."""
     sentence = f"{summary[0].upper()}{summary[1:]}."
     command: argparse.ArgumentParser = commands.add_parser(
         name, help=summary, description=sentence, examples=examples
@@ -126,7 +126,7 @@ def _folder(name: str) -> str:
     return name
 
 
-# Options that several commands have.
+# Options shared by several commands.
 SHARED: Mapping[str, Mapping[str, Any]] = {
     "--json": {"action": "store_true", "help": "print JSON"},
     "--report": {
@@ -169,9 +169,9 @@ def add_shared(command: argparse.ArgumentParser, *names: str) -> None:
 
 
 def use_materialx(folder: str | None) -> None:
-    """Import MaterialX from a folder, here and in worker processes, unless it is None.
+    """Import MaterialX from a folder, here and in worker processes; None imports nothing.
 
-    Raises InputError if it is missing, cannot be imported, or another MaterialX was imported before.
+    Raises InputError if it is missing or cannot be imported, or another MaterialX already was.
     """
     if folder is None:
         return
@@ -194,7 +194,7 @@ def use_materialx(folder: str | None) -> None:
 def inputs(
     options: argparse.Namespace, documents: Sequence[str] = (), *others: AnyPath | None
 ) -> Iterator[AnyPath]:
-    """Files that a command may read, for `mxeon.io.files.check_output`."""
+    """Files that a command may read and must not replace; see `mxeon.io.files.check_output`."""
     from mxeon.shaders.document.references import files_read
 
     yield from filter(None, others)
@@ -203,7 +203,7 @@ def inputs(
 
 
 def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defaults: int) -> None:
-    """Add the options of `mxeon.shaders.document.policy`; --allowCode for commands that run shaders."""
+    """Add the options of `mxeon.shaders.document.policy`, and --allowCode if `runs_code`."""
     command.add_argument(
         "--path",
         action="append",
@@ -249,7 +249,7 @@ HELP = {
 
 
 def add_methods(command: argparse.ArgumentParser) -> None:
-    """Add the options of `mxeon.shaders.methods.Methods`."""
+    """Add the options that set `mxeon.shaders.methods.Methods`."""
     group = command.add_argument_group(METHODS)
     for name, choices in CHOICES.items():
         words = f"{HELP[name]}: {', '.join(choices)}"

@@ -27,7 +27,7 @@ class WorkerCrashed(NotRun):
 
 @dataclass(frozen=True)
 class BatchResult:
-    """Value of one job, or the error that prevented it."""
+    """The value of a job, or the error that prevented it."""
 
     value: Any
     warnings: tuple[str, ...] = ()
@@ -37,9 +37,9 @@ class BatchResult:
 def run_batch(
     work: Callable[[Any], Any], documents: Sequence[Any], workers: int, timeout: float
 ) -> Generator[BatchResult, None, None]:
-    """Results of `work` on each document, in order; close it to stop the processes.
+    """Run `work` on each document, and yield results in order; close it to stop the processes.
 
-    `work` must be importable by name. `timeout` limits the seconds for one document in a worker process.
+    `work` must be importable by name. `timeout` is the maximum time of a document in seconds.
     """
     if workers < 0:
         raise InputError(f"workers must be at least 0; got {workers}")
@@ -78,16 +78,16 @@ class Source:
         return f"{self.file}: {self.target}"
 
 
-ENDINGS = {"pixel": ".frag", "vertex": ".vert"}  # the endings of MaterialX's generateshader
+ENDINGS = {"pixel": ".frag", "vertex": ".vert"}  # suffixes, as in MaterialX's generateshader
 
 
 def stem(file: str) -> str:
-    """Beginning of the names of a document's shaders."""
+    """First part of the file names of a document's shaders."""
     return " ".join(printable(Path(file).stem).split())
 
 
 def shader_texts(source: Source, element: str | None, **options: Any) -> dict[str, str]:
-    """Shader texts of a document by file name; options as for `mxeon.generate`."""
+    """Shader texts of a document, keyed by file name; `options` are those of `mxeon.generate`."""
     from mxeon.shaders.generation import generate
 
     return {
@@ -109,11 +109,11 @@ def picture(
     policy: Policy,
     paths: Paths,
 ) -> tuple[Any, dict[str, str]]:
-    """Picture of a document's only material, linear (size, size, 3), and its metadata.
+    """Render a document's only material; return linear pixels, (size, size, 3), and metadata.
 
-    By default it shows a shader ball in the studio, or a sphere lit from the side on hosts that draw no images, with a
-    warning. `environment` is a latitude-longitude image. A LobeWarning reports lobes that the host cannot render
-    correctly.
+    The default scene is a shader ball in the studio, or a sphere lit from the side, with a warning,
+    on hosts that draw no images. `environment` is a latitude-longitude image. A LobeWarning reports
+    lobes that the host cannot render correctly.
     """
     from mxeon.conformance import reference
     from mxeon.hosts import open_host, path_tracer

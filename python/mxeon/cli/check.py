@@ -141,7 +141,7 @@ def run(options: argparse.Namespace) -> int:
             nodes=options.node,
             progress=_importing(progress) if options.report else progress,
             refuse=refuse,
-            # Documents are also judged with stock MaterialX unless libraries are named.
+            # Unless the user names libraries, judge documents with stock MaterialX, too.
             compared="stock" if options.files and not options.library else (),
             seed=options.seed,
             methods=arguments.methods(options),
@@ -157,7 +157,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _baseline(options: argparse.Namespace) -> Report:
-    """Read the accepted run before --report moves earlier results away; they move even if it is refused."""
+    """Read the accepted run before --report moves earlier results away, even if it is invalid."""
     from mxeon.conformance.run.journal import Journal
     from mxeon.report.diff import read_results
 
@@ -171,12 +171,12 @@ def _baseline(options: argparse.Namespace) -> Report:
 
 
 def _importing(progress: output.Progress) -> Callable[[Iterable[T], int], Iterator[T]]:
-    """A progress display that imports the report's packages while the workers are busy."""
+    """Show progress, and import the report's packages while the workers are busy."""
 
     def steps(outcomes: Iterable[T], total: int) -> Iterator[T]:
         for outcome in progress(outcomes, total):
             yield outcome
-            # A missing package is reported when the page is made. An import would swallow a signal.
+            # Block signals, which an import would swallow. A missing package is reported later.
             with signals.block_signals(), suppress(ImportError):
                 import mxeon.report.page as _  # noqa: F401
 

@@ -13,7 +13,7 @@ from mxeon.cli.batch import run_batch
 from mxeon.cli.output import fail, show, status_of, warn
 from mxeon.errors import PASSED
 
-DOCUMENT_LIMIT = 300  # limit per document: a page of 3 MB, in 10 s
+DOCUMENT_LIMIT = 300  # maximum shaders of a document: a page of 3 MB, made in 10 s
 
 
 def add_parser(commands: arguments.Commands) -> None:
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
     def make(files: list[str], light: str | None) -> str:
         documents = list(run_batch(work, files, options.workers, options.timeout))
         texts = (str(text) for each in documents for text in each.warnings)
-        warnings = tuple(dict.fromkeys(texts))  # both libraries may warn of one input
+        warnings = tuple(dict.fromkeys(texts))  # both libraries may issue the same warning
         for text in warnings:
             warn(text)
         errors = [each.error for each in documents if each.error]

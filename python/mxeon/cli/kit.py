@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon kit`: test a renderer by its images of the conformance kit."""
+"""`mxeon kit`: test a renderer by images that it renders from the conformance kit."""
 
 import argparse
 from contextlib import nullcontext
@@ -53,7 +53,7 @@ def add_parser(commands: arguments.Commands) -> None:
 
 
 def run_export(options: argparse.Namespace) -> int:
-    """Write the kit and print the path of its page; warn about packages that `kit check` will need."""
+    """Write the kit and print the path of its page; warn if `kit check` lacks a package."""
     from mxeon.kit.export import export_kit, kit_node
     from mxeon.kit.noise import student_quantile
 

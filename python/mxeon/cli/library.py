@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _explain(folder: Path, documents: Path) -> None:
-    """Print a folder of eonlib, and how each client loads it."""
+    """Print the folder of eonlib, and how each renderer loads it."""
     from mxeon.shaders.library_export import recipes
 
     show(f"folder                {folder}")

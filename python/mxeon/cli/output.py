@@ -18,7 +18,7 @@ from mxeon.errors import MISUSE, DocumentError, one_line, printable
 if TYPE_CHECKING:
     from mxeon.conformance.results import Verdict
 
-COLUMNS = 100  # width of a terminal that does not say its own
+COLUMNS = 100  # width of a terminal if it is unknown
 COLORS: dict[str | None, int] = {
     "passed": 32,
     "failed": 31,
@@ -27,9 +27,9 @@ COLORS: dict[str | None, int] = {
 
 
 def open_streams() -> None:
-    """Open missing standard streams, to which workers print.
+    """Open standard streams that are missing, because workers print to them.
 
-    A character that a stream cannot encode is printed as a backslash and its number.
+    Characters that a stream cannot encode are printed as backslash escapes.
     """
     for number in range(3):
         try:
@@ -42,7 +42,7 @@ def open_streams() -> None:
 
 
 def flush(status: int) -> int:
-    """The exit status once all output is written; misuse if that fails."""
+    """Flush the output; return the exit status, or misuse if the output cannot be written."""
     try:
         if sys.stdout:
             sys.stdout.flush()
@@ -64,7 +64,7 @@ def discard(stream: IO[str]) -> None:
 
 
 def status_of(error: Exception) -> tuple[int, *tuple[str, ...]]:
-    """Exit status and lines of an error that has a message for users."""
+    """Exit status and message lines of an error that is meant for users."""
     if isinstance(error, DocumentError):
         return error.status, *error.args
     if isinstance(error, OSError) and not hasattr(error, "status"):
@@ -75,24 +75,24 @@ def status_of(error: Exception) -> tuple[int, *tuple[str, ...]]:
 
 
 def fail(status: int, *messages: object) -> int:
-    """Print messages, a line each; return the exit status."""
+    """Print each message on a line; return the exit status."""
     for message in messages:
         _print_line(one_line(message))
     return status
 
 
 def show(name: object) -> None:
-    """Print the name of an output; see `on_one_line`."""
+    """Print the name of an output file; see `on_one_line`."""
     print(on_one_line(name))
 
 
 def on_one_line(name: object) -> str:
-    """The name of an output; U+FFFD replaces line ends and control characters."""
+    """A file name on one line; U+FFFD replaces line ends and control characters."""
     return re.sub(r"[\t\n\r]", "\ufffd", printable(str(name)))
 
 
 class Line(str):
-    """A line of an answer, with the verdict that it states."""
+    """A line of the summary, with the verdict that it states."""
 
     verdict: Verdict | None = None
 
@@ -104,11 +104,7 @@ class Line(str):
 
 
 def wrapped(lines: Iterable[str]) -> str:
-    """Lines wrapped to the terminal's width, in the color of their verdicts; unchanged without a
-    terminal.
-
-    Commands that read them thus get whole lines.
-    """
+    """Wrap lines to the terminal's width and color them by verdict; other outputs get whole lines."""
     if not sys.stdout.isatty():
         return printable("\n".join(lines))
     width = shutil.get_terminal_size((COLUMNS, 1)).columns
@@ -140,7 +136,7 @@ def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
 
 
 def _print_line(line: str) -> None:
-    """Print a line on standard error, unless that is closed."""
+    """Print a line on standard error, unless it is closed."""
     try:
         print(f"{Progress.take()}mxeon: {line}", file=sys.stderr, flush=True)
     except OSError:
@@ -148,7 +144,7 @@ def _print_line(line: str) -> None:
 
 
 class Progress:
-    """A progress line on a terminal; `label` names a step."""
+    """A progress line on a terminal; `label` returns the name of a step."""
 
     visible = ""  # the current line
 
@@ -171,20 +167,18 @@ class Progress:
 
     @classmethod
     def take(cls) -> str:
-        """Forget the line; return the text that erases it."""
+        """Forget the current line, and return the text that erases it."""
         erase = "\r\033[K" if cls.visible else ""
         cls.visible = ""
         return erase
 
     def __call__(self, steps: Iterable[Any], total: int | None = None) -> Iterator[Any]:
-        """The steps, shown one after the other."""
+        """Iterate over the steps, and show each one."""
         total = len(steps) if total is None and isinstance(steps, Sized) else total
         begin = 0.0
         self.show(f"0 of {total}")
         for done, step in enumerate(steps, 1):
-            begin = (
-                begin or time.monotonic()
-            )  # after the first step, which includes the setup of all
+            begin = begin or time.monotonic()  # after the first step, which includes the setup
             spent = (time.monotonic() - begin) / max(done - 1, 1)
             left = f", about {spent * ((total or done) - done):.0f} s left" if done > 2 else ""
             self.show(": ".join(filter(None, (f"{done} of {total}{left}", self._label(step)))))

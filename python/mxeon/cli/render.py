@@ -10,7 +10,7 @@ from mxeon.errors import PASSED, InputError
 from mxeon.hosts import HOSTS
 from mxeon.shaders.scene import Paths
 
-TONED = "studio", "environment"  # scenes whose PNG shows high lights by a tone curve
+TONED = "studio", "environment"  # scenes whose PNG uses a tone curve for highlights
 
 
 def add_parser(commands: arguments.Commands) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon report`: write the report of a run, compare two runs, and show many renderers."""
+"""`mxeon report`: write the report of a run, compare two runs, or compare many renderers."""
 
 import argparse
 import json
@@ -52,7 +52,7 @@ def run_make(options: argparse.Namespace) -> int:
 
 
 def run_field(options: argparse.Namespace) -> int:
-    """Write the page that compares renderers; return PASSED: the page shows what failed."""
+    """Write the page that compares renderers; return PASSED, even if a check failed."""
     from mxeon.conformance.results import report_files
     from mxeon.io.files import check_output
     from mxeon.report import require_extra
@@ -64,7 +64,7 @@ def run_field(options: argparse.Namespace) -> int:
     reports = (each for folder in options.reports for each in reports_in(folder))
     read = (file for each in reports for file in report_files(each))
     check_output(options.output, read, [".html"])
-    if os.path.islink(options.output):  # through which another file would be replaced
+    if os.path.islink(options.output):  # writing through a link would replace another file
         raise InputError(f"output must not be a link; got {options.output}")
     entries = read_field(options.reports)
     page = write_field(entries, options.output)
@@ -81,7 +81,7 @@ def run_schema(options: argparse.Namespace) -> int:
 
 
 def run_diff(options: argparse.Namespace) -> int:
-    """Print the differences of two reports; return FAILED if something got worse, or NOT_RUN if it is lost."""
+    """Print the differences of two reports; return FAILED if a check got worse, NOT_RUN if lost."""
     from mxeon.report.diff import compare, lines, read_results, status, to_json
 
     changes = compare(read_results(options.before), read_results(options.after))

@@ -16,9 +16,9 @@ from typing import TypeAlias
 from mxeon.errors import InputError
 
 AnyPath = str | os.PathLike[str]
-BINARY: int = getattr(os, "O_BINARY", 0)  # Windows would write "\r\n" without it
-Names: TypeAlias = AnyPath | Iterable[AnyPath]  # one name or path, or several
-TEMPORARY = ".mxeon-"  # prefix of files and folders that are not complete yet
+BINARY: int = getattr(os, "O_BINARY", 0)  # without it, Windows writes "\r\n"
+Names: TypeAlias = AnyPath | Iterable[AnyPath]  # a name or path, or several
+TEMPORARY = ".mxeon-"  # prefix of incomplete files and folders
 
 
 def one_name(parameter: str, given: object) -> str:
@@ -30,7 +30,7 @@ def one_name(parameter: str, given: object) -> str:
 
 
 def names_of(parameter: str, given: object, least: int = 1) -> tuple[str, ...]:
-    """One name or path, or several, as texts.
+    """Convert a name or path, or several, to strings.
 
     >>> names_of("hosts", "gl"), names_of("files", [Path("a.mtlx"), "b.mtlx"])
     (('gl',), ('a.mtlx', 'b.mtlx'))
@@ -47,7 +47,7 @@ def names_of(parameter: str, given: object, least: int = 1) -> tuple[str, ...]:
 
 
 def below(folder: AnyPath, name: AnyPath) -> Path:
-    """Path of the file `name` in a user's folder; refuse links below the folder, which may lead out of it."""
+    """Path of a file in a user's folder. Refuse links in the folder: they may lead out of it."""
     path = Path(folder)
     for part in Path(name).parts:
         path /= part
@@ -63,11 +63,11 @@ def check_output(
     replaced: Sequence[str] = (),
     apart: bool = False,
 ) -> None:
-    """Raise InputError or OSError unless an output can be written and replaces none of the inputs.
+    """Raise InputError or OSError unless an output can be written without replacing an input.
 
-    Files are compared by identity, so links and other spellings of a name count too. `inputs` is only iterated if the
-    output exists. With `replaced`, the output is a folder in which files that match these patterns are replaced; with
-    `apart`, no input may lie in that folder.
+    Files are compared by identity, which covers links and other spellings of a name. `inputs` is
+    only iterated if the output exists. With `replaced`, the output is a folder, and files that
+    match these patterns will be replaced; with `apart`, no input may lie in that folder.
     """
     place = Path(output)
     if not os.fspath(output):
@@ -99,7 +99,7 @@ def check_output(
 
 
 def _identity(path: AnyPath) -> tuple[int, int] | None:
-    """The identity of an existing file or folder."""
+    """Device and inode of a file or folder; None if it does not exist."""
     try:
         status = os.stat(path)
     except (OSError, ValueError):
@@ -109,10 +109,10 @@ def _identity(path: AnyPath) -> tuple[int, int] | None:
 
 @contextmanager
 def replacing(path: AnyPath) -> Iterator[Path]:
-    """A new empty file next to `path`, moved onto it if the block ends without an error, and deleted otherwise.
+    """Yield a new empty file; it replaces `path` if the block succeeds, otherwise it is deleted.
 
-    Its folder is created if needed. A link is followed: see `below` for names that the user did not write. The new file
-    has the same suffix, because image writers infer the format from it.
+    The file is next to `path`; the folder is created if needed. Links are followed: use `below` for
+    names that the user did not write. The suffix stays, since image writers infer the format.
     """
     path = Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
     if not path.name:
@@ -120,23 +120,23 @@ def replacing(path: AnyPath) -> Iterator[Path]:
     if path.exists() and not path.is_file():  # replacing a device would destroy it
         raise OSError(errno.EINVAL, "not a regular file", str(path))
     path.parent.mkdir(parents=True, exist_ok=True)
-    # The name is unpredictable, so no link or other writer can have it.
+    # The name is unpredictable, so no one else can have created a file or link of this name.
     beside = path.with_name(f"{TEMPORARY}{token_hex(8)}{path.suffix}")
     with naming(path):
         os.close(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
         try:
             yield beside
-            with beside.open("r+b") as file:  # Windows flushes only what may be written
+            with beside.open("r+b") as file:  # writable, because Windows flushes nothing else
                 os.fsync(file.fileno())  # some file systems report a full disk only here
             os.replace(beside, path)
         finally:
-            with suppress(OSError):  # the folder is not writable, which the first error reports
+            with suppress(OSError):  # if the folder is not writable, the first error says so
                 beside.unlink(missing_ok=True)
 
 
 @contextmanager
 def naming(path: AnyPath) -> Iterator[None]:
-    """Make system errors name `path` instead of a temporary file or nothing."""
+    """Make system errors in this block name `path` instead of a temporary file or nothing."""
     try:
         yield
     except OSError as error:
@@ -146,16 +146,16 @@ def naming(path: AnyPath) -> Iterator[None]:
 
 
 def write_text(path: AnyPath, text: str) -> None:
-    """Write `text` to `path` in UTF-8, replacing it whole; see `replacing`.
+    """Write `text` to `path` in UTF-8, replacing the file atomically; see `replacing`.
 
-    A lone surrogate, which a file name can contain and UTF-8 cannot, becomes "?".
+    Lone surrogates become "?": file names can contain them, UTF-8 cannot.
     """
     with replacing(path) as beside:
         beside.write_text(text, encoding="utf-8", errors="replace", newline="\n")
 
 
 def sync(folder: AnyPath) -> None:
-    """Flush the names in a folder to disk; Windows opens no folder."""
+    """Flush a folder's list of names to disk, except on Windows, which cannot open folders."""
     if sys.platform == "win32":
         return
     file = os.open(folder, os.O_RDONLY)
@@ -166,9 +166,9 @@ def sync(folder: AnyPath) -> None:
 
 
 def regular(path: AnyPath, flags: int) -> int:
-    """Descriptor of a regular file: `open(path, opener=regular)`.
+    """Open a regular file and return its descriptor: `open(path, opener=regular)`.
 
-    A pipe or a device may have no end, and opening a pipe without a writer blocks.
+    Pipes and devices are refused: they may have no end, and a pipe without a writer blocks.
     """
     file = os.open(path, flags | getattr(os, "O_NONBLOCK", 0))  # Windows has no such flag
     if not stat.S_ISREG(os.fstat(file).st_mode):
@@ -178,12 +178,12 @@ def regular(path: AnyPath, flags: int) -> int:
 
 
 def assert_regular(path: AnyPath) -> None:
-    """Raise OSError unless a path is a readable regular file; for libraries that open by name."""
+    """Raise OSError unless a path is a readable regular file, for libraries that open files."""
     os.close(regular(path, os.O_RDONLY))
 
 
 def digest(path: AnyPath) -> str:
-    """SHA-256 of a regular file; "" if it cannot be read."""
+    """SHA-256 of a regular file as hex digits; "" if it cannot be read."""
     with suppress(OSError), open(path, "rb", opener=regular) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
     return ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Images as files, linear EXR and sRGB PNG, and the difference of two images."""
+"""Read and write images (linear EXR, sRGB PNG), and compute the difference of two images."""
 
 from __future__ import annotations
 
@@ -24,29 +24,29 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Pixels = NDArray[np.float32]
 
-PICTURES = (".exr", ".png")  # endings of files that `write_picture` writes
-LARGEST = 2**28  # values of an image: 1 GiB as float32, or four channels of 8192 x 8192
+PICTURES = (".exr", ".png")  # suffixes that `write_picture` supports
+LARGEST = 2**28  # maximum values of an image: 1 GiB as float32, four channels of 8192 x 8192
 PNG_END = b"IEND\xaeB`\x82"  # the last chunk of a PNG file
-# Run-length encoding takes 0.6 of the time of zip, and an eighth more bytes.
+# Compared with zip, run-length encoding takes 0.6 of the time, and an eighth more bytes.
 FAST_EXR: dict[str, str | int] = {"oiio:ColorSpace": "lin_rec709_scene", "compression": "rle"}
-# No filter (libpng's 8) takes a tenth of the default's time, and a quarter more bytes.
+# Without a filter (libpng's 8), writing takes a tenth of the time, and a quarter more bytes.
 FAST_PNG: dict[str, str | int] = {
     "oiio:ColorSpace": "srgb_rec709_scene",
     "png:compressionLevel": 1,
     "png:filter": 8,
 }
-NO_THREADS = {"threads": 1, "exr_threads": -1}  # OpenImageIO's and OpenEXR's threads
+NO_THREADS = {"threads": 1, "exr_threads": -1}  # disables OpenImageIO's and OpenEXR's threads
 INCOMPLETE = "the file is incomplete; the disk may be full"
 
 
 class ImageWarning(UserWarning):
-    """A readable image that is damaged or contains values that are not numbers."""
+    """An image is readable, but damaged, or some of its values are not numbers."""
 
 
 def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
-    """Largest difference over the channels of each pixel, relative where the reference exceeds 1.
+    """Each pixel's largest difference of a channel, relative if the reference exceeds 1.
 
-    It is infinite if a value is not finite.
+    The difference is infinite if a value is not finite.
 
     >>> difference([[1.0, 0.5, 9.0]], [[1.0, 0.25, 10.0]]).tolist()
     [0.25]
@@ -59,15 +59,15 @@ def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
     def larger(a: Floats, b: Floats) -> Floats:
         return np.where(np.abs(a) >= np.abs(b), a, b)
 
-    # Channel by channel: a maximum over a short axis takes NumPy five times as long.
+    # Reduce channel by channel: for a short axis, NumPy's maximum takes five times as long.
     return reduce(larger, np.moveaxis(apart, -1, 0))
 
 
 def difference_scale(difference_map: ArrayLike) -> float:
-    """Full scale of a plot of a difference: the next of 1, 2, 5, 10, ... above almost all values.
+    """Full scale for plotting a difference: the next of 1, 2, 5, 10, ... above almost all values.
 
-    It is based on the 99th percentile, because a few pixels at a rim must not darken the rest, and is at
-    least 1e-9, so that equal images have a scale too. Non-finite values are ignored.
+    It is based on the 99th percentile, so that a few pixels at a rim do not darken the rest, and is
+    at least 1e-9, so that equal images have a scale. Non-finite values are ignored.
 
         >>> difference_scale([0.0, 0.003, 0.0031, float("nan")])
         0.005
@@ -76,16 +76,16 @@ def difference_scale(difference_map: ArrayLike) -> float:
     positive = difference_map[np.isfinite(difference_map) & (difference_map > 0.0)]
     nearly_all = max(np.quantile(positive, 0.99) if positive.size else 0.0, 1e-9)
     decade = int(np.floor(np.log10(nearly_all)))
-    # Parse decimals: products would differ from the printed numbers in the last digit.
+    # Parse decimals, because products would differ from the printed numbers in the last digit.
     steps = [float(f"{digit}e{decade}") for digit in (1, 2, 5, 10)]
     return next((step for step in steps if nearly_all <= step), steps[-1])
 
 
 def read_image(path: AnyPath) -> Pixels:
-    """Pixels of an image file, row 0 at the top, without color transformation.
+    """Read the pixels of an image file, row 0 at the top, without color transformation.
 
-    ImageError for more than LARGEST values, which even a small file can have; ImageWarning if OpenImageIO reports an
-    error, such as a truncated JPEG.
+    Raises ImageError for more than LARGEST values, which even a small file can have. Issues an
+    ImageWarning if OpenImageIO reports an error, for example for a truncated JPEG.
     """
     import OpenImageIO as oiio
 
@@ -103,7 +103,7 @@ def read_image(path: AnyPath) -> Pixels:
 
 
 def open_image(path: AnyPath) -> oiio.ImageInput:
-    """An image file that OpenImageIO opens."""
+    """Open an image file with OpenImageIO; raise ImageError if that fails."""
     import OpenImageIO as oiio
 
     try:
@@ -118,7 +118,7 @@ def open_image(path: AnyPath) -> oiio.ImageInput:
 
 
 def words(message: Callable[[], str]) -> str:
-    """A library's message on one line; bytes that are not UTF-8 become backslashes and hex.
+    """A library's message on one line; bytes that are not UTF-8 are escaped.
 
     >>> words(lambda: b"channel \\xff is\\nmissing".decode())
     'channel \\\\xff is missing'
@@ -133,8 +133,8 @@ def words(message: Callable[[], str]) -> str:
 def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, str | int]) -> None:
     """Write pixels to an image file in the format of `path`'s suffix.
 
-    The last row is read back, because OpenImageIO's PNG writer, and writers that leave the last bytes to a buffer of the
-    C library, do not report a full disk.
+    The last row is read back, because some writers do not report a full disk: OpenImageIO's PNG
+    writer, and writers that leave the last bytes in a buffer of the C library.
     """
     import OpenImageIO as oiio
 
@@ -159,25 +159,25 @@ def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, 
 
 
 def _is_whole(path: Path, pixels: Pixels | Codes) -> bool:
-    """Whether a written image file is complete: its last row equals that of the pixels."""
+    """Whether a written image file is complete, that is, ends with the last row of the pixels."""
     import OpenImageIO as oiio
 
     if path.suffix.lower() == ".png" and not path.read_bytes().endswith(PNG_END):
-        return False  # libpng would print a message if OpenImageIO read it
+        return False  # reading it would make libpng print a message
     height, _, channels = pixels.shape
     file = oiio.ImageInput.open(str(path))
     last: NDArray[Any] | None = None
     if file:
         last = file.read_scanlines(height - 1, height, 0, 0, channels, oiio.UNKNOWN)
-    words(oiio.geterror)  # otherwise it is printed when Python ends
+    words(oiio.geterror)  # otherwise the error is printed when Python ends
     return last is not None and last.tobytes() == pixels[-1].tobytes()
 
 
 @contextmanager
 def without_threads() -> Iterator[None]:
-    """Let OpenImageIO encode in the caller's thread, for callers that write many images at once.
+    """Encode in the caller's thread, for callers that write many images in parallel.
 
-    Compressing a row of a small EXR file takes less time than handing it to another thread.
+    For small EXR files, handing a row to another thread takes longer than compressing it.
     """
     import OpenImageIO as oiio
 
@@ -192,20 +192,20 @@ def without_threads() -> Iterator[None]:
 
 
 def write_picture(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
-    """Write a linear image as EXR or PNG by the ending of `path`; see `write_exr`, `write_png`."""
+    """Write a linear image as EXR or PNG, by the suffix of `path`; see `write_exr`, `write_png`."""
     check_output(path, endings=PICTURES)
     writers = dict(zip(PICTURES, (write_exr, write_png), strict=True))
     writers[Path(path).suffix.lower()](path, image, metadata)
 
 
 def write_exr(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
-    """Write a linear image as a 32-bit float EXR with the Rec. 709 primaries; metadata as text."""
+    """Write a linear image as 32-bit float EXR with Rec. 709 primaries, and metadata as text."""
     pixels = np.ascontiguousarray(image, dtype=np.float32)
     write_image(path, pixels, FAST_EXR | _texts(metadata))
 
 
 def write_png(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
-    """Write a linear image as an eight-bit sRGB PNG; parameters as for `write_exr`."""
+    """Write a linear image as an eight-bit sRGB PNG, and metadata as text."""
     write_image(path, srgb_encoded(image), FAST_PNG | _texts(metadata))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dataclasses as JSON and back, with strict types."""
+"""Convert dataclasses to JSON and back, with strict types."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from mxeon.errors import InputError
 
 NOT_FINITE = ("NaN", "Infinity", "-Infinity")
-# Raised on reading JSON of unknown origin.
+# Reading JSON of unknown origin may raise these.
 UNREADABLE = (
     ValueError,
     KeyError,
@@ -23,19 +23,19 @@ UNREADABLE = (
     cattrs.BaseValidationError,
 )
 T = TypeVar("T")
-Overrides: TypeAlias = dict[str, Any]  # cattrs' overrides by field
+Overrides: TypeAlias = dict[str, Any]  # cattrs' overrides, keyed by field
 
 
 def strict_converter(fields: Mapping[Any, Overrides]) -> cattrs.Converter:
     """A converter between dataclasses and the types of JSON.
 
-    `fields` are a record's fields with other keys or types in JSON. Non-finite numbers are written as the texts
-    NOT_FINITE. `structure` raises some of UNREADABLE.
+    `fields` has cattrs' overrides for each record whose JSON differs from its fields. Non-finite
+    numbers become the strings NOT_FINITE. `structure` may raise any of UNREADABLE.
     """
     converter = cattrs.Converter(
         forbid_extra_keys=True, unstruct_collection_overrides={tuple: list}
     )
-    # Types are exact: Python takes true for 1.
+    # Require exact types, because Python accepts True as 1.
     for kind, words in ((str, "a text"), (bool, "true or false"), (int, "a whole number")):
         converter.register_structure_hook(kind, _exactly(kind, words))
     converter.register_structure_hook(float, _number)
@@ -50,7 +50,7 @@ def strict_converter(fields: Mapping[Any, Overrides]) -> cattrs.Converter:
 
 
 def read_strictly(converter: cattrs.Converter, value: object, kind: type[T]) -> T:
-    """An instance of a dataclass from JSON's types; InputError names the first wrong or missing value."""
+    """Convert JSON values to a dataclass; InputError names the first wrong or missing value."""
 
     def reason(error: BaseException, kind: type | None) -> str:
         return f"lacks {error}" if isinstance(error, KeyError) else str(error)
@@ -60,13 +60,13 @@ def read_strictly(converter: cattrs.Converter, value: object, kind: type[T]) -> 
     except UNREADABLE as error:
         first = cattrs.transform_error(error, format_exception=reason)[0]
         raise InputError(first) from None
-    if converter.unstructure(record) != value:  # a text was taken for a list, for example
+    if converter.unstructure(record) != value:  # for example, a text was read as a list
         raise InputError("it must have the structure that mxeon writes")
     return record
 
 
 def spelled(number: float) -> float | str:
-    """A number for JSON; non-finite numbers become texts."""
+    """Convert a number for JSON; non-finite numbers become strings."""
     if math.isfinite(number):
         return number
     return "NaN" if math.isnan(number) else "Infinity" if number > 0 else "-Infinity"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Linear values and code values of sRGB."""
+"""Conversion between linear values and sRGB code values."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float64]
 Codes = NDArray[np.uint8]
 
-SLOPE = 2.4 / 1.055  # largest slope of the decoding, at 1
-STEPS = 2**13  # steps in [0, 1], each with at most two codes of sRGB
-NOT_FINITE = (255, 0, 255)  # code values of a pixel that is not a finite number
+SLOPE = 2.4 / 1.055  # largest slope of the decoding curve; it is at 1
+STEPS = 2**13  # steps of the lookup table in [0, 1]; each has at most two codes
+NOT_FINITE = (255, 0, 255)  # magenta, the code values of non-finite pixels
 
 
 def srgb_decoded(image: ArrayLike) -> Floats:
@@ -40,7 +40,7 @@ def srgb_encoded(image: ArrayLike) -> Codes:
     finite = reduce(np.logical_and, np.moveaxis(np.isfinite(image), -1, 0))
     linear = np.clip(image, np.float32(0.0), np.float32(1.0))
     linear[~finite] = 0.0
-    # The least code of each step, or the next one above its threshold; no index is out of range.
+    # Take the least code of the step, plus 1 above its threshold; mode "clip" skips bounds checks.
     thresholds, least = _codes()
     codes: Codes = least.take((linear * np.float32(STEPS)).astype(np.intp), mode="clip")
     codes += linear >= thresholds.take(codes, mode="clip")
@@ -50,9 +50,9 @@ def srgb_encoded(image: ArrayLike) -> Codes:
 
 @cache
 def _codes() -> tuple[NDArray[np.float32], Codes]:
-    """Linear values where each code of sRGB ends, and the least code of each of STEPS steps.
+    """The linear value at which each sRGB code ends, and the least code of each of STEPS steps.
 
-    No step has the ends of two codes: at 0, where they are closest, the curve has slope 12.92.
+    No step contains two ends: even at 0, where they are closest, the curve's slope is only 12.92.
     """
     ends = srgb_decoded((np.arange(255) + 0.5) / 255.0).astype(np.float32)
     least = np.searchsorted(

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tone curve of pictures for people: Khronos PBR Neutral [Khronos2024].
+"""The tone curve for display: Khronos PBR Neutral [Khronos2024].
 
-It preserves colors under moderate studio lighting and compresses highlights without changing their hue.
+It preserves colors under moderate studio lighting, and compresses highlights while keeping hue.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 
 from mxeon.io.images import Floats
 
-FRESNEL = 0.04  # normal reflectance that the curve subtracts, to reproduce base colors
-START = 0.8 - FRESNEL  # compression starts above it
+FRESNEL = 0.04  # reflectance at normal incidence; subtracted, to reproduce base colors
+START = 0.8 - FRESNEL  # peak value above which compression starts
 DESATURATION = 0.15
 
 

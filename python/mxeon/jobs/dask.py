@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Work on many items on the machines of a Dask cluster. Needs the `dask` extra.
+"""Work on many items with a Dask cluster. Needs the `dask` extra.
 
-Dask schedules the items, restarts workers and retries items. This module adds what Dask does not
-have: items that only some machines can run, and timeouts.
+Dask schedules the items, restarts workers and retries items. This module adds items that only some
+machines can run, and timeouts.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ from mxeon.errors import InputError, NotRun, PackageError, install
 from mxeon.jobs import WAIT, check_timeout
 from mxeon.jobs.pool import Outcome, log_bug
 
-ANSWER = 10.0  # seconds until a scheduler answers
+ANSWER = 10.0  # maximum seconds for a scheduler's answer
 GONE = "scheduler must run until the end; it answers no more"
 LOGGERS = ("distributed", "tornado", "asyncio")
-WINDOW = 2  # items in flight per worker: results do not pile up, and newcomers get their share
-POLL = 1.0  # seconds between polls of the workers, which come and go
-FETCH = 10.0  # seconds for the transfer of a result, usually a few kilobytes
+WINDOW = 2  # items in flight per worker; more would pile up results, and starve new workers
+POLL = 1.0  # seconds between polls for new and lost workers
+FETCH = 10.0  # maximum seconds to transfer a result, usually a few kilobytes
 
 
 @contextmanager
 def connect(address: str, wait: float = WAIT) -> Iterator[Workers]:
-    """Connect to the workers of a cluster by the address of its scheduler, "tcp://host:8786".
+    """Connect to the workers of a cluster; the scheduler's address is like "tcp://host:8786".
 
-    NotRun if it has no compatible worker for `wait` seconds, now or later. InputError if no
-    scheduler answers, or none of the workers is compatible.
+    Raises NotRun if there is no compatible worker for `wait` seconds, now or later, and InputError
+    if no scheduler answers, or none of the workers is compatible.
     """
     check_timeout(wait, "waitForWorkers")
     client = _client(address, wait)
@@ -56,7 +56,7 @@ def _client(address: str, wait: float) -> Any:
     except ModuleNotFoundError:
         raise PackageError(f"--scheduler needs distributed: {install('dask')}") from None
     for name in (*LOGGERS, *logging.root.manager.loggerDict):
-        if name.partition(".")[0] in LOGGERS:  # their messages are reported here in one line
+        if name.partition(".")[0] in LOGGERS:  # this module reports their errors in one line
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     rule = f"scheduler must be the address of a running Dask scheduler; got {address!r}"
     if not address.strip():
@@ -71,9 +71,9 @@ def _client(address: str, wait: float) -> Any:
 
 
 def _in_time(work: Callable[[], Any], seconds: float) -> Any:
-    """The result or error of work within some seconds; None if it continues, in a thread that nobody joins.
+    """Result of work, or its error; None if it takes longer, and then a thread continues it.
 
-    Dask waits for minutes for a scheduler that accepts a connection and does not reply.
+    Dask would wait for minutes for a scheduler that accepts a connection and does not reply.
     """
     future: futures.Future[Any] = futures.Future()
 
@@ -89,7 +89,7 @@ def _in_time(work: Callable[[], Any], seconds: float) -> Any:
 
 
 class Workers:
-    """The workers of a cluster; those with this version and one thread are compatible."""
+    """Workers of a cluster. They are compatible if they have this mxeon and one thread."""
 
     def __init__(self, client: Any, wait: float) -> None:
         self.client = client
@@ -103,7 +103,7 @@ class Workers:
         self.await_compatible()
 
     def await_compatible(self) -> None:
-        """Wait for a compatible worker; NotRun if none comes in time."""
+        """Wait for a compatible worker; raise NotRun if none comes in time."""
         end = time.monotonic() + self._wait
         while not self.compatible():
             if time.monotonic() > end:
@@ -114,7 +114,7 @@ class Workers:
             time.sleep(min(POLL, self._wait))
 
     def compatible(self) -> frozenset[str]:
-        """Addresses of the compatible workers; warns once about each other one."""
+        """Addresses of the compatible workers. Warns once about each incompatible worker."""
         info = self.client.scheduler_info(n_workers=-1)
         if "workers" not in info:  # the client has closed
             raise NotRun(GONE)
@@ -135,7 +135,7 @@ class Workers:
         return frozenset(address for address in threads if self._compatible.get(address))
 
     def submit(self, *task: Any, on: frozenset[str]) -> Any:
-        """The future of a task that some of the workers may run."""
+        """Submit a task to some of the workers; return its future."""
         return self.client.submit(*task, workers=sorted(on), pure=False)
 
 
@@ -146,11 +146,11 @@ def run(
     timeout: float,
     unavailable: type[Exception],
 ) -> Iterator[tuple[int, Outcome]]:
-    """Outcomes of `work` on every item, as they come; see `mxeon.jobs.pool.run`.
+    """Run `work` on every item; iterate over outcomes as they come, like `mxeon.jobs.pool.run`.
 
-    An item that takes `timeout` seconds ends its worker process, and the nanny starts another. If
-    `work` raises `unavailable`, the item goes to other workers. NotRun if the cluster has no
-    compatible worker for too long, or its scheduler is gone.
+    An item that takes `timeout` seconds ends its worker process, and Dask's nanny starts another.
+    If `work` raises `unavailable`, the item goes to other workers. Raises NotRun if the cluster has
+    no compatible worker for too long, or its scheduler is gone.
     """
     from distributed import wait
 
@@ -179,7 +179,7 @@ def run(
                     yield task.index, outcome
                 elif retry:
                     waiting.append(retry)
-    except (OSError, futures.CancelledError):  # the connection's: items' errors are in outcomes
+    except (OSError, futures.CancelledError):  # of the connection; items' errors are outcomes
         raise NotRun(GONE) from None
 
 
@@ -192,7 +192,7 @@ class _Task:
 
 
 class WorkerUnavailable(Exception):
-    """A worker cannot run an item; holds the reason and the worker's address."""
+    """A worker cannot run an item; the arguments are the reason and the worker's address."""
 
     def __init__(self, reason: str, worker: str) -> None:
         super().__init__(reason, worker)
@@ -207,19 +207,19 @@ def _progress(
 ) -> tuple[Outcome | None, _Task | None]:
     """The outcome of a finished task, the task to resubmit, or neither."""
     if not future.done():
-        return None, None if task.chosen & compatible else task  # its workers are gone
+        return None, None if task.chosen & compatible else task  # resubmit if its workers are gone
     try:
         error = future.exception(timeout=FETCH)
         if error is None:
             return Outcome(future.result(timeout=FETCH)), None
-    except TimeoutError:  # its worker ended with the result, so that it is not done any more
+    except TimeoutError:  # the worker ended, and the result with it: wait again
         return None, None
     if isinstance(error, WorkerUnavailable):
         tried = task.tried | {error.worker}
         if compatible - tried:
             return None, replace(task, tried=tried)
         return Outcome(None, str(error)), None
-    if not type(error).__module__.startswith("distributed."):  # raised by the work
+    if not type(error).__module__.startswith("distributed."):  # the work itself raised it
         log_bug(error)
     return Outcome(None, " ".join(f"{type(error).__name__}: {error}".split())), None
 
@@ -227,7 +227,7 @@ def _progress(
 def _work_timed(
     work: Callable[[Any], Any], item: Any, timeout: float, unavailable: type[Exception]
 ) -> Any:
-    """Run an item on a worker; its process ends at the timeout."""
+    """Run an item on a worker; the timeout ends the worker's process."""
     from distributed import get_worker
 
     faulthandler.dump_traceback_later(timeout, exit=True, file=sys.__stderr__ or 2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A pool of worker processes, which may crash, hang or be killed."""
+"""A pool of worker processes that may crash, hang or be killed."""
 
 import logging
 import multiprocessing
@@ -26,7 +26,7 @@ from mxeon.jobs import check_timeout, processes, signals
 
 @dataclass(frozen=True)
 class Attempt:
-    """An attempt at an item, whose worker prints to the file `log`."""
+    """An attempt to work on an item; its worker prints to the file `log`."""
 
     index: int
     item: object
@@ -51,10 +51,10 @@ def by_group(groups: Sequence[Hashable]) -> list[int]:
 
 
 class Queue:
-    """Waiting attempts, by group.
+    """Waiting attempts, sorted by group.
 
-    Items of a group share work, so one worker does it once. A worker begins a group
-    that no other works on, in the order of arrival, or helps with the longest one.
+    Items of a group share work that a worker does once. A worker begins the first group without
+    a worker, or else helps with the longest group.
     """
 
     def __init__(self, attempts: Sequence[Attempt]) -> None:
@@ -67,7 +67,7 @@ class Queue:
         self._groups.setdefault(attempt.group, deque()).append(attempt)
 
     def take(self, worker: int) -> Attempt:
-        """The next attempt for a worker; one must be waiting."""
+        """Take the next attempt for a worker; the queue must not be empty."""
         if self._current.get(worker) not in self._groups or worker not in self._current:
             others = {group for each, group in self._current.items() if each != worker}
             free = (group for group in self._groups if group not in others)
@@ -89,20 +89,20 @@ class Queue:
 
 logger = logging.getLogger(__name__)
 
-# A tracker outlives a killed process and would report its semaphores on the terminal.
+# The resource tracker outlives a killed process and would print a warning about its semaphores.
 QUIET = "ignore::UserWarning:multiprocessing.resource_tracker"
 ATTEMPTS = 2
-BREAKS = 3  # pools that may break in a row before any item is done
-START = 60.0  # seconds that a process may take before it begins to work
-LOCK = 10.0  # seconds until workers take over a killed worker's lock
-LAST = 4  # tasks left per worker below which none is scheduled ahead
-LAST_LINES = 4  # quoted lines of a worker's output
+BREAKS = 3  # maximum pools that break in a row without finishing an item
+START = 60.0  # maximum seconds until a process begins to work
+LOCK = 10.0  # seconds until workers take the lock of a killed worker
+LAST = 4  # with fewer tasks per worker, schedule none ahead
+LAST_LINES = 4  # maximum quoted lines of a worker's output
 
 
 @dataclass(frozen=True)
 class Outcome:
-    value: Any  # what the work returned
-    failure: str = ""  # why there is no value, in one line
+    value: Any  # result of the work
+    failure: str = ""  # reason for a missing value, in one line
     attempts: int = 1
 
 
@@ -113,19 +113,18 @@ def run(
     timeout: float,
     group: Callable[[Any], Hashable] = lambda item: None,
 ) -> Iterator[tuple[int, Outcome]]:
-    """Index and outcome of `work` on every item, as they come.
+    """Run `work` on every item; iterate over indices and outcomes as they come.
 
-    `work` can be imported by name, and runs in `workers` processes. An item that takes `timeout` seconds
-    has its process killed. A crash or timeout only affects that item, which is retried once. One
-    process works on the items of a `group`, as long as there are enough groups. An exception without
-    a message for users (see `mxeon.errors`) is a bug: its traceback is logged. NotRun if no process starts.
+    `work` must be importable by name; it runs in `workers` processes. If an item takes `timeout`
+    seconds, its process is killed. A crash or timeout affects only its item, which is retried once.
+    A process works on the items of a `group`, if there are enough groups. The traceback of a bug
+    (an exception without a message for users) is logged. Raises NotRun if no process starts.
 
-    No process imports anything from the working folder. At most two items per worker are in flight,
-    so results do not pile up in memory. What a worker prints goes to a file; its last lines are
-    quoted when it fails.
+    Processes import nothing from the working folder. At most two items per worker are in flight, so
+    results do not pile up in memory. A worker prints to a file, whose last lines a failure quotes.
 
-    The processes end with the iterator. Close it if an error may abandon it: garbage collection may run in
-    any thread, and in one that has to be joined, it would deadlock.
+    The processes end with the iterator. Close it if an error may abandon it: garbage collection
+    might run in a thread that must be joined, and deadlock.
     """
     if workers < 1:
         raise InputError(f"workers must be at least 1; got {workers}")
@@ -162,9 +161,9 @@ def in_order(outcomes: Iterable[tuple[int, Outcome]]) -> Iterator[Outcome]:
 def _serve(
     work: Callable[[Any], Any], waiting: Queue, workers: int, timeout: float, logs: str
 ) -> Iterator[tuple[int, Outcome]]:
-    """Outcomes until nothing waits or a pool breaks; its items then wait again.
+    """Yield outcomes until nothing waits, or a pool breaks; unfinished items then wait again.
 
-    Each worker is its own pool, so items can be assigned to it.
+    Each worker is a pool of one process, so that items can be assigned to it.
     """
     context: Any = processes.Context()
     pools = [ProcessPool(1, initializer=_prepare, context=context) for _ in range(workers)]
@@ -181,7 +180,7 @@ def _serve(
                     own[future] = attempt
             begun = dict(pair for own in running for pair in own.items())
             done = wait(begun, timeout=START + timeout, return_when=FIRST_COMPLETED).done
-            for ended in done or begun:  # none: the processes hang before they begin
+            for ended in done or begun:  # if none is done, the processes hang before they begin
                 attempt = begun[ended]
                 for own in running:
                     own.pop(ended, None)
@@ -191,7 +190,7 @@ def _serve(
                     yield attempt.index, outcome
                 with suppress(
                     PermissionError
-                ):  # Windows: the worker writes to it until its next item
+                ):  # on Windows, the worker keeps it open until its next item
                     Path(attempt.log).unlink(missing_ok=True)
             if not done:
                 return
@@ -211,9 +210,9 @@ def _start(pool: ProcessPool) -> bool:
     try:
         with signals.block_signals(), processes.safe_path():
             if QUIET not in sys.warnoptions:
-                sys.warnoptions.append(QUIET)  # the tracker's process inherits it
+                sys.warnoptions.append(QUIET)  # the tracker's process inherits this option
             if sys.platform != "win32":
-                resource_tracker.ensure_running()  # otherwise the first process starts it, and unblocks signals
+                resource_tracker.ensure_running()  # else the first process does, unblocking signals
         with signals.block_signals():
             return bool(pool.active)
     except (OSError, RuntimeError) as error:
@@ -223,9 +222,9 @@ def _start(pool: ProcessPool) -> bool:
 
 
 def _again(future: Future[Any], attempt: Attempt, outcome: Outcome) -> Attempt | None:
-    """The next attempt at an item, if there is one.
+    """The next attempt at an item; None if there is none.
 
-    Nobody knows which task a pool ran when it broke, so none of them counts as an attempt.
+    When a pool breaks, it is unknown which task ran, so no attempt is counted.
     """
     if future.done() and isinstance(future.exception(), BrokenProcessPool):
         return attempt
@@ -238,7 +237,7 @@ def _outcome(future: Future[Any], attempt: Attempt, timeout: float) -> Outcome:
     error = future.exception() if future.done() else TimeoutError()
     if error is None:
         return Outcome(future.result(), attempts=attempt.number)
-    raised = error.__cause__ is not None  # the work raised it; pebble chains its traceback
+    raised = error.__cause__ is not None  # raised by the work: pebble chains its traceback
     if raised and attempt.number == ATTEMPTS:
         log_bug(error)
     end = f"{type(error).__name__}: {error}" if raised else _end(error, timeout)
@@ -261,7 +260,7 @@ def _end(error: BaseException, timeout: float) -> str:
         return f"{type(error).__name__}: {error}"
     if (code := error.exitcode) >= 0:
         return f"worker process ended with exit status {code}"
-    names = {each.value: each.name for each in signal.Signals}  # a real-time signal has none
+    names = {each.value: each.name for each in signal.Signals}  # real-time signals have no name
     return f"worker process crashed ({names.get(-code, f'signal {-code}')})"
 
 
@@ -278,9 +277,9 @@ def _prepare() -> None:
 
 
 def _work_logged(work: Callable[[Any], Any], item: Any, log: str) -> Any:
-    """Work on an item, with all output of this process, C++ included, in the file `log`.
+    """Work on an item; redirect all output of this process, including C++, to the file `log`.
 
-    Temporary files are put next to it and deleted with it, whatever happens to this process.
+    Temporary files are created next to it, and are deleted with it even if this process dies.
     """
     tempfile.tempdir = os.path.dirname(log)
     if sys.stdout:  # None in a daemon

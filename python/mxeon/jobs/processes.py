@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Python processes that import nothing from the working folder.
+"""Start Python processes that import nothing from the working folder.
 
-Python puts the working folder first on the path of `python -c` and `python -m`, and
-`multiprocessing` starts its workers with the former: a file `pickle.py` there would run.
+`python -c` and `python -m` put the working folder first on the path, and `multiprocessing` starts
+workers by `python -c`: a file `pickle.py` in the folder would run.
 """
 
 import os
@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import Any
 
 HOME = str(Path(__file__).resolve().parents[2])  # the folder that mxeon is imported from
-PYTHON = (sys.executable, "-P")  # opens a command line; -P keeps the working folder off the path
+PYTHON = (sys.executable, "-P")  # begins a command; -P keeps the working folder off the path
 
 _patching = threading.Lock()
-_util: Any = util  # contains the private function to replace
+_util: Any = util  # has the private function that is replaced
 
 
 class _Process(SpawnProcess):
@@ -29,18 +29,17 @@ class _Process(SpawnProcess):
 
 
 class Context(SpawnContext):
-    """The start method "spawn" of `multiprocessing`, whose workers have a safe path."""
+    """The start method "spawn" of `multiprocessing`, with a safe path for workers."""
 
     Process = _Process
 
 
 @contextmanager
 def safe_path() -> Iterator[None]:
-    """Give the processes that `multiprocessing` starts in this block, in any thread, a safe path.
+    """Give a safe path to processes that `multiprocessing` starts in this block, in any thread.
 
-    The flag goes on the command line because PYTHONSAFEPATH has no effect together with -E. The
-    Workers get the parent's path except "", its working folder if it is `python -c` or
-    interactive. They inherit the working folder, which they may not be able to enter.
+    The command line gets -P, because PYTHONSAFEPATH has no effect together with -E. Workers get the
+    parent's path without "", which is its working folder in `python -c` and interactive sessions.
     """
     path = [folder for folder in sys.path if folder]
     path = path if HOME in path else [*path, HOME]
@@ -57,7 +56,7 @@ def safe_path() -> Iterator[None]:
 
 
 def forget_working_folder() -> None:
-    """Remove the working folder, which `python -m` puts first, from the path, unless mxeon is there."""
-    with suppress(FileNotFoundError):  # it may have been deleted
+    """Remove the working folder, added by `python -m`, from the path, unless mxeon is there."""
+    with suppress(FileNotFoundError):  # the working folder may have been deleted
         if not sys.flags.safe_path and sys.path[0] == os.getcwd() != HOME:
             del sys.path[0]

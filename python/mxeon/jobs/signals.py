@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The signals that end a command: Ctrl-C, `kill`, a terminal that is closed, and timers."""
+"""Handle the signals that end a command: Ctrl-C, `kill`, a closed terminal, and timers."""
 
 import os
 import shutil
@@ -19,19 +19,19 @@ def _existing(*names: str) -> tuple[signal.Signals, ...]:
     return tuple(signal.Signals[name] for name in names if hasattr(signal, name))
 
 
-TERMINAL = _existing("SIGINT", "SIGHUP", "SIGBREAK")  # reach all processes of a terminal
+TERMINAL = _existing("SIGINT", "SIGHUP", "SIGBREAK")  # sent to all processes of a terminal
 ENDING = (*TERMINAL, signal.SIGTERM)
-# Signals that end a process without a handler.
+# By default, these signals end a process, too.
 OTHERS = _existing("SIGALRM", "SIGUSR1", "SIGUSR2", "SIGXCPU")
 
-LOCK = ".lock"  # file in a temporary folder
-YOUNG = 60.0  # age in seconds below which a folder may not be locked yet
+LOCK = ".lock"  # name of the lock file in a temporary folder
+YOUNG = 60.0  # younger folders, in seconds, may not be locked yet
 
-_pending: list[int] | None = None  # numbers of the signals that came while blocked
+_pending: list[int] | None = None  # signals that arrived while they were blocked
 
 
 class SignalExit(KeyboardInterrupt):
-    """A signal that ends the command with the exit status 128 + number, like a shell."""
+    """A signal ends the command with the exit status 128 + number, as in a shell."""
 
     def __init__(self, number: int) -> None:
         ended = f"ended by {signal.Signals(number).name}"
@@ -41,9 +41,9 @@ class SignalExit(KeyboardInterrupt):
 
 @contextmanager
 def raise_signals() -> Iterator[None]:
-    """Raise SignalExit at such a signal, so that everything is cleaned up; an ignored one stays ignored.
+    """Raise SignalExit at an ending signal, for cleanup. Ignored signals stay ignored.
 
-    A signal of OTHERS that the caller handles stays handled.
+    Handlers that the caller has for OTHERS stay in place.
     """
 
     def end(number: int, _: FrameType | None) -> None:
@@ -65,10 +65,10 @@ def raise_signals() -> Iterator[None]:
 
 @contextmanager
 def block_signals() -> Iterator[None]:
-    """Block the signals of a terminal, so that child processes inherit the blocked mask.
+    """Block the signals of a terminal, so that child processes inherit the mask.
 
-    This process ends them with SIGTERM, which must reach them at any time. Signals that came
-    in the meantime are raised at the end. Windows has no masks to inherit.
+    This process ends its children by SIGTERM, which therefore is not blocked. Signals that arrive
+    in the block are raised at its end. Windows has no signal masks.
     """
     global _pending
     _pending = []
@@ -85,13 +85,13 @@ def block_signals() -> Iterator[None]:
 
 
 class Temporary(TemporaryDirectory[str]):
-    """A temporary folder, which a later process removes if this one is killed.
+    """A temporary folder that a later process removes if this process is killed.
 
-    It holds a file that is locked as long as the process lives.
+    It contains a file that is locked while the process lives.
     """
 
     def __init__(self, prefix: str) -> None:
-        from filelock import FileLock  # the import takes a tenth of the command's start
+        from filelock import FileLock  # imported late: it takes a tenth of the command's start
 
         _remove_abandoned()
         super().__init__(prefix=prefix)
@@ -99,13 +99,13 @@ class Temporary(TemporaryDirectory[str]):
         self._lock.acquire(timeout=0)
 
     def cleanup(self) -> None:
-        self._lock.release()  # Windows removes no open file
+        self._lock.release()  # Windows cannot remove open files
         super().cleanup()
 
 
 @cache
 def _remove_abandoned() -> None:
-    """Remove the folders of this user's processes that were killed."""
+    """Remove temporary folders that killed processes of this user left behind."""
     from filelock import FileLock, Timeout
 
     for folder in Path(gettempdir()).glob("mxeon-*"):
@@ -121,7 +121,7 @@ def _remove_abandoned() -> None:
 
 @contextmanager
 def temporary_folder(prefix: str) -> Iterator[str]:
-    """A temporary folder that is deleted even if a signal comes between its creation and its first use."""
+    """A temporary folder that is deleted even if a signal arrives right after its creation."""
     with ExitStack() as stack:
         with block_signals():
             folder = stack.enter_context(Temporary(prefix))

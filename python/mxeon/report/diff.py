@@ -394,10 +394,9 @@ def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
 
 
 def _is_rounded(old: Result, new: Result) -> bool:
-    """Whether another driver explains a failure: a few samples exceed the tolerance, the rms does not.
+    """Whether another driver explains a failure: few samples exceed the tolerance, not the rms.
 
-    For MaterialX's sheen and a tolerance of 2e-5, 5 of 6957 samples are off by 1.2e-4 on llvmpipe,
-    and none on lavapipe.
+    With MaterialX's sheen, 5 of 6957 samples exceed 2e-5 on llvmpipe, by 1.2e-4; none on lavapipe.
     """
     [whole] = new.errors[:1] or [None]
     few = whole and not whole.not_finite and whole.rms <= (new.tolerance or 0.0)
@@ -413,7 +412,7 @@ def _is_farther(old: Result, new: Result) -> bool:
 
 
 def _is_mended(old: Result, new: Result) -> bool:
-    """Whether a known defect is gone: the node's own model is as near as the defect was.
+    """Whether a known defect is gone: the own model is nearest, as near as the defect was.
 
     With other samples, an error that exceeds the size on the defect's page may be noise.
     """

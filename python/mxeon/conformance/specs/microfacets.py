@@ -79,9 +79,7 @@ BUBBLE_ROW = 3
 # Largest errors of the shaders' fits. Each comment names the script in tools/fits that finds it.
 ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
 SMOOTH_ESS_FIT = 5.3e-5  # E_ss of smooth lobes at cosines from 0.05
-ESS_VALUE_FIT = (
-    1.14e-3  # relative error of E_ss (alpha 0.97, normal view), times the value or 1
-)
+ESS_VALUE_FIT = 1.14e-3  # relative error of E_ss (alpha 0.97, normal view), times the value or 1
 METAL_FIT = 4.6e-4  # fresnel_average.py: F_ss of a metal
 # ggx_albedo.py: largest (1 - E_ss) / E_ss, times 1 or the value of perfectly reflecting facets.
 COMPENSATED = 0.6
