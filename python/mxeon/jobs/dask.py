@@ -179,7 +179,7 @@ def run(
                     yield task.index, outcome
                 elif retry:
                     waiting.append(retry)
-    except (OSError, futures.CancelledError):  # of the connection; items' errors are outcomes
+    except (OSError, futures.CancelledError):  # the connection failed; items cannot raise
         raise NotRun(GONE) from None
 
 

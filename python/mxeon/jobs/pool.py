@@ -95,7 +95,7 @@ ATTEMPTS = 2
 BREAKS = 3  # maximum pools that break in a row without finishing an item
 START = 60.0  # maximum seconds until a process begins to work
 LOCK = 10.0  # seconds until workers take the lock of a killed worker
-LAST = 4  # with fewer tasks per worker, schedule none ahead
+LAST = 4  # schedule tasks ahead only while more tasks per worker are left
 LAST_LINES = 4  # maximum quoted lines of a worker's output
 
 
@@ -190,7 +190,7 @@ def _serve(
                     yield attempt.index, outcome
                 with suppress(
                     PermissionError
-                ):  # on Windows, the worker keeps it open until its next item
+                ):  # Windows: the worker keeps it open until its next item
                     Path(attempt.log).unlink(missing_ok=True)
             if not done:
                 return

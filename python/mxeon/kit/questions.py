@@ -43,7 +43,7 @@ class ModelDistance:
 
     title: str
     distance: float  # rms of the tiles' mean errors, in units of pi f cos or of albedo
-    ratio: float  # of `mxeon.kit.noise.ratio`; the pictures agree up to 1
+    ratio: float  # see `mxeon.kit.noise.ratio`; the pictures agree if it is at most 1
 
 
 def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDistance]:
