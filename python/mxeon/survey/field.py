@@ -62,7 +62,7 @@ class Entry:
     host: str
     library: str
     node: str
-    version: str  # empty, like the device, if the host did not run
+    version: str  # version and device are empty if the host did not run
     device: str
     claimed: str  # title of the claimed model
     form: str  # title of the published form that the checks used

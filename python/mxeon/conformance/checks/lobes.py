@@ -36,7 +36,7 @@ from mxeon.models.nodes.combinations import FACTOR
 from mxeon.models.nodes.lobes import FORMS, TILTED
 from mxeon.shaders.methods import Methods
 
-LEAST_LIGHT = 0.01  # the uneven environment is tested where a uniform one gives more light
+LEAST_LIGHT = 0.01  # skip the uneven environment where a uniform one gives less light
 # Texels are pi / 128 on a side and read at their middles; engines filter with 8-bit weights.
 TEXEL = math.sqrt(2.0) * math.pi / samples.SKY_ROWS * 2.0**-8
 # Largest error of an engine's arc sine (llvmpipe). Other engines are ten times as accurate.
@@ -58,8 +58,8 @@ def of_model(*names: str) -> Specs:
 
 # Sets of nodes, for the checks in the table below.
 FILMS, TRANSMITTING = family(FilmSpec), family(TransmissionSpec)
-CLEAR = family(TransmissionSpec, lambda spec: spec.reflects)  # also reflect
-DARK = TRANSMITTING - CLEAR  # reflect nothing
+CLEAR = family(TransmissionSpec, lambda spec: spec.reflects)  # these also reflect
+DARK = TRANSMITTING - CLEAR  # these reflect nothing
 # With transmission as opacity, these pass all light.
 UNTINTED = DARK - family(LobeSpec, lambda spec: "tint" in colored(spec))
 COMBINED, SUBSURFACE = family(CombinedSpec), family(SubsurfaceSpec)
@@ -72,7 +72,7 @@ LOBES = PLAIN | BURLEY | of_model("burley_lambert")
 EON = of_model("eon", "eon_fitted")
 MODES = of_model("eon", "eon_fitted", "qon")  # modes of a rough diffuse node
 ROUGH = MODES | of_model("fon")
-VALUED = LOBES | FILMS | ROUGH  # one lobe of a node or of a renderer
+VALUED = LOBES | FILMS | ROUGH  # single lobes of nodes and renderers
 
 
 def shows_exactly(spec: Spec, host: str) -> bool:
@@ -84,8 +84,8 @@ def shows_exactly(spec: Spec, host: str) -> bool:
 def finds_albedo(spec: Spec, methods: Methods) -> bool:
     """Whether the environment branch returns a known albedo.
 
-    A prefiltered environment excludes films and surface shaders, due to errors of MaterialX's fit,
-    and microfacets, if they use 64 samples or eonlib's fits of their curves instead.
+    In a prefiltered environment, films and surface shaders have the errors of MaterialX's fit. So
+    have microfacets that use 64 samples or eonlib's fits of their curves.
     """
     sampled = methods.albedo != "analytic" or bool(methods.searched)
     fitted = (sampled and FACETS(spec)) or isinstance(spec, (FilmSpec, SurfaceShaderSpec))
@@ -300,7 +300,7 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
     spec, views = case.of(PbrSpec), case.backend.views[0]
     row, names = np.arange(len(views.wo))[:, np.newaxis], {"weight", "occlusion"}
     wo = np.where(row == 1, NORMAL, views.wo)
-    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # peak of microfacets
+    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # microfacets peak there
     seen = {name: np.maximum(views.inputs[name], LEAST_WEIGHT) for name in names & {*views.inputs}}
     views = replace(views, wo=wo, wi=wi).altered(**seen)
     plain = replace(case, outputs=lambda batch, values: values)
@@ -344,7 +344,7 @@ def diagnose_domain(case: Case) -> Diagnosis:
 # --- negative colors, as MaterialX's own shaders treat them ---------------------------------------
 
 CLAMPED = FACETS | COMBINED | family(HairSpec)  # negative colors count as 0
-NEGATIVE = 64  # pairs
+NEGATIVE = 64  # number of pairs
 LEAST_NEGATIVE = 0.1
 
 

@@ -214,7 +214,7 @@ def with_directions(spec: Spec, methods: Methods) -> bool:
 
 
 def diagnose_transmitted(case: Case) -> Diagnosis:
-    """Test whether light matches visible facets, or these over G_1 as in MaterialX; find NaN."""
+    """Test whether light equals the mean of 1 - F, or that over G_1 as in MaterialX; find NaN."""
     compared, spec = list(transmitted(case)), case.of(TransmissionSpec)
 
     def distance(found: Callable[[Compared], Array]) -> float:
@@ -264,7 +264,7 @@ def clear(case: Case) -> Iterator[Compared]:
 
 
 # Methods of clients: Storm's, and MaterialXView's prefiltered environment with refraction; mirrors
-# use sampled and tabulated albedos. BOUND is dim, turned for reflection, and tints light twice.
+# use sampled and tabulated albedos. BOUND is dim, turned, and two-sided in refraction.
 OTHERS = (Methods("prefilter", "opacity"), Methods("prefilter", "refraction"))
 SAMPLED = Methods("prefilter", "refraction", "monteCarlo")
 BOUND = Client(turn=states.TURNING, intensity=0.5, two_sided=True)
@@ -307,7 +307,7 @@ def shares(case: Case, ask: Callable[..., Array], methods: Methods) -> Iterator[
 def mirrored(case: Case, ask: Callable[..., Array], methods: Methods) -> Iterator[Compared]:
     """Throughput, reflection of a white mirror, and reflection of a turned environment.
 
-    A white mirror reflects everything; from a table, its tabulated albedo over the exact albedo.
+    A white mirror reflects everything; with a table, the ratio of tabulated and exact albedo.
     """
     white = {name: np.ones(3) for name in ("color0", "color82", "color90")}
     for batch in case.views:
@@ -428,7 +428,7 @@ def seen_sky(case: Case, batch: Batch) -> tuple[Array, Mask]:
 
 
 def rough_refraction(case: Case) -> Compared:
-    """Light through lobes of two alphas, uneven over uniform sky, compared with a mean sky.
+    """Light through lobes of two alphas, uneven over uniform sky, compared with a mean of it.
 
     Each visible facet passes the same share, along the ray that a solid sphere refracts.
     """
@@ -437,7 +437,7 @@ def rough_refraction(case: Case) -> Compared:
     count = len(batch.wo)
     wo, alpha = samples.turned_directions(rng, count), rounded(ROUGH ** rng.random((2, count)))
     if "color0" in batch.inputs:
-        color = 0.2 * batch.inputs["color0"]  # no curve, so all facets have the same weight
+        color = 0.2 * batch.inputs["color0"]  # F is constant, so all facets have the same weight
         batch = batch.altered(color0=color, color82=(1.0, 1.0, 1.0), color90=color)
     else:
         batch = batch.altered(ior=1.2 + 0.8 * rng.random(count))
@@ -513,7 +513,7 @@ dropped = controls.with_inputs("the film is dropped", thinfilm_thickness=0.0)
 
 
 def curves(films: microfacets.Films, case: Case) -> Compared:
-    """Curves F of films: values in the mirror direction divided by those of a mirror.
+    """Curves F of films: values in the mirror direction, divided by the values of a mirror.
 
     The lobes are so smooth that their compensation is 1 for any average.
     """
@@ -545,7 +545,7 @@ def film_limit(case: Case) -> list[Compared]:
 
 
 def film_energy(case: Case) -> Iterator[Compared]:
-    for batch in case.few[::2]:  # skip exact directions: index 0 is judged elsewhere
+    for batch in case.few[::2]:  # skip exact directions; other checks cover index 0
         most = case.direct(_mirror(case, batch))
         yield Compared(batch, np.maximum(case.direct(batch), most), most)
 
@@ -642,7 +642,7 @@ def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]
 
 
 def _parts(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
-    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each, by perfect reflectors."""
+    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each, relative to single scattering."""
     alpha, mu = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))[:, 0], batch.wo[:, 2]
     facets = 0.25 / (alpha * alpha * smith_lambda(mu, alpha))[:, np.newaxis]
     return direct(batch) / facets, direct(_mirror(case, batch)) / facets - 1.0

@@ -213,7 +213,7 @@ def paths(
 def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
     """Materials with pairs in individual frames: random ones of a node, or a shader with all lobes.
 
-    `walls` lists whether a surface shader is a thin wall, if it supports them.
+    `walls` lists the kinds of a surface shader that supports them: False for solid, True for thin.
     """
     if is_shader(case.spec):
         yield from shaders(case, *walls)

@@ -37,7 +37,7 @@ VECTORS = ("normal", "tangent", "position", calls.SURFACE)
 FLAT = calls.NORMAL, calls.TANGENT, (0.0, 0.0, 0.0), calls.NORMAL
 WEIGHTS = (0.0, 0.3, 1.0, 1.0)
 FEW = 6  # combinations in a control
-CLEARER = 0.7  # report two states, not one, if both meet in fewer than this share of its pixels
+CLEARER = 0.7  # report two states instead of one if they narrow its pixels to this share
 Inputs = Mapping[str, Array]
 Random = np.random.Generator
 Layout = tuple[tuple[int, ...], tuple[int, ...]]  # shape and axis order of a list of pixels
@@ -316,7 +316,7 @@ def states(case: Case) -> Iterator[Compared]:
     groups: Sequence[Pixels] = pixels_of(case.backend)
     if case.control:
         groups = [each for each in groups if not each.image][:FEW]
-    # Each group of pixels with constant inputs needs a frame.
+    # Pixels with constant inputs need a frame per group.
     frames: dict[tuple[bool, str, Client, bool, int], list[int]] = {}
     for number, pixels in enumerate(groups):
         alone = number if "constant inputs" in pixels.states else -1

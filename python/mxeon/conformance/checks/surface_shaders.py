@@ -22,7 +22,7 @@ from mxeon.hosts.calls import NORMAL, TANGENT
 
 WORST = 32  # worst pairs to diagnose
 CHANGED = 8  # pairs that must react to a changed input
-# Inputs that disable each lobe, by its name.
+# Inputs that disable a lobe, keyed by the lobe's name.
 LOBE_INPUTS = {
     "coat": ("coat", "coat_weight", "clearcoat"),
     "sheen": ("sheen", "fuzz_weight", "sheen_color"),

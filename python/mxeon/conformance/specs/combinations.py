@@ -17,7 +17,7 @@ from mxeon.shaders import nodes
 
 PASSES = ZELTNER_THROUGHPUT.term("a throughput between them")
 VALUE = sum_of(ZELTNER_VALUE.term("two values", 2.0), PASSES)
-# This also covers a mixed sum over a base: its slopes by both albedos are at most 1 and 2.
+# This also covers a mix of a sum over a base: slopes by the two albedos are at most 1 and 2.
 THREE_ALBEDOS = ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0)
 ALBEDO = sum_of(THREE_ALBEDOS, quantity=Quantity.ALBEDO)
 THIRD = ZELTNER_VALUE.term("a third value"), ZELTNER_THROUGHPUT.term("its throughput")
@@ -71,8 +71,8 @@ NETWORKS: dict[str, tuple[str, dict[str, nodes.Node]]] = {
     "layer_colored": ("layer, under a colored sum", {**SUM, "lobe": over("layer", "sum", "base")}),
 }
 # fmt: on
-SINGLE = ("multiply_float", "multiply_color3")  # rows that only use `top`
-COLORED = ("multiply_color3", "multiply_sum")  # rows with a color as their factor
+SINGLE = ("multiply_float", "multiply_color3")  # rows of nodes with a single lobe, `top`
+COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -108,7 +108,7 @@ def _spec(row: PbrNode) -> CombinedSpec:
         spec.color(FACTOR, edges=()) if row.name in COLORED else spec.Input(FACTOR, change=0.3),
     )
     inputs = {each.name: each for each in known}
-    if row.name in SINGLE:  # the function reads it, but the node does not use it
+    if row.name in SINGLE:  # without a base, its roughness has no effect
         inputs[ROUGHNESS[1]] = replace(inputs[ROUGHNESS[1]], change=None)
     return CombinedSpec(
         **named_mode(row, NETWORKS[row.name][0]),

@@ -19,13 +19,13 @@ from mxeon.models.nodes.node import PbrNode, Variant
 from mxeon.models.table import Model
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, document_text, input_text, node_text
 
-EDGES = (0.0, 1e-6, 1e-3, 1.0)  # edges of color channels, and of roughness over its maximum
+EDGES = (0.0, 1e-6, 1e-3, 1.0)  # special colors, and special roughness / maximum
 # Colors and roughnesses of the pictures that represent a rough diffuse node.
 PICTURE_INPUTS: tuple[Values, ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
 )
-COUNTS = Counts(nodes=16)  # the quadrature's error is 2e-8, like rounded directions
+COUNTS = Counts(nodes=16)  # the quadrature's error, 2e-8, is as small as roundings
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H: tools/fits
 
 VALUE = sum_in(
@@ -36,7 +36,8 @@ VALUE = sum_in(
 # The longest chain has 12 roundings, the cosine two, and the fit of H, times 0.29, two.
 LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
 ENVIRONMENT = sum_in(Quantity.ALBEDO, LARGE_NUMBERS)
-# Two cosines of at least 1/4 have five roundings each: 4 times in s / t, 3 in a sine, 2 elsewhere.
+# Two cosines of at least 1/4 have five roundings each, which count 4 times in s / t, 3 times in a
+# sine, and twice elsewhere.
 FRAME = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     roundings(2 * 28, "of two values"),

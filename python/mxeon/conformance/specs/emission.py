@@ -32,7 +32,7 @@ def inputs_of(row: emissions.Emission | Medium) -> tuple[Input, ...]:
 def chained(
     row: emissions.Emission | Medium, kind: str, source: str, name: str, text: str = ""
 ) -> dict[str, nodes.Node]:
-    """A node and its source nodes, which the paths of its inputs name."""
+    """A node, and the source nodes that are named in the paths of its inputs."""
     paths = (each.rpartition("/")[0] for each in row.inputs)
     sources = tuple(dict.fromkeys(path for path in paths if path not in ("", name)))
     own = {name: nodes.Node(row.category, kind, sources, text)}
@@ -80,7 +80,7 @@ FACTORS = {
     (media.FACTOR, "color3"): replace(color(media.FACTOR, edges=()), high=3.0),
 }
 
-# Closer to a hard edge than this difference of cosines, an engine's rounding decides.
+# Skip views whose cosine is closer to a hard edge, because an engine's rounding decides there.
 EDGE = 1e-3
 SMALL = scene.Scene("dark", size=8)
 OPACITIES = (0.0, 0.25, 1.0)

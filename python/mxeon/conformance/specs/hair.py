@@ -19,11 +19,11 @@ from mxeon.models.nodes.node import Scattering
 
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 9)
 LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # lower limits of random roughness
-WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # lower limits of integrated lobes
+WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # lower limits for lobes that are integrated
 MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # maximum of chiang_hair_roughness
 FRONT = np.array([1.0, 0.0, 1.0, 0.5])  # share of R, TT, TRT and TRRT+ from the viewer's side
 STEP = 1e-6  # change of an angle, in radian, that measures slopes
-LEAST = 0.01  # smaller values have errors relative to this
+LEAST = 0.01  # errors are relative to the value, but at least to this
 
 # fmt: off
 INPUTS = (
@@ -90,7 +90,7 @@ class Region:
     azimuths: tuple[float, float] = SLANTED  # range of views relative to the normal, in radian
     variances: tuple[float, float] = (0.2, 1.0)
     scales: tuple[float, float] = (0.2, 1.0)
-    tints: Values = field(default_factory=lambda: APART)  # they give each lobe a channel
+    tints: Values = field(default_factory=lambda: APART)  # by default, each lobe has a channel
     tilt: float = 0.05  # largest deviation of `cuticle_angle` from 1/2
     ior: tuple[float, float] | None = None  # range of the index; None for the default range
     # Title of the approximation that shaders may use there, or "".

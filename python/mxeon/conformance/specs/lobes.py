@@ -169,7 +169,7 @@ class PbrSpec(ScatteringSpec):
 
     counts: Counts = COUNTS
 
-    least_cosine: float = 0.0  # least cosine of views with compared albedos
+    least_cosine: float = 0.0  # least cosine of views whose albedos are compared
 
     @property
     def bounded(self) -> tuple[spec.Input, ...]:
@@ -191,7 +191,7 @@ class PbrSpec(ScatteringSpec):
             return self.row.value(wo, wi * [1.0, 1.0, -1.0], inputs)
 
         def reflection(batch: Batch) -> Array:
-            return opaque.values(mirrored, batch.altered(occlusion=1.0))  # light from below
+            return opaque.values(mirrored, batch.altered(occlusion=1.0))  # not occluded from below
 
         return Candidate("a reflection instead", reflection), spec.ZERO
 

@@ -28,7 +28,7 @@ LEAST_STRETCHED = 0.05  # least alpha and cosine for anisotropic albedos; sums a
 LEAST_INVERTED = 0.1  # least index of a dielectric before it is inverted
 LEAST_INDEX = 1.05  # least index above 1 in the shaders' fits of averages: tools/fits/ggx_cosine.py
 COSINE_STEP = 2.0**-18  # largest difference of wo . wh and wi . wh
-RIM_COLOR = 0.05  # least |wo + wi|, unless some channel of color90 is as bright
+RIM_COLOR = 0.05  # least |wo + wi|, unless a channel of color90 is as large
 LEAST_TANGENT_ALPHA = 0.05  # least alpha with turned tangents, as roundings are divided by it
 LEAST_TANGENT_COSINE = 0.1  # least cosine with turned tangents
 COSINES = np.linspace(0.0, 1.0, 65)  # cosines at which curves are tested for values below 0
@@ -71,13 +71,13 @@ INPUTS = {
     ),
 }
 # fmt: on
-# MaterialX's average is worst for a bubble, a film around index 1. `domain` leaves row 3 unchanged.
+# MaterialX's average is worst for a bubble, a film around index 1. `domain` keeps the view of row 3.
 BUBBLE: Values = dict.fromkeys(("weight", "tint", "ior"), 1.0)
 BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
 
 # Largest errors of the shaders' fits. Each comment names the script in tools/fits that finds it.
-ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
+ESS_FIT = 5e-4  # ggx_albedo.py: E_ss, the albedo of GGX with perfectly reflecting facets
 SMOOTH_ESS_FIT = 5.3e-5  # E_ss of smooth lobes at cosines from 0.05
 ESS_VALUE_FIT = 1.14e-3  # relative error of E_ss (alpha 0.97, normal view), times the value or 1
 METAL_FIT = 4.6e-4  # fresnel_average.py: F_ss of a metal
@@ -433,7 +433,7 @@ class TransmissionSpec(FacetSpec):
         return self.row.fixed["scatter_mode"] == "RT"
 
     def ends(self, batch: Batch) -> Array:
-        """Light that the BTDF passes, and all light not reflected, (2, N, 3), of light 1."""
+        """For unit light, light passed by the BTDF, and all light not reflected, (2, N, 3)."""
         wo, inputs, functions = batch.wo, batch.inputs, self.functions
         rest = functions.tint(inputs) * (1.0 - functions.reflected(wo, inputs))
         return np.stack([functions.passed(wo, inputs, True), np.maximum(rest, 0.0)])
@@ -475,12 +475,12 @@ TRANSMISSION_SPECS = tuple(
 # --- thin films -----------------------------------------------------------------------------------
 
 # Largest errors of the shader's thin film, for cosines of at least 0.1 and films of up to 1000 nm:
-# tools/fits/thin_film.py. The albedo's error is that of the average over the visible facets, plus
-# that of F_ss times the lost light. Both averages are sums over three cosines.
+# tools/fits/thin_film.py. FILM_SEEN adds the error of the average over the visible facets and the
+# error of F_ss times the lost light. Both averages are sums over three cosines.
 FILM_SEEN = 7.82e-2
 FILM_OILED = 6.92e-2  # FILM_SEEN for film indices of at least 1.25
 FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
-CURVE_ROUNDINGS = 10 * 9.5 + 16  # a phase has 10, times the curve's slope 9.5; the curve 16
+CURVE_ROUNDINGS = 10 * 9.5 + 16  # 10 for a phase, times the curve's slope 9.5; 16 for the curve
 
 FILM_ALBEDO = sum_in(
     Quantity.ALBEDO,
@@ -560,7 +560,7 @@ STEEP = Films(1 << 6, (0.6, 1.0), (0.6, 1.0), (50.0, 100.0))
 FRINGED = STEEP._replace(thickness=(50.0, 1000.0))  # STEEP with few to many fringes
 # Glossy lobes with few fringes: their visible facets are similar, so few cosines are enough.
 GLOSSY = STEEP._replace(alpha=(0.03, 0.1))
-# Lobes with two alphas, whose albedos are fitted by those of isotropic lobes.
+# Lobes with two alphas. Shaders fit their albedos by isotropic lobes.
 BRUSHED = Films(1 << 5, (0.05, 1.0), (0.1, 1.0), (50.0, 100.0))
 # Smooth lobes, which show the film's curve at one cosine. Few orders matter.
 SHARP = Films(1 << 6, (1e-3, 1e-3), (0.3, 1.0), (200.0, 1000.0))
@@ -589,7 +589,7 @@ class FilmSpec(FacetSpec):
         return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
-        """Raise dielectric indices to 1 (a film in air); some `edged` films match them.
+        """Raise dielectric indices to at least 1; if `edged`, some films match them.
 
         Below 1, total reflection gives the curve a kink that averages of few nodes do not resolve.
         """

@@ -53,7 +53,7 @@ def power_error(host: Host) -> float:
     """
     rng = samples.generator()
     exponent = samples.LEAST_SHEEN ** -rng.random(spec.ARGUMENTS)
-    sine = samples.float32(rng.random(spec.ARGUMENTS) ** (1.0 / exponent))  # uniform powers
+    sine = samples.float32(rng.random(spec.ARGUMENTS) ** (1.0 / exponent))  # the powers are uniform
     exponent = samples.float32(exponent)
     factor = (2.0 + exponent) / 8.0
     scale = np.maximum(1.0, factor * sine**exponent)

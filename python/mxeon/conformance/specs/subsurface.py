@@ -17,7 +17,7 @@ from mxeon.shaders.scene import BACK, SIDE, VIEW, Scene, local_directions, spher
 
 LEAST_COSINE = 1e-6  # MaterialX's M_FLOAT_EPS
 COSINES = np.linspace(-1.0, 1.0, 129)
-SCENES = tuple(replace(scene, size=32) for scene in (SIDE, BACK))  # unit sphere
+SCENES = tuple(replace(scene, size=32) for scene in (SIDE, BACK))  # scenes of a unit sphere
 LEAST_HEIGHT = 0.3  # least z of normals: near the rim, neighboring pixels are far apart
 MATERIALS: tuple[Values, ...] = (  # light spreads everywhere, or almost nowhere
     {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": -0.5},
@@ -82,7 +82,7 @@ def spread(batch: Batch, far: float = FAR, **changes: ArrayLike) -> Array:
 @lru_cache(maxsize=128)
 def _profile(reach: float, far: float) -> Array:
     """The blurred cosine at COSINES. Linear interpolation between them has an error of 2e-4."""
-    return blur_to(COSINES, np.array(max(reach, 1e-9)), far)  # reach 0 only has a limit
+    return blur_to(COSINES, np.array(max(reach, 1e-9)), far)  # at reach 0, there is only a limit
 
 
 def _around(batch: Batch) -> Array:

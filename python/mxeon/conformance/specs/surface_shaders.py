@@ -52,7 +52,7 @@ def _whole(names: str) -> Values:
 
 
 SPREAD = 0.3  # alpha of the lobe that draws half of the lights
-STRETCHED = "anisotropy"  # part of names; environment sums are too coarse for anisotropy
+STRETCHED = "anisotropy"  # input names contain it; environment sums are too coarse for anisotropy
 # Largest errors due to the fits of all lobes, over 32 sets of a check's size, compared with the
 # layer equation in float64: tools/fits/surface_shaders.py. They are a third of the sum of each
 # lobe's largest error, since no material reaches all of these. The fits for two alphas change the
@@ -301,7 +301,7 @@ SURFACE_SHADERS = (
             "transmission_scatter", "transmission_scatter_anisotropy", "transmission_dispersion_scale",
             "transmission_dispersion_abbe_number", "subsurface_scatter_anisotropy"),
         needs={
-            "subsurface_weight": {"subsurface_color": CHANGED_COLOR},  # else it equals the base
+            "subsurface_weight": {"subsurface_color": CHANGED_COLOR},  # by default, it equals the base
             "emission_color": {"emission_luminance": 1000.0}},
         unseen=("geometry_opacity",),
         glass={"transmission_weight": 1.0},

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renderers with a Python package, which render their own nodes on a polyhedron.
 
-Each runs in its own process. Samples spread over a pixel, so a sphere would not do.
+Each runs in its own process. Samples spread over a pixel, so flat facets replace the sphere.
 """
 
 from __future__ import annotations
