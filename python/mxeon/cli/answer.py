@@ -49,7 +49,7 @@ REFUSED = "refused"
 NO_REFERENCE = "no reference"
 # States of a document. If several apply, the first one counts.
 STATES = (FAILED, NOT_RUN, REFUSED, DIFFERS, NO_REFERENCE, PASSED)
-QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # a document's own names in a reason
+QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # matches a document's own names in a reason
 KEYS = ("picture", "finite", DOCUMENT_KEY)
 INDIRECT = ("environment", "layering", "transmission", "integral")  # checks in a white environment
 

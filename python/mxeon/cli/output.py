@@ -104,7 +104,7 @@ class Line(str):
 
 
 def wrapped(lines: Iterable[str]) -> str:
-    """Wrap lines to the terminal's width, colored by verdict; other outputs get whole lines."""
+    """Wrap lines to a terminal's width and color them by verdict; else keep whole lines."""
     if not sys.stdout.isatty():
         return printable("\n".join(lines))
     width = shutil.get_terminal_size((COLUMNS, 1)).columns

@@ -34,7 +34,7 @@ from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR
 LIBRARIES = ("eonlib", "stock")
 LAYOUT = ("comment", "newline")
 REFERENCES = 20  # judge at most this many materials of a document: 0.1 s each, 2 s with pictures
-LARGEST_IMAGE = 256  # texels on a side: a quarter of a mebibyte
+LARGEST_IMAGE = 256  # maximum texels on a side, a quarter of a mebibyte
 ALL_IMAGES = (
     64 * LARGEST_IMAGE**2
 )  # texels per document (22 MB of a page); larger images are scaled down
@@ -64,7 +64,7 @@ def document_sources(
         except MxeonError:
             if half == LIBRARIES[0] or library != LIBRARIES[1]:
                 raise
-            continue  # a node that stock MaterialX lacks
+            continue  # stock MaterialX lacks a node
         # Read each image once, and limit its size so that all images fit.
         check_images(shaders, policy)
         names = image_files(shaders)
@@ -106,7 +106,7 @@ def sky_of(file: str) -> data.Texels:
 def path_texts(document: str, policy: Policy = DEFAULT) -> dict[str, str]:
     """Path-tracing code of a document's materials, by element; mixed surfaces have none."""
     with warnings.catch_warnings(), suppress(InterfaceError):
-        warnings.simplefilter("ignore")  # reported before
+        warnings.simplefilter("ignore")  # already reported
         made = generate(document, "essl", profile="path", uniforms=True, policy=policy)
         return {each.element: each.stages["pixel"] for each in made}
     return {}
@@ -119,7 +119,7 @@ def checked_materials(file: str, library: str, policy: Policy = DEFAULT) -> dict
     """Verdicts of `mxeon check` on gl, by element."""
     try:
         with open_host("gl") as host, warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # reported before
+            warnings.simplefilter("ignore")  # already reported
             results, _, _ = judge_document(Path(file), host, Reference(), library, policy)
     except MxeonError:  # gl is missing, or an error of the document was already reported
         return {}

@@ -71,7 +71,7 @@ def _client(address: str, wait: float) -> Any:
 
 
 def _in_time(work: Callable[[], Any], seconds: float) -> Any:
-    """Result of work, or its error; None if it takes longer, and then a thread continues it.
+    """Return or raise the result of work; None if it takes longer, and continues in a thread.
 
     Dask would wait for minutes for a scheduler that accepts a connection and does not reply.
     """
@@ -179,7 +179,7 @@ def run(
                     yield task.index, outcome
                 elif retry:
                     waiting.append(retry)
-    except (OSError, futures.CancelledError):  # the connection failed; items cannot raise
+    except (OSError, futures.CancelledError):  # lost connection; items' errors are outcomes
         raise NotRun(GONE) from None
 
 

@@ -137,7 +137,7 @@ def _size(folder: Path) -> int:
     if type(size) is not int:
         raise InputError(f"{file}: size must be a whole number; got {size!r}: export it again")
     match kit.get("materials"):
-        case {LAMBERT.name: {"node": str(node)}}:  # any node
+        case {LAMBERT.name: {"node": str(node)}}:  # any node is valid
             pass
         case _:
             node = ""

@@ -12,7 +12,7 @@ from mxeon.io.srgb import srgb_decoded
 from mxeon.kit.expected import Expected
 from mxeon.kit.noise import tiles
 
-LIKENESS = 0.02  # a fault explains a picture if rms error without noise over rms value is less
+LIKENESS = 0.02  # a fault explains a picture up to this rms error, without noise, over rms value
 SAME_SCALE = 0.005  # factors closer to 1 are due to noise or a mesh
 
 

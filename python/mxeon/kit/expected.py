@@ -32,7 +32,7 @@ GAUSS = 1.0 / np.sqrt(3.0)
 @dataclass(frozen=True)
 class Expected:
     value: np.ndarray  # (N, 3), mean over each pixel
-    slack: np.ndarray  # (N, 3): pixel center minus mean, depth of the mesh, rounding to half
+    slack: np.ndarray  # (N, 3), deviation due to pixel centers, mesh depth and half floats
 
 
 @lru_cache(maxsize=16)

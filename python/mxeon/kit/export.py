@@ -64,8 +64,8 @@ def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "e
 def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = KitNode()) -> Path:
     """Write the kit and return its README.md. Replace an earlier kit, but keep submitted pictures.
 
-    InputError for a size out of range, or a folder that has no name, holds something other than a kit, or has
-    a link in place of one of the kit's files.
+    Raises InputError for a size out of range, and for a folder that has no name, holds other files
+    than a kit, or has a link instead of one of the kit's files.
     """
     read = files_read([], Policy(), node.folders).values()
     check_output(folder, read, replaced=["*", "*/*"], apart=True)

@@ -13,7 +13,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-SUBDIVISIONS = 5  # 20,480 triangles of about two degrees; one more quarters the error
+SUBDIVISIONS = 5  # 20,480 triangles of about two degrees; one more subdivision quarters the error
 
 
 @dataclass(frozen=True)

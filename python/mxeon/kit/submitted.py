@@ -94,7 +94,7 @@ def _channels(file: Path, names: Sequence[str]) -> list[int]:
 
 
 def _check_depth(file: Path, values: NDArray[np.float64]) -> None:
-    """Refuse eight-bit values: these are few, and all are multiples of 1 / 255 up to 1."""
+    """Refuse eight-bit values: few distinct values, all multiples of 1 / 255 up to 1."""
     distinct = len(np.unique(values))
     steps = values * LEVELS
     whole = values.max() <= 1.0 and np.abs(steps - np.rint(steps)).max() <= ROUNDED

@@ -248,7 +248,7 @@ def to_json(changes: Iterable[Change]) -> list[dict[str, object]]:
 
 
 def annotations(changes: Iterable[Change]) -> Iterator[str]:
-    """Regressions and lost checks as GitHub annotations: one per subject, as GitHub shows ten."""
+    """Regressions and lost checks as GitHub annotations: one per subject, as GitHub shows ten at most."""
     for (kind, host, library, subject), rows in groupby(changes, key=_group):
         if level := {WORSE: "error", LOST: "warning"}.get(kind):
             place = f"{host} with {library}" if host else ""
@@ -297,7 +297,7 @@ Results: TypeAlias = Mapping[tuple[str, ...], Result]
 def _results(
     before: Results, after: Results, fewer: bool, renewed: Container[str]
 ) -> Iterator[Change]:
-    """Changes of results. With `fewer` documents, checks are never LOST; `renewed` are hosts."""
+    """Changes of results. With `fewer` documents, no check is LOST; `renewed` hosts changed."""
     for key in (key for key in before if key in after):
         old, new = before[key], after[key]
         kind, reason, growths = _change(old, new)

@@ -57,7 +57,7 @@ def number(value: float | None, digits: int = 3) -> str:
 
 
 def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, float, float]]:
-    """Title and distance of the nearest models, and the share of the largest distance shown."""
+    """Titles and distances of the nearest models, and distances over the largest one listed."""
     rows = sorted(distances.items(), key=lambda pair: pair[1])[:count]
     largest = max((distance for _, distance in rows), default=0.0) or 1.0
     return [(title, distance, distance / largest) for title, distance in rows]
@@ -102,7 +102,7 @@ def _site() -> str:
     """Address of the documentation by the package's metadata (`project.urls`); "" if unknown."""
     try:
         urls = metadata("mxeon").get_all("Project-URL") or []
-    except PackageNotFoundError:  # imported from a folder
+    except PackageNotFoundError:  # mxeon is imported from a folder
         return ""
     named = dict(each.split(", ", 1) for each in urls)
     return str(named.get("Documentation", "")).rstrip("/")

@@ -29,7 +29,7 @@ FAST = 1  # zlib's level, which takes a third of the time for a third more bytes
 def generate_page(
     package: str, name: str, filters: Mapping[str, Callable[..., Any]], **values: Any
 ) -> Generator[str, None, None]:
-    """Generate a page in pieces from a package's template and script, the only one that it runs."""
+    """Generate a page in pieces from a package's template and script; it runs no other script."""
     environment = Environment(
         loader=ChoiceLoader([PackageLoader(package), PackageLoader("mxeon.report")]),
         autoescape=True,

@@ -642,7 +642,7 @@ def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]
 
 
 def _parts(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
-    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each, relative to single scattering."""
+    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each, over single scattering."""
     alpha, mu = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))[:, 0], batch.wo[:, 2]
     facets = 0.25 / (alpha * alpha * smith_lambda(mu, alpha))[:, np.newaxis]
     return direct(batch) / facets, direct(_mirror(case, batch)) / facets - 1.0

@@ -71,7 +71,7 @@ INPUTS = {
     ),
 }
 # fmt: on
-# MaterialX's average is worst for a bubble, a film around index 1. `domain` keeps the view of row 3.
+# MaterialX's average is worst for a bubble, a film around index 1. `domain` keeps row 3's view.
 BUBBLE: Values = dict.fromkeys(("weight", "tint", "ior"), 1.0)
 BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
