@@ -32,7 +32,7 @@ COMMANDS = (check, generate, render, explore, library, invert, report, kit)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command with these arguments, by default those of the process.
+    """Run the command; `arguments` default to the command line.
 
     Returns 0 if all passed, 1 if a check failed, 2 for misuse, 3 if something did not run, and 128
     plus the number of a signal that ended the command.

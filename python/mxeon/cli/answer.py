@@ -458,7 +458,7 @@ def _failures(run: Run) -> Iterator[Line]:
         other = ", for inputs that no document uses" * run.is_elsewhere(each)
         place = f"{kind}: {each.location}{other}"
         groups.setdefault((place, " ".join(each.pages) or words.explanation(each)), []).append(each)
-    # Leave out pictures: failing nodes explain those that show them, and others have a sentence.
+    # Group pictures that failing nodes explain. For documents, other sentences cover pictures.
     nodes = {(each.location, each.subject.partition(",")[0]) for each in failures}
     shown: dict[str, list[Result]] = {}
     for (place, _), results in groups.items():
@@ -479,7 +479,7 @@ def _tone(run: Run, results: Iterable[Result]) -> Verdict | None:
 
 
 def _lobes(result: Result) -> set[tuple[str, str]]:
-    """The wrong lobes that a failing picture shows, each with the result's host and library."""
+    """Lobes that explain a failing picture, each with the result's host and library."""
     causes = (each for each in result.diagnosis.causes if each.kind is Kind.FOLLOWS)
     return {(result.location, name) for cause in causes for name in cause.names}
 

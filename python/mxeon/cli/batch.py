@@ -87,7 +87,7 @@ def stem(file: str) -> str:
 
 
 def shader_texts(source: Source, element: str | None, **options: Any) -> dict[str, str]:
-    """Shader texts of a document, keyed by file name; `options` are those of `mxeon.generate`."""
+    """Shader texts of a document, keyed by file name; `mxeon.generate` describes `options`."""
     from mxeon.shaders.generation import generate
 
     return {

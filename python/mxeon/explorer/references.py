@@ -79,7 +79,7 @@ def reference_of(shader: Shader) -> ReferenceTable | None:
         return None
     if not (np.isfinite(direct).all() and np.isfinite(white).all()):
         return None
-    # Tolerances are those of a single lobe, or the sum over layers and their throughputs.
+    # Add the tolerances of all lobes. Layers also have the tolerances of throughputs.
     errors = []
     for node in lobes:
         rows = (each for each in _rows(node) if _is_of(node, each))

@@ -42,7 +42,7 @@ def to_json(run: Run) -> str:
     """A run as JSON text.
 
     `mxeon report schema` prints the JSON Schema. Non-finite numbers are the strings "NaN",
-    "Infinity" and "-Infinity"; missing values are null. The keys of the object:
+    "Infinity" and "-Infinity"; missing values are null. Keys:
 
     - $schema: identifier of the JSON Schema.
     - format: version of this layout, raised when a key changes or is removed.

@@ -248,7 +248,7 @@ def to_json(changes: Iterable[Change]) -> list[dict[str, object]]:
 
 
 def annotations(changes: Iterable[Change]) -> Iterator[str]:
-    """Regressions and lost checks as GitHub annotations: one per subject, as GitHub shows ten at most."""
+    """Regressions and lost checks as GitHub annotations: one per subject: GitHub shows few."""
     for (kind, host, library, subject), rows in groupby(changes, key=_group):
         if level := {WORSE: "error", LOST: "warning"}.get(kind):
             place = f"{host} with {library}" if host else ""
@@ -257,7 +257,7 @@ def annotations(changes: Iterable[Change]) -> Iterator[str]:
 
 
 def _moved(before: Sequence[str], after: Sequence[str]) -> dict[str, str]:
-    """Map library folders of `before` to those of `after`, since folders may have moved.
+    """Map library folders of `before` to folders of `after`, since folders may have moved.
 
     Match them by path, then by name, then by position in `--library`.
     """
@@ -357,7 +357,7 @@ def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
 
 
 def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
-    """Numbers that grew by more than noise, first those of all samples, or else the largest error.
+    """Numbers that grew by more than noise, all samples first, or else the largest error.
 
     Changes within the tolerance are ignored: they would pass if the rest were right.
     """

@@ -84,8 +84,8 @@ def shows_exactly(spec: Spec, host: str) -> bool:
 def finds_albedo(spec: Spec, methods: Methods) -> bool:
     """Whether the environment branch returns a known albedo.
 
-    In a prefiltered environment, films and surface shaders have the errors of MaterialX's fit. So
-    have microfacets that use 64 samples or eonlib's fits of their curves.
+    In a prefiltered environment, films and surface shaders have the errors of MaterialX's fit.
+    Microfacets with 64 samples or eonlib's fits of their curves have errors, too.
     """
     sampled = methods.albedo != "analytic" or bool(methods.searched)
     fitted = (sampled and FACETS(spec)) or isinstance(spec, (FilmSpec, SurfaceShaderSpec))

@@ -303,7 +303,7 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
             for name, each in batch.inputs.items()
             if "roughness" in name
         }
-        if "cuticle_angle" in batch.inputs:  # strong tilts leave a pole along the fiber
+        if "cuticle_angle" in batch.inputs:  # steep lobes have a pole along the fiber
             rough["cuticle_angle"] = np.clip(batch.inputs["cuticle_angle"], 0.45, 0.55)
         batch = batch.altered(**rough)
         few = case.control or is_shader(case.spec)

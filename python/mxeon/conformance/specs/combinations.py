@@ -108,7 +108,7 @@ def _spec(row: PbrNode) -> CombinedSpec:
         spec.color(FACTOR, edges=()) if row.name in COLORED else spec.Input(FACTOR, change=0.3),
     )
     inputs = {each.name: each for each in known}
-    if row.name in SINGLE:  # without a base, its roughness has no effect
+    if row.name in SINGLE:  # the base's roughness has no effect
         inputs[ROUGHNESS[1]] = replace(inputs[ROUGHNESS[1]], change=None)
     return CombinedSpec(
         **named_mode(row, NETWORKS[row.name][0]),

@@ -62,7 +62,7 @@ VALUE = sum_of(*lobe_terms(LEAST_VARIANCE, LEAST_SCALE), quantity=Quantity.FULL_
 # Turned values are compared with unturned ones. Turning adds five roundings to each angle.
 TWO_LOBES = lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5))
 FRAME = sum_of(*TWO_LOBES, quantity=Quantity.FULL_SPHERE)
-# Mean absolute slope of the logarithm of a Gaussian, plus that of a logistic density.
+# Mean absolute slope of the logarithm of a Gaussian, plus the mean slope for a logistic density.
 MEAN_SLOPE = math.sqrt(2.0 / (math.pi * WIDE_VARIANCE)) + 0.5 / (SCALE * WIDE_SCALE)
 MEAN = sum_of(
     roundings(MEAN_SLOPE * ANGLE, "(12 of an angle, times the mean slope of the logarithm)"),
@@ -90,7 +90,7 @@ class Region:
     azimuths: tuple[float, float] = SLANTED  # range of views relative to the normal, in radian
     variances: tuple[float, float] = (0.2, 1.0)
     scales: tuple[float, float] = (0.2, 1.0)
-    tints: Values = field(default_factory=lambda: APART)  # by default, each lobe has a channel
+    tints: Values = field(default_factory=lambda: APART)  # the default gives each lobe a channel
     tilt: float = 0.05  # largest deviation of `cuticle_angle` from 1/2
     ior: tuple[float, float] | None = None  # range of the index; None for the default range
     # Title of the approximation that shaders may use there, or "".

@@ -82,7 +82,7 @@ def spread(batch: Batch, far: float = FAR, **changes: ArrayLike) -> Array:
 @lru_cache(maxsize=128)
 def _profile(reach: float, far: float) -> Array:
     """The blurred cosine at COSINES. Linear interpolation between them has an error of 2e-4."""
-    return blur_to(COSINES, np.array(max(reach, 1e-9)), far)  # at reach 0, there is only a limit
+    return blur_to(COSINES, np.array(max(reach, 1e-9)), far)  # reach 0 has only a limit
 
 
 def _around(batch: Batch) -> Array:

@@ -301,7 +301,7 @@ SURFACE_SHADERS = (
             "transmission_scatter", "transmission_scatter_anisotropy", "transmission_dispersion_scale",
             "transmission_dispersion_abbe_number", "subsurface_scatter_anisotropy"),
         needs={
-            "subsurface_weight": {"subsurface_color": CHANGED_COLOR},  # it equals the base by default
+            "subsurface_weight": {"subsurface_color": CHANGED_COLOR},  # its default is the base's
             "emission_color": {"emission_luminance": 1000.0}},
         unseen=("geometry_opacity",),
         glass={"transmission_weight": 1.0},
