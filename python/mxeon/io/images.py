@@ -44,7 +44,7 @@ class ImageWarning(UserWarning):
 
 
 def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
-    """Each pixel's largest difference of a channel, relative if the reference exceeds 1.
+    """Largest difference among each pixel's channels, relative if the reference exceeds 1.
 
     The difference is infinite if a value is not finite.
 

@@ -115,7 +115,7 @@ def surroundings(case: Case) -> Compared:
         batch = batch.altered(color=samples.WHITE)
     level = case.albedo(batch)
     bright = level.min(axis=1) > LEAST_LIGHT
-    if bright.any():  # if all are dark, the uniform light is wrong
+    if bright.any():  # if all pairs are dark, the uniform light is wrong
         batch, level = batch.where(bright), level[bright]
     with np.errstate(divide="ignore", invalid="ignore"):
         measured = case.albedo(batch, samples.sky_map()) / level
@@ -300,7 +300,9 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
     spec, views = case.of(PbrSpec), case.backend.views[0]
     row, names = np.arange(len(views.wo))[:, np.newaxis], {"weight", "occlusion"}
     wo = np.where(row == 1, NORMAL, views.wo)
-    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # microfacets peak there
+    wi = np.where(
+        row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi
+    )  # light at the peak of microfacets
     seen = {name: np.maximum(views.inputs[name], LEAST_WEIGHT) for name in names & {*views.inputs}}
     views = replace(views, wo=wo, wi=wi).altered(**seen)
     plain = replace(case, outputs=lambda batch, values: values)

@@ -200,7 +200,7 @@ CRITICAL = 0.05  # distance from the critical cosine, where F has an infinite sl
 ROUGH_VIEWS, FACETS_SEEN = 1 << 6, 32  # facets along each axis of the random numbers
 ROUGH = 0.1  # least alpha of rough glass
 LEAST_PASSED = 0.01  # least light whose direction is measured
-# A refracted ray's slope by a cosine is index^2 / cosine. Above this, errors are relative to it.
+# The slope of a refracted ray is index^2 / cosine. Above this slope, errors are relative to it.
 BENT = 1000.0
 REFRACTED = lobes.SURROUNDINGS.plus(roundings(4 * BENT, "four of a cosine, times a slope of 1000"))
 NORMAL = (0.0, 0.0, 1.0)
@@ -214,7 +214,7 @@ def with_directions(spec: Spec, methods: Methods) -> bool:
 
 
 def diagnose_transmitted(case: Case) -> Diagnosis:
-    """Test whether light equals the mean of 1 - F, or that over G_1 as in MaterialX; find NaN."""
+    """Test whether light is the mean of 1 - F, or this mean over G_1 (MaterialX); find NaN."""
     compared, spec = list(transmitted(case)), case.of(TransmissionSpec)
 
     def distance(found: Callable[[Compared], Array]) -> float:
@@ -642,7 +642,7 @@ def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]
 
 
 def _parts(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
-    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each, over single scattering."""
+    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each, by single scattering."""
     alpha, mu = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))[:, 0], batch.wo[:, 2]
     facets = 0.25 / (alpha * alpha * smith_lambda(mu, alpha))[:, np.newaxis]
     return direct(batch) / facets, direct(_mirror(case, batch)) / facets - 1.0

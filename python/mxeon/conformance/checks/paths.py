@@ -189,7 +189,7 @@ class Paths:
 def paths(
     host: base.Host, document: str, library: str = "eonlib", varied: tuple[str, ...] = ()
 ) -> Paths:
-    """A document's code; inputs in `varied` (names or paths) are variables, others constants."""
+    """The code of a document, in which inputs in `varied` (names or paths) are variables."""
     from mxeon.shaders.generation import generate
 
     uniforms = bool(varied)

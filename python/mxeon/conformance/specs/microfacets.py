@@ -478,7 +478,7 @@ TRANSMISSION_SPECS = tuple(
 # tools/fits/thin_film.py. FILM_SEEN adds the error of the average over the visible facets and the
 # error of F_ss times the lost light. Both averages are sums over three cosines.
 FILM_SEEN = 7.82e-2
-FILM_OILED = 6.92e-2  # FILM_SEEN for film indices of at least 1.25
+FILM_OILED = 6.92e-2  # FILM_SEEN if film indices are at least 1.25
 FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
 CURVE_ROUNDINGS = 10 * 9.5 + 16  # 10 for a phase, times the curve's slope 9.5; 16 for the curve
 
@@ -508,7 +508,7 @@ def film_terms(alpha: float) -> tuple[Term, Term]:
 
 
 def _mean(value: float, words: str) -> Tolerance:
-    """A largest rms error over sets of films, which tools/fits/thin_film.py measures."""
+    """Largest rms error over sets of films, measured by tools/fits/thin_film.py."""
     return given(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
 
 

@@ -24,7 +24,7 @@ MATERIALS: tuple[Values, ...] = (  # light spreads everywhere, or almost nowhere
     {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
     *(dict[str, ArrayLike](color=(1, 1, 1), radius=each, anisotropy=0.0) for each in np.eye(3)),
 )
-# Wrong values that a diagnosis tries: for the radius, and for the far exponential's length, 3.
+# Wrong radii, and wrong lengths of the far exponential (3 is right), that a diagnosis tries.
 EVEN = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
 FARTHER = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 6.0, 9.0, 12.0)
 

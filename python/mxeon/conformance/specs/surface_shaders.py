@@ -235,7 +235,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return _isotropic(Batch(wo, wo, inputs))
 
     def films(self, counts: Counts) -> Batch:
-        """Some of the pairs, with isotropic lobes under random films."""
+        """Random pairs, with isotropic lobes under random films."""
         batch = _isotropic(self.batches(counts)[0])
         return batch.altered(**draw(generator(), len(batch.wo), self.film))
 

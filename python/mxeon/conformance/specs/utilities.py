@@ -77,7 +77,7 @@ OSL_BLACKBODY = given(
     "OSL's blackbody() has an observer from 380 nm to 780 nm, its own table and primaries", tolerance.scaled)
 OTHERS: Mapping[str, dict[str, Tolerance]] = {"blackbody": {"osl_value": OSL_BLACKBODY}}
 # fmt: on
-FEWER = 1 << 12  # arguments for an engine's functions
+FEWER = 1 << 12  # number of arguments for measuring an engine's functions
 LEAST_LOGARITHM = 1e-4  # smallest argument of measured logarithms
 
 

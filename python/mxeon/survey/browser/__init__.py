@@ -80,7 +80,7 @@ def material(backend: str, **more: str) -> Material:
 
 
 class PackageHost(webgl.Chromium, base.Engine):
-    """Materials of an npm package, drawn by a page. `limit` is the maximum time of one in seconds.
+    """Materials of an npm package, drawn by a page, each in at most `limit` seconds.
 
     The page, an ES module next to the host's, exports `draw(job)`, which returns `pixels` or
     `failed`. `imports` maps names to paths in node_modules; `assets` are PNG files by address.
