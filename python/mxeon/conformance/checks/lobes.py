@@ -300,9 +300,7 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
     spec, views = case.of(PbrSpec), case.backend.views[0]
     row, names = np.arange(len(views.wo))[:, np.newaxis], {"weight", "occlusion"}
     wo = np.where(row == 1, NORMAL, views.wo)
-    wi = np.where(
-        row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi
-    )  # light at the peak of microfacets
+    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # peak of microfacets
     seen = {name: np.maximum(views.inputs[name], LEAST_WEIGHT) for name in names & {*views.inputs}}
     views = replace(views, wo=wo, wi=wi).altered(**seen)
     plain = replace(case, outputs=lambda batch, values: values)
