@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits of models to measured BRDFs, with the uncertainty of each parameter. Needs scipy.
 
-A measured BRDF is a list of pairs of directions with values, or a file of the MERL database.
+A measured BRDF is an array of direction pairs with values, or a file of the MERL database.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ LEAST_ALPHA = 0.02  # narrower lobes cannot be resolved by measurements
 
 @dataclass(frozen=True)
 class FitModel:
-    """A model to fit: `value(wo, wi, color, *scalars)`, shape (N, C), with the input names of `mxeon.model`."""
+    """A model to fit: `value(wo, wi, color, *scalars)`, shape (N, C). Inputs: see `mxeon.model`."""
 
     value: Callable[..., Array]
     scalars: Mapping[
         str, tuple[float, ...]
-    ]  # least and largest value, and starting values of the search
+    ]  # minimum, maximum, then the starting values of the search
 
     @property
     def bounds(self) -> dict[str, tuple[float, float]]:
@@ -56,27 +56,27 @@ __all__ = [
 ]
 
 MISFIT = 1.5  # larger scatter means that the model does not fit data with known errors
-LEAST_SINGULAR = 1e-12  # relative to the largest; smaller ones leave parameters undetermined
-ROUNDED = 1e-24  # squared components of unit vectors up to this are rounding
+LEAST_SINGULAR = 1e-12  # smallest usable singular value, relative to the largest
+ROUNDED = 1e-24  # squared components of unit vectors up to this are rounding errors
 
-UNDETERMINED = "not determined by the data"  # the error is at least the parameter's whole range
+UNDETERMINED = "not determined by the data"  # printed if an error spans the parameter's range
 
 
 @dataclass(frozen=True)
 class Fit:
     """Best-fit parameters of a model for a measured BRDF, with their standard deviations.
 
-    - `values`, `errors`: By input name; `mxeon.model(fit.model)` accepts `**fit.values`: the color (C,),
-      and numbers.
-    - `covariance`: (P, P). The color's channels come first, in the order of `values`; infinite if
-      the data do not determine a parameter.
-    - `scatter`: Root of the mean squared difference from the data, per degree of freedom: in units
-      of `error`, about 1 if model and errors are right; in 1/sr without errors.
+    - `values`, `errors`: The color (C,) and numbers, by input name. The functions of
+      `mxeon.model(fit.model)` accept `**fit.values`.
+    - `covariance`: (P, P), in the order of `values`, one row per channel of the color; infinite for
+      parameters that the data do not determine.
+    - `scatter`: Root of the sum of squared residuals per degree of freedom. If the data have
+      errors, it is in units of `error`, and about 1 for the right model; otherwise in 1/sr.
     - `weighted`: Whether the data had errors.
 
-    If the data have errors, `errors` propagates them, assuming that the model is right: a scatter
-    of 10 means that it is not, and that the parameters are off by more. Without errors of the data, the
-    scatter is used as the error of each value, whether it is noise or misfit.
+    If the data have errors, they are propagated to `errors`, assuming that the model is right. A
+    scatter of 10 means that it is wrong, so the parameters are off by more than `errors`. If the
+    data have no errors, the scatter is used as the error of each value, be it noise or misfit.
     """
 
     model: str
@@ -88,11 +88,11 @@ class Fit:
 
     @property
     def fits(self) -> bool:
-        """Whether the data are compatible with the model: no errors are known, or the scatter is at most 1.5."""
+        """True if the scatter is at most 1.5, or the data have no errors to compare it with."""
         return not self.weighted or self.scatter <= MISFIT
 
     def brdf(self, wo: ArrayLike, wi: ArrayLike) -> Array:
-        """Values of the fitted model in 1/sr, shape (..., C), for directions (..., 3) that broadcast."""
+        """BRDF of the fitted model in 1/sr, shape (..., C); directions (..., 3) broadcast."""
         views, lights = np.broadcast_arrays(*(np.asarray(w, np.float64) for w in (wo, wi)))
         rows = (each.reshape(-1, 3) for each in (views, lights))
         value = FIT_MODELS[self.model].value(*rows, *self.values.values())
@@ -113,23 +113,23 @@ class Fit:
 def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     """Best-fit parameters of a model for a measured BRDF, by least squares.
 
-    - `model`: "eon", with `color` and `roughness`; "varnished", EON below a rough dielectric
-      interface, with `alpha` and `ior` besides; or "dielectric_over_eon", MaterialX's `layer` with
-      the same parameters, with a smaller `color` than that of a pigment under varnish.
+    - `model`: "eon" has `color` and `roughness`. "varnished", EON below a rough dielectric
+      interface, adds `alpha` and `ior`. "dielectric_over_eon", MaterialX's `layer`, has the same
+      parameters as "varnished"; its `color` comes out smaller than that of the pigment.
 
-    Returns the best one of several starts. Raises InputError if the model is unknown; PackageError if scipy, of the `fit` extra, is not
-    installed.
+    The search runs from several starting points; the best fit is returned. Raises InputError if the
+    model is unknown, PackageError if scipy, part of the `fit` extra, is not installed.
 
-    Errors derived from the measured values, such as 2 % of each, bias the fit: values lowered by noise get
-    more weight, and the color comes out too small by about twice the square of the relative error, which can
-    be one standard deviation. Fit twice, the second time with the same fraction of the first fit's
-    `brdf`.
+    Errors derived from the measured values, such as 2 % of each, bias the fit: values lowered by
+    noise get more weight. The color comes out too small by about twice the square of the relative
+    error, which can be one standard deviation. The remedy is to fit twice, the second time with 2 %
+    of the first fit's `brdf` as errors.
 
-    Errors are those of the linearized model: sqrt(diag((J^T J)^-1)), J the derivatives of the differences
-    over the errors of the data, or over 1 without them; then they are multiplied by the scatter, which requires
-    more values than parameters. Undetermined parameters, such as the roughness of a black surface or
-    four parameters of three values, have an infinite or very large error, and are printed without a number.
-    At an end of a parameter's range, errors apply to the interior side.
+    The standard deviations are sqrt(diag((J^T J)^-1)). J is the derivative of the residuals, which
+    are divided by the errors of the data. If the data have no errors, the result is multiplied by
+    the scatter, which requires more values than parameters. Undetermined parameters have infinite
+    or very large errors and are printed without a number: the roughness of a black surface, or four
+    parameters fitted to three values. At an end of a range, errors apply to the interior side.
 
         >>> from mxeon.models import eon_brdf
         >>> wo, wi = np.tile([0.6, 0.0, 0.8], (2, 1)), np.array([[0.0, 0.0, 1.0], [0.8, 0.0, 0.6]])
@@ -164,7 +164,7 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     found = (least_squares(residuals, start, **ends) for start in starts)
     best = min(found, key=lambda each: float(each.cost))
     x = best.x
-    # (J^T J)^-1. Rows of 0 complete the singular vectors if there are fewer values than parameters.
+    # Compute (J^T J)^-1. Rows of 0 complete the singular vectors if values are too few.
     freedom = data.value.size - len(x)
     _, singular, rows = np.linalg.svd(np.pad(best.jac, ((0, max(-freedom, 0)), (0, 0))), False)
     seen = singular > LEAST_SINGULAR * singular[0]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measured BRDFs: pairs of directions with values, and files of the MERL database."""
+"""Measured BRDFs: direction pairs with values, and files of the MERL database."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mxeon.errors import InputError
 from mxeon.io.files import AnyPath, one_name
 from mxeon.models.core.arrays import Array, Numbers
 
-# MERL files: number of cells in theta_h, theta_d and phi_d, and the scale of each channel: [Matusik2003].
+# Format of MERL files: cells along theta_h, theta_d and phi_d; scale per channel. [Matusik2003].
 MERL_CELLS = (90, 90, 180)
 MERL_SCALES = (1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0)
 
@@ -23,8 +23,8 @@ class MeasuredBrdf:
 
     - `wo`, `wi`: (N, 3). Directions to the viewer and to the light, unit vectors, normal +z.
     - `value`: (N, C). BRDF in 1/sr, without the cosine.
-    - `error`: (N, C), or a shape that broadcasts to it. Standard deviation of each value. Without it, all
-      values have the same weight, and their scatter about the fit gives the uncertainty.
+    - `error`: (N, C), or a shape that broadcasts to it. Standard deviation of each value. If None,
+      all values have the same weight, and their scatter about the fit gives the uncertainty.
 
     Raises InputError if the shapes do not match, a value is not finite or an error is not positive.
     """
@@ -65,16 +65,16 @@ def _require(rule: str, array: Numbers, valid: Numbers) -> None:
 
 
 def read_merl(path: AnyPath, step: int = 6) -> MeasuredBrdf:
-    """Values of a file of the MERL database, in red, green and blue.
+    """Measured values from a file of the MERL database: red, green and blue.
 
-    - `path`: Binary file: three integers, and 90 x 90 x 180 numbers for each channel.
-    - `step`: Stride over the cells of each of the three angles, starting at half of it; 1
-      takes all cells.
+    - `path`: Binary file: three integers, then 90 x 90 x 180 numbers for each channel.
+    - `step`: Stride over the cells of each angle; the first cell taken is `step // 2`. With 1, all
+      cells are taken.
 
-    Values are at the centers of the cells, except below the horizon or if marked as unmeasured; the
-    file has no errors. Raises InputError if the file is not from that database.
+    Directions are those of the cell centers. Cells below the horizon and cells marked as unmeasured
+    are skipped. MERL files have no errors. Raises InputError if the file has another format.
 
-    [Matusik2003]; [Rusinkiewicz1998] for the angles.
+    [Matusik2003]; [Rusinkiewicz1998] defines the angles.
     """
     path = one_name("path", path)
     raw = Path(path).read_bytes()
@@ -95,7 +95,7 @@ def read_merl(path: AnyPath, step: int = 6) -> MeasuredBrdf:
 
 
 def merl_directions(theta_h: Array, theta_d: Array, phi_d: Array) -> tuple[Array, Array]:
-    """wo and wi from half and difference angles in radian, with the half vector at azimuth 0.
+    """Directions wo, wi from half and difference angles in radian; the half vector has azimuth 0.
 
     >>> wo, wi = merl_directions(*np.array([[0.0], [0.5 * np.pi / 3.0], [0.0]]))
     >>> wo.round(6), wi.round(6)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EON, FON, QON, a dielectric over EON, and EON under a varnish as BSDF plugins of Mitsuba 3.
+"""BSDF plugins of Mitsuba 3: EON, FON, QON, a dielectric over EON, and EON under a varnish.
 
-Dr.Jit evaluates and differentiates the formulas of `mxeon.models`.
+The plugins evaluate and differentiate the formulas of `mxeon.models` with Dr.Jit.
 """
 
 from __future__ import annotations
@@ -21,11 +21,12 @@ PLUGINS = {
 def register() -> None:
     """Register the BSDFs of `PLUGINS`, such as `eon`, for Mitsuba's current variant.
 
-    `eon` and `fon` have the textures `reflectance` and `roughness`, `qon` has `reflectance` and `sigma`, in radian.
-    `varnished` and `dielectric_over_eon`, MaterialX's `layer`, also have `eon`'s textures, and the numbers `alpha` and
-    `ior`. All are in `mitsuba.traverse` and differentiable. `eon` is sampled
-    exactly for the mean of its reflectance, coated lobes with their facets, `fon` and `qon` by the cosine. Like Mitsuba's
-    `diffuse`, they reflect only on the front.
+    `eon` and `fon` have the textures `reflectance` and `roughness`; `qon` has `reflectance` and
+    `sigma`, in radian. `varnished` and `dielectric_over_eon` (MaterialX's `layer`) add the numbers
+    `alpha` and `ior` to the textures of `eon`. All are in `mitsuba.traverse` and differentiable.
+    Sampling of `eon` is exact for the mean of the reflectance's channels; coated BSDFs also sample
+    visible facets; `fon` and `qon` sample the cosine. Like Mitsuba's `diffuse`, all reflect only on
+    the front.
     """
     mi = mitsuba()
     for name, kind in PLUGINS.items():

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Functions of Dr.Jit by the names of the array API standard, for the formulas of `mxeon.models`.
+"""Dr.Jit's functions under the names of the array API standard, for the formulas of `mxeon.models`.
 
-A Dr.Jit number is an array of values. A direction is an `Array3f`, with the components on its first axis.
+A Dr.Jit number is an array of values. A direction is an `Array3f`, components on the first axis.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def register_functions() -> None:
     drjit = import_module("drjit")
 
     def log1p(x: Array) -> Array:
-        u = 1.0 + x  # the quotient cancels its rounding
+        u = 1.0 + x  # the quotient log(u) / (u - 1) cancels the rounding of u
         rounded = drjit.log(u) * (x / drjit.select(u == 1.0, 1.0, u - 1.0))
         return cast(Array, drjit.select(u == 1.0, x, rounded))
 
@@ -31,7 +31,7 @@ def register_functions() -> None:
 
 
 def vector(parts: Sequence[Array]) -> Array:
-    """`Array2f`, `Array3f` or `Array4f` of Dr.Jit numbers."""
+    """Dr.Jit numbers stacked into an `Array2f`, `Array3f` or `Array4f`."""
     kind = type(parts[0])
     name = f"Array{len(parts)}f{'64' * kind.__name__.endswith('64')}"
     return cast(Array, getattr(import_module(kind.__module__), name)(*parts))

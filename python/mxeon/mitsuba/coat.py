@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A dielectric over EON as a BSDF of Mitsuba; see `mxeon.models.coat`.
+"""Coats over EON as BSDFs of Mitsuba: a dielectric and a varnish; see `mxeon.models.coat`.
 
-The dielectric's albedo depends only on a cosine: a cubic in each part of an octave, whose coefficients are computed in
-float64 whenever `alpha` or `ior` changes, with derivatives if they have gradients.
+The albedo of the interface depends only on a cosine. A change of `alpha` or `ior` tabulates it as
+a cubic per part of an octave, in float64; gradients of these two reach the coefficients.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ STEP = 1e-4  # step for finite differences of the coefficients
 
 
 class CoatPlugin(EonPlugin):
-    """EON under a dielectric, sampled by their albedos."""
+    """EON under a dielectric. Sampling chooses each lobe in proportion to its albedo."""
 
-    # Default and range of each number of the whole surface.
+    # Default, minimum and maximum of the parameters that are constant over the surface.
     numbers: ClassVar[dict[str, tuple[float, ...]]] = {
         "alpha": (0.05, *ALPHAS),
         "ior": (1.5, *IORS),
     }
     interface: Callable[[float, float], Any] = staticmethod(constant_coat)
-    count = 2  # number of curves
+    count = 2  # number of tabulated curves
 
     def configure(self, properties: Mitsuba) -> None:
         EonPlugin.configure(self, properties)
@@ -72,7 +72,7 @@ class CoatPlugin(EonPlugin):
         self.tabulate()
 
     def tabulate(self) -> None:
-        """Compute the coefficients, linearized about the values of numbers with gradients."""
+        """Compute the table, linearized in each parameter that has a gradient."""
         numbers = self._inside("alpha"), self._inside("ior")
         values = [float(np.array(self.dr.detach(each)).item()) for each in numbers]
         self.coat, self.average = self.interface(*values), dielectric_avg(numbers[1])
@@ -137,7 +137,7 @@ class CoatPlugin(EonPlugin):
     def _share(
         self, context: Mitsuba, si: Mitsuba, rho: Mitsuba, amount: Mitsuba, active: Mitsuba
     ) -> Mitsuba:
-        """Probability of the glossy lobe: its part of the albedo."""
+        """Probability of sampling the glossy lobe: its share of the albedo."""
         enabled = self._enabled(context)
         if not all(enabled):
             return self.mi.Float(enabled[0])
@@ -147,31 +147,31 @@ class CoatPlugin(EonPlugin):
         return reflected / self.dr.maximum(reflected + self.mi.Float(base), 1e-30)
 
     def _facets(self, view: Mitsuba, light: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        """Value of perfectly reflecting facets, and their cosine with either direction."""
+        """BRDF of perfectly reflecting facets, and the cosine wo . wh = wi . wh."""
         wh, c = ggx.half_vector(self._vector(view), self._vector(light))
         visibility = ggx.visibility(view.z, light.z, self._inside("alpha"))
         return ggx.ndf(wh, self._roughness()) * visibility, c
 
     def _at(self, mu: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        """Missing energy of the facets, (1 - E_ss) / E_ss, and the albedo of the dielectric."""
+        """Missing energy of the facets, (1 - E_ss) / E_ss, and albedo of the dielectric, at mu."""
         missing, reflected = self._curves(mu)
         return self.dr.maximum(missing, 0.0), self.dr.clip(reflected, 0.0, 1.0)
 
     def _curves(self, mu: Mitsuba) -> list[Mitsuba]:
-        """Curves of the interface at a cosine; scalar variants sum Chebyshev polynomials."""
+        """Curves of the interface at mu, from the table or, in scalar variants, from polynomials."""
         if not self._compiled:
             return list(self.coat.at(mu))
         cell, x = octave_cells(mu)
         return [gather_cubic(self.table, self.count * cell + k, x) for k in range(self.count)]
 
     def _rows(self, values: list[float]) -> Array:
-        """Table of the curves, cell by cell, and of the interface's means."""
+        """Table of the curves, cell by cell, followed by the means of a varnish."""
         coat = self.interface(*values)
         rows = [octave_cubics(partial(_curve, coat, k)) for k in range(self.count)]
         return np.append(np.stack(rows, axis=1), getattr(coat, "means", ()))
 
     def _slopes(self, values: list[float], k: int) -> Array:
-        """Derivatives of the table by number `k`, by finite differences within its range."""
+        """Derivatives of the table by parameter `k`: finite differences that stay in its range."""
         low, high = (ALPHAS, IORS)[k]
         ends = [min(max(values[k] + step, low), high) for step in (STEP, -STEP)]
         rows = [self._rows([end if n == k else v for n, v in enumerate(values)]) for end in ends]
@@ -181,11 +181,11 @@ class CoatPlugin(EonPlugin):
         return (self._inside("alpha"),) * 2
 
     def _inside(self, name: str) -> Mitsuba:
-        """A number, clamped: an optimizer may have left the range."""
+        """The parameter clamped to its range, which an optimizer may have left."""
         return self.dr.clip(getattr(self, name), *self.numbers[name][1:])
 
     def _vector(self, w: Mitsuba) -> Mitsuba:
-        """Direction for the formulas; scalar variants use NumPy."""
+        """A direction as the formulas expect it: a NumPy array in scalar variants."""
         return w if self._compiled else np.array([w.x, w.y, w.z])
 
     @property
@@ -198,7 +198,7 @@ def _curve(coat: Coat | Varnish, k: int, mu: Array) -> Array:
 
 
 class VarnishPlugin(CoatPlugin):
-    """EON below a rough dielectric interface, sampled by facets or by the cosine."""
+    """EON below a rough dielectric interface. Samples come from visible facets or the cosine."""
 
     interface: Callable[[float, float], Any] = staticmethod(constant_varnish)
     count = 3
@@ -227,7 +227,7 @@ class VarnishPlugin(CoatPlugin):
     def _share(
         self, context: Mitsuba, si: Mitsuba, rho: Mitsuba, amount: Mitsuba, active: Mitsuba
     ) -> Mitsuba:
-        """Probability of the facets: their part of the albedo."""
+        """Probability of sampling the facets: their share of the albedo."""
         enabled = self._enabled(context)
         if not all(enabled):
             return self.mi.Float(enabled[0])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """EON, FON and QON as BSDFs of Mitsuba.
 
-Mitsuba's `si.wi` points to the viewer and `wo` to the light: wo and wi in this project.
+Mitsuba's `si.wi` points to the viewer and is wo in this project; its `wo` points to the light: wi.
 """
 
 from __future__ import annotations
@@ -17,24 +17,24 @@ from mxeon.mitsuba.arrays import register_functions
 from mxeon.models import diffuse as formulas
 from mxeon.models import sampling
 
-# Objects of Mitsuba and Dr.Jit, whose types depend on the variant.
+# Any object of Mitsuba or Dr.Jit; their types depend on the variant.
 Mitsuba: TypeAlias = Any
 
-# LLVM 15 and older crash on the code of Dr.Jit 1.5 for a minimum.
+# LLVM 15 and older crash on the code that Dr.Jit 1.5 generates for a minimum.
 OLDEST_LLVM = (16, 0, 0)
 
 
 def register_plugin(mi: Mitsuba, name: str, kind: type) -> None:
-    """Register a BSDF with the methods of a class for the current variant."""
+    """Register a BSDF for the current variant; a class provides its methods."""
     members: dict[str, Any] = {"__init__": _initialize, "mi": mi, "dr": import_module("drjit")}
-    # A subclass of Mitsuba's classes must have only one base: copy the members.
+    # Mitsuba's classes cannot be combined with other base classes, so the members are copied.
     for each in reversed(kind.__mro__):
         members |= {n: member for n, member in vars(each).items() if not n.startswith("__")}
     mi.register_bsdf(name, type(name, (mi.BSDF,), members))
 
 
 def mitsuba() -> Mitsuba:
-    """Mitsuba with a variant that runs here."""
+    """Import Mitsuba and check that a variant is set and can run with the installed LLVM."""
     try:
         mi = import_module("mitsuba")
     except ModuleNotFoundError:
@@ -58,13 +58,13 @@ def _initialize(self: Mitsuba, properties: Mitsuba) -> None:
 
 
 class RoughDiffusePlugin:
-    """Methods of a Mitsuba BSDF with a reflectance and a parameter in [0, `largest`]."""
+    """Methods of a Mitsuba BSDF with a reflectance and one parameter in [0, `largest`]."""
 
     mi: Mitsuba
     dr: Mitsuba
     parameter = "roughness"
     largest = 1.0
-    brdf: Callable[..., Mitsuba]  # one channel, in 1/sr, of mu_o, mu_i, s, rho, amount
+    brdf: Callable[..., Mitsuba]  # brdf(mu_o, mu_i, s, rho, amount) of one channel, in 1/sr
 
     def configure(self, properties: Mitsuba) -> None:
         if self.parameter in properties:
@@ -134,11 +134,11 @@ class RoughDiffusePlugin:
         return self.mi.Bool(active) & wanted & (view.z > 0.0) & (light.z > 0.0)
 
     def _clipped(self, amount: Mitsuba) -> Mitsuba:
-        """The parameter, clamped: an optimizer may have left the range."""
+        """The parameter clamped to its range, which an optimizer may have left."""
         return self.dr.clip(amount, 0.0, self.largest)
 
     def _gray(self, si: Mitsuba, active: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        """The reflectance for which sampling is exact, and the parameter."""
+        """Mean of the reflectance's channels, for which sampling is exact, and the parameter."""
         rho = self.dr.mean(self.reflectance.eval(si, active))
         return self.dr.clip(rho, 0.0, 1.0), self._clipped(self.amount.eval_1(si, active))
 
@@ -148,24 +148,24 @@ class RoughDiffusePlugin:
         return type(color)(*map(self.mi.Float, channels))
 
     def _density(self, view: Mitsuba, light: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> Mitsuba:
-        """Density of `_draw`: by the cosine."""
+        """Density of `_draw` in 1/sr: mu_i / pi."""
         return light.z * self.dr.inv_pi
 
     def _draw(
         self, view: Mitsuba, choice: Mitsuba, u: Mitsuba, rho: Mitsuba, amount: Mitsuba
     ) -> Mitsuba:
-        """Direction to the light: by its cosine."""
+        """Direction to the light, sampled with a density proportional to its cosine."""
         return self.mi.warp.square_to_cosine_hemisphere(u)
 
 
 class FonPlugin(RoughDiffusePlugin):
-    """FON, sampled by the cosine."""
+    """FON; samples follow the cosine."""
 
     brdf = staticmethod(formulas.fon_brdf_mu)
 
 
 class QonPlugin(RoughDiffusePlugin):
-    """QON, sampled by the cosine."""
+    """QON; samples follow the cosine."""
 
     parameter = "sigma"
     largest = 0.5 * np.pi
@@ -173,7 +173,7 @@ class QonPlugin(RoughDiffusePlugin):
 
 
 class EonPlugin(RoughDiffusePlugin):
-    """EON, sampled exactly; see `mxeon.models.sampling`."""
+    """EON; samples follow BRDF times cosine exactly, see `mxeon.models.sampling`."""
 
     brdf = staticmethod(formulas.eon_brdf_mu)
 
@@ -184,7 +184,7 @@ class EonPlugin(RoughDiffusePlugin):
     def _draw(
         self, view: Mitsuba, choice: Mitsuba, u: Mitsuba, rho: Mitsuba, amount: Mitsuba
     ) -> Mitsuba:
-        """Direction from one of the four parts, drawn as `eon_draw` does it."""
+        """Direction sampled from one of EON's four parts, with the method of `eon_draw`."""
         dr, number = self.dr, self.mi.Float
         mu_o, S_o = view.z, dr.safe_sqrt(view.x * view.x + view.y * view.y)
         lower, upper, multiple, flat = sampling.eon_integrals(mu_o, S_o, rho, amount)
@@ -198,7 +198,7 @@ class EonPlugin(RoughDiffusePlugin):
         mu_upper = number(sampling.eon_upper_cosine(v**0.4, mu_o, limit))
         mu_multiple = number(sampling.eon_multiple_cosine(dr.cbrt(v)))
         mu = dr.select(is_lower, mu_lower, dr.select(is_towards, mu_upper, mu_multiple))
-        # Draw an azimuth relative to wo: towards it, uniform, or by the chord of the disk.
+        # Azimuth from wo: toward wo in the lower and upper parts, uniform in the multiple part.
         S, (sine, cosine) = dr.safe_sqrt((1.0 - mu) * (1.0 + mu)), dr.sincos(2.0 * dr.pi * u2)
         ahead = dr.select(is_towards, 2.0 * dr.safe_sqrt(u2 * (1.0 - u2)), cosine)
         aside = dr.select(is_towards, 2.0 * u2 - 1.0, sine)

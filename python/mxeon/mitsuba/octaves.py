@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Curves over (0, 1] as cubics in parts of octaves, for Dr.Jit.
+"""Curves over (0, 1] as piecewise cubics for Dr.Jit. Each octave is divided into equal parts.
 
-The bits of a float32 give the part without a logarithm. Octaves resolve curves at any scale, such as the albedo of
-facets, which depends on cosine / alpha.
+The bits of a float32 give the index of the part without a logarithm. Octaves resolve curves at any
+scale, such as the albedo of facets, which depends on cosine / alpha.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from mxeon.mitsuba.arrays import vector
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.chebyshev import chebyshev_nodes
 
-OCTAVES, PARTS = 126, 16  # down to the smallest normal float32; parts of each
-LOWER_BITS = 19  # bits of a float32 below octave and part
+OCTAVES, PARTS = 126, 16  # octaves from the smallest normal float32 to 1; parts per octave
+LOWER_BITS = 19  # bits of a float32 below those that give octave and part
 MIDDLE = 1.5  # middle of the octave that starts at 1
 
 
 def octave_cells(x: Array) -> tuple[Array, Array]:
-    """Index of a number's part, and its distance from the octave's middle relative to the octave."""
+    """Index of the part that contains x, and (x - middle) / start of the octave."""
     drjit = import_module("drjit")
     integer, single = drjit.uint32_array_t(type(x)), drjit.float32_array_t(type(x))
     x = drjit.maximum(x, 2.0**-OCTAVES)
     inside = drjit.minimum(drjit.detach(x), 1.0 - 2.0**-24)
     bits = drjit.reinterpret_array(integer, single(inside))
-    # Divide by the start of the octave, whose exponent is known.
+    # Reciprocal of the octave's start, a power of two, from the exponent bits.
     scale = type(x)(drjit.reinterpret_array(single, 0x7F000000 - (bits & 0x7F800000)))
     return (bits >> LOWER_BITS) - PARTS, drjit.fma(x, scale, -MIDDLE)
 
 
 def octave_cubics(curve: Callable[[Array], Array]) -> Array:
-    """Coefficients of cubics through four points of a curve in each part, lowest first, shape (parts, 4)."""
+    """Coefficients of a cubic through four points per part of a curve, (parts, 4), constant first."""
     places = 1.0 + (np.arange(PARTS)[:, np.newaxis] + np.sort(chebyshev_nodes(4))) / PARTS
     octaves = 2.0 ** np.arange(-OCTAVES, 0)[:, np.newaxis, np.newaxis]
     powers = np.linalg.inv(np.vander((places - MIDDLE).ravel(), 4, True).reshape(-1, 4, 4))
@@ -43,7 +43,7 @@ def octave_cubics(curve: Callable[[Array], Array]) -> Array:
 
 
 def gather_cubic(table: Array, cell: Array, x: Array) -> Array:
-    """Value of a cell's cubic, whose four coefficients are rows of a table."""
+    """Value at x of a cell's cubic; each row of the table has the four coefficients of a cell."""
     drjit = import_module("drjit")
     c = drjit.gather(type(vector([x] * 4)), table, cell)
     return cast(Array, drjit.fma(drjit.fma(drjit.fma(c.w, x, c.z), x, c.y), x, c.x))
