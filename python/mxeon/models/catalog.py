@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every model by its name, as one object.
+"""All models by name, each as one `ShadingModel`.
 
-Inputs have MaterialX's names, order, units and defaults, which may differ from the functions of `mxeon.models`.
+Inputs have MaterialX's names, order, units and defaults. The functions of `mxeon.models` may use
+others.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ def _sphere_pdf(wo: Array, wi: Array, inputs: Inputs) -> Array:
 
 
 def _mirrored(w: Array) -> Array:
-    """Directions on the other side of the surface."""
+    """Directions mirrored to the other side of the surface."""
     return array_namespace(w).stack([w[..., 0], w[..., 1], -w[..., 2]], axis=-1)
 
 
@@ -71,7 +72,7 @@ GGX = ModelSampler(
 )
 SPHERE = ModelSampler(_sphere_sample, _sphere_pdf, side=None)
 FACETS = ("dielectric", "conductor", "schlick")
-# Models that are not listed use COSINE.
+# Samplers by the name of the model; models that are not listed use COSINE.
 SAMPLERS = {
     "translucent": BACK,
     "hair": SPHERE,
@@ -81,17 +82,17 @@ SAMPLERS = {
 }
 
 
-# The model of each node in its default mode.
+# Node category to the name of the model for its default mode.
 NODES_BY_CATEGORY = {
     "oren_nayar_diffuse_bsdf": "qon",
     "eon_diffuse_bsdf": "eon",
     "generalized_schlick": "schlick",
-    # Reversed, so that a node's first mode wins.
+    # The order is reversed so that the first mode of a node overwrites its later modes.
     **{row.category: row.name for row in reversed((*PBR_NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }
 
 
-# Other names of models, suggested in messages about an unknown name.
+# Other names of models; messages about an unknown name use them to suggest a model.
 ALSO = {
     **dict.fromkeys(("dielectric", "conductor", "schlick"), "ggx"),
     "burley": "disney",
@@ -102,10 +103,10 @@ ALSO = {
 def model(name: str) -> ShadingModel:
     """The model with this name: a rough diffuse model, a known variant of one, or a node of pbrlib.
 
-    - `name`: One of `model_names()`, such as "eon", "dielectric" or "zeltner", or the category of a node, such
-      as "conductor_bsdf", for its default mode.
+    - `name`: One of `model_names()`, such as "eon", "dielectric" or "zeltner". The category of a
+      node, such as "conductor_bsdf", selects the node's default mode.
 
-    Raises `ValueError` if there is none, with similar names.
+    Raises `ValueError`, which suggests similar names, if the name is unknown.
 
         >>> gold = model("conductor")
         >>> gold
@@ -145,11 +146,11 @@ def _of_node(row: PbrNode) -> ShadingModel:
 
 
 def _of_transmission(row: PbrNode) -> ShadingModel:
-    """The model of a node in scatter mode T or RT, of radiance."""
+    """The model of a node in scatter mode T or RT, with values for radiance."""
     passing, mode = TRANSMISSIONS[row.category], row.fixed["scatter_mode"]
     reflected = row.integral or row.albedo
 
-    # Light from above is reflected, light from below transmitted.
+    # Light from above is reflected; light from below is transmitted.
     def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
         if mode == "T":
             return passing.value(wo, wi, inputs)
@@ -158,7 +159,7 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
         front = row.value(wo, xp.stack([x, y, xp.abs(z)], axis=1), inputs)
         return xp.where(z[:, np.newaxis] < 0.0, back, front)
 
-    # A BTDF of radiance integrates to the transmitted share over the squared index.
+    # The integral of a BTDF for radiance is the transmitted share divided by the squared index.
     def albedo(wo: Array, inputs: Inputs) -> Array:
         ior = passing.ior(inputs)[:, np.newaxis]
         ior = array_namespace(ior).maximum(ior, LEAST_IOR)
@@ -174,7 +175,7 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
 
 
 def _over_eon(name: str, title: str) -> ShadingModel:
-    """The model of an interface over EON; `alpha` is the roughness of the interface."""
+    """The model of an interface over EON; `alpha` is the interface's roughness."""
     inputs = (
         parameter("oren_nayar_diffuse_bsdf", "color", "rho"),
         parameter("oren_nayar_diffuse_bsdf", "roughness"),
@@ -205,16 +206,16 @@ def _over_eon(name: str, title: str) -> ShadingModel:
 def _per_coat(
     function: Callable[..., Array | tuple[Array, Array]], inputs: Inputs, *vectors: Array
 ) -> tuple[Array, ...]:
-    """Results (one or two) of a function that takes one coat, for rows that each have their own coat.
+    """Apply a function that accepts only one coat to rows with different coats.
 
-    The numbers of the coat are the last two inputs.
+    The last two inputs are `alpha` and `ior` of the coat. Returns one array or two.
     """
 
     def results(*given: Array) -> tuple[Array, ...]:
         found = function(*given)
         return found if isinstance(found, tuple) else (found,)
 
-    # A single call suffices for one coat, or if the function must reject several.
+    # One coat needs a single call. Other libraries' arrays also take it: functions reject several.
     *others, alpha, ior = (*vectors, *inputs.values())
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
         numbers = (each[0] if len(each) == 1 else each for each in (alpha, ior))

@@ -1,64 +1,65 @@
 # SPDX-License-Identifier: Apache-2.0
 """Coats over EON: a dielectric and a varnish.
 
-The dielectric reflects E_r of the light, and EON gets the rest, as `layer` of the specification says:
+**A dielectric** reflects a share E_r of the light, and EON receives the rest. The specification
+defines this as `layer`:
 
     f = f_r + (1 - E_r(mu_o)) f_EON,  E = E_r + (1 - E_r) E_EON
 
-E_r, with the energy compensation, is at most the albedo of facets that reflect everything, and so
-at most 1. This is not a varnish: the light that EON returns leaves without loss, while a real
-interface reflects and refracts it on its way out. Compared with random walks below the same
-interface, the albedo is up to 2.2 times too high, and 1.04 to 1.84 times at index 1.5 and rho 0.2:
-tools/fits/varnish_walk.py. `varnished_brdf` has both effects in closed form.
+E_r includes the energy compensation. It is at most the albedo of perfectly reflecting facets, hence
+at most 1. This is not a varnish: light that EON returns leaves without loss, while a real interface
+reflects and refracts it on its way out. Compared with random walks below the same interface
+(tools/fits/varnish_walk.py), the albedo is up to 2.2 times too high, and 1.04 to 1.84 times at
+index 1.5 and rho 0.2. `varnished_brdf` models both effects in closed form.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
 - `u` (..., 2): Independent uniform random numbers, in [0, 1). The first one also chooses the lobe.
 - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
 - `rho` (..., C): Reflectance of EON per channel, in [0, 1]; a number is one channel.
 - `roughness` (...): Roughness of EON, in [0, 1].
-- `alpha`, `ior`: GGX roughness of the dielectric, in [0.01, 1], and its index of refraction, in [1, 4]: one number
-  each for all pairs.
+- `alpha`: GGX roughness of the interface, in [0.01, 1]; one number for all pairs.
+- `ior`: Index of refraction of the interface, in [1, 4]; one number for all pairs.
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
-For a single dielectric, albedo and energy compensation only depend on the viewer's cosine: one integral at
-some cosines, interpolated.
+With constant alpha and ior, albedo and energy compensation depend only on the viewer's cosine. They
+are integrated at 40 cosines and interpolated.
 
-**A varnish**: EON below a rough dielectric interface, with its exits and internal reflections. The
-interface reflects f_r and passes T = 1 - E_r, which reaches EON along refracted directions w'. At
-each pass, the interface reflects a share R of the light from EON back to it. The first pass keeps
-EON's value f_b; the others keep its mean, as in the sum of [Saunderson1942], here for a base whose
-albedo depends on direction:
+**A varnish** is EON below a rough dielectric interface that also acts on light on its way out. The
+interface reflects f_r and transmits T = 1 - E_r, which reaches EON along refracted directions w'. It
+reflects a share R of the light from EON back down, again and again. EON's first reflection uses its
+value f_b, later ones use its mean. This is the sum of [Saunderson1942] for a base whose albedo
+depends on direction:
 
     f = f_r + T(mu_o) T(mu_i) / n^2 [f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))]       (1)
     w' = (x / n, y / n, mu'),  mu'^2 = mu^2 + (1 - mu^2) (1 - 1 / n^2)
     R = 1 - (1 - <E_r>) / n^2
     E = E_r + T [E_b(mu') - R k (1 - <E_b>_R) / (1 - R <k>)]                                     (2)
 
-n is the index and E_b EON's albedo. k is pi times the mean of f_b, and `<>_R` any mean, over the light that the
-interface reflects back: all of it beyond the critical angle, and a share E_r within. R needs no albedo from inside,
-since an interface that loses nothing is reciprocal: n^2 (1 - R) = 1 - `<E_r>`. (2) integrates (1), as
-T mu dw = n^2 T mu' dw'. At rho = 1 it is 1, and at index 1 (1) is EON to the last bit. With A, D and c1, c2 of
-[Portsmouth2025], r its roughness, H of `fon_loss` and the weight W of H H in EON,
+n is the index and E_b the albedo of EON. `<>_R` is a mean over the light that the interface reflects back: all of
+the light beyond the critical angle, and a share E_r within it. k is pi times the mean of f_b over that light. R
+needs no albedo from inside, because a lossless interface is reciprocal: n^2 (1 - R) = 1 - `<E_r>`. (2) is the
+integral of (1), since T mu dw = n^2 T mu' dw'. At rho = 1, (2) is 1; at index 1, (1) is EON to the last bit. A, c1
+and c2 are defined in [Portsmouth2025]; r is EON's roughness, H is `fon_loss`, W is the weight of H H in EON:
 
     k = rho A (1 + r b + W H(mu') <H>_R),  b(mu) = <s / t>_R,  <k> = rho A (1 + r <b>_R + W <H>_R^2)
 
-Facets reflect onto each other with their mean reflectance F = E_single / E_ss, which makes f reciprocal:
+Light reflected between facets is scaled by their mean reflectance F = E_single / E_ss, so f is reciprocal:
 
     E_r = E_single + D,  D = F^2 (1 - E_ss),  f_r = f_single + D(mu_o) D(mu_i) / (pi <D>)
 
-Three things are approximate: the mean shape of all passes but the first, D, and directions that
+Three parts are approximate: the mean used after EON's first reflection, D, and directions, which
 refract as at a smooth surface. Compared with random walks (tools/fits/varnish_walk.py: index 1.1 to
 2, alpha 0.05 to 0.7, rho 0 to 1, r 0 and 1, cosines 0.05 to 1), the albedo is off by at most 0.012,
-and exact at rho 1; the light that EON returns into a twelfth of the hemisphere is 0.95 to 1.05
+and exact at rho 1. The light that EON returns into a twelfth of the hemisphere is 0.95 to 1.05
 times the walk's at r 0, and 0.79 to 1.15 times at r 1. (2) is the integral of (1) to 1e-6, and to
 1e-4 at alpha 0.01 and index near 1.
 
-The base is EON, which is Lambert at r = 0: k and `<k>` have closed forms for its shape. Another
-base would need its own. The sum that works for any base, with its albedo for k and its mean albedo
-for `<k>`, is not the integral of (1); over the same domain it changes EON's albedo by up to 0.004
-at r 1/2, and 0.0075 at r 1.
+k and `<k>` have closed forms for EON, and so for Lambert, which is r = 0. Another base would need
+its own. A sum for any base would use the base's albedo as k and its mean albedo as `<k>`. It is not
+the integral of (1); over the same domain it changes EON's albedo by up to 0.004 at r 1/2, and
+0.0075 at r 1.
 """
 
 from __future__ import annotations
@@ -85,16 +86,16 @@ from mxeon.models.microfacet.fresnel import dielectric, dielectric_avg
 from mxeon.models.microfacet.slopes import slope_nodes
 from mxeon.models.sampling import unpack_uniforms
 
-CURVE_NODES = 40  # Chebyshev nodes per curve, in `scaled_cosine`
-KEPT = 64  # interfaces in the cache
+CURVE_NODES = 40  # Chebyshev nodes per curve of a `Coat`
+KEPT = 64  # maximum interfaces in a cache
 
 
 @dataclass(frozen=True)
 class Coat:
     """A dielectric's curves over the viewer's cosine.
 
-    - `alpha`, `average`: GGX roughness, which sets the scale of the cosine, and F_ss.
-    - `missing`, `reflected`: Coefficients of (1 - E_ss) / E_ss and of E_r.
+    - `alpha`, `average`: GGX roughness, which scales the cosine, and average reflectance F_ss.
+    - `missing`, `reflected`: Chebyshev coefficients of (1 - E_ss) / E_ss and of E_r.
     """
 
     alpha: float | Array
@@ -103,7 +104,7 @@ class Coat:
     reflected: list[float] | Array
 
     def at(self, mu: Array) -> tuple[Array, Array]:
-        """(1 - E_ss) / E_ss, and E_r, both at least 0."""
+        """Values at a cosine: (1 - E_ss) / E_ss, at least 0, and E_r, in [0, 1]."""
         x = scaled_cosine(mu, self.alpha)
         missing, reflected = (
             arrays.at_least_0(chebyshev_sum(cast(Array, each), x))
@@ -113,19 +114,19 @@ class Coat:
 
 
 def scaled_cosine(mu: Array, alpha: float | Array) -> Array:
-    """Cosine on the scale of the curves, x = (asinh(mu / alpha) / asinh(1 / alpha))^(1/3) in [0, 1].
+    """Argument of the curves, x = (asinh(mu / alpha) / asinh(1 / alpha))^(1/3) in [0, 1].
 
-    The cube root spreads terms like mu log(mu) at 0.
+    The cube root makes terms like mu log(mu) smooth enough for polynomials near 0.
     """
     extent = array_namespace(alpha).asinh(1.0 / alpha)
     return arrays.power(array_namespace(mu, alpha).asinh(mu / alpha) / extent, 1.0 / 3.0)
 
 
 def coat_curves(alpha: Array, ior: Array) -> Array:
-    """Coefficients of the curves of a `Coat`, shape (CURVE_NODES, 2).
+    """Chebyshev coefficients of both curves of a `Coat`, shape (CURVE_NODES, 2).
 
-    Accuracy: error of the curves below 2e-7 for alpha >= 0.01 and ior in [1, 4]; the slopes at
-    grazing contribute 5e-8 of it.
+    Accuracy: error of the curves below 2e-7 for alpha >= 0.01 and ior in [1, 4]. Of this, 5e-8
+    comes from the integral over slopes at grazing.
     """
     xp, x = array_namespace(alpha), like(chebyshev_nodes(CURVE_NODES), alpha)
     mu, _ = cosine_at(alpha, x)
@@ -141,7 +142,7 @@ def coat_curves(alpha: Array, ior: Array) -> Array:
 
 @lru_cache(maxsize=KEPT)
 def constant_coat(alpha: float, ior: float) -> Coat:
-    """Cached curves of a dielectric with constant inputs."""
+    """Curves of a dielectric with constant inputs, from a cache."""
     index = np.asarray(ior)
     return Coat(
         alpha, float(dielectric_avg(index)), *coat_curves(np.asarray(alpha), index).T.tolist()
@@ -150,7 +151,7 @@ def constant_coat(alpha: float, ior: float) -> Coat:
 
 @any_array
 def coat_of(alpha: ArrayLike, ior: ArrayLike) -> Coat:
-    """Curves of a dielectric, checked. Arrays of other libraries keep gradients and are not cached."""
+    """Curves of a dielectric; checks alpha and ior. Other libraries' arrays bypass the cache."""
     numbers = {
         name: arguments.checked(name, value, f"coat_{name}")
         for name, value in (("alpha", alpha), ("ior", ior))
@@ -166,7 +167,7 @@ def coat_of(alpha: ArrayLike, ior: ArrayLike) -> Coat:
     return Coat(numbers["alpha"], dielectric_avg(numbers["ior"]), rows[:, 0], rows[:, 1])
 
 
-AVERAGED = 32  # nodes of the average over the viewer's cosine
+AVERAGED = 32  # quadrature nodes of an average over the viewer's cosine
 
 
 @any_array
@@ -177,9 +178,9 @@ def dielectric_over_eon_brdf(
 
         f = f_r + (1 - E_r(mu_o)) f_EON
 
-    Result (..., C): 1/sr; not reciprocal, as compensation and layering depend on wo only. Accuracy: E_r and the compensation,
-    which the first call for a dielectric tabulates, have an error below 2e-7. [MaterialX2026], sections
-    `layer` and Energy Compensation; [Portsmouth2025], Eq. (19).
+    Result (..., C): 1/sr. Not reciprocal: compensation and layering depend on wo only. Accuracy:
+    E_r and the compensation have errors below 2e-7; the first call for a dielectric tabulates both.
+    [MaterialX2026], sections `layer` and Energy Compensation; [Portsmouth2025], Eq. (19).
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> dielectric_over_eon_brdf(wo, wi, [0.7, 0.1], 0.5, 0.3, 1.5).round(5)
@@ -217,8 +218,8 @@ def dielectric_over_eon_albedo_avg(
 ) -> Array:
     """Average of `dielectric_over_eon_albedo_dir` over the viewer's directions, weighted by the cosine.
 
-    Result (..., C). Accuracy: error below 2e-7. EON's albedo falls linearly, from its value at
-    grazing, with FON's loss: only the mean loss of the light that the dielectric transmits matters.
+    Result (..., C). Accuracy: error below 2e-7. EON's albedo is linear in FON's loss H, so only the
+    mean of H over the light that the dielectric transmits is integrated.
 
         >>> dielectric_over_eon_albedo_avg([0.7, 1.0], 0.5, 0.3, 1.5).round(5)
         array([0.69645, 1.     ])
@@ -241,9 +242,9 @@ def dielectric_over_eon_albedo_avg(
 def mixed_sample(
     wo: ArrayLike, u: ArrayLike, alpha: float, share: Array, base: Callable[[Array], Array]
 ) -> Array:
-    """Direction reflected by a facet with probability `share`, or drawn by `base`.
+    """Direction reflected by a facet with probability `share`, otherwise sampled by `base`.
 
-    u1 makes the choice and is then rescaled to [0, 1).
+    u1 makes this choice and is then rescaled to [0, 1).
     """
     xp = array_namespace(share)
     u1, u2 = unpack_uniforms(u)
@@ -258,7 +259,7 @@ def mixed_sample(
 def mixed_pdf(
     wo: ArrayLike, wi: ArrayLike, alpha: float, share: Array, base_pdf: Callable[[Array], Array]
 ) -> Array:
-    """Density of `mixed_sample`."""
+    """Density of `mixed_sample` at `wi`, in 1/sr."""
     light = arguments.checked_triples("wi", wi)
     xp, z = array_namespace(light), light[..., 2]
     upper = xp.stack([light[..., 0], light[..., 1], arrays.magnitude(z)], axis=-1)
@@ -295,12 +296,12 @@ def dielectric_over_eon_sample(
     alpha: float,
     ior: float,
 ) -> tuple[Array, Array]:
-    """Direction reflected by a visible facet or drawn for EON, chosen by their albedos, and its density.
+    """Direction sampled from the visible facets or from EON, and its density.
 
-    `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr:
-    the sum of both lobes' densities, each times its probability. The dielectric is
-    chosen with probability E_r / E at the mean of the channels. The weight of a sample is the mean
-    of those of both lobes alone, of which EON's is E for gray. [Dupuy2023].
+    `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr,
+    the sum of both lobes' densities, each times its probability. The facets are chosen with
+    probability E_r / E at the mean of rho's channels. A sample's weight f mu_i / pdf lies between
+    the weights that the two lobes have alone; EON's is E for a gray rho. [Dupuy2023].
 
         >>> wi, pdf = dielectric_over_eon_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.7, 0.5, 0.3, 1.5)
         >>> wi.round(5), round(float(pdf), 5)
@@ -324,7 +325,7 @@ def dielectric_over_eon_pdf(
 
         pdf = p pdf_GGX + (1 - p) pdf_EON,  p = E_r / (E_r + (1 - E_r) E_EON)
 
-    Its integral over the upper hemisphere is the probability that no sample is wasted.
+    Its integral over the upper hemisphere is the probability that a sample is not wasted.
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> round(float(dielectric_over_eon_pdf(wo, wi, 0.7, 0.5, 0.3, 1.5)), 5)
@@ -336,18 +337,18 @@ def dielectric_over_eon_pdf(
 
 
 def _facet_share(mu: Array, rho: Array, roughness: ArrayLike, of: Coat) -> Array:
-    """E_r / E for a gray rho; 0 where nothing is reflected."""
+    """Probability E_r / E of sampling the facets, for a gray rho; 0 if nothing is reflected."""
     reflected = of.at(mu)[1]
     base = eon_albedo_dir(mu, rho[..., np.newaxis], roughness)[..., 0]
     return reflected / nonzero(reflected + (1.0 - reflected) * base)
 
 
-TERMS, SMOOTH = 24, 16  # coefficients of E_single and of the other curves, over `scaled_cosine`
-FINE, BELOW = 48, 24  # nodes of integrals over what E_r returns, and beyond the critical angle
+TERMS, SMOOTH = 24, 16  # Chebyshev coefficients: of E_single; of D and b
+FINE, BELOW = 48, 24  # quadrature nodes within and beyond the critical angle
 
 
 class Curves(NamedTuple):
-    """Functions of the outer cosine: E_single, D, and `b`, which is b mu' / S', S' = sqrt(1 - mu'^2)."""
+    """Functions of the cosine above the interface; `b` is b mu' / S' with S' = sqrt(1 - mu'^2)."""
 
     E_single: Array
     D: Array
@@ -355,7 +356,7 @@ class Curves(NamedTuple):
 
 
 class Means(NamedTuple):
-    """Means of an interface: <D>, <H>_R and <b>_R; and `passed`, 1 - R."""
+    """Means of an interface: <D>, <H>_R and <b>_R; `passed` is 1 - R."""
 
     D: float | Array
     passed: float | Array
@@ -373,7 +374,7 @@ class Varnish:
     means: Means
 
     def at(self, mu: Array) -> Curves:
-        """The curves; the polynomials for E_single and D may fall below 0."""
+        """Values of the curves at a cosine; the polynomials for E_single and D may fall below 0."""
         x = scaled_cosine(mu, self.alpha)
         return Curves(*(chebyshev_sum(cast(Array, each), x) for each in self.curves))
 
@@ -385,7 +386,7 @@ def nonnegative(curves: Iterable[Array]) -> Curves:
 
 
 def refracted_cosine(mu: Array, ior: float | Array) -> Array:
-    """Cosine of the refracted direction; at index 1 it is mu to the last bit.
+    """Cosine of the refracted direction; at index 1 it equals mu to the last bit.
 
     mu'^2 = mu^2 + (1 - mu^2) (1 - 1 / n^2)
     """
@@ -393,23 +394,23 @@ def refracted_cosine(mu: Array, ior: float | Array) -> Array:
 
 
 def mean_parts(mu: Array, b: Array, ior: float | Array, r: Array) -> tuple[Array, Array, Array]:
-    """The parts mu', 1 + r b and H(mu') of the mean k of EON's value over the light that returns.
+    """The terms mu', 1 + r b(mu) and H(mu') from which k is computed.
 
         k = rho A (1 + r b(mu) + W H(mu') <H>_R)
 
-    The parameter `b` is b mu' / S'.
+    The parameter `b` is b mu' / S', as in `Curves`.
     """
     m = refracted_cosine(mu, ior)
     return m, 1.0 + r * b * root((1.0 - m) * (1.0 + m)) / nonzero(m), fon_loss_mu(m)
 
 
 def absorbed_share(means: Means, rho: Array, r: Array) -> Array:
-    """Share of the light between EON and the interface that a pass does not return, 1 - R <k>.
+    """Share 1 - R <k> of the light from EON that does not come back from EON again.
 
         1 - R <k> = (1 - R) + R (1 - <k>)
         1 - <k> = 1 - rho + rho A (r (c1 - <b>_R) - W <H>_R^2)
 
-    No ones cancel in the second line, as (1 + c1 r) A is 1.
+    The second line has no cancellation of ones: it uses (1 + c1 r) A = 1.
     """
     A, W = formulas.fon_af(r), formulas.eon_multiple_ratio(rho, r)
     lost = 1.0 - rho + rho * A * (r * (C1 - means.b) - W * means.H**2)
@@ -425,12 +426,12 @@ def base_under_varnish(
     rho: Array,
     r: Array,
 ) -> Array:
-    """Value of EON under the interface: the bracket of (1).
+    """BRDF of EON under the interface, the bracket in (1).
 
         f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))
 
-    At index 1 it is EON's value to the last bit. k k is expanded into powers of W, to reduce
-    products with channels for a single material.
+    At index 1 it is EON's BRDF to the last bit. The product k k is expanded in powers of W: with a
+    single material, the coefficients have channels but no pairs, which saves multiplications.
     """
     (m_o, p_o, H_o), (m_i, p_i, H_i) = (
         mean_parts(*each, ior, r) for each in zip(mu, b, strict=True)
@@ -447,7 +448,7 @@ def base_under_varnish(
 def varnish_albedo(
     mu: Array, curves: Curves, ior: float | Array, means: Means, rho: Array, r: Array
 ) -> Array:
-    """Directional albedo of EON under a varnish, (2).
+    """Directional albedo of EON under a varnish: equation (2).
 
     E = E_r + T [E_b(mu') - R k (1 - <E_b>_R) / (1 - R <k>)],  T = 1 - E_r,  E_r = E_single + D
     """
@@ -461,7 +462,7 @@ def varnish_albedo(
 
 
 def nonzero(x: float | Array) -> Array:
-    """x, or 1 where it is 0: the dividend is 0 there, too."""
+    """x as a divisor, with zeros replaced by 1; the dividend must be 0 there too."""
     xp, zero = array_namespace(x), cast(Array, x) == 0.0
     return xp.where(zero, 1.0, x)
 
@@ -476,10 +477,10 @@ def cosine_at(alpha: Array, x: Array) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=1)
 def integral_matrices() -> tuple[Array, Array, Array, Array]:
-    """Quadrature places, dx/dy there, and matrices that integrate a function from its values there.
+    """Points x, dx/dy at the points, and matrices that integrate a function given at the points.
 
-    The places are x = 1 - (1 - y)^2 at Chebyshev nodes y, so that sqrt(1 - mu^2) is smooth in y.
-    The integrals go from 0 to the nodes of the curves, (CURVE_NODES, FINE), and to these and 1, (FINE + 1, FINE).
+    The points are x = 1 - (1 - y)^2 at Chebyshev nodes y; this makes sqrt(1 - mu^2) smooth in y. The matrices
+    integrate over y from 0: to the nodes of the curves, (TERMS, FINE), and to all y and 1, (FINE + 1, FINE).
     """
     y = chebyshev_nodes(FINE)
     integral = chebint(chebyshev_coefficients(np.eye(FINE)), lbnd=-1.0, scl=0.5)
@@ -489,19 +490,19 @@ def integral_matrices() -> tuple[Array, Array, Array, Array]:
 
 
 def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
-    """Coefficients of the curves of a `Varnish`, and its means, shape (4,), in the order of their fields."""
+    """Coefficients of the curves of a `Varnish`; its means, shape (4,), in the order of `Means`."""
     xp, coat = array_namespace(alpha, ior), coat_of(cast(float, alpha), cast(float, ior))
     places, slope, to_curves, to_nodes = (like(each, alpha) for each in integral_matrices())
     matrix = like(chebyshev_coefficients(np.eye(TERMS)), alpha)
 
-    # Facets: E_single and D.
+    # Coefficients of E_single and D.
     mu, _ = cosine_at(alpha, like(chebyshev_nodes(TERMS), alpha))
     missing, E_r = coat.at(mu)
     E_single = E_r / (1.0 + coat.average * missing)
     D = E_single * E_single * missing * (1.0 + missing)
     facets = xp.tensordot(matrix, E_single, axes=1), xp.tensordot(matrix, D, axes=1)[:SMOOTH]
 
-    # Returned light: E_r 2 mu' dmu' at the quadrature nodes, and the part beyond the critical angle.
+    # Light reflected back to EON: E_r 2 mu' dmu' within the critical angle, all of it beyond.
     fine, step = cosine_at(alpha, places)
     E_single, D = (arrays.at_least_0(chebyshev_sum(each, places)) for each in facets)
     area = 2.0 * fine * step * slope
@@ -513,7 +514,7 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     R = squared + xp.sum(total * share)
     H = xp.sum(weight * fon_loss_mu(beyond)) + xp.sum(total * share * fon_loss_mu(m))
 
-    # s / t has the integral 2 S S' (1 / max(mu, mu') - 1) over azimuths; with R(m) the share that returns,
+    # The integral of s / t over azimuths is 2 S S' (1 / max(mu, mu') - 1). If R(m) is the share reflected back,
     #   b mu' / S' = 2 / (pi R) [(1 - mu') int_0^mu' R(m) S m dm + mu' int_mu'^1 R(m) S (1 - m) dm],
     #   <b>_R = 8 / (pi R^2) int R(m) S (1 - m) [int_0^m R(x) S x dx] dm.
     S = root((1.0 - fine) * (1.0 + fine)) / ior
@@ -534,14 +535,14 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
 
 @lru_cache(maxsize=KEPT)
 def constant_varnish(alpha: float, ior: float) -> Varnish:
-    """A cached interface with constant inputs."""
+    """An interface with constant inputs, from a cache."""
     curves, means = varnish_curves(np.asarray(alpha), np.asarray(ior))
     return Varnish(alpha, ior, [each.tolist() for each in curves], Means(*means.tolist()))
 
 
 @any_array
 def varnish_of(alpha: ArrayLike, ior: ArrayLike) -> Varnish:
-    """An interface, checked. Arrays of other libraries keep gradients and are not cached."""
+    """An interface; checks alpha and ior. Other libraries' arrays bypass the cache."""
     coat_of(alpha, ior)
     if not arrays.library(alpha):
         return constant_varnish(float(cast(float, alpha)), float(cast(float, ior)))
@@ -558,9 +559,9 @@ def varnished_brdf(
 
         f = f_r + T(mu_o) T(mu_i) / n^2 [f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))]
 
-    Result (..., C): 1/sr. It is reciprocal, and EON to the last bit at `ior` 1. Accuracy: the
-    albedo differs by at most 0.012 from that of random walks between facets and EON. A call takes
-    1.4 times as long as one of `dielectric_over_eon_brdf`. [Saunderson1942].
+    Result (..., C): 1/sr. The BRDF is reciprocal, and equals EON to the last bit at `ior` 1.
+    Accuracy: the albedo differs by at most 0.012 from random walks between facets and EON. A call
+    takes 1.4 times as long as `dielectric_over_eon_brdf`. [Saunderson1942].
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> varnished_brdf(wo, wi, [0.7, 0.1], 0.5, 0.3, 1.5).round(5)
@@ -618,10 +619,10 @@ def varnished_albedo_avg(rho: ArrayLike, roughness: ArrayLike, alpha: float, ior
 def varnished_sample(
     wo: ArrayLike, u: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> tuple[Array, Array]:
-    """Direction reflected by a visible facet or drawn by the cosine, and its density.
+    """Direction sampled from the visible facets or in proportion to its cosine, and its density.
 
     `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
-    The facets are chosen with probability E_single / E at the mean of the channels. [Dupuy2023].
+    Facets are chosen with probability E_single / E at the mean of rho's channels. [Dupuy2023].
 
         >>> wi, pdf = varnished_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.7, 0.5, 0.3, 1.5)
         >>> wi.round(5), round(float(pdf), 5)
@@ -650,7 +651,7 @@ def varnished_pdf(
 
 @any_array
 def _by_cosine(u: ArrayLike, share: Array) -> Array:
-    """Direction drawn by the cosine with the rescaled u1: (1 - u1) / (1 - share) keeps all digits near u1 = 1."""
+    """Cosine-weighted direction from u1 above `share`, rescaled without loss of digits near 1."""
     u1, u2 = unpack_uniforms(u)
     rest = arrays.at_most((1.0 - u1) / nonzero(1.0 - share), 1.0)
     return sampling.around(root(rest), root(1.0 - rest), u2)
@@ -660,7 +661,7 @@ def _by_cosine(u: ArrayLike, share: Array) -> Array:
 def _albedo(
     mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> tuple[Array, Array]:
-    """E_single and E, (..., C)."""
+    """Albedos: E_single of the facets, (..., 1), and E of the whole varnish, (..., C)."""
     (color,), (r, height) = checked_colors({"rho": rho}, roughness=roughness, mu=mu)
     varnish = varnish_of(alpha, ior)
     curves = nonnegative(varnish.at(height))
@@ -668,6 +669,6 @@ def _albedo(
 
 
 def _share(mu: Array, rho: Array, roughness: ArrayLike, alpha: float, ior: float) -> Array:
-    """E_single / E for a gray rho; 0 where nothing is reflected."""
+    """Probability E_single / E of sampling the facets for a gray rho; 0 if nothing is reflected."""
     single, total = _albedo(mu, rho[..., np.newaxis], roughness, alpha, ior)
     return (single / nonzero(total))[..., 0]

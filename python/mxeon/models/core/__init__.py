@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Infrastructure of all models: arrays, checks of arguments, evaluation in blocks, quadrature, layers."""
+"""Code shared by all models: arrays, argument checks, evaluation in blocks, quadrature, layers."""

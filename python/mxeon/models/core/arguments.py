@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Validation of arguments: ranges by name, shapes that broadcast, directions, switches and choices; blocks.
+"""Checks of arguments: ranges by name, broadcasting, directions, switches, choices; blocks of arrays.
 
-Directions leave the surface, in a local frame with the normal +z.
+Directions point away from the surface, in a local frame whose normal is +z.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from mxeon.names import NONE, unknown
 
 _LARGEST = float(np.finfo(np.float64).max)
 
-# Ends of closed ranges, with the text that messages print.
+# Ranges as minimum, maximum and the text that messages print; both ends are valid.
 _BELOW_ONE, _ABOVE_ZERO = float(np.nextafter(1.0, 0.0)), float(np.nextafter(0.0, 1.0))
 _SHARE = (0.0, 1.0, "[0, 1]")
 _POSITIVE = (0.0, 1e50, "[0, 1e50]")  # fourth powers fit into float64
@@ -31,7 +31,7 @@ _WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # exponents and squares fit into float6
 _LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # products and quotients fit into float64
 
 
-# Ranges that rounding may exceed.
+# Ranges whose ends a value may exceed by one rounding of float32.
 CLOSED = ("[0, 1]", "[0.01, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]")
 
 
@@ -58,7 +58,7 @@ RANGES = Ranges(
         ("coat_alpha", (0.01, 1.0, "[0.01, 1]")),
         ("coat_ior", (1.0, 4.0, "[1, 4]")),
         ("thinfilm_ior film_ior", (1.0, 1e50, "[1, 1e50]")),
-        ("thinfilm_thickness thickness", (0.0, 1e9, "[0, 1e9]")),  # nm
+        ("thinfilm_thickness thickness", (0.0, 1e9, "[0, 1e9]")),  # unit: nm
         ("temperature", (1.0, 1e9, "[1, 1e9]")),
         ("variance scale roughness_R roughness_TT roughness_TRT", _WIDTH),
         ("radius reach", _LENGTH),
@@ -74,7 +74,7 @@ RANGES = Ranges(
 
 
 def spread_pair(name: str, array: Numbers) -> Numbers:
-    """Array of pairs, shape (..., 2); a number, or a last axis of length 1, is used for both."""
+    """Array of pairs, shape (..., 2). A number or a last axis of length 1 is repeated."""
     array = with_axis(array)
     if array.shape[-1] == 1:
         return array_namespace(array).broadcast_to(array, (*array.shape[:-1], 2))
@@ -87,12 +87,12 @@ def spread_pair(name: str, array: Numbers) -> Numbers:
 
 
 def with_axis(array: Numbers) -> Numbers:
-    """Array with at least one axis."""
+    """Array with at least one axis; a number gets shape (1,)."""
     return array if array.ndim else array[np.newaxis]
 
 
 def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:
-    """Raise ValueError for a list of N numbers for N directions, unless it is red, green and blue."""
+    """Raise ValueError if N numbers could be one color or a value for each of N directions."""
     if color.shape == lead and color.ndim == 1 and color.shape[0] not in (1, 3):
         count = color.shape[0]
         raise ValueError(
@@ -103,7 +103,7 @@ def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:
 
 
 def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> tuple[int, ...]:
-    """Shape to which arguments broadcast, without the last axis of `vectors`.
+    """Shape to which all arguments broadcast, without the last axis of `vectors`.
 
     - `vectors`: Directions, random numbers or colors by name, shapes (..., C).
     - `numbers`: Arguments without components, shapes (...).
@@ -122,7 +122,7 @@ def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -
 
 
 def broadcastable(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> list[Array]:
-    """Checked vectors and numbers, in this order, whose shapes broadcast."""
+    """The vectors, then the numbers; raises ValueError unless their shapes broadcast."""
     lead_shape(vectors, numbers)
     return [*vectors.values(), *numbers.values()]
 
@@ -175,9 +175,9 @@ def channels_first(array: Numbers) -> Array:
 
 
 def with_axes(array: Numbers, ndim: int) -> Numbers:
-    """Array with leading axes of length 1, `ndim` axes in all.
+    """Array with `ndim` axes; missing leading axes get length 1.
 
-    Broadcast axes, except the last, are reduced to length 1.
+    Axes that were broadcast, except the last, are reduced to length 1.
     """
     *strides, _ = array.strides
     narrow = array[tuple(slice(None if stride else 1) for stride in strides)]
@@ -187,7 +187,7 @@ def with_axes(array: Numbers, ndim: int) -> Numbers:
 # Tolerance of a direction's squared length; directions rounded to float32 pass.
 UNIT_TOLERANCE = 1e-6
 
-# One rounding of float32: arguments that exceed their range by less are clamped.
+# One rounding of float32; arguments that exceed a range in CLOSED by less are clamped.
 ROUNDING = 2.0**-23
 
 
@@ -215,22 +215,22 @@ def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
 
 
 def checked_real(name: str, value: ArrayLike) -> Numbers:
-    """Argument as an array of any real numbers."""
+    """Argument as an array of real numbers; no range is checked."""
     return _array(name, value, lambda array: array)
 
 
 def checked_all(values: Mapping[str, ArrayLike]) -> dict[str, Numbers]:
-    """Arguments by name, each inside its range."""
+    """Arguments by name as arrays, each inside the range for its name."""
     return {name: checked(name, value) for name, value in values.items()}
 
 
 def checked_vectors(values: Mapping[str, ArrayLike]) -> dict[str, Numbers]:
-    """Arguments by name, each inside its range and with at least one axis."""
+    """Arguments by name as arrays with at least one axis, each inside the range for its name."""
     return {name: with_axis(value) for name, value in checked_all(values).items()}
 
 
 def checked_numbers(**values: ArrayLike) -> list[Array]:
-    """Numbers inside their ranges, in float64, with shapes that broadcast."""
+    """Arguments as float64 arrays that broadcast, each inside the range for its name."""
     return broadcastable({}, checked_all(values))
 
 
@@ -248,7 +248,7 @@ def checked_color(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_rgb(name: str, value: ArrayLike) -> Numbers:
-    """Argument as red, green and blue inside the range for its name; a single channel is used for all."""
+    """Argument as red, green and blue inside the range for its name; a single channel is repeated."""
     color = checked_color(name, value)
     if color.shape[-1] not in (1, 3):
         raise ValueError(f"{name} must have 1 or 3 channels; got shape {tuple(color.shape)}")
@@ -258,7 +258,7 @@ def checked_rgb(name: str, value: ArrayLike) -> Numbers:
 def checked_colors(
     colors: Mapping[str, ArrayLike], **numbers: ArrayLike
 ) -> tuple[list[Array], list[Array]]:
-    """Colors (..., C) and numbers with an axis for their channels, in float64, that broadcast."""
+    """Checked colors (..., C) and numbers (..., 1) as float64 arrays that broadcast."""
     vectors = {name: checked_color(name, value) for name, value in colors.items()}
     values = broadcastable(vectors, checked_all(numbers))
     channel_count(vectors)
@@ -266,14 +266,14 @@ def checked_colors(
 
 
 def checked_switch(name: str, value: bool) -> bool:
-    """Argument that is True or False."""
+    """Argument as a bool; raises ValueError unless it is True or False."""
     if not isinstance(value, bool | np.bool_):
         raise ValueError(f"{name} must be True or False; got {value!r}")
     return bool(value)
 
 
 def checked_count(name: str, value: int) -> int:
-    """Argument that is a positive integer, and not too large for an array."""
+    """Argument as an integer; raises ValueError unless it lies between 0 and 2^31."""
     if not isinstance(value, int | np.integer) or isinstance(value, bool) or not 0 < value < 2**31:
         raise ValueError(f"{name} must be a positive integer; got {value!r}")
     return int(value)
@@ -286,7 +286,7 @@ def checked_choice(
     titles: Mapping[str, str] = NONE,
     listing: str = "",
 ) -> str:
-    """Argument that is one of the known words, which may have titles; see `mxeon.names.unknown`."""
+    """Argument that must be one of the known names; `mxeon.names.unknown` writes the message."""
     if message := unknown(name, value, known, titles, listing):
         raise ValueError(message)
     return value
@@ -350,7 +350,7 @@ def checked_roughness(value: ArrayLike) -> Numbers:
 
 
 def are_directions(components: Numbers) -> bool:
-    """Whether all vectors of shape (3, ...) are unit and on or above the horizon."""
+    """Whether all vectors of shape (3, ...) are unit vectors on or above the horizon."""
     x, y, z = components
     if not z.size:
         return True
@@ -361,7 +361,7 @@ def are_directions(components: Numbers) -> bool:
 
 
 def on_horizon(w: Numbers, axis: int = 0) -> Numbers:
-    """Directions with their components on an axis; a z that is negative by a rounding becomes 0."""
+    """Directions, components on `axis`, with any z that is negative by a rounding set to 0."""
     z = w.take(2, axis)
     if not z.size or z.min() >= 0.0:
         return w
@@ -371,7 +371,7 @@ def on_horizon(w: Numbers, axis: int = 0) -> Numbers:
 
 
 def refuse_direction(name: str, w: Numbers) -> NoReturn:
-    """Raise for the first direction below the horizon, or the first one of the wrong length."""
+    """Raise ValueError for the first direction below the horizon, else for the first wrong length."""
     z = w[..., 2]
     if (z < -ROUNDING).any():
         _refuse(f"{name} must not point below the horizon (z >= 0)", z, ~(z < -ROUNDING), "z = ")
@@ -382,7 +382,7 @@ def refuse_direction(name: str, w: Numbers) -> NoReturn:
 
 
 def _array(name: str, value: ArrayLike, check: Callable[[Numbers], Numbers]) -> Numbers:
-    """Argument as a checked float64 array; arrays of other libraries stay unchanged."""
+    """Argument as a checked float64 array; arrays of other libraries are returned unchanged."""
     if not library(value):
         return np.asarray(check(_real(name, value)), np.float64)
     if (values := host_values(value)) is not None:
@@ -391,7 +391,7 @@ def _array(name: str, value: ArrayLike, check: Callable[[Numbers], Numbers]) -> 
 
 
 def _real(name: str, value: ArrayLike) -> Numbers:
-    """Argument as an array; raise for complex numbers, text, ragged lists and masks."""
+    """Argument as an array; raises ValueError for complex numbers, text, ragged lists and masks."""
     if np.ma.isMaskedArray(value):
         raise ValueError(f"{name} must not be a masked array, whose mask would be lost; fill it")
     try:

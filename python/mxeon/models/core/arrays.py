@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Arrays of any library that follows the array API standard, and operations with finite derivatives at edges.
 
-A formula takes the functions of the standard from the library of its arguments. `any_array` decorates public functions:
-with arrays of PyTorch or JAX it converts all arguments to that library, its precision and its device. Traced values
-have no numbers yet and are not checked.
+A formula calls the standard's functions in the library of its arguments. The decorator `any_array` wraps public
+functions: if one argument is an array of PyTorch or JAX, all are converted to that library, precision and device.
+Traced arguments have no values yet and are not checked.
 
-Automatic differentiation multiplies the derivatives of single steps: infinity times 0 at the start of a root. For NumPy
-each operation from `cosine` on is the plain one, to the last bit. For other arrays a separate branch gives the value at
-the edge, with the derivative that its docstring states.
+Automatic differentiation multiplies the derivatives of single steps, so a square root at 0 may give infinity times 0.
+The operations from `cosine` on avoid this. For NumPy, each is the plain operation to the last bit; for other arrays,
+a separate branch returns the value at the edge, with the derivative that the docstring states.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["Array", "ArrayLike", "Number", "Numbers"]
 
-# Results are float64. Given only numbers, a function returns a NumPy scalar, which behaves like an array.
+# Results are float64. If all arguments are numbers, the result is a NumPy scalar, which acts like an array.
 Array: TypeAlias = NDArray[np.float64]
 
-# An array or a number; the result is of the same kind.
+# An array or a number; results have the same type.
 Number = TypeVar("Number", Array, float)
 
 # Validated arguments in their original precision.
@@ -45,15 +45,15 @@ class Namespace(Protocol):
 
 
 PLAIN = np.ndarray, np.generic, float, int, list, tuple  # types that NumPy handles
-# NumPy 1 has other names for some functions.
+# NumPy 1 lacks some names of the standard, such as `atan`.
 NUMPY = cast(Namespace, np if hasattr(np, "atan") else import_module("array_api_compat.numpy"))
-# Number types that are not arrays of the standard, and the namespaces found so far, by library.
+# By library: number types outside the standard, and the namespaces found so far.
 OTHERS: dict[str, type] = {}
 FUNCTIONS: dict[str, Namespace] = {}
 
 
 def library(value: object) -> str:
-    """Name of an array's library; "" for NumPy and everything that is not an array."""
+    """Name of an array's library; "" for NumPy and for values that are not arrays."""
     if isinstance(value, PLAIN):
         return ""
     name = type(value).__module__.partition(".")[0]
@@ -63,13 +63,13 @@ def library(value: object) -> str:
 
 
 def array_namespace(*arrays: object) -> Namespace:
-    """Functions for these arrays: NumPy itself, unless one of them belongs to another library."""
+    """Array functions for these arguments: NumPy, unless one of them is another library's array."""
     others = [each for each in arrays if library(each)]
     return _others_namespace(others) if others else NUMPY
 
 
 def _others_namespace(others: Sequence[object]) -> Namespace:
-    """Functions of the single library that these arrays belong to."""
+    """Array functions of these arrays' library; raises ValueError if they belong to several."""
     names = sorted({library(each) for each in others})
     if len(names) > 1:
         raise ValueError(f"arrays must be of one library; got {' and '.join(names)}")
@@ -114,7 +114,7 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def _converter(others: Sequence[object]) -> Callable[[object], object]:
-    """Function that converts an argument to the library, precision and device of these arrays."""
+    """A function that converts any argument to the library, precision and device of these arrays."""
     xp, arrays = _others_namespace(others), cast("Sequence[Array]", others)
     for each in arrays:
         try:
@@ -135,7 +135,7 @@ def _converter(others: Sequence[object]) -> Callable[[object], object]:
             return array if xp.isdtype(array.dtype, "real floating") else xp.astype(array, dtype)
         if isinstance(value, bool) or not isinstance(value, PLAIN):
             return value
-        if isinstance(value, float | int):  # stays a constant for compilers
+        if isinstance(value, float | int):  # compilers see a constant, without np.asarray
             return xp.asarray(value, dtype=dtype, **place)
         found = np.asarray(value)
         return xp.asarray(found, dtype=dtype, **place) if found.dtype.kind in "iuf" else value
@@ -144,7 +144,7 @@ def _converter(others: Sequence[object]) -> Callable[[object], object]:
 
 
 def _place(array: object) -> dict[str, object]:
-    """The device of an array, for libraries with arrays on several devices."""
+    """Keyword argument `device` of an array of PyTorch; empty for other libraries."""
     return {"device": cast(Array, array).device} if library(array) == "torch" else {}
 
 
@@ -157,7 +157,7 @@ def like(values: Numbers, array: Array) -> Array:
 
 
 def host_values(value: object) -> Numbers | None:
-    """An array of another library in NumPy; None under tracing."""
+    """An array of another library as a NumPy array; None while it is traced."""
     try:
         if library(value) != "torch":
             return np.asarray(value)
@@ -165,7 +165,7 @@ def host_values(value: object) -> Numbers | None:
 
         compiles = torch.compiler.is_compiling()
         return None if compiles else np.asarray(cast(torch.Tensor, value).detach().cpu())
-    except (TypeError, RuntimeError) as error:  # raised by JAX and by torch
+    except (TypeError, RuntimeError) as error:  # JAX and torch raise these while tracing
         if "deleted" in str(error):
             raise ValueError("arrays must have values; got one that was deleted") from None
         return None
@@ -174,7 +174,7 @@ def host_values(value: object) -> Numbers | None:
 def cosine(z: Array) -> Array:
     """Cosine of a direction from its z, clamped to [0, 1] against rounding.
 
-    At 1 and at 0 its derivative is that of z.
+    At 0 and 1 the derivative by z is 1.
     """
     xp = array_namespace(z)
     if xp is NUMPY:
@@ -188,36 +188,36 @@ def least_normal(x: Array) -> float:
 
 
 def precision(x: Array) -> np.finfo[np.float64]:
-    """Floating-point limits of an array's type; float32 if it does not state its type."""
+    """Floating-point limits of an array's dtype; limits of float32 if it has no dtype."""
     return cast("np.finfo[np.float64]", array_namespace(x).finfo(getattr(x, "dtype", np.float32)))
 
 
 def at_most(x: Array, high: float) -> Array:
-    """The smaller of x and a number; if they are equal, the derivative is that of x."""
+    """The smaller of x and `high`; if they are equal, the derivative is 1."""
     xp = array_namespace(x)
     return xp.minimum(x, high) if xp is NUMPY else xp.where(x > high, high, x)
 
 
 def trimmed(x: Array, high: float) -> Array:
-    """x clamped to a number that only rounding exceeds; the clamp does not affect derivatives."""
+    """x clamped to `high`, which only rounding can exceed; the clamp does not affect derivatives."""
     xp = array_namespace(x)
     return xp.minimum(x, high) if xp is NUMPY else x
 
 
 def at_least_0(x: Array) -> Array:
-    """The larger of x and 0; if they are equal, the derivative is that of x."""
+    """The larger of x and 0; at 0 the derivative is 1."""
     xp = array_namespace(x)
     return xp.maximum(x, 0.0) if xp is NUMPY else xp.where(x < 0.0, 0.0, x)
 
 
 def magnitude(x: Array) -> Array:
-    """|x|; at 0 the derivative is that of x."""
+    """Absolute value of x; at 0 the derivative is 1."""
     xp = array_namespace(x)
     return xp.abs(x) if xp is NUMPY else xp.where(x < 0.0, -x, x)
 
 
 def within(x: Array, low: float = 0.0, high: float = 1.0) -> Array:
-    """x clamped to [low, high]; at both ends the derivative is that of x."""
+    """x clamped to [low, high]; at both ends the derivative is 1."""
     xp = array_namespace(x)
     return np.clip(x, low, high) if xp is NUMPY else xp.where(x < low, low, at_most(x, high))
 
@@ -229,7 +229,7 @@ def except_where(
     x: Array,
     inside: float,
 ) -> Array:
-    """formula(x); on the edge, `value` with derivative 0 (there the formula is evaluated at `inside`)."""
+    """formula(x), but `value` with derivative 0 where `edge(x)`; `inside` replaces x there."""
     xp = array_namespace(x)
     if xp is NUMPY:
         return formula(x)
@@ -238,18 +238,18 @@ def except_where(
 
 
 def root(x: Array) -> Array:
-    """Square root; at 0 the derivative counts as 0."""
+    """Square root; at 0 the derivative is set to 0."""
     return except_where(lambda x: ~(x > 0.0), 0.0, array_namespace(x).sqrt, x, 1.0)
 
 
 def hypot(x: Array, y: Array) -> Array:
-    """Length of (x, y); at the origin the derivative counts as 0."""
+    """Length of (x, y); at the origin the derivative is set to 0."""
     length = array_namespace(x, y).hypot
     return except_where(lambda x: (x == 0.0) & (y == 0.0), 0.0, lambda x: length(x, y), x, 1.0)
 
 
 def arcsine(x: Array) -> Array:
-    """Arc sine of x clamped to [-1, 1]; at both ends and beyond, the derivative counts as 0."""
+    """Arc sine of x clamped to [-1, 1]; at both ends and beyond, the derivative is set to 0."""
     xp = array_namespace(x)
     if xp is NUMPY:
         return xp.asin(xp.minimum(xp.maximum(x, -1.0), 1.0))
@@ -259,7 +259,7 @@ def arcsine(x: Array) -> Array:
 
 
 def arccosine(x: Array) -> Array:
-    """Arc cosine of x clamped to [-1, 1]; at both ends and beyond, the derivative counts as 0."""
+    """Arc cosine of x clamped to [-1, 1]; at both ends and beyond, the derivative is set to 0."""
     xp = array_namespace(x)
     if xp is NUMPY:
         return xp.acos(xp.minimum(xp.maximum(x, -1.0), 1.0))
@@ -267,7 +267,7 @@ def arccosine(x: Array) -> Array:
 
 
 def angle(y: Array, x: Array) -> Array:
-    """Angle of the point (x, y); at the origin it is that of the x axis, and its derivative counts as 0."""
+    """Angle of the point (x, y). At the origin, derivatives are finite: those at the point (1, 0)."""
     xp = array_namespace(x, y)
     if xp is NUMPY:
         return xp.atan2(y, x)
@@ -276,7 +276,7 @@ def angle(y: Array, x: Array) -> Array:
 
 
 def power(base: Array, exponent: Array | float) -> Array:
-    """base^exponent; infinite derivatives at base 0 count as 0."""
+    """base^exponent; if the derivative at base 0 is infinite, it is set to 0."""
     flat = 1.0 * (cast(Array, exponent) == 0.0)
     steep = exponent < 1.0
     return except_where(lambda x: (x == 0.0) & steep, flat, lambda x: x**exponent, base, 1.0)
@@ -288,6 +288,6 @@ def below_1(x: Array) -> float:
 
 
 def guarded(x: Array, valid: Numbers, inside: float) -> Array:
-    """x where it is valid, else `inside`, as a placeholder whose result is discarded."""
+    """x where `valid`, else the placeholder `inside`; the caller discards results of placeholders."""
     xp = array_namespace(x, valid)
     return x if xp is NUMPY else xp.where(valid, x, inside)

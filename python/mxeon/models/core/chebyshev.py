@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Interpolation by Chebyshev polynomials on [0, 1]: nodes, coefficients, sums."""
+"""Interpolation by Chebyshev polynomials on [0, 1]: nodes, coefficients and evaluation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def chebyshev_nodes(count: int) -> Array:
 
 
 def chebyshev_coefficients(values: Array) -> Array:
-    """Coefficients of the interpolant, from values at the nodes on the first axis; same shape."""
+    """Coefficients of the interpolant; the first axis of `values` and of the result is the nodes'."""
     count = len(values)
     cosines = np.cos(np.outer(np.arange(count), _angles(count)))
     cosines[0] *= 0.5
@@ -31,7 +31,7 @@ def chebyshev_polynomials(x: Array, count: int) -> Array:
 
 
 def chebyshev_sum(coefficients: Array, x: Array) -> Array:
-    """Sum of the polynomials of 2 x - 1, by Clenshaw's rule; coefficients have shape (count, ...)."""
+    """Chebyshev series at 2 x - 1, by Clenshaw's rule; coefficients have shape (count, ...)."""
     y = 2.0 * x - 1.0
     twice = 2.0 * y
     last = later = 0.0 * y
@@ -42,12 +42,12 @@ def chebyshev_sum(coefficients: Array, x: Array) -> Array:
 
 
 def cell_cubics(coefficients: Array, cells: int) -> Array:
-    """Coefficients of cubics through four points of the sum in each cell of [0, 1], shape (4, cells)."""
+    """Cubic coefficients, (4, cells), from four values of `chebyshev_sum` in each cell of [0, 1]."""
     x = np.sort(chebyshev_nodes(4))
     values = chebyshev_sum(coefficients, (np.arange(cells)[:, np.newaxis] + x) / cells)
     return np.asarray(np.linalg.inv(np.vander(x, increasing=True)) @ values.T)
 
 
 def _angles(count: int) -> Array:
-    """Angles whose cosines are the nodes."""
+    """Angles whose cosines are the Chebyshev nodes on [-1, 1]."""
     return np.asarray(np.pi * (np.arange(count) + 0.5) / count)

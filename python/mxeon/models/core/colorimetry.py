@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-WAVELENGTHS = np.arange(360.0, 835.0, 5.0)  # nm
-# Color-matching functions of the CIE 1931 2-degree standard observer at WAVELENGTHS, by ISO/CIE 11664-1.
+WAVELENGTHS = np.arange(360.0, 835.0, 5.0)  # unit: nm
+# Color-matching functions of the CIE 1931 2-degree standard observer at WAVELENGTHS: ISO/CIE 11664-1.
 CIE_1931 = np.array(
     [
         (0.0001299, 3.917e-06, 0.0006061),
@@ -106,7 +106,7 @@ CIE_1931 = np.array(
         (1.251141e-06, 4.5181e-07, 0.0),
     ]
 )
-# CIE XYZ to linear Rec. 709 primaries with white D65, IEC 61966-2-1; the specification's matrix.
+# Matrix of the specification from CIE XYZ to linear Rec. 709 with white D65: IEC 61966-2-1.
 XYZ_TO_REC709 = np.array(
     [
         [3.2404542, -1.5371385, -0.4985314],
@@ -114,7 +114,7 @@ XYZ_TO_REC709 = np.array(
         [0.0556434, -0.2040259, 1.0572252],
     ]
 )
-# XYZ_TO_REC709 for a white of equal energy, adapted to D65 by Bradford: rows sum to 1.
+# XYZ_TO_REC709 after Bradford adaptation of equal-energy white to D65; each row sums to 1.
 XYZ_TO_REC709_E = np.array(
     [
         [3.1462511, -1.6661240, -0.4801271],

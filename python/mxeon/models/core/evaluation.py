@@ -23,9 +23,9 @@ def evaluate(
     """Values (..., C) of a reflection formula over broadcast arguments, block by block.
 
     - `formula`: `formula(wo, wi, rho, *parameter)` for one block: directions (..., 3) with contiguous
-      components, `rho` (C, ...), the parameter (...), all float64; returns (C, ...). Axes of length 1 stay
-      so, which keeps everything that only depends on the material small.
-    - `rho` (..., C): A list of N numbers for N directions is rejected, unless it is red, green and blue.
+      components, `rho` (C, ...), the parameter (...), all float64; returns (C, ...). Axes of length 1
+      are not expanded, so terms that depend only on the material stay small.
+    - `rho` (..., C): N numbers with N directions are rejected as ambiguous, unless N is 1 or 3.
     - `name`: Name of `rho` in `RANGES` and in messages.
     - `**parameter` (...): At most one, named as in `RANGES`.
     """
@@ -44,7 +44,7 @@ def evaluate(
                 if not arguments.are_directions(w):
                     arguments.refuse_direction(name, pair[name])
             parts = {name: arguments.on_horizon(w) for name, w in parts.items()}
-        order = (*range(1, wo.ndim), 0)  # components last
+        order = (*range(1, wo.ndim), 0)  # moves components to the last axis
         last = (xp.permute_dims(w, order) for w in parts.values())
         return formula(*last, rho, *rest.values())
 
@@ -60,17 +60,18 @@ def evaluate_material(
 ) -> Array:
     """Values of a formula over checked arguments that broadcast, block by block.
 
-    - `formula`: `formula(**given)` for one block: of `vectors` each with its last axis first,
-      (C, ...), of `numbers` (...), all float64; returns (channels, ...). Axes of length 1 stay so.
-    - `vectors`, `numbers`: Directions, colors and pairs, shapes (..., C); the others, shapes (...).
-    - `channels`: Channels of the result.
-    - `size`: Elements per block; smaller for formulas with many temporaries per element.
+    - `formula`: `formula(**given)` for one block. Vectors have their last axis first, (C, ...),
+      numbers are (...), all float64; returns (channels, ...). Axes of length 1 are not expanded.
+    - `vectors`: Directions, colors and pairs, shapes (..., C).
+    - `numbers`: Arguments without components, shapes (...).
+    - `channels`: Number of channels of the result.
+    - `size`: Elements per block; choose less for formulas with many temporaries per element.
 
     Result (..., channels).
     """
     shape = arguments.lead_shape(vectors, numbers)
     if array_namespace(*vectors.values(), *numbers.values()) is not NUMPY:
-        # The formula takes channels first, the result has them last; a constant may be NumPy's.
+        # Channels come first in the formula, last in the result. A constant may be a NumPy array.
         axes, parts = len(shape), dict[str, Array]()
         for name, array in vectors.items():
             xp, wide = array_namespace(array), (1,) * (axes + 1 - array.ndim) + tuple(array.shape)
@@ -101,7 +102,7 @@ def evaluate_number(
     numbers: Mapping[str, Numbers],
     size: int = arguments.BLOCK,
 ) -> Array:
-    """`evaluate_material` of a formula without channels, shape (...)."""
+    """`evaluate_material` for a formula without channels; result (...)."""
 
     values = evaluate_material(
         lambda **given: formula(**given)[np.newaxis], vectors, numbers, 1, size

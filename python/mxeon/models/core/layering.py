@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Algebra of `layer`, `mix`, `add` and `multiply` on values and throughputs of lobes.
 
-The throughput of a lobe is 1 - E, with the directional albedo E of the lobe without color. It is negative where E exceeds 1, so
-that sums keep their E when they are scaled or mixed afterwards. The text does not cover E above 1; only
-`layer` clamps the throughput to the base, at 0. A value may include its cosine
-or not: all four operations are linear in it. Lobes broadcast against each other.
+The throughput of a lobe is 1 - E; E is the directional albedo of the lobe without its color. It is
+negative if E exceeds 1, so a sum keeps its E when it is scaled or mixed afterwards. The
+specification does not cover E above 1; only `layer` clamps the throughput, to at least 0. Values may
+include the cosine or not: all four operations are linear. Lobes broadcast against each other.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ class Bsdf:
     """A lobe, or a combination of lobes, for one or many pairs of directions.
 
     - `value`: BSDF in 1/sr, with or without the cosine.
-    - `throughput`: 1 - E, per channel, dimensionless: the part of the light that reaches the layer
-      below, none if negative. An opaque lobe of weight w has 1 - w, whatever it reflects.
+    - `throughput`: 1 - E, per channel, dimensionless: the share of the light that reaches the layer
+      below; if negative, no light does. An opaque lobe of weight w has 1 - w, whatever it reflects.
     """
 
     value: Array
@@ -32,10 +32,10 @@ class Bsdf:
 def throughput(albedo: ArrayLike) -> Array:
     """Throughput T = 1 - E of a lobe with the directional albedo E (..., C), weight included.
 
-    Negative where the albedo exceeds 1, and above 1 where it is negative, as Zeltner's fit is, by 2.2e-5. E is that
-    of a white lobe: what the `color` of `sheen_bsdf` or the `tint` of `dielectric_bsdf` removes is absorbed. In texts
-    before August 2026, E has the color. Raises `ValueError` if an albedo is infinite or NaN. [MaterialX2026] of
-    August 2026, Vertical-Layering Transmittance.
+    T is negative if the albedo exceeds 1, and above 1 if the albedo is negative: Zeltner's fit falls to -2.2e-5. E
+    belongs to a white lobe: light that the `color` of `sheen_bsdf` or the `tint` of `dielectric_bsdf` removes is
+    absorbed. In specifications before August 2026, E includes the color. Raises `ValueError` if an albedo is
+    infinite or NaN. [MaterialX2026] of August 2026, Vertical-Layering Transmittance.
 
         >>> throughput([0.25, 1.5])
         array([ 0.75, -0.5 ])
@@ -44,7 +44,7 @@ def throughput(albedo: ArrayLike) -> Array:
 
 
 def layer(top: Bsdf, base: Bsdf) -> Bsdf:
-    """A lobe over another.
+    """One lobe layered over another.
 
         f = f_top + max(T_top, 0) f_base,  T = min(T_top, 0) + max(T_top, 0) T_base
 
@@ -65,7 +65,7 @@ def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
 
         f = (1 - w) f_bg + w f_fg,  T = (1 - w) T_bg + w T_fg
 
-    At 0 it is `bg` and at 1 `fg`, to the last bit. [MaterialX2026], section `mix`.
+    The result is `bg` at w = 0 and `fg` at w = 1, to the last bit. [MaterialX2026], section `mix`.
 
         >>> both = mix(Bsdf(1.0, 0.0), Bsdf(0.0, 1.0), 0.25)
         >>> float(both.value), float(both.throughput)
@@ -90,12 +90,12 @@ def add(in1: Bsdf, in2: Bsdf) -> Bsdf:
 
 
 def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
-    """A lobe scaled by `weight` s, one or per channel, at least 0.
+    """A lobe scaled by `weight` s, at least 0; one number, or one per channel.
 
         f = s f_1,  T = 1 - s E_1 = 1 - s (1 - T_1)
 
     MaterialX's shaders keep T_1, so a lobe scaled to 0 still darkens the layer below, and they
-    clamp s to [0, 1]. The text does neither. [MaterialX2026], section `multiply`.
+    clamp s to [0, 1]. The specification does neither. [MaterialX2026], section `multiply`.
 
         >>> scaled = multiply(Bsdf(1.0, 0.5), 0.5)
         >>> float(scaled.value), float(scaled.throughput)
@@ -106,5 +106,5 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
 
 
 def _beside(value: Array, number: Array) -> Array:
-    """Number as an array of the same library as a lobe's value."""
+    """A number converted to an array of the library of a lobe's value."""
     return number if library(number) else like(number, value)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Directional albedo of any model, by Gauss-Legendre rules between the kinks of this family."""
+"""Directional albedo of any model, by Gauss-Legendre rules between the kinks of Oren-Nayar models."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ def albedo_dir_quadrature(
     *parameter: ArrayLike,
     nodes: int = 64,
 ) -> Array:
-    """Directional albedo of any model that mirrors in the plane of incidence, by quadrature.
+    """Directional albedo, by quadrature, of any model symmetric about the plane of incidence.
 
         E(mu) = integral of brdf(wo, wi, rho) cos(theta_i) over the hemisphere of wi
 
     - `brdf`: `brdf(wo, wi, rho, *parameter)` in 1/sr; any function of `mxeon.models`.
     - `mu` (...), `rho` (..., C): Cosine of the polar angle of wo, and reflectance per channel, in [0, 1].
-    - `nodes`: Gauss-Legendre nodes for each of two intervals of both angles; the time grows as its square.
+    - `nodes`: Gauss-Legendre nodes per interval; each angle has two intervals. Time grows as `nodes` squared.
 
-    Accuracy: absolute error below 1e-12 for the models of this package. Their kinks, at theta_i = theta_o and
-    cos(phi) = 0, bound the intervals, and the nodes crowd below theta_o, where the full Oren-Nayar model has a
-    layer as thin as mu. A kink elsewhere converges slowly: 2e-10 for `eon_brdf_approx`, clamped at mu = 0.0014.
+    Accuracy: absolute error below 1e-12 for the models of this package. The intervals end at the models' kinks,
+    theta_i = theta_o and cos(phi) = 0. Nodes crowd just below theta_o, where the full Oren-Nayar model changes over
+    a width of only mu. Other kinks slow convergence: 2e-10 for `eon_brdf_approx`, clamped at mu = 0.0014.
 
         >>> from mxeon.models import eon_brdf
         >>> albedo_dir_quadrature(eon_brdf, 0.3, [0.5, 1.0], 1.0).round(12)
@@ -58,7 +58,7 @@ def albedo_dir_quadrature(
 def _integral(
     brdf: Callable[..., Array], mu: Array, rho: Array, parameters: Iterable[Array], nodes: int
 ) -> Array:
-    """The albedo for arguments of the same shape."""
+    """Directional albedo for arguments that already have the same shape."""
     wo, wi, weights = hemisphere_nodes(mu, nodes)
     rows = (value[..., np.newaxis] for value in parameters)
     values = brdf(wo[..., np.newaxis, :], wi, rho[..., np.newaxis, :], *rows)
@@ -66,7 +66,7 @@ def _integral(
 
 
 def hemisphere_nodes(mu: Array | float, nodes: int) -> tuple[Array, Array, Array]:
-    """wo at azimuth 0, wi in half the hemisphere (..., N, 3), and their weights, which sum to pi."""
+    """wo at azimuth 0, nodes wi in half the hemisphere (..., N, 3), and weights that sum to pi."""
     mu = cast(Array, mu) if arrays.library(mu) else np.asarray(mu, np.float64)
     xp, (x, weight) = array_namespace(mu), (arrays.like(each, mu) for each in unit_rule(nodes))
     theta_o = arrays.arccosine(mu)[..., np.newaxis]
@@ -83,9 +83,9 @@ def hemisphere_nodes(mu: Array | float, nodes: int) -> tuple[Array, Array, Array
     return wo, xp.reshape(xp.stack(parts, axis=-1), (*flat, 3)), xp.reshape(weights, flat)
 
 
-@lru_cache(maxsize=8)  # computing the rule takes longer than using it
+@lru_cache(maxsize=8)  # computing a rule takes longer than using it
 def unit_rule(nodes: int, panels: int = 1) -> tuple[Array, Array]:
-    """Nodes and weights of Gauss-Legendre on [0, 1], in panels of equal width."""
+    """Gauss-Legendre nodes and weights on [0, 1], in panels of equal width."""
     x, weight = np.polynomial.legendre.leggauss(nodes)
     x = np.concatenate([k + 0.5 * (1.0 + x) for k in range(panels)]) / panels
     return x, np.tile(0.5 * weight / panels, panels)
