@@ -405,7 +405,7 @@ def mean_parts(mu: Array, b: Array, ior: float | Array, r: Array) -> tuple[Array
 
 
 def absorbed_share(means: Means, rho: Array, r: Array) -> Array:
-    """Share 1 - R <k> of the light from EON that does not come back from EON again.
+    """Share 1 - R <k> of the light leaving EON that is lost before it would leave EON again.
 
         1 - R <k> = (1 - R) + R (1 - <k>)
         1 - <k> = 1 - rho + rho A (r (c1 - <b>_R) - W <H>_R^2)

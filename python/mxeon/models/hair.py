@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The hair model of [MaterialX2026], section `chiang_hair_bsdf`, after [Chiang2016] and [dEon2011].
 
-The fiber is +x, and the normal +z is turned to the viewer. Light comes from the whole sphere. A
-direction has the inclination theta, sin(theta) = x, and an azimuth about the fiber. Absorption is
-per radius of the fiber, as in the text's equation; the text's table says diameter. Other functions
-compute roughnesses and absorption from artist-friendly inputs.
+The fiber runs along +x, and the normal +z is on the viewer's side. Light comes from the whole sphere.
+A direction has an inclination theta, with sin(theta) = x, and an azimuth about the fiber. Absorption
+is per radius of the fiber, as in the specification's equation; its table says diameter. Other
+functions compute roughnesses and absorption from artist-friendly inputs.
 
 - `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, fiber +x, normal +z, z >= 0.
 - `wi` (..., 3): Direction to the light, unit vector to 1e-6, on either side.
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
-not broadcast. Formulas have the components of directions, (3, ...), on the first axis.
+not broadcast. Formulas take directions of shape (3, ...), with the components on the first axis.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.microfacet import fresnel as fresnel_formulas
 
 LOBES = ("R", "TT", "TRT", "TRRT+")
-SCALE = np.sqrt(np.pi / 8.0)  # scales s of the logistic distribution: Azimuthal Scattering
-LEAST_DIVISOR = 1e-300  # smaller divisors would overflow
+SCALE = np.sqrt(np.pi / 8.0)  # factor on the scale s: section Azimuthal Scattering
+LEAST_DIVISOR = 1e-300  # quotients by smaller divisors may overflow
 
-# Coefficients of (x / 20)^(2 k) in the power series of I_0, whose terms are all positive, and of (20 / x)^k in the
-# asymptotic series, used beyond x = 20, where its least term is exp(-2 x). Both stop at a term below 2^-53.
+# SERIES has the coefficients of (x / 20)^(2 k) in the power series of I_0; all are positive. TAIL has those of
+# (20 / x)^k in the asymptotic series for x > 20, whose smallest term is exp(-2 x). Both end below 2^-53.
 BESSEL, ORDERS = 20.0, np.arange(1, 48)
 SERIES = np.cumprod(np.append(1.0, (0.5 * BESSEL / ORDERS) ** 2)).tolist()
 TAIL = np.cumprod(
@@ -49,7 +49,7 @@ def bessel_scaled(x: Array) -> Array:
 
 
 def _polynomial(coefficients: list[float], x: Array) -> Array:
-    """Sum of coefficients times powers of x, by Horner's rule."""
+    """Polynomial in x by Horner's rule; the first coefficient is the constant."""
     total = 0.0 * x + coefficients[-1]
     for each in reversed(coefficients[:-1]):
         total = total * x + each
@@ -57,14 +57,14 @@ def _polynomial(coefficients: list[float], x: Array) -> Array:
 
 
 def longitudinal(sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Array) -> Array:
-    """M_p: Longitudinal Scattering, in a form that neither overflows nor cancels.
+    """M_p of section Longitudinal Scattering, in a form that neither overflows nor cancels.
 
-    Printed, with x = cos_i cos_o / v: M = exp(-sin_i sin_o / v) I_0(x) / (2 v sinh(1 / v)). I_0 is even, so that
-    |cos_i| serves for a tilted inclination beyond [-pi/2, pi/2]. Take e^x out of I_0 and e^(1/v) out of 2 sinh:
+    The printed form is M = exp(-sin_i sin_o / v) I_0(x) / (2 v sinh(1 / v)), x = cos_i cos_o / v. I_0 is even, so
+    |cos_i| is correct for inclinations tilted beyond [-pi/2, pi/2]. With e^x taken out of I_0 and e^(1/v) of 2 sinh:
 
         M = exp(-(1 + sin_i sin_o - |cos_i| cos_o) / v) (exp(-x) I_0(x)) / (v (1 - exp(-2 / v)))
 
-    The bracket is d^2 / 2, d the distance of the points (|cos_i|, sin_i) and (cos_o, -sin_o) of the unit circle.
+    The bracket is d^2 / 2, where d is the distance between (|cos_i|, sin_i) and (cos_o, -sin_o).
     """
     xp = array_namespace(sin_i, sin_o, v)
     cos_i = xp.abs(cos_i)
@@ -74,11 +74,11 @@ def longitudinal(sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Arra
 
 
 def azimuthal(phi: Array, s: Array) -> Array:
-    """N_p at the angle x = phi - Phi_p, wrapped into [-pi, pi]: Azimuthal Scattering.
+    """N_p of section Azimuthal Scattering at x = phi - Phi_p, wrapped into [-pi, pi].
 
-    Printed: l(x, s) / (L(pi, s) - L(-pi, s)) of the logistic density l and its integral L = 1 / (1 + e^(-x/s)), s
-    scaled by sqrt(pi / 8). l is even, so that with f = e^(-|x|/s) it is f / (s (1 + f)^2) and never overflows;
-    L(pi) - L(-pi) = (1 - e^(-pi/s)) / (1 + e^(-pi/s)) = tanh(pi / (2 s)).
+    The printed form is l(x, s) / (L(pi, s) - L(-pi, s)) with the logistic density l, its integral
+    L = 1 / (1 + e^(-x/s)), and s scaled by sqrt(pi / 8). l is even: f / (s (1 + f)^2) with f = e^(-|x|/s) never
+    overflows. L(pi) - L(-pi) = (1 - e^(-pi/s)) / (1 + e^(-pi/s)) = tanh(pi / (2 s)).
     """
     xp, scale = array_namespace(phi, s), SCALE * s
     wrapped = xp.remainder(phi + np.pi, 2.0 * np.pi) - np.pi
@@ -89,15 +89,15 @@ def azimuthal(phi: Array, s: Array) -> Array:
 
 @dataclass(frozen=True)
 class HairForm:
-    """The model in the text's form, or in another form that shaders use.
+    """A form of the model; the defaults are the specification's, other values are shaders' variants.
 
-    - `tilts_light`: Whether the cuticle's tilt turns the light's inclination instead of the viewer's.
-    - `effective`: Whether F uses the effective index and the cross-section's angle gamma_o.
+    - `tilts_light`: True to tilt the light's inclination by the cuticle angle, False the viewer's.
+    - `effective`: True if F uses the effective index at gamma_o, False if it uses the index `ior`.
     """
 
     longitudinal: Callable[[Array, Array, Array, Array, Array], Array] = longitudinal  # M_p
-    uniform: float = 0.5 / np.pi  # N of the lobe TRRT+
-    limits: tuple[float, float] = (0.0, np.inf)  # least and largest value of every roughness
+    uniform: float = 0.5 / np.pi  # constant N_p of the lobe TRRT+
+    limits: tuple[float, float] = (0.0, np.inf)  # range to which all roughnesses are clamped
     tilts_light: bool = True
     effective: bool = False
     factor: float = 1.0 / np.pi  # factor of the sum over the lobes
@@ -108,20 +108,20 @@ TEXT = HairForm()
 
 @dataclass(frozen=True)
 class Section:
-    """A view of the cross-section of a fiber."""
+    """Angles of a view and of its refracted ray in the cross-section of the fiber."""
 
     sin_o: Array  # sine and cosine of the viewer's inclination
     cos_o: Array
-    gamma_o: Array  # azimuth of the view from the normal, and that of the refracted ray
+    gamma_o: Array  # angles from the normal in the cross-section: view, refracted ray
     gamma_t: Array
 
 
 def section(wo: Array, ior: Array) -> tuple[Section, Array]:
-    """The cross-section that a view meets, and its effective index: Hair Fiber Geometry.
+    """Cross-section of the fiber for a view, and effective index: section Hair Fiber Geometry.
 
-    The text leaves the offset h = sin(gamma_o) to the renderer. As in MaterialX's shaders it is that
-    of the point whose normal is +z. A view along the fiber has none, and counts as h = 0. Below
-    index 1, where no ray enters, F is 1 and gamma_t has no effect.
+    The specification leaves the offset h = sin(gamma_o) to the renderer. Here, as in MaterialX's
+    shaders, h is taken at the point whose normal is +z. For a view along the fiber, h is 0. If the
+    index is below 1 and no ray enters, F is 1 and gamma_t has no effect.
     """
     xp, least = array_namespace(wo, ior), max(LEAST_DIVISOR, arrays.least_normal(wo))
     sin_o, cos_o = wo[0], arrays.hypot(wo[1], wo[2])
@@ -135,7 +135,7 @@ def section(wo: Array, ior: Array) -> tuple[Section, Array]:
 def attenuations(
     view: Section, effective: Array, ior: Array, absorption: Array, form: HairForm
 ) -> Array:
-    """A_p of a view, (4, C, ...), for absorptions (C, ...): Attenuation Factors."""
+    """A_p of the four lobes, (4, C, ...), for absorptions (C, ...): section Attenuation Factors."""
     xp, least = (
         array_namespace(view.sin_o, ior, absorption),
         max(LEAST_DIVISOR, arrays.least_normal(ior)),
@@ -157,7 +157,7 @@ def attenuations(
     T = xp.exp(-absorption * path)
     pass_through = xp.square(1.0 - F)
     rest = 1.0 - F * T
-    # For F = T = 1, TRRT+ has the limit 0.
+    # The factor of TRRT+ has the limit 0 at F = T = 1.
     last = pass_through * F**2 * T**3 / xp.where(rest > 0.0, rest, 1.0)
     return xp.stack([F + 0.0 * T, pass_through * T, pass_through * F * T**2, last])
 
@@ -171,7 +171,10 @@ def distribution(
     lobe: int,
     form: HairForm,
 ) -> Array:
-    """M_p N_p of a lobe of roughness (2, ...), v and s: Cuticle Tilt, Longitudinal Scattering, Azimuthal Scattering."""
+    """M_p N_p of a lobe: sections Cuticle Tilt, Longitudinal Scattering, Azimuthal Scattering.
+
+    `roughness` (2, ...) holds v and s.
+    """
     xp, (low, high) = array_namespace(wo, wi, alpha), form.limits
     v, s = (xp.minimum(xp.maximum(each, low), high) for each in roughness)
     inclined = [(wi[0], arrays.hypot(wi[1], wi[2])), (view.sin_o, view.cos_o)]
@@ -192,7 +195,7 @@ def distribution(
     return M * azimuthal(phi - exit_angle, s)
 
 
-HAIR_BLOCK = 4096  # elements per block; a lobe needs much memory for each
+HAIR_BLOCK = 4096  # elements per block; few, since each needs much memory
 TINTS, ROUGHNESSES = (
     tuple(f"{prefix}_{lobe}" for lobe in ("R", "TT", "TRT")) for prefix in ("tint", "roughness")
 )
@@ -204,16 +207,16 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
 
         f = 1/pi (t_R A_R M_R N_R + t_TT A_TT M_TT N_TT + t_TRT (A_TRT M_TRT N_TRT + A_TRRT+ M_TRT / 2pi))
 
-    - `**inputs`: Values of the node's ports, which have its defaults: `tint_R`, `tint_TT`, `tint_TRT` (..., C), in
+    - `**inputs`: Inputs of the node; omitted ones have its defaults. `tint_R`, `tint_TT`, `tint_TRT` (..., C), in
       [0, 1]; `ior` (...), in [0, 1e50]; `roughness_R`, `roughness_TT`, `roughness_TRT` (..., 2), longitudinal
       variance in square radian and azimuthal scale in radian, in [1e-12, 1e12]; `cuticle_angle` (...), in [0, 1];
       `absorption_coefficient` (..., C), per radius of the fiber, in [0, 1e50]. `form` is a `HairForm`.
 
-    Result (..., C): in 1/sr. Following the text, it does not include a cosine of the light: its
+    Result (..., C): in 1/sr. As in the specification, it does not include a cosine of the light; its
     integral over all lights is 1/pi if nothing is absorbed and the cuticle has no tilt. Roughness
-    (0, 0), a pure mirror, is refused, because its value is not a function. F has the index `ior`,
-    as in [Chiang2016]; the effective index is another reading. Accuracy: relative error below 1e-13
-    / min(sqrt(v), s) of the value, or 1e-300. [MaterialX2026].
+    (0, 0) is a pure mirror, a delta function, and is rejected. F uses the index `ior`, as in
+    [Chiang2016]; the text may also be read as the effective index. Accuracy: relative error below
+    1e-13 / min(sqrt(v), s), or absolute error below 1e-300. [MaterialX2026].
 
         >>> chiang_hair_bcsdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]).round(6)
         array([0.137704, 0.137704, 0.137704])
@@ -227,7 +230,7 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
     numbers = {name: values.pop(name) for name in ("ior", "cuticle_angle")}
     colors = {name: values[name] for name in (*TINTS, "absorption_coefficient")}
 
-    # Sum t_p A_p M_p N_p over the lobes; higher orders use TRT's tint and roughness.
+    # Sum t_p A_p M_p N_p over the lobes. TRRT+ uses TRT's tint and roughness.
     def formula(wo: Array, wi: Array, **inputs: Array) -> Array:
         ior, alpha = inputs["ior"], np.pi * (inputs["cuticle_angle"] - 0.5)
         view, effective = section(wo, ior)
@@ -248,12 +251,12 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
 def chiang_hair_attenuation(
     wo: ArrayLike, ior: ArrayLike, absorption_coefficient: ArrayLike
 ) -> Array:
-    """Attenuation factors A_R, A_TT, A_TRT and A_TRRT+ of a view.
+    """Attenuation factors A_R, A_TT, A_TRT and A_TRRT+ for a view.
 
     - `ior` (...): Index of the fiber, in [0, 1e50].
     - `absorption_coefficient` (..., C): Per radius of the fiber, in [0, 1e50].
 
-    Result (..., C, 4): in [0, 1]. Their sum is 1 where nothing is absorbed, and less elsewhere.
+    Result (..., C, 4): in [0, 1]. The four factors sum to 1 without absorption, and to less with it.
     [MaterialX2026], Chiang Hair Model, Attenuation Factors.
 
         >>> chiang_hair_attenuation([0.0, 0.0, 1.0], 1.55, 0.0).round(6)
@@ -287,7 +290,7 @@ DEFAULTS: dict[str, float | tuple[float, ...]] = {
 
 
 def _checked(inputs: dict[str, ArrayLike], wo: arrays.Numbers) -> dict[str, Array]:
-    """Values of all ports of the node, as arrays of wo's library; colors are (..., C)."""
+    """All inputs of the node, checked, as arrays of wo's library; colors are (..., C)."""
     unknown = set(inputs) - set(DEFAULTS)
     if unknown:
         known = ", ".join(DEFAULTS)
@@ -314,7 +317,7 @@ def chiang_hair_roughness(
     scale_tt: ArrayLike = 0.5,
     scale_trt: ArrayLike = 2.0,
 ) -> tuple[Array, Array, Array]:
-    """Longitudinal variance and azimuthal scale of the lobes R, TT and TRT, before the model's sqrt(pi / 8).
+    """Longitudinal variance and azimuthal scale, without factor sqrt(pi / 8), of R, TT and TRT.
 
         v = (0.726 l + 0.812 l^2 + 3.7 l^20)^2,  s = 0.265 a + 1.194 a^2 + 5.372 a^22;
         R (v, s), TT (scale_tt^2 v, s), TRT (scale_trt^2 v, s)
@@ -345,17 +348,17 @@ def deon_hair_absorption_from_melanin(
     eumelanin_color: ArrayLike,
     pheomelanin_color: ArrayLike,
 ) -> Array:
-    """Absorption coefficient of a mix of both melanins.
+    """Absorption coefficient of a mix of eumelanin and pheomelanin.
 
         sigma_a = m ((1 - redness) (-log eumelanin) + redness (-log pheomelanin)),
         m = -log(1 - concentration)
 
     - `melanin_concentration`, `melanin_redness` (...): In [0, 1) and in [0, 1].
-    - `eumelanin_color`, `pheomelanin_color` (..., 3): Light left by a fiber's radius of the pigment, in (0, 1].
+    - `eumelanin_color`, `pheomelanin_color` (..., 3): Transmittance of one fiber radius of the pigment, in (0, 1].
 
-    The sum is that of [dEon2011]. The specification does not say how concentration and redness
-    determine the amounts: the equation is that of its implementations. [MaterialX2026],
-    deon_hair_absorption_from_melanin.
+    The sum is from [dEon2011]. The specification does not say how concentration and redness
+    determine the amounts; the equation for them is from MaterialX's implementations.
+    [MaterialX2026], deon_hair_absorption_from_melanin.
 
         >>> colors = np.exp(-np.array(EUMELANIN)), np.exp(-np.array(PHEOMELANIN))
         >>> deon_hair_absorption_from_melanin(0.25, 0.5, *colors).round(6)
@@ -380,7 +383,7 @@ def deon_hair_absorption_from_melanin(
 def chiang_hair_absorption_from_color(
     hair_color: ArrayLike, azimuthal_roughness: ArrayLike
 ) -> Array:
-    """Absorption coefficient of hair that has a given color after all scattering.
+    """Absorption coefficient that gives hair this color after multiple scattering.
 
         sigma_a = (log(color) / (5.969 - 0.215 b + 2.532 b^2 - 10.73 b^3 + 5.574 b^4 + 0.245 b^5))^2
 

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Emission, media, subsurface scattering, the shader nodes, and black bodies of [MaterialX2026].
 
-A radiance is per channel, in any unit. Directions leave the surface, normal +z, or the position where light is scattered, so that light that goes
-straight on has wi = -wo; one below the horizon sees the back of the surface. `measured_edf` has no function here: its
-values come from a file.
+Radiances are per channel, in any unit. Directions point away from the surface, normal +z, or in media away from the
+point of scattering: undeflected light has wi = -wo. A view below the horizon sees the back of the surface.
+`measured_edf` has no function here: its values come from a file.
 
 - `wo`, `wi` (..., 3): Unit vectors to 1e-6; z may be negative.
-- `radiance` (..., C): c per channel; for a conical emitter, inside the cone; in [0, 1e50].
-- `inner_angle`, `outer_angle` (...): Full angles of the cones where the falloff starts and where it ends, degrees,
-  in [0, 360].
+- `radiance` (..., C): c per channel, in [0, 1e50]; a conical emitter has it inside the cone.
+- `inner_angle`, `outer_angle` (...): Full angles of the cones at which the falloff starts and ends, in degrees, in
+  [0, 360].
 - `color0`, `color90` (..., C): Factors along the normal and at grazing, in [0, 1].
 - `exponent` (...): q, in [0, 1e50]; with 0 the factor is `color90` everywhere.
 - `absorption`, `scattering`: Coefficients per channel in 1/m, in [0, 1e50].
-- `g`: Mean cosine of the deflection, in (-1, 1); at either end all light goes one way, and the function has no value.
+- `g`: Mean cosine of the deflection, in (-1, 1); at -1 and 1 the phase function would be a delta function.
 - `temperature` (...): In kelvin, in [1, 1e9].
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
@@ -31,7 +31,7 @@ from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespac
 from mxeon.models.core.colorimetry import CIE_1931, WAVELENGTHS, XYZ_TO_REC709
 from mxeon.models.core.quadrature import unit_rule
 
-HALF_TURN = np.pi / 360.0  # radians of half of a full cone angle in degrees
+HALF_TURN = np.pi / 360.0  # converts a full cone angle in degrees to its half in radian
 
 
 @any_array
@@ -52,7 +52,7 @@ def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
 def conical_edf(
     wo: ArrayLike, radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: ArrayLike
 ) -> Array:
-    """Radiance of a surface that emits inside a cone around its normal; below the horizon the cosine counts as 0.
+    """Radiance of a surface that emits inside a cone; below the horizon the cosine counts as 0.
 
         L_e = c smoothstep(c_out, c_in, cos)    if outer_angle > inner_angle
         L_e = c if cos >= c_in, else 0          otherwise
@@ -76,12 +76,12 @@ def conical_edf(
 def generalized_schlick_edf(
     wo: ArrayLike, base: ArrayLike, color0: ArrayLike, color90: ArrayLike, exponent: ArrayLike
 ) -> Array:
-    """Radiance of another emission `base`, (..., C) in [0, 1e50], scaled by a Schlick curve.
+    """Radiance of an emission `base`, (..., C) in [0, 1e50], scaled by a Schlick curve.
 
         L_e = (r_0 + (r_90 - r_0) (1 - cos)^q) L_base
 
-    The back is seen at |cos|: with a negative cosine the curve of the text would leave the range between both
-    factors. [MaterialX2026], section `generalized_schlick_edf`, Generalized Schlick Emission Equations.
+    The back uses |cos|: the printed curve would leave the range between both factors at negative cosines.
+    [MaterialX2026], section `generalized_schlick_edf`, Generalized Schlick Emission Equations.
 
         >>> generalized_schlick_edf([0.6, 0.0, 0.8], [2.0], [1.0], [0.0], 1.0).round(6)
         array([1.6])
@@ -99,7 +99,7 @@ def cone_cosine(angle: Array) -> Array:
 
 
 def cone_width(inner: Array, outer: Array) -> Array:
-    """c_in - c_out by a product of sines."""
+    """Difference c_in - c_out of the cones' cosines, as a product of sines that does not cancel."""
     half = 0.5 * HALF_TURN
     sin = array_namespace(inner, outer).sin
     return 2.0 * sin(half * (outer + inner)) * sin(half * (outer - inner))
@@ -108,7 +108,7 @@ def cone_width(inner: Array, outer: Array) -> Array:
 def _checked(
     wo: ArrayLike, colors: Mapping[str, ArrayLike], **numbers: ArrayLike
 ) -> tuple[Array, list[Array], list[Array]]:
-    """Cosines of the view, and the result of `checked_colors`; all broadcast."""
+    """Cosine of wo in [-1, 1], and the result of `checked_colors`; all broadcast."""
     directions = arguments.checked_sphere("wo", wo)
     vectors, values = checked_colors(colors, **numbers)
     parts = dict(zip(colors, vectors, strict=True))
@@ -120,11 +120,11 @@ def _checked(
 
 @any_array
 def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayLike) -> Array:
-    """Share T = exp(-sigma_t t) of the radiance that passes a homogeneous medium, without in-scattering.
+    """Share T = exp(-sigma_t t) of the radiance that crosses a homogeneous medium unscattered.
 
     - `distance`: t in m, in [0, 1e50].
 
-    `absorption_vdf` has a scattering of 0. [MaterialX2026], sections `absorption_vdf`, Beer-Lambert Absorption, and
+    `absorption_vdf` has `scattering` 0. [MaterialX2026], sections `absorption_vdf`, Beer-Lambert Absorption, and
     `anisotropic_vdf`, Extinction.
 
         >>> round(float(transmittance(0.5, 0.5, 2.0)), 6)
@@ -157,12 +157,12 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
     lead_shape({"wo": views, "wi": lights}, {"g": mean})
     xp = array_namespace(views, lights, mean)
     side = xp.where(mean < 0.0, -1.0, 1.0)[..., np.newaxis]
-    difference = 1.0 * views + side * lights  # 0 at the most likely deflection
+    difference = 1.0 * views + side * lights  # zero at the most likely deflection
     return _phase(0.5 * xp.sum(difference**2, axis=-1), mean)[()]
 
 
 def _phase(less: Array, g: Array) -> Array:
-    """The phase function in terms of `less`, 1 - cos for g >= 0 and 1 + cos for g < 0."""
+    """Phase function; `less` is 1 - cos for g >= 0 and 1 + cos for g < 0."""
     xp = array_namespace(less, g)
     size = xp.abs(g)
     square = (1.0 - size) ** 2 + 2.0 * size * less
@@ -171,7 +171,7 @@ def _phase(less: Array, g: Array) -> Array:
 
 @any_array
 def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLike) -> Array:
-    """Radiance O (L_e + L_s) of a surface. Light from behind, of which 1 - O passes, is not included.
+    """Radiance O (L_e + L_s) of a surface, without the share 1 - O of the light from behind.
 
     - `emission`, `scattered` (..., C): L_e of its EDF, and L_s, the integral of its BSDF over the
       light, per channel, in [0, 1e50].
@@ -187,8 +187,8 @@ def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLi
     return covered * (emitted + light)
 
 
-BLUR_NODES, PANELS = 50, 40  # nodes per panel; the blur's integrand has a kink
-FAR = 3.0  # length of the profile's second exponential, relative to the first
+BLUR_NODES, PANELS = 50, 40  # nodes per panel; panels, many since the integrand has a kink
+FAR = 3.0  # length of the profile's second exponential, divided by the first
 
 
 @any_array
@@ -199,11 +199,11 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
         W(mu) = int C'(r) c(mu, r) dr / C(2),  c = mean of max(cos(theta), 0) at the distance r
 
     - `mu`: Cosine of the light with the normal, in [-1, 1].
-    - `reach`: Mean free path over the radius of the sphere, in [1e-150, 1e150]; its limit 0 is max(mu, 0).
+    - `reach`: Mean free path divided by the sphere's radius, in [1e-150, 1e150]; as it vanishes, W becomes max(mu, 0).
 
-    Its mean over the sphere is 1/4, as for max(mu, 0). Distances are through the body, as in the text; light whose
-    distance exceeds the sphere is distributed like the rest. Accuracy: absolute error below 1e-6. [MaterialX2026],
-    Normalized Diffusion Profile; [Christensen2015].
+    The mean of W over the sphere is 1/4, as for max(mu, 0). Distances are chords through the sphere, as in the
+    specification; the profile is normalized over chords up to 2. Accuracy: absolute error below 1e-6.
+    [MaterialX2026], Normalized Diffusion Profile; [Christensen2015].
 
         >>> diffusion_blur([-0.5, 0.0, 1.0], 0.1).round(4)
         array([0.0097, 0.074 , 0.9344])
@@ -214,7 +214,7 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
 
 
 def blur_to(mu: Array, reach: Array, far: float) -> Array:
-    """`diffusion_blur` on valid arrays; `far` is the length of the second exponential over the first's."""
+    """`diffusion_blur` of valid arrays; `far` is the second exponential's length over the first's."""
     reach = reach[..., np.newaxis]
     (near, share), (rest, other) = _exponential(mu, reach), _exponential(mu, far * reach)
     total = 0.25 * share + 0.75 * other
@@ -222,12 +222,12 @@ def blur_to(mu: Array, reach: Array, far: float) -> Array:
 
 
 def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
-    """Blurred cosine for one exponential of the profile, and the exponential's share on the sphere."""
+    """Blurred cosine for one exponential of the profile; share of that exponential on the sphere."""
     xp, rule = array_namespace(mu, reach), unit_rule(BLUR_NODES, PANELS)
     u, weights = (like(each, reach) for each in rule)
     share = -xp.expm1(-2.0 / reach)
     distance = xp.minimum(-reach * xp.log1p(-u * share), 2.0)
-    # The mean of max(cos(theta), 0) over the circle at this distance from a point of the unit sphere.
+    # Mean of max(cos(theta), 0) over the circle on the unit sphere at this distance from the point.
     mu, squared = mu[..., np.newaxis], distance * distance
     along = mu * (1.0 - 0.5 * squared)
     across = arrays.root(at_least_0((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared)))
@@ -236,13 +236,13 @@ def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
     return xp.sum(weights * circle, axis=-1), share[..., 0]
 
 
-# h c / k_B in m K, exact in the SI of 2019.
+# Second radiation constant h c / k_B in m K, exact in the SI of 2019.
 SECOND = 6.62607015e-34 * 299792458.0 / 1.380649e-23
-NANOMETER = 1e-9  # m
-LUMINANCE = np.linalg.inv(XYZ_TO_REC709)[1]  # Y of linear Rec. 709
+NANOMETER = 1e-9  # unit: m
+LUMINANCE = np.linalg.inv(XYZ_TO_REC709)[1]  # weights of the linear Rec. 709 channels in Y
 
-# Cubic fits of the black bodies' chromaticity, 1667 K to 25000 K: x in 1000 K / T below and above 4000 K,
-# and y in x below 2222 K, below 4000 K and above, coefficients from the highest power.
+# Cubic fits of a black body's chromaticity, 1667 K to 25000 K, highest power first. KANG_X gives x from
+# 1000 K / T, below and above 4000 K; KANG_Y gives y from x, below 2222 K, below 4000 K and above.
 KANG_X = (
     (-0.2661239, -0.2343589, 0.8776956, 0.179910),
     (-3.0258469, 2.1070379, 0.2226347, 0.240390),
@@ -258,9 +258,9 @@ KANG_Y = (
 def blackbody_xyz(temperature: ArrayLike) -> Array:
     """CIE 1931 XYZ of a black body, with Y = 1.
 
-    Result (..., 3). Sums over the observer's table, of 5 nm, which are within 5e-5 of those over 1
-    nm. Spectra are scaled by their largest exponential, so that cold bodies, whose light underflows
-    in float64, keep their color. [Planck1901]; ISO/CIE 11664-1.
+    Result (..., 3). Sums over the observer's table in steps of 5 nm differ by less than 5e-5 from
+    sums in steps of 1 nm. Spectra are scaled by their largest exponential: cold bodies keep their
+    color although their radiance underflows in float64. [Planck1901]; ISO/CIE 11664-1.
 
         >>> blackbody_xyz(6504.0).round(4)
         array([0.9688, 1.    , 1.1218])
@@ -269,7 +269,7 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
     xp = array_namespace(kelvin)
     exponent = SECOND / (like(NANOMETER * WAVELENGTHS, kelvin) * kelvin)
     least = exponent[..., -1:]  # smallest exponent, at the longest wavelength
-    # (exp(x) - 1) / exp(least); only terms that do not matter reach the clamp
+    # Compute (exp(x) - 1) / exp(least). Only negligible terms reach the clamp.
     growth = xp.exp(xp.minimum(exponent - least, 700.0)) * -xp.expm1(-exponent)
     xyz = xp.tensordot(like(WAVELENGTHS**-5.0, kelvin) / growth, like(CIE_1931, kelvin), axes=1)
     return xyz / xyz[..., 1:2]
@@ -280,8 +280,8 @@ def blackbody(temperature: ArrayLike) -> Array:
     """Color of a black body in linear Rec. 709, with luminance 1.
 
     Result (..., 3): Channels are negative outside Rec. 709's gamut: blue below 1900 K, green below
-    964 K. The specification says "radiant emittance" without an equation. The true one grows with the
-    fourth power of the temperature; implementations return the color with luminance 1, as here.
+    964 K. The specification says "radiant emittance" without an equation. Radiant emittance grows with
+    the fourth power of the temperature, but implementations return a color of luminance 1, as here.
     [MaterialX2026], blackbody; [Planck1901]; ISO/CIE 11664-1.
 
         >>> blackbody([2000.0, 6504.0]).round(3)
@@ -295,8 +295,8 @@ def blackbody(temperature: ArrayLike) -> Array:
 def kang_xyz(temperature: ArrayLike) -> Array:
     """CIE 1931 XYZ of a black body by cubic fits, with Y = 1.
 
-    The fits cover 1667 K to 25000 K, where x and y are within 6e-4. GLSL also uses them below,
-    where they turn back: at 800 K the color is paler than at 1667 K. [Kang2002].
+    From 1667 K to 25000 K the errors of x and y are below 6e-4. MaterialX's GLSL also uses the fits
+    below 1667 K, where they are wrong: the color at 800 K is paler than at 1667 K. [Kang2002].
     """
     (kelvin,) = checked_numbers(temperature=temperature)
     warm, hot = (np.polyval(fit, 1000.0 / kelvin) for fit in KANG_X)

@@ -267,7 +267,7 @@ def arccosine(x: Array) -> Array:
 
 
 def angle(y: Array, x: Array) -> Array:
-    """Angle of the point (x, y). At the origin, derivatives are finite: those at the point (1, 0)."""
+    """Angle of the point (x, y); at the origin, value and derivatives are those at (1, 0)."""
     xp = array_namespace(x, y)
     if xp is NUMPY:
         return xp.atan2(y, x)
