@@ -1,23 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """BRDFs of the microfacet nodes of pbrlib, in 1/sr and without the cosine, and their albedos.
 
-All functions broadcast, work on the closed domain and evaluate in blocks. alpha 0 is a mirror: a delta function, which
-has no value; it counts as 0, and its albedo is F(mu_o). Where both directions graze the surface the value grows beyond
-bounds and counts as 0; value times cosine is 0 there for any finite choice. The compensation takes (1 - E_ss) / E_ss
-from a table that the first call computes, to 1e-10; the exact quadrature is `mxeon.models.ggx_albedo_dir`. Albedos are
-quadratures over slopes; their accuracy is that of `ggx_albedo_dir_anisotropic`. In retroreflective mode wo is replaced
-by its mirror image about the normal; the albedo is the same, since half a turn keeps the surface.
+All functions broadcast, work on the closed domain and evaluate in blocks. alpha 0 is a mirror: its value, a delta
+function, counts as 0; its albedo is F(mu_o). If both directions graze the surface, the value is unbounded and counts
+as 0; value times cosine is 0 there for any finite choice. The compensation takes (1 - E_ss) / E_ss, accurate to 1e-10,
+from a table that the first call computes; `mxeon.models.ggx_albedo_dir` is the exact quadrature. Albedos are
+quadratures over slopes, as accurate as `ggx_albedo_dir_anisotropic`. In retroreflective mode, wo is replaced by its
+mirror image about the normal; the albedo stays the same, since a half turn maps the surface onto itself.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
 - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
 - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
-- `ior`, `extinction` (..., C): Index of refraction relative to the exterior medium, in [0, 1e50]; per channel for a
-  conductor, without channels (...) for a dielectric, where 0 disables the Fresnel curve.
+- `ior`, `extinction` (..., C): Complex index of refraction relative to the exterior medium, per channel, in [0, 1e50].
+  A dielectric has one `ior` for all channels, (...); 0 disables its Fresnel curve.
 - `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at acos(1/7), and reflectance at
   grazing, per channel, in [0, 1]; a number is one channel.
 - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
-- `retroreflective`: Whether light returns towards where it comes from.
-- `compensate`: Whether the energy compensation enters; without it the value is reciprocal.
+- `retroreflective`: Whether light is reflected back toward its source.
+- `compensate`: Whether to apply the energy compensation; without it the BRDF is reciprocal.
 
 Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing and as alpha vanishes; or an albedo.
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
@@ -51,16 +51,16 @@ from mxeon.models.microfacet.slopes import slope_nodes, transmitting_nodes
 class Curve:
     """Fresnel curve of a node.
 
-    - `critical`: `critical(**material)`, shape (...): square of the cosine below which F is 1, if
-      above 0.
+    - `critical`: `critical(**material)`, shape (...): squared cosine below which F is 1; no such
+      cosine exists if it is 0 or negative.
     """
 
-    at: Callable[..., Array]  # `at(cosine, **material)`, shape (C, ...): F, without a tint
+    at: Callable[..., Array]  # `at(cosine, **material)`, shape (C, ...): F without the tint
     average: Callable[..., Array]  # `average(**material)`, shape (C, ...): F_ss
     critical: Callable[..., Array] = lambda **material: np.zeros(1)
 
 
-# `material` may include a tint, which F ignores.
+# The inputs of a curve may include a tint, which F ignores.
 DIELECTRIC_CURVE = Curve(
     lambda c, ior, tint: fresnel.dielectric(c, ior)[np.newaxis],
     lambda ior, tint: fresnel.dielectric_avg(ior)[np.newaxis],
@@ -76,7 +76,7 @@ WHITE_CURVE = Curve(lambda c, tint: 1.0 + 0.0 * c[np.newaxis], lambda tint: np.o
 
 @dataclass(frozen=True)
 class Pair:
-    """Directions and roughness of a block, components first, and the Fresnel curve with its inputs."""
+    """Directions and roughness of a block, components first; Fresnel curve and its inputs."""
 
     wo: Array
     wi: Array
@@ -87,34 +87,34 @@ class Pair:
 
 
 def compensation(pair: Pair) -> Array:
-    """1 + F_ss (1 - E_ss) / E_ss: [MaterialX2026], Energy Compensation."""
+    """Factor 1 + F_ss (1 - E_ss) / E_ss of [MaterialX2026], Energy Compensation."""
     return 1.0 + pair.curve.average(**pair.material) * missing(pair)
 
 
 def uncompensated(pair: Pair) -> float:
-    """1: no compensation."""
+    """Factor 1 of a lobe without energy compensation."""
     return 1.0
 
 
 def visibility(pair: Pair) -> Array:
-    """G2 / (4 mu_o mu_i) of the specification since July 2026."""
+    """G2 / (4 mu_o mu_i) as in the specification since July 2026."""
     return ggx.visibility_anisotropic(pair.wo, pair.wi, pair.roughness)
 
 
 def missing(pair: Pair) -> Array:
-    """(1 - E_ss) / E_ss, to 1e-10 for equal alphas, otherwise as accurate as `ggx_albedo_dir_anisotropic`."""
+    """(1 - E_ss) / E_ss of a Pair; the error is below 1e-10 if both alphas are equal."""
     return missing_of(pair.wo, pair.roughness)
 
 
-# Many views of one roughness share a polynomial of these degrees if its last coefficients are below TAIL: it is
-# then as accurate as the quadrature. Very anisotropic surfaces need higher degrees along their axes.
+# With at least MANY views of one roughness, a polynomial of these degrees replaces the quadrature. It is as accurate
+# if its last coefficients are below TAIL; very anisotropic surfaces would need higher degrees.
 DEGREES, TAIL = (32, 16), 5e-6
 MANY = (DEGREES[0] + 1) * (DEGREES[1] + 1)
 
 
 @lru_cache(maxsize=8)
 def _anisotropic_missing(rows: bytes) -> Array:
-    """(1 - E_ss) / E_ss for float64 rows of shape (N,): x, y, z of the views, then both alphas."""
+    """(1 - E_ss) / E_ss, (N,), from five float64 rows (N,): x, y, z of the views, both alphas."""
     columns = np.frombuffer(rows).reshape(5, -1)
     E = evaluate_number(
         lambda wo, roughness: slope_nodes(wo, roughness)[1].sum(axis=(0, 1)),
@@ -127,7 +127,7 @@ def _anisotropic_missing(rows: bytes) -> Array:
 
 @lru_cache(maxsize=8)
 def _series(roughness: tuple[float, float]) -> Array | None:
-    """Chebyshev coefficients of (1 - E_ss) / E_ss in `_place`, or None if they decay too slowly."""
+    """Chebyshev coefficients of (1 - E_ss) / E_ss over `_place`; None if they decay too slowly."""
     s, turn = np.meshgrid(*(chebyshev_nodes(degree + 1) for degree in DEGREES), indexing="ij")
     squares = turn / roughness[0], (1.0 - turn) / roughness[1]
     cos_phi, sin_phi = (np.sqrt(each / sum(squares)) for each in squares)
@@ -141,7 +141,10 @@ def _series(roughness: tuple[float, float]) -> Array | None:
 
 
 def _place(wo: Array, roughness: Array) -> tuple[Array, Array]:
-    """Cube root of mu (1 + a) / (mu + a), a the alpha at the azimuth of wo, and the azimuth from 0 to 1."""
+    """Coordinates of a view in [0, 1]: cube root of mu (1 + a) / (mu + a), and a scaled azimuth.
+
+    a is the alpha at the azimuth of wo.
+    """
     x, y = (np.square(wo[k]) * roughness[k] for k in (0, 1))
     sine = np.maximum(np.hypot(wo[0], wo[1]), 1e-150)
     alpha = np.hypot(wo[0] * roughness[0], wo[1] * roughness[1]) / sine
@@ -150,7 +153,7 @@ def _place(wo: Array, roughness: Array) -> tuple[Array, Array]:
 
 
 def _of_unlike(rows: Array) -> Array:
-    """(1 - E_ss) / E_ss of rows as in `_anisotropic_missing`; equal rows are evaluated once."""
+    """(1 - E_ss) / E_ss from rows as in `_anisotropic_missing`; equal views are evaluated once."""
     wo, alphas = rows[:3], rows[3:]
     one = rows.shape[1] >= MANY and not np.ptp(alphas, axis=1).any() and alphas.all()
     if one and (series := _series((float(alphas[0, 0]), float(alphas[1, 0])))) is not None:
@@ -162,16 +165,16 @@ def _of_unlike(rows: Array) -> Array:
 
 
 def missing_of(wo: Array, roughness: Array) -> Array:
-    """(1 - E_ss) / E_ss on valid float64 arrays, components first."""
+    """(1 - E_ss) / E_ss from valid float64 arrays, components first."""
     isotropic = missing_light(wo[2], ggx.mean_alpha(roughness))
     if array_namespace(wo, roughness) is arrays.NUMPY:
         unequal = roughness[0] != roughness[1]
         if not np.any(unequal):
             return isotropic
-        # Pairs with the same view and roughness, as in an integral, share one quadrature.
+        # Pairs with equal view and roughness, as in an integral over lights, share one quadrature.
         total = np.broadcast_to(isotropic, np.broadcast_shapes(wo.shape[1:], unequal.shape)).copy()
         chosen = np.broadcast_to(unequal, total.shape)
-        # Mirrored views have the same E_ss, and it does not depend on lights or curves.
+        # E_ss is equal for mirrored views and independent of lights and Fresnel curves.
         views = (abs(wo[0]), abs(wo[1]), wo[2])
         rows = [np.broadcast_to(each, total.shape)[chosen] for each in (*views, *roughness)]
         total[chosen] = _of_unlike(np.stack(rows))
@@ -188,12 +191,12 @@ def missing_of(wo: Array, roughness: Array) -> Array:
 
 @dataclass(frozen=True)
 class Lobe:
-    """Terms of a microfacet BRDF, those of [MaterialX2026] unless replaced.
+    """Terms of a microfacet BRDF; the defaults are those of [MaterialX2026].
 
-    - `alpha`: The lobe's alpha, from the input `roughness`.
+    - `alpha`: Function that turns the input `roughness` into the lobe's alpha.
     """
 
-    factor: Callable[[Pair], Array | float] = compensation  # compensation of a Pair
+    factor: Callable[[Pair], Array | float] = compensation  # compensation factor of a Pair
     visibility: Callable[[Pair], Array] = visibility  # G2 / (4 mu_o mu_i) of a Pair
     alpha: Callable[[Array], Array] = lambda roughness: roughness
     scale: float = 1.0
@@ -238,7 +241,7 @@ def evaluate_lobe(
 Color = tuple[float, float, float]
 ONE: Color = (1.0, 1.0, 1.0)
 GOLD: dict[str, Color] = {"ior": (0.183, 0.421, 1.373), "extinction": (3.424, 2.346, 1.770)}
-# Fresnel curve of each node, its inputs with channels, and its inputs without, with defaults.
+# By node: Fresnel curve; defaults of the inputs with channels; defaults of the inputs without.
 CATEGORIES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
     "dielectric_bsdf": (DIELECTRIC_CURVE, {"tint": ONE}, {"ior": 1.5}),
     "conductor_bsdf": (CONDUCTOR_CURVE, GOLD, {}),
@@ -253,7 +256,7 @@ CATEGORIES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
 def _material(
     category: str, inputs: Mapping[str, ArrayLike]
 ) -> tuple[Curve, dict[str, Numbers], dict[str, Numbers]]:
-    """Curve of a node, its checked inputs with channels, and those without."""
+    """Fresnel curve of a node, checked inputs with channels, checked inputs without channels."""
     curve, colors, numbers = CATEGORIES[category]
     vectors = arguments.checked_vectors({name: inputs[name] for name in colors})
     return curve, vectors, arguments.checked_all({name: inputs[name] for name in numbers})
@@ -268,7 +271,7 @@ def node_brdf(
     lobe: Lobe | None = None,
     retroreflective: bool = False,
 ) -> Array:
-    """BRDF of a node, a key of CATEGORIES. Inputs that the node does not have are ignored."""
+    """BRDF of the node `category`, a key of CATEGORIES; unknown inputs are ignored."""
     material = _material(category, inputs)
     return evaluate_lobe(
         lobe or Lobe(), material[0], wo, wi, inputs["roughness"], *material[1:], retroreflective
@@ -283,7 +286,7 @@ def node_albedo(
     compensate: bool = True,
     summed: bool = False,
 ) -> Array:
-    """Directional albedo of `node_brdf`; `summed` as for `slope_nodes`."""
+    """Directional albedo of `node_brdf`; `slope_nodes` explains `summed`."""
     curve, vectors, numbers = _material(category, inputs)
     return lobe_albedo(curve, wo, inputs["roughness"], vectors, numbers, compensate, summed)
 
@@ -302,9 +305,9 @@ def dielectric_brdf(
 
         f = tint D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    Below index 1 light comes from the denser side and F is 1 beyond the critical angle; negative numbers, which stock
-    MaterialX squares, are refused. Accuracy: relative error of the compensation's factor below 1e-10, of the rest 2e-14
-    at alpha >= 0.05. [MaterialX2026], Microfacet BRDF; Energy Compensation; dielectric_bsdf.
+    If `ior` < 1, light comes from the denser side, and F is 1 beyond the critical angle. Stock MaterialX squares a
+    negative `ior`; here it is rejected. Accuracy: relative error below 1e-10 for the compensation factor, and below
+    2e-14 for the rest at alpha >= 0.05. [MaterialX2026], Microfacet BRDF; Energy Compensation; dielectric_bsdf.
 
         >>> dielectric_brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
         array([0.060074])
@@ -353,8 +356,8 @@ def generalized_schlick_brdf(
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    Where the printed curve is below 0 (see `mxeon.models.fresnel_schlick`), F is 0, as in OpenPBR; so is F_ss where its
-    closed form is below 0. [MaterialX2026], Microfacet BRDF; generalized_schlick_bsdf.
+    F is 0 where the printed curve is negative (see `mxeon.models.fresnel_schlick`), as in OpenPBR; F_ss is 0 where its
+    closed form is negative. [MaterialX2026], Microfacet BRDF; generalized_schlick_bsdf.
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> generalized_schlick_brdf(wo, wi, [0.9, 0.2], 0.5, 1.0, [0.3, 0.3], 5.0).round(6)
@@ -372,7 +375,7 @@ def _lobe(compensate: bool) -> Lobe:
     )
 
 
-QUADRATURE_BLOCK = 2**3  # elements per block
+QUADRATURE_BLOCK = 2**3  # elements per block of a quadrature over slopes
 
 
 @any_array
@@ -381,10 +384,9 @@ def dielectric_albedo_dir(
 ) -> Array:
     """Directional albedo of `dielectric_brdf`, by quadrature.
 
-    For `ior` below 1, where F has an infinite slope at
-    the critical angle, the quadrature is split there, and the error of isotropic lobes is below
-    1e-10. At alpha 0 it is that of the mirror, tint F(mu_o). [MaterialX2026], Directional Albedo
-    and Energy Conservation.
+    For `ior` < 1, F has an infinite slope at the critical angle. The quadrature is split there; the
+    error of isotropic lobes is below 1e-10. At alpha 0 the albedo is the mirror's, tint F(mu_o).
+    [MaterialX2026], Directional Albedo and Energy Conservation.
 
         >>> dielectric_albedo_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
         array([0.040169])
@@ -440,7 +442,7 @@ def generalized_schlick_albedo_dir(
 def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of anisotropic GGX at unit Fresnel reflectance, by quadrature.
 
-    Accuracy: error below 5e-6 for mu_o >= 1e-4 and roughness >= 1e-4. Cosines below 1e-12 count as 1e-12.
+    Accuracy: error below 5e-6 for mu_o >= 1e-4 and roughness >= 1e-4. Cosines below 1e-12 are raised to it.
     [MaterialX2026], Energy Compensation; Height-Correlated Smith Masking-Shadowing.
 
         >>> ggx_albedo_dir_anisotropic([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]], [0.1, 0.5]).round(6)
@@ -462,7 +464,7 @@ def lobe_albedo(
     compensate: bool,
     summed: bool = False,
 ) -> Array:
-    """Albedo of a lobe with this Fresnel curve; `vectors` and `numbers` are the curve's checked inputs."""
+    """Albedo of a lobe; `vectors` and `numbers` are checked inputs of the Fresnel curve."""
     wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
     arguments.checked_switch("compensate", compensate)
 
@@ -477,7 +479,7 @@ def lobe_albedo(
         E = xp.sum(curve.at(c, **spread) * weight, axis=(1, 2))
         squared = curve.critical(**material)
         if not summed and (arrays.library(squared) or np.any(squared > 0.0)):
-            # All light minus the part transmitted above the critical angle.
+            # The albedo without losses, minus the light transmitted above the critical cosine.
             alpha, isotropic = 0.5 * (roughness[0] + roughness[1]), roughness[0] == roughness[1]
             lossless = xp.where(isotropic, albedo(wo[2], alpha), xp.sum(weight, axis=(0, 1)))
             c, weight = transmitting_nodes(wo, roughness, arrays.at_least_0(squared))
@@ -489,8 +491,10 @@ def lobe_albedo(
         return total
 
     given = {"wo": wo, "roughness": roughness, **vectors}
-    lead_shape(given, numbers)  # reports arguments that do not broadcast by name
-    # Compute the multiple scattering per element, before the slope nodes multiply the elements.
+    lead_shape(
+        given, numbers
+    )  # raises ValueError with the names of arguments that do not broadcast
+    # Compute multiple scattering per element, before the slope nodes add axes.
     channels = channel_count(vectors)
     unseen, average = np.zeros(()), np.zeros(1)
     if compensate:

@@ -13,9 +13,9 @@ from mxeon.models.core.arrays import Array
 from mxeon.models.microfacet import Lobe, Pair, ggx
 from mxeon.models.microfacet.ggx import missing_light
 
-# MaterialX 1.39.5, rational fit of the GGX albedo A F0 + B F90 in x = mu, y = alpha; up to 0.14 off
-# on [1e-3, 1]^2. Rows: coefficients of 1, x, y, x y, x^2, y^2, x^2 y, x y^2, x^2 y^2; columns:
-# numerators of A and B, denominators of A and B.
+# Rational fit of the GGX albedo A F0 + B F90 in MaterialX 1.39.5, with x = mu, y = alpha; the error
+# is up to 0.14 on [1e-3, 1]^2. Rows: coefficients of 1, x, y, x y, x^2, y^2, x^2 y, x y^2, x^2 y^2.
+# Columns: numerators of A and B, denominators of A and B.
 ALBEDO_FIT = np.array(
     [
         [0.1003, 0.9345, 1.0, 1.0],
@@ -31,14 +31,14 @@ ALBEDO_FIT = np.array(
 )
 
 
-# Least cosine and alpha of that fit. The shaders clamp both to M_FLOAT_EPS, 1e-8 in 1.39.5; between the two
-# limits the fit changes by less than 2e-5.
+# Smallest cosine and alpha passed to ALBEDO_FIT. The shaders of 1.39.5 clamp both to M_FLOAT_EPS, 1e-8; between the
+# two limits the fit changes by less than 2e-5.
 CLAMP = 1e-6
 
 
 @dataclass(frozen=True)
 class MicrofacetDefect:
-    """A known wrong variant of the three microfacet nodes."""
+    """A wrong variant of the three microfacet nodes that renderers are known to implement."""
 
     name: str
     title: str
@@ -46,13 +46,13 @@ class MicrofacetDefect:
 
 
 def averaged_channels(albedo: Array) -> Array:
-    """Albedo with all channels replaced by their mean, as a colored node's throughput may be."""
+    """Albedo whose channels are replaced by their mean; some throughputs of colored nodes use it."""
     mean = np.mean(albedo, axis=-1, keepdims=True)
     return np.broadcast_to(mean, albedo.shape).copy()
 
 
 def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float) -> Array:
-    """Directional albedo of GGX with a Schlick curve, by the fit of MaterialX 1.39.5."""
+    """Directional albedo of GGX with a Schlick curve, by ALBEDO_FIT of MaterialX 1.39.5."""
     x, y = np.broadcast_arrays(mu, alpha)
     powers = np.stack(
         [x**0, x, y, x * y, x * x, y * y, x * x * y, x * y * y, x * x * y * y], axis=-1
@@ -64,32 +64,32 @@ def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float
 
 
 def schlick_average(normal: Array, grazing: Array | float) -> Array:
-    """Average of F over the hemisphere, for Schlick's curve of exponent 5 between two end values.
+    """Average of F over the hemisphere for a Schlick curve of exponent 5, from its end values.
 
-    MaterialX uses it for every curve since pull request 2958 (June 2026).
+    MaterialX has used it for every curve since pull request 2958 (June 2026).
     """
     average: Array = normal + (grazing - normal) / 21.0
     return average
 
 
 def _half(pair: Pair) -> Array:
-    """F at the half vector."""
+    """Fresnel reflectance at the half vector."""
     return pair.curve.at(pair.cosine, **pair.material)
 
 
 def _normal(pair: Pair) -> Array:
-    """F along the normal."""
+    """Fresnel reflectance along the normal."""
     return pair.curve.at(np.ones_like(pair.cosine), **pair.material)
 
 
 def _averaged(pair: Pair) -> Array:
-    """Average of F from its values along the normal and at grazing."""
+    """Average Fresnel reflectance, computed only from the values along the normal and at grazing."""
     ends = (pair.curve.at(np.full_like(pair.cosine, mu), **pair.material) for mu in (1.0, 0.0))
     return schlick_average(*ends)
 
 
 def _missing_by_fit(pair: Pair) -> Array:
-    """(1 - E_ss) / E_ss by the fit of MaterialX 1.39.5."""
+    """(1 - E_ss) / E_ss by ALBEDO_FIT of MaterialX 1.39.5."""
     alpha = np.maximum(ggx.mean_alpha(pair.roughness), CLAMP)
     E = fitted_albedo(np.clip(pair.wo[2], CLAMP, 1.0), alpha, 1.0, 1.0)
     return (1.0 - E) / E
@@ -98,16 +98,16 @@ def _missing_by_fit(pair: Pair) -> Array:
 def _compensated(
     F: Callable[[Pair], Array], lost: Callable[[Pair], Array] = microfacet.missing
 ) -> Callable[[Pair], Array]:
-    """Compensation with a given F instead of its average F_ss, and a given (1 - E_ss) / E_ss."""
+    """Compensation factor 1 + F `lost` with other functions for F_ss and (1 - E_ss) / E_ss."""
     return lambda pair: 1.0 + F(pair) * lost(pair)
 
 
-fitted_half = _compensated(_half, _missing_by_fit)  # MaterialX 1.39.5
-averaged_fitted = _compensated(_averaged, _missing_by_fit)  # MaterialX after 1.39.5
+fitted_half = _compensated(_half, _missing_by_fit)  # compensation in MaterialX 1.39.5
+averaged_fitted = _compensated(_averaged, _missing_by_fit)  # compensation in later MaterialX
 
 
 def _separable(pair: Pair) -> Array:
-    """G1(wo) G1(wi) / (4 mu_o mu_i) at sqrt(alpha_x alpha_y)."""
+    """Uncorrelated visibility G1(wo) G1(wi) / (4 mu_o mu_i) with alpha = sqrt(alpha_x alpha_y)."""
     alpha = ggx.mean_alpha(pair.roughness)
     mu_o, mu_i = pair.wo[2], pair.wi[2]
     length_o, length_i = (mu + ggx.smith_lambda(mu, alpha) for mu in (mu_o, mu_i))
@@ -115,12 +115,12 @@ def _separable(pair: Pair) -> Array:
 
 
 def _at_the_mean(pair: Pair) -> Array:
-    """G2 / (4 mu_o mu_i) at sqrt(alpha_x alpha_y): the specification of June 2026."""
+    """G2 / (4 mu_o mu_i) with alpha = sqrt(alpha_x alpha_y), as in the June 2026 specification."""
     return ggx.visibility(pair.wo[2], pair.wi[2], ggx.mean_alpha(pair.roughness))
 
 
 def _june(pair: Pair) -> Array:
-    """The compensation of the specification of June 2026, with E_ss at the mean alpha."""
+    """Compensation factor of the June 2026 specification, with E_ss at the mean alpha."""
     lost = missing_light(pair.wo[2], ggx.mean_alpha(pair.roughness))
     return 1.0 + pair.curve.average(**pair.material) * lost
 
@@ -178,11 +178,11 @@ MICROFACET_DEFECTS = (
     MicrofacetDefect("alpha_root", "square root of the roughness as alpha", Lobe(alpha=np.sqrt)),
     MicrofacetDefect("no_factor_4", "no factor 4 in the denominator", Lobe(scale=4.0)),
 )
-# MaterialX's lobes: 1.39.5, and after it.
+# MaterialX's lobes in version 1.39.5 and in later versions.
 FITTED = Lobe(fitted_half, _at_the_mean)
 AVERAGED = Lobe(averaged_fitted, _at_the_mean)
 MEAN_TITLE = f"{MEAN_ALPHA}, and MaterialX's compensation"
-# MaterialX's lobe with one error each, as a copy of its shaders may have.
+# MaterialX's lobes, and variants of them with one more error, which copies of its shaders may have.
 FITTED_DEFECTS = (
     MicrofacetDefect("smith_mean_fitted", MEAN_TITLE, FITTED),
     MicrofacetDefect("smith_mean_average", f"{MEAN_TITLE} by F0 and F90", AVERAGED),
@@ -202,7 +202,7 @@ FITTED_DEFECTS = (
         if each.lobe.factor is microfacet.compensation
     ),
 )
-# OSL's BSDL, compared only with OSL's closures: E_ss at the arithmetic mean of both alphas.
+# Lobe of OSL's BSDL: E_ss at the arithmetic mean of both alphas. Only OSL's closures may match it.
 BSDL = MicrofacetDefect(
     "bsdl",
     "BSDL's lobe: compensation with F at the half vector",
@@ -213,7 +213,7 @@ BSDL = MicrofacetDefect(
         ),
     ),
 )
-# Blender's Cycles: its closures have no compensation.
+# Lobe of Blender's Cycles, whose closures have no energy compensation.
 SINGLE = MicrofacetDefect(
     "single",
     "single scattering alone",
@@ -222,7 +222,10 @@ SINGLE = MicrofacetDefect(
 
 
 def burley_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
-    """Fit of Burley's albedo, mx_burley_diffuse_dir_albedo, (N, 3): up to 0.0174 off, at mu 0 and roughness 1/2."""
+    """Burley's albedo by the fit mx_burley_diffuse_dir_albedo, (N, 3).
+
+    The error is at most 0.0174, at mu 0 and roughness 1/2.
+    """
     x, r = np.minimum(wo[:, 2], 1.0), inputs["roughness"]
     smooth = 0.97619 - 0.488095 * (1.0 - x) ** 5
     rough = 1.55754 + (-2.02221 + (2.56283 - 1.06244 * x) * x) * x
@@ -230,9 +233,9 @@ def burley_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
 
 
 def conty_kulla_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
-    """Fit of the Conty-Kulla albedo, without the color, (N, 3): mx_imageworks_sheen_dir_albedo_analytic.
+    """Conty-Kulla albedo without the color, (N, 3): mx_imageworks_sheen_dir_albedo_analytic.
 
-    It is up to 0.0705 off for mu and roughness in [0.01, 1], and 0.74 at roughness 0.001.
+    The error is up to 0.0705 for mu and roughness in [0.01, 1], and 0.74 at roughness 0.001.
     """
     x, y = np.minimum(wo[:, 2], 1.0), inputs["roughness"]
     above = 13.673 - 68.78018 * x + 799.08825 * y - 905.00061 * x * y
@@ -245,7 +248,7 @@ def conty_kulla_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
 def layer_albedo(
     wo: Array, inputs: Mapping[str, Array], F0: Array, F90: Array | float, F: Array
 ) -> Array:
-    """Albedo of a microfacet lobe as used for its throughput, with F in the compensation, (N, 3)."""
+    """Fitted albedo for the throughput of a microfacet lobe, with F in the compensation, (N, 3)."""
     mu, alpha = _arguments(wo, inputs)
     A, B = (fitted_albedo(mu, alpha, *ends)[:, np.newaxis] for ends in ((1.0, 0.0), (0.0, 1.0)))
     return np.broadcast_to((F0 * A + F90 * B) * fitted_compensation(wo, inputs, F), wo.shape)
@@ -258,6 +261,6 @@ def fitted_compensation(wo: Array, inputs: Mapping[str, Array], F: Array) -> Arr
 
 
 def _arguments(wo: Array, inputs: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Cosine and alpha, both at least CLAMP."""
+    """Cosine of wo and geometric mean of the alphas, both at least CLAMP."""
     alpha = np.sqrt(np.maximum(inputs["roughness"], CLAMP).prod(axis=-1))
     return np.clip(wo[:, 2], CLAMP, 1.0), alpha

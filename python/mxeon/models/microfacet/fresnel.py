@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fresnel reflectances of the microfacet nodes of pbrlib, their averages, and an index from two colors.
+"""Fresnel reflectances of pbrlib's microfacet nodes, their averages, and an index from artistic colors.
 
-F_ss, the cosine-weighted average over the hemisphere, is 2 times the integral of F(mu) mu. Sections are those of
+F_ss, the cosine-weighted average over the hemisphere, is 2 times the integral of F(mu) mu. Section names refer to
 [MaterialX2026].
 
 - `mu` (...): Cosine between direction and microfacet normal, in [0, 1].
@@ -26,31 +26,31 @@ from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespac
 from mxeon.models.core.evaluation import evaluate_material, evaluate_number
 from mxeon.models.core.quadrature import unit_rule
 
-# Hoffman's correction is largest here: [MaterialX2026], Generalized Schlick Equations.
+# Cosine at which Hoffman's correction is largest: [MaterialX2026], Generalized Schlick Equations.
 COS_THETA_MAX = 1.0 / 7.0
 
-# Smaller indices are raised to this where 1 / n enters: F_ss is 1 to rounding, and n^3 stays finite.
+# Smallest index n of which 1 / n is taken: F_ss is 1 to rounding there, and 1 / n^3 stays finite.
 LEAST_IOR = 1e-50
 
 # Double-exponential rule: c = X^2 / (X^2 + 1/X^2), X = exp(pi/4 sinh(t)), |t| < 3.2.
-# The weights beyond are below 1e-15.
+# Weights at larger |t| are below 1e-15.
 STEP, STEPS = 0.0625, 51
 GROUP = 2**12  # integrand values per block
 
-# Gauss-Legendre nodes for curves whose singularities lie outside the ellipse with foci 0 and 1 and
-# this sum of half axes, in units of 1/2; the error is this sum to the power -56, 1e-13.
+# Gauss-Legendre nodes for curves without singularities in the ellipse that has the foci 0 and 1 and
+# half axes whose sum is ELLIPSE / 2. The error is ELLIPSE to the power -56, 1e-13.
 AVERAGE_NODES, ELLIPSE = 28, 1.7
 
 
 def dielectric(mu: Array, ior: Array) -> Array:
-    """F: [MaterialX2026], Dielectric Fresnel Equations, without a cancellation.
+    """F of [MaterialX2026], Dielectric Fresnel Equations, rearranged so that nothing cancels.
 
-    Printed, with c = mu and g^2 = ior^2 + c^2 - 1:
+    The printed form, with c = mu and g^2 = ior^2 + c^2 - 1, is
 
         F = 1/2 ((g - c) / (g + c))^2 (1 + ((c (g + c) - 1) / (c (g - c) + 1))^2)
 
-    (g - c) (g + c) = ior^2 - 1 takes g - c to (ior^2 - 1) / (g + c), and c (g +- c) -+ 1 is
-    c g -+ (1 - c^2). Without an interface (ior 1) F is 0 at grazing too, where 0 / 0 stands.
+    As (g - c) (g + c) = ior^2 - 1, g - c is (ior^2 - 1) / (g + c); c (g +- c) -+ 1 is c g -+ (1 - c^2).
+    Without an interface (ior 1), F is 0 even at grazing, where the printed form is 0 / 0.
     """
     xp = array_namespace(mu, ior)
     gap = (ior - 1.0) * (ior + 1.0)
@@ -66,18 +66,18 @@ def dielectric(mu: Array, ior: Array) -> Array:
 
 
 def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
-    """F: [MaterialX2026], Conductor Fresnel Equations, without a cancellation.
+    """F of [MaterialX2026], Conductor Fresnel Equations, rearranged so that nothing cancels.
 
-    Printed, with c = mu, S2 = sin^2, n = ior + i extinction and w = a + i b = sqrt(n^2 - S2):
+    The printed form, with c = mu, S2 = sin^2, n = ior + i extinction, w = a + i b = sqrt(n^2 - S2), is
 
         R_s = (a^2 + b^2 - 2 a c + c^2) / (a^2 + b^2 + 2 a c + c^2)  = |w - c|^2 / |w + c|^2
         R_p / R_s = (c^2 (a^2 + b^2) - 2 a c S2 + S2^2) / (... + 2 a c S2 + ...)
                   = |c w - S2|^2 / |c w + S2|^2
 
-    (w - c) (w + c) = n^2 - S2 - c^2 = n^2 - 1, so that R_s = |n^2 - 1|^2 / |w + c|^4. The root: with
-    Re = ior^2 - extinction^2 - S2 = a^2 - b^2, the larger of a and b is sqrt((|w^2| + |Re|) / 2), and
-    a b = ior extinction gives the smaller. No interface (n = 1) reflects nothing, at grazing too; n = 0
-    reflects all, along the normal too.
+    As (w - c) (w + c) = n^2 - S2 - c^2 = n^2 - 1, R_s is |n^2 - 1|^2 / |w + c|^4. To compute w, let
+    Re = ior^2 - extinction^2 - S2 = a^2 - b^2. The larger of a and b is sqrt((|w^2| + |Re|) / 2);
+    a b = ior extinction gives the smaller. F is 0 for n = 1 even at grazing, and 1 for n = 0 even
+    along the normal.
     """
     xp = array_namespace(mu, ior, extinction)
     S2 = (1.0 - mu) * (1.0 + mu)
@@ -95,7 +95,7 @@ def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
 
 
 def modulus(real: Array, imaginary: Array) -> Array:
-    """Absolute value of complex numbers: `hypot`, ten times slower, only where a square overflows."""
+    """Absolute value of complex numbers; `hypot`, ten times slower, serves only if a square overflows."""
     if array_namespace(real, imaginary) is not arrays.NUMPY:
         return hypot(real, imaginary)
     with np.errstate(over="ignore"):
@@ -104,14 +104,14 @@ def modulus(real: Array, imaginary: Array) -> Array:
 
 
 def schlick(mu: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
-    """F_theta: [MaterialX2026], Generalized Schlick Equations; 0^0 counts as 1."""
+    """F_theta of [MaterialX2026], Generalized Schlick Equations; 0^0 counts as 1."""
     a = _schlick_a(color0, color82, color90, exponent)
     m = 1.0 - mu
     return color0 + (color90 - color0) * arrays.power(m, exponent) - a * mu * m**6
 
 
 def dielectric_avg(ior: Array) -> Array:
-    """F_ss of a dielectric, in the form of `fresnel_dielectric_avg`."""
+    """F_ss of a dielectric without checks; see `fresnel_dielectric_avg`."""
     xp = array_namespace(ior)
     inside = ior < 1.0
     gap = xp.where(inside, (1.0 - ior) / xp.maximum(ior, LEAST_IOR), ior - 1.0)
@@ -122,8 +122,8 @@ def dielectric_avg(ior: Array) -> Array:
 def conductor_avg(ior: Array, extinction: Array) -> Array:
     """F_ss of a conductor: Gauss-Legendre where F is smooth in the cosine c, else a split rule.
 
-    F has square roots at c^2 = 1 - n^2, next to the real axis for weakly absorbing media, and, for
-    strong ones, a pole as near to grazing as 1 / |n|.
+    The square root in F is singular at c^2 = 1 - n^2, which is close to the real axis for weakly
+    absorbing media. Strongly absorbing media have a pole at a distance of 1 / |n| from grazing.
     """
     # Arrays that do not support assignment always use the split rule.
     if array_namespace(ior, extinction) is not arrays.NUMPY:
@@ -143,7 +143,7 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
 
 
 def _is_smooth(n2: Array) -> Array:
-    """Whether the singularities of F in c, at sqrt(1 - n^2) and -1 / sqrt(1 + n^2), are far from [0, 1]."""
+    """Whether F's singularities in c, sqrt(1 - n^2) and -1 / sqrt(1 + n^2), are far from [0, 1]."""
     far = np.full(n2.shape, True)
     with np.errstate(divide="ignore", invalid="ignore"):  # n^2 = -1 has its pole at infinity
         pole = -1.0 / np.sqrt(1.0 + n2)
@@ -155,7 +155,7 @@ def _is_smooth(n2: Array) -> Array:
 def _smooth_avg(ior: Array, extinction: Array) -> Array:
     """F_ss of materials (N,) whose F is smooth in the cosine.
 
-    With x = c^2, m = |w|^2 and u = 2 c a of `conductor`, B = x m + (1 - x)^2:
+    With w and a of `conductor`, x = c^2, m = |w|^2, u = 2 c a and B = x m + (1 - x)^2:
     F = (x + m - u) B / ((x + m + u) (B + u (1 - x)))
     """
     real, squared = (ior - 1.0) * (ior + 1.0) - extinction**2, (2.0 * ior * extinction) ** 2
@@ -171,12 +171,12 @@ def _smooth_avg(ior: Array, extinction: Array) -> Array:
 
 
 def _split_avg(ior: Array, extinction: Array) -> Array:
-    """F_ss by a double-exponential rule on either side of the critical angle, vectorized over the nodes.
+    """F_ss by a double-exponential rule on either side of the critical angle, over all nodes at once.
 
-    The nodes crowd at the ends of both parts, where the singularities are. The critical angle is
-    treated as constant, since the integral does not depend on where it is split.
+    Nodes crowd at the ends of both parts, where the singularities are. The integral does not depend
+    on the place of the split, so the critical angle is treated as constant.
     """
-    # Find the critical angle, the real part of sqrt(1 - n^2).
+    # The cosine of the critical angle is the real part of sqrt(1 - n^2).
     xp = array_namespace(ior, extinction)
     real = extinction * extinction - (ior - 1.0) * (ior + 1.0)
     size = hypot(real, 2.0 * ior * extinction)
@@ -194,7 +194,7 @@ def _split_avg(ior: Array, extinction: Array) -> Array:
 
 
 def schlick_avg(color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
-    """F_ss of the generalized Schlick curve: two Beta functions, B(2, q + 1) and B(3, 7).
+    """F_ss of the generalized Schlick curve, by the Beta functions B(2, q + 1) and B(3, 7).
 
     2 B(2, q + 1) = 2 / ((q + 1) (q + 2)),  2 B(3, 7) = 1 / 126
     """
@@ -203,7 +203,7 @@ def schlick_avg(color0: Array, color82: Array, color90: Array, exponent: Array) 
 
 
 def _schlick_a(color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
-    """a: [MaterialX2026], Generalized Schlick Equations."""
+    """Coefficient a of [MaterialX2026], Generalized Schlick Equations."""
     m = 1.0 - COS_THETA_MAX
     return (color0 + (color90 - color0) * m**exponent) * (1.0 - color82) / (COS_THETA_MAX * m**6)
 
@@ -211,7 +211,7 @@ def _schlick_a(color0: Array, color82: Array, color90: Array, exponent: Array) -
 def _external_avg(gap: Array) -> Array:
     """F_ss for n = 1 + gap >= 1.
 
-    Printed [Walsh1926]:
+    The printed form of [Walsh1926] is
 
         F_ss = 1/2 + (n - 1) (3 n + 1) / (6 (n + 1)^2) + n^2 (n^2 - 1)^2 / (n^2 + 1)^3 log((n - 1) / (n + 1))
                - 2 n^3 (n^2 + 2 n - 1) / ((n^2 + 1) (n^4 - 1)) + 8 n^4 (n^4 + 1) / ((n^2 + 1) (n^4 - 1)^2) log(n)
@@ -222,9 +222,9 @@ def _external_avg(gap: Array) -> Array:
         1/2 + tanh(t/2) (3 n + 1) / (6 (n + 1)) + n sinh^2 t log(tanh(t/2)) / (2 cosh^3 t)
         - (n^2 + 2 n - 1) / (2 cosh t sinh 2t) + 2 n t cosh 2t / (cosh t sinh^2 2t)
 
-    Fourth and fifth are infinite at t = 0. As n^2 + 2 n - 1 = 2 n + 2 n sinh t, the 2 n of the fourth is the -1 of
-    n (2 t coth 2t - 1) / (cosh t sinh 2t), and its rest is -n sinh t / (cosh t sinh 2t) = -n / (2 cosh^2 t). With
-    1/2 = cosh^2 t / (2 cosh^2 t) that is (sinh^2 t - (n - 1)) / (2 cosh^2 t).
+    The fourth and fifth terms are infinite at t = 0. As n^2 + 2 n - 1 = 2 n + 2 n sinh t, the fourth has two parts. The
+    part with 2 n and the fifth term sum to n (2 t coth 2t - 1) / (cosh t sinh 2t). The part with 2 n sinh t is
+    -n / (2 cosh^2 t); it and 1/2 = cosh^2 t / (2 cosh^2 t) sum to (sinh^2 t - (n - 1)) / (2 cosh^2 t).
     """
     xp = array_namespace(gap)
     n = 1.0 + gap
@@ -243,7 +243,7 @@ def _external_avg(gap: Array) -> Array:
 
 
 def _x_coth_x_minus_1(x: Array, sinh: Array, cosh: Array) -> Array:
-    """x coth(x) - 1, below 1 by its continued fraction of positive terms."""
+    """x coth(x) - 1; for x < 1 by a continued fraction of positive terms, which does not cancel."""
     xp = array_namespace(x)
     fraction: Array | float = 19.0
     y = xp.minimum(x, 1.0) ** 2
@@ -258,10 +258,10 @@ def fresnel_dielectric(mu: ArrayLike, ior: ArrayLike) -> Array:
 
     - `ior`: Index of refraction relative to the exterior medium, in [0, 1e50].
 
-    `ior` 0 disables the Fresnel curve: F is 1, as the equations give it. Below 1 the light comes
-    from the denser side, and F is 1 from the critical angle on. At 1 there is no interface, and F
-    is 0 at grazing too. Accuracy: relative error below 2.2e-14 for `ior` >= 1; below 1, F has an
-    infinite slope at the critical angle, so it is exact for arguments that differ by a rounding.
+    `ior` 0 disables the Fresnel curve: the equations give F = 1. For `ior` < 1, light comes from
+    the denser side, and F is 1 beyond the critical angle. For `ior` 1, there is no interface, and F
+    is 0 even at grazing. Accuracy: relative error below 2.2e-14 for `ior` >= 1. For `ior` < 1, the
+    slope at the critical angle is infinite, so rounding of an argument can change F by more.
     [MaterialX2026], Dielectric Fresnel Equations; dielectric_bsdf.
 
         >>> fresnel_dielectric([1.0, 0.5, 0.0], 1.5).round(6)
@@ -272,11 +272,11 @@ def fresnel_dielectric(mu: ArrayLike, ior: ArrayLike) -> Array:
 
 @any_array
 def fresnel_dielectric_avg(ior: ArrayLike) -> Array:
-    """Average Fresnel reflectance F_ss of a dielectric, in closed form; `ior` as for `fresnel_dielectric`.
+    """Average Fresnel reflectance F_ss of a dielectric, in closed form, for `ior` in [0, 1e50].
 
-    Accuracy: relative error below 2.2e-14. Form: Walsh's result in log(ior), rearranged so that
-    nothing cancels near 1; below 1 from the other side of the interface, ior^2 (1 - F_ss(1 / ior))
-    = 1 - F_ss(ior). [Walsh1926]; [MaterialX2026], Energy Compensation.
+    Accuracy: relative error below 2.2e-14. Walsh's result is written in log(ior), so that nothing
+    cancels near 1. For `ior` < 1, F_ss follows from the other side of the interface:
+    ior^2 (1 - F_ss(1 / ior)) = 1 - F_ss(ior). [Walsh1926]; [MaterialX2026], Energy Compensation.
 
         >>> fresnel_dielectric_avg([0.0, 1.0, 1.5]).round(6)
         array([1.      , 0.      , 0.091778])
@@ -288,7 +288,7 @@ def fresnel_dielectric_avg(ior: ArrayLike) -> Array:
 def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> Array:
     """Fresnel reflectance of a conductor for unpolarized light.
 
-    Result (..., C): in [0, 1]. Without extinction it is `fresnel_dielectric`. Accuracy: absolute
+    Result (..., C): in [0, 1]; without extinction it equals `fresnel_dielectric`. Accuracy: absolute
     error below 1e-12, except at the critical angle of an almost non-absorbing dielectric.
     [MaterialX2026], Conductor Fresnel Equations.
 
@@ -322,9 +322,9 @@ def fresnel_schlick(
 
         F = r0 + (r90 - r0) (1 - mu)^q - a mu (1 - mu)^6
 
-    The specification does not clamp F, and neither does this function: where `color0` is dark, `color82` small and
-    `color90` bright, it falls below 0, to -0.127 at mu = 0.26 for 0, 0 and 1 with exponent 5. At exponent 0 the curve
-    is r90, along the normal too. [MaterialX2026], Generalized Schlick Equations.
+    F is not clamped, as in the specification: for dark `color0`, small `color82` and bright `color90` it falls below
+    0, for example to -0.127 at mu = 0.26 for the colors 0, 0, 1 and exponent 5. At exponent 0 the curve is r90 even
+    along the normal. [MaterialX2026], Generalized Schlick Equations.
 
         >>> fresnel_schlick(0.5, [0.9, 0.2], [0.5, 1.0], 1.0, 5.0).round(6)
         array([0.837879, 0.225   ])
@@ -360,17 +360,18 @@ def _colors(
 
 @any_array
 def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array, Array]:
-    """Complex index of refraction n + i k with a reflectance at normal incidence.
+    """Complex index of refraction n + i k from the reflectance at normal incidence and an edge color.
 
         n = edge_color n_min + (1 - edge_color) n_max,
         n_min = (1 - r) / (1 + r),  n_max = (1 + sqrt(r)) / (1 - sqrt(r)),
         k^2 = (n_max - n) (n - 1 / n_max)
 
-    - `reflectivity` (...): Reflectance at normal incidence r, per channel, in [0, 1).
+    - `reflectivity` (...): Reflectance r at normal incidence, per channel, in [0, 1).
     - `edge_color` (...): Per channel, in [0, 1]: 0 gives the largest n and no extinction, 1 the smallest n.
 
     The paper's k^2 is (r (n + 1)^2 - (n - 1)^2) / (1 - r), a difference of large numbers. Its roots in n are n_max and
-    1 / n_max, and k^2 is their product here; 1 - sqrt(r) is (1 - r) / (1 + sqrt(r)). [Gulbrandsen2014]; [MaterialX2026], artistic_ior.
+    1 / n_max, so k^2 is computed as the product above, and 1 - sqrt(r) as (1 - r) / (1 + sqrt(r)). [Gulbrandsen2014];
+    [MaterialX2026], artistic_ior.
 
         >>> ior, extinction = artistic_ior(0.944, 0.998)
         >>> round(float(ior), 4), round(float(extinction), 4)
