@@ -1,26 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lambert, the Oren-Nayar family, Burley's model and diffuse transmission: BRDFs, albedos, inversion.
 
-BRDFs are in 1/sr and without the cosine. All functions broadcast, work on the closed domain, and evaluate
-in blocks on the caller's thread, so that memory beyond arguments and result does not grow. BRDFs are reciprocal. Where both directions graze the surface and s > 0,
-s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 there for any choice.
+BRDFs are reciprocal, in 1/sr and without the cosine. All functions broadcast, work on the closed domain, and
+evaluate in blocks on the caller's thread, so memory for temporaries does not grow with the arguments. If both
+directions graze the surface and s > 0, s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
 - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
 - `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
-- `sigma` (...): Deviation of the facets' slope angle, in radian, in [0, pi/2].
+- `sigma` (...): Standard deviation of the facets' slope angle, in radian, in [0, pi/2].
 - `roughness` (...): In [0, 1].
 - `color` (..., C): Desired albedo, in [0, 1].
 
-Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing, with an error below 1e-14 / pi, or below 1e-14
-of the largest value that |s / t| takes at these cosines where that is larger. Albedos of FON and QON (...) are
-those at unit reflectance: multiply by rho.
+Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing. The error is below 1e-14 / pi or, if larger, 1e-14
+times the largest |s / t| that occurs at these two cosines. Albedos of FON and QON (...) are for unit reflectance;
+multiply them by rho.
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
-The formulas below have names and arguments of the shader functions in `genglsl/lib/eon.glsl` and
-`genglsl/sampling/oren_nayar_family.glsl`; `rho` has its channels on the first axis there.
+The formulas below have the names and arguments of the shader functions in `genglsl/lib/eon.glsl` and
+`genglsl/sampling/oren_nayar_family.glsl`. Their `rho` has its channels on the first axis.
 """
 
 from __future__ import annotations
@@ -44,24 +44,24 @@ FON_G = (0.0571085289, 0.491881867, -0.332181442, 0.0714429953)
 
 
 def cosines(wo: Array, wi: Array) -> tuple[Array, Array, Array]:
-    """Cosines with the normal, and the part of the pair's cosine that lies in the surface.
+    """Cosines with the normal, and the tangential part s of dot(wo, wi).
 
         s = dot(wo, wi) - mu_o mu_i = wo.x wi.x + wo.y wi.y
 
-    `mu_o`, `mu_i` (...): Cosines, in [0, 1]: z, but 1 where a rounded direction has z > 1. `s`
-    (...): In [-1, 1] up to rounding; signed, never clamped. [Portsmouth2025], below Eq. (3).
+    `mu_o`, `mu_i` (...): Cosines in [0, 1]: z, clamped to 1 against rounding. `s` (...): In [-1, 1]
+    up to rounding; signed, never clamped. [Portsmouth2025], below Eq. (3).
     """
     s = wo[..., 0] * wi[..., 0] + wo[..., 1] * wi[..., 1]
     return arrays.cosine(wo[..., 2]), arrays.cosine(wi[..., 2]), s
 
 
 def of_cosines(formula: Callable[..., Array]) -> Callable[..., Array]:
-    """A formula in mu_o, mu_i and s, as a function of directions and its other arguments."""
+    """Turn a formula in mu_o, mu_i, s into a function of wo, wi; further arguments are passed on."""
     return lambda wo, wi, *material: formula(*cosines(wo, wi), *material)
 
 
 def checked_brdf(formula: Callable[..., Array], parameter: str) -> Callable[..., Array]:
-    """A formula in mu_o, mu_i, s, rho and a parameter, as a function that checks its arguments."""
+    """Turn a formula in mu_o, mu_i, s, rho and a parameter into a BRDF that checks its arguments."""
 
     @any_array
     def brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, value: ArrayLike) -> Array:
@@ -90,29 +90,29 @@ def fon_loss_mu(mu: Array) -> Array:
 
 
 def fon_loss_approx(mu: Array) -> Array:
-    """H(mu) with the quartic of [Portsmouth2025], Eq. (14): below 0 where mu < 0.0014."""
+    """H(mu) by the quartic of [Portsmouth2025], Eq. (14); negative for mu < 0.0014."""
     m = 1.0 - mu
     g1, g2, g3, g4 = FON_G
     return C1 - m * (g1 + m * (g2 + m * (g3 + m * g4)))
 
 
 def fon_af(roughness: Array) -> Array:
-    """A_F: [Portsmouth2025], below Eq. (11)."""
+    """A_F = 1 / (1 + c1 r) of [Portsmouth2025], below Eq. (11)."""
     return 1.0 / (1.0 + C1 * roughness)
 
 
 def fon_lambert(rho: Array, roughness: Array) -> Array:
-    """rho A_F / pi: [Portsmouth2025], Eq. (10)."""
+    """Factor rho A_F / pi of [Portsmouth2025], Eq. (10)."""
     return rho / np.pi * fon_af(roughness)
 
 
 def qon_aq(sigma: Number, constant: float = 0.33) -> Number:
-    """A_q: [Portsmouth2025], below Eq. (1)."""
+    """Coefficient A_q of QON: [Portsmouth2025], below Eq. (1)."""
     return 1.0 - 0.5 * sigma**2 / (sigma**2 + constant)
 
 
 def qon_bq(sigma: Number) -> Number:
-    """B_q: [Portsmouth2025], below Eq. (1)."""
+    """Coefficient B_q of QON: [Portsmouth2025], below Eq. (1)."""
     return 0.45 * sigma**2 / (sigma**2 + 0.09)
 
 
@@ -126,16 +126,16 @@ def eon_multiple_ratio(rho: Array, roughness: Array) -> Array:
 
         rho r (1 + c2 r) / ((c1 - c2) D)
 
-    The powers of r that vanish with the roughness are cancelled: no division by 1 - <E_FON>.
+    Powers of r that vanish at roughness 0 are cancelled, so nothing is divided by 1 - <E_FON>.
     """
     weight = roughness * (1.0 + C2 * roughness) / (C1 - C2)
     return rho * weight / eon_denominator(rho, roughness)
 
 
 def oren_nayar_quotient(value: Array, divisor: Array) -> Array:
-    """`value / divisor`, or 0 if the divisor, which is >= 0, vanishes: there is no limit there.
+    """`value / divisor`; 0 if the divisor, which must not be negative, is 0.
 
-    Divisors below the smallest normal number count as 0, since the quotient might overflow.
+    Divisors below the smallest normal number count as 0, because the quotient might overflow.
     """
     xp = array_namespace(value, divisor)
     return value / xp.where(divisor < arrays.least_normal(divisor), np.inf, divisor)
@@ -177,10 +177,10 @@ def oren_nayar_angle(y: Array, x: Array) -> Array:
 
 
 def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) -> Array:
-    """(sin(alpha) - (2 beta / pi)^3) / cos(beta), and its limit 6 / pi where both directions graze.
+    """(sin(alpha) - (2 beta / pi)^3) / cos(beta), with limit 6 / pi if both directions graze.
 
-    With q = 1 - 2 beta / pi the cube is 1 - q (3 - 3 q + q^2), and 1 - sin(alpha) is
-    cos(alpha)^2 / (1 + sin(alpha)): the ones cancel, not the digits.
+    With q = 1 - 2 beta / pi, the cube is 1 - q (3 - 3 q + q^2); 1 - sin(alpha) is
+    cos(alpha)^2 / (1 + sin(alpha)). The ones cancel by algebra, without a loss of digits.
     """
     xp = array_namespace(mu_o, mu_i, S_o, S_i)
     high, low = xp.maximum(mu_o, mu_i), xp.minimum(mu_o, mu_i)
@@ -191,7 +191,7 @@ def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) ->
 
 
 def oren_nayar_interreflection(rho: Array, sigma: Array) -> Array:
-    """Term that interreflection adds to A: [OrenNayar1994], [Fujii2013]."""
+    """Interreflection term that is added to A: [OrenNayar1994], [Fujii2013]."""
     return 0.17 * rho * (sigma**2 / (sigma**2 + 0.13))
 
 
@@ -204,10 +204,10 @@ def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
     alpha = 1.0 - xp.minimum(elevation_o, elevation_i)
     beta = 1.0 - xp.maximum(elevation_o, elevation_i)
     cos_phi = oren_nayar_quotient(s, S_o * S_i)
-    # C2 cos(phi) tan(beta), where sin(beta) cos(phi) is s / sin(alpha).
+    # C2 cos(phi) tan(beta); sin(beta) cos(phi) is computed as s / sin(alpha).
     behind = oren_nayar_quotient(xp.minimum(s, 0.0), xp.maximum(S_o, S_i))
     behind = behind * oren_nayar_behind_slope(mu_o, mu_i, S_o, S_i)
-    # C3 and its factors, where 1 - cos(phi)^2 is (cross / (S_o S_i))^2.
+    # C3 and its factors; 1 - cos(phi)^2 is computed as (cross / (S_o S_i))^2.
     cross = wo[..., 0] * wi[..., 1] - wo[..., 1] * wi[..., 0]
     aside = oren_nayar_quotient(cross, S_o * S_i) ** 2 / (1.0 + xp.abs(cos_phi))
     aside = aside * oren_nayar_quotient(S_o + S_i, mu_o + mu_i)
@@ -247,10 +247,10 @@ def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLi
         C2 = 0.45 k (sin(alpha) - (2 beta / pi)^3 where cos(phi) < 0),
         C3 = 0.125 k (4 alpha beta / pi^2)^2
 
-    alpha and beta are the larger and the smaller polar angle, phi is the azimuth between both. As printed, the
-    fit falls below 0, to -0.27 rho / pi, for rough dark surfaces where both directions graze from opposite
-    sides. At grazing, (sin(alpha) - (2 beta / pi)^3) tan(beta) has its limit 6 / pi; the tangent after C3 has
-    none and counts as 0. [OrenNayar1994], functional approximation for Gaussian slopes.
+    alpha and beta are the larger and the smaller polar angle; phi is the azimuth between wo and wi. The printed
+    fit falls below 0, to -0.27 rho / pi, for rough dark surfaces if both directions graze from opposite sides. At
+    grazing, (sin(alpha) - (2 beta / pi)^3) tan(beta) has the limit 6 / pi; the tangent after C3 has no limit and
+    counts as 0. [OrenNayar1994], functional approximation for Gaussian slopes.
 
         >>> oren_nayar_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.063766, 0.269282])
@@ -331,8 +331,8 @@ def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
         f = rho / pi A (1 + r s / t + rho r (1 + c2 r) / ((c1 - c2) D) H(mu_o) H(mu_i)),
         D = 1 + c1 r - rho r (c1 - c2),  H = c1 - G_F / pi
 
-    Form: Eq. (19) with 1 - E_FON = r A H; the powers of r that vanish with roughness are cancelled,
-    so that roughness 0 is Lambert exactly. [Portsmouth2025], Eqs. (16)-(19).
+    This is Eq. (19) with 1 - E_FON = r A H. Powers of r that vanish at roughness 0 are cancelled, so
+    roughness 0 is exactly Lambert. [Portsmouth2025], Eqs. (16)-(19).
 
         >>> eon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.073621, 0.310981])
@@ -342,13 +342,13 @@ def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
 
 @any_array
 def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """BRDF of EON with the quartic for the albedo of FON, in 1/sr.
+    """BRDF of EON, with FON's albedo approximated by a quartic, in 1/sr.
 
         f as in `eon_brdf`,  G_F / pi = g1 m + g2 m^2 + g3 m^3 + g4 m^4,  m = 1 - mu
 
-    Accuracy: within 1.25e-3 / pi of `eon_brdf`. H is clamped to 0 where it is negative, for mu <
-    0.0014. Listing 1 instead keeps 1 - E_FON above 1e-7: it differs by less than 1.4e-7 / pi for
-    roughness > 1e-5, and is not Lambert at 0. [Portsmouth2025], Eqs. (14), (16)-(19).
+    Accuracy: within 1.25e-3 / pi of `eon_brdf`. H is clamped to 0 for mu < 0.0014, where the quartic
+    is negative. The paper's Listing 1 instead keeps 1 - E_FON above 1e-7. It differs by less than
+    1.4e-7 / pi for roughness > 1e-5, and is not Lambert at 0. [Portsmouth2025], Eqs. (14), (16)-(19).
 
         >>> eon_brdf_approx([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.073622, 0.311002])
@@ -364,7 +364,7 @@ def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLi
         k = F_D90 - 1 = 2 roughness (wi . wh)^2 - 1 / 2,  (wi . wh)^2 = (1 + wo . wi) / 2
 
     Result (..., C): 1/sr, in [0, 25/4 / pi]. Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi.
-    [MaterialX2026], section `burley_diffuse_bsdf`, whose sigma is the roughness; [Burley2012], section 5.3.
+    [MaterialX2026], section `burley_diffuse_bsdf`, where sigma is the roughness; [Burley2012], section 5.3.
 
         >>> burley_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.063985, 0.255939])
@@ -385,8 +385,8 @@ def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Ar
         n = (1 - mu)^5,  h = r - 1/2,
         Q = (h^2 + r^2 (1 - mu^2) / 2) / 21 + h r mu / 42 + r^2 (3 mu^2 - 1) / 504
 
-    f is a polynomial in mu_i and cos(phi). The integrals are 2 n! 5! / (n + 6)! for mu_i^n (1 - mu_i)^5: 1/21,
-    1/84, 1/252. Accuracy: absolute error below 1e-12. [MaterialX2026], Directional Albedo.
+    f is a polynomial in mu_i and cos(phi). The integrals of 2 mu_i^k (1 - mu_i)^5 for k = 1, 2, 3 are 1/21, 1/84,
+    1/252. Accuracy: absolute error below 1e-12. [MaterialX2026], Directional Albedo.
 
         >>> burley_albedo_dir(0.0, 1.0, 1.0).round(6)
         array([1.55754])
@@ -401,7 +401,7 @@ def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Ar
 
 @any_array
 def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
-    """BTDF of Lambert's transmission, f = rho / pi in 1/sr, whose integral times |mu_i| is rho.
+    """BTDF f = rho / pi of Lambert's transmission, in 1/sr; its integral with |mu_i| is rho.
 
     - `wi` (..., 3): Direction to the light, unit vector to 1e-6, z <= 0.
     - `rho` (..., C): Diffuse transmittance per channel, in [0, 1]; a number is one channel.
@@ -450,7 +450,7 @@ def fon_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
 @any_array
 def fon_albedo_dir_approx(mu: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of FON at unit reflectance, with a quartic.
+    """Directional albedo of FON at unit reflectance, approximated by a quartic.
 
         E(mu) ~ (1 + roughness (g1 m + g2 m^2 + g3 m^3 + g4 m^4)) A,  m = 1 - mu
 
@@ -498,7 +498,7 @@ def eon_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array
 
 @any_array
 def eon_albedo_dir_approx(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of EON, with the quartic for the albedo of FON.
+    """Directional albedo of EON, with FON's albedo approximated by a quartic.
 
         E(mu) as in `eon_albedo_dir`,  H = c1 - (g1 m + g2 m^2 + g3 m^3 + g4 m^4),  m = 1 - mu
 
@@ -530,7 +530,7 @@ def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
 
 
 def eon_albedo(loss: Array | float, rho: Array, r: Array) -> Array:
-    """Albedo of EON, given that FON loses r A loss."""
+    """Albedo of EON for an albedo 1 - r A `loss` of FON, in one direction or on average."""
     return rho * (1.0 - (1.0 - rho) * r * loss / eon_denominator(rho, r))
 
 
@@ -568,13 +568,13 @@ def qon_albedo_avg(sigma: ArrayLike) -> Array:
 
 @any_array
 def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
-    """Reflectance rho that gives EON this directional albedo at normal incidence.
+    """Reflectance rho for which EON has the albedo `color` at normal incidence.
 
         rho = 2 C d / (b + sqrt(b^2 + 4 c2 r d C)),  b = 1 + (c1 - c2) r C,  d = 1 + c1 r
 
-    Accuracy: relative error below 1e-15. Form: the root of [Portsmouth2025], Eq. (30), with the
-    difference in its numerator multiplied out, times 1 + c1 r. Nothing cancels or vanishes at low
-    roughness, so that no series is needed. [Portsmouth2025], Eqs. (28) to (31).
+    Accuracy: relative error below 1e-15. This is the root in Eq. (30), scaled by 1 + c1 r and without
+    the difference in its numerator. Nothing cancels or vanishes at low roughness, so no series is
+    needed. [Portsmouth2025], Eqs. (28) to (31).
 
         >>> eon_rho_from_albedo_normal([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
         array([0.      , 0.219784, 0.835673, 1.      ])
@@ -583,13 +583,13 @@ def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
     b, d = 1.0 + (C1 - C2) * r * color, 1.0 + C1 * r
     sqrt = array_namespace(color, r).sqrt
     rho = 2.0 * color * d / (b + sqrt(b * b + 4.0 * C2 * r * d * color))
-    # A color of 1 may round to 1 + 2^-52, which models reject.
+    # A color of 1 may give rho = 1 + 2^-52 by rounding, which models reject.
     return arrays.trimmed(rho, 1.0)
 
 
 @any_array
 def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
-    """Reflectance rho that gives EON this average albedo.
+    """Reflectance rho for which EON has the average albedo `color`.
 
         rho = C d / (C d + (1 + c2 r)(1 - C)),  d = 1 + c1 r
 
@@ -603,8 +603,8 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
     return scaled / (scaled + (1.0 + C2 * r) * (1.0 - color))
 
 
-# Wrong variants that renderers implement, so that they can be recognized. Formulas of cosines have no checks.
-FLOOR = 0.1  # least reflectance that Babylon.js passes to EON
+# Wrong variants that renderers implement; checks recognize them. The formulas in `_mu` do not check arguments.
+FLOOR = 0.1  # smallest reflectance that Babylon.js passes to EON
 
 
 def eon_clamped_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
@@ -612,8 +612,8 @@ def eon_clamped_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughnes
 
         s = max(dot(wo, wi), 1e-8) - mu_o mu_i
 
-    Too bright where dot(wo, wi) < 0, and correct elsewhere. MaterialX's GLSL node clamps the product because other
-    nodes need it, and passes it on.
+    Too bright where dot(wo, wi) < 0, and correct elsewhere. MaterialX's GLSL clamps the product for other nodes and
+    passes the clamped value to EON.
     """
     s = array_namespace(s).maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i
     return eon_brdf_mu(mu_o, mu_i, s, rho, roughness)
@@ -627,8 +627,8 @@ def burley_schlick_brdf_mu(
         f = rho / pi ((1 - F_o / 2) (1 - F_i / 2) + R (F_o + F_i + F_o F_i (R - 1))),
         R = 1/2 + 2 roughness F_i^2,  F = (1 - mu)^5
 
-    Not reciprocal. It is Lambert at roughness 0, and Burley where mu_o and mu_i are 1. The GLSL of three-gpu-pathtracer.
-    Burley's R is 2 roughness (wi . wh)^2.
+    Not reciprocal. It is Lambert at roughness 0, and Burley where mu_o and mu_i are 1. The GLSL of three-gpu-pathtracer
+    has this R; Burley's R is 2 roughness (wi . wh)^2.
     """
     F_o, F_i = (1.0 - mu_o) ** 5, (1.0 - mu_i) ** 5
     smooth = (1.0 - 0.5 * F_o) * (1.0 - 0.5 * F_i)
@@ -655,8 +655,8 @@ def fon_white_lobe_brdf_mu(
 ) -> Array:
     """FON plus the multiple-scattering lobe of a white surface.
 
-    Too bright, and correct where rho is 1. The MDL target forgets to tint the lobe: a black surface reflects 0.22 at
-    roughness 1.
+    Too bright, and correct where rho is 1. MaterialX's MDL target does not tint the lobe: a black surface reflects
+    0.22 at roughness 1.
     """
     losses = fon_loss_mu(mu_o) * fon_loss_mu(mu_i)
     white = roughness * fon_af(roughness) / (np.pi * (C1 - C2)) * losses
@@ -664,10 +664,10 @@ def fon_white_lobe_brdf_mu(
 
 
 def eon_floor_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
-    """EON with the shape for a reflectance of at least 0.1: f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1).
+    """EON evaluated for a reflectance of at least 0.1: f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1).
 
-    Too bright where rho lies between 0 and 0.1, and correct elsewhere. Babylon.js 9.35.0 divides EON by the
-    reflectance, which it keeps above 0.1; its albedo is the paper's quartic.
+    Too bright where rho lies between 0 and 0.1, and correct elsewhere. Babylon.js 9.35.0 divides EON by a
+    reflectance clamped to at least 0.1; it uses the paper's quartic for FON's albedo.
     """
     floor = array_namespace(rho).maximum(rho, FLOOR)
     return rho / floor * eon_brdf_approx_mu(mu_o, mu_i, s, floor, roughness)
@@ -677,7 +677,7 @@ def eon_floor_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness:
 def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Reflection of QON multiplied by its own color a second time.
 
-    OpenPBR's thin-walled lobe in MaterialX 1.39.5, issue 3027 of MaterialX.
+    OpenPBR's thin-walled lobe in MaterialX 1.39.5 has this error: issue 3027 of MaterialX.
     """
     value: Array = arguments.checked("rho", rho) * qon_brdf(wo, wi, rho, sigma)
     return value
@@ -692,24 +692,24 @@ def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike)
 
 @any_array
 def eon_rho_cubed_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo E = rho (E_EON + (1 - rho) E_FON) of `eon_rho_cubed_brdf`."""
+    """Directional albedo E = rho (E_EON + (1 - rho) E_FON) of `eon_rho_cubed_brdf_mu`."""
     (color,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
     return color * (eon_albedo_dir(mu, rho, roughness) + (1.0 - color) * fon_albedo_dir(m, r))
 
 
 @any_array
 def fon_white_lobe_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo E = 1 - (1 - rho) E_FON of `fon_white_lobe_brdf`: not 0 where rho is 0."""
+    """Directional albedo E = 1 - (1 - rho) E_FON of `fon_white_lobe_brdf_mu`; not 0 at rho 0."""
     (color,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
     return 1.0 - (1.0 - color) * fon_albedo_dir(m, r)
 
 
 @any_array
 def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """Directional albedo of QON as MaterialX fits it: a quotient of polynomials.
+    """Directional albedo of QON by MaterialX's fit, a quotient of polynomials.
 
-    It is off by up to 0.068 at rho 1. Coefficients of MaterialX 1.39.5,
-    `mx_microfacet_diffuse.glsl`, which clamps the quotient to 1.
+    The error is up to 0.068 at rho 1. The coefficients and the clamp to 1 are those of MaterialX
+    1.39.5, `mx_microfacet_diffuse.glsl`.
     """
     (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
     over = 1.0 - 0.4297 * s - 0.7632 * m * s + 1.4385 * s**2

@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""GGX microfacets: distribution, masking and shadowing, roughness, and the albedo E_ss of facets that lose nothing.
+"""GGX microfacets: distribution, masking and shadowing, roughness, and the albedo E_ss of lossless facets.
 
-Sections are those of [MaterialX2026], Microfacet Model. Formulas have components on the first axis.
+Section names refer to [MaterialX2026], Microfacet Model. Formulas take components on the first axis.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0; `wh` is
   the normal of a microfacet.
-- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic. What an artist sets
-  instead, `roughness`, `anisotropy`, `glossiness` (...): in [0, 1].
+- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic. Functions that
+  compute alpha take the artist's inputs `roughness`, `anisotropy`, `glossiness` (...), in [0, 1].
 
 Accuracy: relative error below 2e-14.
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
-(1 - E_ss) / E_ss, the light that the facets' own lobe misses, comes from a table that is computed once. E_ss changes on
-the scale mu = alpha. In s = mu (1 + alpha) / (mu + alpha), which is in [0, 1], it is smooth except for terms like
-s log(s), and in sqrt(alpha) throughout; a cube root spreads the former over the nodes of Chebyshev polynomials.
+(1 - E_ss) / E_ss, the relative energy missing from single scattering, comes from a table that is computed once. E_ss
+varies on the scale mu = alpha. It is smooth in sqrt(alpha), and in s = mu (1 + alpha) / (mu + alpha), which is in
+[0, 1], except for terms like s log(s). Chebyshev polynomials in the cube root of s resolve these terms.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ from mxeon.models.core.arguments import checked_directions, checked_roughness
 from mxeon.models.core.arrays import NUMPY, Array, ArrayLike, any_array, array_namespace, like, root
 from mxeon.models.core.evaluation import evaluate_number
 
-# Smaller sums of cosines count as 0: D alone reaches 1e162.
+# The reciprocal of a smaller sum of cosines counts as 0: its product with D, up to 1e162, could overflow.
 LEAST_DIVISOR = 1e-140
 
 
 def ndf(wh: Array, roughness: Array) -> Array:
-    """D: GGX Normal Distribution Function, without a division by alpha; 0 where an alpha is 0.
+    """D of section GGX Normal Distribution Function, without a division by alpha; 0 if an alpha is 0.
 
-    Printed, with a = alpha_x alpha_y and B = (h_x / alpha_x)^2 + (h_y / alpha_y)^2 + h_z^2: D = 1 / (pi a B^2).
-    a^2 B = (alpha_y h_x)^2 + (alpha_x h_y)^2 + (a h_z)^2 has no quotient, and D = a^3 / (pi (a^2 B)^2).
+    The printed form is D = 1 / (pi a B^2), a = alpha_x alpha_y, B = (h_x / alpha_x)^2 + (h_y / alpha_y)^2 + h_z^2.
+    a^2 B = (alpha_y h_x)^2 + (alpha_x h_y)^2 + (a h_z)^2 has no quotient; D is a^3 / (pi (a^2 B)^2).
     """
     xp = array_namespace(wh, roughness)
     (alpha_x, alpha_y), (x, y, z) = roughness, wh
@@ -50,19 +50,19 @@ def ndf(wh: Array, roughness: Array) -> Array:
 
 
 def smith_lambda(mu: Array, alpha: Array) -> Array:
-    """lambda(cos theta): Height-Correlated Smith Masking-Shadowing."""
+    """lambda(cos theta) of section Height-Correlated Smith Masking-Shadowing."""
     return root(alpha * alpha + (1.0 - alpha) * (1.0 + alpha) * mu * mu)
 
 
 def mean_alpha(roughness: Array) -> Array:
-    """alpha = sqrt(alpha_x alpha_y): the specification of June 2026, and MaterialX's shaders."""
+    """alpha = sqrt(alpha_x alpha_y), as in the June 2026 specification and MaterialX's shaders."""
     return root(roughness[0]) * root(roughness[1])
 
 
 def visibility(mu_o: Array, mu_i: Array, alpha: Array) -> Array:
-    """G2 / (4 mu_o mu_i) = 1 / (2 (lambda_o mu_i + lambda_i mu_o)), since G2 = 2 mu_o mu_i over that bracket.
+    """G2 / (4 mu_o mu_i) = 1 / (2 (lambda_o mu_i + lambda_i mu_o)).
 
-    There is no limit where both directions graze: 0 there.
+    It has no limit if both directions graze, and is set to 0 there.
     """
     return reciprocal(2.0 * (smith_lambda(mu_o, alpha) * mu_i + smith_lambda(mu_i, alpha) * mu_o))
 
@@ -73,13 +73,13 @@ def stretched_length(w: Array, roughness: Array) -> Array:
 
 
 def visibility_anisotropic(wo: Array, wi: Array, roughness: Array) -> Array:
-    """G2 / (4 mu_o mu_i) of [Heitz2014], Eqs. (86) and (99): mu Lambda from stretched lengths."""
+    """G2 / (4 mu_o mu_i) by stretched lengths: [Heitz2014], Eqs. (86) and (99)."""
     length_o, length_i = stretched_length(wo, roughness), stretched_length(wi, roughness)
     return reciprocal(2.0 * (length_o * wi[2] + length_i * wo[2]))
 
 
 def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
-    """Unit half vector, and its cosine with either direction; (0, 0, 1) for opposite directions."""
+    """Unit half vector, (0, 0, 1) for opposite directions, and the cosine wo . wh = wi . wh."""
     xp = array_namespace(wo, wi)
     total = wo + wi
     size = root(xp.sum(total * total, axis=0))
@@ -98,7 +98,7 @@ def reciprocal(x: Array) -> Array:
 
 @any_array
 def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
-    """Masking G1 of anisotropic GGX: the visible part of the microfacets.
+    """Masking G1 of anisotropic GGX: the visible share of the microfacets.
 
         G1 = 2 mu_o / (mu_o + |(alpha_x x, alpha_y y, z)|)
 
@@ -124,8 +124,8 @@ def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
         G2 = 2 mu_o mu_i / (lambda_o mu_i + lambda_i mu_o),
         lambda = sqrt(alpha^2 + (1 - alpha^2) mu^2)
 
-    - `mu_o`, `mu_i`, `alpha`: Cosines of the polar angles, in [0, 1]. The specification of June 2026 has
-      sqrt(alpha_x alpha_y) of an anisotropic roughness.
+    - `mu_o`, `mu_i`: Cosines of the polar angles, in [0, 1].
+    - `alpha`: In [0, 1]; sqrt(alpha_x alpha_y) for anisotropic roughness in the June 2026 specification.
 
     [MaterialX2026], Height-Correlated Smith Masking-Shadowing.
 
@@ -147,8 +147,8 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
 
         G2 = 2 mu_o mu_i / (l_o mu_i + l_i mu_o),  l = |(alpha_x x, alpha_y y, z)|
 
-    Result (...): in [0, 1]; 0 where a direction grazes. It is that of the specification since July 2026 (pull
-    request 3015 of MaterialX), and `smith_g2` where alpha_x and alpha_y agree. [Heitz2014], Eqs. (86), (99).
+    Result (...): in [0, 1]; 0 where a direction grazes. The specification has used this form since July 2026 (pull
+    request 3015 of MaterialX). For alpha_x = alpha_y it is `smith_g2`. [Heitz2014], Eqs. (86), (99).
 
         >>> smith_g2_anisotropic([0.6, 0.0, 0.8], [[0.0, 0.8, 0.6], [1.0, 0.0, 0.0]], [0.5, 0.25]).round(6)
         array([0.942466, 0.      ])
@@ -162,18 +162,18 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
     return evaluate_number(value, vectors | {"roughness": checked_roughness(roughness)}, {})
 
 
-LARGEST_ANISOTROPY = 0.98  # beyond it alpha along the tangent would soon divide by 0
+LARGEST_ANISOTROPY = 0.98  # clamp that avoids a division by 0 in alpha_x at anisotropy 1
 
 
 @any_array
 def roughness_anisotropy(roughness: ArrayLike, anisotropy: ArrayLike) -> Array:
-    """Pair of alphas (..., 2) of a roughness that is stretched along the tangent.
+    """Pair of alphas (..., 2) from a roughness and an anisotropy along the tangent.
 
         alpha_x = min(roughness^2 / aspect, 1),  alpha_y = roughness^2 aspect,
         aspect = sqrt(1 - min(anisotropy, 0.98))
 
-    The specification has no equation; the aspect is that of its implementations: Burley's with the factor 1
-    instead of 0.9. [MaterialX2026], roughness_anisotropy; [Burley2012], Section 5.4.
+    The specification has no equation. This aspect is from MaterialX's implementations; it is Burley's with the
+    factor 1 instead of 0.9. [MaterialX2026], roughness_anisotropy; [Burley2012], Section 5.4.
 
         >>> roughness_anisotropy(0.5, [0.0, 0.75])
         array([[0.25 , 0.25 ],
@@ -183,7 +183,7 @@ def roughness_anisotropy(roughness: ArrayLike, anisotropy: ArrayLike) -> Array:
 
 
 def _stretched(r: Array, a: Array) -> Array:
-    """`roughness_anisotropy` on valid arrays."""
+    """`roughness_anisotropy` for arrays that are already checked."""
     xp = array_namespace(r, a)
     aspect = xp.sqrt(1.0 - arrays.at_most(a, LARGEST_ANISOTROPY))
     return xp.stack([arrays.at_most(r * r / aspect, 1.0), r * r * aspect], axis=-1)
@@ -191,7 +191,7 @@ def _stretched(r: Array, a: Array) -> Array:
 
 @any_array
 def roughness_dual(roughness: ArrayLike) -> Array:
-    """Pair of alphas of two roughnesses, their squares.
+    """Pair of alphas: the squares of two roughnesses.
 
     - `roughness` (..., 2): Roughness along the tangent and along the bitangent, in [0, 1].
 
@@ -208,7 +208,7 @@ def roughness_dual(roughness: ArrayLike) -> Array:
 
 @any_array
 def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array:
-    """Pair of alphas of the roughness 1 - glossiness; see `roughness_anisotropy`.
+    """Pair of alphas for roughness 1 - glossiness; see `roughness_anisotropy`.
 
     [MaterialX2026], glossiness_anisotropy.
 
@@ -223,16 +223,16 @@ def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array
 RULE_NODES, PANELS, ALBEDO_BLOCK = 28, 3, 2**10
 RULE = np.polynomial.legendre.leggauss(RULE_NODES)
 
-# Least scale of the nodes and least elevation of wo, in radian: nothing changes by more than 1e-10.
+# Smallest scale of the nodes and smallest elevation of wo, in radian; they change E_ss by less than 1e-10.
 LEAST_SCALE, LEAST_ELEVATION = 1e-8, 1e-200
-LEAST_SQUARED = 1e-15  # both limits for other libraries: derivatives square them, in float32 too
+LEAST_SQUARED = 1e-15  # both limits for other libraries, whose derivatives square them in float32
 
-ALIKE = 2.0**44  # steps of the mantissa to which cosines are rounded, to merge nearly equal ones
+ALIKE = 2.0**44  # steps to which the mantissas of cosines are rounded, so that equal ones merge
 
-# Closer to 1, extrapolate linearly from two other cosines, with an error below the square of this.
+# Within this distance of cosine 1, E_ss is extrapolated linearly; the error is below its square.
 ALONG = 1e-8
 
-# Below this alpha, E_ss(mu, alpha) counts as E_ss(mu LEAST_ALPHA / alpha, LEAST_ALPHA).
+# For smaller alpha, E_ss(mu, alpha) is computed as E_ss(mu LEAST_ALPHA / alpha, LEAST_ALPHA).
 LEAST_ALPHA = 1e-9
 
 
@@ -244,11 +244,11 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
     - `mu`, `alpha`: Cosine of the polar angle and GGX roughness, in [0, 1].
 
-    Accuracy: absolute error below 1e-10 for alpha >= 1e-4 and every mu, 2e-8 below; 1 for the mirror, the limit at
-    every mu > 0. With u = |wo + wi|^2 = a + b cos(phi) and h_z^2 = (mu + mu_i)^2 / u, the azimuth integral of
-    (u / (u - k))^2, k = (1 - alpha^2) (mu + mu_i)^2, is elementary. In half sums and half differences of the elevations
-    all its terms are products of sums of positive numbers. The integral over the elevation of wi is split at wo and
-    graded by hyperbolic sines. [MaterialX2026], Energy Compensation.
+    Accuracy: absolute error below 1e-10 for alpha >= 1e-4, below 2e-8 for smaller alpha. At alpha 0, a mirror, E_ss
+    is 1, the limit for mu > 0. With u = |wo + wi|^2 = a + b cos(phi) and h_z^2 = (mu + mu_i)^2 / u, the integral of
+    (u / (u - k))^2 over azimuth, k = (1 - alpha^2) (mu + mu_i)^2, is elementary. Written in half sums and half
+    differences of the elevations, it consists of products of sums of positive numbers. The integral over the
+    elevation of wi is split at wo; hyperbolic sines grade its nodes. [MaterialX2026], Energy Compensation.
 
         >>> ggx_albedo_dir([1.0, 0.1], [1.0, 0.01]).round(9)
         array([0.30685282, 0.99412395])
@@ -257,7 +257,7 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
 
 def albedo(mu: Array, alpha: Array) -> Array:
-    """E_ss on valid float64 arrays; nearly equal cosines, as in pictures, are evaluated once.
+    """E_ss for valid float64 arrays; nearly equal cosines are evaluated once.
 
     Symmetric points of a picture differ only in the last bits of the cosine, and E_ss is smooth.
     """
@@ -271,15 +271,15 @@ def albedo(mu: Array, alpha: Array) -> Array:
 
 
 def _in_blocks(mu: Array, alpha: Array) -> Array:
-    """E_ss on valid float64 arrays, block by block."""
+    """E_ss for valid float64 arrays, block by block."""
     formula = quadrature if array_namespace(mu, alpha) is NUMPY else _extrapolated
     return evaluate_number(formula, {}, {"mu": mu, "alpha": alpha}, ALBEDO_BLOCK)
 
 
 def _extrapolated(mu: Array, alpha: Array) -> Array:
-    """`quadrature`, extrapolated linearly from two cosines along the normal.
+    """`quadrature`; next to the normal it is extrapolated linearly from two smaller cosines.
 
-    E_ss is smooth in the cosine, but its quadrature uses elevations, which have no derivative there.
+    E_ss is smooth in the cosine, but the elevation has no derivative by the cosine at the normal.
     """
     xp = array_namespace(mu, alpha)
     step = xp.where(mu > 1.0 - ALONG, ALONG, 0.0)
@@ -289,7 +289,7 @@ def _extrapolated(mu: Array, alpha: Array) -> Array:
 
 
 def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
-    """E_ss by quadrature, with every panel divided into `refined` ones."""
+    """E_ss by quadrature, with every panel divided into `refined` panels."""
     xp = array_namespace(mu, alpha)
     rough = xp.maximum(alpha, LEAST_ALPHA)
     least, lowest = (1e-300, LEAST_ELEVATION) if xp is NUMPY else (LEAST_SQUARED, LEAST_SQUARED)
@@ -297,7 +297,7 @@ def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
     elevation = xp.maximum(arrays.arcsine(scaled), lowest)
     graded = 2.0 * xp.minimum(rough, xp.maximum(elevation, LEAST_SCALE))
     total = like(np.zeros(np.broadcast_shapes(tuple(mu.shape), tuple(rough.shape))), rough)
-    # Three ranges: wo to the normal, wo to half its elevation, and from there to the horizon.
+    # Ranges of wi's elevation: wo to the normal, wo to half wo's elevation, and that to the horizon.
     for d, weight in _graded(graded, 0.5 * np.pi - elevation, refined * PANELS):
         total = total + xp.sum(weight * _density(elevation, elevation + d, -d, rough), axis=0)
     for d, weight in _graded(2.0 * rough, 0.5 * elevation, refined):
@@ -308,7 +308,7 @@ def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
 
 
 def _graded(scale: Array, length: Array, panels: int) -> list[tuple[Array, Array]]:
-    """Nodes and weights on [0, length], denser towards 0 down to `scale`, axis of nodes first."""
+    """Nodes and weights on [0, length], first axis, graded towards 0 down to the size `scale`."""
     xp, ratio = array_namespace(scale, length), length / scale
     x, weight = (like(v.reshape(-1, *(1,) * ratio.ndim), ratio) for v in RULE)
     extent = xp.asinh(ratio)
@@ -318,7 +318,7 @@ def _graded(scale: Array, length: Array, panels: int) -> list[tuple[Array, Array
 
 
 def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
-    """Integrand of E_ss over the elevation e_i of wi, d = e_o - e_i.
+    """Integrand of E_ss over the elevation e_i of wi, with d = e_o - e_i.
 
     alpha^2 mu_i cos(e_i) (1 + 2 k/q + k^2 p/q^3) / (lambda_o mu_i + lambda_i mu_o),
     k/q = (1 - alpha^2) sqrt(c C / (X Y)),  p/q = (r + 1/r) / 2,  r = sqrt(c X / (C Y)),
@@ -340,21 +340,21 @@ def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
     return density
 
 
-# Nodes in the cube root of s and in the square root of alpha, refinement of the quadrature that
-# fills the table, and elements per block.
+# Chebyshev nodes in the cube root of s and in the square root of alpha; `refined` of the quadrature
+# that fills the table; elements per block.
 NODES_S, NODES_ALPHA, REFINED, TABLE_BLOCK = 80, 28, 2, 2**12
 
-# From MANY cosines with one alpha on, cubics in CELLS cells replace the polynomials, within 3e-14.
-# KEPT is the number of alphas in the cache.
+# For at least MANY cosines with one alpha, cubics in CELLS cells replace the polynomials; they differ
+# by less than 3e-14. KEPT is the number of alphas in the cache.
 MANY, CELLS, KEPT = 2**14, 2**12, 8
 
 
 def missing_light(mu: Array, alpha: Array) -> Array:
-    """(1 - E_ss) / E_ss on valid float64 arrays, which broadcast.
+    """(1 - E_ss) / E_ss for valid float64 arrays, which broadcast.
 
-    Accuracy: absolute error below 1e-10 for every mu and alpha in [0, 1], against the quadrature of
-    `mxeon.models.ggx_albedo_dir` with twice its panels. One alpha for all cosines costs the least:
-    many cosines then share cubics.
+    Accuracy: absolute error below 1e-10 for all mu and alpha in [0, 1], compared with the quadrature
+    of `mxeon.models.ggx_albedo_dir` with twice its panels. A single alpha for all cosines is
+    fastest: many cosines then share cubics.
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 and mu.size >= MANY:
         return _of_one_alpha(mu, float(alpha.item()))
@@ -362,7 +362,7 @@ def missing_light(mu: Array, alpha: Array) -> Array:
 
 
 def _interpolated(mu: Array, alpha: Array) -> Array:
-    """Sum of the table's polynomials, starting with alpha's."""
+    """`missing_light` by the table: sum the polynomials in alpha first, then those in s."""
     xp = array_namespace(mu, alpha)
     table = _table()
     powers = chebyshev.chebyshev_polynomials(root(alpha), table.shape[1])
@@ -395,7 +395,7 @@ def _of_one_alpha(mu: Array, alpha: float) -> Array:
 
 @lru_cache(maxsize=KEPT)
 def _cubics(alpha: float) -> Array:
-    """Coefficients of the cubics through four points of each cell, shape (4, CELLS + 1)."""
+    """Coefficients of a cubic through four points of each cell, shape (4, CELLS + 1)."""
     powers = chebyshev.chebyshev_polynomials(np.sqrt(alpha), NODES_ALPHA)
     rows = np.einsum("ij,j->i", _table(), powers)
     cubics = chebyshev.cell_cubics(rows, CELLS)
@@ -406,7 +406,7 @@ def _cubics(alpha: float) -> Array:
 
 @lru_cache(maxsize=1)
 def _table() -> Array:
-    """Coefficients of both polynomials, shape (NODES_S, NODES_ALPHA)."""
+    """Chebyshev coefficients of (1 - E_ss) / E_ss, shape (NODES_S, NODES_ALPHA)."""
     alpha = chebyshev.chebyshev_nodes(NODES_ALPHA) ** 2
     s = chebyshev.chebyshev_nodes(NODES_S)[:, np.newaxis] ** 3
     E_ss = quadrature(s * alpha / (1.0 + alpha - s), alpha, REFINED)

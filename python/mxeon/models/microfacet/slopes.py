@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes and weights of quadratures over the slopes of microfacets that one direction sees.
+"""Nodes and weights of quadratures over the slopes of the microfacets visible from one direction.
 
-With the half vector along (alpha_x r cos(phi), alpha_y r sin(phi), 1) an albedo is
+If the half vector is along (alpha_x r cos(phi), alpha_y r sin(phi), 1), an albedo is
 
     integral of F G2 (wo . wh) / (h_z mu_o) r / (pi (1 + r^2)^2) dr dphi,
 
-without a peak at any alpha. wi lies above the horizon from r = 0 up to one limit, so that no kink
-remains but that of F at a critical angle.
+which has no peak at any alpha. wi lies above the horizon from r = 0 up to one limit, so the only
+kink that remains is F's at a critical angle.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ from mxeon.models.core.arrays import Array, array_namespace, at_least_0, at_most
 from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
-# Gauss-Legendre nodes in r per panel, panels, and nodes per quadrant of phi.
+# Gauss-Legendre nodes in r per panel; panels; nodes per quadrant of phi.
 SLOPE_NODES, PANELS, QUADRANT = 20, 3, 20
-# Nodes for facets above a critical angle: per panel, and per part of a half plane.
+# The same if there is a critical angle: nodes per panel; nodes per part of a half plane.
 SPLIT_NODES, SPLIT_PART = 28, 32
 
-# Least cosine of wo, and largest r; beyond them lies less than 1e-12 of the light.
+# Smallest cosine of wo and largest r; less than 1e-12 of the light lies beyond them.
 LEAST_MU, LARGEST_R = 1e-12, 1e8
-# Least scale of the nodes of all facets; less than 1e-7 of the light is closer to 0.
+# Smallest scale of the nodes in `slope_nodes`; less than 1e-7 of the light is closer to 0.
 LEAST_SCALE = 3e-4
-# Largest r of refracting facets: if facets at the horizon refract, 1 / r of the light lies beyond.
+# Largest r of refracting facets; up to 1 / r of the light may lie beyond it.
 FARTHEST_R = 1e12
 
 
 @dataclass(frozen=True)
 class Slopes:
-    """Slopes that a direction sees, in polar coordinates r and omega; omega is 0 at its own azimuth.
+    """Slopes visible from a direction, in polar coordinates r and omega; it has omega 0 itself.
 
     - `mu_o`: Cosine of the direction.
     - `stretched`: (alpha_x x, alpha_y y) of the direction.
@@ -50,7 +50,7 @@ class Slopes:
 
     @classmethod
     def seen(cls, wo: Array, roughness: Array) -> Slopes:
-        """The slopes that `wo`, shape (3, ...), sees."""
+        """The slopes visible from `wo`, shape (3, ...)."""
         (x, y, _), (alpha_x, alpha_y) = wo, roughness
         xp, A = array_namespace(wo, roughness), hypot(x * alpha_x, y * alpha_y)
         tilted, length = A > 0.0, xp.where(A > 0.0, A, 1.0)
@@ -63,27 +63,27 @@ class Slopes:
 
     @property
     def scale(self) -> Array:
-        """Scale, as distance from a right angle and as radius, on which lean and limit change."""
+        """Distance of omega from a right angle, and size of r, over which the integrand changes."""
         maximum = array_namespace(self.mu_o, self.steepness).maximum
         return self.mu_o / maximum(self.steepness, self.mu_o)
 
     @property
     def isotropic(self) -> bool:
-        """Whether every surface is isotropic; False for arrays of other libraries, where it is unknown."""
+        """Whether all surfaces are isotropic; False for arrays of other libraries."""
         known = array_namespace(self.roughness) is arrays.NUMPY
         return known and bool(np.all(self.roughness[0] == self.roughness[1]))
 
     def rays(self, omega: Array) -> tuple[Array, Array, tuple[Array, Array]]:
-        """B, the last r, and the slope (alpha_x cos(phi), alpha_y sin(phi)) at r = 1, for each azimuth.
+        """For each omega: B, the largest r, and the slope (alpha_x cos(phi), alpha_y sin(phi)) at r = 1.
 
-        phi = omega + phi_0, tan(phi_0) = alpha_y y / (alpha_x x), joins the azimuths of h and of slopes:
+        The azimuth of the slope is phi = omega + phi_0 with tan(phi_0) = alpha_y y / (alpha_x x):
 
             wo . h / h_z = mu_o + r (alpha_x x cos(phi) + alpha_y y sin(phi)) = mu_o + B r,  B = A cos(omega)
             |h / h_z|^2 = 1 + g r^2,  g = (alpha_x cos(phi))^2 + (alpha_y sin(phi))^2
 
-        The reflected mu_i = 2 (wo . h) h_z / |h|^2 - mu_o = 2 (mu_o + B r) / (1 + g r^2) - mu_o is at least 0 where
-        mu_o g r^2 <= 2 B r + mu_o, so the last r is (B + q) / (mu_o g) = mu_o / (q - B), q = sqrt(B^2 + mu_o^2 g):
-        the first form for B >= 0 and the second one below, which do not cancel.
+        The reflected mu_i = 2 (wo . h) h_z / |h|^2 - mu_o = 2 (mu_o + B r) / (1 + g r^2) - mu_o is at least 0 if
+        mu_o g r^2 <= 2 B r + mu_o. The largest r is (B + q) / (mu_o g) = mu_o / (q - B), q = sqrt(B^2 + mu_o^2 g).
+        The first form does not cancel for B >= 0, the second does not cancel for B < 0.
         """
         (cos_0, sin_0), (alpha_x, alpha_y) = self.axis, self.roughness
         xp = array_namespace(omega)
@@ -139,9 +139,9 @@ def slope_nodes(
 ) -> tuple[Array, Array]:
     """Cosine wo . h and weight of every node, shape (nodes of r, nodes of phi, ...).
 
-    - `isotropic`: Whether surfaces are known to be isotropic: symmetry halves the nodes.
-    - `summed`: Whether weights are those of MaterialX's sum of an environment over visible normals, G_2 / G_1 of the
-      geometric mean of both alphas instead of the lobe's own.
+    - `isotropic`: True if all surfaces are isotropic; symmetry then halves the nodes.
+    - `summed`: True for MaterialX's sum of an environment over visible normals. Its weights have G_2 / G_1 at the
+      geometric mean of both alphas.
     """
     slopes = Slopes.seen(wo, roughness)
     scale = array_namespace(slopes.scale).maximum(slopes.scale, LEAST_SCALE)
@@ -153,14 +153,14 @@ def slope_nodes(
 
 
 def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array, Array]:
-    """Cosine wo . h and weight of nodes whose cosine is above the critical one.
+    """Cosine wo . h and weight of nodes whose cosine is larger than the critical cosine.
 
-    There 1 - F begins as a square root: nodes crowd at both ends of r, and at the azimuths where r ends.
+    1 - F begins there as a square root, so nodes crowd at both ends of r, and at the azimuths where r ends.
 
     - `squared` (...): Square of the cosine of the critical angle, at least 0.
     """
     slopes = Slopes.seen(wo, roughness)
-    # Azimuth from wo of h on the critical cone around wo whose wi, reflected, is at the horizon.
+    # Azimuth from wo at which h on the critical cone about wo reflects wi to the horizon.
     mu_o, xp = slopes.mu_o, array_namespace(slopes.mu_o, squared)
     steep = root(at_least_0(4.0 * squared / mu_o**2 - 1.0))
     length = root((1.0 - mu_o) * (1.0 + mu_o)) * steep
@@ -178,18 +178,18 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
 def refracting_nodes(
     wo: Array, roughness: Array, squared: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Cosines wo . h and of the refracted wi, its stretched length, and weights of the facets that wo sees.
+    """Cosine wo . h, cosine and stretched length of the refracted wi, and weight of visible facets.
 
-    wi = (L h - wo) / n, below the horizon, n^2 = 1 - squared and L = |wo + n wi|. At smaller r than
-    the root of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2, it would point above the horizon.
+    wi = (L h - wo) / n points below the horizon; n^2 = 1 - squared, L = |wo + n wi|. If r is smaller
+    than the root of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2, wi would point above the horizon.
     """
-    # Split the azimuths where h on the critical cone lies at the horizon itself.
+    # Split the azimuths where h on the critical cone is at the horizon.
     slopes = Slopes.seen(wo, roughness)
     mu_o = slopes.mu_o
     omega, weight_omega = _split_azimuths(slopes, wo, squared, _cone_azimuth(mu_o, squared))
     B, _, slope = slopes.rays(omega)
     g = _squared(slope)
-    # r starts where wi is at the horizon and ends at total reflection.
+    # r ranges from the facet that refracts wi to the horizon up to total reflection.
     low, high = _transmitting(mu_o, B, g, squared)
     xp = array_namespace(mu_o, high)
     high = xp.minimum(high, FARTHEST_R)
@@ -215,7 +215,7 @@ def refracting_nodes(
 
 
 def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Array, Array]:
-    """Ends of r between which (mu_o + B r)^2 > squared (1 + g r^2); equal if there are none."""
+    """Ends of the range of r with (mu_o + B r)^2 > squared (1 + g r^2); equal if it is empty."""
     a, b, d = B * B - squared * g, mu_o * B, mu_o * mu_o - squared
     xp, size = array_namespace(a, b, d), root(at_least_0(b * b - a * d))
     ahead, inside = b > 0.0, d > 0.0
@@ -230,12 +230,12 @@ def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Arra
 def _split_azimuths(
     slopes: Slopes, wo: Array, squared: Array, meeting: Array
 ) -> tuple[Array, Array]:
-    """Nodes and weights of omega, split at an azimuth relative to wo and where the critical cone ends."""
+    """Nodes and weights of omega, split at the azimuth `meeting` and where the critical cone ends."""
     xp = array_namespace(slopes.mu_o, wo, squared, meeting)
     last = _cone_azimuth(slopes.mu_o, squared - slopes.mu_o**2)
     inside, right = slopes.mu_o * slopes.mu_o >= squared, 0.5 * np.pi
     nodes = []
-    for center in (0.0, np.pi):  # the front half, where lean grows with r, then the back
+    for center in (0.0, np.pi):  # the front half, where wo . h grows with r, then the back half
         low, high = (
             xp.where(
                 inside,
@@ -259,13 +259,13 @@ def _split_azimuths(
 
 
 def _cone_azimuth(mu_o: Array, squared: Array) -> Array:
-    """Azimuth from wo whose cosine is the root of `squared` over the sine of wo."""
+    """Azimuth from wo whose cosine is sqrt(squared) divided by the sine of wo's polar angle."""
     xp, sine = array_namespace(mu_o, squared), root((1.0 - mu_o) * (1.0 + mu_o))
     return arrays.arccosine(root(at_least_0(squared)) / xp.where(sine > 0.0, sine, 1.0))
 
 
 def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:
-    """omega of slopes at an azimuth relative to wo, both in [-pi, pi]."""
+    """omega of the slopes at an azimuth relative to wo; both are in [-pi, pi]."""
     xp, upright = array_namespace(wo, azimuth), hypot(wo[0], wo[1]) == 0.0
     x, y = xp.where(upright, 1.0, wo[0]), wo[1]
     cosine, sine = xp.cos(azimuth), xp.sin(azimuth)
@@ -277,7 +277,7 @@ def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:
 
 
 def _piece(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
-    """Nodes and weights of [low, high], on one side of 0, denser towards its ends and right angles."""
+    """Nodes and weights of omega in [low, high], on one side of 0; denser at ends and right angles."""
     xp, (t, weight) = array_namespace(scale, low, high), _crowded(1, SPLIT_PART, low)
     side = xp.where(low + high < 0.0, -1.0, 1.0)
     near, far = xp.minimum(side * low, side * high), xp.maximum(side * low, side * high)
@@ -287,7 +287,7 @@ def _piece(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
 
 
 def _between(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
-    """Nodes and weights of r in [low, high], denser towards 0 from `scale` on, and at the ends."""
+    """Nodes and weights of r in [low, high]; denser at the ends and, down to `scale`, towards 0."""
     xp, (t, weight) = array_namespace(scale, low, high), _crowded(PANELS, SPLIT_NODES, low[0])
     first, last = xp.asinh(low / scale), xp.asinh(high / scale)
     x = first + (last - first) * t
@@ -295,14 +295,14 @@ def _between(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
 
 
 def _crowded(panels: int, nodes: int, array: Array) -> tuple[Array, Array]:
-    """Nodes and weights of [0, 1] on an axis before the array's axes, quadratically dense at both ends."""
+    """Nodes and weights of [0, 1], quadratically dense at both ends, on a new first axis."""
     (u, weight), shape = unit_rule(nodes, panels), (-1, *(1,) * array.ndim)
     both = (u * u * (3.0 - 2.0 * u)).reshape(shape), (6.0 * u * (1.0 - u) * weight).reshape(shape)
     return like(both[0], array), like(both[1], array)
 
 
 def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
-    """Nodes and weights of phi relative to wo, denser towards right angles, shape (1, n, ...).
+    """Nodes and weights of omega, denser towards right angles, shape (1, n, ...).
 
     An isotropic surface needs only one half.
     """
@@ -320,12 +320,12 @@ def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
 
 
 def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
-    """Nodes and weights of [0, length], denser towards 0 from `scale` on, along the first axis."""
+    """Nodes and weights of [0, length] on the first axis; denser, down to `scale`, towards 0."""
     xp, shape = array_namespace(length), (-1, *(1,) * (length.ndim - 1))
     x, weight = (like(each.reshape(shape), length) for each in unit_rule(SLOPE_NODES, PANELS))
     extent = xp.asinh(length / scale)
     rise = xp.exp(extent * x)
     fall = 1.0 / rise
     half = 0.5 * scale
-    # sinh and cosh from one exponential take a third of the time.
+    # Computing sinh and cosh from one exponential takes a third of the time.
     return half * (rise - fall), weight * extent * half * (rise + fall)
