@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Importance sampling: a sampler is a pair, x_sample(...) -> wi, pdf and x_pdf(...).
+"""Importance sampling: a sampler is a pair of functions, x_sample(...) -> wi, pdf and x_pdf(...).
 
-Arguments come in the order `wo`, `wi`, `u`, `roughness`; a sampler omits those it does not depend on.
+Arguments come in the order `wo`, `wi`, `u`, `roughness`; functions omit arguments that they do not need.
 
 - `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, normal +z, z >= 0.
 - `wi` (..., 3): Direction to the light, a unit vector. If samples may lie below the horizon, those with z < 0
@@ -9,16 +9,16 @@ Arguments come in the order `wo`, `wi`, `u`, `roughness`; a sampler omits those 
 - `u` (..., 2): Independent uniform random numbers, in [0, 1).
 - `roughness` (...): In [0, 1]; at least 0.01 for Zeltner's sheen. For GGX (..., 2) or (): alpha along tangent +x
   and bitangent.
-- `rho` (...): Gray reflectance for which the sampling of EON is exact, in [0, 1]: one number for each direction.
-  Three of them for three samples of one `wo` might be a color, and are refused.
+- `rho` (...): Gray reflectance for which the sampling of EON is exact, in [0, 1]; one number for each direction.
+  Three numbers for three samples of one `wo` might be meant as a color, and are rejected.
 - `pdf` (...): Density in solid angle, 1/sr.
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
-**EON**, exactly: two random numbers, no table, no iteration. On the unit disk below the hemisphere, with `wo`
-turned to azimuth 0, S = sqrt(1 - mu^2) and q = r S_o, the value of EON at unit reflectance is A / pi times the
-sum of four nonnegative parts:
+**EON** is sampled exactly, from two random numbers, without tables or iteration. On the unit disk below the
+hemisphere, with `wo` turned to azimuth 0, S = sqrt(1 - mu^2) and q = r S_o, EON's BRDF at unit reflectance is A / pi
+times the sum of four nonnegative parts:
 
 | part     | value                                   | integral over the disk, over pi            |
 |----------|-----------------------------------------|--------------------------------------------|
@@ -28,22 +28,22 @@ sum of four nonnegative parts:
 | flat     | 1 + q x                                 | 1                                          |
 
 with K(theta) = (theta - sin(theta) cos(theta))/2 - sin^3(theta)/3. The integrals sum to 1 + c1 r, which is 1 / A:
-docs/note.md, section 3, has the proof. Each part is drawn by its inverse distribution. Those of `flat` and `lower` are
-closed forms; those of `multiple` and `upper` have no parameter and are fitted. The returned density is that
-of the four parts. Directions follow it with a relative error of at most 1.3e-5 of the part: a mean of the parts'
-errors under non-negative weights, so that the sum has no larger error anywhere.
+docs/note.md, section 3, has the proof. Each part is sampled by inverting its distribution. The inverses for `flat` and
+`lower` are closed forms; those for `multiple` and `upper` have no parameters and are fitted. The returned density is
+the exact sum of the parts. The sampled directions follow each part with a relative error of at most 1.3e-5, and so the
+sum too: its error is a mean of the parts' errors with nonnegative weights.
 
-**Linearly transformed cosines** fitted to EON. With `wo` turned to azimuth 0, a direction `wh` drawn under a
+**Linearly transformed cosines** are fitted to EON. With `wo` turned to azimuth 0, a direction `wh` sampled from a
 clamped cosine is mapped by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
 
     wi = M wh / |M wh|,      p(wi) = p(wh) |M wh|^3 / det M
 
-CLTC keeps of the cosine only what M maps above the horizon, d x + z >= 0; the rest has the shape of a lune.
-Zeltner's sheen is such a lobe itself, M = [[1/a, 0, -b/a], [0, 1/a, 0], [0, 0, 1]]: M keeps z, no sample is wasted,
-and the value times the cosine over the density is color E(mu_o) for every sample.
+CLTC samples only the part of the cosine that M maps above the horizon, d x + z >= 0; the excluded part is a lune.
+Zeltner's sheen itself is such a lobe, M = [[1/a, 0, -b/a], [0, 1/a, 0], [0, 0, 1]]. M keeps z, so no sample is wasted,
+and value times cosine divided by density is color E(mu_o) for every sample.
 
-**GGX** by visible normals: stretched until the microfacets are a hemisphere, they are half vectors of the stretched
-`wo` and a direction drawn uniformly on a spherical cap.
+**GGX** is sampled by visible normals. If space is stretched so that the microfacets form a hemisphere, these normals
+are half vectors of the stretched `wo` and a direction sampled uniformly on a spherical cap.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ from mxeon.models.sheen import zeltner_matrix
 
 @any_array
 def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled uniformly on the hemisphere, z = u[..., 0], and its density: [Portsmouth2025], Listing 4.
+    """Uniform direction on the hemisphere, z = u[..., 0], and its density: [Portsmouth2025], Listing 4.
 
     >>> wi, pdf = uniform_sample([0.8, 0.0])
     >>> wi.round(12), round(float(pdf), 6)
@@ -83,7 +83,7 @@ def uniform_pdf(wi: ArrayLike) -> Array:
 
 @any_array
 def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
-    """Direction with z > 0, sampled proportionally to its cosine, and its density: [Portsmouth2025], Eq. (21).
+    """Direction, z > 0, sampled in proportion to z, and its density: [Portsmouth2025], Eq. (21).
 
     >>> wi, pdf = cosine_sample([0.36, 0.0])
     >>> wi.round(12), round(float(pdf), 6)
@@ -134,7 +134,7 @@ def around(mu: Array, S: Array, u2: Array) -> Array:
 
 
 def stack_xyz(x: Array, y: Array, z: Array) -> Array:
-    """Components, broadcast against each other, as vectors along a last axis."""
+    """Vectors with the components x, y, z, which broadcast, on the last axis."""
     xp = array_namespace(x, y, z)
     shape = np.broadcast_shapes(*(tuple(each.shape) for each in (x, y, z)))
     return xp.stack([xp.broadcast_to(each, shape) for each in (x, y, z)], axis=-1)
@@ -143,7 +143,7 @@ def stack_xyz(x: Array, y: Array, z: Array) -> Array:
 def azimuth_frame(wo: Array) -> tuple[Array, Array, Array]:
     """Cosine and sine of the azimuth of `wo`, and the sine of its polar angle.
 
-    The azimuth of a `wo` along the normal counts as 0.
+    For `wo` along the normal, the azimuth is set to 0.
     """
     xp, sine = array_namespace(wo), arrays.hypot(wo[..., 0], wo[..., 1])
     tilted = sine > 0.0
@@ -152,15 +152,15 @@ def azimuth_frame(wo: Array) -> tuple[Array, Array, Array]:
 
 
 def rotate_z(w: Array, cosine: Array, sine: Array) -> Array:
-    """Vectors rotated about the normal by the angle that has this cosine and sine."""
+    """Vectors rotated about the normal by the angle with this cosine and sine."""
     x, y = w[..., 0], w[..., 1]
     return stack_xyz(cosine * x - sine * y, sine * x + cosine * y, w[..., 2])
 
 
 LEAST_COSINE = 2.0**-53  # smallest cosine that `eon_sample` returns
 
-# Fits made by tools/fits/eon_sampling.py. The random number and its fitted root are in [0, 1]; largest relative
-# error of the density 1.27e-5 and 5.7e-6.
+# Coefficients fitted by tools/fits/eon_sampling.py, for random numbers in [0, 1]. The relative error of the density is
+# at most 1.27e-5 for MULTIPLE and 5.7e-6 for UPPER.
 MULTIPLE = (
     -0.1221923217,
     0.3674909842,
@@ -183,12 +183,12 @@ UPPER = (
 def eon_sample(
     wo: ArrayLike, u: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0
 ) -> tuple[Array, Array]:
-    """Direction sampled proportionally to EON times its cosine, and its density.
+    """Direction sampled in proportion to EON times its cosine, and its density.
 
-    `wi` (..., 3): Unit vectors, z >= 2^-53. `pdf` (...): `eon_pdf` of `wi`, in 1/sr. Accuracy: `wi`
-    follows `pdf` with a relative error below 1.3e-5 everywhere. The weight over the density that
-    `wi` really has is thus within 1.3e-5 of the albedo, relatively, and its relative variance is
-    below 1.7e-10. docs/sampling.md; the model is [Portsmouth2025], Eqs. (16) and (19).
+    `wi` (..., 3): Unit vectors, z >= 2^-53. `pdf` (...): `eon_pdf` of `wi`, in 1/sr. Accuracy: the
+    true density of `wi` differs from `pdf` by a relative error below 1.3e-5. A weight computed with
+    the true density is thus within 1.3e-5 of the albedo, with a relative variance below 1.7e-10.
+    See docs/sampling.md; the model is [Portsmouth2025], Eqs. (16) and (19).
 
         >>> wi, pdf = eon_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.0)
         >>> wi.round(6), round(float(pdf), 6)
@@ -204,7 +204,7 @@ def eon_sample(
     cosine, sine, S_o = azimuth_frame(wo)
     mu_o, S_o = arrays.at_most(wo[..., 2], 1.0), arrays.at_most(S_o, 1.0)
     wi = rotate_z(eon_draw(mu_o, S_o, u1, u2, rho, roughness), cosine, sine)
-    # A part may end at the horizon, where the density is 0 and the weight would be 0/0.
+    # A sample may fall on the horizon, where the density is 0 and the weight would be 0/0.
     wi = stack_xyz(wi[..., 0], wi[..., 1], array_namespace(wi).maximum(wi[..., 2], LEAST_COSINE))
     return wi, eon_density_mu(*cosines(wo, wi), rho, roughness)
 
@@ -214,9 +214,8 @@ def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLik
     """Density of `eon_sample` at `wi`: EON times the cosine, divided by its integral.
 
     Result (...): 1/sr. At rho = 1 it is `eon_brdf` at reflectance 1, times the cosine of `wi`.
-    Accuracy: relative error below 1e-14 of the quotient f cos(theta_i) / E(theta_o). It has a limit
-    at rho = 0, where both f and E vanish; that limit is FON's. [Portsmouth2025], Eqs. (16), (19)
-    and (28).
+    Accuracy: relative error below 1e-14. At rho = 0, where f and E in f cos(theta_i) / E(theta_o)
+    vanish, the density is the limit, which is FON's. [Portsmouth2025], Eqs. (16), (19) and (28).
 
         >>> round(float(eon_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 1.0)), 6)
         0.332784
@@ -226,7 +225,7 @@ def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLik
 
 
 def eon_density_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
-    """Density from the cosines, and from s of `cosines`."""
+    """`eon_pdf` in terms of mu_o, mu_i and s, which `cosines` computes."""
     weight, loss_o = eon_multiple_ratio(rho, roughness), fon_loss_mu(mu_o)
     parts = 1.0 + roughness * fon_quotient(mu_o, mu_i, s) + weight * loss_o * fon_loss_mu(mu_i)
     total = 1.0 + C1 * roughness + (weight * (C1 - C2) - roughness) * loss_o
@@ -234,8 +233,8 @@ def eon_density_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Ar
 
 
 def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughness: Array) -> Array:
-    """Direction drawn from one of the four parts; `wo` has azimuth 0."""
-    # Choose a part by u1, then rescale u1 within that part to [0, 1).
+    """Direction sampled from one of EON's four parts; `wo` has azimuth 0."""
+    # Choose a part by u1, then rescale u1 to [0, 1) within that part.
     parts = eon_integrals(mu_o, S_o, rho, roughness)
     xp = array_namespace(*parts)
     ends = [parts[0]]
@@ -245,7 +244,7 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     starts = [0.0 * ends[0], *ends[:-1]]
     v = [stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
     rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])  # 1 - v of the flat part
-    # Draw a cosine from each part and keep the chosen one. The flat part does not start from a cosine.
+    # Sample a cosine from each part and keep the chosen one; the flat part is sampled below.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
     lower = eon_lower_cosine(x, arrays.power(1.0 - x, 1.0 / 3.0))
     upper = eon_upper_cosine(arrays.power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
@@ -260,7 +259,7 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
 def eon_integrals(
     mu_o: Array, S_o: Array, rho: Array, roughness: Array
 ) -> tuple[Array, Array, Array, float]:
-    """Integrals over the disk of lower, upper, multiple and flat, over pi."""
+    """Integrals of the parts lower, upper, multiple and flat over the disk, divided by pi."""
     towards = (2.0 / np.pi) * roughness * S_o
     lower = towards * (1.0 - mu_o) * eon_cube_gap(mu_o, S_o) / 3.0
     upper = towards * eon_segment(mu_o, S_o)
@@ -269,12 +268,12 @@ def eon_integrals(
 
 
 def eon_cube_gap(mu: Array, S: Array) -> Array:
-    """(1 - S^3) / mu, with neither a division by mu nor a cancellation."""
+    """Quotient (1 - S^3) / mu, computed without a division by mu or a cancellation."""
     return mu * (1.0 + S + S * S) / (1.0 + S)
 
 
 def eon_segment(mu: Array, S: Array) -> Array:
-    """K(theta), integral of sin^2 (1 - cos). Near the normal the terms cancel and may fall below 0."""
+    """K(theta), the integral of sin^2 (1 - cos); clamped to 0, as its terms cancel near the normal."""
     xp = array_namespace(mu, S)
     return xp.maximum(0.5 * (xp.atan2(S, mu) - S * mu) - S**3 / 3.0, 0.0)
 
@@ -291,22 +290,22 @@ def stretched(u: Array, start: Array, end: Array) -> Array:
 
 
 def eon_towards(mu: Array, S: Array, u2: Array) -> Array:
-    """Direction with cosine `mu` and sine `S` at an azimuth whose sine is uniform, towards wo."""
+    """Direction with cosine `mu` and sine `S` on wo's side; the sine of its azimuth is uniform."""
     return stack_xyz(2.0 * S * root(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu)
 
 
 def eon_lower_cosine(x: Array, S: Array) -> Array:
-    """Cosine drawn in proportion to S mu below mu_o: x = 1 - S^3 is uniform."""
+    """Cosine below mu_o sampled in proportion to S mu, from a uniform x = 1 - S^3."""
     return root(x * (1.0 + S) / (1.0 + S + S * S))
 
 
 def eon_upper_limit(mu: Array, S: Array) -> Array:
-    """y = (K / K(pi / 2))^(2/5) of the angle with this cosine and sine."""
+    """y = (K / K(pi / 2))^(2/5) for the angle with this cosine and sine."""
     return arrays.power(eon_segment(mu, S) / (0.25 * np.pi - 1.0 / 3.0), 0.4)
 
 
 def eon_upper_quotient(y: Array) -> Array:
-    """Q(y) of `eon_upper_cosine`, 1 at y = 1."""
+    """Fitted function Q(y) of `eon_upper_cosine`; Q(1) = 1."""
     a, b, c, d, e, f = UPPER
     y2 = y * y
     even, odd = a + y2 * (c + y2 * e), b + y2 * (d + y2 * f)
@@ -314,18 +313,18 @@ def eon_upper_quotient(y: Array) -> Array:
 
 
 def eon_upper_cosine(y: Array, mu_o: Array, y_o: Array) -> Array:
-    """Cosine drawn in proportion to S (1 - mu) / mu above mu_o: K is uniform, y = v^(2/5).
+    """Cosine above mu_o sampled in proportion to S (1 - mu) / mu, from a uniform K, y = v^(2/5).
 
         1 - mu = m(v K_o) (1 - mu_o) / m(K_o),  m(K) = y Q(y)
 
-    The quotient, instead of m(v K_o) alone, keeps every sample above mu_o.
+    Dividing by m(K_o) keeps every sample above mu_o, despite the error of the fit m.
     """
     m = (1.0 - mu_o) / eon_upper_quotient(y_o) * (y * eon_upper_quotient(y_o * y))
     return 1.0 - m
 
 
 def eon_multiple_cosine(t: Array) -> Array:
-    """Cosine drawn in proportion to H(mu) mu, a function of t = v^(1/3)."""
+    """Cosine sampled in proportion to H(mu) mu: a fitted function of t = v^(1/3)."""
     a, b, c, d, e, f = MULTIPLE
     m = 1.0 - t
     w = root(m)
@@ -334,10 +333,10 @@ def eon_multiple_cosine(t: Array) -> Array:
 
 
 def eon_flat_draw(v: Array, u2: Array, q: Array, rest: Array | None = None) -> Array:
-    """Direction drawn in proportion to (1 + q x) on the disk; `rest` is 1 - v, if known more accurately.
+    """Direction sampled in proportion to 1 + q x on the disk; `rest` is an accurate 1 - v.
 
-    Along each chord of the disk, x is drawn by its inverse distribution from the uniform point
-    (x, y). z is the square root of 1 - x^2 - y^2 without a cancellation.
+    (x, y) is uniform on the disk; x is then mapped along its chord by the inverse distribution.
+    z = sqrt(1 - x^2 - y^2) is computed without a cancellation.
     """
     rest = 1.0 - v if rest is None else rest
     wh = around(root(rest), root(v), u2)
@@ -347,7 +346,7 @@ def eon_flat_draw(v: Array, u2: Array, q: Array, rest: Array | None = None) -> A
 def eon_flat_direction(
     v: Array, x: Array, y: Array, q: Array, rest: Array | None = None
 ) -> tuple[Array, Array, Array]:
-    """Components of the direction that `eon_flat_draw` derives from a disk point, v = x^2 + y^2."""
+    """Direction x, y, z of `eon_flat_draw` from a uniform point of the disk; v = x^2 + y^2."""
     rest = 1.0 - v if rest is None else rest
     ahead = 1.0 + q * x
     length = root(ahead * ahead + q * q * rest)
@@ -357,11 +356,11 @@ def eon_flat_direction(
 
 @any_array
 def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled by the transformed cosine, possibly below the horizon, and its density.
+    """Direction sampled from the transformed cosine, possibly below the horizon, and its density.
 
     `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
-    A sample is wasted with probability (1 - 1/sqrt(1 + d^2))/2: at roughness 1 that is 0.0534 at
-    grazing, and less everywhere else. [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
+    A sample is wasted with probability (1 - 1/sqrt(1 + d^2))/2. This is largest, 0.0534, for
+    roughness 1 at grazing. [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
 
         >>> wi, pdf = ltc_sample([1.0, 0.0, 0.0], [0.95, 0.0], 1.0)
         >>> float(wi[2]) < 0.0
@@ -375,7 +374,7 @@ def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
 def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `ltc_sample` at `wi`, above the horizon.
 
-    Its integral is the probability that no sample is wasted. [Portsmouth2025], Eqs. (23) and (24).
+    Its integral is the probability that a sample is not wasted. [Portsmouth2025], Eqs. (23), (24).
 
         >>> round(float(ltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
         0.31831
@@ -384,8 +383,8 @@ def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     return ltc_density(wo, wi, roughness, ltc_md(wo[..., 2], roughness))
 
 
-# Entries of the matrix: [Portsmouth2025], Listing 2; mu, the cosine of wo, and roughness in [0, 1];
-# the paper states no error.
+# Entries of the matrix M: [Portsmouth2025], Listing 2. mu, the cosine of wo, and roughness are in
+# [0, 1]. The paper states no error of the fit.
 def ltc_ma(mu: Array, roughness: Array) -> Array:
     """Entry a of M."""
     a = 0.303392 + (-0.518982 + 0.111709 * mu) * mu + (-0.276266 + 0.335918 * mu) * roughness
@@ -410,7 +409,7 @@ def ltc_md(mu: Array, roughness: Array | float) -> Array:
 
 
 def ltc_transformed(wo: Array, wh: Array, roughness: Array, d: Array) -> tuple[Array, Array]:
-    """Unit M wh in the local frame of the surface, and its density under the clamped cosine."""
+    """Normalized M wh in the surface's local frame, and its density if wh has a clamped cosine's."""
     a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_ma, ltc_mb, ltc_mc))
     x, y, z = wh[..., 0], wh[..., 1], wh[..., 2]
     wi = stack_xyz(a * x + b * z, c * y, d * x + z)
@@ -421,13 +420,13 @@ def ltc_transformed(wo: Array, wh: Array, roughness: Array, d: Array) -> tuple[A
 
 
 def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array) -> Array:
-    """Density at `wi` of M wh / |M wh| for `wh` under the clamped cosine."""
+    """Density of M wh / |M wh| at `wi`, if `wh` has the density of a clamped cosine."""
     a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_ma, ltc_mb, ltc_mc))
     cosine, sine, _ = azimuth_frame(wo)
     wi = rotate_z(wi, cosine, -sine)
     x, y, z = wi[..., 0], wi[..., 1], wi[..., 2]
     det = c * (a - b * d)
-    # The adjugate of M times wi: wh up to its length.
+    # The adjugate of M times wi is wh up to a factor.
     wh_z = c * (a * z - d * x)
     squared = (c * (x - b * z)) ** 2 + ((a - b * d) * y) ** 2 + wh_z**2
     return (det / squared) ** 2 * arrays.at_least_0(wh_z) / np.pi
@@ -435,13 +434,13 @@ def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array) -> Array:
 
 @any_array
 def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled by the clipped transformed cosine, and its density.
+    """Direction sampled from the clipped transformed cosine, and its density.
 
-    As a sampler of EON it is biased: clipping `wh` at its own horizon leaves directions into which
-    EON reflects but that are never sampled. The lune d x + z < 0 lies at x > 0 where d < 0, as in
-    Listing 3, and at x < 0 where d > 0. The fitted d is positive for mu_o > 0.99991, and there the
-    listing keeps the wrong side; this function keeps the right one. [Portsmouth2025], Eqs. (26) and
-    (27), Listing 3.
+    As a sampler of EON it is biased: since `wh` is also clipped at its own horizon, some directions
+    into which EON reflects are never sampled. The lune d x + z < 0 lies at x > 0 for d < 0, as in
+    Listing 3, and at x < 0 for d > 0. The fitted d is positive for mu_o > 0.99991; the listing then
+    keeps the wrong side, and this function the right side. [Portsmouth2025], Eqs. (26) and (27),
+    Listing 3.
 
         >>> wi, pdf = cltc_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
         >>> bool(np.isclose(pdf, cltc_pdf([0.6, 0.0, 0.8], wi, 1.0), rtol=1e-14))
@@ -456,7 +455,7 @@ def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
 def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `cltc_sample` at `wi`.
 
-    It is 0 for directions that are never drawn. [Portsmouth2025], Eqs. (23), (24) and (27), Listing 3.
+    It is 0 for directions that are never sampled. [Portsmouth2025], Eqs. (23), (24), (27), Listing 3.
 
         >>> round(float(cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
         0.31831
@@ -468,12 +467,12 @@ def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 
 @any_array
 def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled by the paper's mixture of `cltc` and `uniform`, and its density.
+    """Direction sampled from the paper's mixture of CLTC and uniform lobe, and its density.
 
     `wi` (..., 3): Unit vectors on or above the horizon. `pdf` (...): Density of the mixture, in
-    1/sr. Listing 4 uses the uniform lobe for u1 <= P_u and divides u1 by P_u: 0/0 at roughness 0
-    and u1 = 0. Here the condition is u1 < P_u, which is never true for P_u = 0. [Portsmouth2025],
-    Section 4, Listing 4.
+    1/sr. Listing 4 uses the uniform lobe for u1 <= P_u and divides u1 by P_u, which is 0/0 at
+    roughness 0 and u1 = 0. Here the condition is u1 < P_u, which is never true for P_u = 0.
+    [Portsmouth2025], Section 4, Listing 4.
 
         >>> wi, pdf = eon_cltc_sample([0.0, 0.0, 1.0], [0.0, 0.0], 0.0)
         >>> wi, round(float(pdf), 6)
@@ -483,7 +482,7 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
     u1, u2 = unpack_uniforms(u)
     P_u = eon_cltc_probability(wo[..., 2], roughness)
     is_uniform = u1 < P_u
-    # Stretch each side of P_u over [0, 1). Rounding may reach 1, which is outside the interval.
+    # Rescale u1 on either side of P_u to [0, 1); rounding may give 1, which is excluded.
     xp = array_namespace(u1, P_u)
     length = xp.where(is_uniform, P_u, 1.0 - P_u)
     v = xp.where(is_uniform, u1, u1 - P_u) / length
@@ -506,7 +505,7 @@ def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     return P_u * (0.5 / np.pi) + (1.0 - P_u) * cltc_pdf(wo, wi, roughness)
 
 
-# [Portsmouth2025], Listing 4: mu and roughness in [0, 1]; the paper states no error.
+# Fit of [Portsmouth2025], Listing 4, for mu and roughness in [0, 1]; the paper states no error.
 def eon_cltc_probability(mu: Array, roughness: Array) -> Array:
     """Probability P_u of the uniform lobe."""
     P_u = 0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu
@@ -514,12 +513,12 @@ def eon_cltc_probability(mu: Array, roughness: Array) -> Array:
 
 
 def cltc_kept_fraction(d: Array) -> Array:
-    """Fraction of the clamped cosine above d x + z = 0: [Portsmouth2025], below Eq. (26)."""
+    """Fraction of the clamped cosine with d x + z >= 0: [Portsmouth2025], below Eq. (26)."""
     return 0.5 * (1.0 + 1.0 / root(1.0 + d * d))
 
 
 def _draw(wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array) -> tuple[Array, Array]:
-    """`cltc_sample` for two random numbers; `rest` is 1 - u1 without cancellation."""
+    """`cltc_sample` for two random numbers; `rest` is an accurate 1 - u1."""
     d = ltc_md(wo[..., 2], roughness)
     wi, pdf = ltc_transformed(wo, cltc_clipped(u1, u2, d, rest), roughness, d)
     # On the edge of the lune, d x + z is zero up to rounding of either sign.
@@ -528,13 +527,14 @@ def _draw(wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array) -> tup
 
 
 def cltc_clipped(u1: Array, u2: Array, d: Array, rest: Array | None = None) -> Array:
-    """Direction under the clamped cosine with d x + z >= 0; `rest` is 1 - u1 exactly: [Portsmouth2025], Listing 3.
+    """Cosine-weighted direction with d x + z >= 0: [Portsmouth2025], Listing 3.
 
-    The chord at y has the half length c, c^2 = 1 - u1 + x^2, and x becomes c (1 - k) + k x. Then
+    `rest` is an accurate 1 - u1. The chord at y has the half length c, c^2 = 1 - u1 + x^2, and x is
+    mapped to x' = c (1 - k) + k x, where k is the kept fraction. Then
 
         z^2 = 1 - x'^2 - y^2 = k (c - x) (2 c (1 - k) + k (c + x)),
 
-    where the smaller of c - x and c + x is (1 - u1) over the larger: nothing cancels on the rim.
+    where the smaller of c - x and c + x is (1 - u1) / larger, so nothing cancels on the rim.
     """
     rest = 1.0 - u1 if rest is None else rest
     wh = around(root(rest), root(u1), u2)
@@ -559,8 +559,8 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
     """Direction reflected by a visible GGX normal, possibly below the horizon, and its density.
 
     `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
-    If an alpha is 0 there is no density; 0 is returned. Value times cosine over density is
-    F G2 / G1(wo). [Dupuy2023], Section 3; [Heitz2014], Eq. (16).
+    If an alpha is 0, no density exists, and 0 is returned. Value times cosine divided by density
+    is F G2 / G1(wo). [Dupuy2023], Section 3; [Heitz2014], Eq. (16).
 
         >>> wi, pdf = ggx_sample([0.6, 0.0, 0.8], [0.25, 0.5], [0.5, 0.25])
         >>> wi.round(6), round(float(pdf), 6)
@@ -583,7 +583,7 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 
         pdf = G1(wo) D(wh) / (4 mu_o), and 0 where wh is below the horizon
 
-    Its integral over the upper hemisphere is the probability that no sample is wasted.
+    Its integral over the upper hemisphere is the probability that a sample is not wasted.
 
         >>> round(float(ggx_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [0.5, 0.25])), 6)
         0.455389
@@ -606,20 +606,20 @@ def _components(vectors: dict[str, Numbers]) -> list[Array]:
 
 
 def visible_density(wo: Array, wh: Array, roughness: Array) -> Array:
-    """G1(wo) D(wh) / (4 mu_o), components first; G1 / mu_o is finite at grazing."""
+    """Density G1(wo) D(wh) / (4 mu_o), components first; G1 / mu_o is finite at grazing."""
     masking = 0.5 * ggx.reciprocal(wo[2] + ggx.stretched_length(wo, roughness))
     density: Array = masking * ggx.ndf(wh, roughness)
     return density
 
 
 def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
-    """Visible normal for two random numbers, components first: [Dupuy2023], Listing 3."""
+    """Visible normal sampled from two random numbers, components first: [Dupuy2023], Listing 3."""
     xp = array_namespace(wo, u1, roughness)
     stretched = xp.stack([roughness[0] * wo[0], roughness[1] * wo[1], wo[2]])
     length = root(xp.sum(stretched * stretched, axis=0))
-    # A smooth surface seen at grazing has length 0 and a single normal, whatever the random numbers.
+    # For a smooth surface at grazing, `length` is 0 and the normal does not depend on u1, u2.
     stretched = stretched / xp.where(length > 0.0, length, 1.0)
-    # A point of the cap above -z of the stretched view.
+    # Uniform point on the spherical cap where z is above -z of the stretched view.
     down = (1.0 + stretched[2]) * u1
     z, phi = 1.0 - down, 2.0 * np.pi * u2
     S = root(down * (1.0 + z))
@@ -633,9 +633,9 @@ def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
 
 @any_array
 def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled proportionally to the Zeltner lobe times the cosine, and its density.
+    """Direction sampled in proportion to the Zeltner lobe times the cosine, and its density.
 
-    It lies above the horizon. [MaterialX2026], Zeltner Sheen Model, LTC Inverse Matrix.
+    The direction is above the horizon. [MaterialX2026], Zeltner Sheen Model, LTC Inverse Matrix.
 
         >>> wi, pdf = zeltner_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
         >>> wi.round(6), round(float(pdf), 6)

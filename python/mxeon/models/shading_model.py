@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A model as one object: value, albedos, samples, density and inputs.
 
-Inputs of a call are bound to the model's parameters, checked, and laid out in rows of pairs.
+A call's inputs are bound to the model's parameters, checked, and laid out in rows, one per pair.
 """
 
 from __future__ import annotations
@@ -21,23 +21,23 @@ UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)  # MaterialX's default normal and t
 
 @dataclass(frozen=True)
 class Rows:
-    """Vectors and inputs of a call in rows.
+    """Vectors and inputs of a call, one row per pair of directions.
 
-    - `inputs`: (N,), (N, 2) or (N, C) by parameter; 1 instead of N if all pairs share the value.
+    - `inputs`: (N,), (N, 2) or (N, C) by parameter name; one row if all pairs share the value.
     """
 
-    lead: tuple[int, ...]  # shape of the pairs
+    lead: tuple[int, ...]  # shape of the array of pairs
     vectors: list[Array]  # directions or random numbers
     inputs: dict[str, Array]
     colored: bool  # whether a color has an axis of channels
 
     def shaped(self, values: Array, last: tuple[int, ...] = ()) -> Array:
-        """Values of the rows, (N, *last) or fewer, in the shape of the pairs."""
+        """Values by row, (N, *last) or (1, *last), reshaped to (*lead, *last)."""
         xp, count = array_namespace(values), int(np.prod(self.lead))
         return xp.reshape(xp.broadcast_to(values, (count, *last)), (*self.lead, *last))[()]
 
     def colors(self, values: Array) -> Array:
-        """Values of the rows, (N, C); without the channel axis if no color has one."""
+        """Values by row, (N, C), reshaped; the channel axis is dropped if no color has one."""
         values = self.shaped(values, tuple(values.shape[-1:]))
         return values if self.colored or values.shape[-1] != 1 else values[..., 0]
 
@@ -45,7 +45,7 @@ class Rows:
 def bound_inputs(
     parameters: Sequence[Parameter], inputs: Sequence[ArrayLike], named: Mapping[str, ArrayLike]
 ) -> dict[str, ArrayLike]:
-    """A value for each parameter, by name: from the call, or the default."""
+    """Values of all parameters by name: from the call, otherwise the default."""
     names = [each.name for each in parameters]
     others = {each.quantity: each.name for each in parameters}
     known = f"inputs are {', '.join(names)}"
@@ -105,12 +105,12 @@ def views(mu: ArrayLike, azimuth: ArrayLike) -> Array:
 
 
 def _floats(value: ArrayLike) -> Array:
-    """Numbers in float64; arrays of other libraries unchanged."""
+    """Numbers as a float64 array; arrays of other libraries are returned unchanged."""
     return cast(Array, value) if library(value) else np.asarray(value, np.float64)
 
 
 def _laid(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) -> Array:
-    """An array as (N, last) or (N,), or as (1, last) or (1,) if all pairs share it."""
+    """Array as N rows, (N, last) or (N,), or as one row if all pairs share its value."""
     xp = array_namespace(array)
     tail = tuple(array.shape[-1:]) if last else ()
     own = array.shape[:-1] if last else array.shape
@@ -119,7 +119,7 @@ def _laid(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) 
     return xp.reshape(xp.broadcast_to(array, (*lead, *tail)), (-1, *tail))
 
 
-# Functions of models, and the reason why a model may lack each of them.
+# Names of the models' functions, with the reason for which a model may lack the function.
 LACKS = {
     **dict.fromkeys(("bsdf", "albedo_dir"), ""),
     **dict.fromkeys(("sample", "pdf"), ": no density of refracted light is implemented"),
@@ -131,9 +131,9 @@ SIDES = {"front": 1.0, "back": -1.0}
 
 @dataclass(frozen=True)
 class ModelSampler:
-    """Samples (wi, pdf) of a model, their density, and the side of the samples.
+    """Functions that sample (wi, pdf) for a model and return the density at wi.
 
-    The side is 1 above the horizon, -1 below it, and None for any wi.
+    `side` of the samples is 1 above the horizon, -1 below it, and None if they may have any z.
     """
 
     sample: Callable[[Array, Array, Inputs], tuple[Array, Array]]
@@ -145,39 +145,39 @@ class ModelSampler:
 class ShadingModel:
     """A model as functions of MaterialX's inputs.
 
-    Each function takes the inputs after its directions, in the order of `parameters` or by name; omitted
-    inputs have MaterialX's default. Shapes broadcast, except the last axes of directions, colors and
-    pairs. A color has its channels on the last axis, or is a number; if all colors are numbers,
-    results have no channels. A pair, such as the `roughness` of microfacets, may be a single number
-    for both directions. Three numbers for a color are red, green and blue.
+    Each function takes the inputs after its directions, in the order of `parameters` or by name;
+    omitted inputs have MaterialX's default. Shapes broadcast, except the last axes of directions,
+    colors and pairs. A color is a number or has its channels on the last axis; if all colors are
+    numbers, results have no channel axis. A pair, such as the `roughness` of microfacets, may be one
+    number for both directions. Three numbers for a color are red, green and blue.
 
-    wo lies on or above the horizon, wi anywhere: the value is 0 for a wi from which the model scatters no
-    light. `pdf` is the density of `sample` on the whole sphere, over which it integrates to 1. Samples
-    below the horizon for a model that reflects are wasted: their value is 0, but their density
-    counts. Models without their own sampler sample the cosine; hair samples the sphere.
+    wo must be on or above the horizon. wi may be anywhere; the value is 0 if the model scatters no
+    light from wi. `pdf` is the density of `sample` and integrates to 1 over the whole sphere. If a
+    model only reflects, samples below the horizon are wasted: their value is 0, their density is
+    not. Models without their own sampler sample the cosine; hair samples the sphere.
 
-    Each function raises ValueError if an input leaves its range, a shape is invalid or ambiguous, or
-    the model does not have the function; TypeError if an input is unknown or given twice.
+    The functions raise ValueError if an input leaves its range, a shape is invalid or ambiguous, or
+    the model lacks the function; TypeError if an input is unknown or given twice.
     """
 
     row: PbrNode
-    parameters: tuple[Parameter, ...]  # its inputs: name, default, interval, unit
+    parameters: tuple[Parameter, ...]  # inputs: name, default, interval, unit
     sampler: ModelSampler | None = None
-    lights: str = "front"  # side of the light that it scatters: "front", "back" or "all sides"
+    lights: str = "front"  # where scattered light may come from: "front", "back", "all sides"
 
     @property
     def name(self) -> str:
-        """The name for `mxeon.model`."""
+        """Name that `mxeon.model` accepts."""
         return self.row.name
 
     @property
     def title(self) -> str:
-        """The printed name."""
+        """Name for printing."""
         return self.row.title
 
     @property
     def node(self) -> str:
-        """Category of the node that defines its inputs."""
+        """Category of the node that defines the model's inputs."""
         return self.row.category
 
     def __repr__(self) -> str:
@@ -191,7 +191,7 @@ class ShadingModel:
         return [name for name in super().__dir__() if name in self.functions or name not in LACKS]
 
     def _need(self, function: str) -> None:
-        """Raise ValueError with the reason and the supported functions if the model lacks this one."""
+        """Raise ValueError if the model lacks a function, with the reason and those it supports."""
         if function not in self.functions:
             raise ValueError(
                 f"{self.name} has no {function}{LACKS[function]}; it has {', '.join(self.functions)}"
@@ -203,13 +203,13 @@ class ShadingModel:
         inputs: tuple[ArrayLike, ...],
         named: dict[str, ArrayLike],
     ) -> Rows:
-        """Vectors and inputs of a call in rows."""
+        """Vectors and inputs of a call as `Rows`."""
         values = bound_inputs(self.parameters, inputs, named)
         return rows(self.parameters, tuple(vectors), **vectors, **values)
 
     @property
     def functions(self) -> tuple[str, ...]:
-        """Names of the functions that it has."""
+        """Names of the functions that the model supports."""
         value = ("brdf", "bsdf") if self.lights == "front" else ("bsdf",)
         average = ("albedo_avg",) if self.row.average else ()
         samples = ("sample", "pdf") if self.sampler else ()
@@ -219,8 +219,8 @@ class ShadingModel:
         """Value of a model that reflects, in 1/sr, without the cosine.
 
         - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z,
-          tangent +x. The viewer's has z >= 0; the value is 0 where the light's has z < 0.
-        - `*inputs`, `**named`: Inputs in `parameters`.
+          tangent +x. wo must have z >= 0; the value is 0 for wi with z < 0.
+        - `*inputs`, `**named`: Inputs, as listed in `parameters`.
 
         Result (..., C) or (...).
         """
@@ -228,7 +228,7 @@ class ShadingModel:
         return self.bsdf(wo, wi, *inputs, **named)
 
     def bsdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Value of any model, as `brdf`; 0 for a wi from which it scatters no light."""
+        """Value of any model, with `brdf`'s arguments; 0 if it scatters no light from wi."""
         call = self._bound({"wo": wo, "wi": wi}, inputs, named)
         return call.colors(_on_side(SIDES.get(self.lights), self.row.value, call))
 
@@ -246,7 +246,7 @@ class ShadingModel:
         return call.colors(integral(call.vectors[0], call.inputs))
 
     def albedo_avg(self, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Average albedo under uniform light, if a closed form is known."""
+        """Average albedo under uniform light, for models with a closed form."""
         self._need("albedo_avg")
         assert self.row.average is not None
         call = self._bound({}, inputs, named)
@@ -255,11 +255,11 @@ class ShadingModel:
     def sample(
         self, wo: ArrayLike, u: ArrayLike, *inputs: ArrayLike, **named: ArrayLike
     ) -> tuple[Array, Array]:
-        """Directions drawn for the model, shape (..., 3), and their density in 1/sr, shape (...).
+        """Directions sampled for the model, shape (..., 3), and their density in 1/sr, shape (...).
 
-        `u`, shape (..., 2), are uniform random numbers in [0, 1). EON is sampled exactly for the mean of
-        the channels. A mirror, of roughness 0, has no density: it counts as 0, as its value does, and the
-        weight of each sample is the albedo `albedo_dir(wo[2])` instead of 0 / 0.
+        `u`, shape (..., 2), holds uniform random numbers in [0, 1). EON is sampled exactly for the
+        mean of the channels. A mirror, roughness 0, has no density: both value and density are 0, so
+        callers use the albedo `albedo_dir(wo[2])` as the weight of a sample, instead of 0 / 0.
         """
         self._need("sample")
         assert self.sampler is not None
@@ -268,7 +268,7 @@ class ShadingModel:
         return call.shaped(wi, (3,)), call.shaped(pdf)
 
     def pdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Density of `sample` at any wi, in 1/sr, shape (...); inputs as for `brdf`."""
+        """Density of `sample` at any wi, in 1/sr, shape (...); arguments as in `brdf`."""
         self._need("pdf")
         assert self.sampler is not None
         call = self._bound({"wo": wo, "wi": wi}, inputs, named)
@@ -278,13 +278,13 @@ class ShadingModel:
 def _on_side(
     side: float | None, function: Callable[[Array, Array, Inputs], Array], call: Rows
 ) -> Array:
-    """Values for wi on a side of the horizon, 1 above and -1 below it; 0 for the others."""
+    """Values of a function, set to 0 for wi on the other side of the horizon: `side` is 1 or -1."""
     wo, wi = call.vectors
     if side is None:
         return function(wo, wi, call.inputs)
     xp, z = array_namespace(wi), side * wi[:, 2]
     other = z < -arguments.ROUNDING
-    if xp is arrays.NUMPY and not other.any():  # takes a third of the time if the values are cheap
+    if xp is arrays.NUMPY and not other.any():  # a shortcut: a third of the time for cheap values
         return function(wo, wi, call.inputs)
     mirrored = xp.stack([wi[:, 0], wi[:, 1], side * xp.where(other, -z, z)], axis=-1)
     values = function(wo, mirrored, call.inputs)

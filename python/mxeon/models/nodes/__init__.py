@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The BSDF nodes of pbrlib, one row for each mode, as functions of the values of their inputs."""
+"""pbrlib's BSDF nodes: one row per mode, with functions of the values of its inputs."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's nodes that combine two lobes: `layer`, `mix`, `add` and `multiply`.
 
-Both lobes are Zeltner sheens, `top` and `base`, whose values and albedos have closed forms; nested
-rows combine their sum, whose albedo may exceed 1. Inputs are named by their paths. Colors default
-to 1.
+Both lobes, `top` and `base`, are Zeltner sheens: their values and albedos have closed forms. Nested
+rows combine the sum of both, whose albedo may exceed 1. Inputs are named by their paths. Colors
+default to 1.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ COLORS = ("top/color", "base/color")
 AMOUNT = "lobe/mix"  # weight of `top` or of the sum
 AMOUNT_ABOVE = "mixed/mix"  # weight of the sum in a mix that is the top of a layer
 FACTOR = "lobe/in2"  # factor of `top` or of the sum
-# A white opaque lobe of the first weight lies over `top`; the second weighs both over another lobe.
+# Weights in `_masked`: of a white opaque lobe mixed with `top`, and of that mix with another one.
 MASKS = ("inner/in1", "outer/in1")
 Albedo = Callable[[Array, Inputs], Array]
-Sheen = tuple[Callable[..., Array], Callable[..., Array]]  # its BRDF and its directional albedo
+Sheen = tuple[Callable[..., Array], Callable[..., Array]]  # BRDF and directional albedo
 Combine = Callable[[Bsdf, Bsdf, Inputs], Bsdf]
 Finish = Callable[[Bsdf], Bsdf]
 
@@ -44,9 +44,9 @@ CONTY_KULLA = conty_kulla_brdf, conty_kulla_albedo_dir
 def _values(
     combine: Combine, sheen: Sheen = ZELTNER, colored: bool = False
 ) -> tuple[Callable[[Array, Array, Inputs], Array], Albedo, Albedo]:
-    """Value and albedo of a combination of both lobes, and E in its throughput 1 - E.
+    """Value of a combination of both lobes, its albedo, and the E in its throughput 1 - E.
 
-    Albedos are clamped to 1. `colored`: whether light that a color removes passes. Without colors, use 1 - throughput.
+    Albedos of the lobes are clamped to 1. If `colored`, light that a color removes passes to the base.
     """
     brdf, albedo_dir = sheen
 
@@ -74,7 +74,7 @@ def _variant(
     layered: bool = True,
     permitted: bool = False,
 ) -> Variant[Scattering]:
-    """A variant of a combination; without `layered`, only its throughput differs."""
+    """A variant of a combination; only its throughput differs unless `layered` is true."""
     value, _, taken = _values(combine, sheen, colored)
     return Variant(title, value if layered else None, taken, permitted)
 
@@ -133,13 +133,13 @@ def _masked(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe:
 
 
 def _hiding() -> tuple[Variant[Scattering], ...]:
-    """Opaque lobes that hide their base regardless of their weight, as in MaterialX."""
+    """The variant in which opaque lobes hide their base at any weight, as in MaterialX."""
     hidden = partial(_masked, finish=lambda lobe: replace(lobe, throughput=0.0 * lobe.throughput))
     return (_variant("opaque lobes that hide their base at any weight", hidden),)
 
 
 def _unscaled(combine: Combine) -> tuple[Variant[Scattering], ...]:
-    """A scaled lobe that keeps its unscaled throughput, which the text leaves open."""
+    """The variant in which a scaled lobe keeps its unscaled throughput; the text leaves this open."""
     title = "the throughput of the lobe before it is scaled"
     return (_variant(title, combine, layered=False, permitted=True),)
 
@@ -219,5 +219,5 @@ COMBINATIONS = (
     ),
     _combined("layer_masked", "a layer under masks", "layer", _masked, MASKS, _hiding()),
 )
-# Rows that combine a sum.
+# Names of the rows that combine the sum of both lobes.
 NESTED = ("multiply_sum", "mix_sum", "layer_sum", "mix_layer", "layer_colored", "layer_masked")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's EDF nodes and of the nodes that combine EDFs.
 
-Inputs are named by the node's ports; for nodes that combine two emissions, and for the color that
-`generalized_schlick_edf` scales, by their paths. `base` in `inputs` is a radiance, (N, 3), if the
-graph's emissions are already evaluated.
+Inputs are named by the node's ports. Two kinds are named by their paths: inputs of nodes that combine
+emissions, and the color that `generalized_schlick_edf` scales. `base` in `inputs` is a radiance,
+(N, 3), if the graph's emissions are already evaluated.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ Value = Callable[[Array, Inputs], Array]
 
 @dataclass(frozen=True)
 class Emission(Node[Value]):
-    """An EDF node, or one that combines EDFs.
+    """An EDF node, or a node that combines EDFs.
 
     - `value`: Radiance towards `wo`, normal +z; below the horizon, the radiance of the back.
     """
 
 
 def front_only(value: Value) -> Value:
-    """The same radiance in front, none from the back."""
+    """The same emission, but only from the front."""
     return lambda wo, inputs: np.where(wo[:, 2:] < 0.0, 0.0, value(wo, inputs))
 
 
 def _radiance(inputs: Inputs) -> Array:
-    """Radiance that a Schlick curve scales, from `base` or from a color."""
+    """Radiance that a Schlick curve scales: the input `base`, else a uniform emission's color."""
     return inputs["base"] if "base" in inputs else inputs[BASE]
 
 
@@ -51,7 +51,7 @@ def _uniform(wo: Array, inputs: Inputs) -> Array:
 
 
 def _halves(wo: Array, inputs: Inputs) -> Array:
-    """A cone whose angles are measured from the axis."""
+    """Conical emission with inputs that are read as half angles, measured from the axis."""
     names = "inner_angle", "outer_angle"
     angles = (np.minimum(2.0 * np.asarray(inputs[name]), 360.0) for name in names)
     return media.conical_edf(wo, inputs["color"], *angles)
@@ -102,7 +102,7 @@ EMISSIONS = (
 def _combined(
     name: str, title: str, category: str, inputs: tuple[str, ...], color: Callable[[Inputs], Array]
 ) -> Emission:
-    """Row of a node that combines uniform emissions into one with another color."""
+    """Row of a node that combines uniform emissions; the result is uniform, with a combined color."""
     return Emission(
         name,
         title,

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of pbrlib's sheens, diffuse nodes (except the rough ones), hair and subsurface scattering.
+"""Rows of pbrlib's sheens, diffuse nodes (except Oren-Nayar), hair and subsurface scattering.
 
-Inputs of hair have the names of `mxeon.models.hair.chiang_hair_bcsdf`. Subsurface scattering is seen on a plane under a
-distant light: all points receive the same light, so that the profile, whose integral is 1, has no effect, and the node
-is Lambert with its color, for any radius and anisotropy.
+Inputs of hair have the names of `mxeon.models.hair.chiang_hair_bcsdf`. Subsurface scattering is evaluated on a plane
+under a distant light. All points receive the same light, so the profile, whose integral is 1, has no effect: for any
+radius and anisotropy, the node is Lambert with its color.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from mxeon.models.microfacet import defects, dielectric_albedo_dir
 from mxeon.models.nodes.node import Inputs, PbrNode, Variant
 from mxeon.models.sheen import conty_kulla_albedo_dir, zeltner_albedo_dir
 
-# Terms in the series of I_0, and the argument above which an approximate logarithm replaces it.
+# Terms in the series of I_0; argument above which its logarithm is approximated; variance below which it is used.
 TERMS, LIMIT, NARROW = 10, 12.0, 0.1
-LIMITS = (0.001, 1.0)  # range of every roughness
+LIMITS = (0.001, 1.0)  # range to which MaterialX clamps every roughness
 
 
 def materialx_longitudinal(
@@ -31,8 +31,8 @@ def materialx_longitudinal(
 ) -> Array:
     """M_p of MaterialX's GLSL, mx_chiang_hair_bsdf.glsl, after an older implementation.
 
-    The series of I_0 stops after ten terms. Above 12 its logarithm has half of the term 1 / (8 x).
-    A tilted cosine keeps its sign, so that the series serves arguments below -12. ln 2 is 0.6931.
+    The series of I_0 stops after ten terms. Above 12, its logarithm contains only half of the term
+    1 / (8 x). A tilted cosine keeps its sign: below -12 the series is used. ln 2 is 0.6931.
     """
     a, b = cos_i * cos_o / v, sin_i * sin_o / v
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
@@ -46,7 +46,7 @@ def materialx_longitudinal(
 
 
 def _series(x: Array) -> Array:
-    """TERMS terms of the power series of I_0."""
+    """First TERMS terms of the power series of I_0."""
     value = term = np.ones_like(x)
     for k in range(1, TERMS):
         term = term * np.square(0.5 * x / k)
@@ -70,7 +70,7 @@ FORMS: dict[str, HairForm] = {
     ),
 }
 
-# Readings that the text permits, or that its later versions use.
+# Forms that the specification permits, or that its later versions use.
 READINGS: dict[str, HairForm] = {
     "F of the effective index": replace(TEXT, effective=True),
     "no factor 1/pi, as in later versions of the text": replace(TEXT, factor=1.0),
@@ -78,12 +78,12 @@ READINGS: dict[str, HairForm] = {
 
 
 def _bounded(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
-    """An albedo clamped to 1; the text does not say what happens above 1."""
+    """The albedo clamped to 1; the specification does not say what happens above 1."""
     return lambda mu, roughness: at_most(albedo(mu, roughness), 1.0)
 
 
 def _tinted(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Inputs], Array]:
-    """Albedo of a lobe with one roughness, times its color."""
+    """Albedo, times the color, of a lobe with a color and a roughness."""
     return lambda wo, i: albedo(cosine(wo[:, 2]), i["roughness"])[..., np.newaxis] * i["color"]
 
 
@@ -164,7 +164,7 @@ LOBE_NODES = (
 
 
 def _value(form: HairForm = TEXT) -> Callable[[Array, Array, Inputs], Array]:
-    """Values of the hair model in one form."""
+    """BCSDF of the hair model in the given form, as a function of the node's inputs."""
 
     def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
         named = {name: inputs[name] for name in hair.DEFAULTS if name in inputs}
@@ -174,14 +174,14 @@ def _value(form: HairForm = TEXT) -> Callable[[Array, Array, Inputs], Array]:
 
 
 def _albedo(wo: Array, inputs: Inputs) -> Array:
-    """Integral of the values over all lights, for a cuticle without tilt: sum of t_p A_p, over pi."""
+    """Integral of the BCSDF over all lights if the cuticle has no tilt: sum of t_p A_p / pi."""
     factors = hair.chiang_hair_attenuation(wo, inputs["ior"], inputs["absorption_coefficient"])
     tints = array_namespace(factors).stack([inputs[n] for n in (*TINTS, TINTS[-1])], axis=-1)
     return array_namespace(factors).sum(factors * tints, axis=-1) / np.pi
 
 
 def _ggx(wo: Array, inputs: Inputs) -> Array:
-    """Albedo of a GGX lobe with the mean roughness and tint: the environment of MaterialX's GLSL."""
+    """Albedo of a GGX lobe with mean roughness and tint, used by MaterialX's GLSL in environments."""
     alpha = np.mean([inputs[name] for name in hair.ROUGHNESSES], axis=0)
     alpha = np.sqrt(np.clip(alpha, 1e-6, 1.0).prod(axis=-1, keepdims=True))
     tint = np.mean([inputs[name] for name in TINTS], axis=0)
@@ -210,16 +210,16 @@ HAIR_NODE = PbrNode(
 )
 
 
-STEPS = 32  # steps around the circle in MaterialX
-FLATTEST = 100.0  # MaterialX's largest radius of the circle
-LEAST_RADIUS = 0.1  # smallest radius of the profile
+STEPS = 32  # integration steps around the circle in MaterialX
+FLATTEST = 100.0  # largest radius of the circle in MaterialX
+LEAST_RADIUS = 0.1  # smallest radius of the diffusion profile
 
 
 def circle_blur(mu: Array, radius: Array, body: float = FLATTEST) -> Array:
-    """Cosine of a light, blurred as in MaterialX along a circle through the light.
+    """Cosine of a light, blurred along a circle in the plane of the light as in MaterialX.
 
-    `mu` (N,), `radius` (N, 3): mean free path. MaterialX takes `body`, the circle's radius, from the
-    curvature; it is at most 100.
+    `mu` (N,): cosine. `radius` (N, 3): mean free path. `body`: radius of the circle, which MaterialX
+    derives from the curvature, at most 100.
     """
     theta = np.arccos(np.clip(mu, -1.0, 1.0))[:, np.newaxis]
     shape = 1.0 / np.maximum(radius, LEAST_RADIUS)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's VDF nodes below a surface, over one meter of the medium.
 
-Inputs are named by the node's ports; for nodes that combine two media, by their paths. The text gives no
-equation for combined media: here their coefficients are combined, since a sum of transmittances would
-exceed 1.
+Inputs are named by the node's ports, or by their paths for nodes that combine two media. The
+specification has no equation for combined media. Here their coefficients are combined, since a sum
+of transmittances would exceed 1.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from mxeon.models.nodes.node import Inputs, Node, Variant, column, linear_nodes
 
 FIRST, SECOND = "first/absorption", "second/absorption"  # the two absorbing media
 AMOUNT, FACTOR = "medium/mix", "medium/in2"  # weight and factor of the first medium
-METER = 1.0  # surface shaders have no thickness
+METER = 1.0  # assumed thickness, since surface shaders have none
 Value = Callable[[Inputs], Array]
 
 
@@ -27,9 +27,9 @@ Value = Callable[[Inputs], Array]
 class Medium(Node[Value]):
     """A VDF node, represented by its transmittance.
 
-    - `inputs`: Names of the inputs that the transmittance depends on. The anisotropy only affects
-      the light scattered into a ray.
-    - `value`: Transmittance of METER.
+    - `inputs`: Inputs that affect the transmittance. The anisotropy is not among them: it only
+      affects the light scattered into a ray.
+    - `value`: Transmittance over one meter.
     """
 
 

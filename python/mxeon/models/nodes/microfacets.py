@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of pbrlib's microfacet nodes: reflection, R, also under a thin film, and transmission, T and RT.
+"""Rows of pbrlib's microfacet nodes: reflection (R), also under a thin film, and transmission (T, RT).
 
-A rasterizer has no light behind the surface and looks up an environment instead. For a node that transmits, only the
-transmitted share of the light and its direction can be compared.
+A rasterizer has no light behind the surface and looks up an environment instead. For a transmitting node, only the
+share and the direction of the transmitted light can be compared.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectri
 from mxeon.models.nodes.node import BLACK, WHITE, Inputs, PbrNode, Scattering, Variant, white
 from mxeon.models.thin_film import FILM, Form, film_albedo_dir
 
-# The text leaves the form of the energy compensation open. MaterialX's masking of anisotropic facets is mentioned in
-# an implementation note of the text since July 2026.
+# Names of permitted defects: the specification leaves the form of the energy compensation open. Since July 2026, an
+# implementation note mentions MaterialX's masking of anisotropic facets.
 OPEN = [
     f"compensation_{each}" for each in ["half", "f0", "view", "fitted", "average", "average_fitted"]
 ] + ["smith_mean", "smith_mean_fitted", "smith_mean_average"]
@@ -36,11 +36,11 @@ class MicrofacetLobe:
     """A microfacet node: its values and albedos from its inputs, under a thin film if the inputs include one."""
 
     category: str
-    fresnel: Callable[[Array, Inputs], Array]  # its curve F
-    edge: str = ""  # name of the input that is F at grazing; "" where F is 1 there
+    fresnel: Callable[[Array, Inputs], Array]  # Fresnel curve F of cosine and inputs
+    edge: str = ""  # name of the input for F at grazing; "" if F is always 1 there
 
     def value(self, wo: Array, wi: Array, inputs: Inputs, terms: Lobe | None = None) -> Array:
-        """BRDF; `terms` replaces the specification's lobe, without a film."""
+        """BRDF; if `terms` replaces the specification's lobe, a film is ignored."""
         if terms is None and _has_film(inputs):
             return thin_film.film_brdf(self.category, wo, wi, inputs)
         return node_brdf(self.category, wo, wi, inputs, terms)
@@ -50,7 +50,7 @@ class MicrofacetLobe:
         return function(self.category, wo, inputs, compensate=compensate)
 
     def ends(self, wo: Array, inputs: Inputs) -> tuple[Array, Array | float]:
-        """F along the normal and at grazing."""
+        """Fresnel reflectance along the normal, and at grazing."""
         return self.fresnel(np.ones(len(wo)), inputs), inputs[self.edge] if self.edge else 1.0
 
     def fitted(self, wo: Array, inputs: Inputs) -> Array:
@@ -59,18 +59,18 @@ class MicrofacetLobe:
         return np.asarray(fit * inputs.get("tint", np.ones(3)))
 
     def prefiltered(self, wo: Array, inputs: Inputs) -> Array:
-        """Albedo by MaterialX's fit, as in its prefiltered environment, with the exact compensation."""
+        """Albedo by the fit of MaterialX's prefiltered environment, with the exact compensation."""
         whole, single = (self.albedo(wo, isotropic(inputs), each) for each in (True, False))
         ratio = np.divide(whole, single, out=np.ones(single.shape), where=single > 0.0)
         fit = layer_albedo(wo, inputs, *self.ends(wo, inputs), np.zeros(3))
         return np.asarray(fit * ratio * inputs.get("tint", np.ones(3)))
 
     def indirect(self, wo: Array, inputs: Inputs) -> Array:
-        """Albedo with the compensation of MaterialX's indirect branch: F at the view direction."""
+        """Albedo with F at the view direction in the compensation, as for MaterialX's indirect light."""
         return self._compensated(wo, inputs, self._at_view(wo, inputs))
 
     def averaged(self, wo: Array, inputs: Inputs) -> Array:
-        """`indirect` with F averaged from its two ends, as in MaterialX after 1.39.5."""
+        """Like `indirect`, but with F averaged from both ends, as in MaterialX after 1.39.5."""
         return self._compensated(wo, inputs, defects.schlick_average(*self.ends(wo, inputs)))
 
     def _compensated(self, wo: Array, inputs: Inputs, F: Array) -> Array:
@@ -88,7 +88,7 @@ def isotropic(inputs: Inputs) -> dict[str, Array]:
 
 
 def undipped(inputs: Inputs) -> dict[str, Array]:
-    """Inputs without a dip at 82 degrees."""
+    """Inputs with color82 = 1, which removes the dip at 82 degrees."""
     return {**inputs, "color82": np.ones((1, 3))}
 
 
@@ -124,7 +124,7 @@ def _row(
     fixed: Mapping[str, str] = NONE,
     mirror: dict[str, ArrayLike],
 ) -> PbrNode:
-    """Row of a node; nodes with scatter modes can be layered over others."""
+    """Row of a node; a node with scatter modes, which `fixed` selects, can be layered over others."""
     _, colors, numbers = CATEGORIES[lobe.category]
     known = (
         Variant(
@@ -200,9 +200,9 @@ MICROFACET_NODES = (
 OWN_MATRIX = Form(tuple(map(tuple, XYZ_TO_REC709.tolist())))
 STOCK = Form(
     thin_film.CIE_RGB, 2, True, 1.0, 0.01
-)  # MaterialX's choices, with the full reflectance of a Schlick substrate
+)  # MaterialX's choices, but with the full reflectance of a Schlick substrate
 MIXED = Form(mixed=True)
-# Title, form, and whether the specification permits it.
+# Rows: title, form, and whether the specification permits the form.
 FORMS = (
     ("MaterialX's matrix, orders and mixed channels", STOCK, True),
     ("half of the substrate's reflectance, and MaterialX's choices", thin_film.MATERIALX, False),
@@ -214,12 +214,12 @@ FORMS = (
 
 
 def _bare(inputs: Inputs) -> dict[str, Array]:
-    """Inputs with a film of thickness 0."""
+    """Inputs without a film: its thickness is 0."""
     return {**inputs, FILM[0]: np.zeros_like(inputs[FILM[0]])}
 
 
 def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: Inputs) -> Array:
-    """Albedo of MaterialX's environment branch: the film's F in the compensation, at the view or averaged by its ends."""
+    """Albedo of MaterialX's environment: the compensation has the film's F, at the view or averaged."""
     mu = np.ones(len(wo)) if averaged else np.minimum(wo[:, 2], 1.0)
     F = thin_film.film_reflectance(category, mu, inputs, form)
     F = defects.schlick_average(F, 1.0) if averaged else F
@@ -228,14 +228,14 @@ def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: I
 
 
 def _fitted(lobe: MicrofacetLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
-    """Albedo of MaterialX's throughput: the bare lobe's fit with the film's F at the view."""
+    """Albedo in MaterialX's throughput: the fit without a film, compensated with the film's F."""
     F = thin_film.film_reflectance(lobe.category, np.minimum(wo[:, 2], 1.0), inputs, form)
     albedo = layer_albedo(wo, inputs, *lobe.ends(wo, inputs), F)
     return averaged_channels(albedo) if lobe.edge else albedo
 
 
 def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
-    """Other film models that shaders use, each with either compensation; MaterialX's with its masking, too."""
+    """Film models that shaders use, with either compensation, and MaterialX's also with its masking."""
     variants: list[Variant[Scattering]] = [
         Variant("no film", lambda wo, wi, inputs: row.value(wo, wi, _bare(inputs))),
         Variant(
@@ -263,7 +263,7 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         words = "the bare lobe's fit, and the film in the compensation"
         variants.append(Variant(f"{title}: {words}", albedo=fitted))
     for title, form, permitted in FORMS:
-        one = form == MIXED and row.category == "dielectric_bsdf"  # one index for all channels
+        one = form == MIXED and row.category == "dielectric_bsdf"  # all channels share one index
         if one or (form.share != 1.0 and not schlick):
             continue
         lobes: list[tuple[str, Lobe | None]] = [(title, None)]
@@ -299,15 +299,14 @@ MODES = ("T", "RT")
 
 @dataclass(frozen=True)
 class Transmission:
-    """Functions of the inputs of a node that transmits.
+    """Functions of a transmitting node, by its inputs.
 
-    - `passed`: Share of the light from wo that the BTDF transmits, tint included; without `shadow`,
-      the mean of 1 - F over the facets that wo sees.
-    - `reflected`: Directional albedo of the reflection with its energy compensation, without a
-      tint.
+    - `passed`: Share of the light from wo that the BTDF transmits, tint included. If its third
+      argument, `shadow`, is false: the mean of 1 - F over the visible facets.
+    - `reflected`: Directional albedo of the reflection, with compensation and without tint.
     """
 
-    value: Callable[[Array, Array, Inputs], Array]  # BTDF of radiance, tint included
+    value: Callable[[Array, Array, Inputs], Array]  # BTDF for radiance, tint included
     passed: Callable[[Array, Inputs, bool], Array]
     reflected: Callable[[Array, Inputs], Array]
     tint: Callable[[Inputs], Array]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's nodes: their inputs, with defaults, ranges and units, and their functions.
 
-Inputs are a mapping by port name, in MaterialX's order, each (N,) or (N, components). The caller applies the
-node's `weight`, since every node has one.
+Inputs are a mapping by port name, in MaterialX's order; values are (N,) or (N, components). The
+caller applies `weight`, which every node has.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ FACETS: dict[str, Value] = {
     "thinfilm_thickness": 0.0,
     "thinfilm_ior": 1.5,
 }
-# Defaults of a node's inputs in the order of its definition, except mode selectors, the weight and the frame.
-# A test compares them with MaterialX's definitions.
+# Defaults of the nodes' inputs in the order of the definition, without modes, weight and frame. A test compares them
+# with MaterialX's definitions.
 DEFAULTS: dict[str, dict[str, Value]] = {
     "oren_nayar_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
     "burley_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
@@ -51,8 +51,8 @@ class Parameter:
 
     - `name`: MaterialX's name.
     - `default`: MaterialX's default; a tuple of three for a color, of two for a pair.
-    - `quantity`: Its name in the functions of `mxeon.models`, which is accepted as
-      well.
+    - `quantity`: Name in the functions of `mxeon.models`; models also accept it as the input's
+      name.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Parameter:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Least and largest value, both included."""
+        """Smallest and largest valid value."""
         low, high, _ = RANGES[self.quantity]
         return low, high
 
@@ -76,12 +76,12 @@ class Parameter:
 
     @property
     def unit(self) -> str:
-        """Its unit; "1" where it has none."""
+        """Unit of the input; "1" if it has none."""
         return UNITS.get(self.quantity, "1")
 
 
 def parameter(category: str, name: str, quantity: str = "") -> Parameter:
-    """Input of a node, from its category and name."""
+    """The input `name` of the node `category`."""
     return Parameter(name, DEFAULTS[category][name], quantity or name)
 
 
@@ -95,17 +95,17 @@ class Variant(Generic[Function]):
     """Another function that a shader may use instead of the node's own."""
 
     title: str
-    value: Function | None = None  # None if the values are the node's own
+    value: Function | None = None  # None: the node's own function
     albedo: Callable[[Array, Inputs], Array] | None = None
-    permitted: bool = False  # whether the specification permits it
+    permitted: bool = False  # whether the specification permits the variant
     above: bool = (
-        False  # whether its albedo is only what a layer takes from its base, colors included
+        False  # whether `albedo` is only the share taken from a layer's base, colors included
     )
 
 
 @dataclass(frozen=True)
 class Node(Generic[Function]):
-    """A node, or a mode of one, of [MaterialX2026]."""
+    """A node of [MaterialX2026], or one of its modes."""
 
     name: str
     title: str
@@ -121,14 +121,14 @@ class PbrNode(Node[Scattering]):
 
     - `value`: BSDF in 1/sr without the cosine, for weight 1.
     - `albedo`: Directional albedo E for weight 1, tints included; clamped to 1.
-    - `integral`: The integral of its values, if it differs from `albedo` for some inputs.
+    - `integral`: Integral of `value`, if it differs from `albedo` for some inputs.
     - `fixed`: Inputs that select the mode.
-    - `layerable`: Whether it passes 1 - E to the layer below, with E at `white` inputs; an opaque
-      node of weight 1 passes nothing.
+    - `layerable`: Whether the share 1 - E passes to the layer below, with E at `white` inputs; an
+      opaque node of weight 1 passes nothing.
     - `taken`: E in 1 - E, if it is not `albedo` at `white` inputs.
-    - `transmits`: Whether it scatters light from below the horizon instead of light from above.
-    - `mirror`: Inputs with which it reflects all light; empty if there are none.
-    - `parameters`: Its inputs, if they or their quantities differ from the category's.
+    - `transmits`: Whether the node scatters light from below the horizon instead of from above.
+    - `mirror`: Inputs with which the node reflects all light; empty if there are none.
+    - `parameters`: Inputs of the mode, if they or their quantities differ from the category's.
     - `average`: Average albedo, if a closed form is known.
     """
 
@@ -138,26 +138,26 @@ class PbrNode(Node[Scattering]):
     layerable: bool = False
     taken: Callable[[Array, Inputs], Array] | None = None
     transmits: bool = False
-    fitted: bool = False  # whether a shader needs a fit for its albedo
-    reciprocal: bool = True  # whether exchanging the directions does not change the value
+    fitted: bool = False  # whether shaders need a fit for the albedo
+    reciprocal: bool = True  # whether the value stays the same if wo and wi are exchanged
     mirror: Mapping[str, ArrayLike] = field(default_factory=dict, hash=False)
     parameters: tuple[Parameter, ...] = ()
     average: Callable[[Inputs], Array] | None = None
 
 
-# Colors of a layer that absorb light: [MaterialX2026] of August 2026, Vertical-Layering Transmittance. Texts before
-# take them from the base, too.
+# Colors of a layer that absorb light: [MaterialX2026] of August 2026, Vertical-Layering Transmittance. In earlier
+# texts, light that they remove reaches the base.
 ABSORBING = ("color", "tint")
 COLORED = "the color in the light that passes, as in texts before August 2026"
 
 
 def white(inputs: Inputs) -> dict[str, Array]:
-    """Inputs with white ABSORBING colors."""
+    """Inputs in which all ABSORBING colors are white."""
     return {**inputs, **{name: np.ones((1, 3)) for name in ABSORBING if name in inputs}}
 
 
 def column(inputs: Inputs, name: str) -> Array:
-    """A number or a color of each evaluation, (N, 1 or 3)."""
+    """The input `name` as a matrix: a number or a color per row, (N, 1 or 3)."""
     return np.reshape(inputs[name], (len(inputs[name]), -1))
 
 
@@ -167,9 +167,9 @@ Combined: TypeAlias = tuple[str, str, str, tuple[str, ...], Callable[[Inputs], A
 def linear_nodes(
     kind: str, one: str, several: str, total: str, paths: tuple[str, str, str, str]
 ) -> tuple[Combined, ...]:
-    """Name, title, category, inputs and combined color of the nodes that mix, add or scale emissions or media.
+    """Name, title, category, inputs and combined color of nodes that mix, add or scale.
 
-    - `paths`: Inputs: the colors of the first and the second, the weight of the first, and its factor.
+    - `paths`: Paths of four inputs: first color, second color, weight and factor of the first.
     """
     first, second, share, factor = paths
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Functions of OSL's library BSDL and of Blender's Cycles, as variants of the nodes that they implement."""
+"""Variants of nodes as implemented by OSL's library BSDL and by Blender's Cycles."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ INDEX = (1.001, 5.0)  # range to which BSDL clamps the index of a dielectric
 
 
 def _indexed(inputs: Inputs) -> dict[str, Array]:
-    """Inputs with the index clamped as in BSDL."""
+    """Inputs whose index is clamped as in BSDL."""
     return {**inputs, "ior": np.clip(inputs["ior"], *INDEX)}
 
 
@@ -31,13 +31,13 @@ def _dielectric_albedo(wo: Array, inputs: Inputs) -> Array:
 
 
 def _schlick_albedo(wo: Array, inputs: Inputs) -> Array:
-    """Albedo, in every channel, of a dielectric whose normal reflectance is the mean of `color0`."""
+    """Albedo of a dielectric whose normal reflectance is the mean of `color0`, the same per channel."""
     root = np.sqrt(np.clip(np.mean(inputs["color0"], axis=-1), 0.0, 0.99))
     return _dielectric_albedo(wo, {**inputs, "ior": (1.0 + root) / (1.0 - root)})
 
 
 def gray(albedo: Callable[[Array, Inputs], Array], wo: Array, inputs: Inputs) -> Array:
-    """An albedo times the largest channel of the color, in every channel."""
+    """An albedo multiplied by the largest channel of the color, and clamped to 1."""
     largest = np.max(np.broadcast_to(inputs["color"], wo.shape), axis=-1, keepdims=True)
     return np.asarray(np.minimum(albedo(wo, inputs) * largest, 1.0))
 
@@ -94,24 +94,24 @@ LOSSLESS = "the largest channel of the albedo of facets that lose no light"
 
 
 def _single(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Array:
-    """Albedo of single scattering, at the geometric mean of both alphas."""
+    """Single-scattering albedo at the geometric mean of both alphas."""
     return np.asarray(lobe.albedo(wo, microfacets.isotropic(inputs), compensate=False))
 
 
 def _largest(albedo: Array) -> Array:
-    """The largest channel of an albedo, in every channel."""
+    """The albedo with every channel replaced by the largest."""
     return np.broadcast_to(albedo.max(axis=-1, keepdims=True), albedo.shape)
 
 
 def _lossless(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Array:
-    """Albedo of single scattering over that of facets that reflect everything."""
+    """Largest channel of the single-scattering albedo, divided by that of lossless facets."""
     alpha = microfacets.isotropic(inputs)["roughness"][:, 0]
     missing = missing_light(wo[:, 2], alpha)[:, np.newaxis]
     return _largest(_single(lobe, wo, inputs) * (1.0 + missing))
 
 
 def _lossless_dielectric(wo: Array, inputs: Inputs) -> Array:
-    """`_lossless` for a dielectric; below index 1, the albedo of a smooth surface."""
+    """`_lossless` for a dielectric; up to index 1, the albedo of a smooth surface."""
     smooth = DIELECTRIC_LOBE.fresnel(np.minimum(wo[:, 2], 1.0), inputs) * inputs["tint"]
     rough = _lossless(DIELECTRIC_LOBE, wo, inputs)
     return np.where(np.reshape(inputs["ior"], (-1, 1)) > 1.0, rough, _largest(smooth))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The utility nodes of pbrlib that feed the lobes, as functions of the values of their inputs.
+"""pbrlib's utility nodes, which compute inputs of lobes, as functions of the values of their inputs.
 
-Inputs are a mapping by port name, each (N,) or (N, components). A value outside the range of a model
-is clamped to it, by the `LEAST` and `LARGEST` constants, as implementations do: the specification
-accepts [0, 1] for most inputs and does not define values outside.
+Inputs are a mapping by port name; values are (N,) or (N, components). Values outside the range of a
+model are clamped, as in implementations: the specification accepts [0, 1] for most inputs and does
+not define values outside. The constants `LEAST` and `LARGEST` are limits inside that range.
 """
 
 from __future__ import annotations
@@ -22,11 +22,14 @@ from mxeon.models.microfacet.fresnel import artistic_ior
 from mxeon.models.microfacet.ggx import glossiness_anisotropy, roughness_anisotropy, roughness_dual
 from mxeon.models.nodes.node import Inputs, Node, Variant
 
-LARGEST_REFLECTIVITY = 0.99  # artistic_ior's n is infinite at 1
-LEAST_HAIR = 1e-3  # least roughness and color of hair: below, lobes have no width
-LARGEST_MELANIN = 1.0 - 1e-4  # the absorption is infinite at concentration 1
-LEAST_PIGMENT = 1e-30  # least color of a pigment with a finite logarithm
-TEMPERATURES = (800.0, 25000.0)  # K, from where bodies begin to glow to the end of the common fits
+LARGEST_REFLECTIVITY = 0.99  # at 1, the n of artistic_ior would be infinite
+LEAST_HAIR = 1e-3  # smallest roughness and color of hair; at 0, lobes would have no width
+LARGEST_MELANIN = 1.0 - 1e-4  # at concentration 1, the absorption would be infinite
+LEAST_PIGMENT = 1e-30  # smallest color of a pigment; the logarithm of 0 would be infinite
+TEMPERATURES = (
+    800.0,
+    25000.0,
+)  # range in kelvin: bodies glow from 800 on, common fits end at 25000
 
 Outputs = Callable[[Inputs], dict[str, Array]]
 
@@ -35,12 +38,12 @@ Outputs = Callable[[Inputs], dict[str, Array]]
 class UtilityNode(Node[Outputs]):
     """A utility node of [MaterialX2026].
 
-    - `inputs`: The default of each input, a number or a tuple, by name.
-    - `value`: Every output by name; needs all inputs.
+    - `inputs`: Defaults by input name, a number or a tuple each.
+    - `value`: Function from all inputs to all outputs by name.
     """
 
     inputs: Mapping[str, float | tuple[float, ...]] = field(hash=False)
-    outputs: Mapping[str, str] = field(hash=False)  # the type of each output, by name
+    outputs: Mapping[str, str] = field(hash=False)  # output types by name
 
 
 def utility(
@@ -71,7 +74,7 @@ def _glossiness(inputs: Inputs) -> dict[str, Array]:
 
 
 def _without_square(inputs: Inputs) -> dict[str, Array]:
-    """alpha without squaring the roughness."""
+    """alpha from a roughness that is not squared."""
     names = {"roughness", "glossiness"} & set(inputs)
     roots = {name: np.sqrt(_share(inputs, name)) for name in names}
     if "glossiness" in roots:
@@ -88,7 +91,7 @@ def _burley_aspect(inputs: Inputs) -> dict[str, Array]:
 
 
 def _openpbr_aspect(inputs: Inputs) -> dict[str, Array]:
-    """alpha that preserves the mean of both squares, as in OpenPBR."""
+    """alpha as in OpenPBR, where the mean of both squared alphas does not depend on anisotropy."""
     rest = 1.0 - _share(inputs, "anisotropy")
     along = np.square(_roughness(inputs)) * np.sqrt(2.0 / (1.0 + rest * rest))
     return {"out": np.stack([along, rest * along], axis=-1)}
@@ -101,7 +104,7 @@ def _roughness(inputs: Inputs) -> Array:
 
 
 def _dual(inputs: Inputs) -> dict[str, Array]:
-    """Squares; a negative second roughness is replaced by the first, as in implementations."""
+    """Squared roughnesses; the first replaces a negative second one, as in implementations."""
     pair = np.asarray(inputs["roughness"], np.float64)
     second = np.where(pair[..., 1] < 0.0, pair[..., 0], pair[..., 1])
     return {"out": roughness_dual(np.clip(np.stack([pair[..., 0], second], axis=-1), 0.0, 1.0))}
@@ -149,7 +152,7 @@ def _melanin(inputs: Inputs) -> dict[str, Array]:
 
 
 def constant(category: str, value: float) -> Variant[Outputs]:
-    """A variant whose outputs are all the same number, for any inputs."""
+    """A variant in which every output is `value`, whatever the inputs."""
 
     def values(inputs: Inputs) -> dict[str, Array]:
         return {
@@ -258,6 +261,6 @@ UTILITIES = (
 
 
 def node(category: str) -> UtilityNode:
-    """The row of UTILITIES of a category."""
+    """The row of UTILITIES with this category."""
     rows = {row.category: row for row in UTILITIES}
     return rows[checked_choice("category", category, rows)]
