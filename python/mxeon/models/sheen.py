@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sheen of [MaterialX2026], section `sheen_bsdf`: values in 1/sr and without the cosine, and albedos.
 
-The node's input `color` is a tint that scales the lobe; its albedos are those at unit color.
+The node's input `color` is a tint that scales the lobe. Albedos are for unit color.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
 - `mu` (...): Cosine of the polar angle of wo, in [0, 1].
@@ -18,8 +18,8 @@ quadrature:
     E = integral of D(l) w mu_i / (mu_i + mu_o - mu_i mu_o) cos(l) dphi dl,
     w = wo . wh = mu_o sin(l) + s_o cos(l) cos(phi),  mu_i = 2 w sin(l) - mu_o
 
-It has no kink where wh is the normal. With sin(2 delta) = mu_o, the light is above the horizon for all phi where
-l >= pi/2 - delta, and for tan(phi / 2)^2 <= sin(2 (l - delta)) / sin(2 (l + delta)) where delta <= l <= pi/2 - delta.
+It has no kink where wh is the normal. With sin(2 delta) = mu_o, the light is above the horizon for all phi if
+l >= pi/2 - delta; if delta <= l <= pi/2 - delta, for tan(phi / 2)^2 <= sin(2 (l - delta)) / sin(2 (l + delta)).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from mxeon.models.diffuse import cosines
 # Smallest roughness of the Zeltner lobe: [MaterialX2026], Zeltner Sheen Model.
 ZELTNER_LEAST_ROUGHNESS = 0.01
 
-# Least divisor (roughness or sum of cosines), so that quotients do not overflow.
+# Smallest roughness or sum of cosines used as a divisor, so that quotients do not overflow.
 LEAST_DIVISOR = 1e-300
 
 
@@ -47,12 +47,12 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
         f = color D / (4 (mu_o + mu_i - mu_o mu_i)),
         D = (2 + 1 / roughness) sin(theta_h)^(1 / roughness) / (2 pi)
 
-    Limits: f is 0 at roughness 0 unless both directions graze, and for a half vector along the
-    normal at any roughness. Where both directions graze (mu_o + mu_i below 1e-300) there is no
-    limit, and f counts as 0. Values are limited to float64's largest number. The text clamps
-    nothing; MaterialX keeps roughness above 0.005 and cosines above 1e-6. Accuracy: error below 66
-    / roughness times 2^-53 of f + 1 / pi. [MaterialX2026], Conty-Kulla sheen equations;
-    [ContyKulla2017], Eq. (2).
+    f is 0 at roughness 0, and for a half vector along the normal at any roughness. If both
+    directions graze (mu_o + mu_i below 1e-300), no limit exists and f counts as 0. Values are
+    limited to float64's largest number. The specification clamps nothing; MaterialX clamps
+    roughness to at least 0.005 and cosines to at least 1e-6. Accuracy: error below 66 / roughness
+    times 2^-53 of f + 1 / pi. [MaterialX2026], Conty-Kulla sheen equations; [ContyKulla2017],
+    Eq. (2).
 
         >>> conty_kulla_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.017299, 0.069198])
@@ -62,14 +62,14 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
 
 @any_array
 def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: ArrayLike) -> Array:
-    """BRDF of the sheen of Zeltner, Burley and Chiang, not reciprocal, with the sign of `zeltner_albedo_dir`.
+    """BRDF of the sheen of Zeltner, Burley and Chiang; negative where `zeltner_albedo_dir` is.
 
         f = color E(mu_o) a^2 / (pi |M^-1 wi|^4),  M^-1 = (a 0 b; 0 a 0; 0 0 1)
 
-    The text gives f times the cosine, which is the cosine of D_o times |M^-1 wi| and cancels. The
-    frame of M is turned so that wo has azimuth 0. Along the normal b is 0, so any frame will do.
-    Accuracy: as for `conty_kulla_brdf`. [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], whose
-    omega_i is wo here.
+    f is not reciprocal. The specification gives f times the cosine; the cosine in D_o cancels it.
+    In the frame of M, wo has azimuth 0; along the normal, b is 0 and the frame does not matter.
+    Accuracy: as for `conty_kulla_brdf`. [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], where
+    wo is called omega_i.
 
         >>> zeltner_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.002916, 0.011662])
@@ -79,14 +79,14 @@ def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: Arra
 
 @any_array
 def zeltner_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of the Zeltner sheen at unit color: E of the text, which is exact; in [-2.2e-5, 0.745].
+    """Directional albedo of the Zeltner sheen at unit color, in [-2.2e-5, 0.745].
 
         E = exp(-((mu - m) / s)^2 / 2) / (s sqrt(2 pi)) + o
 
-    The fit falls below 0 for roughness in [0.03, 0.132] away from grazing; neither the text nor
-    shaders clamp it. M keeps the sign of z, so the whole mass of the transformed cosine is above
-    the horizon, and this is the integral of `zeltner_brdf` times the cosine. [MaterialX2026],
-    Zeltner Sheen Model, Directional Albedo.
+    The fit falls below 0 for roughness in [0.03, 0.132] away from grazing; neither specification nor
+    shaders clamp it. M keeps the sign of z, so the transformed cosine lies above the horizon, and E
+    is exactly the integral of `zeltner_brdf` times the cosine. [MaterialX2026], Zeltner Sheen Model,
+    Directional Albedo.
 
         >>> round(float(zeltner_albedo_dir(0.3, 0.5)), 6)
         0.315212
@@ -103,7 +103,7 @@ def zeltner_matrix(mu: Array, roughness: Array) -> tuple[Array, Array]:
 
 
 def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
-    """Conty and Kulla's lobe, (C, ...), on valid arrays."""
+    """BRDF of `conty_kulla_brdf`, (C, ...), for valid arrays."""
     xp = array_namespace(wo, wi, roughness)
     least = max(LEAST_DIVISOR, arrays.least_normal(wo))  # least_normal is larger in float32
     mu_o, mu_i, _ = cosines(wo, wi)
@@ -111,7 +111,7 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
     upright = xp.square(mu_o + mu_i)
     total = flat + upright
     divisor = mu_o + mu_i - mu_o * mu_i
-    # Skip limits that are 0; NumPy gets the last of them as the exponential of -inf.
+    # Skip elements whose limit is 0. For NumPy, exp(-inf) yields the limit at flat = 0.
     counted = (roughness > 0.0) & (divisor >= least)
     smooth = counted & (flat > 0.0)
     roughness, flat = guarded(roughness, smooth, 1.0), guarded(flat, smooth, 1.0)
@@ -120,7 +120,7 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
     shape = 0.5 / xp.maximum(roughness, least)
     with np.errstate(divide="ignore", over="ignore"):
         ratio = flat / xp.maximum(total, least)
-        # Two forms of log(sin(theta_h)^2), each used where it does not cancel.
+        # log(sin(theta_h)^2) has two forms; use the one that does not cancel.
         small = ratio < 0.5
         above = guarded(upright / xp.maximum(total, least), ~small, 0.5)
         log_sine = xp.where(small, xp.log(ratio), xp.log1p(-above))
@@ -130,8 +130,8 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
 
 
 def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
-    """Zeltner's lobe, (C, ...), on valid arrays."""
-    # Turn the light into the frame where wo has azimuth 0.
+    """BRDF of `zeltner_brdf`, (C, ...), for valid arrays."""
+    # Rotate the light into the frame in which wo has azimuth 0.
     xp = array_namespace(wo, wi, roughness)
     mu_o, mu_i, s = cosines(wo, wi)
     sine = root(xp.square(wo[..., 0]) + xp.square(wo[..., 1]))
@@ -145,7 +145,7 @@ def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Arr
 
 
 def _zeltner_albedo(mu: Array, roughness: Array) -> Array:
-    """E of the text: [MaterialX2026], Zeltner Sheen Model, Directional Albedo."""
+    """E of [MaterialX2026], Zeltner Sheen Model, Directional Albedo."""
     xp = array_namespace(mu, roughness)
     x, y = mu, xp.maximum(roughness, ZELTNER_LEAST_ROUGHNESS)
     s = y * (0.0206607 + 1.58491 * y) / (0.0379424 + y * (1.32227 + y))
@@ -155,11 +155,11 @@ def _zeltner_albedo(mu: Array, roughness: Array) -> Array:
     return albedo
 
 
-# Above this cosine the closed form of the inner integral cancels; use Gauss-Legendre.
+# Largest cosine for the closed form of the inner integral, which cancels above; Gauss-Legendre does not.
 STEEP = 0.25
 
 SHEEN_BLOCK = 2**8  # elements per block
-ALONG = 1e-8  # within this distance of 1, derivatives treat a cosine as 1
+ALONG = 1e-8  # distance of a cosine from 1 within which it is extrapolated, for derivatives
 
 
 @any_array
@@ -168,10 +168,10 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E(mu) = integral of D / (4 (mu + mu_i - mu mu_i)) mu_i over the hemisphere of wi
 
-    It exceeds 1 at grazing below a roughness of 0.2099 and has no bound: about sqrt(1 / (2 pi roughness)) at mu = 0.
-    Shaders clamp it to 1; the text is silent. Roughness 0 has the albedo of its BRDF, 0, also at mu = 0, where the
-    limit is infinite. Accuracy: relative error below 1e-11 at mu = 0, absolute below 1e-11 elsewhere, for roughness
-    >= 1e-4. At mu = 1 it is 2^-p / (2 (p + 2)), p = 1 / (2 roughness). [MaterialX2026], Directional Albedo.
+    For roughness below 0.2099, E exceeds 1 at grazing, without a bound: it is about sqrt(1 / (2 pi roughness)) at
+    mu = 0. Shaders clamp E to 1; the specification does not say. At roughness 0, BRDF and E are 0, even at mu = 0,
+    where the limit is infinite. Accuracy for roughness >= 1e-4: relative error below 1e-11 at mu = 0, absolute error
+    below 1e-11 elsewhere. At mu = 1, E is 2^-p / (2 (p + 2)), p = 1 / (2 roughness). [MaterialX2026], Directional Albedo.
 
         >>> round(float(conty_kulla_albedo_dir(1.0, 0.5)), 12)
         0.083333333333
@@ -201,7 +201,7 @@ def _albedo(mu: Array, roughness: Array) -> Array:
 
 
 def _integral(mu: Array, roughness: Array, steep: bool) -> Array:
-    """Albedo for cosines on one side of `STEEP`, roughness above 0."""
+    """Albedo for cosines above STEEP (`steep`) or up to STEEP; roughness above 0."""
     xp, delta = array_namespace(mu, roughness), 0.5 * arrays.arcsine(mu)
     x, weight = (arrays.like(each, mu) for each in _rule())
     p = 0.5 / roughness
@@ -210,9 +210,9 @@ def _integral(mu: Array, roughness: Array, steep: bool) -> Array:
         (True, delta, 0.5 * np.pi - 2.0 * delta),
         (False, 0.5 * np.pi - delta, delta),
     ):
-        # Beyond 10 sqrt(roughness) the density falls below exp(-50) of its largest value.
+        # At latitudes beyond 10 sqrt(roughness), the density is below exp(-50) of its maximum.
         width = xp.minimum(span, 10.0 * xp.sqrt(roughness))
-        above = width[..., np.newaxis] * x  # latitude above the lower end, and below the upper one
+        above = width[..., np.newaxis] * x  # distances of the latitude from both ends
         below = width[..., np.newaxis] * (1.0 - x if xp is not arrays.NUMPY else x[::-1])
         below = below + (span - width)[..., np.newaxis]
         latitude = low[..., np.newaxis] + above
@@ -229,7 +229,7 @@ def _integral(mu: Array, roughness: Array, steep: bool) -> Array:
 def _azimuths(
     mu: Array, latitude: Array, above: Array, below: Array, partial: bool, steep: bool
 ) -> Array:
-    """Integral of w mu_i / (mu_i + mu_o - mu_i mu_o) over phi from 0 to where the light sets."""
+    """Integral of w mu_i / (mu_i + mu_o - mu_i mu_o) over phi, from 0 to the light's horizon."""
     xp = array_namespace(mu, latitude)
     c, s = xp.sin(latitude), xp.cos(latitude)
     a, b = mu * c, root((1.0 - mu) * (1.0 + mu)) * s
@@ -247,7 +247,7 @@ def _azimuths(
 
 
 def _azimuths_gauss(mu: Array, c: Array, a: Array, b: Array, phi: Array) -> Array:
-    """The integral by Gauss-Legendre, where mu_i + mu_o - mu_i mu_o >= `STEEP`."""
+    """The integral of `_azimuths` by Gauss-Legendre, for mu_i + mu_o - mu_i mu_o >= STEEP."""
     cos, total = array_namespace(phi).cos, 0.0 * a
     for x, weight in zip(*np.polynomial.legendre.leggauss(24), strict=True):
         w = a + b * cos(0.5 * phi * (1.0 + float(x)))
@@ -259,7 +259,7 @@ def _azimuths_gauss(mu: Array, c: Array, a: Array, b: Array, phi: Array) -> Arra
 def _azimuths_closed(
     mu: Array, c: Array, a: Array, b: Array, phi: Array, rise: Array, fall: Array
 ) -> Array:
-    """The integral in closed form.
+    """The integral of `_azimuths` in closed form.
 
     w (2 c w - m) / (k w + m^2) = (w - m / k) / (1 - m) + m^3 / ((1 - m) k) / (k w + m^2),
     k = 2 c (1 - m), m = mu_o; and with t = tan(phi / 2), z = (q - r) t^2 / (q + r),
@@ -267,7 +267,7 @@ def _azimuths_closed(
     """
     xp, k = array_namespace(mu, c), 2.0 * c * (1.0 - mu)
     q, r = k * a + xp.square(mu), k * b
-    # Square roots of z's numerator and denominator separately: t may be infinite.
+    # Take the roots of z's numerator and denominator separately, because t may be infinite.
     near, far = rise * root(xp.abs(q - r)), fall * root(q + r)
     ends, ahead = far > 0.0, q > r
     ratio = xp.where(ends, near / xp.where(ends, far, 1.0), np.inf)
@@ -281,9 +281,9 @@ def _azimuths_closed(
 
 @lru_cache(maxsize=1)
 def _rule() -> tuple[Array, Array]:
-    """Nodes and weights of the double exponential rule on [0, 1], symmetric.
+    """Nodes and weights of a symmetric double-exponential rule on [0, 1].
 
-    Node k from the end is 1 minus node k from the start, to full precision where it is small.
+    1 - x is x reversed; the reversed nodes keep all digits of 1 - x near the end.
     """
     t = np.arange(-60, 61) * 0.055
     x = 1.0 / (1.0 + np.exp(-np.pi * np.sinh(t)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of models, one row each, and the table of known wrong variants."""
+"""Tables of rough diffuse models and of their known wrong variants, one row per model."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from mxeon.models.nodes.node import parameter as node_parameter
 
 @dataclass(frozen=True, kw_only=True)
 class Model(PbrNode):
-    """The row of a rough diffuse node with a given model, and the model's closed forms.
+    """A rough diffuse node that uses this model, with the model's closed forms.
 
     - `brdf`: `brdf(wo, wi, rho, *parameter)` in 1/sr, shape (..., C); Lambert has no parameter.
-    - `albedo_dir`: `albedo_dir(mu, rho, *parameter)`, shape (..., C), where a closed form is known.
-    - `albedo_avg`: `albedo_avg(rho, *parameter)`, shape (..., C), where a closed form is known.
-    - `brdf_of`: Name of the model with the same `brdf`; only the albedo differs.
+    - `albedo_dir`: `albedo_dir(mu, rho, *parameter)`, shape (..., C), if a closed form is known.
+    - `albedo_avg`: `albedo_avg(rho, *parameter)`, shape (..., C), if a closed form is known.
+    - `brdf_of`: Name of the model with the same `brdf`, if only the albedo differs; else `name`.
     """
 
     brdf: Callable[..., Array]
@@ -34,12 +34,12 @@ class Model(PbrNode):
 
     @property
     def interval(self) -> tuple[float, float] | None:
-        """Least and largest value of the parameter; None without one."""
+        """Smallest and largest value of the parameter; None if the model has no parameter."""
         return RANGES[self.parameter][:2] if self.parameter else None
 
     @property
     def largest(self) -> float:
-        """Largest value of the parameter; 1 without one."""
+        """Largest value of the parameter; 1 if the model has no parameter."""
         return self.interval[1] if self.interval else 1.0
 
 
@@ -52,7 +52,7 @@ def row(
     albedo_avg: Callable[..., Array] | None = None,
     brdf_of: str = "",
 ) -> Model:
-    """The row of a model with these functions of reflectance and parameter."""
+    """Build the row of a model from its functions of reflectance and parameter."""
     category = "burley_diffuse_bsdf" if name.startswith("burley") else "oren_nayar_diffuse_bsdf"
     parameters = [node_parameter(category, "color", "rho")]
     if parameter:
@@ -97,20 +97,20 @@ def diffuse_model(name: str) -> Model:
 
 @any_array
 def _lambert_albedo_dir(mu: ArrayLike, rho: ArrayLike) -> Array:
-    """Albedo rho in the shape to which mu and rho broadcast."""
+    """Directional albedo rho, in the shape to which mu and rho broadcast."""
     (color,), (cosine,) = checked_colors({"rho": rho}, mu=mu)
     return color + 0.0 * cosine
 
 
 @any_array
 def _lambert_albedo_avg(rho: ArrayLike) -> Array:
-    """Albedo rho, shape (..., C)."""
+    """Average albedo rho, shape (..., C)."""
     (color,), _ = checked_colors({"rho": rho})
     return color
 
 
 def _tinted(white: Callable[..., Array]) -> Callable[..., Array]:
-    """Wrap `white(..., parameter)`, an albedo at unit reflectance, to take rho before the parameter."""
+    """Add the argument rho, before the parameter, to an albedo function for unit reflectance."""
 
     @any_array
     def tinted(*arguments: ArrayLike) -> Array:
@@ -122,9 +122,9 @@ def _tinted(white: Callable[..., Array]) -> Callable[..., Array]:
 
 
 def _named(name: str, title: str, parameter: str, at_white: bool = False) -> Model:
-    """Row of a model whose functions in `mxeon.models.diffuse` begin with its name.
+    """Row of a model whose functions in `mxeon.models.diffuse` begin with `name`.
 
-    - `at_white`: Whether its albedos are those at unit reflectance.
+    - `at_white`: True if its albedo functions are for unit reflectance.
     """
     functions = (f"{name}_{each}" for each in ("brdf", "albedo_dir", "albedo_avg"))
     brdf, albedo_dir, albedo_avg = (getattr(diffuse, each, None) for each in functions)
@@ -160,7 +160,7 @@ KNOWN_DEFECTS = (
     _named("qon_tinted_twice", "QON tinted twice", "sigma"),
 )
 
-# Models that occur only in renderers' own nodes; generated shaders never use them.
+# Models of renderers' own nodes; generated shaders never use them.
 OTHERS = (
     row(
         "eon_fitted",
@@ -191,7 +191,7 @@ OTHERS = (
 def _reparametrized(
     name: str, title: str, base: str, parameter: Callable[[Numbers], Numbers]
 ) -> Model:
-    """A model as a function of another roughness that determines its own parameter."""
+    """The model `base` with a roughness in [0, 1] that `parameter` converts to its own parameter."""
     base_model = next(each for each in DIFFUSE_MODELS if each.name == base)
     closed = base_model.albedo_dir
 
@@ -211,7 +211,7 @@ def _square(roughness: Numbers) -> Numbers:
     return roughness**2
 
 
-# Models with a roughness in [0, 1] instead of sigma, as renderers define it.
+# Models with a roughness in [0, 1] that renderers define differently.
 PARAMETRIZATIONS = (
     *(
         _reparametrized(f"{base}_{word}", f"{short} with {meaning}", base, parameter)

@@ -1,31 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Thin films on the microfacet nodes of pbrlib: reflectances, lobes, albedos, and spectra to compare with.
+"""Thin films on the microfacet nodes of pbrlib: reflectances, lobes and albedos.
 
-Sections are those of [MaterialX2026], appendix Thin-Film Iridescence Model, after [Belcour2017]. A film of thickness
-0 is the node's own Fresnel curve.
+Section names refer to [MaterialX2026], appendix Thin-Film Iridescence Model, after [Belcour2017]. With thickness 0,
+the node's own Fresnel curve is used.
 
 - `mu` (...): Cosine between direction and microfacet normal, in [0, 1].
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
-- `category`, `inputs`: Category of the node, and its inputs by the names of its ports, colors with one or three
-  channels; `thinfilm_thickness` (...) in nm, in [0, 1e9], and `thinfilm_ior` (...), in [1, 1e50].
-- `form`: Choices that the text leaves open: the matrix to RGB, the number of orders, how an index per channel enters a sum
-  over CIE XYZ, and the treatment of values outside [0, 1], which the text clamps at the very end.
+- `category`, `inputs`: Category of the node, and its inputs by port name. Colors have one or three channels;
+  `thinfilm_thickness` (...) is in nm, in [0, 1e9], and `thinfilm_ior` (...) in [1, 1e50].
+- `form`: Choices that the specification leaves open: the matrix to RGB, the number of orders, how an index per channel
+  enters a sum over CIE XYZ, and whether values are clamped to [0, 1], which the specification does at the very end.
 
 Result (..., 3): linear RGB, in [0, 1].
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
-The film is at least as dense as the vacuum above it, so that the amplitude r12 of its upper interface is real; that of
-the lower one is r23 = sqrt(R23) e^(i phi_23). The text prints reflectances and phases, R12, R23 and
-phi = phi_21 + phi_23, and sums
+The film is at least as dense as the vacuum above it, so the amplitude r12 of its upper interface is real; the
+amplitude of the lower interface is r23 = sqrt(R23) e^(i phi_23). The printed form has reflectances R12, R23 and
+phases, phi = phi_21 + phi_23, and sums
 
     I = C_0 + 2 sum of C_m S(m D, m phi),  C_0 = R12 + R_s,  R_s = T121^2 R23 / (1 - R12 R23),
     C_m = (R_s - T121) sqrt(R12 R23)^m,  T121 = 1 - R12
 
-With z = r21 r23 = -r12 r23, whose length is sqrt(R12 R23) and whose angle is phi, the m-th term is the real part of
-z^m. Roots and phases have no derivative where a reflectance is 0: for a film of index 1, at Brewster's angle, over a
-substrate of its own index. z^m has.
+Here the m-th term is the real part of z^m, z = r21 r23 = -r12 r23, which has length sqrt(R12 R23) and angle phi. z^m
+has derivatives everywhere; roots and phases have none where a reflectance is 0: for a film of index 1, at Brewster's
+angle, and over a substrate of the film's own index.
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ from mxeon.models.microfacet import CATEGORIES, Curve, Lobe, evaluate_lobe, fres
 
 Complex: TypeAlias = tuple[Array, Array]  # real and imaginary part
 
-# Gaussians of the sensitivities, as the text has them: tristimulus, v in m, mu in 1/m, sigma^2 in 1/m^2. XYZ of films
-# up to 2000 nm with indices up to 2.3 differ from sums over wavelengths by at most 0.012 over dielectrics, 0.017 over metals.
+# Gaussians of the sensitivities in the specification: tristimulus, v in m, mu in 1/m, sigma^2 in 1/m^2. For films up
+# to 2000 nm with index up to 2.3, XYZ is within 0.012 (dielectrics) or 0.017 (metals) of sums over wavelengths.
 GAUSSIANS = (
     (0, 5.4856e-13, 1.6810e6, 4.3278e9),
     (0, 9.7470e-14, 2.2399e6, 4.5282e9),
@@ -56,27 +56,27 @@ GAUSSIANS = (
     (2, 5.2481e-13, 2.2084e6, 6.6121e9),
 )
 NORMAL = 1.0685e-7
-METERS = 1e-9  # 1 nm in m
-# Centers, standard deviations, and weights in XYZ of the Gaussians, (3, 4).
+METERS = 1e-9  # converts nm to m
+# Centers and standard deviations of the Gaussians, and their weights in XYZ, (3, 4).
 CENTERS = np.array([mu for _, _, mu, _ in GAUSSIANS])
 SPREADS = np.sqrt([variance for *_, variance in GAUSSIANS])
 AREAS = [v * np.sqrt(2.0 * np.pi * variance) / NORMAL for _, v, _, variance in GAUSSIANS]
 WEIGHTS = np.eye(3)[:, [row for row, *_ in GAUSSIANS]] * AREAS
 
-# All orders are summed one by one where THIN_SPREAD <= 2 pi OPD sigma: the terms after DAMPED_ORDERS
-# of them are below exp(-(30 * 0.2)^2) = 3e-16. Thinner films are integrated over wavenumbers, by the
-# trapezoidal rule over 6.5 standard deviations, where a Gaussian falls to 2^-48, in steps of a fifth of one.
+# If 2 pi OPD sigma is at least THIN_SPREAD, orders are summed one by one: terms after DAMPED_ORDERS
+# are below exp(-(30 * 0.2)^2) = 3e-16. Thinner films are integrated over wavenumbers by the trapezoidal rule, in
+# steps of a fifth of a standard deviation, up to 6.5 standard deviations, where a Gaussian falls to 2^-48.
 THIN_SPREAD, DAMPED_ORDERS = 0.2, 30
 STEP, STEPS = 0.2, 32
-SAME = 2.0**-20  # relative difference of indices that round the same number
-# Weights of the trapezoidal rule's nodes from the center on, and of all nodes.
+SAME = 2.0**-20  # indices with a smaller relative difference count as equal
+# Weights of the trapezoidal rule's nodes from the center outward; sum of the weights of all nodes.
 HEIGHTS = STEP * np.exp(-0.5 * (STEP * np.arange(STEPS + 1)) ** 2) / np.sqrt(2.0 * np.pi)
 HEIGHT = 2.0 * float(HEIGHTS.sum()) - float(HEIGHTS[0])
 FILM_BLOCK = 2**13  # elements per block
 
 
 class Interface(NamedTuple):
-    """Amplitudes r12 and -r23 of one polarization, seen from the film, and R23."""
+    """Amplitudes r12 (`first`) and -r23 (`second`) for one polarization, and R23."""
 
     first: Array
     second: Complex
@@ -84,7 +84,7 @@ class Interface(NamedTuple):
 
 
 def refracted(mu: Array, film_ior: Array) -> Array:
-    """cos theta_t: Three-Layer Geometry."""
+    """cos theta_t in the film: section Three-Layer Geometry."""
     xp = array_namespace(mu, film_ior)
     squared = xp.maximum(1.0 - (1.0 - mu) * (1.0 + mu) / film_ior**2, 0.0)
     # For a film of index 1 this is mu, with a derivative at grazing.
@@ -92,26 +92,26 @@ def refracted(mu: Array, film_ior: Array) -> Array:
 
 
 def path_difference(mu: Array, thickness: Array, film_ior: Array) -> Array:
-    """Optical path difference in m: Optical Path Difference."""
+    """Optical path difference in m: section Optical Path Difference."""
     return 2.0 * film_ior * refracted(mu, film_ior) * thickness * METERS
 
 
 def over_index(
     mu: Array, film_ior: Array, ior: Array, extinction: Array
 ) -> tuple[Interface, Interface]:
-    """Film over a dielectric or a conductor, for both polarizations, p before s.
+    """Film over a dielectric or a conductor: interfaces for the polarizations p and s.
 
-    Printed, with c = film_ior cos theta_t, n = ior + i extinction and W = n cos theta_3 = sqrt(n^2 - sin^2 theta):
+    With c = film_ior cos theta_t, n = ior + i extinction and W = n cos theta_3 = sqrt(n^2 - sin^2 theta), print has
 
         r_s = (c - W) / (c + W),  r_p = (n^2 c - film_ior^2 W) / (n^2 c + film_ior^2 W)
 
-    W^2 - c^2 = n^2 - film_ior^2, so that -r_s = (n^2 - film_ior^2) / (W + c)^2: no difference of roots. And
-    n^2 = W^2 + sin^2, film_ior^2 = c^2 + sin^2 make n^2 c -+ film_ior^2 W = (W -+ c) (c W -+ sin^2), so that
+    As W^2 - c^2 = n^2 - film_ior^2, -r_s = (n^2 - film_ior^2) / (W + c)^2 has no difference of roots. As
+    n^2 = W^2 + sin^2 and film_ior^2 = c^2 + sin^2, n^2 c -+ film_ior^2 W is (W -+ c) (c W -+ sin^2), so
     r_p = -r_s (c W - sin^2) / (c W + sin^2).
     """
     xp = array_namespace(mu, film_ior, ior, extinction)
     c, S2 = film_ior * refracted(mu, film_ior), (1.0 - mu) * (1.0 + mu)
-    # W = U + iV; U V = ior extinction gives the smaller part without a cancellation.
+    # W = U + iV. The smaller part follows from U V = ior extinction without a cancellation.
     Q, A = ior * extinction, (ior - extinction) * (ior + extinction) - S2
     larger = root(0.5 * (fresnel.modulus(A, 2.0 * Q) + arrays.magnitude(A)))
     smaller = Q / xp.where(larger > 0.0, larger, 1.0)
@@ -126,11 +126,11 @@ def over_index(
 def over_schlick(
     mu: Array, film_ior: Array, F: Array, color0: Array
 ) -> tuple[Interface, Interface]:
-    """Film over a Schlick substrate whose curve is F at cos theta_t, for both polarizations.
+    """Film over a Schlick substrate with curve F at cos theta_t: interfaces for p and s.
 
-    If a dip makes F negative there is no amplitude, and F counts as 0. The phase jumps where both
-    indices are equal. Indices within SAME count as equal, because in float32 color0 = 0.04 is off
-    by 2e-8 from the color of a film of index 1.5.
+    A negative F, caused by the dip, has no amplitude and counts as 0. The phase jumps where both
+    indices are equal. Indices within SAME count as equal: in float32, color0 = 0.04 differs by 2e-8
+    from the color of a film with index 1.5.
     """
     xp = array_namespace(mu, film_ior, F)
     F = arrays.at_least_0(F)
@@ -140,14 +140,14 @@ def over_schlick(
 
 
 def index_of(color0: Array) -> Array:
-    """Index of refraction whose reflectance along the normal is color0; unbounded at 1."""
+    """Index of refraction with reflectance color0 along the normal; unbounded at 1."""
     amplitude = root(color0)
     least = array_namespace(color0).maximum(1.0 - amplitude, fresnel.LEAST_IOR)
     return (1.0 + amplitude) / least
 
 
 def first_amplitudes(mu: Array, film_ior: Array) -> tuple[Array, Array]:
-    """r12 of both polarizations, by the forms of `over_index`; its sign is the phase phi_12, 0 or pi."""
+    """r12 for p and s, rearranged as in `over_index`; its sign gives the phase phi_12, 0 or pi."""
     xp = array_namespace(mu, film_ior)
     c, S2 = film_ior * refracted(mu, film_ior), (1.0 - mu) * (1.0 + mu)
     total = xp.where(c + mu > 0.0, c + mu, 1.0)
@@ -156,13 +156,13 @@ def first_amplitudes(mu: Array, film_ior: Array) -> tuple[Array, Array]:
 
 
 def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> Array:
-    """Reflected intensity of one polarization in CIE XYZ, shape (3, ...): Airy Summation.
+    """Reflected intensity of one polarization in CIE XYZ, shape (3, ...): section Airy Summation.
 
-    `orders` is M; None sums all of them.
+    `orders` is M; None sums all orders.
     """
     (first, (real, imaginary), R23), xp = interface, array_namespace(*interface[::2], opd)
     R12 = first * first
-    passed, lost = 1.0 - R12, 1.0 - R12 * R23  # `lost` is 0 only if `passed` is
+    passed, lost = 1.0 - R12, 1.0 - R12 * R23  # if `lost` is 0, `passed` is 0 too
     dc = R12 + passed**2 * R23 / xp.where(lost > 0.0, lost, 1.0)
     values = first * real, first * imaginary, 2.0 * np.pi * opd
     shape = np.broadcast_shapes(*(tuple(each.shape) for each in values))
@@ -182,7 +182,7 @@ def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> 
 
 
 def _fill(sums: Array, x: Array, y: Array, phi: Array, orders: int | None) -> None:
-    """Fill the sums of a block, for thick films and for thin ones."""
+    """Fill the sums of a block: thick films by orders, thin films by integrals."""
     thick = phi * SPREADS.min() >= THIN_SPREAD if orders is None else np.full(len(phi), True)
     if thick.all():
         sums[:] = _orders(x, y, phi, orders or DAMPED_ORDERS)
@@ -192,17 +192,16 @@ def _fill(sums: Array, x: Array, y: Array, phi: Array, orders: int | None) -> No
 
 
 def _column(values: Array, array: Array) -> Array:
-    """Numbers of the Gaussians on a first axis before the array's axes, in its library."""
+    """One number per Gaussian, on a new first axis before the array's axes, in its library."""
     return like(values.reshape(-1, *(1,) * array.ndim), array)
 
 
 def _orders(x: Array, y: Array, phi: Array, orders: int) -> Array:
-    """Real part of the sum of z^m S(m phi) for m from 1 to `orders`, z = x + i y, of each Gaussian, (4, ...).
+    """Re of the sum of z^m S(m phi), m from 1 to `orders`, z = x + i y, for each Gaussian, (4, ...).
 
         S(phi) = exp(i mu phi - sigma^2 phi^2)
 
-    With w = z exp(i mu phi), the real part of w^m is 2 Re(w) times that of w^(m-1), minus |w|^2
-    times that of w^(m-2).
+    With w = z exp(i mu phi), Re(w^m) = 2 Re(w) Re(w^(m-1)) - |w|^2 Re(w^(m-2)).
     """
     xp, angle = array_namespace(phi), _column(CENTERS, phi) * phi
     damping = xp.exp(-((_column(SPREADS, phi) * phi) ** 2))
@@ -219,15 +218,15 @@ def _orders(x: Array, y: Array, phi: Array, orders: int) -> Array:
 
 
 def _integrated(x: Array, y: Array, phi: Array) -> Array:
-    """`_orders` of all orders by an integral over wavenumbers.
+    """`_orders` for infinitely many orders, by an integral over wavenumbers.
 
-    The damping exp(-sigma^2 m^2 phi^2) is the mean of exp(i m sqrt(2) sigma u phi) over a standard normal u. So
+    The damping exp(-sigma^2 m^2 phi^2) is the mean of exp(i m sqrt(2) sigma u phi) over a standard normal u. Thus
 
         sum of z^m S(m phi) = mean over u of the sum of w^m,  w = z exp(i (mu + sqrt(2) sigma u) phi),  |w| = |z|
 
-    The sum over m >= 1 is w / (1 - w), with the real part (Re(w) - |w|^2) / |1 - w|^2, which is
-    ((1 - |w|^2) / |1 - w|^2 - 1) / 2, since |1 - w|^2 = 1 - 2 Re(w) + |w|^2. The mean is the trapezoidal rule of
-    HEIGHTS; each node turns w by a multiple of one step, so that nodes need no individual sines.
+    The sum over m >= 1 is w / (1 - w). Its real part is (Re(w) - |w|^2) / |1 - w|^2, which is
+    ((1 - |w|^2) / |1 - w|^2 - 1) / 2, since |1 - w|^2 = 1 - 2 Re(w) + |w|^2. The mean is computed by the trapezoidal
+    rule with weights HEIGHTS. Each node rotates w by a multiple of one step, so nodes need no sines of their own.
     """
     xp, angle = array_namespace(phi), _column(CENTERS, phi) * phi
     step = _column(np.sqrt(2.0) * STEP * SPREADS, phi) * phi
@@ -246,23 +245,23 @@ def _integrated(x: Array, y: Array, phi: Array) -> Array:
 
 
 def _distance(real: Array, imaginary: Array) -> Array:
-    """|1 - w|^2, or 1 where it is 0: nothing passes and no order counts there."""
+    """|1 - w|^2 as a divisor; 0 is replaced by 1, because no light passes there."""
     size = (1.0 - real) ** 2 + imaginary * imaginary
     return array_namespace(size).where(size > 0.0, size, 1.0)
 
 
 def _product(a: Complex, b: Complex) -> Complex:
-    """a b."""
+    """Complex product a b."""
     return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
 
 
 def _squared(a: Complex) -> Array:
-    """|a|^2."""
+    """Squared magnitude |a|^2 of a complex number."""
     return a[0] * a[0] + a[1] * a[1]
 
 
 def _quotient(a: Complex, b: Complex, otherwise: float) -> Complex:
-    """a / b, or a real number where b is 0."""
+    """Complex quotient a / b; the real number `otherwise` where b is 0."""
     squared = _squared(b)
     xp, valid = array_namespace(squared), squared > 0.0
     size = xp.where(valid, squared, 1.0)
@@ -270,7 +269,7 @@ def _quotient(a: Complex, b: Complex, otherwise: float) -> Complex:
     return xp.where(valid, real, otherwise), imaginary
 
 
-# Gauss-Legendre nodes in the cosine: of the curve, and of the polynomial through it, which is clamped.
+# Gauss-Legendre nodes in the cosine: for the curve, and for the clamped polynomial through it.
 POINTS, FINE = 14, 200
 
 Polarizations: TypeAlias = tuple[Interface, Interface]
@@ -280,13 +279,13 @@ Polarizations: TypeAlias = tuple[Interface, Interface]
 class Form:
     """Choices that the specification leaves to implementations, and one defect.
 
-    - `matrix`: From CIE XYZ to linear RGB, by rows.
-    - `orders`: M; None sums all orders.
-    - `mixed`: Whether the index of RGB channel k enters XYZ value k. If not, each RGB channel has
-      its index in all of XYZ, so that a vanishing film does not change the channels.
-    - `share`: Factor of the Schlick substrate's reflectance in each polarization; 1 in the text.
+    - `matrix`: Rows of the matrix from CIE XYZ to linear RGB.
+    - `orders`: Number M of orders; None sums all orders.
+    - `mixed`: If true, the index of RGB channel k is used for XYZ value k. Otherwise XYZ is computed
+      for each channel's index, so a vanishing film does not change the channels.
+    - `share`: Factor on the Schlick substrate's reflectance; 1 in the specification.
     - `least`: Smallest color0 that is converted to the index of a Schlick substrate.
-    - `clamped`: Whether values outside [0, 1] are clamped, as the text does.
+    - `clamped`: Whether values are clamped to [0, 1], as in the specification.
     """
 
     matrix: tuple[tuple[float, ...], ...] = tuple(map(tuple, XYZ_TO_REC709_E.tolist()))
@@ -297,7 +296,7 @@ class Form:
     clamped: bool = True
 
 
-# XYZ to CIE RGB with white E, from MaterialX 1.39.5.
+# MaterialX 1.39.5's matrix from XYZ to CIE RGB with white E.
 CIE_RGB = (
     (2.3706743, -0.9000405, -0.4706338),
     (-0.5138850, 1.4253036, 0.0885814),
@@ -309,9 +308,9 @@ MATERIALX = Form(CIE_RGB, 2, True, 0.5, 0.01)
 
 
 def film_curve(category: str, form: Form = TEXT) -> Curve:
-    """Curve of a microfacet node with the additional inputs `thinfilm_thickness` and `thinfilm_ior`.
+    """Fresnel curve of a microfacet node with `thinfilm_thickness` and `thinfilm_ior` as inputs.
 
-    For thickness 0 it is the node's own curve.
+    With thickness 0 it is the node's own curve.
     """
     bare = CATEGORIES[category][0]
 
@@ -328,7 +327,7 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
         def coated() -> Array:
             film = thinfilm_thickness, thinfilm_ior
             curve = _fine(category, replace(form, clamped=False), film, material)
-            # Clamp at the fine nodes, and sum.
+            # Clamp the values at the fine nodes, then integrate.
             kept = arrays.within(curve) if form.clamped else curve
             return array_namespace(curve).tensordot(like(_rule()[2], curve), kept, axes=1)
 
@@ -338,7 +337,7 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
 
 
 def _where_coated(thickness: Array, coated: Callable[[], Array], plain: Array) -> Array:
-    """Values with films where the thickness is not 0, else plain ones; without any film the slow part is skipped."""
+    """Coated values where the thickness is not 0, else plain values; skips `coated` without films."""
     xp = array_namespace(thickness, plain)
     if xp is not NUMPY or (thickness > 0.0).any():
         return xp.where(thickness > 0.0, coated(), plain)
@@ -348,7 +347,7 @@ def _where_coated(thickness: Array, coated: Callable[[], Array], plain: Array) -
 def _fine(
     category: str, form: Form, film: tuple[Array, Array], material: dict[str, Array]
 ) -> Array:
-    """The curve at the cosines of a fine rule, interpolated from the nodes, shape (FINE, 3, ...)."""
+    """The film's curve interpolated from POINTS nodes to a fine rule, shape (FINE, 3, ...)."""
     mu, between, _ = (like(each, film[1]) for each in _rule())
     channels = {k for k, v in material.items() if k in CATEGORIES[category][1]}
     axes = max((v.ndim - 1 for k, v in material.items() if k in channels), default=film[0].ndim)
@@ -360,7 +359,7 @@ def _fine(
 
 @cache
 def _rule() -> tuple[Array, Array, Array]:
-    """Cosines of the nodes, the matrix from values there to a fine rule, and the fine rule's weights."""
+    """Cosines of POINTS nodes, the matrix that interpolates to a fine rule, and that rule's weights."""
     x, w = legendre.leggauss(POINTS)
     fine, weight = legendre.leggauss(FINE)
     degree = np.arange(POINTS)
@@ -423,20 +422,20 @@ SUBSTRATES: dict[str, Callable[..., Polarizations]] = {
 
 
 FILM = ("thinfilm_thickness", "thinfilm_ior")
-DEGREE = 48  # degree of the film's curve in the cosine, for albedos
+DEGREE = 48  # degree of the polynomial in the cosine that replaces a film's curve in albedos
 
 
 @any_array
 def film_reflectance(
     category: str, mu: ArrayLike, inputs: Mapping[str, ArrayLike], form: Form = TEXT
 ) -> Array:
-    """Reflectance of a node's curve under a thin film for unpolarized light; `tint` and `roughness` have no effect.
+    """Reflectance of a node under a thin film for unpolarized light; `tint` and `roughness` have no effect.
 
-    Accuracy: over a dielectric the infinite sum is within 1e-6 for cosines above 0.01, over a conductor within 1e-4 at
-    grazing angles, where all orders count. Below index 1 the specification's phases of the first interface do not
-    hold: the s polarization has its phase of pi from a film that is denser than the vacuum. The Schlick curve replaces
-    the film's lower interface at the refracted angle, so the value jumps as soon as the thickness is not 0; a negative
-    curve counts as 0, because it has no amplitude.
+    Accuracy of the infinite sum: 1e-6 over a dielectric for cosines above 0.01; 1e-4 over a conductor at grazing
+    angles, where all orders count. A film index below 1 is rejected: the specification's phases of the first interface,
+    pi for the s polarization, require a film denser than the vacuum. The Schlick curve describes the film's lower
+    interface at the refracted angle, so the value jumps as soon as the thickness is not 0. A negative curve counts as
+    0, because it has no amplitude.
 
         >>> glass = {"ior": 1.5, "thinfilm_thickness": [0.0, 100.0, 300.0], "thinfilm_ior": 1.38}
         >>> film_reflectance("dielectric_bsdf", 1.0, glass).round(4)
@@ -462,7 +461,7 @@ def film_brdf(
     form: Form = TEXT,
     lobe: Lobe | None = None,
 ) -> Array:
-    """BRDF of a microfacet node under a thin film, scatter mode R, in 1/sr; `lobe` may replace the text's terms.
+    """BRDF of a microfacet node under a thin film, scatter mode R, in 1/sr; `lobe` may replace its terms.
 
     [MaterialX2026], Thin-Film Iridescence; Energy Compensation.
 
@@ -487,8 +486,8 @@ def film_albedo_dir(
 ) -> Array:
     """Directional albedo of `film_brdf`, by quadrature, with or without the energy compensation.
 
-    The film's curve is a polynomial of degree 48 in the cosine, within 1e-4 of the curve for films up to 2000 nm of
-    index up to 2. [MaterialX2026], Directional Albedo and Energy Conservation.
+    The film's curve is approximated by a polynomial of degree 48 in the cosine; the error is below 1e-4 for films up
+    to 2000 nm with index up to 2. [MaterialX2026], Directional Albedo and Energy Conservation.
 
         >>> inputs = {"tint": np.ones(3), "ior": 1.5, "roughness": [0.3, 0.3]}
         >>> soap = {"thinfilm_thickness": 400.0, "thinfilm_ior": 1.33}
@@ -503,7 +502,7 @@ def film_albedo_dir(
 def _material(
     category: str, inputs: Mapping[str, ArrayLike], wo: ArrayLike = (0.0, 0.0, 1.0)
 ) -> tuple[dict[str, arrays.Numbers], dict[str, arrays.Numbers]]:
-    """Checked inputs with channels and without."""
+    """Checked inputs: those with channels, and those without."""
     _, colors, numbers = CATEGORIES[arguments.checked_choice("category", category, CATEGORIES)]
     if not isinstance(inputs, Mapping):
         raise ValueError(f"inputs must be a mapping of names to values; got {inputs!r}")
@@ -517,9 +516,9 @@ def _material(
 
 
 def _short(values: arrays.Numbers, channels: int, wo: ArrayLike) -> arrays.Numbers:
-    """Values as one row if they have a row for each `wo` but all rows are equal.
+    """Values reduced to one row if they have a row for each `wo` and all rows are equal.
 
-    Otherwise the integral F_ss of the film would be computed for every point of a picture.
+    This avoids computing the film's integral F_ss for every point of a picture.
     """
     if array_namespace(values) is not NUMPY:
         return values
@@ -528,9 +527,9 @@ def _short(values: arrays.Numbers, channels: int, wo: ArrayLike) -> arrays.Numbe
 
 
 def polynomial_curve(category: str, form: Form) -> Callable[..., Array]:
-    """F of a film as a polynomial in the cosine for each material.
+    """F of a film, approximated for each material by a polynomial in the cosine.
 
-    Cosines have the shape (nodes, nodes, ...), F (3, nodes, nodes, ...).
+    Cosines have the shape (nodes, nodes, ...), F has (3, nodes, nodes, ...).
     """
     bare_at = CATEGORIES[category][0].at
     curve = film_curve(category, replace(form, clamped=False))

@@ -1,26 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Light through microfacets: refraction, the BTDF, the share that passes, and the readings of Schlick.
+"""Transmission through microfacets: refraction, BTDFs, transmitted shares, and readings of the Schlick node.
 
-BTDFs are in 1/sr and without the cosine. Indices of refraction are those of the side of wi relative to those of wo: a
-view from inside a solid has the inverse of the node's index. alpha 0 is a delta function, which has no value; it
-counts as 0, and so does an index of 1, which bends nothing. Radiance is scaled by the square of the index as light
-enters another medium, so values are divided by it; times ior^2 they integrate over wi to the transmitted share. Shares that
-pass are the mean of (1 - F) G2 / G1(wo) over the normals as they are seen; the text has no compensation for what
-transmission loses between facets.
+BTDFs are in 1/sr and without the cosine. Indices of refraction are of wi's side relative to wo's: a view from inside
+a solid has the inverse of the node's index. With alpha 0, or index 1, which bends no light, the BTDF is a delta
+function and counts as 0. Radiance is scaled by the squared index as light enters another medium, so values are divided
+by it; multiplied by ior^2, they integrate over wi to the transmitted share. Transmitted shares are the mean of
+(1 - F) G2 / G1(wo) over the visible normals. The specification does not compensate for light that transmission loses
+between facets.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x; wo has
   z >= 0, wi has z <= 0.
 - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
 - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
-- `ior` (...): Index of refraction of the far side relative to that of wo, in [0, 1e50].
+- `ior` (...): Index of refraction of the far side relative to wo's side, in [0, 1e50].
 - `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at acos(1/7), and reflectance at
   grazing, per channel, in [0, 1]; a number is one channel.
 - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
-- `reading`: A key of READINGS: the replacement for the index that `generalized_schlick_bsdf` lacks, and
-  of 1 - F of a curve that may leave [0, 1].
-- `shadow`: Whether light is lost to other facets on the far side, as in the BTDF; otherwise the share is the mean of
-  1 - F over the normals that wo sees.
-- `inside`: Whether wo lies inside of the solid, where light is totally reflected beyond an angle.
+- `reading`: A key of READINGS, which defines the index that `generalized_schlick_bsdf` lacks, and 1 - F for a curve
+  that may leave [0, 1].
+- `shadow`: Whether facets on the far side shadow transmitted light, as in the BTDF. If not, the share is the mean of
+  1 - F over the visible normals.
+- `inside`: Whether wo is inside the solid, where total reflection occurs beyond the critical angle.
 
 Raises `ValueError`, which names the first bad element or lists the readings, if an argument leaves its range, the
 shapes do not broadcast or the reading is unknown.
@@ -49,18 +49,18 @@ from mxeon.models.microfacet import DIELECTRIC_CURVE, fresnel, ggx
 from mxeon.models.microfacet.slopes import refracting_nodes
 from mxeon.models.sampling import visible_normal
 
-LEAST_IOR = 1e-50  # all light is reflected below this index; its square is a divisor
+LEAST_IOR = 1e-50  # below this index all light is reflected; it avoids a division by 0
 
 
 @any_array
 def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Array:
-    """Refracted direction on the far side for light along `wo`, and vice versa.
+    """Refracted direction `wi` on the far side for light along `wo`, and vice versa.
 
         cos_t = sqrt(1 - (1 - cos_o^2) / ior^2),  wi = -wo / ior + (cos_o / ior - cos_t) normal
 
     - `normal` (..., 3): Normal of the surface or microfacet, unit vector to 1e-6, z >= 0.
 
-    Result (..., 3): (0, 0, 0) at total internal reflection, and where wo lies behind the normal. [MaterialX2026],
+    Result (..., 3): (0, 0, 0) for total internal reflection, and if wo is behind the normal. [MaterialX2026],
     Reflection and Transmission; [Walter2007], Eq. (40).
 
         >>> refraction_direction([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [1.5, 0.5]).round(6)
@@ -72,7 +72,7 @@ def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Ar
 
 
 def refracted(wo: Array, normal: Array, ior: Array) -> Array:
-    """`refraction_direction` on float64 arrays, components first."""
+    """`refraction_direction` for valid float64 arrays, components first."""
     xp = array_namespace(wo, normal, ior)
     bends = ior > max(LEAST_IOR, arrays.least_normal(wo))
     inverse = 1.0 / arrays.guarded(xp.maximum(ior, LEAST_IOR), bends, 1.0)
@@ -86,16 +86,16 @@ def refracted(wo: Array, normal: Array, ior: Array) -> Array:
 
 @dataclass(frozen=True)
 class Facet:
-    """The microfacet between directions on either side of it, on float64 arrays, components first."""
+    """The microfacet that refracts wo to wi; float64 arrays, components first."""
 
-    normal: Array  # unit vector on the side of wo; 0 if no facet joins the directions
-    cosine_o: Array  # |wo . wh|; 0 without a facet
-    cosine_i: Array  # |wi . wh|; 0 without a facet
-    jacobian: Array  # |d wh / d wi|, solid angle of normals per solid angle of wi
+    normal: Array  # unit vector on wo's side; 0 if no facet refracts wo to wi
+    cosine_o: Array  # |wo . wh|; 0 if there is no facet
+    cosine_i: Array  # |wi . wh|; 0 if there is no facet
+    jacobian: Array  # |d wh / d wi|: solid angle of normals per solid angle of wi
 
     @classmethod
     def of(cls, wo: Array, wi: Array, ior: Array) -> Facet:
-        """The facet between wo and wi: |wo + n wi|^2 (d wh / d wi) = n^2 |wi . wh|, [Walter2007], Eq. (17)."""
+        """Facet for wo and wi; |wo + n wi|^2 (d wh / d wi) = n^2 |wi . wh|: [Walter2007], Eq. (17)."""
         xp = array_namespace(wo, wi, ior)
         total = wo + ior * wi
         length = arrays.root(xp.sum(total * total, axis=0))
@@ -121,9 +121,9 @@ def dielectric_btdf(
 
         f = tint |wo . wh| |wi . wh| (1 - F) D G2 / (mu_o |mu_i| (wo . wh + ior wi . wh)^2)
 
-    `ior` 0 disables the Fresnel curve: F is 1, and nothing passes. The specification does not say that the two
-    directions lie on either side of the microfacet, [Walter2007] does; without that condition light passes between
-    directions that no facet joins. [MaterialX2026], Microfacet BTDF; dielectric_bsdf; [Walter2007], Eq. (21).
+    `ior` 0 disables the Fresnel curve: F is 1, and nothing is transmitted. As in [Walter2007], wo and wi must lie on
+    different sides of the microfacet. The specification omits this condition; without it, f would be positive for
+    directions that no facet connects. [MaterialX2026], Microfacet BTDF; dielectric_bsdf; [Walter2007], Eq. (21).
 
         >>> wo = [0.6, 0.0, 0.8]
         >>> wi = refraction_direction(wo, [0.0, 0.0, 1.0], 1.5)
@@ -155,7 +155,7 @@ def evaluate_btdf(
         F = at(facet.cosine_o, ior=ior, **material)
         above = array_namespace(wi).stack([wi[0], wi[1], -wi[2]])
         G2 = ggx.visibility_anisotropic(wo, above, roughness)
-        bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # an index of 0 passes nothing
+        bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # at index 0 nothing is transmitted
         index = arrays.guarded(array_namespace(ior).maximum(ior, LEAST_IOR), bends, 1.0)
         lobe = ggx.ndf(facet.normal, roughness) * G2 / index**2
         f = (1.0 - F) * (4.0 * lobe * facet.cosine_o * facet.jacobian)
@@ -172,10 +172,10 @@ def evaluate_btdf(
 CAP_NODES, CAP_BLOCK = (
     48,
     2**4,
-)  # nodes in height and in azimuth of the cap of normals; views per block
-MOST_SQUARED = 1.0 - 1e-15  # largest squared sine; almost nothing passes below an index of 3e-8
+)  # nodes in height and in azimuth on the cap of visible normals; views per block
+MOST_SQUARED = 1.0 - 1e-15  # largest 1 - ior^2; at indices below 3e-8 almost no light passes
 
-# Cosines wo . h and of wi, length of wi stretched by the roughness, and weights.
+# Arrays over nodes: cosine wo . h, cosine of wi, length of wi stretched by the roughness, weight.
 Nodes: TypeAlias = tuple[Array, Array, Array, Array]
 
 
@@ -191,11 +191,11 @@ def dielectric_transmittance_dir(
 
         T(wo) = ior^2 integral of dielectric_btdf |mu_i| over the hemisphere of wi
 
-    Result (..., C): in [0, 1] where alpha_x and alpha_y are equal. Accuracy: absolute error below
-    2e-4 for `ior` >= 1, and below 1e-8 for smaller indices, since the quadrature is split at the
-    critical angle, where F has an infinite slope. At alpha 0 it is that of a plane, tint (1 -
-    F(mu_o)). The albedo of the radiance, over all lights of one view, is this divided by ior^2.
-    [MaterialX2026], Directional Albedo and Energy Conservation; [Walter2007], Eq. (21).
+    Result (..., C): in [0, 1] if alpha_x and alpha_y are equal; tint (1 - F(mu_o)) at alpha 0.
+    Accuracy: absolute error below 2e-4 for `ior` >= 1. For smaller indices it is below 1e-8, because
+    the quadrature is split at the critical angle, where F has an infinite slope. The directional
+    albedo of the BTDF for radiance is T / ior^2. [MaterialX2026], Directional Albedo and Energy
+    Conservation; [Walter2007], Eq. (21).
 
         >>> dielectric_transmittance_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], [1.5, 0.75]).round(3)
         array([[0.939],
@@ -215,7 +215,7 @@ def evaluate_transmittance(
     numbers: dict[str, Numbers],
     shadow: bool,
 ) -> Array:
-    """Transmittance, shape (..., C), for checked inputs; `numbers` includes the index."""
+    """Transmitted share, shape (..., C), for checked inputs; `numbers` includes `ior`."""
     directions = {"wo": checked_directions("wo", wo)}
     pairs = {"roughness": checked_roughness(roughness)}
     arguments.checked_switch("shadow", shadow)
@@ -228,7 +228,7 @@ def evaluate_transmittance(
         spread = {k: v[new] if k in vectors else v for k, v in material.items()}
         passed = (1.0 - at(cosine, **spread)) * weight
         if shadow:
-            # G2 / G1(wo), whose limits at grazing are finite; 1 at alpha 0.
+            # Multiply by G2 / G1(wo), which is finite at grazing and 1 at alpha 0.
             mu_i, length = within(mu_i), ggx.stretched_length(wo, roughness)
             visibility = ggx.reciprocal(2.0 * (length * mu_i + length_i * wo[2]))
             passed = passed * (2.0 * mu_i * visibility * (wo[2] + length))
@@ -265,7 +265,7 @@ def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
 
 @lru_cache(maxsize=2)
 def _nodes(axes: int) -> tuple[Array, Array, Array]:
-    """Random numbers for the visible normals, and weights, on an axis before the view axes."""
+    """Random numbers that select visible normals, and weights, on an axis before the view axes."""
     x, w = np.polynomial.legendre.leggauss(CAP_NODES)
     around = (np.arange(CAP_NODES) + 0.5) / CAP_NODES
     height, turn = np.meshgrid(0.5 * (x + 1.0), around, indexing="ij")
@@ -274,23 +274,23 @@ def _nodes(axes: int) -> tuple[Array, Array, Array]:
     return height.reshape(shape), turn.reshape(shape), weight.reshape(shape)
 
 
-PASSED_NODES = 40  # nodes of the share passed from outside, in the cube root of mu / (mu + scale)
-LEAST_SCALE = 0.05  # smallest scale, otherwise alpha; near 0 all nodes would be at grazing
+PASSED_NODES = 40  # Chebyshev nodes of P in the cube root of mu / (mu + scale)
+LEAST_SCALE = 0.05  # scale is alpha or this, if larger: near 0 all nodes would be at grazing
 
 
 def reversed_transmittance(
     mu: Array, alpha: float, ior: float, reflected: Callable[[Array], Array]
 ) -> Array:
-    """Share of the light that passes from the denser side, (N, C), from the paths from outside reversed.
+    """Share transmitted from the denser side, (N, C), by reversing paths from outside.
 
         n^2 mu_i T(wi, wo) = P(wo) p(wo, wi) mu_o,  p(wo, wi) = G1(wo) D |wo . wh| / mu_o |d wh / d wi|
 
-    Then T(wi, wo) = P(wo) G1(wo) / G1(wi) p(wi, wo), and the share is the mean of P G1(wo) / G1(wi) over the facets
-    that wi sees. Its cosine-weighted average over wi times n^2 is that of P.
+    P is the share transmitted from outside. It follows that T(wi, wo) = P(wo) G1(wo) / G1(wi) p(wi, wo): the share is
+    the mean of P G1(wo) / G1(wi) over the facets visible from wi. n^2 times its cosine-weighted average is P's average.
 
-    - `mu` (N,): Cosines on the denser side.
-    - `ior`: Index of the far side relative to that of the view, below 1.
-    - `reflected`: Albedo from outside, 1 - P, of cosines (M,), (M, C).
+    - `mu` (N,): Cosines of views on the denser side.
+    - `ior`: Index of the far side relative to the view's side, below 1.
+    - `reflected`: Function from cosines outside, (M,), to the albedo 1 - P, (M, C).
     """
     s, scale = chebyshev_nodes(PASSED_NODES) ** 3, max(alpha, LEAST_SCALE)
     passed = 1.0 - reflected(s * scale / (1.0 + scale - s))
@@ -310,19 +310,19 @@ DARKEST, BRIGHTEST = 0.01, 0.99  # range of normal reflectances that MaterialX i
 
 @dataclass(frozen=True)
 class Reading:
-    """How transmission derives its index and curve from the node's inputs.
+    """A way to derive the index and curve of transmission from the node's inputs.
 
-    - `index`: "average": one index, of the mean of color0 over the channels; "channel": one of
-      each.
+    - `index`: "average": one index, from the mean of color0's channels; "channel": one index per
+      channel.
     """
 
     title: str
-    curve: Callable[..., Array]  # F of transmission, at the angle outside the solid
+    curve: Callable[..., Array]  # F for transmission, as a function of the cosine outside the solid
     index: str = "average"
     least: float = DARKEST  # smallest reflectance that is converted to an index
 
     def at(self, cosine: Array, ior: Array, **inputs: Array) -> Array:
-        """F for light at this cosine, from inside if the index is below 1: 1 at total reflection."""
+        """F at a cosine on the light's side: inside if the index is below 1; 1 if totally reflected."""
         xp = array_namespace(cosine, ior)
         squared = 1.0 - (1.0 - cosine) * (1.0 + cosine) / xp.maximum(ior, 1e-50) ** 2
         inside = ior < 1.0
@@ -331,7 +331,7 @@ class Reading:
 
 
 def _whole(cosine: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
-    """The node's F, clamped to [0, 1]."""
+    """The node's Fresnel curve F, clamped to [0, 1]."""
     return within(fresnel.schlick(cosine, color0, color82, color90, exponent))
 
 
@@ -362,11 +362,11 @@ READINGS = {
 
 @any_array
 def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
-    """Index of refraction of a reflectance along the normal: one for each channel (..., C), or one for all (..., 1).
+    """Index of refraction from the reflectance along the normal: per channel, (..., C), or one, (..., 1).
 
         ior = (1 + sqrt(r)) / (1 - sqrt(r)),  r in [0.01, 0.99]
 
-    The bounds are stock MaterialX's: the index lies in [1.22, 399], so that a reflectance of 0 still refracts.
+    The limits of r are from stock MaterialX. The index lies in [1.22, 399], so a reflectance of 0 still refracts.
     [MaterialX2026], Generalized Schlick Equations, Thin-Film Iridescence.
 
         >>> schlick_ior([0.04, 0.25]).round(4), schlick_ior([0.04, 0.25], "channel").round(4)
@@ -378,13 +378,13 @@ def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
 
 
 def index_of(reflectance: Array, least: float) -> Array:
-    """Index for a reflectance along the normal, which is clamped to [least, 0.99]."""
+    """Index of refraction from a reflectance along the normal, clamped to [least, 0.99]."""
     amplitude = arrays.root(within(reflectance, least, BRIGHTEST))
     return (1.0 + amplitude) / (1.0 - amplitude)
 
 
 def _mean(color: Array, axis: int) -> Array:
-    """Mean over the channels, as a single channel."""
+    """Mean of the channels, as a single channel."""
     mean: Array = array_namespace(color).mean(color, axis=axis, keepdims=True)
     return mean
 
@@ -403,8 +403,8 @@ def generalized_schlick_btdf(
 ) -> Array:
     """Transmission of `generalized_schlick_bsdf`, scatter modes T and RT.
 
-    F is taken at the angle on the outside, whichever side the light comes from, as in renderers.
-    This makes the value over the squared index reciprocal. Taken literally, the specification uses
+    F is evaluated at the angle outside, whichever side the light comes from, as in renderers. This
+    makes the value divided by the squared index reciprocal. Taken literally, the specification uses
     the angle of the incident light, which gives a different F for each direction of a path.
     [MaterialX2026], Microfacet BTDF; generalized_schlick_bsdf.
 
@@ -467,7 +467,7 @@ def _by_index(
     reading: str,
     inside: bool,
 ) -> Array:
-    """evaluate(F, index, colors, numbers) for all channels at once, or channel by channel with its own index."""
+    """Call `evaluate(F, index, colors, numbers)` once, or per channel if channels have own indices."""
     how = _reading(reading)
     arguments.checked_switch("inside", inside)
     colors = {name: arguments.checked_color(name, value) for name, value in given.items()}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Surface shaders as their own specifications define them: OpenPBR, Standard Surface, glTF and UsdPreviewSurface.
+"""Surface shaders by their own specifications: OpenPBR, Standard Surface, glTF and UsdPreviewSurface.
 
-Each module has the table `DEFAULTS` of its text, a function `parameters` that fills in defaults, and the functions
+Each module has the specification's `DEFAULTS`, a function `parameters` that fills in defaults, and the functions
 `surface` and `emission`, in float64:
 
     >>> import numpy as np
@@ -13,7 +13,7 @@ Each module has the table `DEFAULTS` of its text, a function `parameters` that f
     >>> open_pbr.surface(Light(view), p).round(4)  # response to a white environment
     array([[0.8084, 0.4251, 0.1376]])
 
-Parameters are not checked against their ranges. The models' own functions raise `ValueError` outside theirs.
+Parameters are not checked against their ranges, but functions of the models raise `ValueError` outside their own.
 """
 
 from mxeon.models.surfaces.lobes import Frame as Frame

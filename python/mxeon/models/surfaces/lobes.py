@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lobes of a surface under one light, which the specifications of surface shaders combine.
+"""Lobes under one light, from which the specifications of surface shaders are built.
 
-Parameters are a mapping by the specification's names, numbers as (N, 1) and colors as (N, 3), or with
-one row for all points. Directions are unit vectors in the frame of the geometric normal, (N, 3), above
+Parameters are a mapping by the specification's names; numbers are (N, 1) and colors (N, 3), or one
+row for all points. Directions are unit vectors in the frame of the geometric normal, (N, 3), above
 the horizon.
 """
 
@@ -26,9 +26,9 @@ Values: TypeAlias = Mapping[str, ArrayLike]
 
 
 def filled(defaults: Values, **inputs: ArrayLike) -> dict[str, Array]:
-    """Parameters as columns: the defaults, replaced by `inputs`.
+    """Parameters as columns: `inputs`, and defaults for the others.
 
-    An array has a row for each point; a number or a tuple holds for all points. Raises TypeError for an unknown name.
+    An array has a row for each point; a number or a tuple is valid for all points. Raises TypeError for unknown names.
     """
     if unknown := sorted(inputs.keys() - defaults.keys()):
         raise TypeError(f"parameters are {', '.join(defaults)}; got {', '.join(unknown)}")
@@ -49,7 +49,7 @@ class Frame:
     tangent: Array
 
     def local(self, wo: Array, directions: Array) -> Array:
-        """World directions in this frame, whose normal is turned toward the viewer, (N, 3)."""
+        """Directions (N, 3) in this frame, after its normal is flipped toward the viewer."""
         facing = np.where((wo * self.normal).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
         z = np.broadcast_to(facing * self.normal, wo.shape)
         x = self.tangent - (self.tangent * z).sum(axis=1, keepdims=True) * z
@@ -58,7 +58,7 @@ class Frame:
         return np.asarray((axes @ directions[:, :, np.newaxis])[:, :, 0])
 
     def turned(self, angle: Array) -> Frame:
-        """The frame with its tangent turned counterclockwise about the normal by an angle, (N, 1)."""
+        """The frame with its tangent rotated counterclockwise about the normal by `angle`, (N, 1)."""
         tangent = np.cos(angle) * self.tangent
         tangent = tangent + np.sin(angle) * np.cross(self.normal, self.tangent)
         return Frame(self.normal, tangent)
@@ -69,11 +69,11 @@ PLAIN = Frame(np.array([UP]), np.array([ALONG]))
 
 @dataclass(frozen=True, eq=False)
 class Light:
-    """What a surface sees: a distant light of irradiance 1 if perpendicular, or a white environment.
+    """Illumination: a distant light of irradiance 1 at normal incidence, or a white environment.
 
     - `wo`: directions to the viewer.
     - `wi`: directions to the light; None in an environment of radiance 1.
-    - `behind`: whether only refracted light of the environment counts, as in a rasterizer's lookup.
+    - `behind`: if true, only refracted light of the environment counts, as in rasterizers.
     """
 
     wo: Array
@@ -81,7 +81,7 @@ class Light:
     behind: bool = False
 
     def response(self, lobe: PbrNode, frame: Frame = PLAIN, **inputs: ArrayLike) -> Array:
-        """Light that a reflecting lobe sends to the viewer, (N, 3): f cos(theta_i), or E."""
+        """Light that a lobe reflects to the viewer, (N, 3): f cos(theta_i), or E in an environment."""
         if self.wi is None:
             return np.zeros(self.wo.shape) if self.behind else self.albedo(lobe, frame, **inputs)
         wo, wi = (frame.local(self.wo, each) for each in (self.wo, self.wi))
@@ -90,7 +90,7 @@ class Light:
         return np.where(lit, value * wi[:, 2:], 0.0)
 
     def albedo(self, lobe: PbrNode, frame: Frame = PLAIN, **inputs: ArrayLike) -> Array:
-        """Directional albedo E of a lobe at the viewer, (N, 3)."""
+        """Directional albedo E of a lobe for the viewer's direction, (N, 3)."""
         wo = frame.local(self.wo, self.wo)
         return np.broadcast_to(lobe.albedo(wo, self._columns(inputs)), wo.shape)
 
@@ -99,17 +99,17 @@ class Light:
         return self.response(lobe, frame, **inputs), self.albedo(lobe, frame, **inputs)
 
     def through(self, share: ArrayLike) -> Array:
-        """Light of the environment behind the surface that passes a share of it, (N, 3)."""
+        """Transmitted light, (N, 3): `share` of the environment behind the surface."""
         light = 1.0 if self.behind else 0.0
         return np.broadcast_to(light * np.asarray(share), self.wo.shape)
 
     def diffused(self, share: ArrayLike) -> Array:
-        """Light from the other side that a diffuse lobe scatters, (N, 3); none from a distant light above."""
+        """Light diffusely transmitted from the other side, (N, 3); 0 for a distant light above."""
         light = 1.0 if self.wi is None and not self.behind else 0.0
         return np.broadcast_to(light * np.asarray(share), self.wo.shape)
 
     def _columns(self, inputs: Mapping[str, ArrayLike]) -> dict[str, Array]:
-        """Inputs of a lobe for each point, numbers as (N,)."""
+        """Inputs of a lobe with a row for each point; numbers are (N,)."""
         count = len(self.wo)
         columns = {}
         for name, value in inputs.items():
@@ -127,13 +127,13 @@ ONES = np.ones((1, 3))
 
 
 def lerp(first: ArrayLike, second: ArrayLike, share: ArrayLike) -> Array:
-    """(1 - share) first + share second."""
+    """Linear interpolation (1 - share) first + share second."""
     share = np.asarray(share, np.float64)
     return np.asarray((1.0 - share) * np.asarray(first) + share * np.asarray(second))
 
 
 def f0_from_ior(eta: ArrayLike) -> Array:
-    """Reflectance along the normal of a dielectric of relative index `eta`."""
+    """Reflectance of a dielectric with relative index `eta` at normal incidence."""
     eta = np.asarray(eta, np.float64)
     return np.asarray(np.square((eta - 1.0) / (eta + 1.0)))
 

@@ -7,13 +7,13 @@
     f_dielectric-base = f_specular + (1 - E[f_specular]) lerp(lerp(f_diffuse, f_SSS, S), f_T, T)
 
 The coat absorbs along the refracted path, T_coat = coat_color^((1/mu_i + 1/mu_o) / 2). It darkens the base by
-Delta = (1 - K) / (1 - E_base K), K = lerp(F(mu_o), 1 - (1 - <F>) / eta^2, r_base), and widens its
-lobes to r'^4 = r^4 + 2 r_coat^4. On a plane, f_SSS is the Lambertian lobe with the specified color. A rasterizer's
-environment gives f_T the share `transmission_color` of the light, and is seen through the coat's color at normal
-incidence.
+Delta = (1 - K) / (1 - E_base K), K = lerp(F(mu_o), 1 - (1 - <F>) / eta^2, r_base), and widens the base's
+lobes to r'^4 = r^4 + 2 r_coat^4. On a plane, f_SSS is the Lambertian lobe with the specified color. In a
+rasterizer's environment, f_T is the share `transmission_color` of the light, and T_coat is the coat's color at
+normal incidence.
 
-Each name in `but` replaces a formula; `mxeon.conformance.specs.surface_texts` says which of these
-the text permits. [OpenPBR2026].
+Each name in `but` replaces a formula; `mxeon.conformance.specs.surface_texts` states which of these
+replacements the specification permits. [OpenPBR2026].
 """
 
 from __future__ import annotations
@@ -75,26 +75,26 @@ DEFAULTS: Values = {
     "geometry_opacity": 1.0,
     "geometry_thin_walled": False,
 }
-MOST_REFLECTIVE = 1.0 - 1e-5  # the index is infinite at 1; MaterialX's graph has the same limit
+MOST_REFLECTIVE = 1.0 - 1e-5  # the limit in MaterialX's graph; at 1 the index is infinite
 parameters = partial(lobes.filled, {**DEFAULTS, **FRAME})
 
 
 def alphas(roughness: Array, anisotropy: Array) -> Array:
-    """Roughness along the tangent and the bitangent, whose squares have the mean r^4 if at most 1, (N, 2)."""
+    """alpha along tangent and bitangent, (N, 2); unless clamped to 1, their mean square is r^4."""
     along = np.square(roughness) * np.sqrt(2.0 / (1.0 + np.square(1.0 - anisotropy)))
     both = np.concatenate([along, (1.0 - anisotropy) * along], axis=-1)
     return np.asarray(np.minimum(both, 1.0))
 
 
 def base_alphas(p: Parameters) -> Array:
-    """Roughness of the base below a rough coat: the slopes' variances add, the coat's twice."""
+    """alphas of the base below a rough coat: slope variances add up, the coat's counts twice."""
     r, coat = p["specular_roughness"], p["coat_roughness"]
     rough = np.minimum(1.0, r**4 + 2.0 * coat**4) ** 0.25
     return alphas(lerp(r, rough, p["coat_weight"]), p["specular_roughness_anisotropy"])
 
 
 def specular_eta(p: Parameters) -> Array:
-    """Relative index of the base before `specular_weight`, inverted where the coat's index is larger."""
+    """Relative index of the base without `specular_weight`; inverted if the coat's index is larger."""
     below = p["specular_ior"] / p["coat_ior"]
     return lerp(p["specular_ior"], np.maximum(below, 1.0 / below), p["coat_weight"])
 
@@ -108,7 +108,7 @@ def modulated_eta(p: Parameters) -> Array:
 
 
 def darkening(light: Light, p: Parameters, but: Collection[str]) -> Array:
-    """Factor of the base due to reflections inside the coat."""
+    """Factor Delta by which reflections inside the coat darken the base."""
     eta, color = p["coat_ior"], p["base_color"]
     if "the base's albedo without base_weight" not in but:
         color = p["base_weight"] * color
@@ -129,7 +129,7 @@ def darkening(light: Light, p: Parameters, but: Collection[str]) -> Array:
 
 
 def coat_transmittance(light: Light, p: Parameters, but: Collection[str]) -> Array:
-    """Share of the light that the coat's medium does not absorb, in and out."""
+    """T_coat, the share of the light that passes through the coat's medium, in and out."""
 
     def path(mu: Array) -> Array:
         return 1.0 / np.sqrt(1.0 - (1.0 - np.square(mu)) / np.square(p["coat_ior"]))
@@ -228,7 +228,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
 
 
 def emission(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
-    """Emitted radiance toward the viewer in nits, (N, 3): from below the coat and the fuzz."""
+    """Emitted radiance toward the viewer in nits, (N, 3), seen through coat and fuzz."""
     emitted = p["emission_luminance"] * p["emission_color"]
     C, F = p["coat_weight"], p["fuzz_weight"]
     T_coat = np.sqrt(p["coat_color"]) if "the transmittance of one way" in but else p["coat_color"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Autodesk Standard Surface 1.0.1, by the formulas of its section "Closures".
+"""Autodesk Standard Surface 1.0.1 by the formulas in its section "Closures".
 
     coat_layer   = coat f_coat + lerp(1, coat_color (1 - E[f_coat]), coat) (emission + f_mixture)
     f_mixture    = metalness f_metal + (1 - metalness) f_reflection
@@ -7,8 +7,8 @@
     f_transmission = transmission transmission_color f_btdf + (1 - transmission) f_sheen_layer
     f_sheen_layer = sheen sheen_color f_sheen + (1 - sheen E[f_sheen]) f_base
 
-The text leaves the map from roughness and anisotropy to two roughnesses open; MaterialX's node
-`roughness_anisotropy` is used. Each name in `but` replaces a formula. [StandardSurface2020].
+The specification does not say how roughness and anisotropy give two roughnesses; here MaterialX's
+node `roughness_anisotropy` does. Each name in `but` replaces a formula. [StandardSurface2020].
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ DEFAULTS: Values = {
     "base": 0.8,
     "base_color": WHITE,
     "diffuse_roughness": 0.0,
-    "metalness": 0.0,  # the text's table lacks it; its reference code has 0
+    "metalness": 0.0,  # default in the reference code; missing from the specification's table
     "specular": 1.0,
     "specular_color": WHITE,
     "specular_roughness": 0.2,
@@ -77,7 +77,7 @@ def roughened(p: Parameters, roughness: Array) -> Array:
 
 
 def alphas(roughness: Array, anisotropy: Array) -> Array:
-    """Roughness along the tangent and the bitangent, (N, 2)."""
+    """alpha along tangent and bitangent, (N, 2)."""
     rough, stretch = np.broadcast_arrays(roughness[:, 0], anisotropy[:, 0])
     return np.asarray(roughness_anisotropy(rough, stretch))
 

@@ -4,9 +4,10 @@
     f = clearcoat f_coat + (1 - clearcoat E[f_coat]) (f_specular + (1 - E[f_specular]) f_below)
     f_below = lerp(transparent, diffuse_weight f_diffuse, opacity)
 
-The specular workflow reflects `specularColor` along the normal and white at grazing; the metalness workflow interpolates both
-ends from ((1 - ior) / (1 + ior))^2 and white to `diffuseColor`. The text does not say how layers are combined; albedo
-scaling is used. Each name in `but` replaces a formula. [UsdPreviewSurface2019].
+The specular workflow reflects `specularColor` along the normal and white at grazing. The metalness workflow
+interpolates from ((1 - ior) / (1 + ior))^2 along the normal, and white at grazing, to `diffuseColor`. The specification
+does not say how to combine layers; here it is albedo scaling. Each name in `but` replaces a formula.
+[UsdPreviewSurface2019].
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     )
 
     def over(f0: Array, f90: Array) -> Array:
-        """A specular lobe over the rest."""
+        """A specular lobe layered over `f_below`."""
         inputs = lobes.schlick_inputs(f0, f90, alpha)
         f, E = light.both(lobes.SCHLICK, frame, **inputs)
         return f + (1.0 - E) * f_below
