@@ -25,8 +25,7 @@ def register() -> None:
     `sigma`, in radian. `varnished` and `dielectric_over_eon` (MaterialX's `layer`) add the numbers
     `alpha` and `ior` to the textures of `eon`. All are in `mitsuba.traverse` and differentiable.
     Sampling of `eon` is exact for the mean of the reflectance's channels; coated BSDFs also sample
-    visible facets; `fon` and `qon` sample the cosine. Like Mitsuba's `diffuse`, all reflect only on
-    the front.
+    visible facets; `fon` and `qon` sample the cosine. All reflect only on the front.
     """
     mi = mitsuba()
     for name, kind in PLUGINS.items():

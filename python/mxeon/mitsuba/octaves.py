@@ -35,7 +35,7 @@ def octave_cells(x: Array) -> tuple[Array, Array]:
 
 
 def octave_cubics(curve: Callable[[Array], Array]) -> Array:
-    """Coefficients of a cubic through four points per part of a curve, (parts, 4), constant first."""
+    """Coefficients of a cubic through four points, for each part, (parts, 4), constant first."""
     places = 1.0 + (np.arange(PARTS)[:, np.newaxis] + np.sort(chebyshev_nodes(4))) / PARTS
     octaves = 2.0 ** np.arange(-OCTAVES, 0)[:, np.newaxis, np.newaxis]
     powers = np.linalg.inv(np.vander((places - MIDDLE).ravel(), 4, True).reshape(-1, 4, 4))

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """All models by name, each as one `ShadingModel`.
 
-Inputs have MaterialX's names, order, units and defaults. The functions of `mxeon.models` may use
-others.
+Inputs have MaterialX's names, order, units and defaults; those of `mxeon.models` may differ.
 """
 
 from __future__ import annotations

@@ -171,10 +171,7 @@ def distribution(
     lobe: int,
     form: HairForm,
 ) -> Array:
-    """M_p N_p of a lobe: sections Cuticle Tilt, Longitudinal Scattering, Azimuthal Scattering.
-
-    `roughness` (2, ...) holds v and s.
-    """
+    """M_p N_p of a lobe; `roughness` (2, ...) is v, s: Cuticle Tilt, Longitudinal, Azimuthal Scattering."""
     xp, (low, high) = array_namespace(wo, wi, alpha), form.limits
     v, s = (xp.minimum(xp.maximum(each, low), high) for each in roughness)
     inclined = [(wi[0], arrays.hypot(wi[1], wi[2])), (view.sin_o, view.cos_o)]

@@ -163,7 +163,7 @@ class ShadingModel:
     row: PbrNode
     parameters: tuple[Parameter, ...]  # inputs: name, default, interval, unit
     sampler: ModelSampler | None = None
-    lights: str = "front"  # where scattered light may come from: "front", "back", "all sides"
+    lights: str = "front"  # origin of scattered light: "front", "back", "all sides"
 
     @property
     def name(self) -> str:

@@ -171,7 +171,7 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
     For roughness below 0.2099, E exceeds 1 at grazing, without a bound: it is about sqrt(1 / (2 pi roughness)) at
     mu = 0. Shaders clamp E to 1; the specification does not say. At roughness 0, BRDF and E are 0, even at mu = 0,
     where the limit is infinite. Accuracy for roughness >= 1e-4: relative error below 1e-11 at mu = 0, absolute error
-    below 1e-11 elsewhere. At mu = 1, E is 2^-p / (2 (p + 2)), p = 1 / (2 roughness). [MaterialX2026], Directional Albedo.
+    below 1e-11 elsewhere. E(1) is 2^-p / (2 (p + 2)), p = 1 / (2 roughness). [MaterialX2026], Directional Albedo.
 
         >>> round(float(conty_kulla_albedo_dir(1.0, 0.5)), 12)
         0.083333333333

@@ -101,7 +101,7 @@ def over_index(
 ) -> tuple[Interface, Interface]:
     """Film over a dielectric or a conductor: interfaces for the polarizations p and s.
 
-    With c = film_ior cos theta_t, n = ior + i extinction and W = n cos theta_3 = sqrt(n^2 - sin^2 theta), print has
+    Printed form, with c = film_ior cos theta_t, n = ior + i extinction, W = n cos theta_3 = sqrt(n^2 - sin^2 theta):
 
         r_s = (c - W) / (c + W),  r_p = (n^2 c - film_ior^2 W) / (n^2 c + film_ior^2 W)
 

@@ -49,7 +49,7 @@ from mxeon.models.microfacet import DIELECTRIC_CURVE, fresnel, ggx
 from mxeon.models.microfacet.slopes import refracting_nodes
 from mxeon.models.sampling import visible_normal
 
-LEAST_IOR = 1e-50  # below this index all light is reflected; it avoids a division by 0
+LEAST_IOR = 1e-50  # smallest index used as a divisor; smaller ones reflect all light
 
 
 @any_array
@@ -155,7 +155,7 @@ def evaluate_btdf(
         F = at(facet.cosine_o, ior=ior, **material)
         above = array_namespace(wi).stack([wi[0], wi[1], -wi[2]])
         G2 = ggx.visibility_anisotropic(wo, above, roughness)
-        bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # at index 0 nothing is transmitted
+        bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # index 0 transmits nothing
         index = arrays.guarded(array_namespace(ior).maximum(ior, LEAST_IOR), bends, 1.0)
         lobe = ggx.ndf(facet.normal, roughness) * G2 / index**2
         f = (1.0 - F) * (4.0 * lobe * facet.cosine_o * facet.jacobian)

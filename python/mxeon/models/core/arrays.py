@@ -229,7 +229,7 @@ def except_where(
     x: Array,
     inside: float,
 ) -> Array:
-    """formula(x), but `value` with derivative 0 where `edge(x)`; `inside` replaces x there."""
+    """formula(x); where `edge(x)` is true, `value` with derivative 0, and x replaced by `inside`."""
     xp = array_namespace(x)
     if xp is NUMPY:
         return formula(x)

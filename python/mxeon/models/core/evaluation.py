@@ -62,8 +62,7 @@ def evaluate_material(
 
     - `formula`: `formula(**given)` for one block. Vectors have their last axis first, (C, ...),
       numbers are (...), all float64; returns (channels, ...). Axes of length 1 are not expanded.
-    - `vectors`: Directions, colors and pairs, shapes (..., C).
-    - `numbers`: Arguments without components, shapes (...).
+    - `vectors`, `numbers`: Directions, colors, pairs, (..., C); arguments without components, (...).
     - `channels`: Number of channels of the result.
     - `size`: Elements per block; choose less for formulas with many temporaries per element.
 

@@ -141,10 +141,7 @@ def _series(roughness: tuple[float, float]) -> Array | None:
 
 
 def _place(wo: Array, roughness: Array) -> tuple[Array, Array]:
-    """Coordinates of a view in [0, 1]: cube root of mu (1 + a) / (mu + a), and a scaled azimuth.
-
-    a is the alpha at the azimuth of wo.
-    """
+    """Cube root of mu (1 + a) / (mu + a), with alpha a at wo's azimuth, and azimuth scaled to [0, 1]."""
     x, y = (np.square(wo[k]) * roughness[k] for k in (0, 1))
     sine = np.maximum(np.hypot(wo[0], wo[1]), 1e-150)
     alpha = np.hypot(wo[0] * roughness[0], wo[1] * roughness[1]) / sine
@@ -491,9 +488,7 @@ def lobe_albedo(
         return total
 
     given = {"wo": wo, "roughness": roughness, **vectors}
-    lead_shape(
-        given, numbers
-    )  # raises ValueError with the names of arguments that do not broadcast
+    lead_shape(given, numbers)  # raises ValueError that names arguments that do not broadcast
     # Compute multiple scattering per element, before the slope nodes add axes.
     channels = channel_count(vectors)
     unseen, average = np.zeros(()), np.zeros(1)

@@ -98,7 +98,7 @@ def _missing_by_fit(pair: Pair) -> Array:
 def _compensated(
     F: Callable[[Pair], Array], lost: Callable[[Pair], Array] = microfacet.missing
 ) -> Callable[[Pair], Array]:
-    """Compensation factor 1 + F `lost` with other functions for F_ss and (1 - E_ss) / E_ss."""
+    """Compensation factor that uses `F` as F_ss and `lost` as (1 - E_ss) / E_ss."""
     return lambda pair: 1.0 + F(pair) * lost(pair)
 
 
@@ -222,10 +222,7 @@ SINGLE = MicrofacetDefect(
 
 
 def burley_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
-    """Burley's albedo by the fit mx_burley_diffuse_dir_albedo, (N, 3).
-
-    The error is at most 0.0174, at mu 0 and roughness 1/2.
-    """
+    """Burley's albedo by mx_burley_diffuse_dir_albedo, (N, 3); error up to 0.0174 (mu 0, roughness 1/2)."""
     x, r = np.minimum(wo[:, 2], 1.0), inputs["roughness"]
     smooth = 0.97619 - 0.488095 * (1.0 - x) ** 5
     rough = 1.55754 + (-2.02221 + (2.56283 - 1.06244 * x) * x) * x

@@ -29,7 +29,7 @@ from mxeon.models.core.quadrature import unit_rule
 # Cosine at which Hoffman's correction is largest: [MaterialX2026], Generalized Schlick Equations.
 COS_THETA_MAX = 1.0 / 7.0
 
-# Smallest index n of which 1 / n is taken: F_ss is 1 to rounding there, and 1 / n^3 stays finite.
+# Smallest index n used in 1 / n: F_ss is 1 to rounding there, and 1 / n^3 stays finite.
 LEAST_IOR = 1e-50
 
 # Double-exponential rule: c = X^2 / (X^2 + 1/X^2), X = exp(pi/4 sinh(t)), |t| < 3.2.
@@ -95,7 +95,7 @@ def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
 
 
 def modulus(real: Array, imaginary: Array) -> Array:
-    """Absolute value of complex numbers; `hypot`, ten times slower, serves only if a square overflows."""
+    """Absolute value of complex numbers; uses `hypot`, ten times slower, if a square overflows."""
     if array_namespace(real, imaginary) is not arrays.NUMPY:
         return hypot(real, imaginary)
     with np.errstate(over="ignore"):

@@ -36,7 +36,7 @@ FARTHEST_R = 1e12
 
 @dataclass(frozen=True)
 class Slopes:
-    """Slopes visible from a direction, in polar coordinates r and omega; it has omega 0 itself.
+    """Slopes visible from a direction, in polar coordinates r and omega; its azimuth is omega = 0.
 
     - `mu_o`: Cosine of the direction.
     - `stretched`: (alpha_x x, alpha_y y) of the direction.

@@ -22,14 +22,11 @@ from mxeon.models.microfacet.fresnel import artistic_ior
 from mxeon.models.microfacet.ggx import glossiness_anisotropy, roughness_anisotropy, roughness_dual
 from mxeon.models.nodes.node import Inputs, Node, Variant
 
-LARGEST_REFLECTIVITY = 0.99  # at 1, the n of artistic_ior would be infinite
+LARGEST_REFLECTIVITY = 0.99  # limit that keeps the n of artistic_ior finite
 LEAST_HAIR = 1e-3  # smallest roughness and color of hair; at 0, lobes would have no width
-LARGEST_MELANIN = 1.0 - 1e-4  # at concentration 1, the absorption would be infinite
+LARGEST_MELANIN = 1.0 - 1e-4  # limit that keeps the absorption finite
 LEAST_PIGMENT = 1e-30  # smallest color of a pigment; the logarithm of 0 would be infinite
-TEMPERATURES = (
-    800.0,
-    25000.0,
-)  # range in kelvin: bodies glow from 800 on, common fits end at 25000
+TEMPERATURES = (800.0, 25000.0)  # kelvin: where bodies start to glow; where common fits end
 
 Outputs = Callable[[Inputs], dict[str, Array]]
 

@@ -6,8 +6,7 @@
 
 The specular workflow reflects `specularColor` along the normal and white at grazing. The metalness workflow
 interpolates from ((1 - ior) / (1 + ior))^2 along the normal, and white at grazing, to `diffuseColor`. The specification
-does not say how to combine layers; here it is albedo scaling. Each name in `but` replaces a formula.
-[UsdPreviewSurface2019].
+leaves layering open; here it is albedo scaling. Each name in `but` replaces a formula. [UsdPreviewSurface2019].
 """
 
 from __future__ import annotations
