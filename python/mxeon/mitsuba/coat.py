@@ -158,7 +158,7 @@ class CoatPlugin(EonPlugin):
         return self.dr.maximum(missing, 0.0), self.dr.clip(reflected, 0.0, 1.0)
 
     def _curves(self, mu: Mitsuba) -> list[Mitsuba]:
-        """Curves of the interface at mu, from the table or, in scalar variants, from polynomials."""
+        """Curves of the interface at mu: from the table; in scalar variants, from polynomials."""
         if not self._compiled:
             return list(self.coat.at(mu))
         cell, x = octave_cells(mu)

@@ -61,7 +61,7 @@ def of_cosines(formula: Callable[..., Array]) -> Callable[..., Array]:
 
 
 def checked_brdf(formula: Callable[..., Array], parameter: str) -> Callable[..., Array]:
-    """Turn a formula in mu_o, mu_i, s, rho and a parameter into a BRDF that checks its arguments."""
+    """Turn a formula in mu_o, mu_i, s, rho, parameter into a BRDF that checks its arguments."""
 
     @any_array
     def brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, value: ArrayLike) -> Array:
@@ -664,7 +664,7 @@ def fon_white_lobe_brdf_mu(
 
 
 def eon_floor_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
-    """EON evaluated for a reflectance of at least 0.1: f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1).
+    """EON for a reflectance of at least 0.1: f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1).
 
     Too bright where rho lies between 0 and 0.1, and correct elsewhere. Babylon.js 9.35.0 divides EON by a
     reflectance clamped to at least 0.1; it uses the paper's quartic for FON's albedo.

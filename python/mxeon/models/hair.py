@@ -89,7 +89,7 @@ def azimuthal(phi: Array, s: Array) -> Array:
 
 @dataclass(frozen=True)
 class HairForm:
-    """A form of the model; the defaults are the specification's, other values are shaders' variants.
+    """A form of the model: the specification's by default; other values are variants in shaders.
 
     - `tilts_light`: True to tilt the light's inclination by the cuticle angle, False the viewer's.
     - `effective`: True if F uses the effective index at gamma_o, False if it uses the index `ior`.
@@ -253,7 +253,7 @@ def chiang_hair_attenuation(
     - `ior` (...): Index of the fiber, in [0, 1e50].
     - `absorption_coefficient` (..., C): Per radius of the fiber, in [0, 1e50].
 
-    Result (..., C, 4): in [0, 1]. The four factors sum to 1 without absorption, and to less with it.
+    Result (..., C, 4): in [0, 1]. The factors sum to 1 without absorption, and to less with it.
     [MaterialX2026], Chiang Hair Model, Attenuation Factors.
 
         >>> chiang_hair_attenuation([0.0, 0.0, 1.0], 1.55, 0.0).round(6)

@@ -214,7 +214,7 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
 
 
 def blur_to(mu: Array, reach: Array, far: float) -> Array:
-    """`diffusion_blur` of valid arrays; `far` is the second exponential's length over the first's."""
+    """`diffusion_blur` of valid arrays; `far` is the ratio of the exponentials' lengths."""
     reach = reach[..., np.newaxis]
     (near, share), (rest, other) = _exponential(mu, reach), _exponential(mu, far * reach)
     total = 0.25 * share + 0.75 * other
@@ -222,7 +222,7 @@ def blur_to(mu: Array, reach: Array, far: float) -> Array:
 
 
 def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
-    """Blurred cosine for one exponential of the profile; share of that exponential on the sphere."""
+    """Blurred cosine for one exponential of the profile, and its share on the sphere."""
     xp, rule = array_namespace(mu, reach), unit_rule(BLUR_NODES, PANELS)
     u, weights = (like(each, reach) for each in rule)
     share = -xp.expm1(-2.0 / reach)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of arguments: ranges by name, broadcasting, directions, switches, choices; blocks of arrays.
+"""Argument checks: ranges by name, broadcasting, directions, switches, choices; array blocks.
 
 Directions point away from the surface, in a local frame whose normal is +z.
 """
@@ -248,7 +248,7 @@ def checked_color(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_rgb(name: str, value: ArrayLike) -> Numbers:
-    """Argument as red, green and blue inside the range for its name; a single channel is repeated."""
+    """Argument as red, green and blue inside the range for its name; one channel is repeated."""
     color = checked_color(name, value)
     if color.shape[-1] not in (1, 3):
         raise ValueError(f"{name} must have 1 or 3 channels; got shape {tuple(color.shape)}")
@@ -371,7 +371,7 @@ def on_horizon(w: Numbers, axis: int = 0) -> Numbers:
 
 
 def refuse_direction(name: str, w: Numbers) -> NoReturn:
-    """Raise ValueError for the first direction below the horizon, else for the first wrong length."""
+    """Raise ValueError for the first direction below the horizon or, if none, of wrong length."""
     z = w[..., 2]
     if (z < -ROUNDING).any():
         _refuse(f"{name} must not point below the horizon (z >= 0)", z, ~(z < -ROUNDING), "z = ")

@@ -114,7 +114,7 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def _converter(others: Sequence[object]) -> Callable[[object], object]:
-    """A function that converts any argument to the library, precision and device of these arrays."""
+    """A function that converts arguments to the library, precision and device of these arrays."""
     xp, arrays = _others_namespace(others), cast("Sequence[Array]", others)
     for each in arrays:
         try:
@@ -199,7 +199,7 @@ def at_most(x: Array, high: float) -> Array:
 
 
 def trimmed(x: Array, high: float) -> Array:
-    """x clamped to `high`, which only rounding can exceed; the clamp does not affect derivatives."""
+    """x clamped to `high`, which only rounding can exceed; derivatives ignore the clamp."""
     xp = array_namespace(x)
     return xp.minimum(x, high) if xp is NUMPY else x
 
@@ -229,7 +229,7 @@ def except_where(
     x: Array,
     inside: float,
 ) -> Array:
-    """formula(x); where `edge(x)` is true, `value` with derivative 0, and x replaced by `inside`."""
+    """formula(x), or `value` with derivative 0 where `edge(x)`; there `inside` replaces x."""
     xp = array_namespace(x)
     if xp is NUMPY:
         return formula(x)
@@ -288,6 +288,6 @@ def below_1(x: Array) -> float:
 
 
 def guarded(x: Array, valid: Numbers, inside: float) -> Array:
-    """x where `valid`, else the placeholder `inside`; the caller discards results of placeholders."""
+    """x where `valid`, else the placeholder `inside`; callers discard results of placeholders."""
     xp = array_namespace(x, valid)
     return x if xp is NUMPY else xp.where(valid, x, inside)

@@ -14,7 +14,7 @@ def chebyshev_nodes(count: int) -> Array:
 
 
 def chebyshev_coefficients(values: Array) -> Array:
-    """Coefficients of the interpolant; the first axis of `values` and of the result is the nodes'."""
+    """Coefficients of the interpolant, from values at the nodes on the first axis; same shape."""
     count = len(values)
     cosines = np.cos(np.outer(np.arange(count), _angles(count)))
     cosines[0] *= 0.5
@@ -42,7 +42,7 @@ def chebyshev_sum(coefficients: Array, x: Array) -> Array:
 
 
 def cell_cubics(coefficients: Array, cells: int) -> Array:
-    """Cubic coefficients, (4, cells), from four values of `chebyshev_sum` in each cell of [0, 1]."""
+    """Cubic coefficients, (4, cells), from four values of the series per cell of [0, 1]."""
     x = np.sort(chebyshev_nodes(4))
     values = chebyshev_sum(coefficients, (np.arange(cells)[:, np.newaxis] + x) / cells)
     return np.asarray(np.linalg.inv(np.vander(x, increasing=True)) @ values.T)

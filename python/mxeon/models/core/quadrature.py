@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Directional albedo of any model, by Gauss-Legendre rules between the kinks of Oren-Nayar models."""
+"""Directional albedo of any model, by Gauss-Legendre rules between kinks of Oren-Nayar models."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ class MicrofacetDefect:
 
 
 def averaged_channels(albedo: Array) -> Array:
-    """Albedo whose channels are replaced by their mean; some throughputs of colored nodes use it."""
+    """Albedo whose channels are replaced by their mean, used in throughputs of colored nodes."""
     mean = np.mean(albedo, axis=-1, keepdims=True)
     return np.broadcast_to(mean, albedo.shape).copy()
 
@@ -83,7 +83,7 @@ def _normal(pair: Pair) -> Array:
 
 
 def _averaged(pair: Pair) -> Array:
-    """Average Fresnel reflectance, computed only from the values along the normal and at grazing."""
+    """Average Fresnel reflectance, from the values along the normal and at grazing alone."""
     ends = (pair.curve.at(np.full_like(pair.cosine, mu), **pair.material) for mu in (1.0, 0.0))
     return schlick_average(*ends)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fresnel reflectances of pbrlib's microfacet nodes, their averages, and an index from artistic colors.
+"""Fresnel reflectances of pbrlib's microfacet nodes, averages, and an index from artistic colors.
 
 F_ss, the cosine-weighted average over the hemisphere, is 2 times the integral of F(mu) mu. Section names refer to
 [MaterialX2026].
@@ -171,7 +171,7 @@ def _smooth_avg(ior: Array, extinction: Array) -> Array:
 
 
 def _split_avg(ior: Array, extinction: Array) -> Array:
-    """F_ss by a double-exponential rule on either side of the critical angle, over all nodes at once.
+    """F_ss by a double-exponential rule on either side of the critical angle, all nodes at once.
 
     Nodes crowd at the ends of both parts, where the singularities are. The integral does not depend
     on the place of the split, so the critical angle is treated as constant.
@@ -360,7 +360,7 @@ def _colors(
 
 @any_array
 def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array, Array]:
-    """Complex index of refraction n + i k from the reflectance at normal incidence and an edge color.
+    """Complex index of refraction n + i k from a reflectance at normal incidence and an edge color.
 
         n = edge_color n_min + (1 - edge_color) n_max,
         n_min = (1 - r) / (1 + r),  n_max = (1 + sqrt(r)) / (1 - sqrt(r)),

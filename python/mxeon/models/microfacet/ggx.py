@@ -34,7 +34,7 @@ LEAST_DIVISOR = 1e-140
 
 
 def ndf(wh: Array, roughness: Array) -> Array:
-    """D of section GGX Normal Distribution Function, without a division by alpha; 0 if an alpha is 0.
+    """D of section GGX Normal Distribution Function, not divided by alpha; 0 if an alpha is 0.
 
     The printed form is D = 1 / (pi a B^2), a = alpha_x alpha_y, B = (h_x / alpha_x)^2 + (h_y / alpha_y)^2 + h_z^2.
     a^2 B = (alpha_y h_x)^2 + (alpha_x h_y)^2 + (a h_z)^2 has no quotient; D is a^3 / (pi (a^2 B)^2).
@@ -297,7 +297,7 @@ def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
     elevation = xp.maximum(arrays.arcsine(scaled), lowest)
     graded = 2.0 * xp.minimum(rough, xp.maximum(elevation, LEAST_SCALE))
     total = like(np.zeros(np.broadcast_shapes(tuple(mu.shape), tuple(rough.shape))), rough)
-    # Ranges of wi's elevation: wo to the normal, wo to half wo's elevation, and that to the horizon.
+    # Three ranges of wi's elevation e: e_o to the normal, e_o to e_o / 2, e_o / 2 to the horizon.
     for d, weight in _graded(graded, 0.5 * np.pi - elevation, refined * PANELS):
         total = total + xp.sum(weight * _density(elevation, elevation + d, -d, rough), axis=0)
     for d, weight in _graded(2.0 * rough, 0.5 * elevation, refined):

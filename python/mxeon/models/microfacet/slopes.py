@@ -230,7 +230,7 @@ def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Arra
 def _split_azimuths(
     slopes: Slopes, wo: Array, squared: Array, meeting: Array
 ) -> tuple[Array, Array]:
-    """Nodes and weights of omega, split at the azimuth `meeting` and where the critical cone ends."""
+    """Nodes and weights of omega, split at azimuth `meeting` and at the end of the critical cone."""
     xp = array_namespace(slopes.mu_o, wo, squared, meeting)
     last = _cone_azimuth(slopes.mu_o, squared - slopes.mu_o**2)
     inside, right = slopes.mu_o * slopes.mu_o >= squared, 0.5 * np.pi
@@ -277,7 +277,7 @@ def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:
 
 
 def _piece(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
-    """Nodes and weights of omega in [low, high], on one side of 0; denser at ends and right angles."""
+    """Nodes and weights of omega in [low, high], one side of 0; denser at ends and right angles."""
     xp, (t, weight) = array_namespace(scale, low, high), _crowded(1, SPLIT_PART, low)
     side = xp.where(low + high < 0.0, -1.0, 1.0)
     near, far = xp.minimum(side * low, side * high), xp.maximum(side * low, side * high)

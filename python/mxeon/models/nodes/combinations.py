@@ -139,7 +139,7 @@ def _hiding() -> tuple[Variant[Scattering], ...]:
 
 
 def _unscaled(combine: Combine) -> tuple[Variant[Scattering], ...]:
-    """The variant in which a scaled lobe keeps its unscaled throughput; the text leaves this open."""
+    """The variant in which a scaled lobe keeps its unscaled throughput, which the text permits."""
     title = "the throughput of the lobe before it is scaled"
     return (_variant(title, combine, layered=False, permitted=True),)
 

@@ -102,7 +102,7 @@ EMISSIONS = (
 def _combined(
     name: str, title: str, category: str, inputs: tuple[str, ...], color: Callable[[Inputs], Array]
 ) -> Emission:
-    """Row of a node that combines uniform emissions; the result is uniform, with a combined color."""
+    """Row of a node that combines uniform emissions into one with a combined color."""
     return Emission(
         name,
         title,

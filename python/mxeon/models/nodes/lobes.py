@@ -181,7 +181,7 @@ def _albedo(wo: Array, inputs: Inputs) -> Array:
 
 
 def _ggx(wo: Array, inputs: Inputs) -> Array:
-    """Albedo of a GGX lobe with mean roughness and tint, used by MaterialX's GLSL in environments."""
+    """Albedo of a GGX lobe with mean roughness and tint, as in MaterialX's GLSL environments."""
     alpha = np.mean([inputs[name] for name in hair.ROUGHNESSES], axis=0)
     alpha = np.sqrt(np.clip(alpha, 1e-6, 1.0).prod(axis=-1, keepdims=True))
     tint = np.mean([inputs[name] for name in TINTS], axis=0)
