@@ -122,8 +122,8 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
 
     Errors derived from the measured values, such as 2 % of each, bias the fit: values lowered by
     noise get more weight. The color comes out too small by about twice the square of the relative
-    error, which can be one standard deviation. The remedy is to fit twice, the second time with 2 %
-    of the first fit's `brdf` as errors.
+    error, which can be one standard deviation. The remedy is to fit twice, the second time with the
+    same fraction of the first fit's `brdf` as errors.
 
     The standard deviations are sqrt(diag((J^T J)^-1)). J is the derivative of the residuals, which
     are divided by the errors of the data. If the data have no errors, the result is multiplied by

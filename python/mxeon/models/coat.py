@@ -24,7 +24,7 @@ Raises `ValueError`, which names the first bad element, if an argument leaves it
 not broadcast.
 
 With constant alpha and ior, albedo and energy compensation depend only on the viewer's cosine. They
-are integrated at 40 cosines and interpolated.
+are integrated at Chebyshev nodes and interpolated.
 
 **A varnish** is EON below a rough dielectric interface that also acts on light on its way out. The
 interface reflects f_r and transmits T = 1 - E_r, which reaches EON along refracted directions w'. It
