@@ -10,7 +10,7 @@ from numpy.testing import assert_array_equal
 
 import mxeon
 from mxeon import models
-from mxeon.models import sampling
+from mxeon.models import hair, sampling
 from mxeon.models.catalog import MODELS
 from mxeon.models.nodes import PBR_NODES
 from mxeon.models.nodes.node import DEFAULTS
@@ -27,7 +27,10 @@ LIGHT = {"front": WI, "back": WI * [1.0, 1.0, -1.0], "all sides": WI}
 every_model = pytest.mark.parametrize("name", MODELS)
 SAMPLED = [name for name in MODELS if "sample" in MODELS[name].functions]
 # Values for tests of samplers, by input and number of channels; other inputs have their defaults.
-ROUGH = {("roughness", 0): 0.5, ("roughness", 2): (0.3, 0.6), ("alpha", 0): 0.3}
+ROUGH = {
+    **{("roughness", 0): 0.5, ("roughness", 2): (0.3, 0.6), ("alpha", 0): 0.3},
+    **{(name, 2): (0.4, 0.6) for name in hair.ROUGHNESSES},
+}
 OTHER_ALBEDO = ("burley_lambert",)  # wrong models whose albedo differs
 MASS = 2e-3  # noise of the share of samples below the horizon
 
