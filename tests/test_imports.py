@@ -2,6 +2,7 @@
 """Imports respect the layers of the package, and load no more packages than needed."""
 
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -58,3 +59,9 @@ def test_asking_for_help_loads_no_engine():
 def test_an_unknown_public_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match="module 'mxeon' has no attribute 'none'"):
         mxeon.none  # noqa: B018
+
+
+def test_no_module_is_imported_by_a_string_that_the_layers_cannot_see():
+    texts = {path.name: path.read_text() for path in (ROOT / "python" / "mxeon").rglob("*.py")}
+    named = {name for name, text in texts.items() if re.search(r'import_module\(f?"mxeon', text)}
+    assert named == {"mitsuba_worker.py"}  # Mitsuba's own Python may lack the plugins

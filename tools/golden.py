@@ -16,7 +16,8 @@ import sys
 from itertools import product
 from pathlib import Path
 
-from mxeon.hosts import host_names
+from mxeon import survey
+from mxeon.hosts import host_rows, register
 
 LIBRARIES = ("eonlib", "stock", "diffuse")
 PLACE = ("host", "library", "subject", "check")
@@ -78,7 +79,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
-    hosts = host_names()
+    register(*survey.ROWS)
+    hosts = [row.name for row in host_rows()]
     jobs = parser.add_subparsers(dest="job", required=True)
     write = jobs.add_parser("write")
     write.add_argument("file", type=Path)

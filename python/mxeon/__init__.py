@@ -44,6 +44,8 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'mxeon' has no attribute {name!r}")
+    if name == "check":
+        import_module("mxeon.hosts").register(*import_module("mxeon.survey").ROWS)
     return getattr(import_module(_HOMES[name]), name)
 
 

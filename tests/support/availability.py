@@ -12,9 +12,11 @@ from importlib import import_module
 
 import pytest
 
+from mxeon import survey
 from mxeon.errors import NotRun
-from mxeon.hosts import host_names
+from mxeon.hosts import host_names, register
 
+register(*survey.ROWS)
 VARIABLE, PACKAGES = "MXEON_REQUIRE", "packages"
 
 

@@ -17,9 +17,12 @@ import math
 import re
 from pathlib import Path
 
+from mxeon import survey
 from mxeon.conformance import words
 from mxeon.conformance.results import Difference
+from mxeon.hosts import register
 
+register(*survey.ROWS)
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 

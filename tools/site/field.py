@@ -23,7 +23,7 @@ from mxeon.conformance.results import NOT_RUN, Diagnosis
 from mxeon.conformance.results.records import make_converter
 from mxeon.conformance.specs.diffuse import DIFFUSE as DIFFUSE_SPECS
 from mxeon.conformance.specs.diffuse import SURFACE_LOBES
-from mxeon.hosts import ROWS
+from mxeon.hosts import host_rows
 from mxeon.io.files import write_text
 from mxeon.report.pieces import picture_uri
 from mxeon.shaders.library import examples_folder
@@ -87,7 +87,7 @@ def text() -> str:
     hosts = {each.host for each in entries}
     absent = " ".join(
         f"{row.name} was not measured{f': it needs {row.needs}' * bool(row.needs)}."
-        for row in ROWS
+        for row in host_rows()
         if row.name not in hosts
     )
     return "".join(render(entries, PAGES, absent, kept_frames))
@@ -159,7 +159,7 @@ def main(folder: str = "") -> None:
         keep(folder)
         return
     with TemporaryDirectory(prefix="mxeon-field-") as new:
-        for row in ROWS:
+        for row in host_rows():
             if not row.needs:
                 nodes = DIFFUSE if row.target else ("common",)
                 run = check(

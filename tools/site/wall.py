@@ -28,11 +28,12 @@ from mxeon.conformance.results import (
     Result,
 )
 from mxeon.conformance.results.known_issues import RENDERER_NODES
-from mxeon.hosts import host_row
+from mxeon.hosts import host_row, register
 from mxeon.io.images import read_image
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report.diff import read_results
 from mxeon.shaders.scene import BACK, FURNACE, SIDE
+from mxeon.survey import ROWS
 from tools.site import DOCS, brief
 
 PAGE = DOCS / "wall.md"
@@ -274,6 +275,7 @@ class Wall:
 
 
 if __name__ == "__main__":
+    register(*ROWS)
     wall = Wall([Path(each) for each in sys.argv[1:]])
     TILES.mkdir(parents=True, exist_ok=True)
     for old in TILES.glob("*.webp"):

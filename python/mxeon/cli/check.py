@@ -9,9 +9,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from mxeon import survey
 from mxeon.cli import arguments, output
 from mxeon.errors import MISUSE, PASSED, InputError
-from mxeon.hosts import host_names
+from mxeon.hosts import host_names, register
 from mxeon.jobs import WAIT, signals
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ T = TypeVar("T")
 
 
 def add_parser(commands: arguments.Commands) -> None:
+    register(*survey.ROWS)
     default, *others = host_names()
     command = arguments.add_command(
         commands,

@@ -14,7 +14,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from importlib import import_module
 from itertools import product
 from operator import attrgetter
 from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar, cast
@@ -32,7 +31,7 @@ from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
 from mxeon.conformance.specs.microfacets import FacetSpec
 from mxeon.conformance.tolerance import Term, Tolerance, given, relative, roundings, sum_in, sum_of
 from mxeon.errors import DocumentError, NotRun
-from mxeon.hosts import RENDERERS, front_lit_only, host_row
+from mxeon.hosts import front_lit_only, host_row
 from mxeon.hosts.base import Host, Query
 from mxeon.hosts.calls import LIT
 from mxeon.hosts.pairs import DISTANCE, JITTER, PIXEL, apart, visible
@@ -908,12 +907,8 @@ def ways_of(host: str) -> tuple[type[Backend], ...]:
 
 def own_nodes(host: str) -> tuple[Spec, ...]:
     """Judged nodes that a renderer defines, otherwise (); also imports its backends and checks."""
-    row = host_row(host)
-    if row not in RENDERERS:
-        return ()
-    import_module("mxeon.survey.checks")
-    module = import_module(f"mxeon.{row.engine.rpartition('.')[0]}")
-    return tuple(module.NODES)
+    nodes = host_row(host).nodes
+    return tuple(nodes(host)) if nodes else ()
 
 
 def backend_of(host: str, spec: Spec) -> type[Backend] | None:

@@ -4,17 +4,82 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from importlib import import_module
+from typing import Any
 
 from mxeon.errors import NotRun, Unsupported, assert_known
 from mxeon.hosts.base import Engine, Host
 from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
 
+def start(name: str) -> Engine:
+    """Start the engine of a row of `HOSTS`. Its module is imported only where it runs."""
+    match name:
+        case "gl":
+            from mxeon.hosts.gl import GlHost
+
+            return GlHost()
+        case "webgl":
+            from mxeon.hosts.webgl import WebGlHost
+
+            return WebGlHost()
+        case "vulkan":
+            from mxeon.hosts.vulkan import VulkanHost
+
+            return VulkanHost()
+        case "hlsl":
+            from mxeon.hosts.translated import HlslHost
+
+            return HlslHost()
+        case "dxc":
+            from mxeon.hosts.translated import DxcHost
+
+            return DxcHost()
+        case "naga":
+            from mxeon.hosts.translated import NagaHost
+
+            return NagaHost()
+        case "wgsl":
+            from mxeon.hosts.vulkan import WgslHost
+
+            return WgslHost()
+        case "slang":
+            from mxeon.hosts.slang import SlangHost
+
+            return SlangHost()
+        case "osl":
+            from mxeon.hosts.osl import OslHost
+
+            return OslHost()
+        case "materialx":
+            from mxeon.hosts.materialx import MaterialXHost
+
+            return MaterialXHost()
+        case "storm":
+            from mxeon.hosts.storm import StormHost
+
+            return StormHost()
+        case "shadewire":
+            from mxeon.hosts.shadewire import ShadewireHost
+
+            return ShadewireHost()
+        case "cycles":
+            from mxeon.hosts.cycles import CyclesHost
+
+            return CyclesHost()
+        case _:
+            from mxeon.hosts.testrender import TestrenderHost
+
+            return TestrenderHost()
+
+
 @dataclass(frozen=True)
 class Row:
-    """A host and the properties that determine its checks."""
+    """A host, and what is judged on it.
+
+    - `nodes`: Returns the specs of a renderer's own nodes, and registers its backends and checks.
+    """
 
     name: str
     target: str  # shading language; "" for a renderer that only has its own materials
@@ -24,34 +89,27 @@ class Row:
     surfaces: bool = False  # whether surface shaders are checked on it
     rounding: float = 0.0  # relative rounding of its pixels, in addition to float32's
     front_lit: tuple[str, ...] = ()  # models that it supports only for s >= 0
-    engine: str = ""  # module of mxeon and class; imported only where it runs
+    start: Callable[[str], Engine] = start
+    nodes: Callable[[str], Sequence[Any]] | None = None
 
 
 # Every pixel sums over the environment, and the picture is smooth: half the usual width is enough.
 WHITE_LIGHT = replace(FURNACE, size=128)
 
 HOSTS = (
-    Row(
-        "gl",
-        "glsl",
-        "pairs",
-        engine="hosts.gl.GlHost",
-        scenes=(SIDE, BACK, WHITE_LIGHT),
-        surfaces=True,
-    ),
-    Row("webgl", "essl", "pairs", engine="hosts.webgl.WebGlHost", scenes=(SIDE, BACK, WHITE_LIGHT)),
-    Row("vulkan", "vulkan", "pairs", engine="hosts.vulkan.VulkanHost"),
-    Row("hlsl", "vulkan", "pairs", engine="hosts.translated.HlslHost"),
-    Row("dxc", "vulkan", "pairs", engine="hosts.translated.DxcHost"),
-    Row("naga", "vulkan", "pairs", engine="hosts.translated.NagaHost"),
-    Row("wgsl", "wgsl", "pairs", engine="hosts.vulkan.WgslHost"),
-    Row("slang", "slang", "pairs", engine="hosts.slang.SlangHost"),
-    Row("osl", "osl", "closures", engine="hosts.osl.OslHost"),
+    Row("gl", "glsl", "pairs", scenes=(SIDE, BACK, WHITE_LIGHT), surfaces=True),
+    Row("webgl", "essl", "pairs", scenes=(SIDE, BACK, WHITE_LIGHT)),
+    Row("vulkan", "vulkan", "pairs"),
+    Row("hlsl", "vulkan", "pairs"),
+    Row("dxc", "vulkan", "pairs"),
+    Row("naga", "vulkan", "pairs"),
+    Row("wgsl", "wgsl", "pairs"),
+    Row("slang", "slang", "pairs"),
+    Row("osl", "osl", "closures"),
     Row(
         "materialx",
         "glsl",
         "drawn pictures",
-        engine="hosts.materialx.MaterialXHost",
         scenes=(SIDE, BACK, WHITE_LIGHT),
         surfaces=True,
     ),
@@ -60,57 +118,44 @@ HOSTS = (
         "storm",
         "glsl",
         "half pictures",
-        engine="hosts.storm.StormHost",
         scenes=(SIDE, BACK),
         surfaces=True,
         rounding=2.0**-10,  # half floats, truncated
     ),
-    Row(
-        "shadewire",
-        "glsl",
-        "functions",
-        engine="hosts.shadewire.ShadewireHost",
-        scenes=(SIDE, BACK),
-    ),
+    Row("shadewire", "glsl", "functions", scenes=(SIDE, BACK)),
     # Cycles samples an environment with noise. None of its closures is QON for s < 0.
-    Row(
-        "cycles",
-        "osl",
-        "pictures",
-        engine="hosts.cycles.CyclesHost",
-        scenes=(SIDE, BACK),
-        front_lit=("qon",),
-    ),
-    Row("testrender", "osl", "rendered", engine="hosts.testrender.TestrenderHost", surfaces=True),
+    Row("cycles", "osl", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
+    Row("testrender", "osl", "rendered", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
 )
 
 
-# Renderers with their own materials. `mxeon.survey` defines their classes, nodes and checks.
-RENDERERS = (
-    Row("cycles-native", "", "native", engine="survey.cycles_native.CyclesNativeHost"),
-    Row("three", "", "exact", engine="survey.browser.three.ThreeHost", scenes=(SIDE, BACK)),
-    Row("babylon", "", "exact", engine="survey.browser.babylon.BabylonHost", scenes=(SIDE, BACK)),
-    Row(
-        "three-gpu-pathtracer",
-        "",
-        "facet pairs",
-        engine="survey.browser.pathtracer.GpuPathTracerHost",
-    ),
-    Row("mitsuba", "", "facet pairs", engine="survey.polyhedron.mitsuba.MitsubaHost"),
-    Row("eevee", "", "coarse facets", engine="survey.polyhedron.eevee.EeveeHost"),
-)
-ROWS = HOSTS + RENDERERS
+_REGISTERED: dict[str, Row] = {}
+
+
+def register(*rows: Row) -> None:
+    """Add rows of renderers with their own materials, as `mxeon.survey` does."""
+    _REGISTERED.update({row.name: row for row in rows})
+
+
+def registered() -> tuple[Row, ...]:
+    """The added rows, which workers need, too."""
+    return tuple(_REGISTERED.values())
+
+
+def host_rows() -> tuple[Row, ...]:
+    """The table and the added rows."""
+    return HOSTS + registered()
 
 
 def host_names() -> tuple[str, ...]:
-    return tuple(row.name for row in ROWS)
+    return tuple(row.name for row in host_rows())
 
 
 def host_row(name: str, *others: Row) -> Row:
-    """The row of a host in ROWS or `others`; otherwise InputError lists the known ones."""
-    rows = {row.name: row for row in (*ROWS, *others)}
+    """The row of a host in `host_rows` or `others`; otherwise InputError lists the known ones."""
+    rows = {row.name: row for row in (*host_rows(), *others)}
     assert_known("host", name, rows)
     return rows[name]
 
@@ -154,6 +199,4 @@ def open_engine(name: str, *others: Row) -> Engine:
             f"pip install materialx=={TESTED[-1]}"
         )
     _OPENED.add(os.getpid())
-    module, _, kind = row.engine.rpartition(".")
-    engine: Engine = getattr(import_module(f"mxeon.{module}"), kind)()
-    return engine
+    return row.start(name)

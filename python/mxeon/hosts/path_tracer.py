@@ -87,4 +87,4 @@ class PathTracerHost(gl.GlHost):
         return ()
 
 
-ROW = Row("path", "glsl", engine="hosts.path_tracer.PathTracerHost")
+ROW = Row("path", "glsl", start=lambda name: PathTracerHost())

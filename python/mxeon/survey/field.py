@@ -24,11 +24,10 @@ from mxeon.conformance.results import (
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES
 from mxeon.errors import InputError
-from mxeon.hosts import RENDERERS
 from mxeon.io.files import AnyPath
 from mxeon.models import table as reference
 from mxeon.report.diff import Report, read_results
-from mxeon.survey import specs
+from mxeon.survey import ROWS, specs
 
 Place: TypeAlias = tuple[str, str, str]  # host, library and node
 
@@ -156,7 +155,7 @@ def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
 
 
 def _entries(report: Report, folder: Path) -> Iterator[Entry]:
-    own = (spec for row in RENDERERS for spec in backends.own_nodes(row.name))
+    own = (spec for row in ROWS for spec in backends.own_nodes(row.name))
     claims = {each.title: claim(each) for each in (*DIFFUSE, *SURFACE_LOBES, *own)}
     places: dict[Place, dict[str, Result]] = {}
     for result in report.results:

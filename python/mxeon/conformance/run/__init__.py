@@ -19,7 +19,7 @@ from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, one_result
 from mxeon.conformance.run.plan import Findings, Plan, Task, assert_known_names, make_plan
 from mxeon.errors import InputError, InterfaceError, NotRun
-from mxeon.hosts import HOSTS, host_names, host_row
+from mxeon.hosts import HOSTS, Row, host_names, host_row, register, registered
 from mxeon.io.files import AnyPath, Names, check_output, names_of, one_name
 from mxeon.jobs import TIMEOUT, WAIT, check_timeout, dask, pool
 from mxeon.shaders import generation, library_tree
@@ -187,8 +187,12 @@ def read_run(folder: AnyPath) -> Run:
     return to_run(*read_journal(folder))
 
 
-def work(policy: Policy, task: Task) -> Findings:
-    """Findings of a task; runs in workers. Raise NotRun if the host cannot be opened here."""
+def work(policy: Policy, rows: Sequence[Row], task: Task) -> Findings:
+    """Findings of a task; runs in workers, and registers the rows of renderers there.
+
+    Raise NotRun if the host cannot be opened here.
+    """
+    register(*rows)
     return _judge(policy).work(task)
 
 
@@ -261,11 +265,10 @@ def _executor(
 ) -> Iterator[Executor]:
     if scheduler is not None:
         with dask.connect(scheduler, wait) as remote:
-            yield partial(
-                dask.run, partial(work, policy), workers=remote, timeout=timeout, unavailable=NotRun
-            )
+            job = partial(work, policy, registered())
+            yield partial(dask.run, job, workers=remote, timeout=timeout, unavailable=NotRun)
     elif workers:
-        job = partial(work_or_not_run, partial(work, policy))
+        job = partial(work_or_not_run, partial(work, policy, registered()))
         yield partial(pool.run, job, workers=workers, timeout=timeout, group=_subject)
     else:
         yield partial(_run_inline, policy)
