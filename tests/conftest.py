@@ -57,8 +57,9 @@ def pytest_collection():
 
 
 def pytest_make_parametrize_id(val):
-    """Use a function's name as its id; pytest's default has an address that differs per worker."""
-    return getattr(val, "__name__", None)
+    """Use the name of a function, a row or a file as its id; pytest's default is its position."""
+    names = (getattr(val, each, None) for each in ("__name__", "name", "title", "page", "key"))
+    return next((name for name in names if isinstance(name, str)), None)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -20,7 +20,7 @@ SCHEMAS = {WORKFLOW: "vendor.github-workflows", ACTION: "vendor.github-actions"}
 TOOLS = Path(sys.executable).parent
 
 
-@pytest.mark.parametrize("path", SCHEMAS, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", SCHEMAS)
 def test_the_forge_can_read_the_file_and_the_linter_finds_nothing(path):
     package("check_jsonschema")
     for command in (
@@ -30,7 +30,7 @@ def test_the_forge_can_read_the_file_and_the_linter_finds_nothing(path):
         subprocess.run([TOOLS / command[0], *command[1:], path], check=True)
 
 
-@pytest.mark.parametrize("path", [ACTION, ROOT / "docs" / "ci.md"], ids=lambda path: path.name)
+@pytest.mark.parametrize("path", [ACTION, ROOT / "docs" / "ci.md"])
 def test_the_action_and_the_container_install_the_driver_that_run_installs(path):
     [driver] = re.findall(r'^driver="(.*)"', (ROOT / "run").read_text(), re.MULTILINE)
     assert f"--no-install-recommends {driver}\n" in path.read_text()

@@ -54,7 +54,7 @@ def judged(tmp_path_factory):
 
 
 @pytest.mark.whole
-@pytest.mark.parametrize("issue", ISSUES, ids=lambda each: each.page)
+@pytest.mark.parametrize("issue", ISSUES)
 def test_each_defect_is_still_there_and_as_its_page_says(judged, issue):
     results, place = judged(issue.host, EONLIB if issue.library == EONLIB else STOCK)
     written = MEASURED[issue.page]

@@ -31,7 +31,6 @@ def failing(monkeypatch, error):
         (MemoryError(), NOT_RUN, "memory must suffice for the work; there is no more"),
         (InputError("x" * 2000), MISUSE, "x" * 994 + " [...]"),
     ],
-    ids=lambda value: type(value).__name__,
 )
 def test_every_failure_says_what_is_wrong(monkeypatch, capsys, error, status, words):
     assert failing(monkeypatch, error) == status

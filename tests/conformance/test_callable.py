@@ -22,7 +22,7 @@ def failed(run):
     return {result.check for result in run.results if result.verdict != "passed"}
 
 
-@pytest.mark.parametrize("row", PARAMETRIC, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", PARAMETRIC)
 def test_each_model_passes_as_itself(row):
     assert failed(mxeon.check_brdf(row.brdf, row.name)) == set()
 

@@ -57,7 +57,7 @@ def distances(spec: SentenceSpec, values: np.ndarray) -> list[float]:
     return [float(np.abs(form.values(batch) - values).max()) for form in forms]
 
 
-@pytest.mark.parametrize("spec", SENTENCES, ids=lambda spec: spec.title)
+@pytest.mark.parametrize("spec", SENTENCES)
 def test_each_difference_from_a_text_has_a_name(spec):
     own, *others = distances(spec, shown(spec))
     if own <= SAME:
@@ -74,7 +74,7 @@ def repaired(tmp_path_factory: pytest.TempPathFactory) -> str:
     return str(apply(package, *graphs) / "libraries")
 
 
-@pytest.mark.parametrize("spec", SENTENCES, ids=lambda spec: spec.title)
+@pytest.mark.parametrize("spec", SENTENCES)
 def test_patched_graphs_do_what_their_texts_say(spec: SentenceSpec, repaired: str):
     """Patched graphs may also use a form that the specification permits."""
     [batch] = spec.batches(Counts())

@@ -33,7 +33,7 @@ def within(found, bounds):
     return found[0] <= bounds.direct and found[1] <= bounds.white
 
 
-@pytest.mark.parametrize("material", MATERIALS, ids=lambda each: each.key)
+@pytest.mark.parametrize("material", MATERIALS)
 def test_eonlib_is_within_the_bounds_and_stock_is_not(gl, material):
     shader = generate(material.text, "essl", lights=True)[0]
     reference = reference_of(shader)

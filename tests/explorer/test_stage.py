@@ -56,7 +56,7 @@ def error(measured, expected):
     return (np.abs(measured - expected) * cosine).max()
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", ROWS)
 def test_pixels_of_every_model_are_those_of_numpy(stage, sources, row):
     view(stage, side(sources[row.name]), side(sources["lambert"]))
     measured = picture(stage)

@@ -32,7 +32,7 @@ def parameter(row, value):
     return (value,) if row.parameter else ()
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", ROWS)
 def test_values_are_numpys(undrawn, pairs, row):
     wo, wi = pairs
     values = undrawn.evaluate(
@@ -47,7 +47,7 @@ def test_values_are_numpys(undrawn, pairs, row):
         assert (np.abs(np.array(rows) - expected) / scale).max() < VALUE
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", ROWS)
 def test_albedos_are_numpys(undrawn, row):
     dirs, avgs = undrawn.evaluate(
         """([name, mus, rhos, parameters]) => {

@@ -34,7 +34,7 @@ PACKAGES = {
 EON, FON, LOBE = "WebGPUPathTracer, eonBrdf", "WebGPUPathTracer, fonBrdf", pathtracer.LOBE
 
 of_each_issue = pytest.mark.parametrize(
-    "issue", [each for each in measure.CHECKED if each.host in PICTURED], ids=lambda each: each.page
+    "issue", [each for each in measure.CHECKED if each.host in PICTURED]
 )
 
 
@@ -85,9 +85,7 @@ def repaired(tmp_path_factory):
         host.close()
 
 
-@pytest.mark.parametrize(
-    "issue", [each for each in measure.CHECKED if each.host in PACKAGES], ids=lambda each: each.page
-)
+@pytest.mark.parametrize("issue", [each for each in measure.CHECKED if each.host in PACKAGES])
 def test_a_repair_makes_the_checks_pass_that_show_the_defect(repaired, issue):
     for check, title in issue.rows:
         result = repaired[issue.host](check, title, issue.host, RENDERER_NODES)

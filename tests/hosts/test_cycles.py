@@ -107,7 +107,7 @@ def test_tangents_point_eastward(host):
     assert (error * across * points.normal[points.mask][:, 2]).max() <= 2.0 * CYCLES_NORMAL
 
 
-@pytest.mark.parametrize("scene", LIGHTS, ids=lambda scene: scene.name)
+@pytest.mark.parametrize("scene", LIGHTS)
 @pytest.mark.parametrize("roughness", [0.0, 2e-5, 1.0])
 def test_eon_with_the_profile_is_exact(host, reference, scene, roughness):
     shader = osl(eon("1.0, 0.4, 0.0", roughness), profile="cycles")
@@ -170,7 +170,7 @@ def test_subsurface_keeps_its_color(host):
     assert np.abs(means[1] - 1.0).max() < CYCLES_SUBSURFACE
 
 
-@pytest.mark.parametrize("node", NODES, ids=lambda node: node.title)
+@pytest.mark.parametrize("node", NODES)
 def test_blender_has_one_power_of_the_color_too_many(judged, node):
     value, environment, black = (
         judged(key, node.title, "cycles-native", RENDERER_NODES)

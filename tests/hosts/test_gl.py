@@ -36,7 +36,7 @@ def picture(host, nodes, scene):
     return host.picture(shader(nodes), replace(scene, size=SIZE))
 
 
-@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
+@pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("name", LOBES)
 def test_every_pixel_is_the_models(gl, reference, name, scene):
     image, expected = (picture(host, LOBES[name], scene) for host in (gl, reference))

@@ -36,7 +36,7 @@ def test_mitsuba_has_the_models_that_it_documents(monkeypatch):
     assert all(each.control.caught for each in results)
 
 
-@pytest.mark.parametrize("scene", [FRONT, SIDE, BACK], ids=lambda each: each.name)
+@pytest.mark.parametrize("scene", [FRONT, SIDE, BACK])
 def test_pictures_are_linear_and_have_float_precision(host, scene):
     """One channel is very dark: 8-bit pixels or a tone curve would change it by far more."""
     scene = replace(scene, size=64)

@@ -48,7 +48,7 @@ def test_no_name_resolves_in_the_browser(hosts):
     assert hosts("webgl")._ask(script)["found"] == "nothing"
 
 
-@pytest.mark.parametrize("scene", (SIDE, BACK, FURNACE), ids=lambda scene: scene.name)
+@pytest.mark.parametrize("scene", (SIDE, BACK, FURNACE))
 @pytest.mark.parametrize("name", ("plaster", "brick"))
 def test_a_picture_is_the_references(hosts, reference, name, scene):
     host = hosts("webgl")

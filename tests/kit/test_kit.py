@@ -55,7 +55,7 @@ def exported(tmp_path_factory):
     return folder
 
 
-@pytest.mark.parametrize("material", MATERIALS, ids=lambda each: each.name)
+@pytest.mark.parametrize("material", MATERIALS)
 @pytest.mark.parametrize("target", ["glsl", "osl", "mdl"])
 def test_each_material_is_a_document_that_generates(exported, material, target):
     document = exported / "materials" / f"{material.name}.mtlx"

@@ -7,17 +7,16 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from mxeon.models.diffuse import (
-    eon_brdf,
-    fon_albedo_avg,
-    fon_albedo_dir_approx,
-    fon_brdf,
-    lambert_brdf,
-    oren_nayar_brdf,
+from mxeon.models import diffuse
+from mxeon.models.table import (
+    DIFFUSE_MODELS,
+    KNOWN_DEFECTS,
+    OTHERS,
+    PARAMETRIZATIONS,
+    diffuse_model,
 )
-from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS, diffuse_model
 from tests.support import oracle, tolerances
-from tests.support.cases import direction, named, pairs, parameter
+from tests.support.cases import direction, directions, pairs, parameter
 
 ALL = DIFFUSE_MODELS + KNOWN_DEFECTS
 
@@ -42,13 +41,13 @@ def assert_same(value, again, wo, wi):
 # --- limits ----------------------------------------------------------------------------------
 
 
-@named([row for row in DIFFUSE_MODELS if row.parameter])
+@pytest.mark.parametrize("row", [row for row in DIFFUSE_MODELS if row.parameter])
 def test_roughness_zero_is_lambert_to_the_last_bit(row):
     wo, wi, rho, _ = pairs(1000, seed=1)
     assert np.array_equal(row.brdf(wo, wi, rho, 0.0), rho / np.pi)
 
 
-@named(DIFFUSE_MODELS)
+@pytest.mark.parametrize("row", DIFFUSE_MODELS)
 def test_black_reflects_nothing(row):
     wo, wi, _, fraction = pairs(1000, seed=2)
     assert not row.brdf(wo, wi, 0.0, *parameter(row, fraction)).any()
@@ -57,14 +56,14 @@ def test_black_reflects_nothing(row):
 # --- invariants ------------------------------------------------------------------------------
 
 
-@named(ALL)
+@pytest.mark.parametrize("row", ALL)
 def test_model_is_reciprocal_to_the_last_bit(row):
     wo, wi, rho, fraction = pairs(1000, seed=3)
     arguments = (rho, *parameter(row, fraction))
     assert np.array_equal(row.brdf(wo, wi, *arguments), row.brdf(wi, wo, *arguments))
 
 
-@named(ALL)
+@pytest.mark.parametrize("row", ALL)
 def test_model_does_not_change_when_the_pair_turns_about_the_normal(row):
     wo, wi, rho, fraction = pairs(1000, seed=4)
     arguments = (rho, *parameter(row, fraction))
@@ -74,7 +73,7 @@ def test_model_does_not_change_when_the_pair_turns_about_the_normal(row):
     assert (np.pi * np.abs(change) / scale).max() <= tolerances.ROTATION
 
 
-@named([row for row in DIFFUSE_MODELS if row.name != "oren_nayar"])
+@pytest.mark.parametrize("row", [row for row in DIFFUSE_MODELS if row.name != "oren_nayar"])
 def test_model_is_never_negative(row):
     wo, wi, rho, fraction = pairs(20000, seed=5)
     assert row.brdf(wo, wi, rho, *parameter(row, fraction)).min() >= 0.0
@@ -83,24 +82,26 @@ def test_model_is_never_negative(row):
 def test_full_oren_nayar_falls_below_zero_as_far_as_documented():
     mu = np.geomspace(1e-9, 1.0, 100)
     wo, wi = direction(mu[:, np.newaxis], 0.0), direction(mu, np.pi)
-    lowest = np.pi * oren_nayar_brdf(wo, wi, 1e-6, np.pi / 2.0).min() / 1e-6
+    lowest = np.pi * diffuse.oren_nayar_brdf(wo, wi, 1e-6, np.pi / 2.0).min() / 1e-6
     assert -0.275 <= lowest <= -0.265
 
 
 def test_eon_is_a_mixture_of_its_own_white_and_of_white_fon():
     wo, wi, rho, r = pairs(1000, seed=6)
-    average = fon_albedo_avg(r)[:, np.newaxis]
+    average = diffuse.fon_albedo_avg(r)[:, np.newaxis]
     weight = rho**2 * average / (1.0 - rho * (1.0 - average))
-    mixture = (rho - weight) * fon_brdf(wo, wi, 1.0, r) + weight * eon_brdf(wo, wi, 1.0, r)
+    mixture = (rho - weight) * diffuse.fon_brdf(wo, wi, 1.0, r) + weight * diffuse.eon_brdf(
+        wo, wi, 1.0, r
+    )
     scale = largest_quotient(wo, wi)[:, np.newaxis]
-    error = np.pi * np.abs(mixture - eon_brdf(wo, wi, rho, r)) / scale
+    error = np.pi * np.abs(mixture - diffuse.eon_brdf(wo, wi, rho, r)) / scale
     assert error.max() <= 2.0 * tolerances.BRDF
 
 
 # --- agreement -------------------------------------------------------------------------------
 
 
-@named(DIFFUSE_MODELS)
+@pytest.mark.parametrize("row", DIFFUSE_MODELS)
 def test_model_agrees_with_fifty_digits_of_the_printed_equations(row):
     wo, wi, rho, fraction = pairs(300, seed=7)
     values = row.brdf(wo, wi, rho[:, :1], *parameter(row, fraction))[:, 0]
@@ -115,7 +116,7 @@ def test_model_agrees_with_fifty_digits_of_the_printed_equations(row):
 def test_quartic_agrees_with_eon_to_its_documented_error():
     wo, wi, rho, r = pairs(20000, seed=8)
     error = np.pi * np.abs(
-        diffuse_model("eon_approx").brdf(wo, wi, rho, r) - eon_brdf(wo, wi, rho, r)
+        diffuse_model("eon_approx").brdf(wo, wi, rho, r) - diffuse.eon_brdf(wo, wi, rho, r)
     )
     assert error.max() <= tolerances.QUARTIC_BRDF
 
@@ -124,11 +125,11 @@ def test_quartic_differs_from_the_listing_by_its_epsilon_alone():
     wo, wi, rho, r = pairs(20000, seed=15)
     r = 10.0 ** (-5.0 * r)
     mu_o, mu_i = wo[:, 2], wi[:, 2]
-    lost = [np.maximum(1e-7, 1.0 - fon_albedo_dir_approx(mu, r)) for mu in (mu_o, mu_i)]
-    average = fon_albedo_avg(r)
+    lost = [np.maximum(1e-7, 1.0 - diffuse.fon_albedo_dir_approx(mu, r)) for mu in (mu_o, mu_i)]
+    average = diffuse.fon_albedo_avg(r)
     lobe = (lost[0] * lost[1] / np.maximum(1e-7, 1.0 - average))[:, np.newaxis]
     average = average[:, np.newaxis]
-    listing = fon_brdf(wo, wi, rho, r)
+    listing = diffuse.fon_brdf(wo, wi, rho, r)
     listing += rho**2 * average / (1.0 - rho * (1.0 - average)) / np.pi * lobe
     error = np.pi * np.abs(listing - diffuse_model("eon_approx").brdf(wo, wi, rho, r))
     scale = largest_quotient(wo, wi)[:, np.newaxis]
@@ -140,7 +141,7 @@ def test_quartic_differs_from_the_listing_by_its_epsilon_alone():
 EDGE_COSINES = np.array([0.0, 5e-324, 1e-310, 3e-308, 1e-160, 1e-8, 0.5, 1.0 - 2.0**-53, 1.0])
 
 
-@named(ALL)
+@pytest.mark.parametrize("row", ALL)
 @pytest.mark.parametrize("fraction", [0.0, 1e-300, 1e-9, 1.0])
 def test_model_is_finite_on_the_whole_closed_domain(row, fraction):
     azimuths = np.array([0.0, 1e-9, np.pi / 2.0, np.pi])
@@ -150,7 +151,7 @@ def test_model_is_finite_on_the_whole_closed_domain(row, fraction):
     assert np.isfinite(row.brdf(wo, wi, rho, *parameter(row, fraction))).all()
 
 
-@named(ALL)
+@pytest.mark.parametrize("row", ALL)
 def test_directions_rounded_to_float32_are_valid_and_give_float64(row):
     wo, wi, rho, fraction = pairs(5000, seed=9)
     wo[:100] = direction(1.0 - np.geomspace(1e-16, 1e-6, 100), 0.3)
@@ -162,12 +163,14 @@ def test_directions_rounded_to_float32_are_valid_and_give_float64(row):
 
 def test_towards_the_light_at_grazing_the_quotient_without_a_limit_counts_as_zero():
     grazing = [1.0, 0.0, 0.0]
-    assert fon_brdf(grazing, grazing, 1.0, 1.0) == fon_brdf([0, 0, 1], [0, 0, 1], 1.0, 1.0)
+    assert diffuse.fon_brdf(grazing, grazing, 1.0, 1.0) == diffuse.fon_brdf(
+        [0, 0, 1], [0, 0, 1], 1.0, 1.0
+    )
 
 
 def test_away_from_the_light_at_grazing_full_oren_nayar_takes_its_limit():
     wo, wi = direction([0.0, 1e-7], 0.0), direction([0.0, 1e-7], np.pi)
-    at, near = oren_nayar_brdf(wo, wi, 1.0, 1.0)
+    at, near = diffuse.oren_nayar_brdf(wo, wi, 1.0, 1.0)
     assert at == pytest.approx(near, abs=1e-6)
 
 
@@ -182,7 +185,7 @@ SHAPES = (
 )
 
 
-@named(DIFFUSE_MODELS)
+@pytest.mark.parametrize("row", DIFFUSE_MODELS)
 @pytest.mark.parametrize("shapes", SHAPES, ids=str)
 def test_arguments_broadcast_as_if_each_pair_stood_alone(row, shapes):
     rng = np.random.default_rng(10)
@@ -198,7 +201,7 @@ def test_arguments_broadcast_as_if_each_pair_stood_alone(row, shapes):
         assert_same(value[index], alone, wo[index], wi[index])
 
 
-@named(ALL)
+@pytest.mark.parametrize("row", ALL)
 def test_many_pairs_have_the_values_of_their_parts(row):
     wo, wi, rho, fraction = pairs(6000, seed=11)
     wi, rest = wi[:7], parameter(row, fraction[:7])
@@ -208,7 +211,7 @@ def test_many_pairs_have_the_values_of_their_parts(row):
         assert_same(alone, whole[part], *np.broadcast_arrays(wo[part, np.newaxis], wi))
 
 
-@named([diffuse_model("oren_nayar"), diffuse_model("eon")])
+@pytest.mark.parametrize("row", [diffuse_model("oren_nayar"), diffuse_model("eon")])
 def test_memory_beyond_arguments_and_result_stays_below_64_mebibytes(row):
     wo, wi, rho, fraction = pairs(800_000, seed=14)
     tracemalloc.start()
@@ -221,18 +224,18 @@ def test_memory_beyond_arguments_and_result_stays_below_64_mebibytes(row):
 def test_arguments_are_left_as_they_were():
     wo, wi, rho, r = pairs(10, seed=12)
     copies = [argument.copy() for argument in (wo, wi, rho, r)]
-    eon_brdf(wo, wi, rho, r)
+    diffuse.eon_brdf(wo, wi, rho, r)
     assert all(np.array_equal(old, new) for old, new in zip(copies, (wo, wi, rho, r), strict=True))
 
 
 def test_a_number_is_one_channel():
-    assert lambert_brdf([0, 0, 1], [0, 0, 1], 1).shape == (1,)
+    assert diffuse.lambert_brdf([0, 0, 1], [0, 0, 1], 1).shape == (1,)
 
 
 # --- the table -------------------------------------------------------------------------------
 
 
-@named([row for row in DIFFUSE_MODELS if row.parameter])
+@pytest.mark.parametrize("row", [row for row in DIFFUSE_MODELS if row.parameter])
 def test_row_knows_the_interval_of_its_parameter(row):
     wo = [0, 0, 1]
     assert row.largest == row.interval[1]
@@ -247,14 +250,14 @@ def test_row_knows_the_interval_of_its_parameter(row):
 # --- known wrong variants --------------------------------------------------------------------
 
 
-@named([row for row in KNOWN_DEFECTS if row.parameter == "roughness"])
+@pytest.mark.parametrize("row", [row for row in KNOWN_DEFECTS if row.parameter == "roughness"])
 def test_defect_is_right_on_white_front_lit_pairs_and_wrong_elsewhere(row):
     wo, wi, rho, r = pairs(2000, seed=13)
     front = np.sum(wo * wi, axis=-1) > 1e-6
-    white = np.pi * np.abs(row.brdf(wo, wi, 1.0, r) - eon_brdf(wo, wi, 1.0, r))[front]
+    white = np.pi * np.abs(row.brdf(wo, wi, 1.0, r) - diffuse.eon_brdf(wo, wi, 1.0, r))[front]
     scale = largest_quotient(wo, wi)[front, np.newaxis]
     assert (white / scale).max() <= 2.0 * tolerances.BRDF
-    assert np.pi * np.abs(row.brdf(wo, wi, rho, r) - eon_brdf(wo, wi, rho, r)).max() > 1e-2
+    assert np.pi * np.abs(row.brdf(wo, wi, rho, r) - diffuse.eon_brdf(wo, wi, rho, r)).max() > 1e-2
 
 
 def test_eon_floor_is_the_quartic_but_for_dark_reflectances():
@@ -279,3 +282,28 @@ def test_fitted_albedo_of_qon_is_lambert_when_smooth_and_off_when_rough():
     mu = np.linspace(0.0, 1.0, 101)
     assert np.array_equal(fitted(mu, [0.3, 1.0], 0.0), np.tile([0.3, 1.0], (101, 1)))
     assert 0.05 < np.abs(fitted(mu, 1.0, 0.5 * np.pi) - exact(mu, 1.0, 0.5 * np.pi)).max() < 0.07
+
+
+# --- variants of renderers ---------------------------------------------------------------------
+
+WO, WI = directions((2, 1000), seed=1, least=0.05)
+# Parameters that correspond to a roughness of 0.6, by the end of the model's name.
+PARAMETERS = {"half_pi": 0.3 * np.pi, "slope": 0.6 / np.sqrt(2.0), "squared": 0.36}
+
+
+@pytest.mark.parametrize("row", PARAMETRIZATIONS)
+def test_a_model_of_another_roughness_is_the_model_of_its_parameter(row):
+    [(word, parameter)] = [pair for pair in PARAMETERS.items() if row.name.endswith(pair[0])]
+    base = diffuse_model(row.name.removesuffix(f"_{word}"))
+    rho = [0.8, 0.2]
+    np.testing.assert_allclose(row.brdf(WO, WI, rho, 0.6), base.brdf(WO, WI, rho, parameter))
+    assert bool(row.albedo_dir) == bool(base.albedo_dir)
+    if row.albedo_dir:
+        albedo = row.albedo_dir(WO[:, 2], rho, 0.6)
+        np.testing.assert_allclose(albedo, base.albedo_dir(WO[:, 2], rho, parameter))
+
+
+@pytest.mark.parametrize("row", OTHERS)
+def test_a_row_is_found_by_its_name_and_vanishes_on_black(row):
+    assert diffuse_model(row.name) is row
+    assert not row.brdf(WO, WI, 0.0, 0.5).any()

@@ -8,12 +8,15 @@ import pytest
 
 from mxeon.models.core.quadrature import hemisphere_nodes
 from mxeon.models.diffuse import burley_albedo_dir
+from mxeon.models.hair import DEFAULTS
 from mxeon.models.media import blackbody_xyz, kang_xyz
 from mxeon.models.microfacet import defects as materialx_fits
+from mxeon.models.microfacet import dielectric_albedo_dir
 from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.nodes import PBR_NODES, node
 from mxeon.models.nodes.combinations import COMBINATIONS, NESTED, ROUGHNESS
-from mxeon.models.nodes.microfacets import FILM_NODES, LOBES, MICROFACET_NODES
+from mxeon.models.nodes.lobes import HAIR_NODE, circle_blur
+from mxeon.models.nodes.microfacets import CONDUCTOR_LOBE, FILM_NODES, LOBES, MICROFACET_NODES
 from mxeon.models.nodes.renderers import BSDL_VARIANTS, CYCLES_VARIANTS
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from tests.support.cases import direction, directions
@@ -55,7 +58,7 @@ def test_an_unknown_node_lists_the_known_ones():
         node("hair")
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", ROWS)
 def test_values_integrate_to_the_albedo(row):
     wo, values = WO, inputs(row)
     expected = (row.integral or row.albedo)(wo, values)
@@ -72,16 +75,14 @@ def test_values_integrate_to_the_albedo(row):
         np.testing.assert_allclose(albedo, expected[number], rtol=0.0, atol=INTEGRAL)
 
 
-@pytest.mark.parametrize(
-    "row", [row for row in ROWS if not row.transmits], ids=lambda row: row.name
-)
+@pytest.mark.parametrize("row", [row for row in ROWS if not row.transmits])
 def test_a_node_is_reciprocal_if_its_row_says_so(row):
     wo, wi, values = WO, WO[::-1], inputs(row)
     forth, back = row.value(wo, wi, values), row.value(wi, wo, values)
     assert np.allclose(forth, back, rtol=1e-13) == row.reciprocal
 
 
-@pytest.mark.parametrize("row", ROWS + FILM_NODES, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", ROWS + FILM_NODES)
 def test_each_variant_has_another_value_or_another_albedo(row):
     """All variants of a node are tested, including those of OSL's BSDL and of Cycles."""
     wo, wi, values = WO, WO[::-1], inputs(row)
@@ -107,7 +108,7 @@ def test_color82_counts_as_1_in_renderers_of_osl(variants):
         assert not each.albedo or np.array_equal(*(each.albedo(wo, given) for given in both))
 
 
-@pytest.mark.parametrize("row", MICROFACET_NODES, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", MICROFACET_NODES)
 def test_a_mirror_reflects_all_light_and_prefiltered_what_the_fit_says(row):
     wo, values = WO, inputs(row)
     for name, value in row.mirror.items():
@@ -170,3 +171,32 @@ def test_a_fit_of_others_has_the_error_that_stands_beside_it(error, low, stated)
     grid = np.unique(np.concatenate([low + (1.0 - low) * np.linspace(0.0, 1.0, 31), [2.0 * low]]))
     largest = np.abs(error(*(each.ravel() for each in np.meshgrid(grid, grid)))).max()
     assert 0.9 * stated < largest <= stated
+
+
+def test_the_environment_of_materialx_hair_is_a_dielectric():
+    [ggx] = [each for each in HAIR_NODE.variants if each.title.startswith("a GGX lobe")]
+    rough = dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), (0.3, 0.3))
+    values = {name: np.tile(value, (COUNT, 1)) for name, value in {**DEFAULTS, **rough}.items()}
+    expected = dielectric_albedo_dir(WO, 1.0, (0.3, 0.3), 1.55)
+    found = ggx.albedo(WO, values | {"ior": np.full(COUNT, 1.55)})
+    assert found == pytest.approx(np.repeat(expected, 3, axis=-1), rel=1e-12)
+
+
+def test_a_film_of_no_thickness_leaves_the_albedo_of_a_metal():
+    [row] = [each for each in FILM_NODES if each.category == "conductor_bsdf"]
+    shapes = {"ior": (0.5, 3), "extinction": (3.0, 3), "roughness": (0.4, 2)}
+    metal = {name: np.full((2, size), value) for name, (value, size) in shapes.items()}
+    film = {"thinfilm_thickness": np.array([0.0, 400.0]), "thinfilm_ior": np.array([1.3, 1.3])}
+    wo, curve = WO[:2], 1e-4  # error of the polynomial for a film's curve, see `film_albedo_dir`
+    bare = CONDUCTOR_LOBE.albedo(wo, metal)
+    for albedo in (row.albedo, row.integral, CONDUCTOR_LOBE.albedo):
+        found = albedo(wo, metal | film)
+        assert found[0] == pytest.approx(bare[0], abs=curve)
+        assert np.abs(found[1] - bare[1]).max() > 10.0 * curve
+
+
+def test_the_circle_of_materialx_is_nearly_lambert_and_leaks_over_the_horizon():
+    mu = np.array([-0.5, -0.05, 0.3, 1.0])
+    narrow, wide = (circle_blur(mu, np.full((4, 1), radius))[:, 0] for radius in (0.1, 10.0))
+    assert narrow == pytest.approx(np.maximum(mu, 0.0), abs=0.05)
+    assert 0.01 < narrow[1] < wide[1]

@@ -1,21 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Samplers: limits, invariants, and agreement of samples with densities and models."""
+"""Samplers: limits, invariants, agreement of samples with densities and models, and weights.
+
+Seeds are fixed. With random seeds, a chi-square test of this file would fail by chance with the
+probability FALSE_ALARM, which the comparisons share evenly.
+"""
+
+from functools import partial
 
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
 
-from mxeon.models import sampling
-from mxeon.models.diffuse import C1, eon_albedo_dir, eon_brdf, fon_brdf
+from mxeon.models import diffuse, sampling
 from mxeon.models.sampling import cosine_pdf, eon_cltc_sample, eon_pdf, eon_sample
 from tests.support import tolerances
 from tests.support.cases import direction
-from tests.support.hemispheres import COSINES, every_sampler, every_scene, hemisphere, uniforms
-from tools.paper.samplers import BY_NAME, SAMPLERS
-
-
-@pytest.mark.parametrize(
-    "sampler", [row for row in SAMPLERS if row.name != "uniform"], ids=lambda sampler: sampler.name
+from tests.support.hemispheres import (
+    COSINES,
+    SCENES,
+    every_sampler,
+    every_scene,
+    hemisphere,
+    probability,
+    uniforms,
 )
+from tools.paper.samplers import BY_NAME, SAMPLERS, Sampler
+
+
+@pytest.mark.parametrize("sampler", [row for row in SAMPLERS if row.name != "uniform"])
 @pytest.mark.parametrize("mu", COSINES)
 def test_without_roughness_every_sampler_but_uniform_is_cosine(sampler, mu):
     wi, _ = hemisphere(mu, 8)
@@ -27,15 +39,15 @@ def test_without_roughness_every_sampler_but_uniform_is_cosine(sampler, mu):
 @every_scene
 def test_gray_eon_pdf_is_the_brdf_times_the_cosine_over_the_albedo(mu, roughness, rho):
     wi, _ = hemisphere(mu, 8)
-    value = eon_brdf(direction(mu), wi, rho, roughness)[..., 0] * wi[..., 2]
-    value = value / eon_albedo_dir(mu, rho, roughness)
+    value = diffuse.eon_brdf(direction(mu), wi, rho, roughness)[..., 0] * wi[..., 2]
+    value = value / diffuse.eon_albedo_dir(mu, rho, roughness)
     pdf = eon_pdf(direction(mu), wi, roughness, rho=rho)
     np.testing.assert_allclose(pdf, value, rtol=tolerances.PDF, atol=0.0)
 
 
 def test_eon_pdf_of_a_black_surface_is_that_of_fon():
     wi, weights = hemisphere(0.3)
-    value = fon_brdf(direction(0.3), wi, 1.0, 1.0)[..., 0] * wi[..., 2]
+    value = diffuse.fon_brdf(direction(0.3), wi, 1.0, 1.0)[..., 0] * wi[..., 2]
     pdf = eon_pdf(direction(0.3), wi, 1.0, rho=0.0)
     np.testing.assert_allclose(pdf, value / (value @ weights), rtol=tolerances.QUADRATURE)
 
@@ -57,7 +69,7 @@ def test_pdf_integrates_to_what_is_not_wasted(sampler, mu, roughness):
 def test_the_four_parts_of_eon_sum_to_one(mu, roughness):
     S = np.sqrt((1.0 - mu) * (1.0 + mu))
     total = sum(sampling.eon_integrals(np.float64(mu), S, 1.0, roughness))
-    assert abs(total / (1.0 + C1 * roughness) - 1.0) < tolerances.PDF
+    assert abs(total / (1.0 + diffuse.C1 * roughness) - 1.0) < tolerances.PDF
 
 
 def assert_same_density(pdf, again):
@@ -119,7 +131,7 @@ def test_eon_samples_always_have_a_weight():
     for mu in (*edges, 1.0):
         for roughness in (*edges, 1.0):
             wi, pdf = eon_sample(direction(mu), u, roughness)
-            weight = eon_brdf(direction(mu), wi, 1.0, roughness)[..., 0] * wi[..., 2] / pdf
+            weight = diffuse.eon_brdf(direction(mu), wi, 1.0, roughness)[..., 0] * wi[..., 2] / pdf
             np.testing.assert_allclose(weight, 1.0, rtol=tolerances.PDF)
 
 
@@ -154,3 +166,123 @@ def test_the_density_of_a_sample_is_the_pdf(sampler, mu, roughness):
     above = wi[..., 2] >= 0.0
     again = sampler.pdf(direction(mu), wi[above], roughness)
     assert_same_density(pdf[above], again)
+
+
+# --- distributions of samples ----------------------------------------------------------------
+
+FALSE_ALARM = 1e-4
+GRAY = [  # exact samplers for gray surfaces
+    Sampler(f"eon_{rho}", partial(eon_sample, rho=rho), partial(eon_pdf, rho=rho), f"rho = {rho}")
+    for rho in (0.0, 0.5)
+]
+ALL = [*SAMPLERS, *GRAY]
+LEVEL = FALSE_ALARM / (len(ALL) * len(SCENES))
+
+
+def chi_square(sampler, density, mu, roughness):
+    """p-value of a sampler's samples against a density; each comparison has its own seed."""
+    u = uniforms(100_000, [ALL.index(sampler), SCENES.index((mu, roughness))])
+    sample, pdf = (partial(each, roughness=roughness) for each in (sampler.sample, density.pdf))
+    return probability(sample, pdf, direction(mu), u)
+
+
+@pytest.mark.parametrize("sampler", ALL)
+@every_scene
+def test_samples_pass_the_chi_square_test_against_their_pdf(sampler, mu, roughness):
+    assert chi_square(sampler, sampler, mu, roughness) > LEVEL
+
+
+@pytest.mark.parametrize("mu", COSINES)
+def test_chi_square_tells_the_samplers_apart(mu):
+    for name in ("uniform", "cosine", "ltc"):
+        assert chi_square(BY_NAME[name], BY_NAME["eon"], mu, 1.0) < LEVEL
+
+
+# --- throughput weights ----------------------------------------------------------------------
+
+# At unit reflectance the weight is f cos(theta_i) / p, with mean 1. The exact sampler returns a
+# density p for which the weight is 1 everywhere. Below, p is the true density of its samples,
+# which differs slightly because of two fits, MULTIPLE and UPPER. The variable of the fits is a
+# root of a random number; these values are dense at both ends of [0, 1].
+ROOTS = np.sin(0.5 * np.pi * (np.arange(4001) + 0.5) / 4001) ** 2
+
+
+def weights_of(sampler, mu, roughness):
+    """Throughput weights at quadrature nodes with a positive pdf, and the nodes' probabilities."""
+    wi, solid_angle = hemisphere(mu, 32)
+    pdf = sampler.pdf(direction(mu), wi, roughness)
+    wi, pdf, solid_angle = wi[pdf > 0.0], pdf[pdf > 0.0], solid_angle[pdf > 0.0]
+    value = diffuse.eon_brdf(direction(mu), wi, 1.0, roughness)[..., 0] * wi[..., 2]
+    return value / pdf, pdf * solid_angle
+
+
+@pytest.mark.parametrize("name", ("uniform", "cosine", "eon_cltc", "eon"))
+@every_scene
+def test_mean_weight_is_one(name, mu, roughness):
+    weight, probability = weights_of(BY_NAME[name], mu, roughness)
+    assert abs(weight @ probability - 1.0) < tolerances.QUADRATURE
+
+
+def multiple_error():
+    """Cosines drawn by the fit MULTIPLE, and the relative error of their density."""
+    w = Polynomial([0.0, 1.0])
+    a, b, c, d, e, f = sampling.MULTIPLE
+    t = 1.0 - w**2
+    mu = t * (1.0 + w**2 * (a + w**2 * (b + w * (c + w * (d + w * (e + w**4 * f))))))
+    np.testing.assert_allclose(
+        sampling.eon_multiple_cosine(t(ROOTS)), mu(ROOTS), atol=tolerances.DIRECTION
+    )
+    # The random number is t^3, and its derivative with respect to w is -6 w t^2.
+    slope = mu.deriv()(ROOTS) / (-6.0 * ROOTS * t(ROOTS) ** 2)
+    return mu(ROOTS), 1.0 / (
+        slope * 2.0 * diffuse.fon_loss_mu(mu(ROOTS)) * mu(ROOTS) / (diffuse.C1 - diffuse.C2)
+    ) - 1.0
+
+
+def upper_error(mu_o):
+    """Cosines drawn by the fit UPPER, and the relative error of their density."""
+    y = Polynomial([0.0, 1.0])
+    fit = y * (1.0 + (1.0 - y) * Polynomial(sampling.UPPER))
+    S_o = np.sqrt((1.0 - mu_o) * (1.0 + mu_o))
+    K_o = sampling.eon_segment(mu_o, S_o)
+    y_o = sampling.eon_upper_limit(mu_o, S_o)
+    scale = (1.0 - mu_o) / fit(y_o)
+    mu = sampling.eon_upper_cosine(ROOTS, mu_o, y_o)
+    S = np.sqrt((1.0 - mu) * (1.0 + mu))
+    np.testing.assert_allclose(mu, 1.0 - scale * fit(y_o * ROOTS), atol=tolerances.DIRECTION)
+    # The random number is y^2.5, where y is in ROOTS.
+    slope = scale * y_o * fit.deriv()(y_o * ROOTS) / (2.5 * ROOTS**1.5)
+    return mu, K_o / (slope * S * (1.0 - mu)) - 1.0
+
+
+def excess(mu, roughness):
+    """Relative excess of exact samples' true density over `eon_pdf`, and probabilities."""
+    wi, solid_angle = hemisphere(mu, 32)
+    mu_i, s = wi[:, 2], direction(mu)[0] * wi[:, 0]
+    multiple = (
+        roughness * diffuse.fon_loss_mu(mu_i) * diffuse.fon_loss_mu(mu) / (diffuse.C1 - diffuse.C2)
+    )
+    upper = np.where(mu_i >= mu, roughness * np.maximum(s, 0.0) * (1.0 / mu_i - 1.0), 0.0)
+    total = 1.0 + roughness * diffuse.fon_quotient(mu, mu_i, s) + multiple
+    extra = multiple * np.interp(mu_i, *(row[::-1] for row in multiple_error()))
+    if mu < 1.0:
+        extra += upper * np.interp(mu_i, *(row[::-1] for row in upper_error(mu)))
+    return extra / total, eon_pdf(direction(mu), wi, roughness) * solid_angle
+
+
+def test_what_the_fits_leave_is_what_the_documentation_states():
+    errors = [multiple_error()[1]] + [upper_error(mu)[1] for mu in np.linspace(0.0, 0.99, 100)]
+    assert max(np.abs(error).max() for error in errors) < tolerances.EON_DENSITY
+
+
+@pytest.mark.parametrize("mu", (0.0, 1e-3, 0.03, 0.1, 0.3, 0.6, 0.9, 1.0))
+@pytest.mark.parametrize("roughness", (1e-9, 1e-6, 1e-3, 0.05, 0.25, 0.5, 0.75, 1.0))
+def test_exact_sampling_has_no_variance_and_is_never_worse_than_cosine(mu, roughness):
+    relative, probability = excess(mu, roughness)
+    weight = 1.0 / (1.0 + relative)
+    variance = (weight - 1.0) ** 2 @ probability
+    assert weight.max() <= 1.0 + tolerances.EON_WEIGHT
+    assert variance < tolerances.EON_VARIANCE
+    # At the smallest roughness, cosine sampling is nearly exact.
+    cosine, probability = weights_of(BY_NAME["cosine"], mu, roughness)
+    assert variance <= (cosine - 1.0) ** 2 @ probability

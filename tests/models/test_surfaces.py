@@ -82,7 +82,7 @@ def test_emission_below_a_full_coat_has_its_color(model):
 
 
 @pytest.mark.whole
-@pytest.mark.parametrize("spec", SENTENCES, ids=lambda spec: spec.title)
+@pytest.mark.parametrize("spec", SENTENCES)
 def test_named_forms_are_others_than_the_text(spec):
     [batch] = spec.batches(Counts())
     text, *forms, _ = (each.values(batch) for each in spec.value_candidates)

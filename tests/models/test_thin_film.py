@@ -226,7 +226,7 @@ def test_half_of_a_schlick_substrate_darkens_a_white_metal():
     assert stock.max() < 0.65
 
 
-@pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", FILM_NODES)
 def test_an_albedo_takes_a_polynomial_that_is_its_curve(row):
     values = {name: value[:1] for name, value in inputs(row).items() if name != "roughness"}
     columns = {name: value.T if value.ndim == 2 else value for name, value in values.items()}
@@ -235,7 +235,7 @@ def test_an_albedo_takes_a_polynomial_that_is_its_curve(row):
     np.testing.assert_allclose(smooth, film_curve(row.category).at(MU, **columns), atol=CURVE)
 
 
-@pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", FILM_NODES)
 def test_a_row_with_a_film_of_thickness_0_is_the_row_without(row):
     wo, wi, values = WO, WO[::-1], inputs(row)
     none = {**values, "thinfilm_thickness": np.zeros(len(wo))}
@@ -244,7 +244,7 @@ def test_a_row_with_a_film_of_thickness_0_is_the_row_without(row):
     assert not np.allclose(row.value(wo, wi, values), plain.value(wo, wi, values), rtol=1e-2)
 
 
-@pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", FILM_NODES)
 def test_equal_inputs_of_all_directions_have_the_values_of_each(row):
     wo, wi, values = WO, WO[::-1], inputs(row)
     same = {name: np.repeat(value[:1], len(wo), axis=0) for name, value in values.items()}

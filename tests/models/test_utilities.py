@@ -100,7 +100,7 @@ def test_the_pigments_are_those_of_materialx():
         assert np.exp(-np.array(pigment)) == pytest.approx(list(default), abs=1e-6)
 
 
-@pytest.mark.parametrize("row", UTILITIES, ids=lambda row: row.category)
+@pytest.mark.parametrize("row", UTILITIES)
 def test_a_row_takes_any_input_and_returns_each_output(row):
     assert row.name == row.category and row.category in row.title
     sizes = {"vector2": 2, "vector3": 3, "color3": 3}

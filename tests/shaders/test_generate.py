@@ -49,7 +49,7 @@ print(json.dumps([path for path in compiled if not compiled[path]]))
 """
 
 on_each_target = pytest.mark.parametrize("target", TARGETS)
-of_each_example = pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+of_each_example = pytest.mark.parametrize("path", EXAMPLES)
 
 
 def pixel(text, target, **options):
@@ -155,7 +155,7 @@ ON_VULKAN = [spec for spec in ALL if spec not in ABSENT]
 
 @pytest.mark.whole
 @pytest.mark.parametrize("language", ("hlsl", "msl"))
-@pytest.mark.parametrize("spec", ON_VULKAN, ids=lambda spec: spec.title)
+@pytest.mark.parametrize("spec", ON_VULKAN)
 def test_every_node_and_surface_translates_from_spirv(spec, language, tmp_path):
     source = pixel(spec.within("eonlib").document(), "vulkan", lights=True)
     assert translated(source, language, tmp_path) == ""
@@ -164,7 +164,7 @@ def test_every_node_and_surface_translates_from_spirv(spec, language, tmp_path):
         assert wrong != source and "not supported on HLSL" in translated(wrong, language, tmp_path)
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", SOURCES)
 def test_a_source_keeps_no_state(path):
     text = path.read_text(encoding="utf-8")
     if path.stem == "head":  # state is permitted here
@@ -272,7 +272,7 @@ def test_the_profile_warns_of_qon_alone(flag):
     assert [each.category for each in caught] == [ApproximationWarning] * (flag == "false")
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EXAMPLES)
 def test_every_example_is_valid_and_renders_all_its_materials_and_nothing_else(path):
     document = read_document(path).content
     assert document.validate() == (True, "")

@@ -2,12 +2,6 @@
 """Random directions for tests, with fixed seeds and grazing angles."""
 
 import numpy as np
-import pytest
-
-
-def named(rows):
-    """Decorator that runs a test for each row of a table."""
-    return pytest.mark.parametrize("row", rows, ids=lambda row: row.name)
 
 
 def direction(mu, phi=0.0):

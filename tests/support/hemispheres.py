@@ -13,7 +13,7 @@ COSINES = (1.0, 0.9, 0.5, 0.1, 1e-3, 0.0)
 ROUGHNESS = (0.0, 0.01, 0.4, 1.0)
 SCENES = [(mu, r) for mu in COSINES for r in ROUGHNESS]
 
-every_sampler = pytest.mark.parametrize("sampler", SAMPLERS, ids=lambda sampler: sampler.name)
+every_sampler = pytest.mark.parametrize("sampler", SAMPLERS)
 every_scene = pytest.mark.parametrize(("mu", "roughness"), SCENES)
 
 
