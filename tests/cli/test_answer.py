@@ -299,7 +299,10 @@ def test_an_answer_is_as_wide_as_the_terminal_and_in_color_unless_it_is_not_want
     monkeypatch.setenv("NO_COLOR", "" if color else "1")
     monkeypatch.setattr(sys, "stdout", SimpleNamespace(isatty=lambda: True))
     path = "/" + 50 * "x"
-    lines = [Line.of(f"failed: {12 * 'word '}{path}", FAILED), "  a row of a table", "plain"]
+    lines = [
+        Line(f"failed: {12 * 'word '}{path}", FAILED),
+        *map(Line, ("  a row of a table", "plain")),
+    ]
     shown = wrapped(lines)
     assert ("\033[31m" in shown, "\033[0m" in shown) == (color, color)
     plain = re.sub(r"\033\[\d+m", "", shown).splitlines()

@@ -94,16 +94,15 @@ def on_one_line(name: object) -> str:
 class Line(str):
     """A line of the summary, with the verdict that it states."""
 
-    verdict: Verdict | None = None
+    verdict: Verdict | None
 
-    @classmethod
-    def of(cls, text: str, verdict: Verdict | None) -> Line:
-        line = cls(text)
+    def __new__(cls, text: str, verdict: Verdict | None = None) -> Line:
+        line = super().__new__(cls, text)
         line.verdict = verdict
         return line
 
 
-def wrapped(lines: Iterable[str]) -> str:
+def wrapped(lines: Iterable[Line]) -> str:
     """Wrap lines to a terminal's width and color them by verdict; else keep whole lines."""
     if not sys.stdout.isatty():
         return printable("\n".join(lines))
@@ -121,7 +120,7 @@ def wrapped(lines: Iterable[str]) -> str:
                 break_on_hyphens=False,
             )
         )
-        color = COLORS.get(getattr(line, "verdict", None)) if colored else None
+        color = COLORS.get(line.verdict) if colored else None
         shown.append(f"\033[{color}m{text}\033[0m" if color else text)
     return "\n".join(shown)
 
