@@ -13,50 +13,29 @@ from mxeon.hosts.base import Engine
 from mxeon.shaders.scene import BACK, SIDE
 
 
-def start(name: str) -> Engine:
-    """Start the renderer of a row of `ROWS`. Its module is imported only where it runs."""
-    match name:
-        case "cycles-native":
-            from mxeon.survey.cycles_native import CyclesNativeHost
-
-            return CyclesNativeHost()
-        case "three":
-            from mxeon.survey.browser.three import ThreeHost
-
-            return ThreeHost()
-        case "babylon":
-            from mxeon.survey.browser.babylon import BabylonHost
-
-            return BabylonHost()
-        case "three-gpu-pathtracer":
-            from mxeon.survey.browser.pathtracer import GpuPathTracerHost
-
-            return GpuPathTracerHost()
-        case "mitsuba":
-            from mxeon.survey.polyhedron.mitsuba import MitsubaHost
-
-            return MitsubaHost()
-        case _:
-            from mxeon.survey.polyhedron.eevee import EeveeHost
-
-            return EeveeHost()
-
-
-def nodes(name: str) -> Sequence[Any]:
-    """Judged nodes of a renderer; also imports the checks and backends of renderers."""
+def renderers() -> dict[str, tuple[type[Engine], Sequence[Any]]]:
+    """Engine and judged nodes of each renderer; also imports their checks and backends."""
     from mxeon.survey import checks as checks
     from mxeon.survey import cycles_native
     from mxeon.survey.browser import babylon, pathtracer, three
     from mxeon.survey.polyhedron import eevee, mitsuba
 
     return {
-        "cycles-native": cycles_native.NODES,
-        "three": three.NODES,
-        "babylon": babylon.NODES,
-        "three-gpu-pathtracer": pathtracer.NODES,
-        "mitsuba": mitsuba.NODES,
-        "eevee": eevee.NODES,
-    }[name]
+        "cycles-native": (cycles_native.CyclesNativeHost, cycles_native.NODES),
+        "three": (three.ThreeHost, three.NODES),
+        "babylon": (babylon.BabylonHost, babylon.NODES),
+        "three-gpu-pathtracer": (pathtracer.GpuPathTracerHost, pathtracer.NODES),
+        "mitsuba": (mitsuba.MitsubaHost, mitsuba.NODES),
+        "eevee": (eevee.EeveeHost, eevee.NODES),
+    }
+
+
+def start(name: str) -> Engine:
+    return renderers()[name][0]()
+
+
+def nodes(name: str) -> Sequence[Any]:
+    return renderers()[name][1]
 
 
 _row = partial(Row, target="", start=start, nodes=nodes)
