@@ -28,8 +28,5 @@ def pairs(count, seed):
 
 
 def parameter(row, fraction):
-    """Arguments of a model's functions after rho, at a fraction of the parameter's interval."""
-    if row.parameter is None:
-        return ()
-    low, high = row.interval
-    return (low + (high - low) * fraction,)
+    """Arguments of a model's functions after rho, at a fraction of the parameter's largest value."""
+    return (row.largest * fraction,) if row.parameter else ()

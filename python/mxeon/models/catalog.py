@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import cast
+from typing import Any
 
 import numpy as np
 
@@ -50,7 +50,6 @@ def _sphere_pdf(wo: Array, wi: Array, inputs: Inputs) -> Array:
 
 
 def _mirrored(w: Array) -> Array:
-    """Directions mirrored to the other side of the surface."""
     return array_namespace(w).stack([w[..., 0], w[..., 1], -w[..., 2]], axis=-1)
 
 
@@ -71,7 +70,7 @@ GGX = ModelSampler(
 )
 SPHERE = ModelSampler(_sphere_sample, _sphere_pdf, side=None)
 FACETS = ("dielectric", "conductor", "schlick")
-# Samplers by the name of the model; models that are not listed use COSINE.
+# Samplers by the name of the model; COSINE for all other models.
 SAMPLERS = {
     "translucent": BACK,
     "hair": SPHERE,
@@ -80,18 +79,16 @@ SAMPLERS = {
     **dict.fromkeys((*FACETS, *(f"{name}_film" for name in FACETS)), GGX),
 }
 
-
 # Node category to the name of the model for its default mode.
 NODES_BY_CATEGORY = {
     "oren_nayar_diffuse_bsdf": "qon",
     "eon_diffuse_bsdf": "eon",
     "generalized_schlick": "schlick",
-    # The order is reversed so that the first mode of a node overwrites its later modes.
+    # In reversed order, the first mode of a node overwrites its later modes.
     **{row.category: row.name for row in reversed((*PBR_NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }
 
-
-# Other names of models; messages about an unknown name use them to suggest a model.
+# Other names of models, from which messages about an unknown name suggest a model.
 ALSO = {
     **dict.fromkeys(("dielectric", "conductor", "schlick"), "ggx"),
     "burley": "disney",
@@ -134,22 +131,17 @@ def _inputs(row: PbrNode) -> tuple[Parameter, ...]:
     return tuple(parameter(row.category, name) for name in row.inputs)
 
 
-def _of_node(row: PbrNode) -> ShadingModel:
-    lights = "back" if row.transmits else "front"
-    return ShadingModel(
-        row,
-        row.parameters or _inputs(row),
-        sampler=SAMPLERS.get(row.name, COSINE),
-        lights="all sides" if row is HAIR_NODE else lights,
-    )
+def _scattering_model(row: PbrNode) -> ShadingModel:
+    lights = "all sides" if row is HAIR_NODE else "back" if row.transmits else "front"
+    sampler = SAMPLERS.get(row.name, COSINE)
+    return ShadingModel(row, row.parameters or _inputs(row), sampler, lights)
 
 
-def _of_transmission(row: PbrNode) -> ShadingModel:
+def _transmission_model(row: PbrNode) -> ShadingModel:
     """The model of a node in scatter mode T or RT, with values for radiance."""
     passing, mode = TRANSMISSIONS[row.category], row.fixed["scatter_mode"]
     reflected = row.integral or row.albedo
 
-    # Light from above is reflected; light from below is transmitted.
     def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
         if mode == "T":
             return passing.value(wo, wi, inputs)
@@ -158,8 +150,8 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
         front = row.value(wo, xp.stack([x, y, xp.abs(z)], axis=1), inputs)
         return xp.where(z[:, np.newaxis] < 0.0, back, front)
 
-    # The integral of a BTDF for radiance is the transmitted share divided by the squared index.
     def albedo(wo: Array, inputs: Inputs) -> Array:
+        # The integral of a BTDF for radiance is the transmitted share divided by the squared index.
         ior = passing.ior(inputs)[:, np.newaxis]
         ior = array_namespace(ior).maximum(ior, LEAST_IOR)
         passed: Array = passing.passed(wo, inputs, True) / ior**2
@@ -173,7 +165,7 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
     )
 
 
-def _over_eon(name: str, title: str) -> ShadingModel:
+def _coated_model(name: str, title: str) -> ShadingModel:
     """The model of an interface over EON; `alpha` is the interface's roughness."""
     inputs = (
         parameter("oren_nayar_diffuse_bsdf", "color", "rho"),
@@ -190,54 +182,48 @@ def _over_eon(name: str, title: str) -> ShadingModel:
         title,
         "layer_bsdf",
         tuple(each.name for each in inputs),
-        lambda wo, wi, i: _per_coat(brdf, i, wo, wi)[0],
-        lambda wo, i: _per_coat(albedo_dir, i, cosine(wo[:, 2]))[0],
-        average=lambda i: _per_coat(albedo_avg, i)[0],
+        lambda wo, wi, i: _per_coat(brdf, i, wo, wi),
+        lambda wo, i: _per_coat(albedo_dir, i, cosine(wo[:, 2])),
+        average=lambda i: _per_coat(albedo_avg, i),
     )
     sampler = ModelSampler(
-        lambda wo, u, i: cast(tuple[Array, Array], _per_coat(sample, i, wo, u)),
-        lambda wo, wi, i: _per_coat(pdf, i, wo, wi)[0],
+        lambda wo, u, i: _per_coat(sample, i, wo, u),
+        lambda wo, wi, i: _per_coat(pdf, i, wo, wi),
         side=None,
     )
     return ShadingModel(row, inputs, sampler)
 
 
-def _per_coat(
-    function: Callable[..., Array | tuple[Array, Array]], inputs: Inputs, *vectors: Array
-) -> tuple[Array, ...]:
-    """Apply a function that accepts only one coat to rows with different coats.
+def _per_coat(function: Callable[..., Any], inputs: Inputs, *vectors: Array) -> Any:
+    """Apply a function of `mxeon.models.coat`, which accepts only one coat, to rows with different coats.
 
-    The last two inputs are `alpha` and `ior` of the coat. Returns one array or two.
+    The last two inputs are `alpha` and `ior` of the coat.
     """
-
-    def results(*given: Array) -> tuple[Array, ...]:
-        found = function(*given)
-        return found if isinstance(found, tuple) else (found,)
-
-    # One coat needs a single call. Other libraries' arrays also take it: functions reject several.
+    # One coat needs a single call. Arrays of other libraries take this way too: the function rejects several coats.
     *others, alpha, ior = (*vectors, *inputs.values())
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
-        numbers = (each[0] if len(each) == 1 else each for each in (alpha, ior))
-        return results(*others, *numbers)
+        return function(*others, *(each[0] if len(each) == 1 else each for each in (alpha, ior)))
     pairs = np.stack(np.broadcast_arrays(alpha, ior), axis=-1)
     coats, which = np.unique(pairs, axis=0, return_inverse=True)
     rows = [np.flatnonzero(which.reshape(-1) == k) for k in range(len(coats))]
-    parts = [
-        results(*(each if len(each) == 1 else each[own] for each in others), *coat)
-        for own, coat in zip(rows, coats, strict=True)
-    ]
     order = np.argsort(np.concatenate(rows))
-    return tuple(np.concatenate(each)[order] for each in zip(*parts, strict=True))
+    parts = [
+        function(*(each if len(each) == 1 else each[chosen] for each in others), *coat)
+        for chosen, coat in zip(rows, coats, strict=True)
+    ]
+    if isinstance(parts[0], tuple):
+        return tuple(np.concatenate(each)[order] for each in zip(*parts, strict=True))
+    return np.concatenate(parts)[order]
 
 
 MODELS = {
     each.name: each
     for each in (
-        *map(_of_node, table.DIFFUSE_MODELS + table.KNOWN_DEFECTS),
-        *map(_of_node, table.OTHERS + table.PARAMETRIZATIONS),
-        _over_eon("dielectric_over_eon", "dielectric over EON"),
-        _over_eon("varnished", "EON under a varnish"),
-        *map(_of_node, (*PBR_NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
-        *map(_of_transmission, TRANSMISSION_NODES),
+        *map(_scattering_model, table.DIFFUSE_MODELS + table.KNOWN_DEFECTS),
+        *map(_scattering_model, table.OTHERS + table.PARAMETRIZATIONS),
+        _coated_model("dielectric_over_eon", "dielectric over EON"),
+        _coated_model("varnished", "EON under a varnish"),
+        *map(_scattering_model, (*PBR_NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
+        *map(_transmission_model, TRANSMISSION_NODES),
     )
 }

@@ -298,7 +298,7 @@ def _checked(inputs: dict[str, ArrayLike], wo: arrays.Numbers) -> dict[str, Arra
         array = check(name, value)
         values[name] = array if arrays.library(array) else arrays.like(array, wo)
     for name in (*TINTS, "absorption_coefficient"):
-        values[name] = arguments.checked_vector(name, values[name])
+        values[name] = arguments.with_axis(values[name])
     return values
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -33,14 +34,9 @@ class Model(PbrNode):
     brdf_of: str
 
     @property
-    def interval(self) -> tuple[float, float] | None:
-        """Smallest and largest value of the parameter; None if the model has no parameter."""
-        return RANGES[self.parameter][:2] if self.parameter else None
-
-    @property
     def largest(self) -> float:
         """Largest value of the parameter; 1 if the model has no parameter."""
-        return self.interval[1] if self.interval else 1.0
+        return RANGES[self.parameter][1] if self.parameter else 1.0
 
 
 def row(
@@ -52,31 +48,25 @@ def row(
     albedo_avg: Callable[..., Array] | None = None,
     brdf_of: str = "",
 ) -> Model:
-    """Build the row of a model from its functions of reflectance and parameter."""
+    """The row of a model from functions of its reflectance and its parameter."""
     category = "burley_diffuse_bsdf" if name.startswith("burley") else "oren_nayar_diffuse_bsdf"
     parameters = [node_parameter(category, "color", "rho")]
     if parameter:
         parameters.append(node_parameter(category, "roughness", parameter))
+    closed = albedo_dir or partial(albedo_dir_quadrature, brdf)
 
-    def own(inputs: Inputs) -> list[Array]:
+    def arguments(inputs: Inputs) -> list[Array]:
         return [inputs[each.name] for each in parameters]
-
-    def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
-        return brdf(wo, wi, *own(inputs))
-
-    def albedo(wo: Array, inputs: Inputs) -> Array:
-        closed = albedo_dir or (lambda *given: albedo_dir_quadrature(brdf, *given))
-        return closed(cosine(wo[:, 2]), *own(inputs))
 
     return Model(
         name,
         title,
         category,
         ("color", "roughness"),
-        value,
-        albedo,
+        lambda wo, wi, inputs: brdf(wo, wi, *arguments(inputs)),
+        lambda wo, inputs: closed(cosine(wo[:, 2]), *arguments(inputs)),
         parameters=tuple(parameters),
-        average=albedo_avg and (lambda inputs: albedo_avg(*own(inputs))),
+        average=albedo_avg and (lambda inputs: albedo_avg(*arguments(inputs))),
         brdf=brdf,
         parameter=parameter,
         albedo_dir=albedo_dir,
@@ -97,16 +87,13 @@ def diffuse_model(name: str) -> Model:
 
 @any_array
 def _lambert_albedo_dir(mu: ArrayLike, rho: ArrayLike) -> Array:
-    """Directional albedo rho, in the shape to which mu and rho broadcast."""
     (color,), (cosine,) = checked_colors({"rho": rho}, mu=mu)
     return color + 0.0 * cosine
 
 
 @any_array
 def _lambert_albedo_avg(rho: ArrayLike) -> Array:
-    """Average albedo rho, shape (..., C)."""
-    (color,), _ = checked_colors({"rho": rho})
-    return color
+    return checked_colors({"rho": rho})[0][0]
 
 
 def _tinted(white: Callable[..., Array]) -> Callable[..., Array]:
@@ -122,9 +109,9 @@ def _tinted(white: Callable[..., Array]) -> Callable[..., Array]:
 
 
 def _named(name: str, title: str, parameter: str, at_white: bool = False) -> Model:
-    """Row of a model whose functions in `mxeon.models.diffuse` begin with `name`.
+    """The row of a model whose functions in `mxeon.models.diffuse` begin with `name`.
 
-    - `at_white`: True if its albedo functions are for unit reflectance.
+    - `at_white`: True if the albedo functions are for unit reflectance.
     """
     functions = (f"{name}_{each}" for each in ("brdf", "albedo_dir", "albedo_avg"))
     brdf, albedo_dir, albedo_avg = (getattr(diffuse, each, None) for each in functions)
@@ -192,19 +179,15 @@ def _reparametrized(
     name: str, title: str, base: str, parameter: Callable[[Numbers], Numbers]
 ) -> Model:
     """The model `base` with a roughness in [0, 1] that `parameter` converts to its own parameter."""
-    base_model = next(each for each in DIFFUSE_MODELS if each.name == base)
-    closed = base_model.albedo_dir
+    model = next(each for each in DIFFUSE_MODELS if each.name == base)
 
-    @any_array
-    def brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-        return base_model.brdf(wo, wi, rho, parameter(checked("roughness", roughness)))
+    def converted(function: Callable[..., Array]) -> Callable[..., Array]:
+        return any_array(
+            lambda *args: function(*args[:-1], parameter(checked("roughness", args[-1])))
+        )
 
-    @any_array
-    def albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-        assert closed is not None
-        return closed(mu, rho, parameter(checked("roughness", roughness)))
-
-    return row(name, title, brdf, "roughness", albedo_dir if closed else None)
+    albedo_dir = converted(model.albedo_dir) if model.albedo_dir else None
+    return row(name, title, converted(model.brdf), "roughness", albedo_dir)
 
 
 def _square(roughness: Numbers) -> Numbers:

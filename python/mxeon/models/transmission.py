@@ -130,7 +130,7 @@ def dielectric_btdf(
         >>> dielectric_btdf(wo, wi, 1.0, [0.3, 0.3], 1.5).round(6)
         array([10.066984])
     """
-    vectors = {"tint": arguments.checked_vector("tint", tint)}
+    vectors = arguments.checked_vectors({"tint": tint})
     return evaluate_btdf(DIELECTRIC_CURVE.at, wo, wi, roughness, ior, vectors, {})
 
 
@@ -201,7 +201,7 @@ def dielectric_transmittance_dir(
         array([[0.939],
                [0.732]])
     """
-    vectors = {"tint": arguments.checked_vector("tint", tint)}
+    vectors = arguments.checked_vectors({"tint": tint})
     numbers = {"ior": checked("ior", ior)}
 
     return evaluate_transmittance(DIELECTRIC_CURVE.at, wo, roughness, vectors, numbers, shadow)

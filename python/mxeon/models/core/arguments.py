@@ -30,9 +30,12 @@ _POSITIVE = (0.0, 1e50, "[0, 1e50]")  # fourth powers fit into float64
 _WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # exponents and squares fit into float64
 _LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # products and quotients fit into float64
 
-
-# Ranges whose ends a value may exceed by one rounding of float32.
+# Closed ranges; a value beyond an end by less than ROUNDING, one rounding of float32, is clamped to that end.
 CLOSED = ("[0, 1]", "[0.01, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]")
+ROUNDING = 2.0**-23
+# Tolerance of a direction's squared length; directions rounded to float32 pass.
+UNIT_TOLERANCE = 1e-6
+BLOCK = 2**15  # pairs per block: an array of 256 KiB stays in the L2 cache
 
 
 class Ranges(dict[str, tuple[float, float, str]]):
@@ -138,13 +141,9 @@ def channel_count(colors: Mapping[str, Numbers]) -> int:
     return largest
 
 
-# Pairs per block: an array takes 256 KiB and stays in the L2 cache.
-BLOCK = 2**15
-
-
 def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, ...]]:
     """Indices that tile an array, each selecting at most about `size` elements."""
-    # Find the inner axes that fit into a block as a whole.
+    # Axes from `axis` on fit into a block as a whole.
     axis, inner = len(shape), 1
     while axis > 0 and inner * shape[axis - 1] <= size:
         axis -= 1
@@ -184,26 +183,14 @@ def with_axes(array: Numbers, ndim: int) -> Numbers:
     return narrow.reshape((1,) * (ndim - array.ndim) + narrow.shape)
 
 
-# Tolerance of a direction's squared length; directions rounded to float32 pass.
-UNIT_TOLERANCE = 1e-6
-
-# One rounding of float32; arguments that exceed a range in CLOSED by less are clamped.
-ROUNDING = 2.0**-23
-
-
 def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
-    """Argument as an array of real numbers inside the range for its name in `RANGES`.
-
-    `quantity` is the key in `RANGES`, if it is not the name. A value beyond an end of a range in
-    `CLOSED` by less than `ROUNDING` is clamped to that end.
-    """
+    """Argument as an array of real numbers inside its range: RANGES[quantity or name]."""
 
     def in_range(array: Numbers) -> Numbers:
         low, high, interval = RANGES[quantity or name]
         # Compare in float64: half floats would round the ends of the range to infinity.
         if not array.size or (float(array.min()) >= low and float(array.max()) <= high):
             return array
-        # Clamp values that exceed an end by one rounding.
         beyond = ROUNDING if interval in CLOSED else 0.0
         wide = np.asarray(array, np.float64)
         valid = (wide >= low - beyond) & (wide <= high + beyond)
@@ -234,14 +221,9 @@ def checked_numbers(**values: ArrayLike) -> list[Array]:
     return broadcastable({}, checked_all(values))
 
 
-def checked_vector(name: str, value: ArrayLike) -> Numbers:
-    """Argument as numbers inside the range for its name, with at least one axis."""
-    return with_axis(checked(name, value))
-
-
 def checked_color(name: str, value: ArrayLike) -> Numbers:
     """Argument as a color inside the range for its name; the last axis has at least one channel."""
-    color = checked_vector(name, value)
+    color = with_axis(checked(name, value))
     if not color.shape[-1]:
         raise ValueError(f"{name} must have at least one channel; got shape {tuple(color.shape)}")
     return color
@@ -330,17 +312,17 @@ def checked_sphere(name: str, value: ArrayLike) -> Numbers:
 
 def checked_triples(name: str, value: ArrayLike) -> Numbers:
     """Argument as vectors of any length, (..., 3)."""
-    array = checked_real(name, value)
-    if array.shape[-1:] != (3,):
-        raise ValueError(f"{name} must have shape (..., 3); got shape {tuple(array.shape)}")
-    return array
+    return _with_components(name, checked_real(name, value), 3)
 
 
 def checked_pairs(name: str, value: ArrayLike) -> Numbers:
     """Argument of shape (..., 2) inside the range for its name in `RANGES`."""
-    array = checked(name, value)
-    if array.shape[-1:] != (2,):
-        raise ValueError(f"{name} must have shape (..., 2); got shape {tuple(array.shape)}")
+    return _with_components(name, checked(name, value), 2)
+
+
+def _with_components(name: str, array: Numbers, count: int) -> Numbers:
+    if array.shape[-1:] != (count,):
+        raise ValueError(f"{name} must have shape (..., {count}); got shape {tuple(array.shape)}")
     return array
 
 

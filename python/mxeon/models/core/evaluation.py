@@ -30,7 +30,10 @@ def evaluate(
     - `**parameter` (...): At most one, named as in `RANGES`.
     """
     pair = {"wo": arguments.checked_triples("wo", wo), "wi": arguments.checked_triples("wi", wi)}
-    color, numbers = arguments.checked_vector(name, rho), arguments.checked_all(parameter)
+    color, numbers = (
+        arguments.with_axis(arguments.checked(name, rho)),
+        arguments.checked_all(parameter),
+    )
     arguments.refuse_ambiguous(name, color, arguments.lead_shape(pair | {name: color}, numbers))
     xp = array_namespace(*pair.values(), color, *numbers.values())
     if xp is not NUMPY:

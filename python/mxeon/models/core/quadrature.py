@@ -38,7 +38,7 @@ def albedo_dir_quadrature(
         array([0.47804055, 1.        ])
     """
     arguments.checked_count("nodes", nodes)
-    mu, rho = arguments.checked("mu", mu), arguments.checked_vector("rho", rho)
+    mu, rho = arguments.checked("mu", mu), arguments.with_axis(arguments.checked("rho", rho))
     parameters = [
         arguments.checked_real(f"parameter {k}", value) for k, value in enumerate(parameter)
     ]
