@@ -6,7 +6,7 @@ A call's inputs are bound to the model's parameters, checked, and laid out in ro
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import cast
 
@@ -42,60 +42,41 @@ class Rows:
         return values if self.colored or values.shape[-1] != 1 else values[..., 0]
 
 
-def bound_inputs(
-    parameters: Sequence[Parameter], inputs: Sequence[ArrayLike], named: Mapping[str, ArrayLike]
-) -> dict[str, ArrayLike]:
-    """Values of all parameters by name: from the call, otherwise the default."""
-    names = [each.name for each in parameters]
-    others = {each.quantity: each.name for each in parameters}
-    known = f"inputs are {', '.join(names)}"
-    if len(inputs) > len(names):
-        raise TypeError(f"{known}; got {len(inputs)} of them")
-    values = dict(zip(names, inputs, strict=False))
-    for word, value in named.items():
-        name = others.get(word, word)
-        if name not in names or name in values:
-            raise TypeError(f"{known}; got {word!r}{' twice' if name in names else ''}")
-        values[name] = value
-    return {each.name: values.get(each.name, each.default) for each in parameters}
-
-
 @any_array
-def rows(parameters: Sequence[Parameter], vectors: Collection[str], /, **given: ArrayLike) -> Rows:
-    """Lay out vectors (..., K) and parameter values in rows, all by name."""
-    directions = {name: _floats(arguments.checked_real(name, given[name])) for name in vectors}
-    for name, w in directions.items():  # before reshaping: errors name the caller's elements
+def rows(parameters: Sequence[Parameter], vectors: Collection[str], /, **values: ArrayLike) -> Rows:
+    """Vectors (..., K) and values of parameters, all by name, as rows."""
+    directions = {name: _floats(arguments.checked_real(name, values[name])) for name in vectors}
+    for name, w in directions.items():
         count = 2 if name == "u" else 3
         if w.shape[-1:] != (count,):
             raise ValueError(f"{name} must have shape (..., {count}); got shape {tuple(w.shape)}")
     lead = arguments.lead_shape(directions, {})
-    values, colored = {}, False
+    inputs, colored = dict[str, Array](), False
     for each in parameters:
-        array = _floats(arguments.checked(each.name, given[each.name], each.quantity))
+        array = _floats(arguments.checked(each.name, values[each.name], each.quantity))
         if each.channels == 3:
             arguments.refuse_ambiguous(each.name, array, lead)
             colored = colored or array.ndim > 0
             array = array if array.ndim else array[np.newaxis]
-        values[each.name] = arguments.spread_pair(each.name, array) if each.channels == 2 else array
-    # Flatten all pairs; a value shared by all pairs keeps length 1.
-    wide = {each.name: values[each.name] for each in parameters if each.channels}
-    narrow = {name: array for name, array in values.items() if name not in wide}
-    lead = arguments.lead_shape(directions | wide, narrow)
-    laid = {name: _laid(array, lead, name in wide) for name, array in values.items()}
-    found = [_laid(v, lead, True, whole=True) for v in directions.values()]
-    return Rows(lead, found, laid, colored)
+        inputs[each.name] = arguments.spread_pair(each.name, array) if each.channels == 2 else array
+    wide = {each.name: inputs[each.name] for each in parameters if each.channels}
+    numbers = {name: array for name, array in inputs.items() if name not in wide}
+    lead = arguments.lead_shape(directions | wide, numbers)
+    flat = {name: _flattened(array, lead, name in wide) for name, array in inputs.items()}
+    pairs = [_flattened(v, lead, True, whole=True) for v in directions.values()]
+    return Rows(lead, pairs, flat, colored)
 
 
 @any_array
 def views(mu: ArrayLike, azimuth: ArrayLike) -> Array:
     """Directions with these cosines and azimuths, shape (..., 3)."""
     cosine, phi = _floats(arguments.checked("mu", mu)), _floats(arguments.checked("phi", azimuth))
-    known = arrays.host_values(cosine)
-    if known is not None and known.size and known.shape[-1:] == (3,):
-        length = np.sum(np.square(known, dtype=np.float64), axis=-1)
+    values = arrays.host_values(cosine)
+    if values is not None and values.size and values.shape[-1:] == (3,):
+        length = np.sum(np.square(values, dtype=np.float64), axis=-1)
         if np.all(np.abs(length - 1.0) <= arguments.UNIT_TOLERANCE):
             raise ValueError(
-                f"mu must be cosines; got shape {known.shape} of unit length, a direction: pass its z, "
+                f"mu must be cosines; got shape {values.shape} of unit length, a direction: pass its z, "
                 "or mu[..., np.newaxis] if they are cosines"
             )
     xp = array_namespace(cosine, phi)
@@ -105,16 +86,20 @@ def views(mu: ArrayLike, azimuth: ArrayLike) -> Array:
 
 
 def _floats(value: ArrayLike) -> Array:
-    """Numbers as a float64 array; arrays of other libraries are returned unchanged."""
+    """Numbers as a float64 array; an array of another library is returned unchanged."""
     return cast(Array, value) if library(value) else np.asarray(value, np.float64)
 
 
-def _laid(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) -> Array:
-    """Array as N rows, (N, last) or (N,), or as one row if all pairs share its value."""
+def _flattened(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) -> Array:
+    """Array as N rows, (N, last) or (N,), or as one row if all pairs share its value.
+
+    - `lead`: Shape of the array of pairs.
+    - `last`: Whether the last axis holds components, which stay together.
+    - `whole`: Whether to repeat a value that all pairs share.
+    """
     xp = array_namespace(array)
     tail = tuple(array.shape[-1:]) if last else ()
-    own = array.shape[:-1] if last else array.shape
-    if not whole and int(np.prod(own)) == 1:
+    if not whole and int(np.prod(array.shape[:-1] if last else array.shape)) == 1:
         return xp.reshape(array, (1, *tail))
     return xp.reshape(xp.broadcast_to(array, (*lead, *tail)), (-1, *tail))
 
@@ -203,8 +188,19 @@ class ShadingModel:
         inputs: tuple[ArrayLike, ...],
         named: dict[str, ArrayLike],
     ) -> Rows:
-        """Vectors and inputs of a call as `Rows`."""
-        values = bound_inputs(self.parameters, inputs, named)
+        """Vectors and inputs of a call as `Rows`; omitted inputs have their defaults."""
+        names = [each.name for each in self.parameters]
+        aliases = {each.quantity: each.name for each in self.parameters}
+        if len(inputs) > len(names):
+            raise TypeError(f"inputs are {', '.join(names)}; got {len(inputs)} of them")
+        values = dict(zip(names, inputs, strict=False))
+        for word, value in named.items():
+            name = aliases.get(word, word)
+            if name not in names or name in values:
+                twice = " twice" if name in names else ""
+                raise TypeError(f"inputs are {', '.join(names)}; got {word!r}{twice}")
+            values[name] = value
+        values = {each.name: values.get(each.name, each.default) for each in self.parameters}
         return rows(self.parameters, tuple(vectors), **vectors, **values)
 
     @property
@@ -278,14 +274,14 @@ class ShadingModel:
 def _on_side(
     side: float | None, function: Callable[[Array, Array, Inputs], Array], call: Rows
 ) -> Array:
-    """Values of a function, set to 0 for wi on the other side of the horizon: `side` is 1 or -1."""
+    """Values of a function; 0 for wi below the horizon if `side` is 1, above the horizon if -1."""
     wo, wi = call.vectors
     if side is None:
         return function(wo, wi, call.inputs)
     xp, z = array_namespace(wi), side * wi[:, 2]
-    other = z < -arguments.ROUNDING
-    if xp is arrays.NUMPY and not other.any():  # a shortcut: a third of the time for cheap values
+    outside = z < -arguments.ROUNDING
+    if xp is arrays.NUMPY and not outside.any():  # a shortcut: a third of the time for cheap values
         return function(wo, wi, call.inputs)
-    mirrored = xp.stack([wi[:, 0], wi[:, 1], side * xp.where(other, -z, z)], axis=-1)
+    mirrored = xp.stack([wi[:, 0], wi[:, 1], side * xp.where(outside, -z, z)], axis=-1)
     values = function(wo, mirrored, call.inputs)
-    return xp.where(other[:, np.newaxis] if values.ndim > 1 else other, 0.0, values)
+    return xp.where(outside[:, np.newaxis] if values.ndim > 1 else outside, 0.0, values)

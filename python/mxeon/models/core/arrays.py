@@ -47,7 +47,7 @@ class Namespace(Protocol):
 PLAIN = np.ndarray, np.generic, float, int, list, tuple  # types that NumPy handles
 # NumPy 1 lacks some names of the standard, such as `atan`.
 NUMPY = cast(Namespace, np if hasattr(np, "atan") else import_module("array_api_compat.numpy"))
-# By library: number types outside the standard, and the namespaces found so far.
+# Types of arrays outside the standard, and namespaces in use, both by library.
 OTHERS: dict[str, type] = {}
 FUNCTIONS: dict[str, Namespace] = {}
 
@@ -64,19 +64,16 @@ def library(value: object) -> str:
 
 def array_namespace(*arrays: object) -> Namespace:
     """Array functions for these arguments: NumPy, unless one of them is another library's array."""
-    others = [each for each in arrays if library(each)]
-    return _others_namespace(others) if others else NUMPY
-
-
-def _others_namespace(others: Sequence[object]) -> Namespace:
-    """Array functions of these arrays' library; raises ValueError if they belong to several."""
-    names = sorted({library(each) for each in others})
-    if len(names) > 1:
-        raise ValueError(f"arrays must be of one library; got {' and '.join(names)}")
-    if names[0] not in FUNCTIONS:
-        found = import_module("array_api_compat").array_namespace(others[0])
-        FUNCTIONS[names[0]] = cast(Namespace, found)
-    return FUNCTIONS[names[0]]
+    foreign = {name: each for each in arrays if (name := library(each))}
+    if not foreign:
+        return NUMPY
+    if len(foreign) > 1:
+        raise ValueError(f"arrays must be of one library; got {' and '.join(sorted(foreign))}")
+    (name,) = foreign
+    if name not in FUNCTIONS:
+        found = import_module("array_api_compat").array_namespace(foreign[name])
+        FUNCTIONS[name] = cast(Namespace, found)
+    return FUNCTIONS[name]
 
 
 def any_array(function: Callable[P, R]) -> Callable[P, R]:
@@ -93,29 +90,30 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
-        held = (
+        values = (
             each.values() if isinstance(each, Mapping) else (each,)
             for each in (*args, *kwargs.values())
         )
-        others = [each for each in chain.from_iterable(held) if library(each)]
-        if not others:
+        foreign = [each for each in chain.from_iterable(values) if library(each)]
+        if not foreign:
             return function(*args, **kwargs)
-        convert = _converter(others)
-        left = {name: numbers[name] for name in names[len(args) :] if name in numbers} | kwargs
+        convert = _converter(foreign)
+        named = {name: numbers[name] for name in names[len(args) :] if name in numbers} | kwargs
 
-        def brought(name: str, value: object) -> object:
+        def converted(name: str, value: object) -> object:
             return value if name in plain and not library(value) else convert(value)
 
-        given = map(brought, chain(names, repeat("")), args)
-        named = {name: brought(name, value) for name, value in left.items()}
-        return cast(Callable[..., R], function)(*given, **named)
+        return cast(Callable[..., R], function)(
+            *map(converted, chain(names, repeat("")), args),
+            **{name: converted(name, value) for name, value in named.items()},
+        )
 
     return wrapper
 
 
-def _converter(others: Sequence[object]) -> Callable[[object], object]:
+def _converter(foreign: Sequence[object]) -> Callable[[object], object]:
     """A function that converts arguments to the library, precision and device of these arrays."""
-    xp, arrays = _others_namespace(others), cast("Sequence[Array]", others)
+    xp, arrays = array_namespace(*foreign), cast("Sequence[Array]", foreign)
     for each in arrays:
         try:
             real = bool(xp.isdtype(each.dtype, ("bool", "integral", "real floating")))
@@ -125,7 +123,7 @@ def _converter(others: Sequence[object]) -> Callable[[object], object]:
             raise ValueError(f"arrays must be of real numbers; got one of {each.dtype}")
     floating = [each.dtype for each in arrays if xp.isdtype(each.dtype, "real floating")]
     dtype = floating[0] if floating else xp.asarray(0.5).dtype
-    place = _place(arrays[0])
+    place = _device(arrays[0])
 
     def convert(value: object) -> object:
         if isinstance(value, Mapping):
@@ -137,13 +135,13 @@ def _converter(others: Sequence[object]) -> Callable[[object], object]:
             return value
         if isinstance(value, float | int):  # compilers see a constant, without np.asarray
             return xp.asarray(value, dtype=dtype, **place)
-        found = np.asarray(value)
-        return xp.asarray(found, dtype=dtype, **place) if found.dtype.kind in "iuf" else value
+        array = np.asarray(value)
+        return xp.asarray(array, dtype=dtype, **place) if array.dtype.kind in "iuf" else value
 
     return convert
 
 
-def _place(array: object) -> dict[str, object]:
+def _device(array: object) -> dict[str, object]:
     """Keyword argument `device` of an array of PyTorch; empty for other libraries."""
     return {"device": cast(Array, array).device} if library(array) == "torch" else {}
 
@@ -153,7 +151,7 @@ def like(values: Numbers, array: Array) -> Array:
     xp = array_namespace(array)
     if xp is NUMPY:
         return np.asarray(values, np.float64)
-    return xp.asarray(values, dtype=array.dtype, **_place(array))
+    return xp.asarray(values, dtype=array.dtype, **_device(array))
 
 
 def host_values(value: object) -> Numbers | None:
@@ -227,14 +225,14 @@ def except_where(
     value: Array | float,
     formula: Callable[[Array], Array],
     x: Array,
-    inside: float,
+    interior: float,
 ) -> Array:
-    """formula(x), or `value` with derivative 0 where `edge(x)`; there `inside` replaces x."""
+    """formula(x); where `edge(x)`, `value` with derivative 0, and the formula gets `interior`."""
     xp = array_namespace(x)
     if xp is NUMPY:
         return formula(x)
     at = edge(x)
-    return xp.where(at, value, formula(xp.where(at, inside, x)))
+    return xp.where(at, value, formula(xp.where(at, interior, x)))
 
 
 def root(x: Array) -> Array:
@@ -287,7 +285,7 @@ def below_1(x: Array) -> float:
     return 1.0 - 0.5 * float(precision(x).eps)
 
 
-def guarded(x: Array, valid: Numbers, inside: float) -> Array:
-    """x where `valid`, else the placeholder `inside`; callers discard results of placeholders."""
+def guarded(x: Array, valid: Numbers, placeholder: float) -> Array:
+    """x where `valid`, else the placeholder, whose results the caller discards; x for NumPy."""
     xp = array_namespace(x, valid)
-    return x if xp is NUMPY else xp.where(valid, x, inside)
+    return x if xp is NUMPY else xp.where(valid, x, placeholder)

@@ -71,7 +71,7 @@ def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
         >>> float(both.value), float(both.throughput)
         (0.25, 0.75)
     """
-    w = _beside(fg.value, checked("amount", amount))
+    w = _in_library(fg.value, checked("amount", amount))
     return Bsdf((1.0 - w) * bg.value + w * fg.value, (1.0 - w) * bg.throughput + w * fg.throughput)
 
 
@@ -101,10 +101,10 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
         >>> float(scaled.value), float(scaled.throughput)
         (0.5, 0.75)
     """
-    s = _beside(in1.value, checked("weight", weight))
+    s = _in_library(in1.value, checked("weight", weight))
     return Bsdf(s * in1.value, 1.0 - s * (1.0 - in1.throughput))
 
 
-def _beside(value: Array, number: Array) -> Array:
-    """A number converted to an array of the library of a lobe's value."""
+def _in_library(value: Array, number: Array) -> Array:
+    """A number as an array of the library of `value`."""
     return number if library(number) else like(number, value)
