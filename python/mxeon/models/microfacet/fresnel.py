@@ -35,7 +35,7 @@ LEAST_IOR = 1e-50
 # Double-exponential rule: c = X^2 / (X^2 + 1/X^2), X = exp(pi/4 sinh(t)), |t| < 3.2.
 # Weights at larger |t| are below 1e-15.
 STEP, STEPS = 0.0625, 51
-GROUP = 2**12  # integrand values per block
+GROUP = 2**6  # materials per block
 
 # Gauss-Legendre nodes for curves without singularities in the ellipse that has the foci 0 and 1 and
 # half axes whose sum is ELLIPSE / 2. The error is ELLIPSE to the power -56, 1e-13.
@@ -120,54 +120,36 @@ def dielectric_avg(ior: Array) -> Array:
 
 
 def conductor_avg(ior: Array, extinction: Array) -> Array:
-    """F_ss of a conductor: Gauss-Legendre where F is smooth in the cosine c, else a split rule.
+    """F_ss of a conductor: Gauss-Legendre where F is smooth in the cosine c, else `_split_avg`.
 
     The square root in F is singular at c^2 = 1 - n^2, which is close to the real axis for weakly
     absorbing media. Strongly absorbing media have a pole at a distance of 1 / |n| from grazing.
     """
-    # Arrays that do not support assignment always use the split rule.
+    # Arrays of other libraries do not support assignment.
     if array_namespace(ior, extinction) is not arrays.NUMPY:
         return _split_avg(ior, extinction)
     ior, extinction = np.broadcast_arrays(ior, extinction)
-    n2 = (ior + 1j * extinction) ** 2
-    smooth = _is_smooth(n2)
+    smooth = _is_smooth((ior + 1j * extinction) ** 2)
     total = np.empty(smooth.shape)
-    for rows, average, size in (
-        (smooth, _smooth_avg, GROUP),
-        (np.logical_not(smooth), _split_avg, GROUP // 128),
-    ):
+    for rows, average in ((smooth, _smooth_avg), (~smooth, _split_avg)):
         n, k = ior[rows], extinction[rows]
-        groups = (slice(start, start + size) for start in range(0, len(n), size))
+        groups = (slice(start, start + GROUP) for start in range(0, len(n), GROUP))
         total[rows] = np.concatenate([np.empty(0), *(average(n[g], k[g]) for g in groups)])
     return np.minimum(total, 1.0)
 
 
 def _is_smooth(n2: Array) -> Array:
     """Whether F's singularities in c, sqrt(1 - n^2) and -1 / sqrt(1 + n^2), are far from [0, 1]."""
-    far = np.full(n2.shape, True)
     with np.errstate(divide="ignore", invalid="ignore"):  # n^2 = -1 has its pole at infinity
-        pole = -1.0 / np.sqrt(1.0 + n2)
-    for c in (np.sqrt(1.0 - n2), pole):
-        far &= np.abs(c) + np.abs(c - 1.0) > 0.5 * (ELLIPSE + 1.0 / ELLIPSE)
-    return far
+        points = np.stack([np.sqrt(1.0 - n2), -1.0 / np.sqrt(1.0 + n2)])
+    far = np.abs(points) + np.abs(points - 1.0) > 0.5 * (ELLIPSE + 1.0 / ELLIPSE)
+    return np.asarray(far.all(axis=0))
 
 
 def _smooth_avg(ior: Array, extinction: Array) -> Array:
-    """F_ss of materials (N,) whose F is smooth in the cosine.
-
-    With w and a of `conductor`, x = c^2, m = |w|^2, u = 2 c a and B = x m + (1 - x)^2:
-    F = (x + m - u) B / ((x + m + u) (B + u (1 - x)))
-    """
-    real, squared = (ior - 1.0) * (ior + 1.0) - extinction**2, (2.0 * ior * extinction) ** 2
-    total = np.zeros(len(ior))
-    for c, weight in zip(*unit_rule(AVERAGE_NODES), strict=True):
-        x = c * c
-        part = real + x
-        m = np.sqrt(part * part + squared)
-        u = np.sqrt(2.0) * c * np.sqrt(m + part)
-        A, B = m + x, m * x + (1.0 - x) ** 2
-        total += (2.0 * c * weight) * ((A - u) * B / ((A + u) * (B + u * (1.0 - x))))
-    return total
+    """F_ss by Gauss-Legendre, for materials (N,) whose F is smooth in the cosine."""
+    c, weight = (each[:, np.newaxis] for each in unit_rule(AVERAGE_NODES))
+    return np.asarray(np.sum(2.0 * c * weight * conductor(c, ior, extinction), axis=0))
 
 
 def _split_avg(ior: Array, extinction: Array) -> Array:
