@@ -195,11 +195,11 @@ def _coated_model(name: str, title: str) -> ShadingModel:
 
 
 def _per_coat(function: Callable[..., Any], inputs: Inputs, *vectors: Array) -> Any:
-    """Apply a function of `mxeon.models.coat`, which accepts only one coat, to rows with different coats.
+    """Apply a function of `mxeon.models.coat`, which accepts one coat, to rows with several coats.
 
     The last two inputs are `alpha` and `ior` of the coat.
     """
-    # One coat needs a single call. Arrays of other libraries take this way too: the function rejects several coats.
+    # Arrays of other libraries are passed on: the function rejects several coats.
     *others, alpha, ior = (*vectors, *inputs.values())
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
         return function(*others, *(each[0] if len(each) == 1 else each for each in (alpha, ior)))

@@ -30,7 +30,7 @@ _POSITIVE = (0.0, 1e50, "[0, 1e50]")  # fourth powers fit into float64
 _WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # exponents and squares fit into float64
 _LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # products and quotients fit into float64
 
-# Closed ranges; a value beyond an end by less than ROUNDING, one rounding of float32, is clamped to that end.
+# Closed ranges: a value beyond an end by less than one rounding of float32 is clamped to that end.
 CLOSED = ("[0, 1]", "[0.01, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]")
 ROUNDING = 2.0**-23
 # Tolerance of a direction's squared length; directions rounded to float32 pass.
