@@ -66,6 +66,11 @@ def changes(before, after):
 GONE = replace(made_run(), results=())
 REFUSED = replace(made_run(), refused={"clay.mtlx": ("no such node",)})
 TWO = replace(made_run(), documents=(Path("a.mtlx"), Path("b.mtlx")))
+FEW = {"verdict": FAILED, "error": 1e-4, "samples": "a"}
+FEW["errors"] = (Errors(7000, 5, 0, 1e-4, 5e-7),)
+MANY = FEW | {"errors": (Errors(7000, 500, 0, 1e-4, 5e-6),)}
+FAILURE = "value: passed at 1e-07 -> failed at 0.0001"
+GPU = OTHER, "host gl: 4.5, llvmpipe -> 4.5, GPU"
 CHANGES = [
     (made_run(), made_run(error=1.4e-7)),
     (made_run(FAILED), made_run(FAILED, error=1.4e-7)),
@@ -73,7 +78,10 @@ CHANGES = [
     (made_run(), made_run(FAILED), (WORSE, "value: passed at 1e-07 -> failed at 1e-07")),
     (made_run(), made_run(NOT_RUN, None), (LOST, "value: passed at 1e-07 -> not run")),
     (made_run(), made_run(error=9e-7)),
-    (made_run(), made_run(device="GPU"), (OTHER, "host gl: 4.5, llvmpipe -> 4.5, GPU")),
+    (made_run(), made_run(device="GPU"), GPU),
+    (made_run(), made_run(**FEW), (WORSE, FAILURE)),
+    (made_run(), made_run(**FEW, device="GPU"), GPU, (OTHER, FAILURE)),
+    (made_run(), made_run(**MANY, device="GPU"), (WORSE, FAILURE), GPU),
     (made_run(), GONE, (LOST, "1 check: passed at 1e-07 -> none")),
     (made_run(FAILED), GONE, (LOST, "1 check: failed at 1e-07 -> none")),
     (GONE, made_run(), (OTHER, "1 check: none -> passed at 1e-07")),
@@ -91,27 +99,6 @@ CHANGES = [
         TWO,
         replace(GONE, documents=(Path("new/a.mtlx"), Path("new/b.mtlx"))),
         (LOST, "1 check: passed at 1e-07 -> none"),
-    ),
-]
-
-
-FEW = {"verdict": FAILED, "error": 1e-4, "samples": "a"}
-FEW["errors"] = (Errors(7000, 5, 0, 1e-4, 5e-7),)
-MANY = FEW | {"errors": (Errors(7000, 500, 0, 1e-4, 5e-6),)}
-FAILURE = "value: passed at 1e-07 -> failed at 0.0001"
-CHANGES += [
-    (made_run(), made_run(**FEW), (WORSE, FAILURE)),
-    (
-        made_run(),
-        made_run(**FEW, device="GPU"),
-        (OTHER, "host gl: 4.5, llvmpipe -> 4.5, GPU"),
-        (OTHER, FAILURE),
-    ),
-    (
-        made_run(),
-        made_run(**MANY, device="GPU"),
-        (WORSE, FAILURE),
-        (OTHER, "host gl: 4.5, llvmpipe -> 4.5, GPU"),
     ),
 ]
 
@@ -266,26 +253,21 @@ PLANTED = {
 
 
 # Where stock is too bright, undoing these regressions raises the errors of some samples.
-HIDING = {
-    "transmission tinted by color0",
-    "dark hair for some cuticles",
-    "another range of blackbodies",
-}
+HIDING = ("transmission tinted by color0", "dark hair for some", "another range of blackbodies")
 
 
 @pytest.mark.whole
 @pytest.mark.parametrize("row", PLANTED)
 def test_a_planted_regression_is_worse_and_its_repair_is_not(judged, tmp_path, row):
     check, title, *edit = PLANTED[row]
-    results = (
-        judged(check, title, "gl", library)
-        for library in ("stock", wrong_stock_node(tmp_path, *edit))
-    )
-    before, after = (
-        read(replace(made_run(), results=(replace(each, library="stock"),))) for each in results
-    )
+
+    def judge(library):
+        result = replace(judged(check, title, "gl", library), library="stock")
+        return read(replace(made_run(), results=(result,)))
+
+    before, after = judge("stock"), judge(wrong_stock_node(tmp_path, *edit))
     assert [each.kind for each in compare(before, after)] == [WORSE]
-    if row not in HIDING:
+    if not row.startswith(HIDING):
         assert WORSE not in {each.kind for each in compare(after, before)}
 
 
@@ -313,14 +295,10 @@ def test_a_check_with_a_baseline_is_one_command(tmp_path, capsys):
     out, old = str(tmp_path / "out"), tmp_path / "old"
     assert main([*check, "--report", out, "--annotations"]) == 3  # msl is generated but not run
     assert "\n::warning title=mxeon check::not run" in capsys.readouterr().out
+    passed = {"verdict": PASSED, "error": 0.0, "tolerance": 1.0, "reason": ""}
     for name, change, status, text in (
         ("same", {}, 0, "no difference"),
-        (
-            "passed",
-            {"verdict": PASSED, "error": 0.0, "tolerance": 1.0, "reason": ""},
-            3,
-            "1 not run any longer",
-        ),
+        ("passed", passed, 3, "1 not run any longer"),
         ("stale", {"format": 3}, 2, ""),
     ):
         content = json.loads(Path(out, "results.json").read_text())
@@ -338,17 +316,16 @@ def test_a_check_with_a_baseline_is_one_command(tmp_path, capsys):
 
 
 def test_lines_name_host_and_library_once_and_come_largest_first(tmp_path, capsys):
-    rows = [("value", "slate", 4.0), ("black", "clay", 2.0), ("value", "clay", 8.0)]
-    runs = [
-        [
-            made_run(FAILED, 0.01 * size**late, check=check, subject=subject)
-            for check, subject, size in rows
-        ]
-        for late in (0, 1)
-    ]
-    before, after = (
-        replace(made_run(), results=tuple(each.results[0] for each in run)) for run in runs
-    )
+    def run(late):
+        rows = (("value", "slate", 4.0), ("black", "clay", 2.0), ("value", "clay", 8.0))
+        fields = ({"check": check, "subject": subject} for check, subject, _ in rows)
+        runs = (
+            made_run(FAILED, 0.01 * row[2] ** late, **each)
+            for row, each in zip(rows, fields, strict=True)
+        )
+        return replace(made_run(), results=tuple(each.results[0] for each in runs))
+
+    before, after = run(0), run(1)
     assert diff(tmp_path, before, before) == 0
     assert capsys.readouterr().out == "no difference\n"
     assert diff(tmp_path, before, after) == 1
@@ -402,13 +379,8 @@ def test_the_schema_and_the_reader_accept_the_same_reports(tmp_path, capsys, mon
     assert main(["report", "schema"]) == 0
     valid = jsonschema.Draft202012Validator(json.loads(capsys.readouterr().out)).is_valid
     cause = Cause(Kind.REGION, "key", ("a",), (1.0,), "b", Region("a", "b", 0.5, 1.0, ("r",)), 1, 2)
-    fields = {
-        "worst": {"a": [math.nan]},
-        "errors": (replace(ALL, region=ROUGH),),
-        "measured": ("a",),
-        "pages": ("a",),
-        "seconds": 1.0,
-    }
+    fields = {"measured": ("a",), "pages": ("a",), "seconds": 1.0}
+    fields |= {"worst": {"a": [math.nan]}, "errors": (replace(ALL, region=ROUGH),)}
     diagnosis = Diagnosis((replace(cause, rms=math.inf, point={"a": [1.0]}),), {"a": 0.5})
     run = made_run(FAILED, diagnosis=diagnosis, control=Control("a", 1.0, True), **fields)
     run = replace(run, libraries={"a": {"folder": ("b",)}}, seconds=1.0)
@@ -444,27 +416,15 @@ def refusal_of(folder, capsys):
         ("error", "1e-7", "must be a number; got '1e-7'"),
         ("tolerance", None, "an error must have a tolerance; got 1e-07 and none"),
         ("error", -1.0, "error and tolerance must be at least 0; got -1.0 and 1e-06"),
-        (
-            "verdict",
-            "maybe",
-            "verdict must be one of passed, differs, failed, not run; got 'maybe'",
-        ),
+        ("verdict", "maybe", "verdict must be one of passed, differs, failed, not run; got 'm"),
         ("more", 1, "more"),
     ],
 )
 def test_a_value_that_no_report_has_is_named_with_its_place(tmp_path, capsys, key, value, words):
-    edit(tmp_path, lambda content: content["results"][0].update({key: value}))
+    content = json.loads(to_json(made_run()))
+    content["results"][0][key] = value
+    (tmp_path / "results.json").write_text(json.dumps(content))
     assert words in refusal_of(tmp_path, capsys)
-
-
-REPORT = to_json(made_run())
-
-
-def edit(folder, change):
-    """Write a results.json to which a change is applied."""
-    content = json.loads(REPORT)
-    change(content)
-    (folder / "results.json").write_text(json.dumps(content))
 
 
 def test_names_in_a_report_cannot_steer_the_terminal(tmp_path, capsys):
@@ -475,13 +435,10 @@ def test_names_in_a_report_cannot_steer_the_terminal(tmp_path, capsys):
 
 def run_with(*folders, verdict=PASSED):
     """Made-up run with folders as libraries; `verdict` is that of the last library."""
-    verdicts = [PASSED] * (len(folders) - 1) + [verdict]
-    (result,) = made_run().results
-    results = tuple(
-        replace(result, library=folder, verdict=each)
-        for folder, each in zip(folders, verdicts, strict=True)
-    )
+    runs = [made_run(library=folder) for folder in folders[:-1]]
+    runs.append(made_run(verdict, library=folders[-1]))
     libraries = {folder: {"folder": ("a.mtlx",)} for folder in folders}
+    results = tuple(each.results[0] for each in runs)
     return replace(made_run(), results=results, libraries=libraries)
 
 
@@ -527,17 +484,14 @@ RUN = Run("0.1.0", {}, (Identity("gl", "OpenGL 4.5", "llvmpipe"),), WRONG)
 
 
 def written(folder, **changes):
+    """Write the report of RUN with changed fields, and return the row of its node."""
     write(replace(RUN, **changes), folder)
-    return folder
-
-
-def of_node(run_folder):
-    (entry,) = read_field([run_folder])
+    (entry,) = read_field([folder])
     return entry
 
 
 def test_a_row_has_the_claimed_model_the_model_that_is_there_and_the_pages(tmp_path):
-    entry = of_node(written(tmp_path))
+    entry = written(tmp_path)
     assert (entry.host, entry.version, entry.device) == ("gl", "OpenGL 4.5", "llvmpipe")
     assert (entry.claimed, entry.found, entry.found_around) == (TITLE, "QON", TITLE)
     assert entry.verdict == FAILED and entry.pages == ("a", "b")
@@ -551,12 +505,12 @@ def test_a_portrait_is_not_judged_if_its_check_did_not_run(tmp_path):
     stopped = replace(WRONG[0], verdict=NOT_RUN, error=None, tolerance=None, control=None)
     pixels = np.zeros((96, 96, 3))
     back = Picture("portrait", EON, "gl", "stock", "back", pixels + 1e-3, pixels, {})
-    entry = of_node(written(tmp_path, results=(stopped, *WRONG[1:]), pictures=(back,)))
+    entry = written(tmp_path, results=(stopped, *WRONG[1:]), pictures=(back,))
     assert entry.cells["direct"].verdict == NOT_RUN and "back" not in entry.cells
 
 
 def test_rows_are_by_renderer_and_cause_with_the_most_harmful_first(tmp_path):
-    entry = of_node(written(tmp_path))
+    entry = written(tmp_path)
     tiny = {name: replace(cell, error=0.1, verdict=FAILED) for name, cell in entry.cells.items()}
     right = {name: replace(cell, verdict=PASSED) for name, cell in entry.cells.items()}
     mild, other = replace(entry, host="a", cells=tiny), replace(entry, node="b", library="own")
