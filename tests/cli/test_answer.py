@@ -27,9 +27,6 @@ from tests.support.verdicts import FAILED, NOT_RUN
 from tests.support.wrong_libraries import copy_of_eonlib, copy_of_stock
 
 NAME = "genglsl_clamped_dot"
-PAGE = f"docs/upstream/{NAME}.md"
-
-
 PICTURE = made(key="picture", subject="clay.mtlx: terracotta")
 
 
@@ -37,27 +34,22 @@ def stock(verdict=FAILED, **fields):
     return made(verdict, library="stock", **fields)
 
 
-def off(largest, scene="back", highlight=False):
-    return Difference(scene, largest, highlight, 0.25)
+def wrong(largest, scene="back"):
+    """Fields of a failed picture that differs visibly on a quarter of its pixels."""
+    difference = Difference(scene, largest, False, 0.25)
+    return {"verdict": FAILED, "error": 0.1, "difference": difference}
 
 
-SEEN = {"verdict": FAILED, "error": 0.1, "difference": off(-0.05)}
-
-
+SEEN = wrong(-0.05)
 ZERO = Region("index_zero")
 LOAD, NOTHING = "To fix it, load ", "Nothing to do for this material"
 RIGHT = "the picture is right; its nodes are wrong"
 WITHIN = "up to 6.2 % of white too dark in light from behind, visible on 25 % of its pixels, within this check's"
-CLOSE = {"difference": off(-0.0621)}
-BACK, WHITE = (
-    {"verdict": FAILED, "error": 0.1, "difference": off(-0.1, each)} for each in ("back", "furnace")
-)
+CLOSE = {"difference": wrong(-0.0621)["difference"]}
 FAR = 'input "a/roughness" must lie in [0, 1]; got 1.7'
 IDLE, OWN = {"verdict": NOT_RUN, "error": None}, caused("input", "", "a/roughness")
-BENT, LAYER = (
-    stock(diagnosis=caused("not finite", region=ZERO)),
-    stock(key="layering", diagnosis=quoted("X")),
-)
+BENT = stock(diagnosis=caused("not finite", region=ZERO))
+LAYER = stock(key="layering", diagnosis=quoted("X"))
 FIRST = f"0.37 (value)\ncause: gl with stock: {EON} "
 # Failures of stock's node, fields of the picture's result, and words and last line of the summary.
 ANSWERS = (
@@ -66,8 +58,8 @@ ANSWERS = (
     ((stock(),), {}, "wrong for other inputs, 0.37 (value)", NOTHING),
     ((stock(),), CLOSE, WITHIN, LOAD),
     ((stock(),), CLOSE, "  wrong, 0.37 (value)", LOAD),
-    ((LAYER, stock(diagnosis=quoted("Y"))), BACK, f"{FIRST}(value)", LOAD),
-    ((stock(diagnosis=quoted("Y")), LAYER), WHITE, f"{FIRST}(layering)", LOAD),
+    ((LAYER, stock(diagnosis=quoted("Y"))), wrong(-0.1), f"{FIRST}(value)", LOAD),
+    ((stock(diagnosis=quoted("Y")), LAYER), wrong(-0.1, "furnace"), f"{FIRST}(layering)", LOAD),
     ((), IDLE | {"reason": FAR, "diagnosis": OWN}, f"not judged: {FAR}.", "To fix it, correct input"),
     ((), IDLE | {"reason": "gl: no"}, "not judged: gl: no.", "All 2 checks"),
     ((), {"check": "finite", "diagnosis": quoted("fur")}, "no reference (fur); every pixel is finite.", "All 2"),
@@ -91,12 +83,11 @@ def test_an_answer_says_what_was_measured_and_ends_with_the_remedy(failures, fie
 def test_every_section_has_a_longest_length_and_counts_what_it_leaves_out():
     names = ("burley_diffuse", "translucent", "subsurface", "conductor", "chiang_hair")
     titles = (EON, *(f"{name}_bsdf" for name in names))
-    wrong = [stock(subject=each, diagnosis=quoted(each)) for each in titles]
-    seen = [
-        stock(key="picture", subject=f"clay.mtlx: {each}", diagnosis=quoted(each))
-        for each in titles
-    ]
-    run = replace(made_run(made(), *wrong, *seen, compared=("stock",)), contents={CLAY: titles})
+    results = [made()]
+    for each in titles:
+        results.append(stock(subject=each, diagnosis=quoted(each)))
+        results.append(stock(key="picture", subject=f"clay.mtlx: {each}", diagnosis=quoted(each)))
+    run = replace(made_run(*results, compared=("stock",)), contents={CLAY: titles})
     lines = answer(run)
     assert len(lines) == LONGEST["material"] + LONGEST["node"] + LONGEST["cause"] + 3
     assert lines[-2] == "2 more materials, 3 more nodes, 3 more causes: --full"
@@ -107,31 +98,27 @@ GLASS = "dielectric_bsdf, scatter_mode R"
 
 
 def test_what_fails_for_other_inputs_than_the_documents_comes_last():
-    wrong = made(FAILED, "finite", GLASS, diagnosis=caused("not finite", region=ZERO))
-    known = made(FAILED, "layer", GLASS, "stock", diagnosis=caused("model", "X"), pages=(NAME,))
-    new = made(FAILED, "value", GLASS, "stock", diagnosis=caused("fault", "weight_ignored"))
-    run = Run(
-        "1",
-        {},
-        (),
-        (made(key="value", subject=GLASS), wrong, known, new),
-        contents={"a.mtlx": (GLASS,), "b.mtlx": (GLASS,)},
-        unreached={"a.mtlx": {GLASS: (ZERO,)}},
+    results = (
+        made(key="value", subject=GLASS),
+        made(FAILED, "finite", GLASS, diagnosis=caused("not finite", region=ZERO)),
+        made(FAILED, "layer", GLASS, "stock", diagnosis=caused("model", "X"), pages=(NAME,)),
+        made(FAILED, "value", GLASS, "stock", diagnosis=caused("fault", "weight_ignored")),
     )
+    contents, unreached = (
+        dict.fromkeys(("a.mtlx", "b.mtlx"), (GLASS,)),
+        {"a.mtlx": {GLASS: (ZERO,)}},
+    )
+    run = Run("1", {}, (), results, contents=contents, unreached=unreached)
     # Only document a is known not to reach the index 0.
-    assert run.is_elsewhere(wrong, "a.mtlx") and not run.is_elsewhere(wrong)
+    assert run.is_elsewhere(results[1], "a.mtlx") and not run.is_elsewhere(results[1])
     [entry] = json.loads(to_json(run))["elsewhere"]
-    assert entry == {
-        "document": "a.mtlx",
-        "check": "finite",
-        "subject": GLASS,
-        "host": "gl",
-        "library": "eonlib",
-    }
+    place = {"check": "finite", "subject": GLASS, "host": "gl", "library": "eonlib"}
+    assert entry == {"document": "a.mtlx", **place}
     lines = answer(replace(run, contents={"a.mtlx": (GLASS,)}))
     assert any("wrong for other inputs" in line and "wrong, 0.37 (value)" in line for line in lines)
     causes = [line for line in lines if line.startswith("failed")]
-    expected = ["fault: the weight is ignored", PAGE, "for inputs that no document uses"]
+    page = f"docs/upstream/{NAME}.md"
+    expected = ["fault: the weight is ignored", page, "for inputs that no document uses"]
     assert [each in line for each, line in zip(expected, causes, strict=True)] == [True] * 3
 
 
@@ -159,11 +146,11 @@ def test_a_copy_of_eonlib_is_not_referred_to_eonlib(tmp_path):
 
 def test_a_failing_picture_is_printed_by_itself_or_with_the_lobe_that_fails():
     lobe = made(FAILED, subject="sheen_bsdf, mode zeltner")
-    follows = caused("follows", "", "sheen_bsdf")
-    pictures = [
-        replace(PICTURE, **SEEN, diagnosis=near)
-        for near in (follows, caused("defect", "other_node", "normalmap", "bump"))
-    ]
+    causes = (
+        caused("follows", "", "sheen_bsdf"),
+        caused("defect", "other_node", "normalmap", "bump"),
+    )
+    pictures = [replace(PICTURE, **SEEN, diagnosis=each) for each in causes]
     lines = answer(replace(made_run(lobe, *pictures), contents={}))
     assert any("1 picture of sheen_bsdf: clay.mtlx: terracotta" in line for line in lines)
     assert any("up to 5 % of white too dark" in line and "normalmap" in line for line in lines)
@@ -230,10 +217,8 @@ def test_nothing_says_of_a_refused_document_that_it_passed(tmp_path, monkeypatch
     assert found["verdict"] == "not run" and found["refused"] == names
     page = (report / "report.html").read_text().replace("\xa0", " ")
     assert f"<p>{first}</p>" in page
-    cases = ElementTree.parse(report / "junit.xml").iterfind(
-        "testsuite[@name='documents']/testcase"
-    )
-    assert [(case.get("name"), case[0].tag) for case in cases] == [
+    [suite] = ElementTree.parse(report / "junit.xml").iterfind("testsuite[@name='documents']")
+    assert [(case.get("name"), case[0].tag) for case in suite] == [
         (each, "error") for each in names
     ]
 

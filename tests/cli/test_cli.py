@@ -45,22 +45,14 @@ def test_check_passes_writes_a_report_and_answers_as_the_pages_show(tmp_path, ca
         assert re.match(pattern(" ".join(shown.split())), " ".join(printed)), page
     assert printed[-1].endswith("report.html")
     assert re.search(r"Finished in \d+\.\d s\.$", printed[-3])
+    files = {"report.html", "results.json", "junit.xml", ".journal.lock"}
     names = {path.name for path in (tmp_path / "report").iterdir()}
-    assert names == {
-        "report.html",
-        "results.json",
-        "junit.xml",
-        "pictures",
-        "journal",
-        ".journal.lock",
-        "upstream",
-    }
+    assert names == files | {"pictures", "journal", "upstream"}
     # Stock MaterialX fails, but it is only a comparison, so the verdict is eonlib's.
     found = json.loads((tmp_path / "report" / "results.json").read_text())
     assert (found["verdict"], found["compared"]) == ("passed", ["stock"])
-    assert {each["library"] for each in found["results"] if each["verdict"] == "failed"} == {
-        "stock"
-    }
+    failed = [each["library"] for each in found["results"] if each["verdict"] == "failed"]
+    assert {*failed} == {"stock"}
     suites = ElementTree.parse(tmp_path / "report" / "junit.xml").findall("testsuite")
     assert {each.get("failures") for each in suites} == {"0"}
     times = [each["seconds"] for each in found["results"]]
@@ -116,10 +108,8 @@ def test_render_shows_a_shader_ball_in_a_studio_where_the_host_can_and_says_so_i
     options = [*options, "--element", "ochre_plaster", "--size", "32", "--output", output]
     assert main(["render", PLASTER, *options]) == PASSED
     image = oiio.ImageBuf(output)
-    made = [
-        image.spec().get_string_attribute(f"mxeon:{name}") for name in ("element", "scene", "shape")
-    ]
-    assert made == ["ochre_plaster", scene, shape]
+    for name, value in {"element": "ochre_plaster", "scene": scene, "shape": shape}.items():
+        assert image.spec().get_string_attribute(f"mxeon:{name}") == value
     pixels = image.get_pixels(oiio.FLOAT)
     assert pixels.shape == (32, 32, 3) and pixels.max() > 0.1
     assert pixels[0, 0].any() == (shape == "ball")
@@ -136,11 +126,7 @@ def test_generate_writes_a_file_for_each_stage_and_material(tmp_path, capsys):
     targets = ["--target", "glsl", "--target", "osl"]
     assert main(["generate", CLAY, *targets, "--outputPath", str(tmp_path)]) == PASSED
     names = {path.name for path in tmp_path.iterdir()}
-    assert {
-        "clay.terracotta.glsl.frag",
-        "clay.terracotta.glsl.vert",
-        "clay.terracotta.osl",
-    } <= names
+    assert {f"clay.terracotta.{end}" for end in ("glsl.frag", "glsl.vert", "osl")} <= names
     assert set(capsys.readouterr().out.split()) == {str(tmp_path / name) for name in names}
 
 
@@ -192,9 +178,8 @@ def test_help_is_a_sentence_then_usage_and_examples_that_parse(command, capsys):
     assert main([*command.split(), "--help"]) == PASSED
     text = capsys.readouterr().out
     first, usage, *_ = text.split("\n\n")
-    assert re.fullmatch(r"[A-Z][^.]*\.", first) and usage.startswith(
-        f"usage: mxeon {command}".rstrip()
-    )
+    assert re.fullmatch(r"[A-Z][^.]*\.", first)
+    assert usage.startswith(f"usage: mxeon {command}".rstrip())
     assert "--max" not in text and "--allow" not in text
     examples = re.findall(r"^  mxeon (.*?)(?:  #.*)?$", text, re.MULTILINE)
     assert examples and all(parser().parse_args(each.split()).run for each in examples)

@@ -39,38 +39,24 @@ FILES = {
     "render": "kit/renders/a.exr",
     "page": "nodes.md",
 }
-MATERIAL = ("document", "include", "texture", "set of textures", "source", "included source")
 TRUSTED = ("library", "library's source", "definitions")
-REPORTED = ("results", "picture", "journal")
-OPTIONS = ("--library", "lib", "--definitions", "defs", "--workers", "0")
-# Commands that write: arguments without the output, name of an output, and roles of the inputs.
+MATERIAL = ("document", "include", "texture", "set of textures", "source", "included source")
+MATERIAL += TRUSTED
+OPTIONS = "--library lib --definitions defs --workers 0"
+# Commands that write, without the output at their end: name of an output, and roles of the inputs.
 WRITING = {
-    "render": (
-        ["render", "look.mtlx", "--environment", "sky.exr", *OPTIONS, "--output"],
+    f"render look.mtlx --environment sky.exr {OPTIONS} --output": (
         "out.png",
-        (*MATERIAL, *TRUSTED, "environment"),
+        (*MATERIAL, "environment"),
     ),
-    "explore": (
-        ["explore", "look.mtlx", *OPTIONS, "--output"],
-        "out.html",
-        (*MATERIAL, *TRUSTED),
-    ),
-    "generate": (
-        ["generate", "look.mtlx", "--target", "osl", *OPTIONS, "--outputPath"],
-        "out/look.a.osl",
-        (*MATERIAL, *TRUSTED),
-    ),
-    "report field": (["report", "field", "run", "--output"], "out.html", REPORTED),
-    "check": (["check", "look.mtlx", *OPTIONS, "--report"], "out/junit.xml", (*MATERIAL, *TRUSTED)),
-    "kit check": (["kit", "check", "kit", "--report"], "out/results.json", ("kit", "render")),
-    "kit export": (
-        ["kit", "export", "--library", "lib", "--definitions", "defs"],
-        "out/kit.json",
-        TRUSTED,
-    ),
+    f"explore look.mtlx {OPTIONS} --output": ("out.html", MATERIAL),
+    f"generate look.mtlx --target osl {OPTIONS} --outputPath": ("out/look.a.osl", MATERIAL),
+    "report field run --output": ("out.html", ("results", "picture", "journal")),
+    f"check look.mtlx {OPTIONS} --report": ("out/junit.xml", MATERIAL),
+    "kit check kit --report": ("out/results.json", ("kit", "render")),
+    "kit export --library lib --definitions defs": ("out/kit.json", TRUSTED),
 }
 EMPTY = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude"></materialx>'
-REPLACING = [(command, kind) for command, (*_, kinds) in WRITING.items() for kind in kinds]
 
 
 @pytest.fixture
@@ -112,43 +98,41 @@ def refused(arguments, folder, capsys):
     return one_line(printed.err)
 
 
-@pytest.mark.parametrize("command, kind", REPLACING)
+@pytest.mark.parametrize(
+    "command, kind", [(each, kind) for each in WRITING for kind in WRITING[each][1]]
+)
 def test_no_output_is_a_file_that_is_read(command, kind, inputs, capsys):
-    arguments, name, _ = WRITING[command]
-    output = inputs / name
+    output = inputs / WRITING[command][0]
     output.parent.mkdir(exist_ok=True)
+    named = output if output.parent == inputs else output.parent
     for link in (os.symlink, os.link):
         link(inputs / FILES[kind], output)
-        line = refused([*arguments, str(output.parent if "/" in name else output)], inputs, capsys)
+        line = refused([*command.split(), str(named)], inputs, capsys)
         assert "output must not replace a file that is read" in line and FILES[kind] in line
         output.unlink()
 
 
 @pytest.mark.parametrize("spelling", ["tiles.png", "lib/../tiles.png", "./tiles.png"])
 def test_an_output_of_the_name_of_an_input_is_refused(spelling, inputs, capsys):
-    line = refused([*WRITING["render"][0], spelling], inputs, capsys)
+    line = refused([*next(iter(WRITING)).split(), spelling], inputs, capsys)
     assert "output must not replace a file that is read" in line
 
 
-HOLDING = {
-    ".": "check look.mtlx --report",
-    "defs": "check look.mtlx --definitions defs --report",
-    "lib": "check look.mtlx --library lib --report",
-    "kit": "kit check kit --report",
-    "kit/renders": "kit check kit --report",
-}
-
-
-@pytest.mark.parametrize("folder, command", HOLDING.items())
-@pytest.mark.parametrize("through", ["name", "link"])
-def test_a_report_goes_to_no_folder_that_holds_what_is_read(
-    folder, command, through, inputs, capsys
-):
-    if through == "link":
-        (inputs / "there").symlink_to(inputs / folder)
-        folder = "there"
-    line = refused([*command.split(), folder], inputs, capsys)
-    assert "must be a folder without files that are read" in line
+@pytest.mark.parametrize(
+    "command, folder",
+    [
+        ("check look.mtlx --report", "."),
+        ("check look.mtlx --definitions defs --report", "defs"),
+        ("check look.mtlx --library lib --report", "lib"),
+        ("kit check kit --report", "kit"),
+        ("kit check kit --report", "kit/renders"),
+    ],
+)
+def test_a_report_goes_to_no_folder_that_holds_what_is_read(folder, command, inputs, capsys):
+    (inputs / "there").symlink_to(inputs / folder)
+    for name in (folder, "there"):
+        line = refused([*command.split(), name], inputs, capsys)
+        assert "must be a folder without files that are read" in line
 
 
 LOOK = f"{FILES['document']} --workers 0"
@@ -242,29 +226,21 @@ def test_a_page_without_its_packages_is_refused_first(
     assert f"needs {package}: pip install '.[report]'" in refused(command.split(), inputs, capsys)
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        "check look.mtlx --host nosuch",
-        "check nowhere",
-        "check look.mtlx --seed -1",
-        "kit check kit",
-    ],
-)
+REFUSED = "check look.mtlx --host nosuch", "check nowhere", "check look.mtlx --seed -1"
+
+
+@pytest.mark.parametrize("command", [*REFUSED, "kit check kit"])
 def test_a_refused_run_leaves_no_results_of_an_older_one(command, inputs, capsys):
-    (inputs / "out" / "pictures").mkdir(parents=True)
-    old = {inputs / "out" / name: name.encode() for name in (RESULTS, JUNIT, PAGE)}
-    for path, data in (old | {inputs / "out" / "pictures" / "mine.png": b"mine"}).items():
-        path.write_bytes(data)
+    out, names = inputs / "out", (RESULTS, JUNIT, PAGE)
+    (out / "pictures").mkdir(parents=True)
+    for name in (*names, "pictures/mine.png"):
+        (out / name).write_text(name)
     assert main([*command.split(), "--report", "out"]) == MISUSE
-    assert not any(path.exists() and path.read_bytes() == data for path, data in old.items())
-    assert (inputs / "out" / "pictures" / "mine.png").exists()
-    assert {each.name: each.read_bytes() for each in (inputs / "out" / PREVIOUS).iterdir()} == {
-        path.name: data for path, data in old.items()
+    assert not any((out / name).exists() and (out / name).read_text() == name for name in names)
+    assert (out / "pictures" / "mine.png").exists()
+    assert {each.name: each.read_text() for each in (out / PREVIOUS).iterdir()} == {
+        name: name for name in names
     }
-
-
-STEERING = "::error::a\x1b[31m\nb"  # would control a runner and a terminal
 
 
 @pytest.mark.parametrize(
@@ -273,9 +249,10 @@ STEERING = "::error::a\x1b[31m\nb"  # would control a runner and a terminal
 )
 def test_names_of_outputs_steer_no_terminal_and_no_runner(command, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert main([*command.split(), STEERING]) == PASSED
+    name = "::error::a\x1b[31m\nb"  # would control a runner and a terminal
+    assert main([*command.split(), name]) == PASSED
     printed = capsys.readouterr().out
-    assert os.path.isdir(STEERING) and "error::a\ufffd[31m\ufffdb" in printed
+    assert os.path.isdir(name) and "error::a\ufffd[31m\ufffdb" in printed
     assert not re.search("^(::|b)|\x1b", printed, re.MULTILINE)
 
 
@@ -309,21 +286,22 @@ def test_a_second_run_replaces_its_own_outputs(tmp_path, monkeypatch):
 
 GENERATE = f"generate {PLASTER} --target osl --workers 0 --outputPath out"
 # Commands that write a folder, and names in it where an attacker may plant a link.
+OUTPUT = "plaster.ochre_plaster.osl"
 FOLDERS = {
-    GENERATE: ("plaster.ochre_plaster.osl",),
+    GENERATE: (OUTPUT,),
     "kit export out --size 64": ("kit.json", "README.md", "sphere.obj", "materials", "renders"),
     f"check {PLASTER} --host msl --workers 0 --report out": (
         *("results.json", "junit.xml", "report.html"),
         *("journal", "journal/items.jsonl", ".journal.lock"),
     ),
 }
-LINKS = [(command, name, False) for command, names in FOLDERS.items() for name in names]
-LINKS += [(command, names[0], True) for command, names in FOLDERS.items()]
 
 
-@pytest.mark.parametrize("command, name, dangling", LINKS)
+@pytest.mark.parametrize(
+    "command, name", [(each, name) for each in FOLDERS for name in FOLDERS[each]]
+)
 def test_nothing_is_written_through_a_link_in_a_folder(
-    command, name, dangling, tmp_path, monkeypatch, capsys
+    command, name, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
     other, link = tmp_path / "other", Path("out", name)
@@ -331,14 +309,17 @@ def test_nothing_is_written_through_a_link_in_a_folder(
     assert link.exists()
     link.rename("moved")
     link.symlink_to(other)
-    if not dangling:
-        other.write_text("mine")
-    capsys.readouterr()
-    assert main(command.split()) == MISUSE
-    assert capsys.readouterr().err == (
-        f"mxeon: {link}: must not be a link, which leads to another file; remove it\n"
-    )
-    assert other.exists() is not dangling and (dangling or other.read_text() == "mine")
+    dangling = [None] if name == FOLDERS[command][0] else []
+    for content in (*dangling, "mine"):
+        if content:
+            other.write_text(content)
+        capsys.readouterr()
+        assert main(command.split()) == MISUSE
+        said = capsys.readouterr().err
+        assert (
+            said == f"mxeon: {link}: must not be a link, which leads to another file; remove it\n"
+        )
+        assert (other.read_text() if other.exists() else None) == content
 
 
 def test_a_folder_that_is_a_link_is_written_to(tmp_path, monkeypatch):
@@ -346,4 +327,4 @@ def test_a_folder_that_is_a_link_is_written_to(tmp_path, monkeypatch):
     os.mkdir("there")
     os.symlink("there", "out")
     assert main(GENERATE.split()) == PASSED
-    assert Path("there", *FOLDERS[GENERATE]).exists()
+    assert Path("there", OUTPUT).exists()

@@ -3,10 +3,13 @@
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 import warnings
+from functools import cache
 from pathlib import Path
+from tempfile import mkdtemp
 
 import MaterialX as mx
 import numpy as np
@@ -18,55 +21,112 @@ from mxeon.conformance import words as sentences
 from mxeon.errors import MISUSE, PASSED
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.io.images import write_exr
+from mxeon.kit import check as judging
+from mxeon.kit import questions
 from mxeon.kit.check import check_kit
 from mxeon.kit.encoding import fault
-from mxeon.kit.expected import expected, judged
+from mxeon.kit.expected import expected, judged, pixel_means
 from mxeon.kit.export import export_kit
 from mxeon.kit.noise import ratio, tiles
-from mxeon.kit.views import MATERIALS, SETUP
+from mxeon.kit.views import MATERIALS, SETUP, views
 from mxeon.models import table as reference
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import ApproximationWarning, generate
-from tests.kit.conftest import (
-    CUBED,
-    EON,
-    SIZE,
-    VIEWS,
-    names,
-    read,
-    render,
-    result_of,
-    write_kit,
-    write_pictures,
-)
 from tests.support.availability import available
 from tests.support.documents import studio
 from tests.support.tolerances import KIT_FALSE_ALARMS
 from tests.support.verdicts import has, said
 
 EXTERNAL_RENDERER = Path(__file__).parents[1] / "support" / "external_renderer.py"
+SIZE = 64
+VIEWS = {view.name: view for view in views(SIZE)}
+EON, CUBED = (reference.diffuse_model(name).title for name in ("eon", "eon_rho_cubed"))
 
 
-@pytest.fixture(scope="module")
-def exported(tmp_path_factory):
+@pytest.fixture(scope="module", autouse=True)
+def remembered():
+    """Cache the expected values of models in views for all tests of a module."""
+    with pytest.MonkeyPatch.context() as patch:
+        for function in (expected, pixel_means):
+            once = cache(function)
+            for module in (questions, judging):
+                if hasattr(module, function.__name__):
+                    patch.setattr(module, function.__name__, once)
+        yield
+
+
+@cache
+def means(model, name):
+    """Mean values of a model over each judged pixel of a view."""
+    return pixel_means(reference.diffuse_model(model), VIEWS[name])
+
+
+@cache
+def exported():
     """Folder of an exported kit, which tests must not change."""
-    folder = tmp_path_factory.mktemp("exported")
+    folder = Path(mkdtemp())
     export_kit(folder, SIZE)
     return folder
 
 
+def write_kit(folder):
+    """Write a kit without pictures to an empty folder, or over another kit."""
+    shutil.copytree(exported(), folder, dirs_exist_ok=True)
+
+
+def write_pictures(folder, true="eon", false="qon", noise=0.0, seed=1):
+    """Write a kit with pictures of two models; `noise` is the relative noise of each pixel."""
+    rng = np.random.default_rng(seed)
+    write_kit(folder)
+    for view in VIEWS.values():
+        model = true if view.material.energy_compensation else false
+        mask, image = judged(view.scene), np.zeros((SIZE, SIZE, 3))
+        values = means(model, view.name)
+        image[mask] = values * (1.0 + noise * rng.standard_normal(values.shape))
+        write_exr(folder / "renders" / f"{view.name}.exr", image, {})
+
+
+@pytest.fixture
+def kit(tmp_path):
+    """Folder of a kit with pictures of EON and QON."""
+    write_pictures(tmp_path)
+    return tmp_path
+
+
+def render(kit, name):
+    return kit / "renders" / f"{name}.exr"
+
+
+def read(path):
+    return oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
+
+
+def result_of(run, check, subject):
+    """The single result of a check whose subject starts with the given text."""
+    (result,) = [
+        each for each in run.results if each.check == check and each.subject.startswith(subject)
+    ]
+    return result
+
+
+def names(run):
+    """Best matching model in each note, by subject."""
+    pattern = r"(.*): best match: (.*) \(rms .*?\), then (.*) \("
+    return {match[1]: match[2] for match in map(re.compile(pattern).match, run.notes) if match}
+
+
 @pytest.mark.parametrize("material", MATERIALS)
 @pytest.mark.parametrize("target", ["glsl", "osl", "mdl"])
-def test_each_material_is_a_document_that_generates(exported, material, target):
-    document = exported / "materials" / f"{material.name}.mtlx"
+def test_each_material_is_a_document_that_generates(material, target):
+    document = exported() / "materials" / f"{material.name}.mtlx"
     assert len(generate(document, target, library="stock")) == 1
 
 
-def test_the_description_says_what_the_scenes_say(exported):
-    kit = json.loads((exported / "kit.json").read_text())
+def test_the_description_says_what_the_scenes_say():
+    kit = json.loads((exported() / "kit.json").read_text())
     assert {Path(each["file"]).stem for each in kit["pictures"]} == set(VIEWS)
     for each in kit["pictures"]:
-        usd = (exported / "scenes" / f"{Path(each['file']).stem}.usda").read_text()
+        usd = (exported() / "scenes" / f"{Path(each['file']).stem}.usda").read_text()
         material = kit["materials"][each["material"]]
         assert f"inputs:color = ({', '.join(map(str, material['color']))})" in usd
         distant = kit["scenes"][each["scene"]].get("distant")
@@ -88,19 +148,15 @@ def test_bias_far_below_the_noise_of_a_pixel_is_found():
     assert ratio([tiles(error, 0.0 * error, mask)]) > 1.0
 
 
-TRUE = ("eon", "fon", "eon_rho_cubed", "eon_clamped", "fon_white_lobe")
-FALSE = ("lambert", "oren_nayar", "qon", "qon_footnote", "qon_fujii")
+MODELS = {
+    "true": ("eon", "fon", "eon_rho_cubed", "eon_clamped", "fon_white_lobe"),
+    "false": ("lambert", "oren_nayar", "qon", "qon_footnote", "qon_fujii"),
+}
 
 
-@pytest.mark.parametrize(
-    "flag, name, noise",
-    [
-        *(("true", name, 0.02) for name in TRUE),
-        *(("false", name, 0.02) for name in FALSE),
-    ],
-)
-def test_each_model_is_named_whatever_the_noise(tmp_path, flag, name, noise):
-    write_pictures(tmp_path, **{flag: name}, noise=noise)
+@pytest.mark.parametrize("flag, name", [(flag, name) for flag in MODELS for name in MODELS[flag]])
+def test_each_model_is_named_whatever_the_noise(tmp_path, flag, name):
+    write_pictures(tmp_path, **{flag: name}, noise=0.02)
     found, title = names(check_kit(tmp_path)), reference.diffuse_model(name).title
     assert found[f"energy_compensation {flag}, distant light"] == title
     assert flag == "false" or found["energy_compensation true, environment"] == title
@@ -168,8 +224,8 @@ FAULTS = {
     "100 times as bright": lambda image: 100.0 * image,
     "black": np.zeros_like,
     "1.23 times as bright": lambda image: 1.23 * image,
-    "not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise": lambda image: (
-        np.tanh(4.0 * image) ** 0.5
+    "not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise": (
+        lambda image: np.tanh(4.0 * image) ** 0.5
     ),
     "": lambda image: image,
 }
@@ -264,23 +320,18 @@ def test_a_missing_picture_is_not_run(kit):
     assert result_of(run, "model", "energy_compensation true, distant").verdict == "not run"
 
 
-def planted(value):
-    def change(image):
-        image = image.copy()
-        image[SIZE // 2, SIZE // 2, 1] = value
-        return image
-
-    return change
+def plant_nan(path):
+    image = read(path)
+    image[SIZE // 2, SIZE // 2, 1] = np.nan
+    write_exr(path, image, {})
 
 
-def changed(change):
-    """Function that rewrites a picture file with changed pixels."""
-    return lambda path: write_exr(path, change(read(path)), {})
+def round_to_bytes(path):
+    write_exr(path, np.rint(read(path) * 255.0) / 255.0, {})
 
 
-def replaced(change):
-    """Function that changes the bytes of a picture file."""
-    return lambda path: path.write_bytes(change(path.read_bytes()))
+def damage_header(path):
+    path.write_bytes(path.read_bytes().replace(b"\0chlist\0", b"\0\xffhlist\0", 1))
 
 
 def channels(*names, x=0, y=0):
@@ -298,23 +349,20 @@ def write_png(path):
 
 LAYERS = ("a.R", "a.G", "a.B", "b.R", "b.G", "b.B")
 SPOILED = {  # picture: function that damages it, and words of the diagnosis
-    "true_front": (changed(planted(np.nan)), "must be finite numbers; got .* row 32, column 32"),
-    "true_side": (changed(lambda image: image[:32]), "must be 64 x 64 pixels; got 64 x 32"),
-    "true_back": (
-        changed(lambda image: np.rint(image * 255.0) / 255.0),
-        "never rounded to eight bits",
+    "true_front": (plant_nan, "must be finite numbers; got .* row 32, column 32"),
+    "true_side": (
+        lambda path: write_exr(path, read(path)[:32], {}),
+        "must be 64 x 64 pixels; got 64 x 32",
     ),
-    "true_furnace": (
-        replaced(lambda data: data.replace(b"\0chlist\0", b"\0\xffhlist\0", 1)),
-        r"\\xffhlist",
-    ),
+    "true_back": (round_to_bytes, "never rounded to eight bits"),
+    "true_furnace": (damage_header, r"\\xffhlist"),
     "half_side": (write_png, "got uint8"),
     "false_front": (lambda path: path.with_suffix(".csv").write_text(""), "must be one file"),
     "false_side": (lambda path: path.write_text("nothing"), "must be an EXR file"),
     "false_back": (channels(*"XYZ"), "must hold one R, G and B; got channels X, Y, Z"),
     "false_furnace": (channels(*LAYERS), f"one R, G and B; got channels {', '.join(LAYERS)}"),
     "black_side": (channels(*"RGB", x=5, y=9), r"display window's corner; got \(5, 9\)"),
-    "white_furnace": (replaced(lambda data: data[:900]), "must be"),
+    "white_furnace": (lambda path: path.write_bytes(path.read_bytes()[:900]), "must be"),
 }
 
 
