@@ -2,6 +2,7 @@
 """Checking a folder gives one verdict per document, and a summary by cause."""
 
 import shutil
+from dataclasses import replace
 
 from mxeon import check
 from mxeon.cli import main
@@ -47,6 +48,13 @@ def test_causes_count_documents_the_worst_first():
         "1 passed: matches the reference (a/clay.mtlx)",
         "1 passed: matches the reference, with inputs that the host computed (b/noise.mtlx)",
     ]
+
+
+def test_a_document_that_one_library_lacks_counts_once():
+    run = replace(RUN, refused={"a/clay.mtlx with stock": ("a/clay.mtlx: no x (with stock)",)})
+    first, *rows = summary_by_cause(run)
+    assert first.startswith("3 documents, 1 ")
+    assert rows[0] == "     1 refused: no x (with stock) (a/clay.mtlx)"
 
 
 def test_a_bad_document_of_a_folder_is_one_line_and_the_run_goes_on(tmp_path, capsys):

@@ -199,12 +199,12 @@ def _document_states(run: Run) -> Iterator[DocumentState]:
                 _cause(worst, any(each.measured for each in results)),
                 all(each.check == "picture" and each.error is not None for each in results),
             )
-    for refused, (fault, *others) in run.refused.items():
-        whole = fault.startswith(f"{refused}: ")  # otherwise only with a library
-        document = refused if whole else refused.rpartition(" with ")[0]
+    for document, (fault, *others) in run.refused.items():
+        if not fault.startswith(f"{document}: "):
+            document = document.rpartition(" with ")[0]  # refused with this library only
         more = f"; {counted(len(others), 'more fault')}" if others else ""
         cause = QUOTED_PATH.sub("...", fault.removeprefix(f"{document}: ") + more)
-        yield DocumentState(refused, "", REFUSED, cause)
+        yield DocumentState(document, "", REFUSED, cause)
 
 
 def _cause(result: Result, measured: bool) -> str:
