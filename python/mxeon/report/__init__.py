@@ -101,24 +101,21 @@ def to_json(run: Run) -> str:
 
 
 def _picture_fields(run: Run) -> list[dict[str, Any]]:
-    keys = ("document", "element", "host", "library", "scene")
-    fields: list[dict[str, Any]] = []
     pictures = _with_references(run.pictures)
-    places = [(each.host, *_subject(each)) for each in pictures]
-    stems = dict(zip(places, image_names(pictures), strict=True))
-    with in_threads(lambda picture: picture.difference, run.pictures) as each:
-        differences = list(each)
-    for picture, stem, apart in zip(
-        run.pictures, image_names(run.pictures), differences, strict=True
-    ):
-        reference = stems.get((REFERENCE, *_subject(picture)))
-        fields.append(
+    names = [f"pictures/{name}" for name in image_names(pictures)]
+    references = {
+        _subject(picture): f"{name}.exr"
+        for picture, name in zip(pictures, names, strict=True)
+        if picture.host == REFERENCE
+    }
+    keys = ("document", "element", "host", "library", "scene")
+    with in_threads(lambda picture: picture.difference, run.pictures) as differences:
+        return [
             {key: getattr(picture, key) for key in keys}
-            | {"exr": f"pictures/{stem}.exr", "png": f"pictures/{stem}.png"}
-            | {"reference": f"pictures/{reference}.exr" if reference else None}
-            | {"difference": apart}
-        )
-    return fields
+            | {"exr": f"{name}.exr", "png": f"{name}.png"}
+            | {"reference": references.get(_subject(picture)), "difference": difference}
+            for picture, name, difference in zip(run.pictures, names, differences, strict=False)
+        ]
 
 
 def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
@@ -214,18 +211,17 @@ def html(run: Run) -> Generator[str, None, None]:
 
 
 def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
-    shown = {_subject(picture) for picture in pictures if picture.host == REFERENCE}
-    references = []
+    """The pictures, followed by those of their references that are not among them, once each."""
+    known = {_subject(each) for each in pictures if each.host == REFERENCE}
+    added = []
     for picture in pictures:
-        if picture.reference is None or _subject(picture) in shown:
+        if picture.reference is None or _subject(picture) in known:
             continue
-        shown.add(_subject(picture))
-        kept = {key: picture.metadata[key] for key in SHARED_METADATA if key in picture.metadata}
-        metadata = kept | {"host": REFERENCE}
-        references.append(
-            replace(picture, host=REFERENCE, image=picture.reference, metadata=metadata)
-        )
-    return (*pictures, *references)
+        known.add(_subject(picture))
+        shared = {key: picture.metadata[key] for key in SHARED_METADATA if key in picture.metadata}
+        metadata = shared | {"host": REFERENCE}
+        added.append(replace(picture, host=REFERENCE, image=picture.reference, metadata=metadata))
+    return (*pictures, *added)
 
 
 def _subject(picture: Picture) -> tuple[str, ...]:

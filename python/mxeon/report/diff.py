@@ -38,8 +38,8 @@ WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "
 RANKS = (PASSED, DIFFERS, FAILED)
 PLACE = ("host", "library", "check", "subject")
 SAMPLED = (Quantity.VALUES, Quantity.PIXELS)  # counts that depend on the drawn samples
-# Another engine or driver changes errors of the same samples by up to this factor, plus the error
-# of its functions.
+# Errors of the same samples differ between engines or drivers by up to the factor EQUAL, plus the
+# error FUNCTIONS of their built-in functions.
 EQUAL, FUNCTIONS = 1.02, 2e-5
 # Other samples change errors by up to CHANCE standard deviations, and the rms distance to the best
 # match by up to the factor DISTANCE.
@@ -189,21 +189,23 @@ def read_report(content: dict[str, object]) -> Report:
 
 def compare(before: Report, after: Report) -> tuple[Change, ...]:
     """Changes between two reports, sorted by kind, host, library and subject, largest first."""
-    before = _renamed(before, _moved(list(before.libraries), list(after.libraries)))
+    before = _renamed(before, _matching_folders(list(before.libraries), list(after.libraries)))
     names = {Path(each).name for each in (*after.documents, *after.refused)}
     known = {each.name: each for each in before.hosts}
     renewed = {each.name for each in after.hosts if known.get(each.name, each) != each}
     removed = {each for each in before.documents if Path(each).name not in names}
     changes = [
         *(Change(OTHER, "", "", "", each, "checked", "removed") for each in sorted(removed)),
-        *_results(_by_place(before.results), _by_place(after.results), bool(removed), renewed),
+        *_result_changes(
+            _by_place(before.results), _by_place(after.results), bool(removed), renewed
+        ),
         *(  # refused documents have no results that could be compared
             Change(WORSE, "", "", "", each, "not refused", "refused")
             if each in after.refused
             else Change(BETTER, "", "", "", each, "refused", "not refused")
             for each in sorted({*before.refused} ^ {*after.refused})
         ),
-        *_facts(before, after),
+        *_version_changes(before, after),
     ]
     largest: dict[tuple[str, ...], float] = {}
     for each in changes:
@@ -248,7 +250,7 @@ def to_json(changes: Iterable[Change]) -> list[dict[str, object]]:
 
 
 def annotations(changes: Iterable[Change]) -> Iterator[str]:
-    """Regressions and lost checks as GitHub annotations: one per subject: GitHub shows few."""
+    """Regressions and lost checks as GitHub annotations, one per subject: GitHub shows few."""
     for (kind, host, library, subject), rows in groupby(changes, key=_group):
         if level := {WORSE: "error", LOST: "warning"}.get(kind):
             place = f"{host} with {library}" if host else ""
@@ -256,20 +258,23 @@ def annotations(changes: Iterable[Change]) -> Iterator[str]:
             yield words.annotation(level, title, "\n".join(map(one_line, rows)))
 
 
-def _moved(before: Sequence[str], after: Sequence[str]) -> dict[str, str]:
+def _matching_folders(before: Sequence[str], after: Sequence[str]) -> dict[str, str]:
     """Map library folders of `before` to folders of `after`, since folders may have moved.
 
-    Match them by path, then by name, then by position in `--library`.
+    Folders are matched by path, then by name, then by position in `--library`.
     """
-    same = {folder: folder for folder in before if folder in after}
+    matches = {folder: folder for folder in before if folder in after}
     for by_name in (True, False):
         for old in before:
-            left = [new for new in after if new not in same.values()]
-            if by_name:
-                left = [new for new in left if Path(new).name == Path(old).name]
-            if old not in same and left:
-                same[old] = left[0]
-    return same
+            candidates = (
+                new
+                for new in after
+                if new not in matches.values()
+                if Path(new).name == Path(old).name or not by_name
+            )
+            if old not in matches and (new := next(candidates, "")):
+                matches[old] = new
+    return matches
 
 
 def _renamed(report: Report, libraries: Mapping[str, str]) -> Report:
@@ -294,14 +299,14 @@ def _by_place(results: Iterable[Result]) -> dict[tuple[str, ...], Result]:
 Results: TypeAlias = Mapping[tuple[str, ...], Result]
 
 
-def _results(
+def _result_changes(
     before: Results, after: Results, fewer: bool, renewed: Container[str]
 ) -> Iterator[Change]:
     """Changes of results. With `fewer` documents, no check is LOST; `renewed` hosts changed."""
     for key in (key for key in before if key in after):
         old, new = before[key], after[key]
         kind, reason, growths = _change(old, new)
-        if kind == WORSE and old.host in renewed and _is_rounded(old, new):
+        if kind == WORSE and old.host in renewed and _is_rounding(old, new):
             kind, reason = OTHER, words.ROUNDED
         if kind:
             host, library, check, subject, *number = key
@@ -346,7 +351,7 @@ def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
         return WORSE if worse else BETTER, words.UNEXPLAINED * explained, grown if worse else fallen
     if new.verdict == PASSED:
         return (OTHER, "", grown or fallen) if grown or fallen else ("", "", ())
-    if old.pages and not new.pages and new.verdict == FAILED and not _is_mended(old, new):
+    if old.pages and not new.pages and new.verdict == FAILED and not _is_repaired(old, new):
         return WORSE, words.lost_page(old.pages), grown
     if grown:
         return WORSE, "", grown
@@ -361,12 +366,12 @@ def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
 
     Changes within the tolerance are ignored: they would pass if the rest were right.
     """
-    room = (new.tolerance or 0.0) + FUNCTIONS
+    margin = (new.tolerance or 0.0) + FUNCTIONS
     if not (old.errors and new.errors):
         least, most = (math.inf if each.error is None else each.error for each in (old, new))
         counted = new.quantity and new.quantity.counted and new.quantity not in SAMPLED
         factor = 1.0 if counted else SPREAD
-        return (Growth("error", least, most),) if most > factor * least + room else ()
+        return (Growth("error", least, most),) if most > factor * least + margin else ()
     same = old.samples == new.samples
     permitted = old.verdict == new.verdict == DIFFERS
     regions = {each.region: each for each in old.errors}
@@ -377,15 +382,15 @@ def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
         # A mean square has the largest variance if each error is either 0 or the largest error.
         noise = CHANCE * math.hypot(*(x.largest * x.rms / math.sqrt(x.of) for x in (was, now)))
         usual = EQUAL * was.rms if same else math.sqrt(was.rms**2 + noise)
-        keys = ("not_finite", *["wrong"] * (now.rms > was.rms + room and not permitted))
+        keys = ("not_finite", *["wrong"] * (now.rms > was.rms + margin and not permitted))
         for key in keys:
             least, most = getattr(was, key) * now.of / was.of, getattr(now, key)
             chance = math.sqrt(least + most) * ((key == "wrong") if same else CHANCE)
             if most > (EQUAL if same else 1.0) * least + chance:
                 found.append(Growth(key, least / now.of, most / now.of, now.region))
-        if now.rms > usual + room and not permitted:
+        if now.rms > usual + margin and not permitted:
             found.append(Growth("rms", was.rms, now.rms, now.region))
-        if same and now.largest > SPREAD * was.largest + room:
+        if same and now.largest > SPREAD * was.largest + margin:
             found.append(Growth("largest", was.largest, now.largest, now.region))
     least, most = (each.diagnosis.distance for each in (old, new))
     if new.verdict == FAILED and new.errors[0].rms > old.errors[0].rms and _is_farther(old, new):
@@ -393,7 +398,7 @@ def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
     return tuple(found)
 
 
-def _is_rounded(old: Result, new: Result) -> bool:
+def _is_rounding(old: Result, new: Result) -> bool:
     """Whether another driver explains a failure: few samples exceed the tolerance, not the rms.
 
     With MaterialX's sheen, 5 of 6957 samples exceed 2e-5 on llvmpipe, by 1.2e-4; none on lavapipe.
@@ -411,7 +416,7 @@ def _is_farther(old: Result, new: Result) -> bool:
     return SAME * own < now < math.inf and now > factor * was + (new.tolerance or 0.0)
 
 
-def _is_mended(old: Result, new: Result) -> bool:
+def _is_repaired(old: Result, new: Result) -> bool:
     """Whether a known defect is gone: the own model is nearest, as near as the defect was.
 
     With other samples, an error that exceeds the size on the defect's page may be noise.
@@ -421,7 +426,7 @@ def _is_mended(old: Result, new: Result) -> bool:
     return nearest and not _is_farther(old, new)
 
 
-def _facts(before: Report, after: Report) -> Iterator[Change]:
+def _version_changes(before: Report, after: Report) -> Iterator[Change]:
     """Changes in the versions of mxeon, packages and hosts."""
     old, new = (
         {"mxeon": each.version}
@@ -430,17 +435,13 @@ def _facts(before: Report, after: Report) -> Iterator[Change]:
         for each in (before, after)
     )
     for name in dict.fromkeys((*old, *new)):
-        if old.get(name) != new.get(name):
-            values = old.get(name, "none"), new.get(name, "none")
-            yield Change(OTHER, "", "", "", name, *values)
+        previous, current = old.get(name, "none"), new.get(name, "none")
+        if previous != current:
+            yield Change(OTHER, "", "", "", name, previous, current)
 
 
 def _with_error(result: Result) -> str:
-    ran = result.verdict != NOT_RUN and result.error is not None
-    return f"{result.verdict} at {_number(result.error)}" if ran else result.verdict
-
-
-def _number(value: float | None) -> str:
-    if value is None:
-        return "none"
-    return f"{value:.3g}" if math.isfinite(value) else str(spelled(value))
+    error = result.error
+    if result.verdict == NOT_RUN or error is None:
+        return result.verdict
+    return f"{result.verdict} at {f'{error:.3g}' if math.isfinite(error) else spelled(error)}"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The report page, one self-contained HTML file. Needs the `report` extra."""
 
+from collections import Counter
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -25,6 +26,7 @@ from mxeon.conformance.results import (
     Result,
     Run,
     Verdict,
+    grouped,
 )
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.io.images import difference, difference_scale
@@ -40,7 +42,7 @@ LARGE = 512  # pixels on a side of a studio picture
 LEAST_SCALE = 1e-3  # smallest scale of a difference map: 0.1 % of white
 OPEN_MATERIALS = 8  # maximum materials shown open; others open on a click
 OPEN_ROWS = 20  # maximum failed rows of checks that are shown open
-WORST_FIRST = (FAILED, NOT_RUN, DIFFERS, PASSED)
+WORST_FIRST: tuple[Verdict, ...] = (FAILED, NOT_RUN, DIFFERS, PASSED)
 
 Place: TypeAlias = tuple[str, str]  # host and library
 Verdicts: TypeAlias = Mapping[tuple[str, str, str], Result]  # keys: subject, host and library
@@ -62,22 +64,21 @@ class CheckResults:
     @property
     def tables(self) -> dict[Quantity | None, list[Result]]:
         """Results grouped by quantity, worst results first."""
-        tables: dict[Quantity | None, list[Result]] = {}
-        for each in sorted(self.results, key=lambda each: WORST_FIRST.index(each.verdict)):
-            tables.setdefault(each.quantity, []).append(each)
-        return tables
+        results = sorted(self.results, key=lambda each: WORST_FIRST.index(each.verdict))
+        return grouped(results, lambda each: each.quantity)
 
 
 def worst(results: Iterable[Result]) -> Verdict:
     return min((each.verdict for each in results), key=WORST_FIRST.index)
 
 
-def tally(results: Iterable[Result | CheckResults]) -> str:
+def tally(results: Iterable[Result]) -> str:
     """Counts of verdicts, worst first: "2 failed, 1 allowed, 5 passed"."""
-    verdicts = [each.verdict for each in results]
-    said = {DIFFERS: "allowed"}
+    verdicts = Counter(each.verdict for each in results)
     return ", ".join(
-        f"{verdicts.count(each)} {said.get(each, each)}" for each in WORST_FIRST if each in verdicts
+        f"{verdicts[each]} {'allowed' if each == DIFFERS else each}"
+        for each in WORST_FIRST
+        if verdicts[each]
     )
 
 
@@ -85,16 +86,13 @@ def checks_by_place(
     results: Iterable[Result], prefix: str = "check"
 ) -> dict[Place, list[CheckResults]]:
     """Group checks by host and library, in order of appearance; `prefix` begins all anchors."""
-    places: dict[Place, dict[str, list[Result]]] = {}
-    for result in results:
-        place = places.setdefault((result.host, result.library), {})
-        place.setdefault(result.check, []).append(result)
+    places = grouped(results, lambda each: (each.host, each.library))
     return {
-        location: [
-            CheckResults(key, f"{prefix}-{column}-{row}", tuple(members))
-            for row, (key, members) in enumerate(rows.items())
+        place: [
+            CheckResults(check, f"{prefix}-{column}-{row}", tuple(members))
+            for row, (check, members) in enumerate(grouped(group, lambda each: each.check).items())
         ]
-        for column, (location, rows) in enumerate(places.items())
+        for column, (place, group) in enumerate(places.items())
     }
 
 
@@ -107,23 +105,17 @@ def matrix(
     return [(key, [column.get(key) for column in columns]) for key in keys]
 
 
-def reasons(results: Iterable[Result]) -> dict[str, list[Result]]:
-    """Results that did not run, grouped by reason."""
-    stopped: dict[str, list[Result]] = {}
-    for result in results:
-        if result.verdict == NOT_RUN:
-            stopped.setdefault(result.reason, []).append(result)
-    return stopped
-
-
 def causes(results: Iterable[Result]) -> list[tuple[Markup, list[Result]]]:
     """Group failed checks of nodes by cause; causes with most failures come first."""
-    groups: dict[Markup, list[Result]] = {}
-    for each in results:
-        if each.verdict == FAILED and each.check != "picture":
-            for cause in causes_of(each):
-                groups.setdefault(cause, []).append(each)
-    return sorted(groups.items(), key=lambda group: -len(group[1]))
+    pairs = (
+        (cause, each)
+        for each in results
+        if each.verdict == FAILED and each.check != "picture"
+        for cause in causes_of(each)
+    )
+    groups = grouped(pairs, lambda pair: pair[0])
+    rows = [(cause, [each for _, each in group]) for cause, group in groups.items()]
+    return sorted(rows, key=lambda row: -len(row[1]))
 
 
 def nodes_of(results: Iterable[Result]) -> str:
@@ -136,21 +128,23 @@ def materials(run: Run) -> tuple[list[list[Picture]], Verdicts]:
     verdicts: dict[tuple[str, str, str], Result] = {}
     for each in run.results:
         if each.check in ("picture", "finite", *DIRECT):
-            document = f"{PORTRAIT}: " * (each.check in DIRECT)
+            document = f"{PORTRAIT}: " if each.check in DIRECT else ""
             verdicts[document + each.subject, each.host, each.library] = each
-    groups: dict[str, list[Picture]] = {}
-    for picture in run.pictures:
-        groups.setdefault(f"{picture.document}: {picture.element}", []).append(picture)
+    groups = grouped(run.pictures, subject_of)
     failed = {subject for (subject, *_), each in verdicts.items() if each.verdict == FAILED}
-    harm = dict.fromkeys(groups, 0.0)
+    largest = dict.fromkeys(groups, 0.0)
     for (subject, *_), each in verdicts.items():
-        if subject in harm and each.difference:
-            harm[subject] = max(harm[subject], abs(each.difference.largest))
+        if subject in largest and each.difference:
+            largest[subject] = max(largest[subject], abs(each.difference.largest))
     order = sorted(
         groups,
-        key=lambda name: (is_portrait(groups[name]), name not in failed, -harm[name]),
+        key=lambda name: (is_portrait(groups[name]), name not in failed, -largest[name]),
     )
     return [groups[subject] for subject in order], verdicts
+
+
+def subject_of(picture: Picture) -> str:
+    return f"{picture.document}: {picture.element}"
 
 
 def is_portrait(pictures: Sequence[Picture]) -> bool:
@@ -160,13 +154,13 @@ def is_portrait(pictures: Sequence[Picture]) -> bool:
 
 def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
     """The page's data of a material: a sentence per host and library, and rows of pictures."""
-    subject = f"{pictures[0].document}: {pictures[0].element}"
     # Stock MaterialX comes first: users have it without eonlib.
-    by_row: dict[tuple[str, str], list[Picture]] = {}
-    found: dict[Place, Result | None] = {}
-    for one in sorted(pictures, key=lambda each: each.library != "stock"):
-        by_row.setdefault((one.host, one.scene), []).append(one)
-        found[one.host, one.library] = verdicts.get((subject, one.host, one.library))
+    pictures = sorted(pictures, key=lambda each: each.library != "stock")
+    by_row = grouped(pictures, lambda each: (each.host, each.scene))
+    found = {
+        (each.host, each.library): verdicts.get((subject_of(each), each.host, each.library))
+        for each in pictures
+    }
     tolerances = [each.tolerance or 0.0 for each in found.values() if each]
     pairs = [_pair(each) for (_, scene), each in by_row.items() if scene == STUDIO.name]
     rows = [
@@ -177,9 +171,10 @@ def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
     rows.sort(key=lambda row: -max(row["largest"], default=0.0))
     answers = []
     for place, result in found.items():
-        parts = [words.look(result) if result else "no reference"]
-        parts += [words.unchecked(result.measured)] if result and result.measured else []
-        answers.append((place, result, "; ".join(parts)))
+        sentence = words.look(result) if result else "no reference"
+        if result and result.measured:
+            sentence += f"; {words.unchecked(result.measured)}"
+        answers.append((place, result, sentence))
     return {
         "document": pictures[0].document,
         "element": pictures[0].element,
@@ -246,18 +241,22 @@ def _figure(
     return {"kind": kind, "title": title, "note": note, "image": pieces.picture_uri(pixels, size)}
 
 
+def _is_audit(result: Result) -> bool:
+    """Whether a check judges the library's functions and source text, not its nodes."""
+    return result.host == SOURCE or result.subject == SHADER_FUNCTIONS
+
+
 def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, None]:
     """Generate a run's page in pieces; `file_of` returns the file of a picture.
 
     Pictures are read one by one. The page loads nothing and runs only its own script, which it does
     not need. Text from documents, shaders and hosts is escaped.
     """
-    checked: list[Result] = []
-    own: list[Result] = []  # results for the library's functions and source text
-    for each in sorted(run.results, key=run.is_elsewhere):  # failures for unused inputs come last
-        audits = each.host == SOURCE or each.subject == SHADER_FUNCTIONS
-        (own if audits else checked).append(each)
-    places, audit = checks_by_place(checked), checks_by_place(own, "audit")
+    # Failures for unused inputs come last.
+    results = sorted(run.results, key=run.is_elsewhere)
+    audits = [each for each in results if _is_audit(each)]
+    checked = [each for each in results if not _is_audit(each)]
+    places, audit = checks_by_place(checked), checks_by_place(audits, "audit")
     every = [*places.items(), *audit.items()]
     failed_rows = sum(
         len(check.results) for _, checks in every for check in checks if check.verdict == FAILED
@@ -266,14 +265,23 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
     shown = pictures[:SHOWN_MATERIALS]
     at_once = [each for each in shown if not is_portrait(each)][:OPEN_MATERIALS] or shown[:1]
     nodes = sum(map(is_portrait, shown[len(at_once) :]))
-    others = len(shown) - len(at_once) - nodes
-    folded = [words.counted(others, "more material")] * bool(others)
-    folded += [
-        f"{words.counted(nodes, 'node')} rendered without a document, as pictures only"
-    ] * bool(nodes)
-    filters: dict[str, Callable[..., Any]] = {"vector": vector, "linked": linked, "tally": tally}
-    filters |= {"nearest": nearest}
-    filters |= {"title": title_of, "worst": worst, "nodes": nodes_of}
+    folded = []
+    if others := len(shown) - len(at_once) - nodes:
+        folded.append(words.counted(others, "more material"))
+    if nodes:
+        folded.append(
+            f"{words.counted(nodes, 'node')} rendered without a document, as pictures only"
+        )
+    filters: dict[str, Callable[..., Any]] = {
+        "vector": vector,
+        "linked": linked,
+        "nearest": nearest,
+        "tally": tally,
+        "title": title_of,
+        "worst": worst,
+        "nodes": nodes_of,
+    }
+    not_run = (each for each in run.results if each.verdict == NOT_RUN)
     with in_threads(partial(material, verdicts), shown) as drawn:
         yield from pieces.generate_page(
             "mxeon.report",
@@ -289,7 +297,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
             places=places,
             audit=audit,
             matrix=matrix(places),
-            reasons=reasons(run.results),
+            reasons=grouped(not_run, lambda each: each.reason),
             causes=[] if run.contents else causes(run.results),
             open_checks=failed_rows <= OPEN_ROWS,
             at_once=len(at_once),
