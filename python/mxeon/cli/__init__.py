@@ -92,7 +92,7 @@ def _check_memory() -> None:
 
 
 def _check_encoding(arguments: Sequence[str]) -> None:
-    """Raise InputError unless all arguments are text: C++ libraries cannot open other file names."""
+    """Raise InputError unless all arguments are text that C++ libraries accept as file names."""
     for argument in arguments:
         try:
             argument.encode()

@@ -26,7 +26,8 @@ LIBRARY = (
     "replaces the installed files; any other folder is loaded before them"
 )
 
-MATERIALX = "MXEON_MATERIALX"  # variable that passes the folder of --materialx to host processes
+# Environment variable that passes the folder of --materialx to host processes.
+MATERIALX = "MXEON_MATERIALX"
 
 Commands = Any  # result of `add_subparsers`, whose type is private
 Run = Callable[[argparse.Namespace], int]
@@ -277,5 +278,4 @@ def policy(options: argparse.Namespace) -> Policy:
 
 
 def definitions(options: argparse.Namespace) -> tuple[str, ...]:
-    """The folders of --definitions, as absolute paths."""
     return tuple(map(os.path.abspath, options.definitions))

@@ -8,7 +8,6 @@ import warnings
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -64,9 +63,10 @@ def _work(work: Callable[[Any], Any], document: Any) -> BatchResult:
             value = work(document)
         except (MxeonError, OSError) as reason:
             error = reason
-    messages = [record.message for record in records]
-    lines = (each.args if isinstance(each, DocumentError) else (str(each),) for each in messages)
-    return BatchResult(value, tuple(chain.from_iterable(lines)), error)
+    lines: list[str] = []
+    for each in (record.message for record in records):
+        lines += each.args if isinstance(each, DocumentError) else (str(each),)
+    return BatchResult(value, tuple(lines), error)
 
 
 @dataclass(frozen=True)
@@ -90,11 +90,12 @@ def shader_texts(source: Source, element: str | None, **options: Any) -> dict[st
     """Shader texts of a document, keyed by file name; `mxeon.generate` describes `options`."""
     from mxeon.shaders.generation import generate
 
-    return {
-        f"{stem(source.file)}.{shader.name}.{source.target}{ENDINGS[stage] * (len(shader.stages) > 1)}": text
-        for shader in generate(source.file, source.target, element, **options)
-        for stage, text in shader.stages.items()
-    }
+    texts = {}
+    for shader in generate(source.file, source.target, element, **options):
+        name = f"{stem(source.file)}.{shader.name}.{source.target}"
+        for stage, text in shader.stages.items():
+            texts[name + (ENDINGS[stage] if len(shader.stages) > 1 else "")] = text
+    return texts
 
 
 def picture(

@@ -30,14 +30,14 @@ ESCAPES = str.maketrans({sign: f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u202
 def page_data(documents: Iterable[tuple[ShaderSource, ...]] = (), pages: str = "") -> PageData:
     """The data of a page; `documents` has the `document_sources` of each document.
 
-    `pages` is the address of a page of `docs/upstream` with {} for its name, or "".
+    `pages` is the address of the pages of `docs/upstream`, with {} for the name of a page, or "".
     """
-    own = (
+    added = (
         replace(each, id=f"document/{position}/{each.id}")
         for position, group in enumerate(documents)
         for each in group
     )
-    shaders = [*node_sources(), *own]
+    shaders = [*node_sources(), *added]
     for index, each in enumerate(shaders):
         if nodes := [node for node, models in MEANT.items() if models == each.meant]:
             shaders[index] = replace(each, actual=measured_models(each.library, nodes[0]))

@@ -11,7 +11,7 @@ Direction: TypeAlias = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Models:
-    """Names of a node's models, with energy_compensation on and off."""
+    """Names of a node's models if its input energy_compensation is on and off."""
 
     on: str
     off: str
@@ -77,7 +77,7 @@ class ShaderForm:
 
 @dataclass(frozen=True)
 class ReferenceTable:
-    """Reference values of a material, rounded to the digits of `references.py`."""
+    """Reference values of a material for the pairs and views of `PageData`."""
 
     direct: tuple[float, ...]
     white: tuple[float, ...]
@@ -87,9 +87,13 @@ class ReferenceTable:
 
 @dataclass(frozen=True)
 class Checked:
-    """Verdict of `mxeon check` for a material on gl."""
+    """Verdict of `mxeon check` for a material on gl.
 
-    kind: str  # "correct", "within" a tolerance but visibly off, "wrong", "differs" as permitted, or "unknown" without a reference
+    - `kind`: "correct", "wrong", "differs" if the specification permits the difference, "within" if
+      it is visible but within the tolerance, or "unknown" if there is no reference.
+    """
+
+    kind: str
     text: str
 
 

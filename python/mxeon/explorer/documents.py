@@ -33,11 +33,10 @@ from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR
 
 LIBRARIES = ("eonlib", "stock")
 LAYOUT = ("comment", "newline")
-REFERENCES = 20  # judge at most this many materials of a document: 0.1 s each, 2 s with pictures
+# Maximum number of materials in a document that are judged, at 2 s each.
+REFERENCES = 20
 LARGEST_IMAGE = 256  # maximum texels on a side, a quarter of a mebibyte
-ALL_IMAGES = (
-    64 * LARGEST_IMAGE**2
-)  # texels per document (22 MB of a page); larger images are scaled down
+ALL_IMAGES = 64 * LARGEST_IMAGE**2  # maximum texels of a document, 22 MB of a page
 RANGE = (("uimin", "uisoftmin"), ("uimax", "uisoftmax"))
 
 # Intended models of the diffuse nodes, with the flag on and off.
@@ -49,7 +48,7 @@ def document_sources(
 ) -> tuple[data.ShaderSource, ...]:
     """Sources of a document's materials, with eonlib and, if possible, with `library`.
 
-    Raises DocumentError if no shader can be generated from the document, ImageError for a bad image.
+    Raises DocumentError if no shader can be generated with eonlib, ImageError for a bad image.
     """
     name = " ".join(printable(Path(file).name).split())
     sources: list[data.ShaderSource] = []
@@ -77,8 +76,8 @@ def document_sources(
         paths = path_texts(file, policy) if half == LIBRARIES[0] else {}
         for shader in shaders:
             title = f"{shader.element}, {Path(each).name.replace(',', ' ')}"
-            own = f"{shader.name}/{half}"
-            source = shader_source(shader, text, own, title, name, each, images)
+            key = f"{shader.name}/{half}"
+            source = shader_source(shader, text, key, title, name, each, images)
             reference = references.get(shader.element)
             found = checked.get(shader.element)
             pages = _pages(titles, each) if found and found.kind in ("wrong", "differs") else ()
@@ -104,7 +103,7 @@ def sky_of(file: str) -> data.Texels:
 
 
 def path_texts(document: str, policy: Policy = DEFAULT) -> dict[str, str]:
-    """Path-tracing code of a document's materials, by element; mixed surfaces have none."""
+    """Path-tracing code of a document's materials, by element; empty if one mixes surfaces."""
     with warnings.catch_warnings(), suppress(InterfaceError):
         warnings.simplefilter("ignore")  # already reported
         made = generate(document, "essl", profile="path", uniforms=True, policy=policy)
@@ -116,12 +115,12 @@ KINDS = {PASSED: "correct", DIFFERS: "differs", FAILED: "wrong", NOT_RUN: "unkno
 
 
 def checked_materials(file: str, library: str, policy: Policy = DEFAULT) -> dict[str, data.Checked]:
-    """Verdicts of `mxeon check` on gl, by element."""
+    """Verdicts of `mxeon check` on gl, by element; empty if gl does not run."""
     try:
         with open_host("gl") as host, warnings.catch_warnings():
             warnings.simplefilter("ignore")  # already reported
             results, _, _ = judge_document(Path(file), host, Reference(), library, policy)
-    except MxeonError:  # gl is missing, or an error of the document was already reported
+    except MxeonError:  # gl is missing, or the document has an error that was already reported
         return {}
     return {
         each.subject.removeprefix(f"{Path(file).name}: "): data.Checked(
@@ -173,7 +172,7 @@ def shader_source(
     library: str,
     images: Mapping[str, data.Texels | None] = MappingProxyType({}),
 ) -> data.ShaderSource:
-    """The source of a generated ESSL shader; keys of `images` are files."""
+    """The page's source of a generated ESSL shader; `images` has its images by file."""
     source = data.ShaderSource(
         id=name,
         title=title,
@@ -197,7 +196,7 @@ def shader_source(
     connected = any(
         each.getConnectedOutput() or each.getConnectedNode() for each in node.getInputs()
     )
-    # Lobes have an intended model only if weight and opacity are 1.
+    # The intended model is that of the material only if weight and opacity are 1.
     factors = {port.path.rpartition("/")[2]: port.value for port in source.inputs}
     whole = factors.get("weight") == factors.get("opacity") == 1.0
     if connected or not (color and roughness and whole):
@@ -206,7 +205,7 @@ def shader_source(
 
 
 def _ports(shader: Shader, images: Mapping[str, data.Texels | None]) -> Iterator[data.ShaderInput]:
-    """Inputs that are numbers or images; each member of a structure is an input."""
+    """Inputs that are numbers or images; members of structures are separate inputs."""
     for port in shader.inputs:
         if port.type == "filename":
             if port.value:
@@ -219,7 +218,7 @@ def _ports(shader: Shader, images: Mapping[str, data.Texels | None]) -> Iterator
 def _by_effect(
     ports: tuple[data.ShaderInput, ...], document: mx.Document
 ) -> tuple[data.ShaderInput, ...]:
-    """Sort inputs: set by the document, defaults, without effect (weight 0, image's default)."""
+    """Sort inputs: those that the document sets, defaults, then inputs without effect."""
     values = {port.path: port.value for port in ports}
 
     def rank(port: data.ShaderInput) -> int:
@@ -227,7 +226,7 @@ def _by_effect(
         words = name.split("_")
         stems = ["_".join(words[:count]) for count in range(1, len(words))]
         gates = {"weight", *stems, *(f"{stem}_weight" for stem in stems)} - {name}
-        unused = name == "default" and f"{node}/file" in values  # the image exists
+        unused = name == "default" and f"{node}/file" in values  # default color of an image
         if unused or any(values.get(f"{node}/{gate}") == 0.0 for gate in gates):
             return 2
         return 0 if document.getDescendant(port.path) else 1
@@ -250,23 +249,22 @@ def _port(shader: Shader, port: Input) -> data.ShaderInput:
     def words(attribute: str) -> str:
         return next(filter(None, (each.getAttribute(attribute) for each in elements)), "")
 
-    low, high = (next(filter(None, map(_least, map(words, names))), None) for names in RANGE)
-    if low and high and not math.isfinite(high[0] - low[0]):
+    low, high = (_first_number(map(words, names)) for names in RANGE)
+    if low is not None and high is not None and not math.isfinite(high - low):
         low = high = None  # the slider's length would overflow
     label = words("uiname") or name.replace("_", " ")
     # Hide enumerations, which are numbers in the shader, and frames of images, which are fixed.
     shown = not (words("enum") or port.type == "filename" or "frame" in port.path)
-    limits = low and low[0], high and high[0]
-    return data.ShaderInput(port.name, port.type, None, port.path, label, *limits, shown=shown)
+    return data.ShaderInput(port.name, port.type, None, port.path, label, low, high, shown=shown)
 
 
-def _least(text: str) -> tuple[float] | None:
-    """The first number of a text, in a tuple; None without a finite number."""
-    try:
-        value = float(text.split(",")[0])
-    except ValueError:
-        return None
-    return (value,) if math.isfinite(value) else None
+def _first_number(texts: Iterable[str]) -> float | None:
+    """The first component of the first text that begins with a finite number."""
+    for text in texts:
+        with suppress(ValueError):
+            if math.isfinite(value := float(text.split(",")[0])):
+                return value
+    return None
 
 
 def _short(value: Plain) -> Plain:
@@ -277,7 +275,7 @@ def _short(value: Plain) -> Plain:
 
 
 def _texels(path: str, side: int) -> data.Texels | None:
-    """Read an image, scaled to at most `side` texels on a side; None if the file is missing."""
+    """Read an image, scaled down to at most `side` texels on a side; None without a file."""
     if not Path(path).is_file():
         return None
     pixels = read_texture(path)

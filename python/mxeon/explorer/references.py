@@ -11,7 +11,7 @@ import numpy as np
 
 from mxeon.conformance import reference
 from mxeon.conformance.reference.nodes import COMBINATIONS
-from mxeon.conformance.samples import Array, Batch, Candidate, rounded
+from mxeon.conformance.samples import Array, Batch, rounded
 from mxeon.conformance.spec import ZERO
 from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.diffuse import DIFFUSE
@@ -26,10 +26,10 @@ from mxeon.shaders.nodes import DIFFUSE_NODES
 
 DIGITS = 7
 POLES = (8.0, 35.0, 60.0, 80.0)  # degrees from the normal, of both directions
-# Azimuths between the directions, in degrees. Smooth lobes have no finite value at exact mirror
-# pairs, so none is at 180.
+# Azimuths between the directions, in degrees, without 180: smooth lobes have no finite value in the
+# mirror direction.
 AZIMUTHS = (0.0, 100.0, 176.0)
-VIEWS = (0.05, 0.2, 0.4, 0.6, 0.8, 0.98)  # cosines
+VIEWS = (0.05, 0.2, 0.4, 0.6, 0.8, 0.98)  # cosines of views in a white environment
 LOBES = ("BSDF", "VDF", "surfaceshader")
 FILM = "thinfilm_thickness"
 
@@ -68,7 +68,7 @@ def reference_of(shader: Shader) -> ReferenceTable | None:
     lobes = lobes_of(shader)
     spec = _spec(lobes)
     try:
-        if spec is HAIR:  # a fiber's tangent is x
+        if spec is HAIR:
             lights, surroundings = _batches(HAIR, shader)
             direct, white = HAIR.value(lights), HAIR.albedo(surroundings)
         else:
@@ -82,10 +82,11 @@ def reference_of(shader: Shader) -> ReferenceTable | None:
     # Add the tolerances of all lobes. Layers also have the tolerances of throughputs.
     errors = []
     for node in lobes:
-        rows = (each for each in _rows(node) if _is_of(node, each))
-        own = DIFFUSE[0] if node.getCategory() in DIFFUSE_NODES else next(rows, SURFACE_SHADERS[0])
-        if node.getCategory() not in COMBINATIONS:
-            errors.append(own.errors)
+        if node.getCategory() in COMBINATIONS:
+            continue
+        rows = (each for each in _rows(node) if _matches(node, each))
+        row = DIFFUSE[0] if node.getCategory() in DIFFUSE_NODES else next(rows, SURFACE_SHADERS[0])
+        errors.append(row.errors)
     value = sum(each["value"].value for each in errors if "value" in each)
     albedo = sum(each["albedo"].value for each in errors if "albedo" in each)
     bounds = (value, albedo) if len(lobes) == 1 else (value + albedo, 2.0 * albedo)
@@ -94,30 +95,28 @@ def reference_of(shader: Shader) -> ReferenceTable | None:
 
 
 def _rows(node: mx.Node) -> tuple[PbrSpec, ...]:
-    """Specs that may describe a node, depending on whether it has a thin film."""
+    """Specs of nodes with a thin film if the node has one, otherwise of nodes without."""
     film = node.getInput(FILM)
     return FILM_SPECS if film is not None and film.getValue() != 0.0 else (*PLAIN_LOBES, HAIR)
 
 
 def _forms(spec: PbrSpec, shader: Shader) -> Iterator[ShaderForm]:
     lights, surroundings = _batches(spec, shader)
-    for candidate in _others(spec.value_candidates):
-        values = _digits(candidate.values(lights))
-        yield ShaderForm(candidate.title, candidate.permitted, direct=values)
-    for candidate in _others(spec.albedo_candidates):
-        values = _digits(candidate.values(surroundings))
-        yield ShaderForm(candidate.title, candidate.permitted, white=values)
-
-
-def _others(candidates: tuple[Candidate, ...]) -> list[Candidate]:
-    """Candidates except the spec's own model, which is the first, and ZERO."""
-    return [each for each in candidates[1:] if each is not ZERO]
+    # The first candidate is the spec's own model.
+    for candidate in spec.value_candidates[1:]:
+        if candidate is not ZERO:
+            values = _digits(candidate.values(lights))
+            yield ShaderForm(candidate.title, candidate.permitted, direct=values)
+    for candidate in spec.albedo_candidates[1:]:
+        if candidate is not ZERO:
+            values = _digits(candidate.values(surroundings))
+            yield ShaderForm(candidate.title, candidate.permitted, white=values)
 
 
 def _batches(spec: PbrSpec, shader: Shader) -> tuple[Batch, Batch]:
-    """All pairs and views as batches, with the inputs of a shader of one node."""
-    own = {port.path.rpartition("/")[2]: np.asarray(port.value) for port in shader.inputs}
-    inputs = {name: own[name] for name in (*spec.row.inputs, "weight") if name in own}
+    """The pairs of `pairs` and the views of `views`, with the inputs of a shader of one node."""
+    values = {port.path.rpartition("/")[2]: np.asarray(port.value) for port in shader.inputs}
+    inputs = {name: values[name] for name in (*spec.row.inputs, "weight") if name in values}
     return Batch(WO, WI, inputs), Batch(SEEN, SEEN, inputs)
 
 
@@ -136,10 +135,10 @@ def _spec(lobes: list[mx.Node]) -> PbrSpec | None:
     [node] = lobes
     if any(port.getConnectedOutput() or port.getConnectedNode() for port in node.getInputs()):
         return None
-    return next((each for each in _rows(node) if _is_of(node, each)), None)
+    return next((each for each in _rows(node) if _matches(node, each)), None)
 
 
-def _is_of(node: mx.Node, spec: PbrSpec) -> bool:
+def _matches(node: mx.Node, spec: PbrSpec) -> bool:
     if node.getCategory() != spec.node:
         return False
     definition = node.getNodeDef()

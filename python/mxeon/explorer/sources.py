@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sources on every page: models, renderers' variants of them, and lobes of both libraries."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import chain
 from pathlib import Path
@@ -51,8 +51,8 @@ LACQUER = """    <input name="base_color" type="color3" value="0.55, 0.12, 0.08"
 class ComparedMaterial:
     key: str  # name in the page's addresses
     title: str
-    text: str
-    subjects: tuple[str, ...] = field(default=())  # titles of its nodes in checks
+    text: str  # a MaterialX document
+    subjects: tuple[str, ...]  # titles of its nodes in checks
 
     @property
     def pages(self) -> tuple[str, ...]:
@@ -142,7 +142,7 @@ VARIANTS = "What renderers do instead"
 # The page lists these models first. A rough diffuse node has one of the first two.
 FIRST = ("eon", "qon", "fon", "lambert")
 
-# Renderers with a wrong model: title, actual model, intended model, and page of docs/upstream.
+# Renderers with a wrong model: title, actual and intended model, and page of docs/upstream.
 RENDERERS = (
     (f"MaterialX GLSL, {FLAG} true", "eon_clamped", "eon", "genglsl_clamped_dot"),
     (
@@ -174,7 +174,7 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
     }
     reference = reference_of(shaders["eonlib"])
     [paths] = path_texts(material.text).values()
-    # The page knows permitted forms only of single lobes, so `mxeon check` judges combinations.
+    # The page has permitted forms of single lobes only, so `mxeon check` judges combinations.
     several = reference and not reference.forms and OREN_NAYAR not in material.text
     judged = LIBRARIES if several else ()
     with temporary_folder("mxeon-explore-") as folder:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the generators of this MaterialX call a library's functions as its sources define them.
 
-MaterialX versions pass different arguments to closures, so the number of arguments of each call in a
-generated text is compared with the function's overloads.
+Versions of MaterialX pass different arguments to closures. The number of arguments of each call in
+a generated text must be that of an overload of the function.
 """
 
 import os
@@ -31,7 +31,7 @@ def check_closure_calls(
 ) -> None:
     """Raise InterfaceError unless a generated stage calls a library's functions as they are defined.
 
-    Raise ShaderError if implementations of several nodes name one function, which does not suit all of them.
+    Raise ShaderError if several nodes name a function that has the wrong parameters for one node.
     """
     text, known = COMMENT.sub("", stage.getSourceCode()), _functions(library, profile, target)
     for file in stage.getSourceDependencies():
@@ -51,7 +51,7 @@ def check_closure_calls(
 
 
 def leftover(text: str) -> str:
-    """The first token that the generator did not replace in a generated text, or ""."""
+    """The first `$token` in a generated text that the generator did not replace, or ""."""
     found = TOKEN.search(TEXT.sub("", text)) if "$" in text else None
     return found[0] if found else ""
 
@@ -60,27 +60,25 @@ def leftover(text: str) -> str:
 def _functions(
     library: str, profile: str | None, target: str
 ) -> Mapping[str, dict[str, list[str]]]:
-    """Functions in a library's sources for a target, with their nodedefs, except MaterialX's."""
+    """Nodedefs that a library implements for a target, by source file and function.
+
+    Empty for a library that replaces MaterialX's; otherwise without MaterialX's own implementations.
+    """
     functions: dict[str, dict[str, list[str]]] = defaultdict(dict)
     if root(library):
         return functions
     document = load_library(library, profile)
     targets = {GENERATORS[target].create().getTarget(), "genglsl"}  # most targets inherit from it
+    standard = set(standard_folders())
+    folders = cache(lambda uri: Path(uri).parents)  # many implementations share few documents
     for each in document.getImplementations():
-        uri = each.getActiveSourceUri()
-        if each.getTarget() not in targets:
+        if each.getTarget() not in targets or not (each.hasFile() and each.hasFunction()):
             continue
-        if each.hasFile() and each.hasFunction() and not _is_standard(uri):
-            file = os.path.normpath(Path(uri).parent / each.getFile())
+        if standard.isdisjoint(parents := folders(each.getActiveSourceUri())):
+            file = os.path.normpath(parents[0] / each.getFile())
             nodes = functions[file].setdefault(each.getFunction(), [])
             nodes.append(each.getNodeDefString())
     return functions
-
-
-@cache
-def _is_standard(uri: str) -> bool:
-    """Whether a document of definitions belongs to MaterialX."""
-    return not set(standard_folders()).isdisjoint(Path(uri).parents)
 
 
 @cache

@@ -24,13 +24,13 @@ class ShownNode:
 
     category: str
     type: str
-    # name and type of each input of its definition; for a connected lobe, followed by the category
-    # of the node that combines it from other lobes
+    # Name and type of each input of the definition. An input with a lobe is listed only if it is
+    # connected, and a second time with the category of a node that combines lobes, otherwise "".
     inputs: tuple[tuple[str, str], ...] = ()
-    # name and value of the mode-selecting inputs with constant values
+    # Name and value of each constant input that selects a mode.
     modes: tuple[tuple[str, str], ...] = ()
     film: bool = False  # whether a thin film is possible
-    # name and numbers of the constant inputs
+    # Name and numbers of each other constant input.
     values: tuple[tuple[str, tuple[float, ...]], ...] = ()
 
     def has(self, other: "ShownNode") -> bool:
@@ -75,16 +75,14 @@ def node_of(text: str, category: str) -> ShownNode:
 
 
 def _kind(source: mx.InterfaceElement | None) -> str:
-    """Category of a node if it combines lobes, or ""."""
+    """Category of a node that combines lobes, "" for any other node."""
     return source.getCategory() if source and source.getCategory() in COMBINING else ""
 
 
 def _shown(walk: Walk, path: Path) -> ShownNode:
-    """The node at a path of a walk, as a ShownNode."""
     node = walk.elements[path]
     inputs = definition.getActiveInputs() if (definition := node.getNodeDef()) else ()
     ports = [(port.getName(), port.getType()) for port in inputs]
-    # Lobe inputs only count if they are connected.
     sources = {name: walk.source(path, name) for name, kind in ports if kind in CLOSURES}
     lit = {name: each for name, each in sources.items() if each and walk.emits(each)}
     ports = [port for port in ports if port[0] in lit or port[0] not in sources]

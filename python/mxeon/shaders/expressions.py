@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Float64 values of one expression of MDL or MSL.
 
-Nothing is executed. A few substitutions turn the text into Python, `ast` parses it, and a walk over a few kinds
-of nodes evaluates it. There are no statements, loops, attributes or indices, so work is linear in the length. A
-number is a column (N, 1), a color or vector (N, 3); an int stays an int.
+Nothing is executed. A few substitutions turn the text into Python, `ast` parses the result, and a
+walk over a few kinds of nodes evaluates it. Statements, loops, attributes and indices are refused, so
+work is linear in the length. A number is an array (N, 1), a color or vector (N, 3); integers stay
+integers.
 """
 
 import ast
@@ -41,7 +42,7 @@ def _divided(left: Array, right: Array) -> Array:
 
 
 def _triple(*values: Array) -> Array:
-    """A color or vector from one number or color, or from three numbers."""
+    """A color or vector from a number, a color or three numbers."""
     if len(values) not in (1, 3):
         raise TypeError(f"a color takes one number or three; got {len(values)}")
     return np.concatenate(np.broadcast_arrays(*values), axis=1) * np.ones((1, 3))

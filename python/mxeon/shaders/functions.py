@@ -15,9 +15,9 @@ LANGUAGES = ("glsl", "osl")
 GLSL_WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "atan2": "atan"}
 Parts = dict[str, list[str]]  # tokens of functions and constants by name
 FAMILY = "oren_nayar_family"
-ALL = "eon_sampling"  # file that includes every other file
+ALL = "eon_sampling"  # file that includes all other files of shader functions
 STEMS = ("eon", FAMILY, "ltc_sampling", ALL)
-TWINS = (ALL, "ggx_albedo", "conty_kulla_albedo")  # include all text that GLSL and OSL share
+TWINS = (ALL, "ggx_albedo", "conty_kulla_albedo")  # files that include all text shared with OSL
 INCLUDE = re.compile(r'^#include "((?:\.\./)?(?:lib/|sampling/)?\w+\.\w+)"$', re.MULTILINE)
 SIGNATURE = re.compile(r"^(?:float|vec3|color|vector)\s+(\w+)\s*\(([^)]*)\)\s*(?={)", re.MULTILINE)
 EACH = "mxeon_each"  # the function that `dispatched` adds
@@ -25,12 +25,12 @@ TYPES = {"glsl": ("float", "vec3"), "osl": ("float", "color", "vector")}
 
 
 def source(language: str, stem: str = ALL, library: str = "eonlib") -> str:
-    """Text of a file of shader functions with expanded includes; see `has_functions`."""
+    """Text of a library's file of shader functions with expanded includes."""
     return expanded(source_file(language, stem, library))
 
 
 def has_functions(library: str, language: str = "glsl") -> bool:
-    """Whether a library has its own shader functions: eonlib, or a folder next to them."""
+    """Whether a library has its own shader functions, as eonlib has."""
     return kind_of(library) != "stock" and source_file(language, ALL, library).is_file()
 
 
@@ -45,7 +45,7 @@ def twins(language: str, library: str) -> str:
 
 
 def parts(text: str) -> Parts:
-    """Functions and constants of a text, with GLSL's names of types."""
+    """Functions and constants of a text, with OSL's words replaced by those of GLSL."""
     found = dict(re.findall(r"^#define (\w+) (.+)$", text, re.MULTILINE))
     for match, body in _definitions(text):
         found[match[1]] = match[0] + re.sub(r"^#.*\n?", "", body, flags=re.MULTILINE)
@@ -77,7 +77,7 @@ def names(language: str) -> tuple[str, ...]:
 
 
 def signature(language: str, function: str) -> tuple[tuple[str, str], ...]:
-    """Parameter types and names of a shader function of eonlib, in order; see `parameters`."""
+    """Parameter types and names of a shader function of eonlib, in order."""
     return parameters(source(language), function)
 
 
@@ -120,8 +120,9 @@ def uses(text: str) -> Mapping[str, frozenset[str]]:
 def dispatched(text: str, functions: Iterable[str], language: str) -> str:
     """The text plus a function that calls one of `functions` by its index.
 
-    Its parameters are the index as a float and, for each type, as many parameters as any function has; a
-    function takes the first ones of each type. A host thus compiles one program for all functions.
+    Its parameters are the index as a float and, for each type, as many parameters as any of the
+    functions has; a function receives the first ones of each type. So a host compiles one program for
+    all functions.
     """
     known, types = signatures(text), TYPES[language]
     slots = {kind: 0 for kind in types}
@@ -142,7 +143,7 @@ def dispatched(text: str, functions: Iterable[str], language: str) -> str:
 
 
 def slot_names(kinds: Iterable[str]) -> list[str]:
-    """Names of the parameters of `dispatched` that pass parameters of these types.
+    """Names of the parameters of the function of `dispatched` for parameters of these types.
 
     >>> slot_names(["vec3", "float", "vec3"])
     ['vec3_0', 'float_0', 'vec3_1']
@@ -156,6 +157,6 @@ def slot_names(kinds: Iterable[str]) -> list[str]:
 
 
 def source_file(language: str, stem: str, library: str = "eonlib") -> Path:
-    """File of a library with shader functions, from any of its folders."""
+    """Path of a library's file of shader functions, which may lie in any folder of the language."""
     folder, name = source_folder(library) / f"gen{language}", f"{stem}.{language}"
     return next(folder.rglob(name), folder / name)

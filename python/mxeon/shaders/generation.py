@@ -66,7 +66,7 @@ DEFINED = re.compile(r"(?:#define|\b(?!return\b|else\b)\w+)\s+(mx_\w+)")
 
 
 class ApproximationWarning(UserWarning):
-    """The renderer only has an approximation of a shader's model; the message says where they differ."""
+    """A renderer that only approximates a shader's model; the message says where both differ."""
 
     def __init__(self, element: str, approximation: str) -> None:
         super().__init__(f"{element}: {approximation}")
@@ -146,11 +146,11 @@ def generate(
     - `uniforms`: Whether inputs stay uniforms with the profile "path", instead of literals.
     - `methods`: How shaders of rasterized targets compute lighting; None for MaterialX's defaults.
     - `policy`: Permissions, limits and search path; None for `Policy()`.
-    - `client`: Client options to turn on, from `mxeon.shaders.generators.CLIENT_OPTIONS`: a shadow map, ambient
-      occlusion and transparency. Any of them also adds point and spot lights, as types 2 and 3.
+    - `client`: Options from `mxeon.shaders.generators.CLIENT_OPTIONS` to turn on: a shadow map,
+      ambient occlusion and transparency. Any option also adds point and spot lights, as types 2 and 3.
 
-    Raises ValueError if the target, the library, the profile or the element is unknown; DocumentError if
-    no shader can be generated from the document; InterfaceError if this MaterialX calls closures
+    Raises ValueError if the target, the library, the profile or the element is unknown; DocumentError
+    if no shader can be generated from the document; InterfaceError if this MaterialX calls closures
     differently than eonlib's sources define them.
 
     Warns ApproximationWarning if the profile cannot express one of the document's models;
@@ -233,13 +233,14 @@ def generate(
             stages = MappingProxyType(
                 {"pixel": path_tracing.path_text(stages["pixel"], target, each, library)}
             )
-        copy = root(library)
-        row = name, path, target, stages, inputs, content, folders, copy, methods, table
-        shaders.append(Shader(*row))
-    inputs_of_all = [port for shader in shaders for port in shader.inputs]
+        whole = root(library)
+        shaders.append(
+            Shader(name, path, target, stages, inputs, content, folders, whole, methods, table)
+        )
     files = [
         (port.path, str(port.value))
-        for port in inputs_of_all
+        for shader in shaders
+        for port in shader.inputs
         if port.type == "filename" and port.value
     ]
     warn_of_files(files, content)
@@ -257,7 +258,7 @@ def generate(
 def _table_text(
     target: str, generator: mx_gen.ShaderGenerator, library: str, methods: Methods
 ) -> str:
-    """Pixel stage that draws the library's table of albedos by Monte Carlo."""
+    """Pixel stage that draws a library's table of albedos, computed by Monte Carlo sampling."""
     document = mx.createDocument()
     output = document.addOutput("table", "color3")
     output.setConnectedNode(document.addNode("constant", "color", "color3"))
@@ -276,7 +277,7 @@ def _table_text(
 
 @cache
 def check_generator(library: str, target: str) -> None:
-    """Raise InterfaceError unless a target's generator can use a library that replaces MaterialX's."""
+    """Raise InterfaceError unless a generator can use a library that replaces MaterialX's."""
     document = mx.createDocument()
     document.setDataLibrary(load_library(library))
     surface = document.addNode("surface", "surface", "surfaceshader")
@@ -302,7 +303,7 @@ def check_generator(library: str, target: str) -> None:
 
 
 def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
-    """Inputs of a shader. Inputs of nodes that the generator adds are not in the document; their path is their name."""
+    """Inputs of a shader. The generator adds nodes, whose inputs have their name as path."""
     stage = shader.getStage("pixel")
     blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL declares them as inputs
     return tuple(

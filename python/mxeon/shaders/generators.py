@@ -30,7 +30,7 @@ HARDWARE = tuple(
 
 LIGHTS = ("directional", "point", "spot")  # light types 1, 2 and 3
 CLIENT_OPTIONS = ("hwShadowMap", "hwAmbientOcclusion", "hwTransparency")
-BOOLEANS = "WGSL does not allow boolean types"  # printed needlessly per boolean
+BOOLEANS = "WGSL does not allow boolean types"  # MaterialX prints a warning for each boolean
 
 
 def generator_of(
@@ -85,11 +85,11 @@ def context_of(
     methods: Methods = UNCHOSEN,
     client: Collection[str] = (),
 ) -> mx_gen.GenContext:
-    """A context for a single document, because it caches implementations by name.
+    """A generator's context for a single document, because contexts cache implementations by name.
 
-    With `lights`, MaterialX's directional light is bound as light type 1 if the target has lights. `client` options are
-    turned on and bind the other lights as well: see `mxeon.shaders.scene.Client`. `path` has folders of source files,
-    searched after the library's.
+    With `lights`, MaterialX's directional light is bound as light type 1 on rasterized targets.
+    `client` has options to turn on; any option also binds the other lights, see
+    `mxeon.shaders.scene.Client`. `path` has folders of source files, searched after the library's.
     """
     context = mx_gen.GenContext(generator)
     for each in environment_folders(library) if methods.searched else ():
@@ -125,7 +125,7 @@ def context_of(
 def generated(
     generator: mx_gen.ShaderGenerator, name: str, element: mx.Element, context: mx_gen.GenContext
 ) -> mx_gen.Shader:
-    """Shader of an element; suppresses MaterialX's messages about text that it repairs itself."""
+    """Shader of an element, without MaterialX's warnings about booleans in WGSL."""
     wordy = isinstance(generator, GENERATORS.get("wgsl", ()))
     with lines_left_out(BOOLEANS) if wordy else nullcontext():
         return generator.generate(name, element, context)
@@ -133,7 +133,7 @@ def generated(
 
 @cache
 def tokens_of(target: str, library: str, profile: str | None) -> Mapping[str, str]:
-    """Include tokens and the generator's replacements, which exist only after it has run."""
+    """Include tokens and their replacements, which a generator only has after its first shader."""
     document = mx.createDocument()
     document.setDataLibrary(load_library(library, profile))
     generator = generator_of(document, target, library, profile)
@@ -148,9 +148,9 @@ ERROR = 2  # file descriptor
 
 @contextmanager
 def lines_left_out(words: str) -> Iterator[None]:
-    """Context that drops lines with these words from the process's error output.
+    """Context that drops lines with `words` from the process's error output.
 
-    All other lines appear when it ends. Without an error output it does nothing.
+    All other lines appear at the end of the context.
     """
     if sys.stderr is None:
         yield

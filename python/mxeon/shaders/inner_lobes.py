@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lobes that send light below a material's surface, which a single surface point cannot show.
 
-The document's graph is walked from its material. Lobes of constant weight 0 are skipped, as is the side of a
-mix that a constant weight of 0 or 1 disables; computed weights count as nonzero.
+The document's graph is walked from its material. Lobes of constant weight 0 are skipped, and so is
+the side of a mix that a constant weight of 0 or 1 disables. Computed weights count as nonzero.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ ARITHMETIC: dict[str, tuple[tuple[str, ...], Callable[..., float]]] = {
     "ifgreater": (("value1", "value2", "in1", "in2"), lambda a, b, one, two: one if a > b else two),
     "switch": (("in1", "in2", "which"), lambda one, two, which: two if which >= 1.0 else one),
 }
-# Types that carry light from node to node.
+# Types of inputs that carry light from node to node.
 CLOSURES = ("BSDF", "VDF", "surfaceshader", "volumeshader", "material")
 
 
@@ -49,15 +49,16 @@ def inner_lobes(shader: Shader) -> tuple[str, ...]:
 class Nodes:
     """Elements of a document, by path.
 
-    A path names a node within the nodes and nodegraphs around it: a tuple of name paths, the outermost first.
+    A path is a tuple of name paths: of each enclosing node or nodegraph, from the outermost, and of
+    the node itself.
     """
 
     def __init__(self) -> None:
         self.elements: dict[Path, mx.InterfaceElement] = {}
 
-    def path(self, around: Path, element: mx.Element) -> Path:
-        """Path of an element within another path; also stores the element."""
-        path = (*around, element.getNamePath())
+    def path(self, outer: Path, element: mx.Element) -> Path:
+        """Path of an element inside the node at `outer`; also stores the element."""
+        path = (*outer, element.getNamePath())
         self.elements[path] = element
         return path
 
@@ -68,16 +69,16 @@ class Nodes:
         definition = element.getNodeDef()
         return element.getInput(name) or (definition and definition.getActiveInput(name)) or None
 
-    def upstream(self, around: Path, port: mx.PortElement) -> Path | None:
-        """Path of the node that an input or output within another path is connected to, or None."""
+    def upstream(self, outer: Path, port: mx.PortElement) -> Path | None:
+        """Path of the node connected to an input or output inside the node at `outer`, or None."""
         if not (node := port.getConnectedNode()):
             return None
         graph, scope = node.getParent(), port.getParent()
         if port.isA(mx.Input):
             scope = scope.getParent()
         if graph.getNamePath() != scope.getNamePath():
-            around = self.path((), graph)
-        return self.path(around, node)
+            outer = self.path((), graph)
+        return self.path(outer, node)
 
 
 class Walk(Nodes):
@@ -89,17 +90,17 @@ class Walk(Nodes):
     def __init__(self, elements: Iterable[mx.TypedElement], values: bool = False) -> None:
         super().__init__()
         self._values = values
-        self._dark: set[Path] = set()
+        self._black_nodes: set[Path] = set()
         self.kinds: set[str] = set()
         roots = (each.getConnectedNode() if each.isA(mx.Output) else each for each in elements)
         graph = reachable([self.path((), root) for root in roots if root], self.parts)
-        self.shown = tuple(path for path in graph if path not in self._dark)
+        self.shown = tuple(path for path in graph if path not in self._black_nodes)
 
     def parts(self, path: Path) -> tuple[Path, ...]:
         """Paths of the nodes that contribute to a node's light."""
         node = self.elements[path]
         if self._constant(path, "weight") == 0.0 or not self.emits(path):
-            self._dark.add(path)
+            self._black_nodes.add(path)
             return ()
         kind = KINDS.get(node.getCategory())
         mode = self.port(path, "scatter_mode")
@@ -126,7 +127,7 @@ class Walk(Nodes):
         return not self._black(path, "color")
 
     def _black(self, path: Path, name: str) -> bool:
-        """Whether an input is 0, or a product with a factor of 0."""
+        """Whether an input is 0, or is connected to a product with a factor of 0."""
         if source := self.source(path, name):
             product = self.elements[source].getCategory() == "multiply"
             return product and any(self._black(source, factor) for factor in ("in1", "in2"))
@@ -134,7 +135,7 @@ class Walk(Nodes):
         return bool(value) and not any(map(float, str(value).split(",")))
 
     def _effective(self, path: Path, node: mx.InterfaceElement) -> tuple[str, ...]:
-        """Names of the inputs whose light has an effect."""
+        """Names of the inputs whose light reaches the node's output."""
         category = node.getCategory()
         if category == "mix":
             weight, value = self._constant(path, "mix"), ("mix",) * self._values
@@ -146,7 +147,7 @@ class Walk(Nodes):
         return tuple(p.getName() for p in ports if self._values or p.getType() in CLOSURES)
 
     def _resolved(self, path: Path, name: str) -> tuple[Path, mx.Input | None]:
-        """The input that a node's input refers to, and the path of its node."""
+        """The outermost input that a node's input takes its value from, and the path of its node."""
         while port := self.port(path, name):
             if not port.hasInterfaceName() or len(path) < 2:
                 break

@@ -2,9 +2,9 @@
 """The data libraries: where they are and in which order MaterialX has to load them.
 
 MaterialX silently ignores later definitions of a name, so eonlib is loaded before the standard
-libraries. Which implementations MaterialX chooses is then checked: see `assert_ours`.
+libraries. `assert_ours` then checks which implementations MaterialX chooses.
 
-mxeon refuses no version of MaterialX by its number: it looks up the methods that it needs, and checks
+No version of MaterialX is refused by its number: mxeon looks up the methods that it needs, and checks
 generated code against the closure interface of eonlib's sources.
 """
 
@@ -41,7 +41,7 @@ def data_folder() -> Path:
 
 
 def eonlib_folder() -> Path:
-    """Folder of eonlib that a C++ host, USD or generateshader loads first; `libraries` in a checkout."""
+    """Folder of eonlib that a C++ host, USD or generateshader loads before MaterialX's libraries."""
     installed = data_folder() / "eonlib"
     return installed if installed.is_dir() else data_folder() / "libraries"
 
@@ -55,7 +55,7 @@ def documents_folder(part: str = "eonlib") -> Path:
 
 @cache
 def kind_of(library: str) -> str:
-    """The entry of LIBRARIES that a library is, or whose documents it copies; otherwise OVERLAY.
+    """The entry of LIBRARIES for a name or a copy of its documents; OVERLAY for other folders.
 
     A folder that replaces MaterialX's libraries, or a part of them, is "stock".
     """
@@ -71,7 +71,7 @@ def kind_of(library: str) -> str:
 
 
 def source_folder(library: str) -> Path:
-    """Folder with a library's genglsl and genosl: its own, or one or two levels above its documents."""
+    """Folder with a library's genglsl and genosl: that of its documents, or one of two parents."""
     folder = eonlib_folder() if library in LIBRARIES else Path(library)
     homes = (folder, *folder.parents[:2])
     return next(
@@ -80,21 +80,21 @@ def source_folder(library: str) -> Path:
 
 
 def environment_folders(library: str) -> list[Path]:
-    """Folder of a library's own environment lookups, if any, to be searched before MaterialX's data."""
+    """Folder of a library's own environment lookups, if it exists; searched before MaterialX's."""
     folder = source_folder(library) / "genglsl" / "environment"
     return [folder] if library != "stock" and folder.is_dir() else []
 
 
 def library_folders(library: str) -> list[Path]:
-    """A folder to load as a library, and the folders of its sources."""
+    """The folder of a library's documents, and the folders of its sources."""
     sources = (source_folder(library) / name for name in SOURCE_FOLDERS)
     return [Path(library), *(folder for folder in sources if folder.is_dir())]
 
 
 def profile_documents(library: str, profile: str) -> list[Path]:
-    """A profile's MaterialX documents, to be loaded before a library's.
+    """A library's MaterialX documents for a profile, to be loaded before its other documents.
 
-    They end in .xml, so programs that load a whole folder skip them.
+    Their names end in .xml, so that programs that load a whole folder skip them.
     """
     if kind_of(library) == "stock":
         return []
@@ -121,8 +121,8 @@ def own_folders(library: str) -> list[str]:
 def library_name(library: str | os.PathLike[str]) -> str:
     """Name of a data library, or absolute path of its folder.
 
-    InputError for a folder that cannot be combined with MaterialX's files, or contains a file that is
-    not UTF-8 text.
+    InputError for a folder that cannot be combined with MaterialX's files, or with a file that is not
+    UTF-8 text.
     """
     if library in LIBRARIES:
         return str(library)
@@ -155,18 +155,17 @@ def load_library(
 ) -> mx.Document:
     """A MaterialX document with the standard libraries, preceded by eonlib.
 
-    It is cached and shared: attach it with `Document.setDataLibrary`.
+    The document is cached and shared: attach it with `Document.setDataLibrary`.
 
     - `library`: "eonlib", "stock" for unmodified MaterialX, or a folder, which either replaces
       MaterialX's libraries or a part of them, or is loaded before them; see
       `mxeon.shaders.library_tree`.
     - `profile`: "cycles" for eonlib's OSL implementations for Blender's Cycles.
-    - `definitions`: One or more folders of additional definitions, which replace none of the library's.
+    - `definitions`: Folders of additional definitions, which must not replace any of the library's.
 
     Raises ValueError if the library or the profile is unknown, or a folder has no definitions or
-    replaces some of the library's; ImportError if this MaterialX is too
-    old; see `check_version`; LibraryError if MaterialX chooses an implementation other than
-    eonlib's.
+    replaces some of the library's; ImportError if this MaterialX is too old, see `check_version`;
+    LibraryError if MaterialX chooses an implementation other than eonlib's.
 
     Warns UntestedVersionWarning if this MaterialX is not in TESTED.
     """
@@ -180,7 +179,7 @@ def load_library(
 
 @lru_cache(maxsize=LOADED)
 def read_library(library: str, profile: str | None, definitions: tuple[str, ...]) -> mx.Document:
-    """`load_library` without defaults: the cache would treat an omitted argument as a different key."""
+    """`load_library` without defaults: the cache distinguishes omitted from default arguments."""
     check_version()
     if profile is not None:
         assert_known("profile", profile, PROFILES)
@@ -194,7 +193,7 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
     try:
         if definitions:  # an empty list makes MaterialX load everything
             mx.loadLibraries(list(definitions), path, document, readOptions=options)
-        # Load a profile first, or the documents of a part: MaterialX does not sort files within a folder.
+        # MaterialX does not sort files within a folder: load a profile, or those of a part, first.
         first = profile_documents(library, profile) if profile else []
         if not first and library not in LIBRARIES and tree(library).kind == library_tree.PART:
             home, own = Path(root(library), "libraries"), tree(library).own
@@ -234,10 +233,10 @@ def _documents(folder: AnyPath, rule: str) -> list[Path]:
 def implementations(
     document: mx.Document, library: str = "eonlib", profile: str | None = None
 ) -> Iterator[tuple[str, str, str]]:
-    """Nodedef, target and file of the implementations that MaterialX chooses for what eonlib ships; "" for no file.
+    """Nodedef, target and file of the implementation that MaterialX chooses for each of eonlib's.
 
-    One for each nodedef in the documents of "eonlib" or "diffuse", and of a profile, on each target that
-    they implement; a graph for all targets does not count for a single target.
+    Each nodedef that "eonlib" or "diffuse" and a profile implement occurs for each of their targets. The
+    file is "" if a target has no implementation, or only a nodegraph for all targets.
     """
     data = document.getDataLibrary() or document
     targets = {each.getName(): each.getMatchingTargets() for each in data.getTargetDefs()}
@@ -252,7 +251,7 @@ def implementations(
 
 @cache
 def _shipped(library: str, profile: str | None) -> tuple[tuple[str, str], ...]:
-    """Nodedefs and targets of the implementations in eonlib's documents; "" for every target."""
+    """Nodedef and target of each implementation in eonlib's documents; "" for all targets."""
     document = mx.createDocument()
     for file in profile_documents(library, profile) if profile else ():
         mx.loadLibrary(mx.FilePath(str(file)), document)
@@ -263,7 +262,7 @@ def _shipped(library: str, profile: str | None) -> tuple[tuple[str, str], ...]:
 
 
 def assert_ours(document: mx.Document, library: str = "eonlib", profile: str | None = None) -> None:
-    """Raise LibraryError unless a document uses eonlib's implementation for everything that eonlib ships.
+    """Raise LibraryError unless MaterialX chooses eonlib's implementation of every nodedef.
 
     The message has the node, the target and the other file; parameters as for `implementations`.
     """

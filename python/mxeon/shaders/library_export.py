@@ -45,8 +45,8 @@ def recipes(folder: AnyPath) -> str:
 def export_library(path: AnyPath) -> Path:
     """Write eonlib, with its sources and license, to a new or empty folder or to a zip archive.
 
-    A path ending in ".zip" becomes an archive of a folder with that name; an existing file is replaced.
-    No partial output is left behind.
+    A path ending in ".zip" becomes an archive of a folder with that name and replaces an existing
+    file. No partial output is left behind.
     """
     target = Path(os.path.realpath(path))
     names = [] if target.suffix == ".zip" else ["*"]
@@ -76,7 +76,7 @@ def export_library(path: AnyPath) -> Path:
 
 
 def _content() -> dict[str, bytes]:
-    """Files of the copy, by relative path."""
+    """Content of the files of a copy, by relative path."""
     folders = {name: source_folder("eonlib") / name for name in SOURCE_FOLDERS}
     content = {
         f"{name}/{path.relative_to(folder).as_posix()}": path.read_bytes()

@@ -10,12 +10,12 @@ part
 overlay
     It has its own names, as eonlib does, and is loaded before MaterialX's libraries.
 
-MaterialX looks for a node's source next to its document, for included files next to that, and for the
-generator's includes on a search path. So a whole or a part becomes one tree of links, `libraries`, with both
-documents and sources: no installed file can replace one in the folder.
+MaterialX looks for a node's source next to its document, for included files next to the source, and
+for the generator's includes on a search path. So a whole or a part becomes a temporary folder,
+`libraries`, of links to documents and sources: no installed file can replace one in the folder.
 
-A library is trusted, so it may name any file. A pipe, a device or an encoding is still refused in one
-line: MaterialX would wait, fill the memory, or give text that no one can decode.
+A library is trusted, so it may name any file. Pipes, devices and files that are not UTF-8 are still
+refused in one line: MaterialX would wait, fill the memory, or write shaders that cannot be decoded.
 """
 
 import os
@@ -47,8 +47,8 @@ class Tree:
     folder: str  # absolute path
     kind: str  # WHOLE, PART or OVERLAY
     own: tuple[str, ...]  # documents and sources of the folder, relative to it
-    package: tuple[str, ...]  # files of the installed libraries that complete it, as relative paths
-    # the file behind each path below `libraries`; empty for an overlay
+    package: tuple[str, ...]  # relative paths of installed files that complete the folder
+    # File to which each path below `libraries` is linked; empty for an overlay.
     links: Mapping[str, str] = field(repr=False)
 
 
@@ -74,8 +74,8 @@ def _tree(folder: str) -> Tree:
             path: file for path, file in installed.items() if path.partition("/")[0] not in tops
         }
     else:
-        # Reject sources that look like a replacement but are not used as one, unless a search path below `libraries`
-        # finds them.
+        # Reject a source that would not be used, since it has the name of one of MaterialX's but lies
+        # elsewhere. Paths that end in libraries/ and MaterialX's path are found by a search path.
         known = {PurePosixPath(each).name: each for each in installed if each.endswith(CODE)}
         for each in named:
             other = known.get(PurePosixPath(each).name)
@@ -121,9 +121,9 @@ def origins(library: str) -> dict[str, tuple[str, ...]]:
 
 
 def root(library: str) -> str:
-    """Folder whose `libraries` replace MaterialX's own for a library; "" for the installed ones.
+    """Folder whose `libraries` replace MaterialX's own for a library; "" for the installed libraries.
 
-    Each process creates its own folder and removes it when the process ends.
+    Each process creates its own folder, and removes it at its end.
     """
     known = None if library in LIBRARIES else tree(library)
     return _root(known.folder) if known and known.links else ""
@@ -155,7 +155,7 @@ def roots() -> list[str]:
 
 
 def in_words(library: str, text: str) -> str:
-    """A MaterialX message with the links replaced by the user's files."""
+    """A message of MaterialX that names the user's files instead of the links to them."""
     if laid := root(library):
         for path, file in tree(library).links.items():
             text = text.replace(f"{laid}/libraries/{path}", file)
@@ -195,13 +195,13 @@ LARGEST = 16 * 2**20  # maximum bytes of a file
 
 
 def check_files(paths: Iterable[AnyPath]) -> None:
-    """Raise InputError unless each is a regular file of text in UTF-8, and no larger than LARGEST."""
+    """Raise InputError unless each path is a regular UTF-8 file of at most LARGEST bytes."""
     for path in paths:
         _text(path)
 
 
 def check_sources(document: mx.Document, library: str, search: mx.FileSearchPath) -> None:
-    """Check every source named by a library's implementations in a document, and everything it includes.
+    """Check the sources of a library's implementations in a document, and all files they include.
 
     `library` is its folder; MaterialX's own sources are found on the search path.
     """
@@ -225,7 +225,7 @@ def check_sources(document: mx.Document, library: str, search: mx.FileSearchPath
 
 
 def read_options() -> mx.XmlReadOptions:
-    """MaterialX's options for reading a library's documents, which check the included files."""
+    """Options with which MaterialX checks the files that a library's documents include."""
     options = mx.XmlReadOptions()
     options.readXIncludeFunction = _include
     return options

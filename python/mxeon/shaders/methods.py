@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Client choices for MaterialX's rasterizing generators, passed as one value from the command to the generator."""
+"""Methods of lighting that a client can choose for MaterialX's rasterizing generators."""
 
 import re
 from collections.abc import Iterator
@@ -37,11 +37,12 @@ class Methods:
 
     - `environment`: Specular environment lighting: "fis", "prefilter" or "none".
     - `transmission`: "refraction" of the environment, or "opacity".
-    - `albedo`: Directional albedos in MaterialX's own functions: "analytic", "table" or "monteCarlo".
+    - `albedo`: Directional albedos of MaterialX's functions: "analytic", "table" or "monteCarlo".
     - `airy`: Iterations in MaterialX's own thin films.
-    - `premultiplied`: Whether `mix` folds its weight into its lobes' weights (premultipliedBsdfAdd).
+    - `premultiplied`: Whether `mix` scales the weights of its lobes instead of the lobes
+      (premultipliedBsdfAdd).
     - `distributed`: Whether `layer` is distributed over `mix` (distributeLayerOverBsdfMix).
-    - `searched`: Whether shader sources are looked up in the library's `genglsl/environment` before MaterialX's data.
+    - `searched`: Whether sources are first looked up in the library's `genglsl/environment`.
     """
 
     environment: str = ""

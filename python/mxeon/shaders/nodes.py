@@ -115,7 +115,11 @@ SURFACE = node_text("surface", "surfaceshader", "shading", connection_text("bsdf
 
 
 def with_images(text: str, inputs: Mapping[str, str], file: str) -> "mx.Document":
-    """A text's document in which `inputs` (types by path) read an image, each at its own `PATH_place/value`."""
+    """A document in which the inputs at the paths `node/input` read an image.
+
+    The values of `inputs` are types. The texture coordinate is the value of a node
+    `node_input_place`.
+    """
     import MaterialX as mx
 
     document = mx.createDocument()
@@ -190,7 +194,10 @@ class Node(NamedTuple):
 def network_text(
     nodes: Mapping[str, Node], inputs: Iterable[tuple[str, str, ArrayLike]] = ()
 ) -> str:
-    """XML of nodes by name, with inputs by path, type and value; inputs without a path belong to the last node."""
+    """XML of nodes by name, with inputs of path, type and value.
+
+    A path is `node/input`; without a node, the input belongs to the last node.
+    """
     texts = {name: each.text for name, each in nodes.items()}
     for path, kind, value in inputs:
         name, _, port = path.rpartition("/")

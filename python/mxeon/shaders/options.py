@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Options of MaterialX's rasterizing generators, including those without Python bindings.
 
-MaterialX 1.39.5 has no bindings for the transmission method, the directional albedo method and the number of Airy
-iterations. They are the three integers after `hwSpecularEnvironmentMethod` in the C++ object (two before 1.39.5,
-without Airy iterations). Changing that member through its binding reveals its offset. They are only written if
-they hold their defaults, and `mxeon.shaders.methods.assert_generated` compares the generated text with the chosen
-methods: with a different layout, the option is refused instead of returning a wrong shader.
+MaterialX 1.39.5 has no bindings for the directional albedo method, the transmission method and the
+number of Airy iterations. In C++ these are the integers after `hwSpecularEnvironmentMethod`, without
+Airy iterations before 1.39.5. Changing `hwSpecularEnvironmentMethod` through its binding reveals its
+offset. The integers are only written if they hold their defaults, and
+`mxeon.shaders.methods.assert_generated` compares the generated text with the chosen methods. So an
+object with a different layout leads to an error instead of a wrong shader.
 """
 
 import ctypes
@@ -38,7 +39,7 @@ def set_options(
     airy: int = 2,
     **bound: bool,
 ) -> None:
-    """Set the options of `mxeon.shaders.methods.Methods`; LookupError if this MaterialX lacks one."""
+    """Set the options of `mxeon.shaders.methods.Methods`; LookupError if an option is missing."""
     for name, value in bound.items():
         if not offers(name):
             raise LookupError(f"MaterialX {mx.getVersionString()} has no option {BOUND[name]}")
@@ -53,7 +54,7 @@ def set_options(
 
 
 def unbound_members(options: mx_gen.GenOptions, count: int) -> "ctypes.Array[ctypes.c_int]":
-    """The members after hwSpecularEnvironmentMethod; LookupError unless they hold their defaults."""
+    """The integers after hwSpecularEnvironmentMethod; LookupError unless they have their defaults."""
     address = ctypes.c_void_p.from_address(id(options) + VALUE).value or 0
     memory = (ctypes.c_int * (SIZE // ctypes.sizeof(ctypes.c_int))).from_address(address)
     states = []

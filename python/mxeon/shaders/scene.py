@@ -88,10 +88,10 @@ class Scene:
     """A shape and its light."""
 
     name: str  # one lower-case word, used in file names
-    # unit vector towards a distant light whose irradiance is pi, so that a pixel holds pi f
-    # cos(theta_i), and a white Lambertian facing the light holds 1
+    # Unit vector towards a distant light of irradiance pi: a pixel holds pi f cos(theta_i), which is
+    # 1 for a white Lambertian surface that faces the light.
     light: tuple[float, float, float] | None = None
-    # radiance of a uniform environment, or a latitude-longitude image
+    # Radiance of a uniform environment, or a latitude-longitude image.
     environment: float | Path | None = None
     size: int = 256  # width and height in pixels, in [1, LARGEST]
     paths: Paths = Paths()  # hosts that do not trace paths only accept the default
@@ -123,7 +123,7 @@ SIDE = Scene("side", light=_towards(azimuth=20, polar=60))
 BACK = Scene("back", light=_towards(azimuth=160, polar=130))
 FURNACE = Scene("furnace", environment=1.0)
 SCENES = (FRONT, SIDE, BACK, FURNACE)
-# A floor, a ceiling and three soft boxes, painted by tools/site/gallery.py, and a light from behind.
+# Floor, ceiling and three soft boxes, painted by tools/site/gallery.py, and a light from behind.
 STUDIO = Scene("studio", BACK.light, Path(__file__).with_name("studio.exr"), shape="ball")
 
 
@@ -156,7 +156,7 @@ class VisiblePoints:
 
 
 def pixel_centers(size: int, margin: int = 0) -> tuple[Floats, Floats]:
-    """x and y of a picture's pixel centers, with `margin` additional rows and columns on each side."""
+    """x and y of a picture's pixel centers, with `margin` additional pixels on each side."""
     axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
     x, y = np.meshgrid(axis, -axis)
     return x, y

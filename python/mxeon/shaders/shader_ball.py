@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A shader ball as exact points: a ball with a groove and a belt, on a foot, seen slightly from above.
+"""Points of a shader ball: a ball with a grooved belt on a foot, seen slightly from above.
 
-The shape is a signed distance field. Each ray of the picture finds its surface by sphere tracing, and
-the gradient is the normal. Nothing casts a shadow, because shaders see one point at a time.
+The shape is a signed distance field. Each ray of the picture finds the surface by sphere tracing; the
+gradient is the normal. There are no shadows, because shaders are evaluated at one point at a time.
 """
 
 import numpy as np
@@ -46,7 +46,7 @@ def _cylinder(points: Floats, radius: float, height: float) -> Floats:
 
 
 def distance(points: Floats) -> Floats:
-    """Lower bound of the signed distance from points (..., 3) in the picture's frame to the shader ball."""
+    """Lower bound of the signed distance of points (..., 3) in the picture's frame to the shape."""
     upright = points @ OBJECT.T
     inside = (upright - CENTER) @ BELT.T
     radius = np.linalg.norm(inside, axis=-1)

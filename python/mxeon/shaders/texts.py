@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sources of a library's nodes as text: their definitions, and nodes that cannot share a shader.
 
-A generator writes the source of a node once, and each included file once, but repeats the source of a node
-that is also included. Two files that define the same function therefore do not compile together.
+A generator writes the source of a node once, and each included file once, but repeats the source of
+a node that is also included. Two files that define the same function do not compile together.
 """
 
 import os

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Documents that show a value of another document, as an output or as an emission.
 
-A node inside a node's nodegraph keeps its inputs: MaterialX replaces the outer node by the nodes of its
-nodegraph.
+To show a node inside another node's nodegraph, MaterialX replaces the outer node by the nodes of its
+nodegraph, which keep their inputs.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ def value_document(
 ) -> tuple[mx.Document, str]:
     """A document with an output that shows a node's value, and the output's name path.
 
-    `kind` is the type of the value, and `output` the name of a node's output; the elements belong to
-    `document`.
+    The node is the last of `elements`. `kind` is the type of the value, and `output` the name of the
+    node's output, "" for its only one.
     """
     copy = _copied(document)
     outermost, *inner = (each for each in elements if not each.isA(mx.NodeGraph))
     scope = copy.getDescendant(outermost.getParent().getNamePath()) or copy
     if scope.isA(mx.NodeGraph) and scope.getNodeDef():
-        scope = _opened(copy, scope)
+        scope = _without_nodedef(copy, scope)
     name = outermost.getName()
     for element in inner:
-        # Replace the outer node by the nodes of its nodegraph, which get new names in the same order.
+        # The nodes of the nodegraph replace the outer node, with new names in the same order.
         before = {each.getName() for each in scope.getNodes()}
-        place = [each.getName() for each in element.getParent().getNodes()].index(element.getName())
+        index = [each.getName() for each in element.getParent().getNodes()].index(element.getName())
         scope.flattenSubgraphs(filter=lambda node, name=name: bool(node.getName() == name))
-        name = [each.getName() for each in scope.getNodes() if each.getName() not in before][place]
+        name = [each.getName() for each in scope.getNodes() if each.getName() not in before][index]
     _drop_closures(copy)
     if scope.isA(mx.NodeGraph):
         scope.setSourceUri("")  # outputs of included graphs would not be drawn
@@ -49,12 +49,12 @@ def value_document(
 
 
 def emission_document(document: mx.Document, output: mx.Output) -> tuple[mx.Document, str]:
-    """A document with a surface that emits the color of an output, and the name path of its material."""
+    """A document with a surface that emits an output's color, and the name path of its material."""
     copy = _copied(document)
     value = copy.addNode("convert", copy.createValidChildName(NAME), "color3")
     graph = output.getParent()
     if graph.isA(mx.NodeGraph) and graph.getNodeDef():
-        graph = _opened(copy, graph)
+        graph = _without_nodedef(copy, graph)
     _drop_closures(copy)
     port = value.addInput("in", output.getType())
     for name in ("nodename", "output"):
@@ -80,7 +80,7 @@ def _copied(document: mx.Document) -> mx.Document:
     copy.copyContentFrom(document)
     copy.setSourceUri(document.getSourceUri())
     copy.setDataLibrary(document.getDataLibrary())
-    for each in (*copy.getLooks(), *copy.getLookGroups()):  # looks refer to materials
+    for each in (*copy.getLooks(), *copy.getLookGroups()):  # they refer to removed materials
         copy.removeChild(each.getName())
     for graph in _own_graphs(copy):
         for node in graph.getNodes() if graph.hasColorSpace() else ():
@@ -90,12 +90,12 @@ def _copied(document: mx.Document) -> mx.Document:
 
 
 def _own_graphs(document: mx.Document) -> list[mx.NodeGraph]:
-    """The document's own nodegraphs; getNodeGraphs also returns the data library's."""
+    """The document's own nodegraphs. `getNodeGraphs` also returns those of the data library."""
     return [each for each in document.getChildren() if each.isA(mx.NodeGraph)]
 
 
 def _drop_closures(document: mx.Document) -> None:
-    """Remove the nodes and outputs that no value depends on, except in definitions."""
+    """Remove nodes and outputs of closure types, except in graphs that define nodes."""
     for scope in (document, *_own_graphs(document)):
         if scope.isA(mx.NodeGraph) and scope.getNodeDef():
             continue
@@ -104,8 +104,8 @@ def _drop_closures(document: mx.Document) -> None:
                 scope.removeChild(each.getName())
 
 
-def _opened(document: mx.Document, graph: mx.NodeGraph) -> mx.NodeGraph:
-    """A copy of a nodegraph that defines a node, with the node's defaults as inputs."""
+def _without_nodedef(document: mx.Document, graph: mx.NodeGraph) -> mx.NodeGraph:
+    """A copy of a nodegraph that defines a node; its inputs have the defaults of the nodedef."""
     copy = document.addNodeGraph(document.createValidChildName(f"NG_{NAME}"))
     copy.copyContentFrom(graph)
     copy.removeAttribute("nodedef")

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Limits on the number of nodes in a document's shaders, and on their depth, before generation.
 
-MaterialX writes a nodegraph once, but compilers copy it to each use. So nodes are counted once per
-use, by weights, without visiting them repeatedly. A graph is a mapping from each key to its parts.
-Nothing here recurses, because the depth is unknown.
+MaterialX writes a nodegraph once, but compilers copy it to each use. So the nodes of a nodegraph are
+counted once per use, but visited only once. In this module, a graph maps each key to its parts: an
+element to the nodes upstream of it, or a definition to the definitions that it uses. No function
+recurses, because the depth of a document is unknown.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
@@ -49,13 +50,13 @@ def heights(graph: Graph[Key], order: Iterable[Key]) -> dict[Key, int]:
 def check_shaders(
     document: mx.Document, elements: Sequence[mx.TypedElement], policy: Policy
 ) -> int:
-    """Number of nodes in the shaders of renderable elements; DocumentError if they exceed a limit.
+    """Number of nodes in the shaders of renderable elements.
 
-    Cycles of nodes and nodegraphs are refused, and so are too many nodes or inputs, in total, in a chain or
-    in nested graphs.
+    DocumentError for a cycle of nodes or nodegraphs, and for too many shaders, nodes, inputs, nodes in
+    a chain, or nested nodegraphs.
     """
     title, rule = label(document), f"{label(document)}: must have"
-    weights, total, ports = _Weights(document, policy), 0, 0
+    counts, total, ports = _NodeCounts(document, policy), 0, 0
     policy.check_limit("shaders", len(elements), rule, "renderable elements")
     for element in elements:
         graph = reachable([element.getNamePath()], lambda path: _upstream(document, path))
@@ -64,7 +65,7 @@ def check_shaders(
         policy.check_limit("chain", longest, rule, "nodes in a row")
         for path in order:
             definition = _definition(document.getDescendant(path))
-            total += weights[definition]
+            total += counts[definition]
             ports += _inputs(document.getNodeDef(definition))
         ports += _inputs(element.getParent())
         policy.check_limit("ports", ports, rule, "inputs of nodes in all its shaders")
@@ -75,7 +76,7 @@ def check_shaders(
 def upstream(
     document: mx.Document, elements: Iterable[mx.Element], roots: Iterable[mx.Element]
 ) -> list[mx.Node]:
-    """The given elements of a document and all nodes upstream of them."""
+    """The nodes among `elements` that are `roots` or upstream of a root."""
     start = [each.getNamePath() for each in roots]
     paths = reachable(start, lambda path: _upstream(document, path))
     nodes = (each for each in elements if each.isA(mx.Node))
@@ -120,7 +121,7 @@ def check_interfaces(document: mx.Document, elements: Sequence[mx.Element], poli
     policy.check_limit("tokens", tokens, f"{label(document)}: must have", "tokens")
 
 
-class _Weights(dict[str, int]):
+class _NodeCounts(dict[str, int]):
     """Number of nodes that a node expands to, by the name of its nodedef."""
 
     def __init__(self, document: mx.Document, policy: Policy) -> None:
@@ -156,7 +157,7 @@ class _Weights(dict[str, int]):
 
 
 def _ordered(graph: Mapping[str, tuple[str, ...]], kind: str, rule: str) -> tuple[str, ...]:
-    """Keys of a graph, each after its parts; a cycle is a DocumentError."""
+    """Keys of a graph, each after its parts. DocumentError for a cycle."""
     try:
         return tuple(TopologicalSorter(graph).static_order())
     except CycleError as error:
@@ -181,7 +182,7 @@ def _definition(element: mx.Element) -> str:
 
 
 def _inputs(element: mx.Element | None) -> int:
-    """Number of an element's inputs; 0 if it cannot have any."""
+    """Number of an element's inputs; 0 for elements without inputs, such as outputs."""
     return element.getInputCount() if element and element.isA(mx.InterfaceElement) else 0
 
 

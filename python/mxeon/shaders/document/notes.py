@@ -19,14 +19,14 @@ HALF_PI = ctypes.c_float(math.pi / 2.0).value  # MaterialX's float32, slightly a
 
 
 class DocumentWarning(UserWarning):
-    """Text that MaterialX accepts but misreads; the message has the place, the rule and the value."""
+    """Part of a document that MaterialX accepts but misreads: the place, the rule and the value."""
 
     def __init__(self, message: str) -> None:
         super().__init__(one_line(message))
 
 
 class RangeWarning(DocumentWarning):
-    """A value outside the domain of its node's model, or outside the range that the node declares."""
+    """A value outside the domain of a node's model, or outside the range in the node's definition."""
 
 
 class CodeWarning(UserWarning):
@@ -34,11 +34,11 @@ class CodeWarning(UserWarning):
 
 
 class MissingFileWarning(DocumentError, UserWarning):
-    """Missing files that a shader names: a warning, and an error when they must be read."""
+    """Missing files that a shader names. Raised as an error where the files must be read."""
 
 
 def numbers(element: mx.ValueElement) -> tuple[float, ...]:
-    """Numbers of a value with a type in NUMERIC; empty if MaterialX reads none."""
+    """Numbers that MaterialX reads from a value with a type in NUMERIC."""
     value = plain(element.getValue(), element.getDocument())
     values = value if isinstance(value, tuple) else () if value is None else (value,)
     return cast(tuple[float, ...], values)
@@ -66,9 +66,10 @@ def warn_of_files(inputs: Iterable[tuple[str, str]], document: mx.Document) -> N
 
 
 def same_names(element: mx.Element) -> tuple[str, ...]:
-    """Upstream nodes that share a name in different nodegraphs but have different inputs, two per text.
+    """Pairs of upstream nodes with the same name in different nodegraphs and different inputs, as text.
 
-    MaterialX gives all of them the first one's values: names of shader inputs omit the nodegraph.
+    MaterialX gives both nodes the values of the first, because names of shader inputs omit the
+    nodegraph.
     """
     nodes = [element, *(edge.getUpstreamElement() for edge in element.traverseGraph())]
     first: dict[tuple[str, str], mx.Node] = {}
@@ -82,7 +83,7 @@ def same_names(element: mx.Element) -> tuple[str, ...]:
 
 
 def _inputs(node: mx.Node) -> set[tuple[str, str]]:
-    """Inputs of a node that have a value, with the value."""
+    """Names and values of a node's inputs that have a value."""
     return {
         (port.getName(), port.getValueString())
         for port in node.getInputs()
@@ -91,7 +92,7 @@ def _inputs(node: mx.Node) -> set[tuple[str, str]]:
 
 
 def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None:
-    """Warn about nodes whose inputs MaterialX confuses with another node's."""
+    """Warn about the pairs of `same_names`."""
     if not any(each.isA(mx.NodeGraph) for each in document.getChildren()):
         return  # names are unique within a graph
     pairs = dict.fromkeys(pair for element in elements for pair in same_names(element))
@@ -100,17 +101,16 @@ def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None
 
 
 def warn(kind: type[Warning], texts: Sequence[str]) -> None:
-    """Warn with the first of similar texts and the number of the rest, which may be thousands.
+    """Warn with the first of similar texts and the number of the rest, which may be thousands."""
 
-    The warning points to the caller of the function that calls this module.
-    """
     if texts:
         also = f"; {len(texts) - 1} more like it" if len(texts) > 1 else ""
+        # The warning points to the caller of the function that calls this module.
         warnings.warn(kind(texts[0] + also), stacklevel=4)
 
 
 def _misread(element: mx.ValueElement) -> str | None:
-    """Warning about a number that MaterialX only reads partly."""
+    """Warning about a number of which MaterialX reads only the beginning."""
     kind, text = element.getType(), element.getValueString()
     if kind not in NUMERIC or is_exact(text, kind):
         return None
@@ -134,7 +134,7 @@ def out_of_range(element: mx.ValueElement) -> str | None:
 
 
 def _beyond(element: mx.ValueElement) -> str | None:
-    """Warning about a value beyond the uimin or uimax of its node's definition."""
+    """Warning about a value below the uimin or above the uimax in its node's definition."""
     node = element.getParent()
     definition = node.getNodeDef() if element.isA(mx.Input) and node.isA(mx.Node) else None
     port = definition and definition.getActiveInput(element.getName())
@@ -157,7 +157,7 @@ def _beyond(element: mx.ValueElement) -> str | None:
 
 
 def _unknown_space(element: mx.ValueElement) -> str | None:
-    """Warning about a value without a transform from its color space to the document's."""
+    """Warning about a value whose color space has no transform to that of the document."""
     spaces = color_spaces(element) if element.getType() in COLORED else None
     if not spaces or element.getDocument().getMatchingNodeDefs("_to_".join(spaces)):
         return None
@@ -167,7 +167,7 @@ def _unknown_space(element: mx.ValueElement) -> str | None:
 
 
 def _unconnected(element: mx.Element) -> str | None:
-    """Warning about an input that is connected to a nodegraph as if it were a node."""
+    """Warning about an input whose `nodename` is not a node, such as a nodegraph."""
     if not element.isA(mx.Input) or not element.getNodeName() or element.getConnectedNode():
         return None
     rule = f"must be connected to a node; got nodename {element.getNodeName()!r}"

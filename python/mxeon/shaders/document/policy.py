@@ -50,9 +50,8 @@ class Policy:
 
     Raises ValueError if a limit is negative.
 
-    The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst known documents; reading images
-    for pictures takes less than another 15 s and 2.75 GiB. Seconds on a shared processor, for documents
-    at each limit:
+    The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst known documents; reading
+    images for pictures takes less than another 15 s and 2.75 GiB. Seconds on a shared processor:
 
     ======================================================  =====
     9,800 names of files, with tokens                          12
@@ -65,9 +64,9 @@ class Policy:
 
     The time grows with the square of the number of file names (94 s at 50,000), of outputs of a
     nodegraph, of unused inputs of an element, and of definitions that inherit each other (50 s at
-    10,000); with tokens times names of files; and doubles with each nodegraph that uses another
-    twice, which `nodes` counts. A stack of 8 MiB was enough for chains of 100,000 nodes and 3,000
-    nested nodegraphs; a thread may have a hundredth of that stack.
+    10,000); and with the product of tokens and file names. It doubles with each nodegraph that uses
+    another nodegraph twice, which `nodes` limits. A stack of 8 MiB was enough for chains of 100,000
+    nodes and 3,000 nested nodegraphs; a thread may have a hundredth of that stack.
     """
 
     outside: bool = False

@@ -2,8 +2,8 @@
 """Checked material documents from files and text.
 
 MaterialX accepts documents from which no shader can be generated, reads every file that a document
-names, and copies its words into shaders. Such documents are refused here with a one-line message before
-generation: their text before MaterialX reads it (`xml`), their elements afterwards.
+names, and copies names and text values into shaders. So documents are checked before generation:
+their text before MaterialX reads it, their elements afterwards. Each fault is one line.
 """
 
 import math
@@ -30,7 +30,7 @@ __all__ = ["Document", "DocumentError", "DocumentWarning", "read_document"]
 
 RAISED = (mx.Exception, LookupError)  # raised by MaterialX
 LONGEST_NAME = 128  # characters; file names contain three names and may have 255
-ALIKE = 0.85  # least similarity for suggestions; names of nodes have similar endings
+SIMILAR = 0.85  # least similarity of a suggested node; names of nodes have similar endings
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class Document:
 
     content: mx.Document  # its data library is attached
     renderables: tuple[mx.TypedElement, ...]  # one or more
-    nodes: int  # number of nodes in their shaders; nodegraphs count at each use
-    missing: tuple[str, ...] = ()  # a line for each named file that does not exist
+    nodes: int  # number of nodes in all shaders; a nodegraph counts at each use
+    missing: tuple[str, ...] = ()  # a line for each file that a shader names but does not exist
 
 
 def read_document(
@@ -51,9 +51,9 @@ def read_document(
 ) -> Document:
     """A checked MaterialX document with its data library attached.
 
-    The source is a file; XML text, a str that begins with `<` and names no file; or a document, which is
-    copied. XIncludes and relative file names are resolved against the file's folder, or the working
-    folder, and then the policy's search path. DocumentError lists all faults of the elements.
+    The source is a file; XML text, a str that begins with `<` and names no file; or a document, which
+    is copied. XIncludes and relative file names are looked up in the file's folder, or the working
+    folder for text, and then on the policy's search path. DocumentError lists all faults.
     """
     data = load_library(library, profile, policy.definitions)
     content = mx.createDocument()
@@ -115,7 +115,7 @@ def read_document(
 def _resolve_files(
     document: mx.Document, elements: Iterable[mx.Element], folders: list[Path]
 ) -> None:
-    """Make file names absolute, including sets of files, if they exist in one of the folders."""
+    """Make file names absolute if the files, or a set of textures, exist in one of the folders."""
     path = mx.FileSearchPath()
     for each in folders:
         path.append(mx.FilePath(str(each)))
@@ -123,15 +123,15 @@ def _resolve_files(
     for element in elements:
         name = element.getValueString() if element.isA(mx.ValueElement) else ""
         if "<" in name and element.getType() == "filename":
-            sets = (each / name for each in folders if references.files(each / name))
-            element.setValueString(str(next(sets, name)))
+            found = (each / name for each in folders if references.files(each / name))
+            element.setValueString(str(next(found, name)))
 
 
 class _Reader:
     """Reads a document and its includes, and checks their text before MaterialX reads it.
 
-    MaterialX keeps what it reads in memory and follows every include at once, so size, depth and number
-    are counted here, by a parser that keeps nothing, for a document and everything that it includes.
+    MaterialX keeps what it reads in memory and follows every include at once. So a parser that keeps
+    nothing first counts bytes, elements and attributes, summed over a document and its includes.
     """
 
     def __init__(self, policy: Policy, home: Path) -> None:
@@ -156,7 +156,7 @@ class _Reader:
 
     def read_text(self, document: mx.Document, text: str) -> None:
         """Read XML text into a document."""
-        data = text.encode(errors="replace")  # lone surrogates
+        data = text.encode(errors="replace")  # lone surrogates become question marks
         self._count(data, TEXT)
         self._parse(document, data.decode().removeprefix("\ufeff"), TEXT)
 
@@ -242,13 +242,13 @@ class _Reader:
 
 
 def _raise(faults: Sequence[str]) -> None:
-    """Raise DocumentError with the first faults, if there are any."""
+    """Raise DocumentError if there are faults."""
     if faults:
         raise DocumentError(*dict.fromkeys(faults))
 
 
 def _types(document: mx.Document) -> Iterator[str]:
-    """Faults of type members that crash a generator or that shaders do not support."""
+    """Faults of the members of the document's own types, which would crash a generator."""
     for each in filter(lambda child: child.isA(mx.TypeDef), document.getChildren()):
         for member in each.getChildren():
             if member.getAttribute("type") == "filename":
@@ -266,7 +266,7 @@ def _types(document: mx.Document) -> Iterator[str]:
 
 def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Policy) -> Iterator[str]:
     """Wrong values, which MaterialX would replace by defaults, and violations of its rules."""
-    told = set()
+    reported = set()
     for each in elements:
         text, fault = each.getValueString() if each.isA(mx.ValueElement) else "", ""
         if text and (kind := each.getType()) in NUMERIC:
@@ -276,7 +276,7 @@ def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Polic
         elif text and kind == "filename":
             fault = references.file_fault(each, policy)
         if fault:
-            told.add(each.asString())
+            reported.add(each.asString())
             yield fault
     # MaterialX reports only one wrong input of a node, without a suggestion.
     try:
@@ -288,15 +288,15 @@ def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Polic
     nodes = (each for each in elements if each.isA(mx.Node))
     wrong = [(each, fault) for node in nodes for each, fault in _input_faults(node)]
     yield from (fault for _, fault in wrong)
-    told |= {each.asString() for each, _ in wrong}
+    reported |= {each.asString() for each, _ in wrong}
     for line in message.strip().splitlines():
         interface = wrong and line.startswith("Node interface error: Input")
-        if not interface and f"<{line.partition(': <')[2]}" not in told:
+        if not interface and f"<{line.partition(': <')[2]}" not in reported:
             yield f"{label(document)}: must be a valid MaterialX document; {line}"
 
 
 def _check_version(document: mx.Document, title: str) -> None:
-    """Raise DocumentError for a version that MaterialX does not upgrade while reading."""
+    """Raise DocumentError unless MaterialX has upgraded the document to its own version."""
     current = tuple(mx.getVersionIntegers()[:2])
     if tuple(document.getVersionIntegers()) != current:
         raise DocumentError(
@@ -306,8 +306,8 @@ def _check_version(document: mx.Document, title: str) -> None:
 
 
 def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
-    """Inputs of a node that are unknown, of a wrong type, or connected to nothing, with their faults."""
-    if not (definition := node.getNodeDef("", True)):  # nearest one; its inputs may differ
+    """Inputs of a node that are unknown, have a wrong type, or are connected to nothing; and why."""
+    if not (definition := node.getNodeDef("", True)):  # a definition with other inputs will do
         return
     ports = {each.getName(): each.getType() for each in definition.getActiveInputs()}
     for each in node.getInputs():
@@ -324,14 +324,14 @@ def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
 
 
 def _undefined(document: mx.Document, nodes: Iterable[mx.Node]) -> Iterator[str]:
-    """Faults for undefined categories, each at its first node."""
+    """Faults for categories of nodes without a definition, each at the first such node."""
     groups: dict[tuple[str, str], list[mx.Node]] = {}
     for node in nodes:
         if not node.getNodeDef("", True):
             groups.setdefault((node.getCategory(), node.getType()), []).append(node)
     for (category, kind), (first, *more) in groups.items():
         same = (each for each in document.getNodeDefs() if each.getType() == kind)
-        near = meant(category, {each.getNodeString() for each in same} - {category}, ALIKE)
+        near = meant(category, {each.getNodeString() for each in same} - {category}, SIMILAR)
         remedy = near or ": load further definitions by --definitions FOLDER"
         others = f", with {len(more)} more" if more else ""
         yield (
@@ -341,7 +341,7 @@ def _undefined(document: mx.Document, nodes: Iterable[mx.Node]) -> Iterator[str]
 
 
 def _missing(nodes: Iterable[mx.Node], policy: Policy) -> Iterator[str]:
-    """Files that nodes' inputs name and may read, but that do not exist."""
+    """Faults for files that do not exist but that nodes' inputs name and may read."""
     for each in (port for node in nodes for port in node.getInputs()):
         port = each.getInterfaceInput() if each.hasInterfaceName() else each
         if port and port.getType() == "filename" and (name := port.getValueString()):

@@ -46,14 +46,14 @@ def folder(document: mx.Document) -> Path:
 
 
 def inside(path: AnyPath, home: Path, others: Iterable[str] = ()) -> bool:
-    """Whether a path with resolved links lies in `home`, in other folders or in the libraries."""
+    """Whether a path, after following links, lies in `home`, in `others` or in the libraries."""
     real = Path(os.path.realpath(path))
     roots = [home, *(Path(os.path.realpath(each)) for each in others), *_libraries()]
     return any(real.is_relative_to(root) for root in roots)
 
 
 def check_inside(path: AnyPath, home: Path, policy: Policy, prefix: str) -> None:
-    """Raise DocumentError unless a document in the folder `home` may name this file."""
+    """Raise DocumentError unless a document in the folder `home` may name the file."""
     if not policy.outside and not inside(path, home, policy.path):
         raise DocumentError(
             f"{prefix} must name a file in {home}, on the search path or in the libraries; got "
@@ -62,14 +62,11 @@ def check_inside(path: AnyPath, home: Path, policy: Policy, prefix: str) -> None
 
 
 def file_fault(element: mx.ValueElement, policy: Policy) -> str:
-    """The reason why an input's file must not be read if it exists, or "".
-
-    For a set of textures, every existing file is checked.
-    """
+    """The reason why an input's file, or a file of a set of textures, must not be read; or ""."""
     text, home, prefix = element.getValueString(), folder(element.getDocument()), location(element)
     if ENDS_A_STRING.search(text):
         return f"{prefix} must name a file without quotes and backslashes; got {text}"
-    path = home / text  # still relative if no file was found
+    path = home / text  # the text is relative if no file was found
     try:
         check_inside(path, home, policy, prefix)
         if "<" in str(path.parent):
@@ -82,7 +79,7 @@ def file_fault(element: mx.ValueElement, policy: Policy) -> str:
 
 
 def missing_fault(document: mx.Document, path: str, name: str) -> str:
-    """A message that the file of an input does not exist, or ""."""
+    """The message that an input's file does not exist; "" if it does."""
     if files(folder(document) / name):
         return ""
     rule = f'{label(document)}: input "{path}" must name a file that exists; got {name}'
@@ -90,7 +87,7 @@ def missing_fault(document: mx.Document, path: str, name: str) -> str:
 
 
 def files(path: Path) -> list[Path]:
-    """Existing files for a name: the file itself, or a set if the name contains `<UDIM>`."""
+    """Existing files for a name: the file itself, or a set of textures for a name with `<UDIM>`."""
     if "<" not in path.name:
         return [path] if os.path.isfile(path) else []
     return list(path.parent.glob(re.sub(r"(<\w*>)+", "*", glob.escape(path.name))))
@@ -106,7 +103,7 @@ def foreign_code(document: mx.Document) -> list[mx.Implementation]:
 
 
 def code_faults(document: mx.Document, policy: Policy) -> Iterator[str]:
-    """Faults for code that the policy forbids, either entirely or in these files."""
+    """Faults for the document's own code, if the policy forbids all code or its files."""
     home = folder(document)
     for element in foreign_code(document):
         prefix = location(element)
@@ -124,7 +121,7 @@ def code_faults(document: mx.Document, policy: Policy) -> Iterator[str]:
 
 
 def _sources(element: mx.Implementation, home: Path, path: Iterable[str]) -> list[Path]:
-    """Files to which a generator may resolve an implementation's `file`."""
+    """Existing files that a generator may open for an implementation's attribute `file`."""
     name = element.getAttribute("file")
     origin = Path(element.getActiveSourceUri() or home / "document").parent
     bases = (origin, home, Path.cwd(), *map(Path, path), *_libraries())
@@ -174,7 +171,7 @@ def _text(path: str, policy: Policy) -> str:
 
 
 def _names(text: str) -> Iterator[tuple[str, str]]:
-    """Attributes of a document that may name files, combined with each of the document's prefixes."""
+    """Attributes of a document that may name files, as key and value, with and without prefixes."""
     found = dict.fromkeys(
         (key, html.unescape(value[1:-1])) for key, value in ATTRIBUTE.findall(text) if key in NAMING
     )
@@ -213,8 +210,8 @@ def files_read(
 ) -> dict[str, str]:
     """Paths of all files that a run on documents may read.
 
-    Listed by path: the documents, the files that they include or name if the policy permits, and the files of
-    library folders. Listed by names that begin with "mxeon", "eonlib" or "MaterialX": installed code and data.
+    The keys of documents, of the files that they may include or name, and of files of library folders
+    are their paths; those of installed files begin with "mxeon", "eonlib" or "MaterialX".
     """
     paths = {path: path for document in documents for path in named_files(str(document), policy)}
     own = {*map(os.path.abspath, {*libraries, *policy.definitions} - {*LIBRARIES})}
@@ -244,5 +241,5 @@ def _library_files(library: str) -> Iterator[str]:
 def digests(
     documents: Iterable[AnyPath], policy: Policy, libraries: Iterable[str] = ()
 ) -> dict[str, str]:
-    """SHA-256 of each of `files_read`; "" for files that are not regular or cannot be read."""
+    """SHA-256 of each file in `files_read`, by the same keys; "" for unreadable or special files."""
     return {name: digest(path) for name, path in files_read(documents, policy, libraries).items()}

@@ -33,20 +33,20 @@ def check_sources(
     """Check the sources of a document for a target, everything they include, and its code's length.
 
     `tokens` returns the generator's replacements for tokens in includes; `shaders` and `nodes` are
-    the numbers that will be generated. DocumentError if a source, or one that it includes, lies where
-    the document may not name files, is not a regular UTF-8 text file, or exceeds a limit.
+    the numbers that will be generated. DocumentError if a source or an included file lies where the
+    document may not name files, is not a regular UTF-8 text file, or exceeds a limit.
     """
     title, code = label(document), references.foreign_code(document)
     rule = f"{title}: must have"
     size = 0  # total bytes of all files
     functions = 0  # characters of function sources with their includes
     expressions = max((len(each.getAttribute("sourcecode")) for each in code), default=0)
-    known: set[tuple[str, str]] = set()  # names and including folders
+    known: set[tuple[str, str]] = set()  # names, and folders of the including files
     read: set[str] = set()
     target = context.getShaderGenerator().getTarget()
     code = [each for each in code if each.hasFile() and target != UNREAD]
     targets = document.getTargetDef(target).getMatchingTargets() if code else ()
-    # Name, including folder, prefix of messages, and depth of includes, None for expressions.
+    # Name, folder of the including file, prefix of messages, and depth; None for expressions.
     waiting = [
         (
             each.getFile(),
@@ -65,7 +65,7 @@ def check_sources(
         policy.check_limit("elements", len(known), rule, "includes in its sources")
         opened = TOKEN.sub(lambda token: tokens().get(token[0], token[0]), name)
         path = os.path.abspath(context.resolveSourceFile(opened, local).asString())
-        path = path.partition("\0")[0]  # the system ends the name there, MaterialX does not
+        path = path.partition("\0")[0]  # the operating system ends the name at a null character
         missing = not os.path.lexists(path)  # MaterialX reports it if used
         if path in read or missing or references.library_path(path):
             continue

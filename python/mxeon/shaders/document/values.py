@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Elements of a document: their names in messages, their values in Python and their color spaces."""
+"""Elements of a document: their names in messages, values in Python, and color spaces."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -35,8 +35,8 @@ Plain: TypeAlias = "bool | int | float | str | tuple[Plain, ...] | None"
 def plain(value: object, document: mx.Document) -> Plain:
     """A value of any MaterialX type, or its data, as a plain Python value.
 
-    A color, vector or array is a tuple of its components; a matrix is a tuple of its numbers, row by row,
-    as in documents; a structure is a tuple of its members' plain values, in order.
+    A color, vector or array becomes a tuple of its components; a matrix a tuple of its numbers, row by
+    row, as in documents; a structure a tuple of its members' plain values, in order.
     """
     if isinstance(value, mx.Value):
         if not hasattr(value, "getData"):  # Python only has the text of structures
@@ -51,7 +51,7 @@ def plain(value: object, document: mx.Document) -> Plain:
 
 
 def members(kind: str, document: mx.Document) -> tuple[tuple[str, str], ...]:
-    """Names and types of a structure's members; none if the type is not a structure."""
+    """Names and types of a structure's members; empty for other types."""
     definition = document.getTypeDef(kind)
     parts = definition.getMembers() if definition else ()
     return tuple((each.getName(), each.getType()) for each in parts)
@@ -60,7 +60,7 @@ def members(kind: str, document: mx.Document) -> tuple[tuple[str, str], ...]:
 def flat(
     name: str, kind: str, value: Plain, document: mx.Document
 ) -> Iterator[tuple[str, str, Plain]]:
-    """Name, type and value of a shader's input, or of each member of a structure; no text."""
+    """Name, type and value of an input, or of each member of a structure; skips text values."""
     if parts := members(kind, document):
         values = value if isinstance(value, tuple) else ()
         for (part, inner), member in zip(parts, values, strict=False):
@@ -106,14 +106,14 @@ def split(text: str, separator: str) -> list[str]:
     return parts
 
 
-# Aliases in MaterialX's own color management; source: DefaultColorManagementSystem.cpp.
+# Aliases of color spaces in MaterialX's DefaultColorManagementSystem.cpp.
 LEGACY = {
     "gamma18": "g18_rec709",
     "gamma22": "g22_rec709",
     "gamma24": "rec709_display",
     "lin_ap1": "acescg",
 }
-# First version with the names of the Color Interop Forum.
+# First version of MaterialX with the aliases of the Color Interop Forum.
 INTEROP_VERSION = (1, 39, 4)
 INTEROP = {
     "lin_ap1_scene": "acescg",
@@ -130,7 +130,7 @@ INTEROP = {
 
 
 def color_spaces(element: mx.Element) -> tuple[str, str] | None:
-    """Color space of an element and of its document; None if its values are not transformed."""
+    """Color space of an element and of its document; None if values need no transform."""
     known = LEGACY | (INTEROP if mx.getVersionIntegers() >= INTEROP_VERSION else {})
     space, target = (
         known.get(name, name)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the document's words that may reach generated source.
 
-Generators copy the names, the text values and some attributes of a document into
-shaders unchanged, so anything but a plain word is code. `tests.fuzz.reach` finds these attributes for
-every target; all others (`doc`, `uiname`, application-specific ones) are free.
+Generators copy the names, the text values and some attributes of a document into shaders
+unchanged, so anything but a plain word would be code. `tests.fuzz.reach` finds these attributes for
+every target. All other attributes (`doc`, `uiname`, those of applications) may have any text.
 """
 
 import re
@@ -47,11 +47,7 @@ Choices = Callable[[], Collection[str]]
 
 
 def word_faults(document: mx.Document, elements: Iterable[mx.Element]) -> Iterator[str]:
-    """Names and text values of a document's elements that are not plain words.
-
-    The value of an input that names a variable may be one word. The data library of the
-    document is not checked.
-    """
+    """Faults of names and text values of a document's elements that are not plain words."""
     choices = cache(lambda: _choices(document))  # expensive (whole library), and rarely needed
     for element in elements:
         for name in ("name", *element.getAttributeNames()):
@@ -61,7 +57,7 @@ def word_faults(document: mx.Document, elements: Iterable[mx.Element]) -> Iterat
 
 
 def _broken(element: mx.Element, name: str, text: str, choices: Choices) -> str:
-    """Rule broken by an attribute, or ""; numbers and file names have their own rules."""
+    """Rule that an attribute breaks, or "". Numbers and file names are checked elsewhere."""
     if name == "value" and element.hasAttribute("type"):
         kind = element.getAttribute("type")
         if kind in NUMBERS or kind == "filename" or WORD.fullmatch(text):

@@ -2,7 +2,7 @@
 """Text of a document: decoded and converted to strict XML.
 
 MaterialX accepts more than XML allows: `<` and `&` in attributes, `--` in comments, a declaration
-after blank lines. Here it becomes strict XML once, so that the checked text is also the text that is read.
+after blank lines. The text becomes strict XML once, so that MaterialX reads the checked text.
 """
 
 import re
@@ -24,7 +24,7 @@ AMPERSAND = re.compile(r"&(?!(?:lt|gt|amp|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
 
 
 def decode(data: bytes, location: str) -> str:
-    """Text of a document: UTF-8, or ASCII regardless of its declaration."""
+    """Text of a document in UTF-8. An ASCII document may declare any encoding."""
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
