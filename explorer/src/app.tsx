@@ -32,10 +32,10 @@ const ADDRESS_DELAY = 300; // milliseconds; browsers refuse frequent changes of 
 interface AppProps {
   readonly data: PageData;
   /** Receives the stage and the view, for tests. */
-  readonly tell: (stage: Stage | null, state: State, show: (state: State) => void) => void;
+  readonly publish: (stage: Stage | null, state: State, show: (state: State) => void) => void;
 }
 
-export function App({ data, tell }: AppProps) {
+export function App({ data, publish }: AppProps) {
   const sources = useMemo(() => sourcesOf(data), [data]);
   const [state, setState] = useState(() => fromAddress(location.hash.slice(1), data));
   const change = useCallback(
@@ -47,7 +47,7 @@ export function App({ data, tell }: AppProps) {
   const [dragging, setDragging] = useState(false);
   useAddress(state, setState, data);
   useKeys(state, change);
-  useLayoutEffect(() => tell(stage ?? null, state, setState), [stage, state]);
+  useLayoutEffect(() => publish(stage ?? null, state, setState), [stage, state]);
 
   // Slow computations wait until the view is at rest.
   const rest = useRest(stage, state, dragging);
@@ -109,7 +109,7 @@ export function App({ data, tell }: AppProps) {
 }
 
 function Header({ data }: { readonly data: PageData }) {
-  const [said, say] = useState("");
+  const [message, setMessage] = useState("");
   return (
     <header>
       <h1>mxeon explorer</h1>
@@ -117,13 +117,13 @@ function Header({ data }: { readonly data: PageData }) {
       <button
         type="button"
         onClick={() =>
-          void copy(location.href).then((done) => say(done ? "Copied" : "See the address"))
+          void copy(location.href).then((done) => setMessage(done ? "Copied" : "See the address"))
         }
       >
         Copy a link to this view
       </button>
       <span class="said" role="status">
-        {said}
+        {message}
       </span>
       <small>
         mxeon {data.version}, MaterialX {data.materialx}

@@ -24,10 +24,10 @@ const hook = {
   fromAddress: (address: string) => fromAddress(address, data),
 };
 
-function tell(stage: Stage | null, state: State, show: (state: State) => void): void {
+function publish(stage: Stage | null, state: State, show: (state: State) => void): void {
   globalThis.mxeon = { ...hook, stage, state: () => state, show };
 }
 
 const page = document.getElementById("page")!;
 page.textContent = "";
-render(<App data={data} tell={tell} />, page);
+render(<App data={data} publish={publish} />, page);

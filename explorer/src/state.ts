@@ -30,7 +30,7 @@ export interface State {
   readonly comparison: Comparison;
   readonly wipe: number; // fraction of the width that shows the left material, in [0, 1]
   readonly scale: number; // difference at the end of the color scale, as radiance of the picture
-  readonly shown: SideName; // difference mode: alternate the two sides
+  readonly shown: SideName; // the side that the comparison "flicker" shows
   readonly shape: Shape;
   /**
    * The viewer's direction in degrees relative to the shape's default: around it, and up. Not used

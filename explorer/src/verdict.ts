@@ -36,10 +36,10 @@ export interface Errors {
 
 /** Values that this browser read back from a side's shader. */
 export interface Evidence {
-  readonly able: boolean; // whether it can draw at all
-  /** Whether the shader has the values of its claimed model; null before this is known. */
+  readonly able: boolean; // whether the browser can draw
+  /** Whether the shader has the values of its claimed model; null until known. */
   readonly confirmed: boolean | null;
-  readonly errors: Errors | null; // null until they are known, or if there is no reference
+  readonly errors: Errors | null; // null until known, and without a reference
   readonly failure: string; // compiler message if the shader does not compile
 }
 

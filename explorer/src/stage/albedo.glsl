@@ -31,7 +31,7 @@ vec3 stage_angle(float t)
     return vec3(1.0 - t * t, 2.0 * t, 2.0) / (1.0 + t * t);
 }
 
-// Integral over the half of the hemisphere with y > 0 and tangents of polar angles from low to high.
+// Integral over half of the hemisphere, y > 0; tangents of half the polar angles in [low, high].
 vec3 stage_zone(vec3 wo, float low, float high, vec3 rho, float r)
 {
     vec3 sum = vec3(0.0);

@@ -3,7 +3,7 @@
 
 uniform mat3 stage_camera; // The columns are the axes of the viewer's frame, in the world frame.
 uniform vec3 stage_eye; // Eye position in the world frame; only perspective cameras use it.
-uniform vec4 stage_frame; // Width and height, the sphere's diameter, and the focal length, in pixels.
+uniform vec4 stage_frame; // Width, height, the sphere's diameter, focal length; in pixels.
 // Offset in pixels; 0 in the first frame, whose samples are the pixel centers.
 uniform vec2 stage_jitter;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometry of each pixel: position and normal. All materials read it, so they shade exactly the
-// same point, and switching materials does not redraw the shape.
+// Position and normal of each pixel, which all materials read. So materials shade exactly the same
+// points, and switching materials does not redraw the shape.
 
 layout(location = 0) out vec4 stage_surface; // Normal in the viewer's frame, and the part's number.
 // Position in the viewer's frame, and the visible share of the surroundings.

@@ -87,7 +87,7 @@ export class Stage {
   private fence: Fence | null = null;
   private noise: { left: number; right: number } | null = null;
   private said = "";
-  private readonly told = new Set<string>(); // sources with reported errors
+  private readonly reported = new Set<string>(); // sources with reported errors
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -259,7 +259,7 @@ export class Stage {
   /** Restart the average. */
   private restart(): void {
     this.index = 0;
-    this.told.clear();
+    this.reported.clear();
     this.noise = null;
     this.schedule();
   }
@@ -328,8 +328,8 @@ export class Stage {
   /** Report an error once for each view. */
   private tellErrors(engine: Engine): void {
     for (const [source, message] of engine.errors) {
-      if (this.told.has(source)) continue;
-      this.told.add(source);
+      if (this.reported.has(source)) continue;
+      this.reported.add(source);
       this.tell({ kind: "error", source, message });
     }
   }

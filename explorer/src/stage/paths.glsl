@@ -9,7 +9,7 @@ uniform highp sampler2D stage_environment;
 uniform int stage_pass;
 uniform int stage_bounces; // Maximum number of scattering events on a path.
 uniform float stage_share; // Weight of this pass in the averages.
-uniform vec3 stage_light; // Unit vector in the world frame.
+uniform vec3 stage_light; // Unit vector towards the light, in the world frame.
 uniform float stage_intensity;
 uniform vec2 stage_bend; // As in generated.glsl.
 
@@ -59,7 +59,7 @@ bool stage_drawn(Hit hit, Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight
         return material_sample(p, wo, u, wi, weight, pdf);
     float phi = 2.0 * STAGE_PI * u.x;
     float z = 2.0 * u.y - 1.0;
-    // Cosine-distributed.
+    // A cosine-distributed direction around the normal.
     wi = normalize(hit.normal + vec3(sqrt(1.0 - z * z) * vec2(cos(phi), sin(phi)), z));
     weight = vec3(STAGE_FLOOR_RHO);
     return true;

@@ -4,7 +4,7 @@
 uniform highp sampler2D stage_surface;
 uniform highp sampler2D stage_place;
 uniform mat3 stage_camera;
-uniform vec3 stage_light; // Unit vector in the world frame.
+uniform vec3 stage_light; // Unit vector towards the light, in the world frame.
 
 out vec4 stage_lit;
 

@@ -42,7 +42,7 @@
 
 struct Hit {
     float t;
-    vec3 normal; // Turn the normal towards the origin of the ray.
+    vec3 normal; // Faces the origin of the ray.
     int part;
 };
 

@@ -78,7 +78,7 @@ const RADIANCE: Record<"studio" | "sky", (w: Vec3) => Triple> = { studio, sky };
 /** The radiance map of the surroundings; a single pixel if they are uniform. */
 export function radianceMap(name: Surroundings, own: Texels | null): SkyMap {
   if (name === "own") {
-    // Without a map, this link comes from a page with a custom environment.
+    // The address may come from a page with a custom environment, which is missing here.
     if (!own) return radianceMap("studio", null);
     const bytes = Uint8Array.from(atob(own.rgba), (each) => each.charCodeAt(0));
     return { ...own, pixels: new Float32Array(bytes.buffer) };

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The wrong variants of python/mxeon/models/diffuse.py, for texts that include the models.
 //
-// Arguments are the same: wo and wi in the local frame, rho per channel, and the roughness or sigma
-// of the model.
+// Arguments are wo and wi in the local frame, rho per channel, and the model's roughness or sigma.
 
 // EON that clamps dot(wo, wi) to at least 1e-8 before it computes s. The dot product is s + mu_o
 // mu_i.

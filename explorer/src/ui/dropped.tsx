@@ -10,7 +10,7 @@ const DOCUMENT = /\.mtlx$/i;
 const LIGHT = /\.(hdr|exr)$/i;
 
 export function Dropped({ data, sources, state, change }: ViewProps) {
-  const [said, say] = useState(data.warnings.join(" "));
+  const [message, setMessage] = useState(data.warnings.join(" "));
   useEffect(() => {
     // Otherwise the browser opens the file.
     const over = (event: DragEvent): void => event.preventDefault();
@@ -24,16 +24,18 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
         names.find((name) => DOCUMENT.test(name)) ?? names.find((name) => LIGHT.test(name));
       if (names.length === 0) return;
       if (!first)
-        return say(`${names[0]}: drop a .mtlx document with its images, or a .hdr or .exr map.`);
+        return setMessage(
+          `${names[0]}: drop a .mtlx document with its images, or a .hdr or .exr map.`,
+        );
       if (data.served) {
-        say(`${first}: making its shaders…`);
-        return say(await sent(files, DOCUMENT.test(first)));
+        setMessage(`${first}: making its shaders…`);
+        return setMessage(await sent(files, DOCUMENT.test(first)));
       }
       const own = data.sources.find(
         ({ id, group }) => id.startsWith("document/") && group === first,
       );
       const option = DOCUMENT.test(first) ? "" : "--environment ";
-      say(own ? "" : `To see ${first}, run: mxeon explore ${option}FILE`);
+      setMessage(own ? "" : `To see ${first}, run: mxeon explore ${option}FILE`);
       if (own) change(withMaterial(state, sources, stemOf(own.id)));
     };
     addEventListener("dragover", over);
@@ -43,11 +45,11 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
       removeEventListener("drop", drop);
     };
   }, [state]);
-  if (!said) return null;
+  if (!message) return null;
   return (
     <p class="dropped" role="status">
-      {said}{" "}
-      <button type="button" aria-label="Close" onClick={() => say("")}>
+      {message}{" "}
+      <button type="button" aria-label="Close" onClick={() => setMessage("")}>
         ×
       </button>
     </p>

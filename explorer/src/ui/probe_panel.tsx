@@ -221,10 +221,10 @@ function Numbers({ values }: { readonly values: Triple }) {
 
 /** Copy buttons for each side. */
 function Copies({ data, sources, state, calm, pair }: ProbeProps) {
-  const [said, say] = useState("");
+  const [message, setMessage] = useState("");
   const take = (what: string, text: string): void => {
     void copy(text).then((done) =>
-      say(done ? `${what} copied.` : `${what} cannot be copied here.`),
+      setMessage(done ? `${what} copied.` : `${what} cannot be copied here.`),
     );
   };
   return (
@@ -255,7 +255,7 @@ function Copies({ data, sources, state, calm, pair }: ProbeProps) {
         );
       })}
       <p class="said" role="status">
-        {said}
+        {message}
       </p>
     </div>
   );
