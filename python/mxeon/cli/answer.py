@@ -97,7 +97,7 @@ def _annotations(run: Run) -> Iterator[str]:
     """GitHub annotations for failures, grouped by cause, and for checks that did not run."""
     for line in _failures(replace(run, results=run.judged, compared=())):
         yield words.annotation("error", "mxeon check", line)
-    for line in _not_run(run, True, []):
+    for line in _not_run(run, True, True):
         yield words.annotation("warning", "mxeon check", line)
 
 
@@ -129,7 +129,7 @@ def answer(run: Run, full: bool = False) -> list[Line]:
         "cause": [*_failures(run)],
         "note": [_line(f"note: {note}") for note in run.notes],
     }
-    lines = [*_not_run(run, full, [] if many else sections["material"])]
+    lines = [*_not_run(run, full, many)]
     lines += map(_line, (*words.origins(run), *words.not_judged(run)))
     omitted = []
     for name, section in sections.items():
@@ -150,7 +150,7 @@ class DocumentState(NamedTuple):
     document: str  # path
     library: str
     state: str  # a row of STATES
-    cause: str  # the same for all documents with this cause
+    cause: str  # equal texts for documents with the same cause
     referenced: bool = False  # whether all pictures have a reference
 
 
@@ -214,7 +214,7 @@ def _cause(result: Result, measured: bool) -> str:
         return f"matches the reference{inputs}"
     if result.verdict == PASSED and result.check == DOCUMENT_KEY:
         return "shaders are generated"
-    # Leave out the size of the difference, so that documents with the same cause share a line.
+    # Without the size of the difference, documents with the same cause share a line.
     if result.difference and result.diagnosis.first.key in ("", "other_node"):
         return words.appearance(result.difference)
     reason = result.reason or words.diagnosis(result.diagnosis)
@@ -276,17 +276,14 @@ def _appearance(run: Run, document: str, results: Sequence[Result]) -> str:
 
 def _look(run: Run, document: str, result: Result) -> str:
     """Appearance of a material in one picture; wrong nodes may not be visible in it."""
-    look = words.look(result)
-    if look != words.AS_SPECIFIED:
-        return look
     unused = [
         run.is_elsewhere(each, document)
         for each in run.results
         if each.verdict == FAILED and each.location == result.location
         if each.subject in run.contents[document]
     ]
-    if not unused:
-        return look
+    if not (unused and _is_right(result)):
+        return words.look(result)
     inputs = " for inputs that this material does not use" if all(unused) else ""
     return f"the picture is right; its nodes are wrong{inputs}"
 
@@ -294,6 +291,11 @@ def _look(run: Run, document: str, result: Result) -> str:
 def _is_visible(result: Result) -> bool:
     """Whether a material differs visibly from the reference."""
     return bool(result.difference and result.difference.is_visible)
+
+
+def _is_right(result: Result) -> bool:
+    """Whether a check compares a picture with the reference, without a visible difference."""
+    return result.check == "picture" and result.verdict == PASSED and not _is_visible(result)
 
 
 def _is_picture(result: Result, document: str) -> bool:
@@ -311,7 +313,7 @@ def _rank(run: Run, result: Result) -> int:
     if run.is_elsewhere(result):
         return ELSEWHERE
     right = [
-        each.verdict == PASSED and not _is_visible(each)
+        _is_right(each)
         for document, titles in run.contents.items()
         if result.subject in titles
         for each in run.results
@@ -375,18 +377,16 @@ def model_of(title: str) -> str:
     return abbreviation[1] if abbreviation else name
 
 
-def _not_run(run: Run, full: bool, materials: Sequence[str]) -> Iterator[Line]:
-    """Reasons why checks did not run, except those in a material's sentence; all if `full`."""
-    reasons = grouped(
-        (
-            each
-            for each in run.results
-            if each.verdict == NOT_RUN and not each.follows
-            if each.check not in PICTURE_CHECKS
-            or not any(one_line(each.reason) in sentence for sentence in materials)
-        ),
-        lambda each: each.reason,
+def _not_run(run: Run, full: bool, pictures: bool) -> Iterator[Line]:
+    """Reasons why checks did not run, all if `full`; without `pictures`, only those of nodes."""
+    documents = [each for each in run.contents if each not in run.refused and not pictures]
+    not_run = (
+        each
+        for each in run.results
+        if each.verdict == NOT_RUN and not each.follows
+        if not any(_is_picture(each, document) for document in documents)
     )
+    reasons = grouped(not_run, lambda each: each.reason)
     shown = len(reasons) if full else REASONS
     for reason, results in [*reasons.items()][:shown]:
         places = listed(_unique(each.location for each in results))
@@ -416,7 +416,7 @@ def _remedy(run: Run) -> Iterator[str]:
         or (each.library not in compared and not run.is_elsewhere(each))
     }
     libraries = {each.library for each in run.results}
-    # eonlib does not have the defects that have a page.
+    # Defects with a page in docs/upstream are not in eonlib, unless they are unavoidable.
     nodes = [issues_of(each) for each in failed if each.check not in PICTURE_CHECKS]
     known = all(issues and not any(each.unavoidable for each in issues) for issues in nodes)
     if "stock" in wrong and (

@@ -74,7 +74,9 @@ class Parser(argparse.ArgumentParser):
     ) -> tuple[argparse.Namespace, list[str]]:
         """Report unknown options before other errors, and print help if the command is missing."""
         words = list(sys.argv[1:] if args is None else args)
-        is_command = self.get_default("run") is not None  # False for a group of commands
+        is_command = (
+            self.get_default("run") is not None
+        )  # False for a command with actions, such as `report`
         if not (words or is_command):
             self.print_help()
             self.error("choose a command")
@@ -172,7 +174,8 @@ def add_shared(command: argparse.ArgumentParser, *names: str) -> None:
 def use_materialx(folder: str | None) -> None:
     """Import MaterialX from a folder, here and in worker processes; None imports nothing.
 
-    Raises InputError if it is missing or cannot be imported, or another MaterialX already was.
+    Raises InputError if the folder has no MaterialX that can be imported, or if another MaterialX was
+    imported before.
     """
     if folder is None:
         return

@@ -145,14 +145,14 @@ def _print_line(line: str) -> None:
 class Progress:
     """A progress line on a terminal; `label` returns the name of a step."""
 
-    visible = ""  # the current line
+    visible = ""  # the progress line on the terminal
 
     def __init__(self, title: str, label: Callable[[Any], str] = str) -> None:
         self._title, self._label = title, label
         self._open = bool(sys.stderr) and sys.stderr.isatty()
 
     def show(self, text: str) -> None:
-        """Replace the line."""
+        """Replace the progress line."""
         if self._open:
             columns = shutil.get_terminal_size().columns - 1
             line = one_line(f"{self._title}: {text}")[:columns]
@@ -160,13 +160,13 @@ class Progress:
             Progress.visible = line
 
     def clear(self) -> None:
-        """Erase the line."""
+        """Erase the progress line."""
         if self._open:
             print(self.take(), end="", file=sys.stderr, flush=True)
 
     @classmethod
     def take(cls) -> str:
-        """Forget the current line, and return the text that erases it."""
+        """Forget the progress line, and return the text that erases it."""
         erase = "\r\033[K" if cls.visible else ""
         cls.visible = ""
         return erase
@@ -177,7 +177,7 @@ class Progress:
         begin = 0.0
         self.show(f"0 of {total}")
         for done, step in enumerate(steps, 1):
-            begin = begin or time.monotonic()  # after the first step, which includes the setup
+            begin = begin or time.monotonic()  # exclude the first step, which includes the setup
             spent = (time.monotonic() - begin) / max(done - 1, 1)
             left = f", about {spent * ((total or done) - done):.0f} s left" if done > 2 else ""
             self.show(": ".join(filter(None, (f"{done} of {total}{left}", self._label(step)))))

@@ -105,7 +105,7 @@ def sky_of(file: str) -> data.Texels:
 def path_texts(document: str, policy: Policy = DEFAULT) -> dict[str, str]:
     """Path-tracing code of a document's materials, by element; empty if one mixes surfaces."""
     with warnings.catch_warnings(), suppress(InterfaceError):
-        warnings.simplefilter("ignore")  # already reported
+        warnings.simplefilter("ignore")  # the warnings were already reported
         made = generate(document, "essl", profile="path", uniforms=True, policy=policy)
         return {each.element: each.stages["pixel"] for each in made}
     return {}
@@ -118,7 +118,7 @@ def checked_materials(file: str, library: str, policy: Policy = DEFAULT) -> dict
     """Verdicts of `mxeon check` on gl, by element; empty if gl does not run."""
     try:
         with open_host("gl") as host, warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # already reported
+            warnings.simplefilter("ignore")  # the warnings were already reported
             results, _, _ = judge_document(Path(file), host, Reference(), library, policy)
     except MxeonError:  # gl is missing, or the document has an error that was already reported
         return {}

@@ -95,7 +95,7 @@ def reference_of(shader: Shader) -> ReferenceTable | None:
 
 
 def _rows(node: mx.Node) -> tuple[PbrSpec, ...]:
-    """Specs of nodes with a thin film if the node has one, otherwise of nodes without."""
+    """Specs of nodes with a thin film if the node has one, otherwise specs of all other nodes."""
     film = node.getInput(FILM)
     return FILM_SPECS if film is not None and film.getValue() != 0.0 else (*PLAIN_LOBES, HAIR)
 

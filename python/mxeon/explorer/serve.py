@@ -2,7 +2,8 @@
 """A local server of the explorer's page, which also receives files dropped on the page.
 
 Only the page itself can send files: before a PUT from another site, browsers request permission,
-which this server does not give. It checks the host name, so that no other domain can point here.
+which this server does not give. The server checks the host name of requests, so that no other domain
+can point to this address.
 """
 
 from collections.abc import Callable

@@ -27,7 +27,7 @@ from mxeon.io.files import AnyPath, below, check_output, one_name, replacing, wr
 from mxeon.io.images import without_threads, write_exr, write_png
 from mxeon.report.junit import to_junit
 
-PAGES = "upstream"  # folder of the pages on defects, next to the report
+PAGES = "upstream"  # folder of the pages on defects, in the report's folder
 
 JSON_FORMAT = 5
 SCHEMA = f"urn:mxeon:results:{JSON_FORMAT}"  # identifier of `mxeon.report.schema.schema()`
@@ -157,7 +157,7 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     ):
         for _ in written:
             pass
-    # The report links to these if the site is unknown.
+    # The page links to these files if the address of the documentation is unknown.
     for issue in {each for one in run.results for each in issues_of(one)}:
         write_text(below(folder, f"{PAGES}/{issue.page}.md"), issue.text)
     with (
@@ -241,8 +241,8 @@ R = TypeVar("R")
 def in_threads(work: Callable[[T], R], items: Iterable[T]) -> Iterator[Iterator[R]]:
     """Run `work` on every item in threads, a few items ahead; iterate over the results in order.
 
-    The first error stops the work and is raised. The threads end with the block. If garbage
-    collection ended them instead, it might run in one of them, which would wait for itself.
+    The first error stops the work and is raised. The threads end with the block, not by garbage
+    collection, which may run in one of the threads: that thread would wait for itself.
     """
     begun = deque[Future[R]]()
     with ThreadPoolExecutor(THREADS) as pool:

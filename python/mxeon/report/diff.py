@@ -114,7 +114,7 @@ class ShownPicture:
 
 @dataclass(frozen=True)
 class Elsewhere:
-    """A failure for inputs that are not used by a document."""
+    """A failure of a check for inputs that a document does not use."""
 
     document: str
     check: str
@@ -302,7 +302,7 @@ Results: TypeAlias = Mapping[tuple[str, ...], Result]
 def _result_changes(
     before: Results, after: Results, fewer: bool, renewed: Container[str]
 ) -> Iterator[Change]:
-    """Changes of results. With `fewer` documents, no check is LOST; `renewed` hosts changed."""
+    """Changes of results. With `fewer` documents, no check is LOST. Hosts in `renewed` changed."""
     for key in (key for key in before if key in after):
         old, new = before[key], after[key]
         kind, reason, growths = _change(old, new)
@@ -333,11 +333,11 @@ def _result_changes(
 
 
 def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
-    """Kind of a result's change ("" for none), a reason that numbers do not show, and growths."""
+    """Kind of change of a result ("" for none), a reason besides numbers, and numbers that grew."""
     if NOT_RUN in (old.verdict, new.verdict):
         if old.verdict == new.verdict:
             return "", "", ()
-        # Another failure prevents this check, and that failure is compared separately.
+        # A failure that prevents this check has its own result, which is compared separately.
         if old.follows or new.follows:
             return OTHER, old.reason or new.reason, ()
         if new.verdict == NOT_RUN:
@@ -362,9 +362,9 @@ def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
 
 
 def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
-    """Numbers that grew by more than noise, all samples first, or else the largest error.
+    """Numbers that grew by more than noise: those of all samples first; without samples, the error.
 
-    Changes within the tolerance are ignored: they would pass if the rest were right.
+    Growth below the tolerance is ignored, since a check passes with such errors.
     """
     margin = (new.tolerance or 0.0) + FUNCTIONS
     if not (old.errors and new.errors):
@@ -399,7 +399,7 @@ def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
 
 
 def _is_rounding(old: Result, new: Result) -> bool:
-    """Whether another driver explains a failure: few samples exceed the tolerance, not the rms.
+    """Whether another driver explains a failure: few samples exceed the tolerance, but not the rms.
 
     With MaterialX's sheen, 5 of 6957 samples exceed 2e-5 on llvmpipe, by 1.2e-4; none on lavapipe.
     """
@@ -409,7 +409,7 @@ def _is_rounding(old: Result, new: Result) -> bool:
 
 
 def _is_farther(old: Result, new: Result) -> bool:
-    """Whether the best match is clearly farther away than before, and not negligibly far."""
+    """Whether values are clearly farther from the nearest known model than before."""
     was, now = old.diagnosis.distance, new.diagnosis.distance
     own = next(iter(new.diagnosis.distances.values()), math.inf)
     factor = SPREAD if old.samples == new.samples else DISTANCE
@@ -417,7 +417,7 @@ def _is_farther(old: Result, new: Result) -> bool:
 
 
 def _is_repaired(old: Result, new: Result) -> bool:
-    """Whether a known defect is gone: the own model is nearest, as near as the defect was.
+    """Whether a known defect is gone: the right model is now nearest, as near as the defect was.
 
     With other samples, an error that exceeds the size on the defect's page may be noise.
     """

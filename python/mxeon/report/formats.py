@@ -64,7 +64,7 @@ def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, f
 
 
 def linked(result: Result) -> Markup:
-    """Explanation of a result as HTML: a passed control, the diagnosis, and links to known issues."""
+    """Explanation of a result as HTML: an uncaught control, the diagnosis, and known issues."""
     excess = words.excess(result) if result.within and result.verdict != PASSED else ""
     links = [Markup("see ") + each for each in _links(result)]
     return Markup("; ").join(

@@ -36,7 +36,7 @@ from mxeon.report import in_threads, pieces
 from mxeon.report.formats import causes_of, linked, nearest, vector
 from mxeon.shaders.scene import STUDIO
 
-# Maximum materials with embedded pictures, about a megabyte each; others are links.
+# Maximum materials with embedded pictures, about a megabyte each; other materials are links.
 SHOWN_MATERIALS = 60
 LARGE = 512  # pixels on a side of a studio picture
 LEAST_SCALE = 1e-3  # smallest scale of a difference map: 0.1 % of white
@@ -50,7 +50,7 @@ Verdicts: TypeAlias = Mapping[tuple[str, str, str], Result]  # keys: subject, ho
 
 @dataclass(frozen=True)
 class CheckResults:
-    """All results of one check on one host with one library, at least one."""
+    """The results of one check on one host with one library; never empty."""
 
     key: str
     anchor: str  # identifier in the page

@@ -18,8 +18,7 @@ from PIL import Image
 from mxeon.io.srgb import NOT_FINITE
 from mxeon.report.formats import LOOKS, number, share, unbroken
 
-# Pages show only every second, third, ... pixel of larger pictures; files have all pixels.
-SHOWN_SIZE = 256
+SHOWN_SIZE = 256  # maximum pixels on a side of embedded pictures; larger pictures are subsampled
 DIFFERENCE_COLORS = matplotlib.colormaps["inferno"]
 DIFFERENCE_CODES = DIFFERENCE_COLORS(np.arange(DIFFERENCE_COLORS.N), bytes=True)[:, :3]
 NOT_JUDGED = (96, 99, 104)
@@ -29,7 +28,7 @@ FAST = 1  # zlib's level, which takes a third of the time for a third more bytes
 def generate_page(
     package: str, name: str, filters: Mapping[str, Callable[..., Any]], **values: Any
 ) -> Generator[str, None, None]:
-    """Generate a page in pieces from a package's template and script; it runs no other script."""
+    """Generate a page in pieces from a package's template and script; no other script runs."""
     environment = Environment(
         loader=ChoiceLoader([PackageLoader(package), PackageLoader("mxeon.report")]),
         autoescape=True,

@@ -76,4 +76,4 @@ def _value(kind: Any, records: dict[str, Schema]) -> Schema:
     if origin is tuple:
         items = [_value(each, records) for each in inner]
         return {"type": "array", "prefixItems": items, "minItems": len(items), "items": False}
-    return {"anyOf": [_value(each, records) for each in inner]}  # X | None
+    return {"anyOf": [_value(each, records) for each in inner]}  # a union, such as `str | None`

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MaterialX documents, generated shaders, and the hosts that run them. Never imports the models."""
+"""MaterialX documents, data libraries and generated shaders. No module here imports the models."""

@@ -29,7 +29,7 @@ TOKEN = re.compile(r"\$[A-Za-z]\w*")
 def check_closure_calls(
     stage: mx_gen.ShaderStage, target: str, library: str, profile: str | None
 ) -> None:
-    """Raise InterfaceError unless a generated stage calls a library's functions as they are defined.
+    """Raise InterfaceError unless a generated stage calls a library's functions as defined.
 
     Raise ShaderError if several nodes name a function that has the wrong parameters for one node.
     """
@@ -62,13 +62,16 @@ def _functions(
 ) -> Mapping[str, dict[str, list[str]]]:
     """Nodedefs that a library implements for a target, by source file and function.
 
-    Empty for a library that replaces MaterialX's; otherwise without MaterialX's own implementations.
+    Without MaterialX's own implementations; empty for a library that replaces MaterialX's.
     """
     functions: dict[str, dict[str, list[str]]] = defaultdict(dict)
     if root(library):
         return functions
     document = load_library(library, profile)
-    targets = {GENERATORS[target].create().getTarget(), "genglsl"}  # most targets inherit from it
+    targets = {
+        GENERATORS[target].create().getTarget(),
+        "genglsl",
+    }  # whose code most targets inherit
     standard = set(standard_folders())
     folders = cache(lambda uri: Path(uri).parents)  # many implementations share few documents
     for each in document.getImplementations():

@@ -305,7 +305,7 @@ def check_generator(library: str, target: str) -> None:
 def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
     """Inputs of a shader. The generator adds nodes, whose inputs have their name as path."""
     stage = shader.getStage("pixel")
-    blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL declares them as inputs
+    blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL declares uniforms as inputs
     return tuple(
         Input(port.getVariable(), kind.getName(), plain(port.getValue(), document), path)
         for name, block in blocks.items()

@@ -61,7 +61,7 @@ class Methods:
             raise InputError(f"airy must lie in [1, {MOST_ITERATIONS}]; got {self.airy}")
 
     def over(self, host: "Methods") -> "Methods":
-        """These methods, completed by the host's choices."""
+        """The chosen methods, and those of `host` for all that are left open."""
         return replace(host, **dict(self.chosen()))  # type: ignore[arg-type]
 
     def chosen(self) -> Iterator[tuple[str, str | int | bool]]:
@@ -87,7 +87,7 @@ class Methods:
 
 UNCHOSEN = Methods()  # leaves all choices to the host
 GENERATED = Methods("fis", "refraction", "analytic", 2)  # the defaults of MaterialX's generators
-STORM = Methods("prefilter", "opacity", "analytic", 2)  # hard-coded in hdSt/materialXFilter.cpp
+STORM = Methods("prefilter", "opacity", "analytic", 2)  # of USD, in hdSt/materialXFilter.cpp
 
 # MaterialX's declarations of the methods in a text.
 ALBEDO = re.compile(r"^#define DIRECTIONAL_ALBEDO_METHOD (\d+)$", re.MULTILINE)

@@ -21,7 +21,7 @@ NODEDEFS = tuple(f"ND_{category}" for category in DIFFUSE_NODES)
 # eonlib's nodes that compute the reflectance for which EON has a given color.
 INVERSIONS = ("eon_rho_from_albedo_normal", "eon_rho_from_albedo_avg")
 
-FLAG = "energy_compensation"  # only oren_nayar has it: EON if true, else QON
+FLAG = "energy_compensation"  # input of OREN_NAYAR: EON if true, QON if false
 INPUT_TYPES = {
     "weight": "float",
     "color": "color3",
@@ -172,7 +172,7 @@ def material_text(
     return document_text(lobe_text(category, inputs or {}, types=types) + SURFACE, name)
 
 
-# Input ports for other nodes, in the order of Node.sources.
+# Inputs that are connected to other nodes, in the order of Node.sources.
 PORTS = {
     "layer": ("top", "base"),
     "mix": ("fg", "bg"),

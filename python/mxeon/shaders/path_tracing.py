@@ -13,7 +13,7 @@ from mxeon.shaders.library import source_folder
 
 TARGETS = ("glsl", "essl", "vulkan", "slang")
 
-# Values from the vertex stage, taken from a Point; object space equals world space.
+# Values of the vertex stage, as members of the path tracer's Point; object space is world space.
 PLACES = {
     "position": "p.position",
     "normal": "p.normal",
@@ -80,7 +80,7 @@ def path_text(text: str, target: str, element: mx.TypedElement, library: str) ->
 
 
 def own_text(name: str, library: str, slang: bool) -> str:
-    """A file of the interface, in the target's language."""
+    """A file of the interface for path tracers, in GLSL or Slang."""
     text = (source_folder(library) / "genglsl" / "path" / f"{name}.glsl").read_text(
         encoding="utf-8"
     )

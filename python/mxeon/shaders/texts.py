@@ -52,7 +52,7 @@ def text_of(path: Path) -> str:
 
 @cache
 def definitions(path: Path) -> Mapping[Definition, str]:
-    """Names that a file defines outside of conditions, with the text of macros and constants."""
+    """Names that a file defines outside of #if, with the text of each definition."""
     text, found = text_of(path), dict[Definition, str]()
     start = depth = conditions = 0
     for token in TOKEN.finditer(text):

@@ -38,12 +38,11 @@ def environment_path() -> tuple[str, ...]:
 class Policy:
     """Permissions and limits of a document; plain data, so it can be pickled.
 
-    - `outside`: Whether it may name files outside its own folder and the libraries.
-    - `code`: Whether it may contain its own shader code, in text or in files.
-    - `definitions`: Folders of definitions that it may use in addition to its library. They are
-      trusted like the library.
-    - `path`: Folders, searched after its own, in which it may also name files; by default the
-      folders in the environment variable MATERIALX_SEARCH_PATH.
+    - `outside`: Whether a document may name files outside its own folder and the libraries.
+    - `code`: Whether a document may contain its own shader code, in text or in files.
+    - `definitions`: Folders of definitions in addition to the library, and trusted like the library.
+    - `path`: Folders, searched after the document's own, in which a document may also name files;
+      by default those in the environment variable MATERIALX_SEARCH_PATH.
     - All other fields are limits; see LIMITS. `size` and `includes` also apply to the document's
       source code, and `elements` to the number of sources; `text` counts functions once per
       shader and the longest expression once per node; `texels` counts each file once.

@@ -182,7 +182,7 @@ class _Reader:
         _check_version(document, title)
 
     def _ignored(self, text: str, title: str) -> list[str]:
-        """Check the elements of a text; return the faults of those that MaterialX ignores."""
+        """Check the elements of a text; return a fault for each element that MaterialX ignores."""
         names: list[set[str]] = [set()]  # names of siblings at each level
         ignored: list[str] = []
         limit = partial(self._policy.check_limit, rule=f"{title}: must have")
