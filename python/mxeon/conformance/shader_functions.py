@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a library's shader functions against their NumPy versions, on a host.
+"""Checks of a library's shader functions against the NumPy versions, on a host.
 
-The host compiles one program: all functions, and one more that calls any of them by its index. The
-parameters that eonlib's GLSL declares select the columns of arguments, for shaders and for NumPy.
+The host compiles a program with all functions, and with a function that calls any of them by index.
+The names of the parameters in eonlib's GLSL select random arguments, for shaders and for NumPy.
 """
 
 import re
@@ -33,8 +33,8 @@ PART = tolerance.sum_in(Quantity.CONDITIONED, tolerance.roundings(16))
 class FunctionCheck(NamedTuple):
     """A check of the shader functions that match a pattern."""
 
-    key: str  # a single word; the claim is a sentence
-    claim: str
+    key: str  # a single word
+    claim: str  # a full sentence
     names: str  # pattern of function names; the first matching row judges a function
     error: tolerance.Tolerance
     turns: bool = False  # whether the functions rotate by the engine's sine and cosine
@@ -68,18 +68,18 @@ def row_of(function: str) -> FunctionCheck:
 
 
 def _error(function: str, values: Array) -> float:
-    """Largest error of a function's values, relative to their sensitivity."""
+    """Largest error of a shader function's values, relative to the sensitivity of the values."""
     expected, scale = exact(function)
     return float(row_of(function).error.metric(scale * values, scale * expected).max())
 
 
 @cache
 def exact(function: str) -> tuple[Array, Array]:
-    """Values of a shader function in NumPy, and the factor that scales its errors.
+    """Values of a shader function in NumPy, and the factor that scales errors of the function.
 
-    The factor is pi cos(theta_i) for a BRDF. For functions judged by their condition, it is the
-    inverse of a sum: the value, or 1 if that is larger, plus the value's change with each argument.
-    Otherwise it is 1.
+    The factor is pi cos(theta_i) for a BRDF and 1 for an albedo. For functions judged by their
+    condition number, the factor is the inverse of a sum: the larger of the value and 1, plus the
+    derivative of the value by each argument.
     """
     columns = random_columns()
     values = _expected(function, columns)
@@ -91,22 +91,23 @@ def exact(function: str) -> tuple[Array, Array]:
         # Skip divisors: a quotient has a relative error, and its slope is huge near a divisor of 0.
         if name == "divisor" or (columns[name].ndim > 1 and name != "wo"):
             continue
-        # Step toward the middle of the range. Of a direction wo, only the cosine has a range.
-        middle = np.array([0.0, 0.0, 0.5]) if name == "wo" else 0.5
-        moves = np.where(columns[name] > middle, -STEP, STEP) * (middle != 0.0)
-        moved = _expected(function, {**columns, name: columns[name] + moves})
-        total = total + np.abs(moved - values).max(axis=1) / STEP
+        # Step toward the middle of the range; of a direction, only step the cosine.
+        steps = np.where(columns[name] > 0.5, -STEP, STEP)
+        if name == "wo":
+            steps[:, :2] = 0.0
+        changed = _expected(function, {**columns, name: columns[name] + steps})
+        total = total + np.abs(changed - values).max(axis=1) / STEP
     return values, 1.0 / total[:, np.newaxis]
 
 
 def arguments(function: str) -> list[str]:
-    """Names of the columns that a shader function takes as arguments, in order."""
-    gray = {("float", "rho"): "gray"}
-    return [gray.get(each, each[1]) for each in functions.signature("glsl", function)]
+    """Names of the random columns that are a shader function's arguments, in order."""
+    parameters = functions.signature("glsl", function)
+    return ["gray" if each == ("float", "rho") else each[1] for each in parameters]
 
 
 POINTS = 4096  # points per function
-CORNERS = 64  # points with arguments at the ends of their ranges
+CORNERS = 64  # number of points where the arguments are at the ends of each argument's range
 
 # Directions along the normal, with a cosine rounded above 1, on the horizon, and in between.
 AXES = tuple((x, 0.0, z) for x, z in ((0, 1), (0, 1 + 2.0**-23), (1, 0), (-1, 0), (0.6, 0.8)))
@@ -114,7 +115,7 @@ AXES = tuple((x, 0.0, z) for x, z in ((0, 1), (0, 1 + 2.0**-23), (1, 0), (-1, 0)
 Columns = Mapping[str, Array]
 
 
-# NumPy versions with another name, or with arguments in another order.
+# NumPy versions that have another name or another order of arguments than the shader function.
 NAMED: Mapping[str, Callable[..., Array | tuple[Array, ...]]] = {
     "eon_around": sampling.around,
     "eon_azimuth_frame": lambda wo: sampling.stack_xyz(*sampling.azimuth_frame(wo)),
@@ -122,11 +123,11 @@ NAMED: Mapping[str, Callable[..., Array | tuple[Array, ...]]] = {
     "eon_pdf": lambda wo, wi, rho, roughness: sampling.eon_pdf(wo, wi, roughness, rho=rho),
     "eon_rotate_z": sampling.rotate_z,
     "eon_sample": lambda wo, u, rho, roughness: sampling.eon_sample(wo, u, roughness, rho=rho),
-    # The root y for the angle with cosine 1 - m, from the exact integral that the shader fits.
+    # The shader has a fit of y for the angle with cosine 1 - m; NumPy evaluates the integral.
     "eon_upper_root": lambda m: sampling.eon_upper_limit(1.0 - m, np.sqrt(m * (2.0 - m))),
     "oren_nayar_s": lambda wo, wi: diffuse.cosines(wo, wi)[2],
 }
-# Internal functions whose NumPy versions have color channels on the first axis.
+# Functions whose NumPy versions take color channels on the first axis.
 CHANNELS_FIRST = re.compile(r"fon_lambert|eon_(denominator|multiple_ratio)|(qon|eon)_brdf_mu")
 
 
@@ -135,11 +136,11 @@ def _expected(function: str, columns: Columns) -> Array:
     version = NAMED.get(function) or getattr(sampling, function, None) or getattr(diffuse, function)
     channels_first = CHANNELS_FIRST.fullmatch(function)
     names = arguments(function)
-    given = [columns[name].T if channels_first else columns[name] for name in names]
-    if function.endswith("_sample"):  # both random numbers are one argument in NumPy
+    inputs = [columns[name].T if channels_first else columns[name] for name in names]
+    if function.endswith("_sample"):  # NumPy takes both random numbers as a single argument
         first = names.index("u1")
-        given[first : first + 2] = [np.stack(given[first : first + 2], axis=-1)]
-    values = version(*given)
+        inputs[first : first + 2] = [np.stack(inputs[first : first + 2], axis=-1)]
+    values = version(*inputs)
     values = np.asarray(values[0] if isinstance(values, tuple) else values)
     return (values.T if channels_first else values).reshape(POINTS, -1)
 
@@ -174,7 +175,7 @@ def random_columns() -> Columns:
 
 
 def _unit(rng: np.random.Generator) -> Array:
-    """24-bit numbers in [0, 1), like shaders' random numbers; the first are at the ends."""
+    """Random multiples of 2^-24 in [0, 1), as in shaders; the first CORNERS are at the ends."""
     numbers = rng.integers(0, 1 << 24, POINTS).astype(np.float64)
     numbers[:CORNERS] = (numbers[:CORNERS] % 2.0) * (2.0**24 - 1.0)
     return numbers * 2.0**-24
@@ -194,43 +195,47 @@ class FunctionProbe:
     @cached_property
     def missing_functions(self) -> tuple[str, ...]:
         """Functions of eonlib that the library lacks or declares with other parameters."""
-        own = functions.signatures(self.text)
-        ours = functions.signatures(functions.source(self.host.language))
-        return tuple(name for name in ours if own.get(name) != ours[name])
+        library = functions.signatures(self.text)
+        eonlib = functions.signatures(functions.source(self.host.language))
+        return tuple(name for name in eonlib if library.get(name) != eonlib[name])
 
     @cached_property
     def values(self) -> Mapping[bool, Mapping[str, Array]]:
         """Values of all functions of the library; the key True has the control's values."""
-        return {wrong: self._values(0.95 if wrong else 1.0) for wrong in (False, True)}
+        return {False: self._values(1.0), True: self._values(0.95)}
 
     @cached_property
     def turn(self) -> tolerance.Term:
-        """The error of the engine's own cosine and sine over a full turn, used for samples."""
+        """The error of the engine's cosine and sine over a full turn."""
         error = float(spec.TURN.errors(self.host, random_columns()["u2"]).max())
-        return tolerance.Term(
-            4.0 * error, "the engine's sine and cosine, which turn a direction twice"
-        )
+        words = "the engine's sine and cosine, which turn a direction twice"
+        return tolerance.Term(4.0 * error, words)
 
     def tolerance(self, row: FunctionCheck) -> tolerance.Tolerance:
         return row.error.plus(self.turn) if row.turns else row.error
 
     def _values(self, scale: float) -> Mapping[str, Array]:
-        """Values of all eonlib functions in the library, with scaled last arguments, in one call."""
+        """Values of the library's functions that eonlib has, with a scaled last argument.
+
+        A single call of the host evaluates all of the functions.
+        """
         language, columns = self.host.language, random_columns()
         names = [name for name in functions.names(language) if name not in self.missing_functions]
         text = functions.dispatched(self.text, names, language)
-        slots = functions.parameters(text, functions.EACH)
-        widths = {name: 1 if kind == "float" else 3 for kind, name in slots}
+        widths = {
+            name: 1 if kind == "float" else 3
+            for kind, name in functions.parameters(text, functions.EACH)
+        }
         rows = {name: np.zeros((len(names), POINTS, width)) for name, width in widths.items()}
         for number, name in enumerate(names):
             rows["which"][number] = number
-            own = functions.slot_names([kind for kind, _ in functions.signature(language, name)])
+            slots = functions.slot_names([kind for kind, _ in functions.signature(language, name)])
             *others, last = (columns[each] for each in arguments(name))
-            for slot, values in zip(own, [*others, scale * last], strict=True):
+            for slot, values in zip(slots, [*others, scale * last], strict=True):
                 rows[slot][number] = values.reshape(POINTS, -1)
-        columns3 = (each.reshape(-1, widths[name]) for name, each in rows.items())
-        given = [each[:, 0] if each.shape[1] == 1 else each for each in columns3]
-        values = self.host.execute(text, functions.EACH, *given).astype(np.float64)
+        shapes = {name: (-1,) if width == 1 else (-1, width) for name, width in widths.items()}
+        inputs = (rows[name].reshape(shape) for name, shape in shapes.items())
+        values = self.host.execute(text, functions.EACH, *inputs).astype(np.float64)
         return dict(zip(names, np.split(values, len(names)), strict=True))
 
 
@@ -248,10 +253,10 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
         return not_measured(place, error)
 
     def measure(wrong: bool) -> tolerance.Measurement:
-        own = {name: each for name, each in probe.values[wrong].items() if row_of(name) is check}
-        errors = {name: _error(name, each) for name, each in own.items()}
-        errors |= {name: np.inf for name in probe.missing_functions if row_of(name) is check}
-        name = max(errors, key=lambda function: errors[function])
+        values = probe.values[wrong]
+        errors = {name: _error(name, values[name]) for name in values}
+        errors |= dict.fromkeys(probe.missing_functions, np.inf)
+        name = max((each for each in errors if row_of(each) is check), key=errors.__getitem__)
         return tolerance.Measurement(errors[name], {name: [errors[name]]})
 
     words = "the last argument is 5 % off"
@@ -259,18 +264,17 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
 
 
 def _causes(check: FunctionCheck, probe: FunctionProbe) -> tuple[Cause, ...]:
-    """The functions that are wrong on their own, and the row's functions that use them."""
+    """Wrong functions that use no wrong function, and the check's functions that use those."""
     values = probe.values[False]
     errors = {name: _error(name, each) for name, each in values.items()}
     wrong = [name for name in errors if errors[name] > probe.tolerance(row_of(name)).value]
     uses = functions.uses(probe.text)
-    causes = [name for name in wrong if not any(other in wrong for other in uses[name])]
     affected = [name for name in wrong if row_of(name) is check]
     reached = {*affected}.union(*(uses[each] for each in affected))
-    own = [name for name in causes if name in reached]
-    users = [name for name in affected if name not in own]
-    return (
-        *(Cause(Kind.DEFECT, "not_defined", (name,)) for name in probe.missing_functions),
-        *(Cause(Kind.DEFECT, "function_off", (name,), (errors[name],)) for name in own),
-        *[Cause(Kind.DEFECT, "functions_that_use_it", tuple(users))] * bool(users),
-    )
+    origins = [name for name in wrong if name in reached and uses[name].isdisjoint(wrong)]
+    users = tuple(name for name in affected if name not in origins)
+    causes = [Cause(Kind.DEFECT, "not_defined", (name,)) for name in probe.missing_functions]
+    causes += [Cause(Kind.DEFECT, "function_off", (name,), (errors[name],)) for name in origins]
+    if users:
+        causes.append(Cause(Kind.DEFECT, "functions_that_use_it", users))
+    return tuple(causes)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of texts that are not executed: twins of functions, sources of nodes, generated sources.
+"""Checks of texts that no host runs: function twins, sources of nodes, and generated sources.
 
-Each check counts faults, which must be 0; its control is a text with one more fault.
-The meaning of a renderer's closure arguments comes from its documentation.
+Each check counts faults, which must be 0, and its control is a text with an additional fault. The
+meaning of closure arguments comes from the renderers' documentation.
 """
 
 import re
@@ -31,9 +31,9 @@ from mxeon.shaders.library import load_library
 
 # --- checks --------------------------------------------------------------------------------------
 
-Faults: TypeAlias = tuple[list[Cause], int]  # faults found, and number of faults in the control
+Faults: TypeAlias = tuple[list[Cause], int]  # faults, and number of faults in the control
 Inputs = Mapping[str, expressions.Array]
-# Check -> claim, counted quantity, and the control's mistake.
+# Key of a check -> claim, counted quantity, and mistake of the control.
 # fmt: off
 CLAIMS = {
     "languages": ("The shader functions are identical in OSL and GLSL, apart from type names.",
@@ -58,12 +58,7 @@ def check_texts(subjects: Iterable[diffuse.DiffuseSpec], library: str) -> tuple[
         for each in subjects
     ]
     if all(has_functions(library, language) for language in LANGUAGES):
-        glsl, osl = (COMMENT.sub(" ", twins(language, library)) for language in LANGUAGES)
-        ours, *others = map(parts, (glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)))
-        names, wrong = ([n for n in ours | x if ours.get(n) != x.get(n)] for x in others)
-        found = [Cause(Kind.DEFECT, "different_in_osl", (name,)) for name in names]
-        title = "shader twins, osl"
-        results.append(_judged("languages", title, library, lambda: (found, len(wrong))))
+        results.append(_judged("languages", "shader twins, osl", library, partial(_twins, library)))
     if library != "stock":
         results.append(_judged("clash", "every two nodes", library, partial(_clashes, library)))
         if release := released(library):
@@ -72,7 +67,7 @@ def check_texts(subjects: Iterable[diffuse.DiffuseSpec], library: str) -> tuple[
     for each, target in product((*subjects, *PLAIN_LOBES), generation.TARGETS):
         # The check "closure" already compares every argument of MDL's rough diffuse nodes.
         if target in TEXT_ONLY and (target != "mdl" or isinstance(each, lobes.PbrSpec)):
-            faults = partial(_dropped, each, target, library)
+            faults = partial(_dropped_inputs, each, target, library)
             results.append(_judged("source", f"{each.title}, {target}", library, faults))
     return tuple(results)
 
@@ -81,57 +76,67 @@ def _judged(check: str, subject: str, library: str, faults: Callable[[], Faults]
     claim, quantity, variant = CLAIMS[check]
     place = Result(check, claim, subject, SOURCE, library, NOT_RUN)
     try:
-        found, control = faults()
+        causes, control = faults()
     except errors.NotRun as error:
         return not_measured(place, error)
     except errors.ShaderError as error:
         return not_measured(place, errors.ShaderError(f"{subject.rpartition(', ')[2]}: {error}"))
 
     def measure(wrong: bool) -> Measurement:
-        return Measurement(control if wrong else len(found), {})
+        return Measurement(control if wrong else len(causes), {})
 
-    return judge(place, count_of(quantity), measure, variant, lambda: Diagnosis(tuple(found)))
+    return judge(place, count_of(quantity), measure, variant, lambda: Diagnosis(tuple(causes)))
 
 
 # --- sources of all nodes -------------------------------------------------------------------------
 
 
+def _twins(library: str) -> Faults:
+    """Functions whose texts differ between GLSL and OSL; the control changes a number."""
+    glsl, osl = (COMMENT.sub(" ", twins(language, library)) for language in LANGUAGES)
+    expected, *others = map(parts, (glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)))
+    differing, control = (
+        [name for name in expected | other if expected.get(name) != other.get(name)]
+        for other in others
+    )
+    return [Cause(Kind.DEFECT, "different_in_osl", (name,)) for name in differing], len(control)
+
+
 def _clashes(library: str) -> Faults:
-    """Names that two nodes of a library both define; clashes in MaterialX itself are excluded."""
+    """Names that two nodes of a library both define, except clashes in MaterialX itself."""
 
-    def found(name: str, target: str, twice: bool = False) -> dict[texts.Clash, str]:
+    def clashes(name: str, target: str, twice: bool = False) -> dict[texts.Clash, str]:
         search = library_tree.search_path(name)
-        clashes = texts.clashes(load_library(name), target, search, twice)
-        return dict.fromkeys(clashes, target)
+        return dict.fromkeys(texts.clashes(load_library(name), target, search, twice), target)
 
-    own: dict[texts.Clash, str] = {}
+    targets: dict[texts.Clash, str] = {}  # the first target with each clash
     for target in SOURCES:
-        known = found("stock", target)
-        new = {each: target for each in found(library, target) if each not in known}
-        own = new | own
-    rows = ((*each.nodes, each.name, target) for each, target in own.items())
+        known = clashes("stock", target)
+        new = {each: target for each in clashes(library, target) if each not in known}
+        targets = new | targets
+    rows = ((*each.nodes, each.name, target) for each, target in targets.items())
     causes = [Cause(Kind.DEFECT, "clash", row) for row in rows]
-    return causes, len(found(library, SOURCES[0], twice=True))
+    return causes, len(clashes(library, SOURCES[0], twice=True))
 
 
 def _arguments(library: str, release: mx.Document) -> Faults:
-    """Arguments of MDL calls whose values differ from the release's."""
+    """Arguments of MDL calls that differ from the release; the control exchanges two arguments."""
 
-    def faults(exchanged: bool) -> Iterator[Cause]:
+    def faults(exchange: bool) -> Iterator[Cause]:
         for definition in release.getNodeDefs():
-            own = load_library(library).getNodeDef(definition.getName())
-            codes = (each.getImplementation("genmdl") for each in (own, definition))
-            texts_of = (each.getAttribute("sourcecode") if each else "" for each in codes)
-            (callee, given), (other, right) = map(texts.arguments, texts_of)
-            if callee != other or len(right) < 2:
+            definitions = load_library(library).getNodeDef(definition.getName()), definition
+            codes = (each.getImplementation("genmdl") for each in definitions)
+            calls = (each.getAttribute("sourcecode") if each else "" for each in codes)
+            (callee, arguments), (expected_callee, expected) = map(texts.arguments, calls)
+            if callee != expected_callee or len(expected) < 2:
                 continue
-            if exchanged:
-                first, second, *_ = given
-                given[first], given[second] = given[second], given[first]
-                exchanged = False
-            for name, value in right.items():
-                if given.get(name) != value:
-                    row = definition.getNodeString(), name, given.get(name, "missing"), value
+            if exchange:
+                first, second, *_ = arguments
+                arguments[first], arguments[second] = arguments[second], arguments[first]
+                exchange = False
+            for name, value in expected.items():
+                if arguments.get(name) != value:
+                    row = definition.getNodeString(), name, arguments.get(name, "missing"), value
                     yield Cause(Kind.DEFECT, "other_argument", row)
 
     return list(faults(False)), len(list(faults(True)))
@@ -148,7 +153,7 @@ CALLEE = re.compile(r"(?:\w+::)*\w+(?=\()")
 
 
 def source(subject: lobes.ScatteringSpec, target: str, library: str) -> str:
-    """Pixel stage of a subject; an input's variable is named `lobe_` plus the input's name."""
+    """Generated pixel shader of a node, whose inputs are variables named `lobe_` plus the name."""
     frame = {"normal": (0.0, 0.6, 0.8), "tangent": (1.0, 0.0, 0.0)}
     document = subject.document({name: frame[name] for name in frame if name in subject.names})
     with warnings.catch_warnings():
@@ -169,40 +174,40 @@ def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object])
     return expressions.evaluate(expression, {"closureData": (), **variables, **functions})
 
 
-def _dropped(subject: lobes.ScatteringSpec, target: str, library: str) -> Faults:
-    """Inputs that are never passed: no argument of a call has their unique value."""
+def _dropped_inputs(subject: lobes.ScatteringSpec, target: str, library: str) -> Faults:
+    """Inputs that are never passed: no argument of a call has the unique value of the input."""
     expression = _expression(source(subject, target, library))
     names = tuple(subject.types) if isinstance(subject, lobes.PbrSpec) else subject.names
     inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}
 
-    def missing(given: Inputs) -> list[str]:
-        seen: list[expressions.Array] = []
+    def missing(variables: Inputs) -> list[str]:
+        passed: list[float] = []
 
-        def called(*values: ArrayLike, **named: ArrayLike) -> tuple[()]:
-            seen.extend(np.ravel(each) for each in (*values, *named.values()))
+        def record(*values: ArrayLike, **named: ArrayLike) -> tuple[()]:
+            for each in (*values, *named.values()):
+                passed.extend(np.ravel(each))
             return ()
 
-        _evaluated(expression, given, dict.fromkeys(CALLEE.findall(expression), called))
-        passed = np.concatenate(seen)
+        _evaluated(expression, variables, dict.fromkeys(CALLEE.findall(expression), record))
         return [name for name, value in inputs.items() if value.item() not in passed]
 
-    noticed = [name in missing({**inputs, name: np.zeros((1, 1))}) for name in names]
     causes = [Cause(Kind.DEFECT, "never_passed", (name,)) for name in missing(inputs)]
-    return causes, len(names) * all(noticed)
+    caught = all(name in missing({**inputs, name: np.zeros((1, 1))}) for name in names)
+    return causes, len(names) if caught else 0
 
 
-# --- closures: the node's arguments for random materials, in MDL -----------------------------------
+# --- closures: arguments of MDL's closures for random materials -----------------------------------
 
-DRAWS = 256
+DRAWS = 256  # number of random materials
 ROUNDED = 1e-12  # 4500 float64 roundings, more than any text performs
 TINT = "multiscatter_tint"
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
-UP = np.array([[0.0, 0.0, 1.0]])  # the surface's normal, which differs from the node's
-# Closure arguments, weight included, by the names of the node's inputs.
+UP = np.array([[0.0, 0.0, 1.0]])  # normal of the surface, which differs from that of the node
+# Arguments of a closure, and its weight, by the names of the node's inputs.
 Closure: TypeAlias = dict[str, ArrayLike]
 
 
-# Functions with the parameters that MDL's documentation lists.
+# Functions of MDL, with the parameters of MDL's documentation.
 def diffuse_reflection_bsdf(
     tint: ArrayLike = 1.0, roughness: ArrayLike = 0.0, multiscatter_tint: ArrayLike = 0.0
 ) -> Closure:
@@ -246,8 +251,8 @@ def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
     expected = {**rows, TINT: tint if subject.model == "eon" else np.zeros((DRAWS, 3))}
     flag = {nodes.FLAG: np.array([[int(subject.flag is not False)]])}
 
-    def faults(given: Inputs) -> Iterator[Cause]:
-        closure = _evaluated(expression, {**given, **flag}, FUNCTIONS)
+    def faults(inputs: Inputs) -> Iterator[Cause]:
+        closure = _evaluated(expression, {**inputs, **flag}, FUNCTIONS)
         if not isinstance(closure, dict):
             raise errors.ShaderError("the lobe is no closure")
         for name, value in expected.items():
@@ -259,12 +264,13 @@ def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
                 yield Cause(Kind.DEFECT, "float_for_vector", (name,))
             elif not (error := float(np.abs(measured - value).max())) <= ROUNDED:
                 key = f"tint_is_not_{subject.model}" if name == TINT else "is_not_the_node_s"
-                constant = np.ptp(measured, axis=0).max() <= ROUNDED
-                instead = (float(measured.flat[0]),) if constant else ()
-                yield Cause(Kind.DEFECT, key, (name,), (error, *instead))
+                values = [error]
+                if np.ptp(measured, axis=0).max() <= ROUNDED:
+                    values.append(float(measured.flat[0]))  # the constant passed instead
+                yield Cause(Kind.DEFECT, key, (name,), tuple(values))
 
-    found = list(faults(rows))
+    causes = list(faults(rows))
     if PBRLIB in expression and subject.flag:
         white = Cause(Kind.DEFECT, "white_lobe")
-        found = [white if TINT in each.names else each for each in found]
-    return found, len(list(faults({**rows, "weight": np.ones((1, 1))})))
+        causes = [white if TINT in each.names else each for each in causes]
+    return causes, len(list(faults({**rows, "weight": np.ones((1, 1))})))
