@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compares definitions, units, graphs and texts of a library with the installed MaterialX release.
 
-Nodes with a model are judged by their model. For everything else, the release is the reference:
-nodes written differently are evaluated for the same inputs and must have the same values. A library
-that lacks nodes of the release is an older version and is not compared. A library with additional
-nodes in MaterialX's own documents may be a newer version, so its differences are permitted.
+Other checks judge nodes that have a model. For everything else, the release is the reference: nodes
+written differently are evaluated for the same inputs and must have the same values. A library that
+lacks nodes of the release is an older version and is not compared. A library with additional nodes
+in MaterialX's own documents may be a newer version, so differences of that library are permitted.
 """
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple, TypeAlias
@@ -39,16 +40,16 @@ RELEASE, SUBJECT = "release", "definitions, units, graphs and texts"
 CLAIM = "What has no model is as MaterialX released it, or has the same values."
 SAMPLES = 64  # number of samples of a node's inputs
 MOST = 12  # maximum number of evaluated nodes
-SIZE, PICTURED = 24, 3  # size and number of pictures that compare rearranged lobes
+SIZE = 24  # width of the pictures that compare lobes
+MATERIALS = 3  # number of random materials in pictures of lobes
 # Compared attributes of ports. Ranges, which only guide editors, are compared for eonlib's nodes.
 ATTRIBUTES = ("type", "defaultgeomprop", "uniform", "unit", "unittype", "colorspace", "enum")
 RANGE = ("uimin", "uimax")
 COMPONENTS = {"float": 1, "integer": 1, "boolean": 1, "vector2": 2, "color3": 3, "vector3": 3}
 JOINED = {"color4": "color3", "vector4": "vector3"}  # four-component type -> three-component type
-NUMBERS = (*COMPONENTS, *JOINED)  # types that are compared by values
-SHADED = ("BSDF", "EDF", "surfaceshader")  # types that are compared by pictures
-SHADERS = ("surfaceshader", "volumeshader", "displacementshader")  # inputs left unconnected
-ALPHA = ("hwTransparency",)  # option that adds an alpha to shaders
+NUMBERS = {*COMPONENTS, *JOINED}  # types that are compared by values
+SHADED = {"BSDF", "EDF", "surfaceshader"}  # types that are compared by pictures
+SHADERS = {"surfaceshader", "volumeshader", "displacementshader"}  # inputs left unconnected
 # Scenes with a light, with an uneven environment, and with alpha.
 UNEVEN = Client(radiance=sky_map(), irradiance=sky_map())
 LIT_SCENES = (SIDE, CLIENT), (FURNACE, UNEVEN), (SIDE, Client(alpha=True))
@@ -58,19 +59,19 @@ LOBES = {"BSDF": "burley_diffuse_bsdf", "EDF": "uniform_edf"}  # lobes connected
 ZEROS = {"float": "0", "integer": "0", "boolean": "false"}
 ZEROS |= {"vector2": "0, 0", "color3": "0, 0, 0", "vector3": "0, 0, 1"}
 TANGENT = "1, 0, 0"
-PROBE = "mxeon_probe"
+PROBE = "mxeon_probe"  # name of a node that computes a port of a graph
 MODELLED = {(each.node, isinstance(each, utilities.UtilitySpec)) for each in ALL}
-Place: TypeAlias = tuple[mx.GraphElement, mx.PortElement]  # a graph and one of its ports
+Place: TypeAlias = tuple[mx.GraphElement, mx.PortElement]  # a graph and a port in that graph
 
 
 class Subject(NamedTuple):
-    """An output of a library's node, or a graph's port that replaces it and keeps its inputs."""
+    """An output of a node in a library, or a port of the node's graph with the node's inputs."""
 
     definition: mx.NodeDef
     library: str
-    kind: str  # type of the output
-    place: Place | None = None
-    output: str = ""  # name of the output, if there are several
+    kind: str  # type of the output or the port
+    place: Place | None = None  # the port; None for an output
+    output: str = ""  # name of the output, if the node has several
 
 
 def released(library: str) -> mx.Document | None:
@@ -82,52 +83,57 @@ def released(library: str) -> mx.Document | None:
     return None
 
 
-def newer(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
+def newer_nodes(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
     """Nodes in MaterialX's own documents that the release lacks, or has in another version."""
-    known = {Path(each.getActiveSourceUri()).name for each in release.getNodeDefs()}
-    found = []
+    known_files = {Path(each.getActiveSourceUri()).name for each in release.getNodeDefs()}
+    newer = []
     for each in document.getNodeDefs():
-        right, own = release.getNodeDef(each.getName()), Path(each.getActiveSourceUri()).name
-        if right.getVersionString() != each.getVersionString() if right else own in known:
-            found.append(each.getNodeString())
-    return tuple(found)
+        if released := release.getNodeDef(each.getName()):
+            differs = released.getVersionString() != each.getVersionString()
+        else:
+            differs = Path(each.getActiveSourceUri()).name in known_files
+        if differs:
+            newer.append(each.getNodeString())
+    return tuple(newer)
 
 
 def definition_facts(
-    own: mx.NodeDef, right: mx.NodeDef, attributes: Sequence[str] = ATTRIBUTES
+    definition: mx.NodeDef, reference: mx.NodeDef, attributes: Sequence[str] = ATTRIBUTES
 ) -> dict[str, str]:
-    name = right.getName()
-    found = {
-        f"category of {name}": own.getNodeString(),
-        f"bsdf of {name}": own.getAttribute("bsdf"),
-        f"version of {name}": f"{own.getVersionString()} {own.getDefaultVersion()}",
+    """The compared facts of a definition, for the ports of the reference, by description."""
+    name = reference.getName()
+    facts = {
+        f"category of {name}": definition.getNodeString(),
+        f"bsdf of {name}": definition.getAttribute("bsdf"),
+        f"version of {name}": f"{definition.getVersionString()} {definition.getDefaultVersion()}",
     }
-    for each in (*right.getActiveInputs(), *right.getActiveOutputs()):
-        port, place = own.getActiveValueElement(each.getName()), f"{each.getName()} of {name}"
+    for each in (*reference.getActiveInputs(), *reference.getActiveOutputs()):
+        port = definition.getActiveValueElement(each.getName())
+        place = f"{each.getName()} of {name}"
         if port is None:
-            found[place] = "missing"
+            facts[place] = "missing"
             continue
-        found[f"the default of {place}"] = port_text(port)
-        for fact in attributes:
-            found[f"{fact} of {place}"] = one_spelling(port.getAttribute(fact))
-    return found
+        facts[f"the default of {place}"] = port_text(port)
+        for attribute in attributes:
+            facts[f"{attribute} of {place}"] = normalized(port.getAttribute(attribute))
+    return facts
 
 
 def unit_facts(document: mx.Document, release: mx.Document) -> dict[str, str]:
+    """The attributes of the release's units and geometric properties in a document."""
     names = [each.getName() for each in (*release.getUnitDefs(), *release.getGeomPropDefs())]
+    definitions = [own for own in map(document.getChild, names) if own]
     return {
-        f"{fact} of {element.getCategory()} {element.getName()}": one_spelling(
-            element.getAttribute(fact)
-        )
-        for own in filter(None, map(document.getChild, names))
-        for element in (own, *own.getChildren())
-        for fact in element.getAttributeNames()
-        if fact != "doc"
+        f"{name} of {each.getCategory()} {each.getName()}": normalized(each.getAttribute(name))
+        for definition in definitions
+        for each in (definition, *definition.getChildren())
+        for name in each.getAttributeNames()
+        if name != "doc"
     }
 
 
-def one_spelling(text: str) -> str:
-    """Text with numbers in their shortest form, and without "false", an omitted flag's value."""
+def normalized(text: str) -> str:
+    """Text with numbers in the shortest form, and without "false", the default of flags."""
     words = text.replace("false", "").replace(",", " ").split()
     with suppress(ValueError):
         words = [f"{float(word):g}" for word in words]
@@ -135,7 +141,7 @@ def one_spelling(text: str) -> str:
 
 
 class Terms:
-    """Assigns numbers to the terms of graphs; terms with equal numbers have equal values."""
+    """Numbers for the ports of graphs; ports with equal numbers have equal values."""
 
     def __init__(self) -> None:
         self._numbers: dict[object, int] = {}
@@ -144,9 +150,9 @@ class Terms:
     def port(self, place: Place) -> int:
         graph, port = place
         if node := graph.getNode(port.getNodeName()):
-            output = port.getOutputString() * (node.getType() == "multioutput")
+            output = port.getOutputString() if node.getType() == "multioutput" else ""
             return self._number((self._node(graph, node), output))
-        attributes = (port.getAttribute(fact) for fact in ATTRIBUTES)
+        attributes = (port.getAttribute(each) for each in ATTRIBUTES)
         return self._number((port_text(port), *attributes))
 
     def _node(self, graph: mx.GraphElement, node: mx.Node) -> int:
@@ -162,22 +168,23 @@ class Terms:
         return self._numbers.setdefault(key, len(self._numbers))
 
 
-def apart(terms: Terms, own: Place, right: Place) -> Iterator[tuple[Place, Place]]:
+def differing_ports(terms: Terms, own: Place, released: Place) -> Iterator[tuple[Place, Place]]:
     """Pairs of ports at which two graphs differ: inputs of equal lobes, or different lobes."""
-    if terms.port(own) == terms.port(right):
+    if terms.port(own) == terms.port(released):
         return
-    nodes = [graph.getNode(port.getNodeName()) for graph, port in (own, right)]
-    if right[1].getType() in CLOSURES and all(nodes):
-        inputs, others = (ports_of(node) for node in nodes)
-        if nodes[0].getCategory() == nodes[1].getCategory() and inputs.keys() == others.keys():
+    nodes = [graph.getNode(port.getNodeName()) for graph, port in (own, released)]
+    if released[1].getType() in CLOSURES and all(nodes):
+        inputs, expected = (ports_of(node) for node in nodes)
+        if nodes[0].getCategory() == nodes[1].getCategory() and inputs.keys() == expected.keys():
             for name, port in inputs.items():
-                yield from apart(terms, (own[0], port), (right[0], others[name]))
+                places = (own[0], port), (released[0], expected[name])
+                yield from differing_ports(terms, *places)
             return
-    yield own, right
+    yield own, released
 
 
 class Comparison:
-    """Compares a library with the release, on a host that evaluates its texts."""
+    """Compares a library with the release, on a host that evaluates the library's texts."""
 
     def __init__(self, host: Host, library: str, release: mx.Document, image: str) -> None:
         self._host, self._library, self._release, self._image = host, library, release, image
@@ -190,25 +197,28 @@ class Comparison:
 
         Nodes that eonlib defines are also compared with eonlib's definitions.
         """
-        defined, release = load_library("eonlib").getNodeDefs(), self._release
-        ours = (each for each in defined if release.getNodeDef(each.getName()) != each)
+        release, eonlib = self._release, load_library("eonlib").getNodeDefs()
+        additional = (each for each in eonlib if release.getNodeDef(each.getName()) != each)
         rows: list[str] = []
-        for number, right in enumerate((*self._release.getNodeDefs(), *ours)):
-            name = right.getName()
-            own, released = (each.getNodeDef(name) for each in (self._document, self._release))
-            if own is None or (number and own in (right, released)):
+        for number, reference in enumerate((*release.getNodeDefs(), *additional)):
+            name = reference.getName()
+            own, released = (each.getNodeDef(name) for each in (self._document, release))
+            if own is None or (number and own in (reference, released)):
                 continue
-            attributes = ATTRIBUTES if released == right else (*ATTRIBUTES, *RANGE)
-            found, expected = (definition_facts(each, right, attributes) for each in (own, right))
+            attributes = ATTRIBUTES if released == reference else (*ATTRIBUTES, *RANGE)
+            facts, expected = (
+                definition_facts(each, reference, attributes) for each in (own, reference)
+            )
             if changed and number == 0:
-                found[f"version of {name}"] = "1234"
-            # An omitted range is no difference, because the release omits some of its own.
-            omitted = (each for each in found if each.startswith(RANGE) and not found[each])
-            left_out = {each: expected[each] for each in omitted} if released else {}
-            rows += differences(found | left_out, expected)
+                facts[f"version of {name}"] = "1234"
+            if released:  # an omitted range is no difference, because the release also omits some
+                for each in facts:
+                    if each.startswith(RANGE) and not facts[each]:
+                        facts[each] = expected[each]
+            rows += differences(facts, expected)
         rows += differences(*(unit_facts(each, release) for each in (self._document, release)))
-        apart = dict.fromkeys(zip(*[iter(rows)] * 3, strict=True))
-        return [Cause(Kind.DEFECT, RELEASE, ("", *row)) for row in apart]
+        triples = dict.fromkeys(zip(rows[::3], rows[1::3], rows[2::3], strict=True))
+        return [Cause(Kind.DEFECT, RELEASE, ("", *each)) for each in triples]
 
     @cached_property
     def nodes(self) -> list[Cause]:
@@ -217,15 +227,15 @@ class Comparison:
         If several nodes differ in the same text, only the first with different values is reported.
         """
         groups: dict[object, list[str]] = {}
-        for right in self._release.getNodeDefs():
-            if change := self._change(right.getName()):
-                groups.setdefault(change, []).append(right.getName())
-        found: list[Cause] = []
-        left = list(groups.values())
+        for definition in self._release.getNodeDefs():
+            if change := self._change(definition.getName()):
+                groups.setdefault(change, []).append(definition.getName())
+        causes: list[Cause] = []
+        remaining = list(groups.values())
         for _ in range(MOST):
-            if not left:
+            if not remaining:
                 break
-            name, *others = left.pop(0)
+            name, *others = remaining.pop(0)
             cause = None
             try:
                 cause = self._evaluated(name)
@@ -234,168 +244,164 @@ class Comparison:
             except (ShaderError, DocumentError) as error:
                 cause = Cause(Kind.TEXT, text=f"{name}: {error}")
             if cause:
-                found.append(replace(cause, of=1 + len(others)))
+                causes.append(replace(cause, of=1 + len(others)))
             elif others:
-                left.append(others)
-        if left:
-            names = ", ".join(name for group in left for name in group)
+                remaining.append(others)
+        if remaining:
+            names = ", ".join(chain.from_iterable(remaining))
             reason = f"written differently, and {MOST} others with other changes were evaluated"
             self.unjudged.append((names, reason))
-        return found
+        return causes
 
     def _pair(self, name: str) -> tuple[mx.NodeDef, mx.NodeDef, mx.Element, mx.Element]:
-        own, right = (each.getNodeDef(name) for each in (self._document, self._release))
-        return own, right, *(each.getImplementation(self._target) for each in (own, right))
+        """A node's definitions in the library and the release, and their implementations."""
+        own, released = (each.getNodeDef(name) for each in (self._document, self._release))
+        return own, released, *(each.getImplementation(self._target) for each in (own, released))
 
     def _change(self, name: str) -> object:
-        """A key for how a node differs from the release; None if it is equal or has a model."""
-        own, right, ours, theirs = self._pair(name)
-        if theirs is None or (ours is not None and ours == theirs and ours.isA(mx.NodeGraph)):
+        """A key for how a node differs from the release; None for equal nodes and for models."""
+        own, released, code, released_code = self._pair(name)
+        if released_code is None:
             return None
-        graphs = [bool(each) and each.isA(mx.NodeGraph) for each in (ours, theirs)]
+        graphs = [bool(each) and each.isA(mx.NodeGraph) for each in (code, released_code)]
         if all(graphs):
-            return name
-        if (right.getNodeString(), right.getType() not in CLOSURES) in MODELLED:
+            return None if code == released_code else name
+        if (released.getNodeString(), released.getType() not in CLOSURES) in MODELLED:
             return None
-        if ours is None or any(graphs):
+        if code is None or any(graphs):
             return name
-        sides = (ours, search_path(self._library)), (theirs, search_path("stock"))
-        orders = ([port.getName() for port in each.getActiveInputs()] for each in (own, right))
-        if next(orders) != next(orders):
+        names, expected = (
+            [port.getName() for port in each.getActiveInputs()] for each in (own, released)
+        )
+        if names != expected:
             return name
+        sides = (code, search_path(self._library)), (released_code, search_path("stock"))
         if texts.whole(*sides[0]) == texts.whole(*sides[1]):
             return None
-        one, two = (set(texts.said(*each)) for each in sides)
-        return frozenset(one ^ two) or None
+        lines, expected_lines = (set(texts.said(*each)) for each in sides)
+        return frozenset(lines ^ expected_lines) or None
 
     def _evaluated(self, name: str) -> Cause | None:
         """The cause to report if a node's values differ from the release's, otherwise None."""
-        own, right, ours, theirs = self._pair(name)
-        node = right.getNodeString()
-        if ours is not None and ours.isA(mx.NodeGraph) and theirs.isA(mx.NodeGraph):
-            rows = differences(
-                dict(released_graphs.facts(ours)), dict(released_graphs.facts(theirs))
-            )
-            error = self._graphs_apart(own, ours, theirs)
+        own, released, code, released_code = self._pair(name)
+        node, place = released.getNodeString(), f"{self._target} of {name}"
+        text = "the one that MaterialX released"
+        if code is None:
+            return Cause(Kind.DEFECT, RELEASE, (node, place, "missing", text))
+        if code.isA(mx.NodeGraph) and released_code.isA(mx.NodeGraph):
+            graphs = code, released_code
+            rows = differences(*(dict(released_graphs.facts(each)) for each in graphs))
+            error = self._graph_error(own, *graphs)
         else:
-            rows = f"{self._target} of {name}", "another text", "the one that MaterialX released"
-            if ours is None:
-                return Cause(Kind.DEFECT, RELEASE, (node, rows[0], "missing", rows[2]))
-            error = self._texts_apart(own, right)
+            rows = place, "another text", text
+            error = self._text_error(own, released)
         if error <= self.tolerance.value:
             return None
         return Cause(Kind.DEFECT, RELEASE, (node, *rows), (error,))
 
-    def _graphs_apart(
-        self, definition: mx.NodeDef, ours: mx.NodeGraph, theirs: mx.NodeGraph
+    def _graph_error(
+        self, definition: mx.NodeDef, graph: mx.NodeGraph, released: mx.NodeGraph
     ) -> float:
         """The largest difference between two graphs' values, at ports whose terms differ."""
         node, terms, error = Subject(definition, self._library, definition.getType()), Terms(), 0.0
-        for output in theirs.getOutputs():
-            other = ours.getOutput(output.getName())
-            if other is None:
+        for released_output in released.getOutputs():
+            output = graph.getOutput(released_output.getName())
+            if output is None:
                 return np.inf
-            for one, two in apart(terms, (ours, other), (theirs, output)):
-                kind = two[1].getType()
+            for places in differing_ports(terms, (graph, output), (released, released_output)):
+                kind, expected = (port.getType() for _, port in places)
                 # The surface's own vectors are only known in a picture.
-                vectors = any(port.getAttribute("defaultgeomprop") for _, port in (one, two))
-                if kind in CLOSURES or vectors:
-                    place = theirs, theirs.getOutputs()[0]
-                    error = max(error, self._pictures_apart(node, node._replace(place=place)))
-                elif kind not in NUMBERS or one[1].getType() != kind:
+                vectors = any(port.getAttribute("defaultgeomprop") for _, port in places)
+                if expected in CLOSURES or vectors:
+                    whole = node._replace(place=(released, released.getOutputs()[0]))
+                    error = max(error, self._picture_error(node, whole))
+                elif expected not in NUMBERS or kind != expected:
                     return np.inf
                 else:
-                    ports = (node._replace(kind=kind, place=place) for place in (one, two))
-                    error = max(error, self._values_apart(*ports))
+                    ports = (node._replace(kind=kind, place=place) for place in places)
+                    error = max(error, self._value_error(*ports))
         return error
 
-    def _texts_apart(self, own: mx.NodeDef, right: mx.NodeDef) -> float:
+    def _text_error(self, own: mx.NodeDef, released: mx.NodeDef) -> float:
         """The largest difference between two texts' values; NotRun if nothing evaluates them."""
-        outputs = right.getActiveOutputs()
-        kinds, inputs = ({p.getType() for p in each} for each in (outputs, right.getActiveInputs()))
-        sides = (own, self._library), (right, "stock")
-        if kinds <= {*NUMBERS} and self._release is not hidden():
-            error = 0.0
-            for output in outputs:
-                kind, name = output.getType(), output.getName() * (len(outputs) > 1)
-                ports = (Subject(*each, kind, output=name) for each in sides)
-                error = max(error, self._values_apart(*ports))
-            return error
-        if kinds <= {*SHADED} and inputs.isdisjoint(SHADERS) and self._release is not hidden():
-            return self._pictures_apart(*(Subject(*each, right.getType()) for each in sides))
+        outputs, inputs = released.getActiveOutputs(), released.getActiveInputs()
+        kinds, input_kinds = ({port.getType() for port in ports} for ports in (outputs, inputs))
+        sides = (own, self._library), (released, "stock")
+        if self._release is not hidden():
+            if kinds <= NUMBERS:
+                error = 0.0
+                for output in outputs:
+                    name = output.getName() if len(outputs) > 1 else ""
+                    ports = (Subject(*each, output.getType(), output=name) for each in sides)
+                    error = max(error, self._value_error(*ports))
+                return error
+            if kinds <= SHADED and input_kinds.isdisjoint(SHADERS):
+                return self._picture_error(*(Subject(*each, released.getType()) for each in sides))
         raise NotRun("its text is not MaterialX's, and nothing evaluates it")
 
-    def _values_apart(self, own: Subject, right: Subject) -> float:
-        """The largest difference of two subjects' values; NotRun if `right` does not compile."""
+    def _value_error(self, own: Subject, released: Subject) -> float:
+        """The largest difference of values; NotRun if the released subject does not compile."""
         try:
-            expected = self._values(right)
+            expected = self._values(released)
         except (DocumentError, ShaderError) as error:
             raise NotRun(f"the released one cannot be evaluated: {error}") from None
-        return distance(self._values(own), expected)
+        return largest_error(self._values(own), expected)
 
     def _values(self, subject: Subject) -> Array:
         """Values of a subject, (SAMPLES, 3), or (SAMPLES, 6) with a fourth component."""
-        found = []
-        for index in ("", "3") if subject.kind in JOINED else ("",):
+        values = []
+        for fourth in (False, True) if subject.kind in JOINED else (False,):
             document = mx.createDocument()
             node = instance(document, subject, self._image)
             kind, output = subject.kind, subject.output
-            if index:
-                part = document.addNode("extract", "part", "float")
-                part.setInputValue("index", int(index))
-                part.addInput("in", kind).setNodeName(node.getName())
-                node, kind, output = part, "float", ""
-            color = document.addNode("dot" if kind == "color3" else "convert", "color", "color3")
-            port = color.addInput("in", kind)
-            port.setNodeName(node.getName())
-            if output:
-                port.setOutputString(output)
-            edf = document.addNode("uniform_edf", "lobe", "EDF")
-            edf.addInput("color", "color3").setNodeName("color")
+            if fourth:
+                node = connected("extract", "part", "float", node, "in", kind, output)
+                node.setInputValue("index", 3)
+                kind, output = "float", ""
+            convert = "dot" if kind == "color3" else "convert"
+            color = connected(convert, "color", "color3", node, "in", kind, output)
+            edf = connected("uniform_edf", "lobe", "EDF", color, "color", "color3")
             up = np.tile([0.0, 0.0, 1.0], (SAMPLES, 1))
             shader = self._compiled(document, edf, subject.library)
-            found.append(self._host.evaluate(shader, up, up, samples(subject.definition), GRAPH))
-        return np.concatenate(found, axis=1).astype(np.float64)
+            values.append(self._host.evaluate(shader, up, up, samples(subject.definition), GRAPH))
+        return np.concatenate(values, axis=1).astype(np.float64)
 
-    def _pictures_apart(self, *subjects: Subject) -> float:
-        """The largest difference between pictures, alpha included; infinity without a picture."""
+    def _picture_error(self, *subjects: Subject) -> float:
+        """The largest difference between pictures and alphas; infinity if no picture is drawn."""
         shaders: list[generation.Shader] = []
         try:
             for each in subjects:
                 document = mx.createDocument()
                 node = instance(document, each, self._image)
-                shaders.append(self._compiled(document, node, each.library, client=ALPHA))
+                shaders.append(self._compiled(document, node, each.library, ("hwTransparency",)))
         except MxeonError:
             return np.inf
         rng, error = generator(), 0.0
-        for _ in range(PICTURED):
-            drawn: dict[str, float | tuple[float, ...]] = {}
+        for _ in range(MATERIALS):
+            values: dict[str, float | tuple[float, ...]] = {}
             for port in shaders[0].inputs:
                 if port.type == "float":
-                    drawn[port.path] = float(rng.random())
+                    values[port.path] = float(rng.random())
                 elif port.type == "color3":
-                    drawn[port.path] = tuple(map(float, rng.random(3)))
+                    values[port.path] = tuple(map(float, rng.random(3)))
             varied = []
             for shader in shaders:
-                ports = (replace(p, value=drawn.get(p.path, p.value)) for p in shader.inputs)
+                ports = (replace(p, value=values.get(p.path, p.value)) for p in shader.inputs)
                 varied.append(replace(shader, inputs=tuple(ports)))
             for scene in PICTURES:
-                own, right = (self._host.picture(each, scene).reshape(-1, 3) for each in varied)
-                if not np.isfinite(right).any():
+                own, released = (self._host.picture(each, scene).reshape(-1, 3) for each in varied)
+                if not np.isfinite(released).any():
                     raise NotRun("its picture has no finite pixel")
-                error = max(error, distance(own, right))
+                error = max(error, largest_error(own, released))
         return error
 
     def _compiled(
         self, document: mx.Document, node: mx.Node, library: str, client: tuple[str, ...] = ()
     ) -> generation.Shader:
-        """Shader of a node, completed to a material."""
-        if node.getType() != "surfaceshader":
-            surface = document.addNode("surface", "shading", "surfaceshader")
-            surface.addInput(node.getType().lower(), node.getType()).setNodeName(node.getName())
-            node = surface
-        material = document.addNode("surfacematerial", "look", "material")
-        material.addInput("surfaceshader", "surfaceshader").setNodeName(node.getName())
+        """Shader of a material with a node."""
+        if (kind := node.getType()) != "surfaceshader":
+            node = connected("surface", "shading", "surfaceshader", node, kind.lower(), kind)
+        connected("surfacematerial", "look", "material", node, "surfaceshader", "surfaceshader")
         policy = Policy(outside=True)
         [shader] = self._host.compile(document, library=library, policy=policy, client=client)
         return shader
@@ -411,11 +417,11 @@ class Comparison:
 
 
 def samples(definition: mx.NodeDef) -> dict[str, Array]:
-    """Values of a definition's inputs, by the paths of their sources; the first half is in [0, 1].
+    """Values of a definition's inputs, by path; the first half of the samples is in [0, 1].
 
-    In every third row, all inputs are equal, since a graph may compare them.
+    In every third sample, all inputs are equal, because a graph may compare its inputs.
     """
-    rng, found = generator(), {}
+    rng, inputs = generator(), {}
     equal = rng.random((SAMPLES, 1))
     for port in definition.getActiveInputs():
         kind = JOINED.get(port.getType(), port.getType())
@@ -426,16 +432,34 @@ def samples(definition: mx.NodeDef) -> dict[str, Array]:
                 values[::3] = equal[::3]
                 if each in ("integer", "boolean"):
                     values = np.floor(values * 2.0).clip(0.0)
-                found[f"in_{name}/value"] = float32(values)
-    return found
+                inputs[f"in_{name}/value"] = float32(values)
+    return inputs
+
+
+def connected(
+    category: str,
+    name: str,
+    kind: str,
+    source: mx.Node,
+    port: str,
+    port_kind: str,
+    output: str = "",
+) -> mx.Node:
+    """A new node in the document of `source`, with an output of `source` as input `port`."""
+    node = source.getDocument().addNode(category, name, kind)
+    connection = node.addInput(port, port_kind)
+    connection.setNodeName(source.getName())
+    if output:
+        connection.setOutputString(output)
+    return node
 
 
 def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
-    """A node that computes a subject, with a separate node connected to each input."""
+    """A new node that computes a subject, with a separate node connected to each input."""
     definition, kind, place = subject.definition, subject.kind, subject.place
     category, name = definition.getNodeString(), definition.getName()
-    left_out = ("VDF",) if kind in CLOSURES else CLOSURES
-    ports = [each for each in definition.getActiveInputs() if each.getType() not in left_out]
+    omitted = ("VDF",) if kind in CLOSURES else CLOSURES
+    ports = [each for each in definition.getActiveInputs() if each.getType() not in omitted]
     if place:
         category, name = PROBE, f"ND_{PROBE}"
         probe = document.addNodeDef(name, kind, category)
@@ -463,14 +487,12 @@ def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
         inner = JOINED.get(kind, kind)
         if inner in COMPONENTS:
             constant = document.addNode("constant", source, inner)
-            along = inner == "vector3" and "tangent" in port.getName()
-            value = TANGENT if along else ZEROS[inner]
+            is_tangent = inner == "vector3" and "tangent" in port.getName()
+            value = TANGENT if is_tangent else ZEROS[inner]
             constant.addInput("value", inner).setValueString(value)
             if kind in JOINED:
-                fourth = document.addNode("constant", f"{source}_4", "float")
-                fourth.setInputValue("value", 0.0)
-                pair = document.addNode("combine2", f"{source}_both", kind)
-                pair.addInput("in1", inner).setNodeName(source)
+                document.addNode("constant", f"{source}_4", "float").setInputValue("value", 0.0)
+                pair = connected("combine2", f"{source}_both", kind, constant, "in1", inner)
                 pair.addInput("in2", "float").setNodeName(f"{source}_4")
                 source = pair.getName()
             node.addInput(port.getName(), kind).setNodeName(source)
@@ -482,17 +504,17 @@ def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
     return node
 
 
-def distance(own: Array, right: Array) -> float:
-    """The largest difference: relative for values above 1, infinite if only one value is finite.
+def largest_error(values: Array, expected: Array) -> float:
+    """The largest error: relative for values above 1, infinite if only one value is finite.
 
     In the last half of the rows, with inputs outside [0, 1], only finite values count: graphs that
     agree in [0, 1] may differ for the root of a negative number.
     """
     with np.errstate(invalid="ignore"):
-        error = np.abs(own - right) / np.maximum(1.0, np.abs(right))
-    finite = np.isfinite(own), np.isfinite(right)
+        error = np.abs(values - expected) / np.maximum(1.0, np.abs(expected))
+    finite = np.isfinite(values), np.isfinite(expected)
     error[finite[0] != finite[1]] = np.inf
-    error[(own == right) | (np.isnan(own) & np.isnan(right))] = 0.0
+    error[(values == expected) | (np.isnan(values) & np.isnan(expected))] = 0.0
     half = len(error) // 2
     error[half:][~(finite[0] & finite[1])[half:]] = 0.0
     return float(error.max())
@@ -501,7 +523,7 @@ def distance(own: Array, right: Array) -> float:
 def check_release(
     host: Host, library: str
 ) -> tuple[tuple[Result, ...], tuple[tuple[str, str], ...]]:
-    """The result of comparing a library with the installed release, and the parts not judged."""
+    """The result of comparing a library with the installed release, and subjects not judged."""
     release = released(library)
     if release is None:
         why = f"the library lacks nodes of MaterialX {mx.getVersionString()}: it is an older one"
@@ -518,9 +540,9 @@ def check_release(
 
         def diagnose() -> Diagnosis:
             causes = [*comparison.nodes, *comparison.definitions()]
-            if more := newer(load_library(library), release):
-                causes.append(Cause(Kind.DEFECT, "newer", more))
-            return Diagnosis(tuple(causes), permitted=bool(more))
+            if newer := newer_nodes(load_library(library), release):
+                causes.append(Cause(Kind.DEFECT, "newer", newer))
+            return Diagnosis(tuple(causes), permitted=bool(newer))
 
         variant = "the version of a node is 1234"
         result = check.judge(place, count_of(Quantity.DIFFERENCES), measure, variant, diagnose)
