@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The journal of a run: the findings of each task, written to disk as soon as it ends.
+"""The journal of a run: the findings of each task, written to disk as soon as the task ends.
 
-`journal/items.jsonl` in a run's folder is JSON Lines. The first line is the run's plan, with its
-version, options and file hashes; --resume requires an equal plan. Each following line holds the
-findings of a task; an incomplete last line is dropped. Pictures are NumPy files named by SHA-256.
+`journal/items.jsonl` in a run's folder is JSON Lines. The first line is the plan of the run, with
+mxeon's version, the options and the hashes of files; --resume requires an equal plan. Each of the
+other lines holds the findings of a task; an incomplete last line is dropped. Pictures are NumPy
+files named by SHA-256.
 """
 
 import hashlib
@@ -12,9 +13,9 @@ import os
 import re
 import shutil
 from collections.abc import Sequence
-from contextlib import ExitStack
 from dataclasses import replace
 from io import BytesIO
+from itertools import chain
 from pathlib import Path
 from typing import Any, Self, cast
 
@@ -31,6 +32,7 @@ from mxeon.io.records import UNREADABLE
 
 FORMAT = 9
 JOURNAL = "journal/items.jsonl"
+REPORTS = (RESULTS, JUNIT, PAGE)
 PREVIOUS, LOCK = "previous_run", ".journal.lock"
 TASK = re.compile(rb'\{"task": (\d+),.*\n')
 
@@ -40,60 +42,65 @@ class Journal:
 
     Entering moves an earlier run's journal, results and page to the folder PREVIOUS; with `resume`,
     the journal stays. Entering raises InputError if another process writes here, or if the earlier
-    run was interrupted and `resume` is not set. `begin` creates the folder if it does not exist.
+    run was interrupted and `resume` is not set. `begin` creates a missing folder.
     """
 
     def __init__(self, folder: str | os.PathLike[str], resume: bool = False) -> None:
         self._folder, self._resume = Path(folder), resume
         self._path = self._folder / JOURNAL
-        self._exit = ExitStack()
+        self._lock = FileLock(self._folder / LOCK, timeout=0)
+        self._file: int | None = None
         self._converter = make_converter(self._path.parent)
-        self._held = False
         self.findings: dict[int, Findings] = {}  # keys are task numbers in the plan
 
     def __enter__(self) -> Self:
         if os.path.lexists(self._folder):
-            with ExitStack() as stack:
-                self._hold(stack)
-                self._exit = stack.pop_all()
+            self._claim()
         return self
 
     def __exit__(self, *error: object) -> None:
-        self._exit.close()
+        if self._file is not None:
+            os.close(self._file)
+        self._lock.release()
 
-    def _hold(self, stack: ExitStack) -> None:
-        for name in (JOURNAL, LOCK, RESULTS, JUNIT, PAGE, PREVIOUS, f"{PREVIOUS}/{JOURNAL}"):
+    def _claim(self) -> None:
+        """Lock the folder and clear earlier results."""
+        for name in (JOURNAL, LOCK, *REPORTS, PREVIOUS, f"{PREVIOUS}/{JOURNAL}"):
             below(self._folder, name)
         self._folder.mkdir(parents=True, exist_ok=True)
         try:
-            stack.enter_context(FileLock(self._folder / LOCK, timeout=0))
+            self._lock.acquire()
         except Timeout:
             rule = "must have one writer; another run writes there"
             raise InputError(f"{self._folder}: {rule}") from None
-        if not self._resume and (left := _left(self._path)):
-            raise InputError(
-                f"{self._folder}: holds an interrupted run with {left} left: --resume continues it; "
-                f"to begin anew, remove {self._path.parent} or name another folder"
-            )
-        self._clear()
-        self._held = True
+        try:
+            if not self._resume and (remaining := _remaining(self._path)):
+                raise InputError(
+                    f"{self._folder}: holds an interrupted run with {remaining} left: --resume "
+                    f"continues it; to begin anew, remove {self._path.parent} or name another folder"
+                )
+            self._clear()
+        except BaseException:
+            self._lock.release()
+            raise
 
     def _clear(self) -> None:
         """Move earlier results away; when resuming, delete those that `report make` recreates."""
-        there = [name for name in (RESULTS, JUNIT, PAGE) if (self._folder / name).is_file()]
+        names = [name for name in REPORTS if (self._folder / name).is_file()]
         if self._path.exists() and self._resume:
-            for name in there:
+            for name in names:
                 (self._folder / name).unlink()
             return
-        there += [self._path.parent.name] * self._path.exists()
-        if there:
+        if self._path.exists():
+            names.append(self._path.parent.name)
+        if names:
             previous = self._folder / PREVIOUS
             previous.mkdir(exist_ok=True)
             if (previous / JOURNAL).exists():
                 shutil.rmtree((previous / JOURNAL).parent)
-            for name in (RESULTS, JUNIT, PAGE):
+            for name in REPORTS:
                 (previous / name).unlink(missing_ok=True)
-            for name in there:
+            for name in names:
                 os.replace(self._folder / name, previous / name)
 
     def begin(self, plan: Plan) -> None:
@@ -101,50 +108,48 @@ class Journal:
 
         Raises InputError if the run to resume differs; OSError if nothing can be written.
         """
-        with self._exit as stack:
-            if not self._held:
-                self._hold(stack)
-            if self._resume and self._path.exists():
-                earlier, self.findings, size = _read(self._folder)
-                if earlier != plan:
-                    raise InputError(refusal(self._folder, _differences(earlier, plan)))
-                os.truncate(self._path, size)
-            else:
-                header = {"format": FORMAT} | self._converter.unstructure(plan)
-                with replacing(self._path) as beside:
-                    beside.write_bytes(_line(header))
-                sync(self._path.parent)
-                sync(self._folder)
-            self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND | BINARY)
-            stack.callback(os.close, self._file)
-            self._exit = stack.pop_all()
+        if not self._lock.is_locked:
+            self._claim()
+        if self._resume and self._path.exists():
+            earlier, self.findings, size = _read(self._folder)
+            if earlier != plan:
+                raise InputError(refusal(self._folder, _differences(earlier, plan)))
+            os.truncate(self._path, size)
+        else:
+            header = {"format": FORMAT} | self._converter.unstructure(plan)
+            with replacing(self._path) as temporary:
+                temporary.write_bytes(_line(header))
+            sync(self._path.parent)
+            sync(self._folder)
+        self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND | BINARY)
 
     def add(self, number: int, findings: Findings) -> None:
-        """Record the findings of a task, pictures first; all is on disk when this returns.
+        """Record the findings of a task, after the pictures; everything is then on disk.
 
         Raises OSError if the disk is full; the journal is then unchanged.
         """
 
         def stored(picture: Picture) -> Picture:
-            own: dict[str, Any] = {}
+            images: dict[str, Any] = {}
             for name, image in images_of(picture).items():
                 stream = BytesIO()
                 np.save(stream, np.ascontiguousarray(image, np.float32))
                 digest = hashlib.sha256(stream.getbuffer()).hexdigest()
                 path = below(self._path.parent, f"{digest}.npy")
-                with replacing(path) as beside:
-                    beside.write_bytes(stream.getbuffer())
-                own[name] = StoredImage(path)  # each use reads the file again
-            return replace(picture, **own)
+                with replacing(path) as temporary:
+                    temporary.write_bytes(stream.getbuffer())
+                images[name] = StoredImage(path)
+            return replace(picture, **images)
 
+        assert self._file is not None, "begin must be called before add"
         findings = replace(findings, pictures=tuple(map(stored, findings.pictures)))
         if findings.pictures:
             sync(self._path.parent)
         record = {"task": number, "findings": self._converter.unstructure(findings)}
-        size, rest = os.fstat(self._file).st_size, memoryview(_line(record))
+        size, remaining = os.fstat(self._file).st_size, memoryview(_line(record))
         try:
-            while rest:
-                rest = rest[os.write(self._file, rest) :]
+            while remaining:
+                remaining = remaining[os.write(self._file, remaining) :]
             os.fsync(self._file)
         except OSError as error:
             os.ftruncate(self._file, size)
@@ -156,63 +161,62 @@ def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findin
     """The plan of the run in a folder, and the findings of the completed tasks.
 
     A task with modified or missing pictures is not complete. Raises InputError if there is no
-    journal, or if another version of mxeon wrote it.
+    journal, or a journal of another version of mxeon.
     """
     return _read(Path(folder))[:2]
 
 
 def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -> str:
-    """A line that says why the run in a folder is not resumed, and lists the differences."""
+    """The message that the run in a folder is not resumed because of these differences."""
     remedy = "use a new folder, or omit --resume"
     return f"{folder}: holds another run ({listed(differences)}); {remedy}"
 
 
-def _left(path: Path) -> str:
+def _remaining(path: Path) -> str:
     """The number of remaining tasks of an interrupted run, in words; "" without such a run.
 
-    Journals of other versions count too, so this only reads the numbers of tasks.
+    Journals of other versions count, too, so that only the numbers of tasks are read.
     """
     try:
         with open(path, "rb", opener=regular) as file:
             total = len(json.loads(file.readline())["tasks"])
-            done = {found[1] for found in map(TASK.fullmatch, file) if found}
+            done = {match[1] for match in map(TASK.fullmatch, file) if match}
     except (OSError, *UNREADABLE):
         return ""
     return f"{total - len(done)} of {counted(total, 'task')}" if len(done) < total else ""
 
 
 def _read(folder: Path) -> tuple[Plan, dict[int, Findings], int]:
-    """Plan and findings of a journal, and the size of its complete lines in bytes."""
+    """Plan and findings of a journal, and the size of the complete lines in bytes."""
     path, converter = folder / JOURNAL, make_converter((folder / JOURNAL).parent)
     try:
         with open(path, "rb", opener=regular) as file:
-            lines = list(file)
+            lines = [line for line in file if line.endswith(b"\n")]  # the last may be incomplete
     except FileNotFoundError:
         raise InputError(f"{folder}: must hold the {JOURNAL} of a run; there is none") from None
-    whole = [line for line in lines if line.endswith(b"\n")]  # the last one may be incomplete
-    findings: dict[int, Findings] = {}
+    completed: dict[int, Findings] = {}
     place = "its first line"
     try:
-        header = json.loads((whole or [b""])[0])
+        header = json.loads((lines or [b""])[0])
         if (version := header.pop("format")) != FORMAT:
             raise InputError(f"it has format {version!r}")
         plan = converter.structure(header, Plan)
-        for number, line in enumerate(whole[1:], 2):
+        for number, line in enumerate(lines[1:], 2):
             place = f"line {number}"
             record = json.loads(line)
-            task, part = record["task"], converter.structure(record["findings"], Findings)
+            task, findings = record["task"], converter.structure(record["findings"], Findings)
             if type(task) is not int or not 0 <= task < len(plan.tasks):
                 raise InputError(f"task must be one of {len(plan.tasks)}; got {task!r}")
-            if not part.answer(plan.tasks[task]):
+            if not findings.belong_to(plan.tasks[task]):
                 raise InputError(f"findings must be those of {plan.tasks[task]}")
-            images = (each for one in part.pictures for each in images_of(one).values())
-            if all(cast(StoredImage, each).whole for each in images):
-                findings[task] = part
+            images = chain.from_iterable(images_of(each).values() for each in findings.pictures)
+            if all(cast(StoredImage, image).whole for image in images):
+                completed[task] = findings
     except UNREADABLE as error:
         rule = f"{path}: must be a journal of format {FORMAT} as mxeon wrote it"
         reason = f"{place} is of another run or program; {error}"
         raise InputError(f"{rule}; {reason}; run again without --resume") from None
-    return plan, findings, sum(map(len, whole))
+    return plan, completed, sum(map(len, lines))
 
 
 def _line(record: dict[str, object]) -> bytes:

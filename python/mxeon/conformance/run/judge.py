@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The judge, which executes the tasks of a run one after another."""
+"""The judge, which executes the tasks of a run in sequence."""
 
 import os
 import time
@@ -29,7 +29,7 @@ CLAIMS = {
     results.SOURCE: "The generated text was checked.",
     DOCUMENT: pictures.DOCUMENT_CLAIM,
     FUNCTIONS: "The shader functions match NumPy's.",
-    plan.RELEASE: release.CLAIM,
+    release.RELEASE: release.CLAIM,
     plan.PICTURE: pictures.MATCH,
 }
 
@@ -40,8 +40,8 @@ def one_result(
     reason: str = "",
     diagnosis: results.Diagnosis = results.NO_DIAGNOSIS,
 ) -> Findings:
-    """Findings of a task without a measurement, which only state a reason or a diagnosis."""
-    if task.check == plan.STUDIO:  # this task judges nothing
+    """Findings without a measurement: a single result with a reason or a diagnosis."""
+    if task.check == plan.STUDIO:  # such a task has no results
         return Findings(notes=((f"not drawn in the studio: {reason}", Path(task.subject).name),))
     if not (claim := CLAIMS.get(task.check)):
         own_nodes(task.host)  # adds the checks of a renderer
@@ -51,16 +51,16 @@ def one_result(
 
 
 class Judge:
-    """Executes tasks in sequence and keeps its hosts open."""
+    """Executes tasks in sequence and keeps hosts open between tasks."""
 
     def __init__(self, policy: Policy, opened: Callable[[str], base.Engine] = open_engine) -> None:
-        self._policy, self._opened = policy, opened
+        self._policy, self._open = policy, opened
         self._hosts: dict[str, base.Engine | NotRun] = {}  # open hosts, or why they cannot run
         self._reference = reference.Reference()
-        self._case = lru_cache(maxsize=1)(_case)  # a single case, since pairs take much memory
+        self._case = lru_cache(maxsize=1)(_case)  # a single case, because pairs take much memory
 
     def work(self, task: Task) -> Findings:
-        """Findings of a task; errors include documents that cannot be read.
+        """Findings of a task, including faults of a document that cannot be read.
 
         Raise NotRun if the host cannot be opened here.
         """
@@ -68,10 +68,13 @@ class Judge:
         begin = time.monotonic()
         try:
             findings = self._findings(task)
-            copy = _copy(task)
+            # The folder whose `libraries` replace MaterialX's, or "".
+            materialx = root(task.library) if os.path.isabs(task.library) else ""
             share = round((time.monotonic() - begin) / max(1, len(findings.results)), 3)
-            found = (replace(with_pages(each, copy), seconds=share) for each in findings.results)
-            return replace(findings, results=tuple(found))
+            completed = (
+                replace(with_pages(each, materialx), seconds=share) for each in findings.results
+            )
+            return replace(findings, results=tuple(completed))
         except InterfaceError as reason:
             return one_result(task, results.NOT_RUN, reason=str(reason))
         except DocumentError as reason:  # the refused document is mxeon's own
@@ -84,10 +87,10 @@ class Judge:
                 host.close()
 
     def _host(self, name: str) -> base.Engine:
-        """The host with this name; it is opened only once."""
+        """The host with this name, opened at the first call."""
         if name not in self._hosts:
             try:
-                self._hosts[name] = self._opened(name)
+                self._hosts[name] = self._open(name)
             except NotRun as reason:
                 self._hosts[name] = reason
         host = self._hosts[name]
@@ -103,8 +106,9 @@ class Judge:
         host = self._host(task.host)
         host.choose(task.methods)
         if task.check == HOST:
-            one = f": {task.subject} with {task.library}" * (task.subject != plan.EVERY_NODE)
-            raise NotRun(f"{task.host}: this host judges nothing that was requested{one}")
+            whole = task.subject == plan.EVERY_NODE
+            place = "" if whole else f": {task.subject} with {task.library}"
+            raise NotRun(f"{task.host}: this host judges nothing that was requested{place}")
         return replace(self._on_host(task, host), hosts=(host.identity(),))
 
     def _on_host(self, task: Task, host: base.Engine) -> Findings:
@@ -112,24 +116,23 @@ class Judge:
             if task.check == plan.PICTURE:
                 return self._document(task, host)
             if task.check == plan.STUDIO:
-                with suppress(MxeonError):  # the result of the PICTURE task reports it
-                    path = Path(task.subject)
-                    stills = pictures.studio_pictures(path, host, task.library, self._policy)
-                    return Findings((), stills)
-                return Findings(())
-            if task.check == plan.RELEASE:
-                found, unjudged = release.check_release(host, task.library)
-                return Findings(found, unjudged=unjudged)
+                with suppress(MxeonError):  # the result of the PICTURE task has the error
+                    subject = Path(task.subject), host, task.library, self._policy
+                    return Findings(pictures=pictures.studio_pictures(*subject))
+                return Findings()
+            if task.check == release.RELEASE:
+                compared, unjudged = release.check_release(host, task.library)
+                return Findings(compared, unjudged=unjudged)
             if task.check == FUNCTIONS:
                 return Findings(shader_functions.judge_functions(host, task.library))
         case = self._case(host, task.subject, task.library, task.seed, task.methods)
         check = next(each for each in checks.CHECKS if each.key == task.check)
-        found = (check.judge(case),)
+        result = check.judge(case)
         images: tuple[results.Picture, ...] = ()
         if task.check in results.DIRECT:
-            with suppress(NotRun, ShaderError):  # the check reports these errors itself
+            with suppress(NotRun, ShaderError):  # the result has the error
                 images = pictures.comparison_pictures(case)
-        return Findings(found, images)
+        return Findings((result,), images)
 
     def _document(self, task: Task, host: base.Host | None = None) -> Findings:
         """Findings of a document: its pictures on a host, or the generation of its shaders."""
@@ -138,22 +141,17 @@ class Judge:
         try:
             if host is None:
                 subject = path, task.host, task.library, self._policy
-                found, notes = pictures.generate_document(*subject)
+                judged, notes = pictures.generate_document(*subject)
             else:
-                found, images, notes = pictures.judge_document(
+                judged, images, notes = pictures.judge_document(
                     path, host, self._reference, task.library, self._policy
                 )
         except (DocumentError, ImageError) as error:
-            ours = path.resolve().is_relative_to(examples_folder())
-            if ours and isinstance(error, DocumentError):
+            is_example = path.resolve().is_relative_to(examples_folder())
+            if is_example and isinstance(error, DocumentError):
                 raise
             return Findings(errors=error.args)
-        return Findings(found, images, notes=notes)
-
-
-def _copy(task: Task) -> str:
-    """The folder whose `libraries` replace MaterialX's for a task; "" if none does."""
-    return root(task.library) if os.path.isabs(task.library) else ""
+        return Findings(judged, images, notes=notes)
 
 
 def _case(host: base.Engine, title: str, library: str, seed: int, methods: Methods) -> Case:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plan of a run: its tasks and their findings.
+"""The plan of a run: tasks, and the findings of tasks, as plain data that processes exchange.
 
-A task checks one subject on one host with one library. Both are plain data that workers exchange.
+A task checks one subject on one host with one library.
 """
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ from __future__ import annotations
 import os
 import platform
 import sysconfig
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Container, Generator, Iterable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import cache, partial
-from itertools import product
+from itertools import chain, product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -26,6 +26,7 @@ import mxeon
 from mxeon.conformance import backends, checks
 from mxeon.conformance import shader_functions as functions
 from mxeon.conformance.diagnosis.regions import unreached
+from mxeon.conformance.release import RELEASE
 from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE, Picture, Region, Result, Scope
 from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.conformance.spec import Spec
@@ -52,11 +53,11 @@ from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
 from mxeon.shaders.methods import GENERATED, UNCHOSEN, UNTABLED, Methods
 from mxeon.shaders.released_graphs import hidden
 
-Source = tuple[str, str]  # a file, and the library to read it with
+Source = tuple[str, str]  # a document, and the library with which it is read
 
 
 class Reading(NamedTuple):
-    """Contents of a run's documents, as in `mxeon.conformance.results.Scope`."""
+    """What was read from documents; the fields are those of `mxeon.conformance.results.Scope`."""
 
     contents: dict[str, tuple[str, ...]]
     unreached: dict[str, dict[str, tuple[Region, ...]]]
@@ -68,23 +69,22 @@ def read_documents(
 ) -> Reading:
     """Read documents with each library, in worker processes unless `workers` is 0.
 
-    A document that crashes its worker counts as empty; the task that draws it reports the crash.
-
-    Raise MxeonError if a library cannot be used.
+    A document that crashes a worker counts as empty; the task that draws the document reports the
+    crash. Raise MxeonError if a library cannot be used.
     """
     sources = [(file, library) for file in dict.fromkeys(files) for library in libraries]
     titles: dict[str, dict[str, set[Region]]] = {file: {} for file in files}
     faults: dict[Source, tuple[str, ...]] = {}
-    with closing(_answers(sources, policy, workers, timeout)) as answers:
-        for (file, library), answer in zip(sources, answers, strict=True):
-            if isinstance(answer, DocumentError):
+    with closing(_nodes(sources, policy, workers, timeout)) as answers:
+        for (file, library), nodes in zip(sources, answers, strict=True):
+            if isinstance(nodes, DocumentError):
                 # If a bundled example cannot be read, the library is at fault, not the example.
                 if not Path(file).resolve().is_relative_to(examples_folder()):
-                    faults[file, library] = answer.args
-            elif isinstance(answer, MxeonError):
-                raise answer
+                    faults[file, library] = nodes.args
+            elif isinstance(nodes, MxeonError):
+                raise nodes
             else:
-                for (spec, mode), node in product(_modes(), answer or ()):
+                for (spec, mode), node in product(_modes(), nodes or ()):
                     has_bsdf = "bsdf" in dict(node.inputs)
                     if isinstance(spec, emission.EmittingSurface) and spec.has_bsdf != has_bsdf:
                         continue
@@ -105,10 +105,10 @@ def read_documents(
     return Reading(contents, unreached_by_file, refused)
 
 
-def _answers(
+def _nodes(
     sources: Sequence[Source], policy: Policy, workers: int, timeout: float
 ) -> Generator[tuple[ShownNode, ...] | MxeonError | None, None, None]:
-    """The nodes of each document, or its error; None if the process crashed while reading it.
+    """The nodes of each document, or the error; None if the document crashed the process.
 
     The processes continue reading until the generator is closed.
     """
@@ -122,9 +122,9 @@ def _answers(
 
 @cache
 def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
-    """Each spec with its node in the judged mode, except SENTENCES, which users must name."""
-    rows = (row for row in ALL_SPECS if row not in surface_texts.SENTENCES)
-    return tuple((row, node_of(row.document(), row.node)) for row in rows)
+    """Each spec with its node in the judged mode, except specs that users must name."""
+    specs = (spec for spec in ALL_SPECS if spec not in surface_texts.SENTENCES)
+    return tuple((spec, node_of(spec.document(), spec.node)) for spec in specs)
 
 
 # --- the tasks of a run ---------------------------------------------------------------------------
@@ -133,18 +133,17 @@ HOST = "host"
 PICTURE, STUDIO = "picture", "studio"
 STUDIED = 4  # maximum documents whose materials a report shows in the studio
 FUNCTIONS, DOCUMENT = "twins", "document"
-RELEASE = "release"
 EVERY_NODE = "every node"
 
 
 @dataclass(frozen=True)
 class Task:
-    """One independent piece of a run: a check of one subject on one host with one library."""
+    """An independent part of a run: a check of one subject on one host with one library."""
 
-    # Key of a row of `mxeon.conformance.checks`, or HOST, SOURCE, PICTURE, STUDIO,
-    # FUNCTIONS, RELEASE or DOCUMENT.
+    # Key of a row of `mxeon.conformance.checks`, or HOST, SOURCE, PICTURE, STUDIO, FUNCTIONS,
+    # RELEASE or DOCUMENT.
     check: str
-    subject: str  # title of a node, path of a document, or SHADER_FUNCTIONS
+    subject: str  # title of a node, path of a document, SHADER_FUNCTIONS or EVERY_NODE
     host: str
     library: str
     seed: int = 1  # seed of the samples
@@ -156,19 +155,19 @@ class Task:
 
 @dataclass(frozen=True)
 class Plan(Scope):
-    """The plan of a run: its tasks and everything they depend on; equal plans mean equal runs."""
+    """Tasks and everything that the findings depend on: equal plans mean equal runs."""
 
     tasks: tuple[Task, ...]
     # Values of the command's options for policy, seed and methods, by option.
     options: dict[str, str] = field(default_factory=dict)
-    # SHA-256 of each file that the findings depend on, by path; "" for unreadable files. Empty if
-    # the run is not stored.
+    # SHA-256 of each file that the findings depend on, by path; "" for unreadable files. A run
+    # without a journal lists no files.
     files: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Findings:
-    """The outcome of one task; see Run for the fields."""
+    """The outcome of a task; see Run for the fields."""
 
     results: tuple[Result, ...] = ()
     pictures: tuple[Picture, ...] = ()
@@ -177,8 +176,8 @@ class Findings:
     hosts: tuple[base.Identity, ...] = ()
     unjudged: tuple[tuple[str, str], ...] = ()
 
-    def answer(self, task: Task) -> bool:
-        """Whether these findings can belong to a task: not empty, with its host and library."""
+    def belong_to(self, task: Task) -> bool:
+        """Whether the findings are not empty, and have the host and the library of a task."""
         records: list[Result | Picture] = [*self.results, *self.pictures]
         location = (task.host, task.library)
         return bool(records or self.errors or self.unjudged or task.check == STUDIO) and all(
@@ -186,7 +185,7 @@ class Findings:
         )
 
 
-ALL, COMMON = "all", "common"  # names for groups of nodes
+ALL, COMMON = "all", "common"  # names of groups of nodes
 
 
 def assert_known_names(hosts: Iterable[str], nodes: Iterable[str]) -> None:
@@ -199,11 +198,11 @@ def assert_known_names(hosts: Iterable[str], nodes: Iterable[str]) -> None:
 
 
 def node_names() -> tuple[str, ...]:
-    return tuple(dict.fromkeys(row.node for row in ALL_SPECS))
+    return tuple(dict.fromkeys(spec.node for spec in ALL_SPECS))
 
 
-def _titles(*nodes: str) -> set[str]:
-    return {row.title for row in ALL_SPECS if row.node in nodes}
+def _titles(nodes: Container[str]) -> set[str]:
+    return {spec.title for spec in ALL_SPECS if spec.node in nodes}
 
 
 def _selected(
@@ -211,39 +210,40 @@ def _selected(
 ) -> list[Task]:
     """The requested tasks, starting with tasks for the user's documents.
 
-    Raise InputError if none of the nodes is judged.
+    Raise InputError if no task judges any of the nodes.
     """
-    titles = _titles(*nodes)
-    texts = {each.title for each in surface_texts.SENTENCES}
-    rare = {each.title for each in PBRLIB} - {each.title for each in COMMON_SPECS} | texts
+    texts = {spec.title for spec in surface_texts.SENTENCES}
+    uncommon = {spec.title for spec in PBRLIB} - {spec.title for spec in COMMON_SPECS} | texts
     audit = COMMON in nodes or not (nodes or files)
-    by_name = {each.key for each in checks.CHECKS if each.profile}
-    if not nodes:
+    by_name = {check.key for check in checks.CHECKS if check.profile}
+    if nodes:
+        titles = _titles(nodes)
+    else:
         titles = {title for file in files for title in reading.contents.get(file, ())}
-    chosen = [
+    selected = [
         task
         for task in tasks
         if (ALL in nodes and task.subject not in texts)
         or task.subject in files
         or (task.subject in titles and (nodes or task.check not in by_name))
-        or (audit and task.subject not in rare and task.check not in by_name)
+        or (audit and task.subject not in uncommon and task.check not in by_name)
         # A folder's graphs may differ from the release without any effect in pictures, because the
         # reference reads the same graphs.
         or (task.check == RELEASE and files and not nodes and os.path.isabs(task.library))
     ]
-    if chosen or not nodes:
-        return sorted(chosen, key=lambda task: task.subject not in files)
-    hosts = ", ".join(dict.fromkeys(task.host for task in tasks if task.host != "source"))
-    places: dict[str, list[str]] = {}
-    for library, row in product(LIBRARIES, HOSTS):
-        if any(task.subject in titles for task in _on_host(row.name, library, ())):
-            places.setdefault(library, []).append(row.name)
-    known = ((library, ", ".join(names)) for library, names in places.items())
-    words = "; ".join(f"with --library {library} on {names}" for library, names in known)
-    raise InputError(
-        f"node must be judged on one of the hosts {hosts}; got {', '.join(nodes)}"
-        f"{words and ', judged '}{words}"
-    )
+    if selected or not nodes:
+        return sorted(selected, key=lambda task: task.subject not in files)
+    hosts = ", ".join(dict.fromkeys(task.host for task in tasks if task.host != SOURCE))
+    message = f"node must be judged on one of the hosts {hosts}; got {', '.join(nodes)}"
+    places = []
+    for library in LIBRARIES:
+        if judging := [
+            row.name
+            for row in HOSTS
+            if any(task.subject in titles for task in _on_host(row.name, library, ()))
+        ]:
+            places.append(f"with --library {library} on {', '.join(judging)}")
+    raise InputError(f"{message}, judged {'; '.join(places)}" if places else message)
 
 
 EMPTY = Reading({}, {}, {})
@@ -265,8 +265,8 @@ def make_plan(
 
     If `resumable`, the plan lists the files that the run depends on. `nodes` are categories, ALL or
     COMMON; by default, the nodes of `files` are judged, or the common nodes if there are no files.
-    Results of `libraries` in `compared` do not count. Raises InputError for an unknown name, or if
-    no host judges the nodes; ImportError if this MaterialX is too old.
+    Failures of libraries in `compared` do not change the verdict. Raises InputError for an unknown
+    name, or if no host judges the nodes; ImportError if this MaterialX is too old.
     """
     assert_known_names(hosts, nodes)
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
@@ -276,9 +276,9 @@ def make_plan(
     # With documents or with several libraries, every library is judged on all nodes.
     everywhere = bool(files and not nodes) or len(libraries) > 1
     for library in libraries:
-        unread = reading.refused.keys()  # files that no library or only this one cannot read
+        # Files that no library can read, or that this library cannot read, are refused.
         names = ((str(file), f"{file} with {library}") for file in files)
-        readable = [each[0] for each in names if unread.isdisjoint(each)]
+        readable = [each[0] for each in names if reading.refused.keys().isdisjoint(each)]
         paths = list(map(Path, readable)) if files else _examples(library)
         documents += map(str, paths)
         tasks.append(Task(SOURCE, EVERY_NODE, SOURCE, library))
@@ -294,19 +294,23 @@ def make_plan(
         if files and host_row(host).scenes and not host_row(host).target:
             tasks += [Task(PICTURE, file, host, RENDERER_NODES) for file in readable]
     tasks = _selected(tasks, list(map(str, files)), nodes, reading)
-    # Report hosts that measure nothing. DOCUMENT tasks already report hosts that read no
+    # Report hosts that measure nothing. DOCUMENT tasks already report renderers, which read no
     # documents.
-    told = (each for each in tasks if each.check != DOCUMENT or not host_row(each.host).target)
-    telling = {task.host for task in told}
-    silent = [host for host in hosts if tasks and host not in telling]
-    tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in silent]
+    measuring = {
+        task.host for task in tasks if task.check != DOCUMENT or not host_row(task.host).target
+    }
+    idle = [host for host in hosts if tasks and host not in measuring]
+    tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in idle]
     # If some hosts measure something, also report nodes that no host judges.
-    subjects = {task.subject for task in tasks}
-    named = (each for each in nodes if each not in (ALL, COMMON))
-    lost = [each for each in named if subjects.isdisjoint(_titles(each))]
-    tasks += [Task(HOST, node, hosts[0], libraries[0]) for node in lost if len(silent) < len(hosts)]
+    if len(idle) < len(hosts):
+        subjects = {task.subject for task in tasks}
+        named = (each for each in nodes if each not in (ALL, COMMON))
+        unmeasured = [each for each in named if subjects.isdisjoint(_titles([each]))]
+        tasks += [Task(HOST, node, hosts[0], libraries[0]) for node in unmeasured]
     if not files and nodes and {ALL, COMMON}.isdisjoint(nodes):
         documents = []
+    audited = any(task.check == SOURCE for task in tasks)
+    defining = (*libraries, *policy.definitions)
     return Plan(
         version=mxeon.__version__,
         software=_software(),
@@ -318,21 +322,15 @@ def make_plan(
         libraries={each: origins(each) for each in libraries if each not in LIBRARIES},
         compared=tuple(compared),
         unjudged=(
-            *(
-                (*UNJUDGED, *_untabled(hosts))
-                if any(task.check == SOURCE for task in tasks)
-                else ()
-            ),
-            *(row for each in libraries for row in unjudged(each)),
+            *((*UNJUDGED, *_untabled(hosts)) if audited else ()),
+            *chain.from_iterable(map(unjudged, libraries)),
         ),
         options=policy.options | {"--seed": str(seed)} | methods.options,
-        files=digests(dict.fromkeys(documents), policy, (*libraries, *policy.definitions))
-        if resumable
-        else {},
+        files=digests(dict.fromkeys(documents), policy, defining) if resumable else {},
     )
 
 
-# Subjects that no check judges in any library, with reasons.
+# Subjects that no check judges in any library, and the reasons.
 UNJUDGED = (
     ("displacement, volume shaders and backsurfaceshader", "no host draws them"),
     ("u_envRadianceMips above 1, shadow maps of varying depth", "no host has them"),
@@ -349,11 +347,10 @@ def _untabled(hosts: Iterable[str]) -> Iterator[tuple[str, str]]:
 
 
 def unjudged(library: str) -> tuple[tuple[str, str], ...]:
-    """Nodes added by a library that scatter or emit light, and have no model."""
-    definitions = load_library(library).getNodeDefs()
-    added = {each.getNodeString() for each in definitions if each.getType() in LIT}
-    known = {each.getNodeString() for each in load_library("stock").getNodeDefs()}
-    names = added - known - set(node_names())
+    """Nodes without a model that a library adds and that scatter or emit light."""
+    own, stock = (load_library(each).getNodeDefs() for each in (library, "stock"))
+    names = {each.getNodeString() for each in own if each.getType() in LIT}
+    names -= {*node_names(), *(each.getNodeString() for each in stock)}
     return tuple((name, f"no model of a node that {library} adds") for name in sorted(names))
 
 
@@ -369,52 +366,48 @@ def _on_host(
     everywhere: bool = False,
     methods: Methods = GENERATED,
 ) -> Iterator[Task]:
-    """Tasks of one host with one library: checks of its nodes and functions, pictures of files."""
+    """Tasks of a host with a library: checks of nodes and of functions, and pictures of files."""
     ways, row = backends.ways_of(host), host_row(host)
     if not ways:
         yield Task(HOST, EVERY_NODE, host, library)
     if not ways or not row.target:
         return
-    kind, itself = kind_of(library), library == "stock" and hidden() is None
-    if row.way == "pairs" and not itself:
+    kind, is_release = kind_of(library), library == "stock" and hidden() is None
+    if row.way == "pairs" and not is_release:
         yield Task(RELEASE, EVERY_NODE, host, library)
-    if row.way in functions.KINDS and has_functions(
-        library, "osl" if row.target == "osl" else "glsl"
-    ):
+    language = "osl" if row.target == "osl" else "glsl"
+    if row.way in functions.KINDS and has_functions(library, language):
         yield Task(FUNCTIONS, SHADER_FUNCTIONS, host, library)
     for spec in diffuse_specs(library):
         yield from _checks_of(spec, host, library, methods)
+    # Pictures of a renderer's own closures are only judged with the stock library.
+    no_closures = row.way == "pictures" and row.target == "osl" and kind in ("eonlib", "diffuse")
     defines = load_library(library).getMatchingNodeDefs
     for each in (*PBRLIB, *surface_texts.SENTENCES):
-        # Pictures of a renderer's own closures are only judged with the stock library.
-        own = row.target == "osl" and kind in ("eonlib", "diffuse")
-        left = each.closure and row.way == "pictures" and own
+        missing = each.libraries and not defines(each.node)  # MaterialX lacks eonlib's nodes
         # Without documents, a bundled library is judged only on the nodes that it repairs.
-        missing = each.libraries and not defines(each.node)  # MaterialX lacks eonlib's own nodes
-        if not (left or missing) and (
-            everywhere or kind in (OVERLAY, *(each.libraries or LIBRARIES))
-        ):
+        judged = everywhere or kind in (OVERLAY, *(each.libraries or LIBRARIES))
+        if judged and not missing and not (each.closure and no_closures):
             yield from _checks_of(each, host, library, methods)
     if row.surfaces:
         for lobe in diffuse.SURFACE_LOBES:
-            listed = lobe.libraries or LIBRARIES
-            if everywhere or ("eonlib" if kind == OVERLAY else kind) in listed:
+            judging = lobe.libraries or LIBRARIES
+            if everywhere or ("eonlib" if kind == OVERLAY else kind) in judging:
                 yield from _checks_of(lobe, host, library, methods)
     if row.scenes:
         yield from (Task(PICTURE, str(file), host, library) for file in files)
 
 
 def _checks_of(spec: Spec, host: str, library: str, methods: Methods = GENERATED) -> Iterator[Task]:
-    backend = backends.backend_of(host, spec)
-    for check in checks.CHECKS:
-        if check.profile and not has_profile(library, check.profile):
-            continue
-        if backend and check.applies_to(spec, backend, host, methods):
-            yield Task(check.key, spec.title, host, library)
+    if backend := backends.backend_of(host, spec):
+        for check in checks.CHECKS:
+            has_text = not check.profile or has_profile(library, check.profile)
+            if has_text and check.applies_to(spec, backend, host, methods):
+                yield Task(check.key, spec.title, host, library)
 
 
 def _software() -> dict[str, str]:
-    """Package versions as the modules state them, since a build from source has no metadata."""
+    """Versions of packages from their modules, because a build from source has no metadata."""
     folder = str(Path(mx.__file__).parents[1])
     installed = folder in sysconfig.get_paths().values()
     return {
@@ -428,7 +421,7 @@ def _software() -> dict[str, str]:
 
 
 def _examples(library: str) -> list[Path]:
-    """The bundled documents, without those that use a node the library lacks."""
+    """The bundled documents, except those with a node that the library lacks."""
     files = sorted(examples_folder().glob("*.mtlx"))
     missing = [spec.node for spec in diffuse.DIFFUSE if spec not in diffuse_specs(library)]
     return [file for file in files if not any(node in file.read_text("utf-8") for node in missing)]
