@@ -2,8 +2,8 @@
 """Backends, the ways to evaluate a node on an engine: supported nodes, samples and added errors.
 
 An engine evaluates arbitrary pairs of directions, returns closures, renders one pair of directions
-per pixel, or renders pictures of a sphere. Every backend returns values in the same form, so each
-check is written once.
+per pixel, or renders pictures of a sphere. All backends return values in the same form, so that
+each check is written once.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from itertools import product
-from operator import attrgetter
 from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -29,7 +28,7 @@ from mxeon.conformance.spec import POWER, Ability, LobeSpec, Spec, ValueSpec, br
 from mxeon.conformance.specs.diffuse import LOBE_VALUE, SurfaceLobe
 from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
 from mxeon.conformance.specs.microfacets import FacetSpec
-from mxeon.conformance.tolerance import Term, Tolerance, given, relative, roundings, sum_in, sum_of
+from mxeon.conformance.tolerance import Term, Tolerance, relative, roundings, sum_in, sum_of
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts import front_lit_only, host_row
 from mxeon.hosts.base import Host, Query
@@ -39,29 +38,17 @@ from mxeon.hosts.testrender_scene import EYE, NEAREST
 from mxeon.models.nodes.node import Scattering, Variant
 from mxeon.models.nodes.renderers import BSDL_VARIANTS, CYCLES_VARIANTS
 from mxeon.models.shading_model import ALONG, UP
+from mxeon.shaders import scene as scenes
 from mxeon.shaders.methods import UNCHOSEN, Methods
-from mxeon.shaders.scene import (
-    BACK,
-    CLIENT,
-    FRONT,
-    FURNACE,
-    SIDE,
-    VIEW,
-    Client,
-    Scene,
-    local_directions,
-    sphere,
-)
+from mxeon.shaders.scene import BACK, CLIENT, FRONT, FURNACE, SIDE, Client, Scene, sphere
 
 if TYPE_CHECKING:
     from mxeon.hosts.osl import OslHost
     from mxeon.shaders.generation import Shader
 
-LINEAR, SRGB_COLOR = 'colorspace="lin_rec709" version="', 'name="color" colorspace="srgb_texture"'
 POWERS = 1 << 12  # number of colors for which pow() is measured
-NO_IMPLEMENTATION = "Could not find a matching implementation"
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and a mask of the judged pairs
-Errors: TypeAlias = Mapping[str, Tolerance | None]  # quantity -> tolerance, None if not measured
+Errors: TypeAlias = Mapping[str, Tolerance | None]  # quantity -> tolerance; None: not measured
 T = TypeVar("T")
 
 
@@ -70,7 +57,7 @@ def implementation(host: Host, text: str, library: str) -> Shader | None:
     try:
         return host.compile(text, library=library)[0]
     except DocumentError as error:
-        if NO_IMPLEMENTATION not in str(error):
+        if "Could not find a matching implementation" not in str(error):
             raise
         return None
 
@@ -82,8 +69,8 @@ class Backend(ABC):
     # Axes of `checks.states` on which the backend supports only the first state.
     plain: ClassVar[tuple[str, ...]] = ()
     whole: ClassVar[bool] = False  # whether controls and expensive checks use all samples
-    fewer: ClassVar[Counts | None] = None  # upper limits of a spec's sample counts
-    own_errors: ClassVar[Errors | None] = None  # errors used instead of the spec's
+    fewer: ClassVar[Counts | None] = None  # counts that replace those of specs with more pairs
+    own_errors: ClassVar[Errors | None] = None  # errors that replace those of the spec
     methods: ClassVar[Methods] = UNCHOSEN  # lighting methods fixed by the engine
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
@@ -104,7 +91,7 @@ class Backend(ABC):
 
     @property
     def prefiltered(self) -> bool:
-        """Whether microfacets use MaterialX's fit of their albedo."""
+        """Whether microfacets in an environment use MaterialX's fit of their albedo."""
         return self.host.active.environment == "prefilter" and not self.searched
 
     @property
@@ -113,7 +100,7 @@ class Backend(ABC):
         return bool(self.host.active.searched)
 
     def implemented(self, text: str) -> Shader:
-        """Shader of a document; NotRun if the target lacks an implementation of an optional node."""
+        """Shader of a document; NotRun if the target has no implementation of an optional node."""
         if not self.spec.optional:
             return self.host.compile(text, library=self.library)[0]
         shader = implementation(self.host, text, self.library)
@@ -132,15 +119,15 @@ class Backend(ABC):
 
     @property
     def claims(self) -> tuple[str, str]:
-        """Values of `Result.claimed` and `Result.model`; "" unless the node is a renderer's own."""
+        """Values of `Result.claimed` and `Result.model`, for a node that a renderer defines."""
         return "", ""
 
     def judged(self) -> Spec:
-        """The spec to judge, with a renderer's variants or in the form closest to its values."""
+        """The spec to judge, with a renderer's variants or in the form nearest to the values."""
         return self.spec
 
     def take(self, draw: Callable[[Counts], T]) -> T:
-        """Samples from one of the spec's methods, drawn once per backend."""
+        """Samples that a method of the spec draws; each method is called once per backend."""
         if draw.__qualname__ not in self._drawn:
             self._drawn[draw.__qualname__] = draw(self.counts)
         return cast(T, self._drawn[draw.__qualname__])
@@ -156,8 +143,8 @@ class Backend(ABC):
     @cached_property
     def few(self) -> tuple[Batch, ...]:
         """A subset of the samples, for expensive checks and controls."""
-        few = cast(ValueSpec, self.spec).few
-        return self.batches if self.whole else few(self.batches, self.counts)
+        spec = cast(ValueSpec, self.spec)
+        return self.batches if self.whole else spec.few(self.batches, self.counts)
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
@@ -182,19 +169,27 @@ class Backend(ABC):
 
     @cached_property
     def integrals(self) -> Array:
-        """Integrals of the model's equations for the materials in `integrated`, (N, 3)."""
+        """The model's integrals over the light for the materials in `integrated`, (N, 3)."""
         batch, weights = self.integrated
         views = batch.where(np.arange(len(weights)) * weights.shape[1])
         return cast(ScatteringSpec, self.spec).integral(views)
 
     def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
-        """Inputs adapted to what the backend supports."""
+        """Inputs, limited to values that the backend supports."""
         return dict(inputs)
 
-    def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
-        """Directions at a picture's points, a mask of judged points, and a mask of their pixels."""
+    def points(self, scene: Scene) -> Pairs:
+        """Directions at the points of a picture, and the mask of the points to judge."""
         wo, wi, judged = picture_pairs(scene)
-        return samples.rounded(wo.T), samples.rounded(wi.T), judged, sphere(scene.size).mask
+        return samples.float32(wo), samples.float32(wi), judged
+
+    def pixels(self, scene: Scene) -> Mask:
+        """Mask of the pixels of a picture that show the points."""
+        return sphere(scene.size).mask
+
+    def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
+        """`points` and `pixels` of a picture that compares a node with its model."""
+        return *self.points(scene), self.pixels(scene)
 
     @abstractmethod
     def direct(self, batch: Batch) -> Array:
@@ -202,11 +197,14 @@ class Backend(ABC):
 
     @abstractmethod
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        """Values of the environment branch, (N, 3); uniform light unless `irradiance` is given."""
+        """Values in an environment, (N, 3), which is uniform unless `irradiance` is given."""
 
 
 def isotropic(batch: Batch) -> Batch:
-    """A batch with the geometric mean of each alpha pair: prefiltered light has one roughness."""
+    """A batch without anisotropy, for prefiltered light, which only has a single roughness.
+
+    Both alphas become their geometric mean.
+    """
     inputs: dict[str, Array] = {}
     for name, value in batch.inputs.items():
         if name == "roughness" and np.shape(value)[-1:] == (2,):
@@ -228,13 +226,15 @@ class Evaluating(Backend):
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
         color = roundings(2 * 16, "of a color and the value it has, times the slope 2")
-        own: dict[str, Tolerance | None] = {**spec.errors, "color_space": sum_of(color)}
+        errors: dict[str, Tolerance | None] = {**spec.errors, "color_space": sum_of(color)}
         if frame := spec.errors.get("frame"):
-            angle = 2.0 * spec.along * math.sqrt(2.0 * tolerance.ROUNDING)
-            words = f"two slopes {spec.along:g} at the normal, times the angle of a rounded cosine"
-            terms = frame.term("a part in another frame"), roundings(12, "of six parts")
-            own["states"] = sum_of(*terms, *[Term(angle, words)] * bool(angle))
-        return own
+            terms = [frame.term("a part in another frame"), roundings(12, "of six parts")]
+            if spec.along:
+                slopes = f"two slopes {spec.along:g} at the normal"
+                error = 2.0 * spec.along * math.sqrt(2.0 * tolerance.ROUNDING)
+                terms.append(Term(error, f"{slopes}, times the angle of a rounded cosine"))
+            errors["states"] = sum_of(*terms)
+        return errors
 
     def precision(self, quantity: str) -> tuple[Term, ...]:
         if quantity == "color_space":
@@ -251,9 +251,9 @@ class Evaluating(Backend):
     def shader(self) -> Shader:
         shader = self.implemented(self.spec.document())
         if self.host.active.distributed and Ability.COMBINATION in self.spec.requires:
-            varied = {name for row in self.spec.changes.values() for each in row for name in each}
-            if lost := sorted(varied - {each.path for each in shader.inputs}):
-                raise NotRun(f"{self.host.name}: distributing layers renames {', '.join(lost)}")
+            changed = {name for row in self.spec.changes.values() for each in row for name in each}
+            if renamed := sorted(changed - {each.path for each in shader.inputs}):
+                raise NotRun(f"{self.host.name}: distributing layers renames {', '.join(renamed)}")
         return shader
 
     def direct(self, batch: Batch) -> Array:
@@ -264,11 +264,11 @@ class Evaluating(Backend):
         return self.evaluate(batch, "environment", irradiance=irradiance)
 
     def throughput(self, batch: Batch, branch: str) -> Array:
-        """Fraction of the light from below that passes through the node in a branch, (N, 3)."""
+        """Share of the light from below that passes the node, in a branch of the light, (N, 3)."""
         return self.evaluate(batch, branch, "throughput")
 
     def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
-        """Environment light through the surface, (N, 3); uniform unless `radiance` is given."""
+        """Environment light through the surface, (N, 3); by default from a uniform environment."""
         return self.evaluate(batch, "transmission", irradiance=radiance)
 
     @cached_property
@@ -279,13 +279,18 @@ class Evaluating(Backend):
     @cached_property
     def decoded(self) -> Shader:
         """A shader whose color input is in sRGB."""
-        text = self.spec.document({"color": samples.WHITE}).replace('name="color"', SRGB_COLOR)
-        return self.host.compile(text.replace('version="', LINEAR), library=self.library)[0]
+        text = self.spec.document({"color": samples.WHITE})
+        for attribute, space in (('name="color"', "srgb_texture"), ('version="', "lin_rec709")):
+            text = text.replace(attribute, f'colorspace="{space}" {attribute}')
+        return self.host.compile(text, library=self.library)[0]
 
     def together(
         self, batch: Batch, irradiance: NDArray[np.float32] | None, client: Client, two: bool
     ) -> Array:
-        """Values of one or two lobes, lit by lights and an environment, or by a single light."""
+        """Values of one or two lobes under the client's lights and environment.
+
+        Backends without these states use a single light.
+        """
         shader = self.two if two else self.shader
         if "lights" in self.plain:
             return np.pi * self.evaluate(batch, "direct", shader=shader)
@@ -304,16 +309,16 @@ class Evaluating(Backend):
         shader: Shader | None = None,
         client: Client = CLIENT,
     ) -> Array:
-        def evaluated() -> Array:
+        def compute() -> Array:
             inputs = {**self.spec.fixed, **batch.inputs}
             pairs = batch.world(batch.wo), batch.world(batch.wi)
             light = irradiance, client
             query = Query(shader or self.shader, *pairs, inputs, branch, output, *light)
             return self.answer(query).astype(np.float64)
 
-        which = shader and (shader.element, shader.methods)
-        rest = branch, output, which, contents(irradiance), client
-        return self._evaluations.value((*parts(batch), *rest), evaluated)
+        shader_key = shader and (shader.element, shader.methods)
+        key = *parts(batch), branch, output, shader_key, contents(irradiance), client
+        return self._evaluations.value(key, compute)
 
 
 class InTheDark(Evaluating):
@@ -324,17 +329,17 @@ class InTheDark(Evaluating):
 
 # OSL: closures are trees of arguments and weights, which the models evaluate in float64.
 
-# The models compute the closures' values: more pairs would compare the models with themselves.
+# Few pairs: the models compute the values of closures, so many would test only the models.
 FEW_CLOSURES = Counts(1 << 11, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
-SOME = 1 << 8  # maximum pairs of each kind except random pairs
-# The models round in float64, 2^-53, and the sharpest lobe, with alpha 1e-4, amplifies that by 1e8.
+SOME = 1 << 8  # maximum number of pairs of each kind except random pairs
+# The models round in float64, 2^-53; the sharpest lobe, with alpha 1e-4, amplifies errors by 1e8.
 ARGUMENTS = sum_of(roundings(1, "of arguments with nine digits, evaluated in float64"), exact=True)
 # The slope of a distribution's logarithm is at most 4.
 GRAPH = sum_of(roundings(4 * 16, "16 from an input to an argument, times the slope 4"))
 
 
 def joined(batches: Sequence[Batch]) -> Batch:
-    """One batch with the pairs of all batches, whose inputs must have the same names."""
+    """A batch with the pairs of all batches, whose inputs must have the same names."""
     if len(batches) == 1:
         return batches[0]
     wo, wi = (np.concatenate(each) for each in ([b.wo for b in batches], [b.wi for b in batches]))
@@ -344,19 +349,8 @@ def joined(batches: Sequence[Batch]) -> Batch:
     return Batch(wo, wi, inputs, frame=np.concatenate(frames) if frames else None)
 
 
-def _altered(batch: Batch) -> Batch:
-    """A batch with nonnegative weights, as OSL closures need, and index 0 for some dielectrics."""
-    changes: dict[str, Array] = {}
-    if "weight" in batch.inputs:
-        changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
-    if {"tint", "ior"} <= batch.inputs.keys():
-        index = broadcast_inputs(batch)["ior"]
-        changes["ior"] = np.where(np.arange(len(index)) % 7 == 3, 0.0, index)
-    return batch.altered(**changes)
-
-
 class Closures(Evaluating):
-    """A host that returns closures: their arguments are exact, and they compute no lighting."""
+    """A host that returns the arguments of closures, which are exact, and computes no lighting."""
 
     abilities = Evaluating.abilities & ~Ability.LIGHT
     plain = ("lights", "environment", "shape", "inputs")
@@ -364,30 +358,39 @@ class Closures(Evaluating):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        own = super().errors(spec)
+        errors = super().errors(spec)
         if not spec.requires & Ability.SCATTERS:
-            return own
+            return errors
         exact = GRAPH if Ability.MATERIAL in spec.requires else ARGUMENTS
-        absent = ["integral", "light", "reciprocity"]
+        unmeasured = ["integral", "light", "reciprocity"]
         if Ability.TRANSMISSION in spec.requires:
-            absent.append("states")  # direct light does not reveal transmission
+            unmeasured.append("states")  # direct light does not reveal transmission
         if Ability.FILM in spec.requires:  # closures have no retroreflective flag and no lighting
-            absent += ["retroreflection", "albedo", "throughput"]
+            unmeasured += ["retroreflection", "albedo", "throughput"]
         return {
-            **own,
+            **errors,
             **dict.fromkeys(("value", "albedo"), exact),
-            **{name: exact for name in ("throughput", "lambert") if own.get(name)},
-            **dict.fromkeys(absent),
+            **{name: exact for name in ("throughput", "lambert") if errors.get(name)},
+            **dict.fromkeys(unmeasured),
         }
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        random, *others = map(_altered, super().batches)
-        return (random, *(batch.first(SOME) for batch in others))
+        """Samples with weights >= 0, which OSL closures need, and index 0 for some dielectrics."""
+        batches: list[Batch] = []
+        for batch in super().batches:
+            changes: dict[str, Array] = {}
+            if "weight" in batch.inputs:
+                changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
+            if {"tint", "ior"} <= batch.inputs.keys():
+                index = broadcast_inputs(batch)["ior"]
+                changes["ior"] = np.where(np.arange(len(index)) % 7 == 3, 0.0, index)
+            batches.append(batch.altered(**changes).first(SOME if batches else len(batch.wo)))
+        return tuple(batches)
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """A subset of each kind of samples, joined if possible: every run has a fixed cost."""
+        """A subset of each kind of samples, joined if possible, because a run has a fixed cost."""
         groups: dict[tuple[str, ...], list[Batch]] = {}
         for batch in self.batches:
             few, names = batch.first(self.counts.few), tuple(sorted(batch.inputs))
@@ -400,8 +403,8 @@ class Closures(Evaluating):
 
     @cached_property
     def edges(self) -> Batch:
-        edges = super().edges
-        return edges.where(samples.generator().permutation(len(edges.wo))[:SOME])
+        edges, rng = super().edges, samples.generator()
+        return edges.where(rng.permutation(len(edges.wo))[:SOME])
 
     def answer(self, query: Query) -> Array:
         from mxeon.conformance.reference.closures import evaluate
@@ -416,9 +419,9 @@ class Closures(Evaluating):
                 if not np.array_equal(query.inputs[name], axis)
             }
             if frame:
-                left = {name: each for name, each in query.inputs.items() if name not in frame}
+                inputs = {name: each for name, each in query.inputs.items() if name not in frame}
                 shader = self.implemented(self.spec.document(frame))
-                query = query._replace(shader=shader, inputs=left)
+                query = query._replace(shader=shader, inputs=inputs)
         trees = cast("OslHost", self.host).trees(query.shader, query.wo, query.inputs)
         return evaluate(trees, query)
 
@@ -430,7 +433,7 @@ class Closures(Evaluating):
 
 
 class Functions(Evaluating):
-    """A compiler whose functions return values and MaterialX's fitted albedos, not transmission."""
+    """A compiler of functions for values and MaterialX's fitted albedos, without transmission."""
 
     abilities = Evaluating.abilities & ~(
         Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.TRANSMISSION
@@ -452,9 +455,9 @@ class Functions(Evaluating):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """Samples with occlusion 1, since the renderer applies occlusion itself."""
+        """Samples with occlusion 1, because the renderer, not the function, applies occlusion."""
         return tuple(
-            each.altered(**dict.fromkeys({"occlusion"} & each.inputs.keys(), 1.0))
+            each.altered(occlusion=1.0) if "occlusion" in each.inputs else each
             for each in super().batches
         )
 
@@ -462,7 +465,8 @@ class Functions(Evaluating):
 # Renderers in which each pixel shows one pair of directions.
 
 SMOOTH = ("eon", "qon", "burley")  # models without a sharp lobe at any roughness
-# Views need at least this sine times cosine to be far from their mirror and opposite directions.
+# Smallest product of a view's sine and cosine. It keeps the view away from the mirror direction and
+# from the opposite direction.
 OBLIQUE = 0.25
 FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=32, mirrored=1 << 10)
 FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # stated in OpenImageIO's source
@@ -474,11 +478,11 @@ FLAT, SHARP = (
     sum_of(roundings(each * POINT, f"of a point, times the slope {each:g}"), FAST_ARC_COSINE)
     for each in (FLAT_SLOPE, SHARP_SLOPE)
 )
-# Angular error of the light's direction at a displaced point on a steep triangle.
+# Error of the light's direction in radian, for a displaced point on a triangle at a grazing angle.
 TURN = JITTER * PIXEL / (RIM * DISTANCE)
-BESIDE = "a point up to 0.007 pixels beside the middle, at cosine 0.05"
+DISPLACED = "a point up to 0.007 pixels beside the middle, at cosine 0.05"
 TRACED_FLAT, TRACED_SHARP = (
-    sum_of(Term(each * TURN, f"{BESIDE}, times {each:g}")) for each in (FLAT_SLOPE, SHARP_SLOPE)
+    sum_of(Term(each * TURN, f"{DISPLACED}, times {each:g}")) for each in (FLAT_SLOPE, SHARP_SLOPE)
 )
 BELOW = sum_of(
     roundings(4.0 * 16.0 * POINT, "of a point, times 16 by the lobes above, in four values"),
@@ -487,7 +491,8 @@ BELOW = sum_of(
 VIEWS, PIXELS = 8, 1 << 12  # number of views per case, and of pixels in their common picture
 MEAN_OF_PATHS = "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms"
 NOISE = sum_in(Quantity.ALBEDO, Term(5.0 * 0.01 / math.sqrt(PIXELS / VIEWS), MEAN_OF_PATHS))
-PASSED = given(2e-3, Quantity.ALBEDO, "testrender's tables, off by 1e-3 for a white dielectric")
+TABLES = "testrender's tables, off by 1e-3 for a white dielectric"
+PASSED = tolerance.given(2e-3, Quantity.ALBEDO, TABLES)
 NODES_MOVED = Term(1.2e-3, "32 x 32 nodes, those next to the view moved by up to 0.08")
 INTEGRAL = sum_in(Quantity.ALBEDO, SHARP.term("an average of values"), NODES_MOVED)
 LIGHT = sum_in(Quantity.LIGHT, INTEGRAL.term("an integral of values"), PASSED.term("a throughput"))
@@ -502,31 +507,32 @@ class Shown(Evaluating):
     """A renderer, or a host restricted to the pairs and inputs that renderers support.
 
     Both cosines are at least RIM, and no lobe is so sharp that the pixel position matters.
-    Roughness is at most 1, as in OSL's stdosl.h; weights are not negative; occlusion is absent.
+    Roughness is at most 1, as in OSL's stdosl.h. Weights are not negative, and there is no
+    occlusion.
     """
 
     fewer = FEW_RENDERED
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        shown = (self._plain(batch.where(_is_shown(batch))) for batch in super().batches)
-        return tuple(batch for batch in shown if len(batch.wo))
+        batches = (self._supported(batch, _is_shown(batch)) for batch in super().batches)
+        return tuple(batch for batch in batches if len(batch.wo))
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """A few views of the random pairs; they share a fixed number of paths."""
+        """A few views of the random pairs, which share a fixed number of paths."""
         return (super().views[0].first(self.counts.albedos),)
 
     @cached_property
     def edges(self) -> Batch:
         edges = super().edges
-        return self._plain(edges.where(_is_shown(edges)))
+        return self._supported(edges, _is_shown(edges))
 
     @cached_property
     def mirrored(self) -> tuple[Batch, Batch]:
         first, second = super().mirrored
         shown = _is_shown(first) & _is_shown(second)
-        return self._plain(first.where(shown)), self._plain(second.where(shown))
+        return self._supported(first, shown), self._supported(second, shown)
 
     @cached_property
     def integrated(self) -> tuple[Batch, Array]:
@@ -538,16 +544,19 @@ class Shown(Evaluating):
         return batch.where(np.repeat(oblique, nodes)), weights[oblique]
 
     def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
-        taken = {**inputs}
-        taken.pop("occlusion", None)
-        if "weight" in taken:
-            taken["weight"] = np.maximum(taken["weight"], 0.0)
         least = 0.0 if self.spec.model in SMOOTH else samples.LEAST_TURNED
-        rough = [name for name in taken if name.endswith("roughness")]
-        return taken | {name: np.clip(taken[name], least, 1.0) for name in rough}
+        taken = dict(inputs)
+        taken.pop("occlusion", None)
+        for name, values in taken.items():
+            if name == "weight":
+                taken[name] = np.maximum(values, 0.0)
+            elif name.endswith("roughness"):
+                taken[name] = np.clip(values, least, 1.0)
+        return taken
 
-    def _plain(self, batch: Batch) -> Batch:
-        return replace(batch, inputs=self.taken(batch.inputs))
+    def _supported(self, batch: Batch, mask: Mask) -> Batch:
+        pairs = batch.where(mask)
+        return replace(pairs, inputs=self.taken(pairs.inputs))
 
 
 class Rendered(Shown):
@@ -566,15 +575,13 @@ class Rendered(Shown):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        turned = {
-            name: max(spec.errors[name], cls.place or spec.errors[name], key=attrgetter("value"))
-            for name in ("retroreflection", "anisotropy")
-            if name in spec.errors
-        }
+        errors: dict[str, Tolerance | None] = {**spec.errors}
+        for name in ("retroreflection", "anisotropy"):
+            if cls.place and name in spec.errors and spec.errors[name].value < cls.place.value:
+                errors[name] = cls.place
         value = cls.flat if spec.flat else cls.sharp
         return {
-            **spec.errors,
-            **turned,
+            **errors,
             **dict.fromkeys(("value", "reciprocity"), value),
             "albedo": NOISE,
             "throughput": PASSED,
@@ -585,7 +592,7 @@ class Rendered(Shown):
         }
 
     def direct(self, batch: Batch) -> Array:
-        """Values in direct light; a pair that cannot be rendered is replaced by one next to it."""
+        """Values in direct light; pairs that cannot be rendered are moved slightly."""
         return super().direct(replace(batch, wi=apart(batch.wo, batch.wi)))
 
 
@@ -605,7 +612,7 @@ class LobesBelow(Shown):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """Random pairs far from the rim, with colors and roughnesses of a lower lobe."""
+        """Random pairs far from the rim, with random colors and roughnesses of the lobe."""
         rng, count = samples.generator(), self.counts.few
         inputs = self.taken(self.lobe.random_inputs(rng, count))
         wo, wi = samples.directions(rng, count), samples.directions(rng, count)
@@ -628,17 +635,17 @@ class RenderedLobes(LobesBelow):
     own_errors: ClassVar[Errors] = {"value": BELOW}
 
 
-def diffuse_alone(show: Callable[[Batch], Array], batch: Batch) -> Array:
+def diffuse_alone(evaluate: Callable[[Batch], Array], batch: Batch) -> Array:
     """Values of the diffuse lobe, without the lobes above; see SurfaceLobe."""
-    others = show(batch.altered(color=samples.BLACK))
-    lambert = show(batch.altered(color=samples.WHITE, roughness=0.0)) - others
+    above = evaluate(batch.altered(color=samples.BLACK))
+    lambert = evaluate(batch.altered(color=samples.WHITE, roughness=0.0)) - above
     with np.errstate(divide="ignore", invalid="ignore"):  # an all-black shader divides 0 by 0
-        return (show(batch) - others) / lambert * batch.wi[:, 2:]
+        return (evaluate(batch) - above) / lambert * batch.wi[:, 2:]
 
 
 @lru_cache(maxsize=16)
 def _with_variants(backend: type[Rendered], spec: Spec) -> Spec:
-    """A spec with a renderer's functions added to its candidates."""
+    """A spec whose candidates include the functions of a renderer."""
     if not isinstance(spec, PbrSpec) or spec.row.name not in backend.variants:
         return spec
     variants = (*backend.variants[spec.row.name], *spec.row.variants)
@@ -649,11 +656,11 @@ def _with_variants(backend: type[Rendered], spec: Spec) -> Spec:
 
 PICTURE_SIZE = 128
 HALF_CUT = Term(2.0**-10, "half floats, cut off")  # llvmpipe truncates instead of rounding
-# Relative error of a lobe per angular error of a ray's point: 2 / alpha for a distribution, with
-# alpha at least 0.4, plus 3 for Fresnel, shadowing and the cosine.
+# Relative error of a lobe per radian by which the point of a ray is off: 2 / alpha for a
+# distribution with alpha at least 0.4, plus 3 for Fresnel, shadowing and the cosine.
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
-# Each of two cosines has five roundings. Their errors count 20 times in s / t, as cosines are at
-# least 0.05, and once each in s and in the cosine factor.
+# Each of two cosines has five roundings. The errors count 20 times in s / t, because cosines are at
+# least 0.05, once in s, and once in the cosine factor.
 TWO_COSINES = roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)")
 EXACT = sum_in(Quantity.DIFFERENCE, roundings(28, "(14, of numbers up to 2)"), TWO_COSINES)
 EXACT_ALBEDO = sum_in(Quantity.ALBEDO, roundings(21 * 1.02, "of numbers up to 1.02"))
@@ -668,8 +675,8 @@ FOUR_PICTURES = Term(
 )
 HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR_PICTURES, *DRAWN_LOBE.terms, exact=True)
 
-# A pixel's point, a ray's origin plus its length, both at most 2, has three roundings of 2^-23. A
-# grazing ray divides this error by its cosine, and cos(theta_i) divides it by the other cosine.
+# A pixel's point is a ray's origin plus its length. Both are at most 2, with three roundings of
+# 2^-23. A grazing view divides the error by cos(theta_o), and relative values by cos(theta_i).
 CYCLES_RAY = sum_of(
     roundings(3.0 * 2.0 / RIM**2, "of a pixel's point, over the least cosine squared"),
     Term(1e-5, "a roughness that counts as 0"),
@@ -677,7 +684,8 @@ CYCLES_RAY = sum_of(
     metric=relative,
 )
 # Measured at 256 samples per pixel, seeds 0 to 15, roughness 1 and reflectance 1: a pixel is off by
-# 1.3e-3 rms, the mean of 3212 pixels by 3.1e-5 rms: 1.34 times as much as independent pixels.
+# 1.3e-3 rms, and the mean of 3212 pixels by 3.1e-5 rms, 1.34 times as much as if pixels were
+# independent.
 CYCLES_MEAN = "four standard errors of the mean of 12836 pixels, each off by 1.3e-3, times 1.4"
 CYCLES_NOISE = sum_of(
     Term(4.0 * 1.4 * 1.3e-3 / math.sqrt(12_836), CYCLES_MEAN),
@@ -696,30 +704,31 @@ class Pictures(Backend):
     def points(self, scene: Scene) -> Pairs:
         """Directions at the points of a picture, and the mask of the points to judge."""
         wo, wi, _ = picture_pairs(scene)
-        lit = wi[:, 2] * (1.0 if scene.light is None else self.spec.side)
-        return wo, wi, np.minimum(wo[:, 2], lit) >= self.spec.rim
-
-    def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
-        return *self.points(scene), sphere(scene.size).mask
+        mu_i = wi[:, 2] * (1.0 if scene.light is None else self.spec.side)
+        return wo, wi, np.minimum(wo[:, 2], mu_i) >= self.spec.rim
 
     def direct(self, batch: Batch) -> Array:
-        alone = Ability.BELOW in self.spec.requires
-        return diffuse_alone(self.picture, batch) if alone else self.picture(batch)
+        if Ability.BELOW in self.spec.requires:
+            return diffuse_alone(self.picture, batch)
+        return self.picture(batch)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        return self.picture(batch)  # its scene already has the environment
+        return self.picture(batch)  # the scene of the batch has the environment
 
     def picture(self, batch: Batch) -> Array:
         scene = scene_of(batch)
-        values = self.host.picture(self.shader_of(batch.inputs), scene)[sphere(scene.size).mask]
-        return values[self.points(scene)[2]].astype(np.float64)
+        image = self.image(batch.inputs, scene)
+        return image[self.pixels(scene)][self.points(scene)[2]].astype(np.float64)
+
+    def image(self, inputs: Values, scene: Scene) -> NDArray[np.floating]:
+        return self.host.picture(self.shader_of(inputs), scene)
 
     def shader_of(self, inputs: Values) -> Shader:
         return _compile(self.host, self.spec.document(inputs), self.library, self.host.methods)
 
 
 class Spheres(Pictures):
-    """One picture per light and material; its lit points off rim and terminator are samples."""
+    """One picture per light and material; lit points far from the rim are the samples."""
 
     scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
     whole = True
@@ -740,7 +749,7 @@ class Spheres(Pictures):
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """Points of the sphere in a white environment, one batch per material."""
+        """Points of the sphere in a white environment, in one batch per material."""
         scene = replace(FURNACE, size=self.size)
         views = tuple(self.batch(scene, inputs) for inputs in self.materials)
         return tuple(map(isotropic, views)) if self.prefiltered else views
@@ -750,7 +759,7 @@ class Spheres(Pictures):
 def _compile(host: Host, text: str, library: str, methods: Methods) -> Shader:
     from mxeon.shaders.generation import ApproximationWarning  # this import loads MaterialX
 
-    with warnings.catch_warnings():  # approximations are not judged: see CyclesPictures.points
+    with warnings.catch_warnings():  # CyclesPictures.points excludes pairs of approximations
         warnings.simplefilter("ignore", ApproximationWarning)
         return host.compile(text, library=library, methods=methods)[0]
 
@@ -768,14 +777,14 @@ def picture_pairs(scene: Scene) -> Pairs:
 
 
 def lit_pairs(normal: Array, scene: Scene) -> Pairs:
-    """Directions at points with these normals in a picture, and the mask of points to judge."""
-    wo = local_directions(normal, VIEW)
-    wi = wo if scene.light is None else local_directions(normal, scene.light)
+    """Directions at the points with these normals in a picture, and the mask of judged points."""
+    wo = scenes.local_directions(normal, scenes.VIEW)
+    wi = wo if scene.light is None else scenes.local_directions(normal, scene.light)
     return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)
 
 
 class CyclesPictures(Spheres):
-    """Pictures of a rough diffuse node by Cycles, which renders it with its own closure."""
+    """Pictures of a rough diffuse node by Cycles, which uses a closure of its own for the node."""
 
     abilities = Ability.DIFFUSE | Ability.LIGHT
     own_errors: ClassVar[Errors] = {
@@ -785,10 +794,10 @@ class CyclesPictures(Spheres):
     }
 
     def points(self, scene: Scene) -> Pairs:
-        """Points where the host's closure may match the model: only s >= 0 if it is front-lit."""
+        """Points where the host's closure matches the model; for some models only s >= 0."""
         wo, wi, mask = super().points(scene)
         if front_lit_only(self.host.name, self.spec.model):
-            mask = mask & (wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1] >= 0.0)
+            mask = mask & (np.sum(wo[:, :2] * wi[:, :2], axis=1) >= 0.0)
         return wo, wi, mask
 
 
@@ -810,13 +819,13 @@ class Drawn(Spheres):
 
     @classmethod
     def drawn(cls, error: Tolerance) -> Tolerance:
-        """Error of a node's value or albedo in a picture with exact points."""
+        """The error of a value or an albedo in pictures, whose points have rounded cosines."""
         points = roundings(LOBE_SLOPE * 2 * 5 / RIM, "of two cosines of at least 0.05, times 8")
         return sum_of(error.term("a number"), points, quantity=error.quantity)
 
 
 class Half(Drawn):
-    """Exact pictures with half-float colors, as Storm renders them by default."""
+    """Pictures with exact points and half-float colors, as Storm renders by default."""
 
     exact: ClassVar[Errors] = {"value": HALF, "albedo": HALF_ALBEDO, "lambert": HALF}
     lobe_error = HALF_LOBE
@@ -827,16 +836,16 @@ class Half(Drawn):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        """Errors of pictures, without pbrlib's albedos, for which Storm sums other directions."""
-        own = super().errors(spec)
-        return {**own, "albedo": None} if Ability.LOBE in spec.requires else own
+        """Errors of pictures; albedos of pbrlib are not judged, as Storm sums other directions."""
+        errors = super().errors(spec)
+        return {**errors, "albedo": None} if Ability.LOBE in spec.requires else errors
 
     @classmethod
     def drawn(cls, error: Tolerance) -> Tolerance:
         drawn = super().drawn(error)
         return replace(drawn, terms=(drawn.term("a drawn number"), HALF_CUT), exact=True)
 
-    unset = ("retroreflective",)  # input added after MaterialX 1.39.3, which Storm uses
+    unset = ("retroreflective",)  # Storm uses MaterialX 1.39.3, which lacks this input
 
 
 # A pixel's point is off by three roundings of 2^-23, divided by a cosine of at least 0.05.
@@ -848,19 +857,19 @@ PICTURE_RADIANCE = sum_of(
 
 
 class DarkPictures(Pictures):
-    """Pictures of an emitting surface in the dark, one for each material of its samples."""
+    """Pictures of an emitting surface without other light, one per material."""
 
     abilities = Ability.SURFACE | Ability.LIGHT
 
 
 class Frames(Pictures):
-    """Pictures drawn by the shader's complete main() with a client's bindings."""
+    """Pictures that the complete main() of a shader draws with the bindings of a client."""
 
     abilities = Ability.CLIENT | Ability.LIGHT
 
 
 class EmissionPictures(Spheres):
-    """Pictures of an EDF node on a sphere in the dark."""
+    """Pictures of an EDF node on a sphere without other light."""
 
     abilities = Ability.EMISSION | Ability.LIGHT
     scenes = (Scene("dark"),)
@@ -886,8 +895,8 @@ class UtilityOsl(Evaluating):
         return {**spec.errors, "value": spec.errors.get("osl_value", spec.errors["value"])}
 
 
-# Backends by the `way` in a host's row; the first that supports a spec evaluates it. `mxeon.survey`
-# adds backends for renderers with their own materials.
+# Backends by the `way` in a host's row; the first backend that supports a spec evaluates the spec.
+# `mxeon.survey` adds backends for renderers with their own materials.
 BACKENDS: dict[str, tuple[type[Backend], ...]] = {
     "pairs": (Evaluating, LobesBelow, DarkPictures, Frames),
     "closures": (Closures,),
@@ -906,11 +915,11 @@ def ways_of(host: str) -> tuple[type[Backend], ...]:
 
 
 def own_nodes(host: str) -> tuple[Spec, ...]:
-    """Judged nodes that a renderer defines, otherwise (); also imports its backends and checks."""
+    """The judged nodes that a renderer defines; also imports the renderer's backends and checks."""
     nodes = host_row(host).nodes
     return tuple(nodes(host)) if nodes else ()
 
 
 def backend_of(host: str, spec: Spec) -> type[Backend] | None:
-    """The backend that evaluates a node on a host; None if none does."""
+    """The backend that evaluates a node on a host; None if no backend supports the node."""
     return next((way for way in ways_of(host) if way.supports(spec)), None)

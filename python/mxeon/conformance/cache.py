@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small LRU caches of values, keyed by the numbers that they depend on.
+"""Small LRU caches of values, keyed by the numbers that the values depend on.
 
 Checks, controls and libraries share many values. Batches are compared by hashing their numbers,
-which takes less time than computing their values.
+which takes less time than evaluating a model or a shader.
 """
 
 from collections import OrderedDict
@@ -13,26 +13,26 @@ import numpy as np
 
 from mxeon.conformance.samples import Array, Batch
 
-LARGEST = 1 << 14  # maximum pairs of a cached batch
-KEPT = 32  # maximum cached batches, up to 400 kB each
-EVALUATIONS = 16  # maximum cached batches of a host's values, up to 3.5 megabytes each
+LARGEST = 1 << 14  # maximum number of pairs in a batch whose values are cached
+KEPT = 32  # maximum number of cached batches of a function, up to 400 kB each
+EVALUATIONS = 16  # maximum number of cached batches of a host's values, up to 3.5 MB each
 T = TypeVar("T")
 
 
 class Recent(Generic[T]):
-    """An LRU cache of a limited number of values; arrays are read-only."""
+    """An LRU cache of up to `size` values; cached arrays are read-only."""
 
-    def __init__(self, most: int) -> None:
-        self._most = most
+    def __init__(self, size: int) -> None:
+        self._size = size
         self._values: OrderedDict[Hashable, T] = OrderedDict()
 
     def value(self, key: Hashable, compute: Callable[[], T]) -> T:
         if key not in self._values:
-            found = self._values[key] = compute()
-            if isinstance(found, np.ndarray):
-                found.setflags(write=False)
+            value = self._values[key] = compute()
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
         self._values.move_to_end(key)
-        if len(self._values) > self._most:
+        if len(self._values) > self._size:
             self._values.popitem(last=False)
         return self._values[key]
 
@@ -45,21 +45,19 @@ def contents(value: object) -> Hashable:
     return array.dtype.str, array.shape, hash(array.tobytes())
 
 
-class Remembered:
-    """A function of batches that caches a few of its values."""
+def remembered(function: Callable[[Batch], Array]) -> Callable[[Batch], Array]:
+    """The same function of batches, with a cache of its values for small batches."""
+    cache = Recent[Array](KEPT)
 
-    def __init__(self, function: Callable[[Batch], Array]) -> None:
-        self._function = function
-        self._known = Recent[Array](KEPT)
-
-    def __call__(self, batch: Batch) -> Array:
+    def cached(batch: Batch) -> Array:
         if len(batch.wo) > LARGEST:
-            return self._function(batch)
-        key = batch.scene, *parts(batch)
-        return self._known.value(key, lambda: self._function(batch))
+            return function(batch)
+        return cache.value((batch.scene, *parts(batch)), lambda: function(batch))
+
+    return cached
 
 
 def parts(batch: Batch) -> tuple[Hashable, ...]:
-    """A key for a batch, without its scene."""
+    """A key for the directions, frames and inputs of a batch."""
     inputs = tuple((name, contents(values)) for name, values in batch.inputs.items())
     return contents(batch.wo), contents(batch.wi), contents(batch.frame), inputs

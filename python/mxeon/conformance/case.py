@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A node on an engine with a library: its samples, the engine's values, and the expected values.
+"""A case: a node on an engine with a library, with samples and with measured and expected values.
 
 A negative control is the same case with wrong inputs or outputs.
 """
@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from itertools import product
 from typing import TypeVar, cast
 
 import numpy as np
@@ -25,32 +26,34 @@ F = TypeVar("F", bound=Spec)
 Change = Callable[[Batch, Array], Array]  # batch, values -> changed values
 # Engines may compile two documents differently, so even unchanged values may differ by roundings.
 ROUNDED = 64 * ROUNDING
-KEPT_SPECS = 2  # specs with cached expected values: the case's own and a related one
+CACHED_SPECS = 2  # number of specs with cached values: a case's spec, and a related one
 
 
-@lru_cache(maxsize=3 * KEPT_SPECS)
-def remembered(spec: Spec, quantity: str) -> cache.Remembered:
-    return cache.Remembered(getattr(spec, quantity))
+@lru_cache(maxsize=3 * CACHED_SPECS)
+def model_values(spec: Spec, quantity: str) -> Callable[[Batch], Array]:
+    """The model's function for a quantity, with a cache of its values."""
+    return cache.remembered(getattr(spec, quantity))
 
 
-@lru_cache(maxsize=2 * KEPT_SPECS)
+@lru_cache(maxsize=2 * CACHED_SPECS)
 def candidates(spec: Spec, quantity: str) -> tuple[Candidate, ...]:
-    """The candidates for a spec's albedo or throughput, cached for several comparisons."""
-    found: tuple[Candidate, ...] = getattr(spec, f"{quantity}_candidates")
-    return tuple(replace(each, values=cache.Remembered(each.values)) for each in found)
+    """Functions that may explain the albedo or the throughput, with caches of their values."""
+    functions: tuple[Candidate, ...] = getattr(spec, f"{quantity}_candidates")
+    return tuple(replace(each, values=cache.remembered(each.values)) for each in functions)
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A node on a backend; `inputs`, `outputs` and `throughputs` apply a control's mistake."""
+    """A node on a backend; controls and diagnoses change some of the fields."""
 
     spec: Spec
     backend: backends.Backend
+    # Mistakes of a control in the inputs, in the values, and in the throughput of layers.
     inputs: Callable[[Batch], Batch] = lambda batch: batch
     outputs: Change = lambda batch, values: values
     throughputs: Change = lambda batch, values: values
-    control: bool = False  # controls use a subset: one failing sample is enough
-    chosen: tuple[Batch, ...] = ()  # a diagnosis's batches, which replace the samples
+    control: bool = False  # controls use a subset of the samples: one failing sample is enough
+    chosen: tuple[Batch, ...] = ()  # batches that replace the samples in a diagnosis
     explained: dict[object, results.Diagnosis] = field(default_factory=dict, init=False)  # cache
 
     @property
@@ -62,13 +65,13 @@ class Case:
         return self.backend.library
 
     def of(self, family: type[F]) -> F:
-        """The spec, cast to the only family that a check applies to."""
+        """The spec, cast to the only family of specs that the check applies to."""
         assert isinstance(self.spec, family), f"{self.spec.title} is no {family.__name__}"
         return self.spec
 
     @property
     def opaque(self) -> bool:
-        """Whether transmission is rendered as opacity, without an environment lookup."""
+        """Whether the engine draws transmission as opacity, without an environment lookup."""
         return self.host.active.transmission == "opacity"
 
     @property
@@ -119,17 +122,17 @@ class Case:
         return self.backend
 
     def expected(self, batch: Batch) -> Array:
-        return remembered(self.valued, "value")(batch)
+        return model_values(self.valued, "value")(batch)
 
     def expected_albedo(self, batch: Batch) -> Array:
-        return remembered(self.lobe, "albedo")(batch)
+        return model_values(self.lobe, "albedo")(batch)
 
     def expected_throughput(self, batch: Batch) -> Array:
-        return remembered(self.of(lobes.ScatteringSpec), "throughput")(batch)
+        return model_values(self.of(lobes.ScatteringSpec), "throughput")(batch)
 
     @property
     def changes(self) -> Mapping[str, Changes]:
-        """Inputs before and after a change of each input that the engine can set, by its name."""
+        """For each input that the engine can set, all inputs before and after a change of it."""
         changes, unset = self.spec.changes, self.backend.unset
         return {name: changes[name] for name in changes if name not in unset}
 
@@ -137,7 +140,7 @@ class Case:
         return candidates(self.spec, quantity)
 
     def tolerance(self, *quantities: str) -> Tolerance:
-        """Tolerance of the first of these quantities that has one, plus the engine's errors."""
+        """The error of the first quantity that has one, plus errors of the engine's functions."""
         errors = self.backend.errors(self.spec)
         for quantity in quantities:
             if error := errors.get(quantity):
@@ -148,8 +151,8 @@ class Case:
 def make_case(backend: type[backends.Backend], host: Engine, spec: Spec, library: str) -> Case:
     spec = spec.within(library)
     made = backend(cast(Host, host), spec, library)
-    if (form := made.judged()) is not spec:
-        made = backend(cast(Host, host), form, library)
+    if (judged := made.judged()) is not spec:
+        made = backend(cast(Host, host), judged, library)
     return Case(made.spec, made)
 
 
@@ -163,7 +166,7 @@ def values(case: Case) -> Iterator[Compared]:
 
 
 def albedos(case: Case) -> Iterator[Compared]:
-    """The environment branch, compared with the directional albedo or MaterialX's fit of it."""
+    """Values in an environment, compared with the directional albedo or MaterialX's fit of it."""
     spec, fitted = case.spec, case.backend.prefiltered
     for batch in case.views:
         if fitted and isinstance(spec, microfacets.FacetSpec):
@@ -174,48 +177,46 @@ def albedos(case: Case) -> Iterator[Compared]:
 
 
 def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
-    """Throughput of a layer, compared with 1 - E."""
-    for branch in branches:
-        for batch in case.views:
-            expected = case.expected_throughput(batch)
-            yield Compared(batch, case.throughput(batch, branch), expected)
+    """Throughput of a layer in branches of the light, compared with 1 minus the albedo."""
+    for branch, batch in product(branches, case.views):
+        yield Compared(batch, case.throughput(batch, branch), case.expected_throughput(batch))
 
 
 def frames(case: Case) -> Iterator[Compared]:
     """Values in rotated frames, compared with unrotated frames; half of the normals face away."""
     turned = case.backend.turned
     # Summing an albedo over the environment is slow; every fifth pair still covers both sides.
-    some = turned.where(slice(None, None, 5))
-    shown = [(case.direct, turned), (case.albedo, some)]
+    subset = turned.where(slice(None, None, 5))
+    outputs = [(case.direct, turned), (case.albedo, subset)]
     for each in case.spec.inputs:
         if each.type == "boolean" and each.name in case.changes.keys() - case.spec.fixed.keys():
-            shown.append((case.direct, some.altered(**{each.name: True})))
-    for output, batch in shown:
+            outputs.append((case.direct, subset.altered(**{each.name: True})))
+    for output, batch in outputs:
         local = replace(batch.altered(normal=(0.0, 0.0, 1.0), tangent=(1.0, 0.0, 0.0)), frame=None)
         yield Compared(batch, output(batch), output(local))
 
 
 def dead_inputs(
-    case: Case, batch: Batch | None = None, show: Callable[[Batch], Array] | None = None
+    case: Case, batch: Batch | None = None, evaluate: Callable[[Batch], Array] | None = None
 ) -> list[str]:
-    """Names of inputs that do not affect the values, or the quantity that `show` evaluates."""
-    batch, show = batch or case.few[0], show or case.direct
-    plain = show(batch)  # most changes start from the unmodified batch
+    """Names of inputs that do not affect the values in direct light, or those of `evaluate`."""
+    batch, evaluate = batch or case.few[0], evaluate or case.direct
+    original = evaluate(batch)  # most changes start from the unmodified batch
     dead = []
     for name, (before, after) in case.changes.items():
-        one = show(batch.altered(**before)) if before else plain
-        if unchanged(one, show(batch.altered(**after))).all():
+        values = evaluate(batch.altered(**before)) if before else original
+        if unchanged(values, evaluate(batch.altered(**after))).all():
             dead.append(name)
     return dead
 
 
-def unchanged(one: Array, two: Array) -> NDArray[np.bool_]:
+def unchanged(before: Array, after: Array) -> NDArray[np.bool_]:
     """Whether values differ by no more than roundings."""
-    return np.isclose(one, two, rtol=ROUNDED, atol=ROUNDED, equal_nan=True)
+    return np.isclose(before, after, rtol=ROUNDED, atol=ROUNDED, equal_nan=True)
 
 
 def edge_values(case: Case) -> Compared:
     """Values and albedos at the edges of the domain, compared with 0."""
     batch = case.backend.edges
-    found = np.concatenate([case.direct(batch), case.albedo(batch)], axis=1)
-    return Compared(batch, found, np.zeros_like(found))
+    values = np.concatenate([case.direct(batch), case.albedo(batch)], axis=1)
+    return Compared(batch, values, np.zeros_like(values))

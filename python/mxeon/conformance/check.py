@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A check: a claim, a measurement of a case, its tolerance, and a control that it must catch.
 
-A check passes at error <= tolerance. Its control is the same case with wrong inputs or outputs, on the same
-engine; the check must fail on it.
+A check passes if the error is at most the tolerance, and if it fails on its control: the same case
+on the same engine, with wrong inputs or outputs.
 """
 
 import math
@@ -31,12 +31,12 @@ S = TypeVar("S", bound=Spec)
 
 @dataclass(frozen=True)
 class Specs:
-    """A set of specs; `|`, `&` and `-` combine them."""
+    """A set of specs, given by a condition; `|`, `&` and `-` combine sets."""
 
-    holds: Callable[[Spec], bool]
+    contains: Callable[[Spec], bool]
 
     def __call__(self, spec: Spec) -> bool:
-        return self.holds(spec)
+        return self.contains(spec)
 
     def __or__(self, other: "Specs") -> "Specs":
         return Specs(lambda spec: self(spec) or other(spec))
@@ -48,16 +48,16 @@ class Specs:
         return Specs(lambda spec: self(spec) and not other(spec))
 
 
-def family(kind: type[S], holds: Callable[[S], bool] = lambda spec: True) -> Specs:
-    """The specs of a family that satisfy a condition."""
-    return Specs(lambda spec: isinstance(spec, kind) and holds(spec))
+def family(kind: type[S], condition: Callable[[S], bool] = lambda spec: True) -> Specs:
+    """The specs of a class that satisfy a condition."""
+    return Specs(lambda spec: isinstance(spec, kind) and condition(spec))
 
 
-def compared_of(found: Compared | Iterable[Compared] | Measurement) -> list[Compared]:
-    """The comparisons of a measurement; empty if it is a single number."""
-    if isinstance(found, Measurement):
+def compared_of(measured: Compared | Iterable[Compared] | Measurement) -> list[Compared]:
+    """The comparisons that a check's function returns; empty for a single number."""
+    if isinstance(measured, Measurement):
         return []
-    return [found] if isinstance(found, Compared) else list(found)
+    return [measured] if isinstance(measured, Compared) else list(measured)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,34 +67,35 @@ class Check:
     key: str  # a single word
     claim: str  # a full sentence
     applies: Specs
-    measure: Measure  # returns comparisons, judged by the worst row, or a number
-    tolerance: str | Tolerance  # name of one of the spec's errors, or a fixed tolerance
+    measure: Measure  # returns comparisons, judged by the worst row, or a single number
+    tolerance: str | Tolerance  # a key of `Spec.errors`, or a tolerance for all specs
     control: controls.Control
     explain: Explain | Diagnosis
     requires: Ability = NO_ABILITY  # abilities that a backend needs
-    # Profile of the generated text other than the rasterizer's; only for nodes that the user names.
+    # Profile of the generated text, for checks that only run for nodes that the user names; "" for
+    # the rasterizer's text.
     profile: str = ""
-    # Whether the verdict is "differs" instead of failed if a permitted function explains the error.
+    # Whether the verdict is "differs" instead of "failed" if a permitted function has the values.
     open: bool = False
-    # Whether a spec can be measured on a host, given by name, and with a client's methods.
+    # Whether a spec can be measured on a host with this name, and with a client's methods.
     hosts: Callable[[Spec, str], bool] = lambda spec, host: True
     methods: Callable[[Spec, Methods], bool] = lambda spec, methods: True
 
     def measured(self, case: Case, tolerance: Tolerance) -> Measurement:
-        """The worst error of a case; if it exceeds the tolerance, also all other errors."""
-        found = self.measure(case)
-        if isinstance(found, Measurement):
-            return found
-        compared = compared_of(found)
+        """The worst error of a case; above the tolerance, also the errors of all samples."""
+        measured = self.measure(case)
+        if isinstance(measured, Measurement):
+            return measured
+        compared = compared_of(measured)
         worst = worst_of(tolerance.metric, compared)
         if case.control or worst.error <= tolerance.value:
             return worst
         return Measurement(worst.error, worst.worst, *regions.errors(compared, tolerance))
 
-    def gives(self, case: Case, title: str, tolerance: Tolerance) -> bool:
-        """Whether a permitted function reproduces the engine's values on the check's samples.
+    def is_reproduced(self, case: Case, title: str, tolerance: Tolerance) -> bool:
+        """Whether the function with this title has the engine's values on the check's samples.
 
-        Negative values count as 0; the check `dark` judges them.
+        Negative values count as 0, because the check `dark` judges negative values.
         """
         model = copy(case.backend)  # a backend that returns the function's values
         for name, candidates in (
@@ -104,12 +105,12 @@ class Check:
             for each in candidates:
                 if each.title == title:
                     vars(model)[name] = lambda batch, *_, values=each.values: values(batch)
-        lit = replace(case, outputs=lambda batch, values: np.maximum(values, 0.0))
-        found = [self.measure(each) for each in (lit, replace(lit, backend=model))]
+        engine = replace(case, outputs=lambda batch, values: np.maximum(values, 0.0))
+        measured = [self.measure(each) for each in (engine, replace(engine, backend=model))]
         return all(
-            not tolerance.wrong(Compared(own.batch, *columns)).any()
-            for own, other in zip(*map(compared_of, found), strict=True)
-            for columns in zip(own[1:], other[1:], strict=True)
+            not tolerance.wrong(Compared(one.batch, *columns)).any()
+            for one, other in zip(*map(compared_of, measured), strict=True)
+            for columns in zip(one[1:], other[1:], strict=True)
         )
 
     def applies_to(
@@ -117,18 +118,22 @@ class Check:
     ) -> bool:
         """Whether the check applies to a node on a host, for a backend and a client's methods."""
         methods = backend.methods.over(methods)
-        if not (self.applies(spec) and self.hosts(spec, host) and self.methods(spec, methods)):
-            return False
-        own = self.tolerance
-        judged = isinstance(own, Tolerance) or backend.errors(spec).get(own) is not None
-        return judged and self.requires in backend.abilities
+        key = self.tolerance
+        return (
+            self.applies(spec)
+            and self.hosts(spec, host)
+            and self.methods(spec, methods)
+            and self.requires in backend.abilities
+            and (isinstance(key, Tolerance) or backend.errors(spec).get(key) is not None)
+        )
 
     def allowed(self, case: Case) -> Tolerance:
-        own = self.tolerance
-        return own if isinstance(own, Tolerance) else case.tolerance(own)
+        """The tolerance for a case, with the errors of the engine's functions."""
+        key = self.tolerance
+        return key if isinstance(key, Tolerance) else case.tolerance(key)
 
     def judge(self, case: Case) -> Result:
-        """The result for a case, with its control and, on failure, a diagnosis."""
+        """The result for a case, with that of its control and, on failure, a diagnosis."""
         spec, claim = case.spec, case.spec.claim or self.claim
         names = self.key, claim, spec.title, case.host.name, case.library
         claimed, model = case.backend.claims
@@ -136,15 +141,14 @@ class Check:
         tolerance = self.allowed(case)
 
         def explain() -> Diagnosis:
-            explained = self.explain
-            diagnosis = explained if isinstance(explained, Diagnosis) else explained(case)
+            diagnosis = self.explain if isinstance(self.explain, Diagnosis) else self.explain(case)
             causes = diagnosis.causes
             if diagnosis.first in UNTOLD and (compared := compared_of(self.measure(case))):
                 causes = (searched(diagnosis.first, compared, tolerance),)
             # A permitted function excuses errors only in open checks.
             permitted = self.open and diagnosis.permitted
             if permitted and not isinstance(self.measure, Comparison) and diagnosis.distances:
-                permitted = self.gives(case, diagnosis.first.key, tolerance)
+                permitted = self.is_reproduced(case, diagnosis.first.key, tolerance)
             return replace(diagnosis, causes=causes, permitted=permitted)
 
         def measure(wrong: bool) -> Measurement:
@@ -162,14 +166,14 @@ def judge(
 ) -> Result:
     """The result of a check: `measure(False)` measures the subject, `measure(True)` the control.
 
-    `place` is the result to return if the check does not run; a shader error makes it fail.
-    `variant` describes the control. Renderer warnings join the diagnosis; other warnings show.
+    `place` is the result without a measurement, as returned if the check does not run. `variant`
+    describes the control. The diagnosis quotes warnings of a renderer; Python shows the others.
     """
     try:
         with warnings.catch_warnings(record=True) as records:
             warnings.simplefilter("always", RendererWarning)
-            right, wrong = measure(False), measure(True)
-            diagnosis = diagnose() if right.error > tolerance.value else Diagnosis()
+            measured, control = measure(False), measure(True)
+            diagnosis = diagnose() if measured.error > tolerance.value else Diagnosis()
     except (NotRun, ShaderError) as error:
         return not_measured(place, error)
     notes: dict[str, None] = {}  # ordered, without duplicates
@@ -178,23 +182,24 @@ def judge(
             notes[str(record.message)] = None
         else:
             warnings.showwarning(record.message, record.category, record.filename, record.lineno)
-    caught, passed = wrong.error > tolerance.value, right.error <= tolerance.value
+    caught, passed = control.error > tolerance.value, measured.error <= tolerance.value
+    verdict: results.Verdict = results.PASSED if passed and caught else results.FAILED
     if passed and not caught:
         diagnosis = Diagnosis((Cause(Kind.CONTROL),), diagnosis.distances)
     elif diagnosis.causes:
-        own = tuple(Cause(Kind.TEXT, text=each) for each in notes)
-        diagnosis = replace(diagnosis, causes=diagnosis.causes + own)
-    left_open = diagnosis.permitted and math.isfinite(right.error)
-    unlike: results.Verdict = results.DIFFERS if left_open else results.FAILED
+        warned = tuple(Cause(Kind.TEXT, text=each) for each in notes)
+        diagnosis = replace(diagnosis, causes=diagnosis.causes + warned)
+    if diagnosis.permitted and math.isfinite(measured.error):
+        verdict = results.DIFFERS
     return replace(
         place,
-        verdict=results.PASSED if passed and caught else unlike,
+        verdict=verdict,
         quantity=tolerance.quantity,
         tolerance=tolerance.value,
         derivation=tolerance.derivation,
         diagnosis=diagnosis,
-        control=results.Control(variant, wrong.error, caught),
-        **vars(right),
+        control=results.Control(variant, control.error, caught),
+        **vars(measured),
     )
 
 

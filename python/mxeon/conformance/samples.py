@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Random and special pairs of directions with a node's inputs, rotated frames, and a sky map.
 
-All numbers are float32 values stored in float64, so that float32 engines see the same samples.
+All samples are float32 values stored in float64, so that engines and models see equal numbers.
 """
 
 import math
@@ -20,14 +20,14 @@ from mxeon.models.nodes.node import BLACK as BLACK
 from mxeon.models.nodes.node import WHITE as WHITE
 from mxeon.shaders.scene import Scene
 
-# Seed of `mxeon check`. Verdicts must not depend on it, and shaders cannot predict it.
+# Seed of all samples, which shaders cannot predict; verdicts must not depend on the seed.
 SEED: ContextVar[int] = ContextVar("seed", default=1)
-GOLDEN_RATIO = 0.618  # its multiples, modulo 1, are evenly spread
+GOLDEN_RATIO = 0.618  # the multiples of this number, modulo 1, are evenly spread
 PAIRS = 1 << 16
 FEW = 1 << 14  # default number of pairs for expensive checks
 GRAZING = 1e-6  # smallest cosine of the random pairs
 RIM = 0.05  # smallest cosine judged in pictures; pixel positions matter closer to the rim
-LOBE_RIM = 0.25  # RIM for a lobe below other lobes
+LOBE_RIM = 0.25  # smallest cosine judged in pictures of a diffuse lobe below other lobes
 
 Array: TypeAlias = NDArray[np.float64]
 Mask: TypeAlias = NDArray[np.bool_]
@@ -40,17 +40,16 @@ Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change o
 class Counts:
     """Numbers of samples of a spec."""
 
-    pairs: int = PAIRS  # random pairs; expensive checks use fewer
-    few: int = FEW
+    pairs: int = PAIRS  # random pairs
+    few: int = FEW  # random pairs in controls and in expensive checks
     diagnosed: int = FEW  # pairs per batch in a diagnosis
     albedos: int = 1 << 7  # views with measured albedos
-    # Number of materials with integrated or averaged values, and of quadrature nodes per axis.
-    materials: int = 64
-    nodes: int = 48
+    materials: int = 64  # materials with integrated or averaged values
+    nodes: int = 48  # quadrature nodes per axis
     mirrored: int = 1 << 11  # views with lights near the mirror direction
 
     def varied(self) -> "Counts":
-        """Equal counts for seed 1, else up to 1/8 fewer, so that shaders cannot recognize them."""
+        """Equal counts for seed 1, else up to 1/8 fewer, so that shaders cannot expect a count."""
         share = 1.0 - (SEED.get() - 1) * GOLDEN_RATIO % 1.0 / 8.0
         names = "pairs", "few", "albedos", "mirrored"
         return replace(self, **{name: math.ceil(share * getattr(self, name)) for name in names})
@@ -64,31 +63,30 @@ def arrays(inputs: Values) -> dict[str, Array]:
 class Batch:
     """Pairs of directions and the node's inputs for them."""
 
-    # Directions in the local frame, as float32 values so that all hosts see the same pairs. `wo` is
-    # on or above the horizon.
-    wo: Array
-    wi: Array
-    # Node inputs and "occlusion", (N, ...) or constant. The normal is in world space.
+    wo: Array  # directions to the viewer in local frames, (N, 3), on or above the horizon
+    wi: Array  # directions to the light in local frames, (N, 3)
+    # Node inputs and "occlusion", (N, ...) or constant; normals and tangents are in world space.
     inputs: Mapping[str, Array]
-    scene: Scene | None = None  # scene of the picture with these points
-    # World axes of the local frames, as columns; None if they equal the world's.
-    frame: Array | None = None
+    scene: Scene | None = None  # scene of a picture whose points give the directions
+    frame: Array | None = None  # axes of the local frames as columns, (N, 3, 3); None: world axes
 
     def altered(self, **inputs: ArrayLike) -> "Batch":
         return replace(self, inputs={**self.inputs, **arrays(inputs)})
 
     def with_row(self, row: int, wo: ArrayLike, **inputs: ArrayLike) -> "Batch":
-        """A copy with another view and other inputs in one row."""
-        views, changed = self.wo.copy(), {name: np.array(self.inputs[name]) for name in inputs}
-        for values, value in ((views, wo), *((changed[name], inputs[name]) for name in inputs)):
-            values[row] = value
-        return replace(self, wo=views, inputs={**self.inputs, **changed})
+        """A copy of the batch, with another view and other inputs in a single row."""
+        changed = {name: self.inputs[name].copy() for name in inputs}
+        copy = replace(self.altered(**changed), wo=self.wo.copy())
+        copy.wo[row] = wo
+        for name, value in inputs.items():
+            copy.inputs[name][row] = value
+        return copy
 
     def first(self, count: int) -> "Batch":
         return self.where(slice(count))
 
     def where(self, rows: slice | NDArray[np.bool_] | NDArray[np.integer]) -> "Batch":
-        """Some pairs of the batch, by a slice, a mask or indices."""
+        """The pairs that a slice, a mask or indices select."""
         count = len(self.wo)
         inputs = {
             name: values[rows] if np.shape(values)[:1] == (count,) else values
@@ -98,24 +96,24 @@ class Batch:
         return replace(self, wo=self.wo[rows], wi=self.wi[rows], inputs=inputs, frame=frame)
 
     def world(self, local: Array) -> Array:
-        """Local directions (N, 3) in world space, as float32 values."""
+        """Local directions (N, 3) in world space, rounded to float32."""
         if self.frame is None:
             return local
-        return rounded((self.frame @ local[:, :, np.newaxis])[:, :, 0].T)
+        return float32((self.frame @ local[:, :, np.newaxis])[:, :, 0])
 
     @property
     def normal(self) -> Array:
-        """Normals on the viewer's side, in world space, (N, 3)."""
+        """Surface normals on the viewer's side, in world space, (N, 3)."""
         return self.world(np.broadcast_to([0.0, 0.0, 1.0], self.wo.shape))
 
     @property
     def strength(self) -> Array:
-        """Factor of an albedo, (N, 1) or (1, 1): the weight, or 0 if it is negative."""
+        """The node's weight, or 0 for a negative weight, (N, 1) or (1, 1)."""
         return np.maximum(np.reshape(self.inputs.get("weight", np.ones(1)), (-1, 1)), 0.0)
 
     @property
     def rough(self) -> Array:
-        """Roughness of each pair, (N,): the larger of two alphas, or 0 if the node has none."""
+        """Roughness of each pair, (N,): the larger of two alphas, or 0 without such an input."""
         roughness = np.asarray(self.inputs.get("roughness", 0.0), np.float64)
         if roughness.shape[-1:] == (2,):
             roughness = roughness.max(axis=-1)
@@ -128,16 +126,16 @@ class Candidate:
 
     title: str
     values: Callable[[Batch], Array]
-    permitted: bool = False  # whether the specification permits it
+    permitted: bool = False  # whether the specification permits the function
 
 
 def generator() -> Rng:
-    """A random generator; each kind of samples uses its own, with the same seed."""
+    """A new random generator with the run's seed; each kind of samples has a separate one."""
     return np.random.default_rng(SEED.get())
 
 
 def directions(rng: Rng, count: int) -> Array:
-    """Random directions with uniform cosines, a quarter of them log-uniform down to GRAZING."""
+    """Random directions with uniform cosines, a quarter of them log-uniform down to 1e-6."""
     mu = rng.random(count)
     mu[: count // 4] = GRAZING ** rng.random(count // 4)
     rng.shuffle(mu)
@@ -149,18 +147,18 @@ def float32(values: ArrayLike) -> Array:
 
 
 def rounded(columns: Iterable[Array]) -> Array:
-    """Columns stacked into rows, rounded to float32 and stored in float64."""
+    """Columns of equal length stacked into rows, rounded to float32 and stored in float64."""
     return float32(np.stack(list(columns), axis=-1))
 
 
 EACH = 256  # number of pairs of each special kind
 GRID = (1.0, 0.999, 0.6, 0.25, 0.05, 1e-3, 1e-5, 1e-6, 3e-7, 1e-7)  # cosines of special pairs
 AZIMUTHS = (0.0, 0.5 * np.pi, np.pi)
-ABOVE_ONE = 1.0 + 2.0**-23  # a cosine of unit vectors after one float32 rounding
-HORIZON = 0.1  # least cosine of one direction if the other is at or below the horizon
-POLE = 0.99  # largest |y| of normals in turned frames, which keeps them off the sky map's poles
+ABOVE_ONE = 1.0 + 2.0**-23  # cosine of equal unit vectors after one upward float32 rounding
+HORIZON = 0.1  # least cosine of a direction whose partner is at or below the horizon
+POLE = 0.99  # largest |y| of normals in turned frames, away from the poles of the sky map
 TURNED = (0.25, 0.95)  # range of cosines in turned frames, whose rotation rounds cosines
-LEAST_SHEEN = 0.01  # smallest sheen roughness; the Zeltner model clamps to it
+LEAST_SHEEN = 0.01  # smallest sheen roughness, to which the Zeltner model clamps
 LEAST_COLOR82 = 0.5  # least color82 of lobes with measured albedos; see docs/loading.md
 LEAST_TURNED = 0.1  # smallest roughness of microfacets in turned frames
 WEIGHTS = (-0.5, 0.0, 1e-4, 0.01, 0.5)
@@ -170,9 +168,9 @@ OCCLUSIONS = (0.0, 1e-3, 0.5)
 def special_directions(rng: Rng) -> tuple[Array, Array]:
     """Exact directions `wo` and `wi`, on or above the horizon.
 
-    A grid of cosines down to 1e-7 with equal, perpendicular and opposite azimuths; exact
-    retro-reflection and mirror directions; and one direction along the normal or on the horizon,
-    with a random second one.
+    The pairs are a grid of cosines down to 1e-7 with equal, perpendicular and opposite azimuths;
+    exact retro-reflection and mirror directions; and a random direction with a second direction
+    along the normal or on the horizon.
     """
     mu_o, mu_i, azimuth = np.array(list(product(GRID, GRID, AZIMUTHS))).T
     free, other = directions(rng, EACH), directions(rng, EACH)
@@ -187,7 +185,7 @@ def special_directions(rng: Rng) -> tuple[Array, Array]:
 
 
 def outside_directions(rng: Rng) -> tuple[Array, Array]:
-    """Directions outside the models' domain: light from below the horizon, and cosines above 1."""
+    """Pairs outside the models' domain: light from below the horizon, or a cosine above 1."""
     below = directions(rng, EACH) * [1.0, 1.0, -1.0]
     high = _between(rng, EACH, HORIZON, 1.0)
     straight = np.broadcast_to([0.0, 0.0, ABOVE_ONE], below.shape)
@@ -197,10 +195,7 @@ def outside_directions(rng: Rng) -> tuple[Array, Array]:
 
 
 def turned_frames(rng: Rng, count: int) -> Array:
-    """Axes of up to `count` random frames, as columns.
-
-    Each normal points to the middle of a sky texel, away from the poles.
-    """
+    """Up to `count` random frames, with axes as columns; normals point to middles of sky texels."""
     axes, _ = np.linalg.qr(rng.standard_normal((count, 3, 3)))
     axes = axes[np.abs(axes[:, 1, 2]) <= POLE]
     return aimed(axes, axes[:, :, 2], texel_middles(axes[:, :, 2]))
@@ -209,7 +204,7 @@ def turned_frames(rng: Rng, count: int) -> Array:
 def aimed(axes: Array, of: Array, to: Array) -> Array:
     """Frames (N, 3, 3), turned by the smallest rotation from unit vectors `of` to `to`, (N, 3).
 
-    The rotation is half a turn about the bisector, followed by half a turn about `to`.
+    That rotation is half a turn about the bisector, followed by half a turn about `to`.
     """
     for vectors in (of + to, to):
         about = vectors[:, :, np.newaxis]
@@ -228,42 +223,41 @@ def _between(rng: Rng, count: int, low: float, high: float) -> Array:
 
 
 def with_edges(rng: Rng, values: Array, edges: ArrayLike) -> Array:
-    """Values in float32, about half of them replaced by random edges."""
+    """Values rounded to float32, about half of them replaced by random elements of `edges`."""
     picked = rng.choice(np.asarray(edges, np.float64), np.shape(values))
-    mixed = np.where(rng.random(np.shape(values)) < 0.5, picked, values)
-    return float32(mixed)
+    return float32(np.where(rng.random(np.shape(values)) < 0.5, picked, values))
 
 
 def directions_at(mu: ArrayLike, azimuth: ArrayLike) -> Array:
-    """Directions from cosines, which are rounded to float32, and azimuths, (..., 3)."""
+    """Directions (..., 3) from azimuths and from cosines, which are first rounded to float32."""
     mu = float32(mu)
     radius = np.sqrt(1.0 - mu * mu)
     columns = radius * np.cos(azimuth), radius * np.sin(azimuth), mu
     return rounded(np.broadcast_arrays(*columns))
 
 
-FRAMES = 1 << 12  # maximum pairs with individual frames
+FRAMES = 1 << 12  # maximum number of pairs with individual frames
 LEAN = 0.3  # largest slope of a tangent out of the surface
-SKY_ROWS = 128  # rows of the sky's map, which has twice as many columns
-SLOPE = 0.5  # slope of the irradiance by a component of the normal
+SKY_ROWS = 128  # rows of the sky map, which has twice as many columns
+SLOPE = 0.5  # derivative of a channel of the sky's irradiance with respect to its axis
 
 
 def sky(normal: Array) -> Array:
-    """Irradiance over pi at normals (N, 3): each channel increases along a different axis."""
+    """Irradiance over pi of the sky at normals (N, 3): each channel grows along another axis."""
     return 0.5 + SLOPE * normal
 
 
 @lru_cache(maxsize=1)
 def sky_map() -> NDArray[np.float32]:
-    """The irradiance over pi as a latitude-longitude map, (SKY_ROWS, 2 SKY_ROWS, 3)."""
+    """Irradiance over pi of the sky as a latitude-longitude map, (SKY_ROWS, 2 SKY_ROWS, 3)."""
     directions, _ = textures.latlong_directions(SKY_ROWS, 2 * SKY_ROWS)
     return sky(directions @ base.TURN[:3, :3]).reshape(SKY_ROWS, 2 * SKY_ROWS, 3).astype(np.float32)
 
 
 def texel_middles(near: Array) -> Array:
-    """The directions to the texel middles nearest to unit vectors, both (N, 3).
+    """Directions to the middles of the sky texels that unit vectors point to; both are (N, 3).
 
-    At a texel middle, every filter reads one texel. The opposite direction is also a middle.
+    There every filter reads a single texel. The opposite direction is also the middle of a texel.
     """
     polar = np.arccos(np.clip(near[:, 1], -1.0, 1.0)) / np.pi
     azimuth = np.arctan2(near[:, 0], -near[:, 2]) / (2.0 * np.pi) + 0.5

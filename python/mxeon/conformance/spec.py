@@ -5,7 +5,7 @@ Each family of nodes is one file under `specs`. Backends define how an engine ev
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Flag, auto
 from functools import lru_cache, partial
@@ -23,30 +23,30 @@ from mxeon.shaders import nodes
 
 COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # array shape by type
 CHANGED_COLOR = (0.9, 0.1, 0.6)
-F = TypeVar("F")  # type of a row's function
+F = TypeVar("F")  # type of the functions in a row of the models' table
 
 
 @dataclass(frozen=True)
 class Input:
-    """An input of a node, identified by name or path."""
+    """An input of a node."""
 
-    name: str
+    name: str  # name or path
     type: str = "float"  # MaterialX type
-    low: ArrayLike = 0.0  # range of random values, for all components or per component
-    high: ArrayLike = 1.0
+    low: ArrayLike = 0.0  # lower end of the range of random values, also per component
+    high: ArrayLike = 1.0  # upper end of that range
     edges: tuple[float, ...] = ()  # values that half of the special samples use; () for none
-    # A value other than the default that must have an effect; None if it has none by itself.
+    # Value that must have an effect, unlike the default; None for inputs without a visible effect.
     change: ArrayLike | None = None
     needs: Values = field(default_factory=dict, hash=False)  # inputs that make the change visible
     # Whether random values are log-uniform; otherwise a tenth of them is at each end of the range.
     logarithmic: bool = False
     often: float | None = None  # value in every other sample, for rarely set inputs
-    equal: bool = False  # both components are equal in every other sample
+    equal: bool = False  # whether both components are equal in every other sample
     # Values in the two materials that represent a node in pictures; () for the default.
     materials: tuple[ArrayLike, ...] = ()
-    variable: str = ""  # shader variable that supplies the default; hosts set it instead
+    variable: str = ""  # shader variable that supplies the default, which hosts set instead
     default: ArrayLike = 1.0  # value in documents that must set the input
-    beyond: tuple[float, ...] = ()  # values outside the range that hosts also pass
+    beyond: tuple[float, ...] = ()  # values outside the range that checks also pass to the node
     ends: tuple[float, float] = (-np.inf, np.inf)  # range to which the node clamps the input
 
 
@@ -65,7 +65,7 @@ def materials(*inputs: Input) -> tuple[Values, ...]:
 def draw(
     rng: samples.Rng, count: int, inputs: Sequence[Input], edged: bool = False
 ) -> dict[str, Array]:
-    """Random values of inputs within their ranges, by name; half of them on an edge if `edged`."""
+    """Random values of inputs in each input's range, by name; half are edges if `edged`."""
     drawn = {}
     for each in inputs:
         low, high = np.asarray(each.low, np.float64), np.asarray(each.high, np.float64)
@@ -87,37 +87,37 @@ def draw(
 
 def broadcast_inputs(batch: Batch) -> dict[str, Array]:
     """The inputs of a batch, with a row for each pair."""
-    count, found = len(batch.wo), dict(batch.inputs)
-    for name, values in found.items():
+    count, inputs = len(batch.wo), dict(batch.inputs)
+    for name, values in inputs.items():
         if np.shape(values)[:1] != (count,):
-            found[name] = np.broadcast_to(values, (count, *np.shape(values)[-1:]))
-    return found
+            inputs[name] = np.broadcast_to(values, (count, *np.shape(values)[-1:]))
+    return inputs
 
 
 class Ability(Flag):
     """Abilities of a backend, as required by nodes and checks."""
 
-    # Kinds of supported nodes: rough diffuse nodes, a renderer's own nodes, and pbrlib's lobes.
-    DIFFUSE = auto()
-    BELOW = auto()  # a diffuse lobe below other lobes
-    OWN = auto()
-    LOBE = auto()
+    # Kinds of supported nodes.
+    DIFFUSE = auto()  # rough diffuse nodes
+    BELOW = auto()  # diffuse lobes below other lobes of a surface shader
+    OWN = auto()  # nodes that a renderer defines
+    LOBE = auto()  # BSDF nodes of MaterialX's pbrlib
     HAIR = auto()
     SUBSURFACE = auto()
     FILM = auto()
     TRANSMISSION = auto()
-    COMBINATION = auto()
-    MATERIAL = auto()  # a surface shader with all its lobes
+    COMBINATION = auto()  # nodes that add, mix, multiply or layer lobes
+    MATERIAL = auto()  # surface shaders with all lobes
     SCATTERS = DIFFUSE | BELOW | OWN | LOBE | MATERIAL
     EMISSION = auto()
-    SURFACE = auto()  # an emitting surface
+    SURFACE = auto()  # emitting surfaces
     MEDIUM = auto()
-    IMPLEMENTATION = auto()  # a node without values, judged only by having an implementation
-    OUTPUT = auto()
-    # Abilities that checks require: pairs at the edges of the domain, and branches of lighting.
+    IMPLEMENTATION = auto()  # nodes without values, judged only by having an implementation
+    OUTPUT = auto()  # nodes whose outputs are numbers or colors
+    # Abilities that checks require.
     CLIENT = auto()  # running the shader's complete main() with a client's bindings
-    PAIRS = auto()
-    LIGHT = auto()
+    PAIRS = auto()  # evaluating pairs at the edges of the domain
+    LIGHT = auto()  # evaluating the branches of lighting
 
 
 NO_ABILITY = Ability(0)
@@ -126,9 +126,9 @@ NO_ABILITY = Ability(0)
 class EngineError(NamedTuple):
     """An error of an engine's built-in function, measured on each engine."""
 
-    words: str
+    words: str  # description of the error
     measure: Callable[[base.Host], float]
-    factor: float = 1.0
+    factor: float = 1.0  # factor by which the node amplifies the error
 
 
 @lru_cache(maxsize=64)
@@ -136,16 +136,16 @@ def _measured(error: EngineError, host: base.Host) -> float:
     return error.factor * error.measure(host)
 
 
-USUAL = Counts()
+DEFAULT_COUNTS = Counts()
 ZERO = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Spec(ABC):
-    """A node in one mode, with everything that a check needs to know about it."""
+    """A node in one mode, with everything that a check needs to know about the node."""
 
     requires: ClassVar[Ability]
-    coarse: ClassVar[int] = 1  # pictures are smaller by this factor
+    coarse: ClassVar[int] = 1  # factor by which pictures are smaller
     rim: ClassVar[float] = samples.RIM  # smallest cosine judged in pictures
 
     title: str  # unique title for reports
@@ -153,20 +153,19 @@ class Spec(ABC):
     model: str = ""  # name of the expected model; "" for none
     inputs: tuple[Input, ...] = ()  # inputs, except those that select the mode
     errors: Mapping[str, Tolerance] = field(default_factory=dict)  # tolerances by quantity
-    # Errors outside the usual range of an input: by quantity, input and value.
+    # Tolerances outside the usual range of an input: by quantity, input and value.
     outside_errors: Mapping[tuple[str, str, float], Tolerance] = field(default_factory=dict)
     libraries: tuple[str, ...] = ()  # libraries that the spec applies to; () for all
-    claim: str = ""  # claim that replaces its checks' own; "" for none
+    claim: str = ""  # claim of all checks of the node; "" for each check's own claim
     closure: bool = True  # whether eonlib's OSL uses a renderer's closure for the node
-    counts: Counts = USUAL
-    # Input values of all evaluations, unless a batch sets them.
-    fixed: Values = field(default_factory=dict)
+    counts: Counts = DEFAULT_COUNTS
+    fixed: Values = field(default_factory=dict)  # inputs of all batches that do not set them
     # The evaluated branch and output, and a factor for the host's values.
     evaluated: tuple[str, str, float] = ("direct", "response", np.pi)
     flat: bool = False  # whether values have no sharp peak
     # Slope of values or albedos over the angle to the normal; cosines near 1 do not resolve angles.
     along: float = 0.0
-    optional: bool = False  # whether targets may lack the node; it is then not run
+    optional: bool = False  # whether targets may lack the node, which is then reported as not run
     # Errors due to an engine's built-in functions, measured on the engine, by quantity.
     engines: Mapping[str, tuple[EngineError, ...]] = field(default_factory=dict)
     # Additional errors due to MaterialX's fit of prefiltered light, by quantity.
@@ -174,7 +173,7 @@ class Spec(ABC):
 
     @abstractmethod
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of a material with only this node and these inputs."""
+        """MaterialX text of a material that only has this node, with these inputs."""
 
     @property
     def side(self) -> float:
@@ -192,7 +191,7 @@ class Spec(ABC):
 
     @property
     def changes(self) -> Mapping[str, samples.Changes]:
-        """Inputs before and after a change of each input, by its name."""
+        """All inputs before and after a change of each input, by the name of that input."""
         return {
             each.name: (each.needs, {**each.needs, each.variable or each.name: each.change})
             for each in self.inputs
@@ -205,8 +204,8 @@ class Spec(ABC):
 
     def engine(self, quantity: str, host: base.Host) -> tuple[Term, ...]:
         """Error terms of a quantity due to an engine's built-in functions."""
-        found = ((_measured(each, host), each.words) for each in self.engines.get(quantity, ()))
-        return tuple(Term(error, words) for error, words in found if error)
+        terms = (Term(_measured(each, host), each.words) for each in self.engines.get(quantity, ()))
+        return tuple(term for term in terms if term.value)
 
 
 class ValueSpec(Spec):
@@ -223,12 +222,12 @@ class ValueSpec(Spec):
 
     @property
     def all_candidates(self) -> tuple[Candidate, ...]:
-        """`value_candidates`, plus candidates for samples outside `batches`."""
+        """`value_candidates`, and functions that only explain samples outside `batches`."""
         return self.value_candidates
 
     @abstractmethod
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """All samples, in one batch per kind."""
+        """All samples, in one batch per kind of samples."""
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         """A subset of the samples, for controls and expensive checks."""
@@ -243,7 +242,7 @@ class LobeSpec(ValueSpec):
     """A node that scatters light."""
 
     curved: ClassVar[bool] = False  # whether values depend on the surface's curvature
-    # Axes of `checks.states` on which only the first state is supported, and unsupported states.
+    # Unsupported states of `checks.states`, and axes with only the first state.
     plain: ClassVar[tuple[str, ...]] = ()
 
     @property
@@ -255,9 +254,9 @@ class LobeSpec(ValueSpec):
         return {**nodes.input_types(self.node), **{each.name: each.type for each in self.inputs}}
 
     def two_lobes(self) -> str:
-        """MaterialX text of a material with two of these lobes; `second` has its own frame."""
-        own = [name for name in nodes.FRAME_INPUTS if name in nodes.input_types(self.node)]
-        frame = {name: calls.NORMAL if name == "normal" else calls.TANGENT for name in own}
+        """MaterialX text of the sum of two such lobes, of which the second sets its frame."""
+        axes = dict.fromkeys(nodes.FRAME_INPUTS, calls.TANGENT) | {"normal": calls.NORMAL}
+        frame = {name: axes[name] for name in axes if name in nodes.input_types(self.node)}
         modes = {"first": self.mode, "second": {**self.mode, **frame}}
         lobes = (nodes.lobe_text(self.node, mode, name, self.types) for name, mode in modes.items())
         total = nodes.network_text({"lobe": nodes.Node("add", "BSDF", ("first", "second"))})
@@ -281,7 +280,7 @@ class LobeSpec(ValueSpec):
         """Pairs and inputs at the edges of the domain."""
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs, whose directions are grazing in a quarter; special pairs; outside pairs."""
+        """Random pairs, special pairs, and pairs outside the models' domain."""
         rng, count = generator(), counts.pairs
         pairs = directions(rng, count), directions(rng, count)
         return (
@@ -299,35 +298,35 @@ class LobeSpec(ValueSpec):
         return (*self.few(batches, counts), batches[-1])
 
     def turned(self, counts: Counts) -> Batch:
-        """Pairs with individual frames.
+        """Pairs with individual frames; half of the normals face away from the viewer.
 
-        Half of the normals face away from the viewer. Tangents lean out of the surface by up to LEAN,
-        like a geometry's tangents under a normal map.
+        Tangents lean out of the surface by a slope of up to LEAN, like a geometry's tangents under
+        a normal map.
         """
         rng = generator()
         frames = samples.turned_frames(rng, samples.FRAMES)
         count = len(frames)
         wo, wi = samples.turned_directions(rng, count), samples.turned_directions(rng, count)
         facing = np.where(np.arange(count) % 2, 1.0, -1.0)[:, np.newaxis]
-        normal = facing * samples.rounded(frames[:, :, 2].T)
+        normal = facing * samples.float32(frames[:, :, 2])
         lean = samples.LEAN * np.linspace(-1.0, 1.0, count)[:, np.newaxis]
         tangent = frames[:, :, 0] + lean * frames[:, :, 2]
-        axes = {"normal": normal, "tangent": samples.rounded(tangent.T)}
+        axes = {"normal": normal, "tangent": samples.float32(tangent)}
         inputs = {**self.random_inputs(rng, count), **axes}
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs, frame=frames)
 
     def _batch(self, rng: samples.Rng, pairs: tuple[Array, Array], edged: bool = False) -> Batch:
-        """Pairs with random inputs, weights and occlusions, lit from the node's `side`."""
+        """Pairs with random inputs, weights and occlusions, with light from the node's side."""
         wo, wi = pairs
         inputs, count = self.random_inputs(rng, len(wo), edged), len(wo)
         for name, edges in (("weight", samples.WEIGHTS), ("occlusion", samples.OCCLUSIONS)):
-            whole = rng.random(count) < 0.5
-            inputs[name] = np.where(whole, 1.0, samples.with_edges(rng, rng.random(count), edges))
+            is_one = rng.random(count) < 0.5
+            inputs[name] = np.where(is_one, 1.0, samples.with_edges(rng, rng.random(count), edges))
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs)
 
 
 class Names(TypedDict):
-    """Fields of a spec that come from its row."""
+    """Fields of a spec that come from a row of the models' table."""
 
     title: str
     node: str
@@ -340,7 +339,7 @@ def named(row: NodeRow[object], title: str = "") -> Names:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RowSpec(ValueSpec, Generic[F]):
-    """A node whose values a row of the models computes."""
+    """A node whose values are functions in a row of the models' table."""
 
     row: NodeRow[F]
 
@@ -362,29 +361,30 @@ class RowSpec(ValueSpec, Generic[F]):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
+        """Functions that may explain the values and are not variants in the row."""
         return ()
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
-        """The row's own function and its variants, followed by `others`."""
-        own = Candidate(self.row.title, self.value)
-        rows = ((each, each.value) for each in self.row.variants if each.value)
+        """The row's function and its variants, followed by `others`."""
         variants = (
-            Candidate(e.title, partial(self.values, value), e.permitted) for e, value in rows
+            Candidate(each.title, partial(self.values, each.value), each.permitted)
+            for each in self.row.variants
+            if each.value
         )
-        return (own, *variants, *self.others)
+        return (Candidate(self.row.title, self.value), *variants, *self.others)
 
 
-def ports(inputs: Iterable[Input], values: Values | None) -> list[tuple[str, str, Array]]:
-    """Path, type and value of each input; values that are not given are the inputs' defaults."""
+def ports(inputs: Sequence[Input], values: Values | None) -> list[tuple[str, str, Array]]:
+    """Path, type and value of each input, with the input's default if `values` lacks the input."""
+    values = {each.name: each.default for each in inputs} | dict(values or {})
     return [
-        (each.name, each.type, np.broadcast_to(value, COMPONENTS[each.type]))
+        (each.name, each.type, np.broadcast_to(values[each.name], COMPONENTS[each.type]))
         for each in inputs
-        for value in [(values or {}).get(each.name, each.default)]
     ]
 
 
-ARGUMENTS = 1 << 14  # number of arguments per measured function
+ARGUMENTS = 1 << 14  # number of arguments for which an engine's function is measured
 
 
 @dataclass(frozen=True)

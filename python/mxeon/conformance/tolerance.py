@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.conformance.results import Errors, Quantity, Region
 from mxeon.conformance.samples import Array, Batch, Mask, Values
 
-Metric = Callable[[Array, Array], Array]  # measured, expected -> error of each row
+Metric = Callable[[Array, Array], Array]  # measured and expected values -> error of each row
 
 ROUNDING = 2.0**-24  # unit roundoff of float32
 
@@ -45,12 +45,12 @@ class Measurement:
 
 
 def _largest(values: Array) -> Array:
-    """Maximum over the last axis, channel by channel: NumPy's maximum takes five times as long."""
+    """Maximum over the last axis, channel by channel: five times as fast as `numpy.max`."""
     return reduce(np.maximum, np.moveaxis(values, -1, 0))
 
 
 def absolute(measured: ArrayLike, expected: ArrayLike) -> Array:
-    """Largest difference of each row; infinity if it is not finite."""
+    """Largest difference of each row; infinity for rows with a difference that is not finite."""
     error = _largest(np.abs(np.subtract(measured, expected)))
     return np.where(np.isfinite(error), error, np.inf)
 
@@ -60,30 +60,34 @@ def _scale(expected: Array) -> Array:
 
 
 def scaled(measured: Array, expected: Array) -> Array:
-    """Largest difference of each row, relative to its largest expected value if that exceeds 1."""
+    """Largest difference of each row, divided by the row's largest expected value if above 1."""
     scale = _scale(expected)
     return absolute(measured / scale, expected / scale)
 
 
 def relative(measured: Array, expected: Array) -> Array:
+    """Largest difference of each row, where each value is divided by its expected value."""
     return absolute(measured / expected, 1.0)
 
 
 def mean_error(measured: Array, expected: Array) -> Array:
-    """Difference of the means over all rows, repeated for every row; averaging removes noise."""
+    """Largest difference of the mean values of all rows, repeated for every row.
+
+    Averaging removes the noise of random paths.
+    """
     return np.broadcast_to(absolute(np.mean(measured - expected, axis=0), 0.0), len(measured))
 
 
 def mean_scaled(measured: Array, expected: Array) -> Array:
-    """Mean of the differences of all rows, each relative to its largest expected value if above 1."""
+    """`mean_error` of rows, each divided by the row's largest expected value if above 1."""
     scale = _scale(expected)
     return mean_error(measured / scale, expected / scale)
 
 
 def root_mean_square(measured: Array, expected: Array) -> Array:
-    """Root mean square over all rows of each row's largest difference, repeated for every row.
+    """Root mean square of the rows' largest differences, repeated for every row.
 
-    It detects small errors in many rows, which a tolerance for the largest error would hide.
+    This metric detects small errors in many rows, which a tolerance for the largest error hides.
     """
     errors = absolute(measured, expected)
     return np.broadcast_to(np.sqrt(np.mean(errors * errors)), len(errors))
@@ -102,6 +106,7 @@ def worst_of(metric: Metric, compared: Iterable[Compared]) -> Measurement:
 
 
 def errors_of(rows: NDArray[np.floating], tolerance: float, region: Region | None = None) -> Errors:
+    """Statistics of the errors of rows, of which those above the tolerance or NaN are wrong."""
     finite = rows[np.isfinite(rows)]
     rms = float(np.sqrt(np.mean(finite**2))) if len(finite) else 0.0
     wrong = int(np.count_nonzero(~(rows <= tolerance)))
@@ -110,20 +115,21 @@ def errors_of(rows: NDArray[np.floating], tolerance: float, region: Region | Non
 
 
 def checksum(batches: Iterable[Batch]) -> str:
-    found = 0
+    """CRC-32 of the directions and inputs of batches, rounded to float32, in hexadecimal."""
+    crc = 0
     for batch in batches:
         for column in (batch.wo, batch.wi, *batch.inputs.values()):
-            found = crc32(np.asarray(column, np.float32).tobytes(), found)
-    return f"{found:08x}"
+            crc = crc32(np.asarray(column, np.float32).tobytes(), crc)
+    return f"{crc:08x}"
 
 
 def count_not_finite(compared: Compared) -> Measurement:
-    """Number of non-finite measured rows, and the first of them."""
-    bad = ~np.isfinite(compared.measured).all(axis=1)
-    if not bad.any():
+    """Number of rows with a measured value that is not finite, and the first of these rows."""
+    wrong = ~np.isfinite(compared.measured).all(axis=1)
+    if not wrong.any():
         return Measurement(0, {})
-    errors = errors_of(np.where(bad, np.inf, 0.0), 0.0)
-    first = point_of(compared.batch, int(bad.argmax()))
+    errors = errors_of(np.where(wrong, np.inf, 0.0), 0.0)
+    first = point_of(compared.batch, int(wrong.argmax()))
     return Measurement(errors.wrong, first, (errors,), checksum([compared.batch]))
 
 
@@ -132,31 +138,32 @@ def count_named(names: Sequence[str]) -> Measurement:
 
 
 def point_of(batch: Batch, row: int) -> dict[str, list[float]]:
-    one = batch.where(np.array([row]))
-    columns: Values = {"wo": one.wo, "wi": one.wi, **one.inputs}
+    """The directions and inputs of a row, by name."""
+    point = batch.where(np.array([row]))
+    columns: Values = {"wo": point.wo, "wi": point.wi, **point.inputs}
     return {name: np.ravel(values).astype(float).tolist() for name, values in columns.items()}
 
 
 class Term(NamedTuple):
-    """A summand of a tolerance, and its cause."""
+    """A summand of a tolerance, with the cause of the error in words."""
 
     value: float
     words: str
 
 
 def roundings(count: float, words: str = "") -> Term:
-    """The error of `count` float32 roundings, each half a unit in the last place of 1."""
+    """The error of `count` float32 roundings of numbers near 1, each at most 2^-24."""
     return Term(count * ROUNDING, f"{count:.3g} float32 roundings{words and ' '}{words}")
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """The largest error that passes: a sum of terms, rounded up to one digit unless `exact`."""
+    """The largest error that passes: a sum of terms, rounded up to one digit unless exact."""
 
     terms: tuple[Term, ...]
     quantity: Quantity = Quantity.VALUE
-    metric: Metric = scaled  # error of each row
-    exact: bool = False
+    metric: Metric = scaled
+    exact: bool = False  # whether the sum is not rounded up
 
     @property
     def value(self) -> float:
@@ -180,10 +187,8 @@ class Tolerance:
         return Term(factor * self.value, words)
 
     def scale(self, expected: Array) -> Array:
-        """Divisors of errors, (N, 1): 1, except for large values under scaled metrics."""
-        if self.metric is not scaled:
-            return np.ones((len(expected), 1))
-        return _scale(expected)
+        """Divisor of each row's error, (N, 1); not 1 only for large values and `scaled`."""
+        return _scale(expected) if self.metric is scaled else np.ones((len(expected), 1))
 
 
 def sum_of(
@@ -193,12 +198,12 @@ def sum_of(
 
 
 def sum_in(quantity: Quantity, *terms: Term, exact: bool = False) -> Tolerance:
-    """A tolerance for absolute errors."""
+    """A tolerance for absolute errors of a quantity."""
     return Tolerance(terms, quantity, absolute, exact)
 
 
 def given(value: float, quantity: Quantity, words: str, metric: Metric = absolute) -> Tolerance:
-    """A tolerance with one term, not rounded."""
+    """A tolerance with a single term, which is not rounded up."""
     return Tolerance((Term(value, words),), quantity, metric, exact=True)
 
 

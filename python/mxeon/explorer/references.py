@@ -4,14 +4,14 @@
 Values are rounded to DIGITS significant digits, a relative error of 5e-8, less than any shader's.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import MaterialX as mx
 import numpy as np
 
 from mxeon.conformance import reference
 from mxeon.conformance.reference.nodes import COMBINATIONS
-from mxeon.conformance.samples import Array, Batch, rounded
+from mxeon.conformance.samples import Array, Batch, float32
 from mxeon.conformance.spec import ZERO
 from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.diffuse import DIFFUSE
@@ -39,14 +39,9 @@ def _direction(pole: float, azimuth: float) -> Array:
     return np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
 
 
-def _float32(directions: Iterable[Array]) -> Array:
-    """Directions, (N, 3), rounded to float32 like those of a shader."""
-    return rounded(np.array(list(directions)).T)
-
-
-WO = _float32(_direction(o, 0.0) for o in POLES for _ in POLES for _ in AZIMUTHS)
-WI = _float32(_direction(i, azimuth) for _ in POLES for i in POLES for azimuth in AZIMUTHS)
-SEEN = _float32(_direction(float(np.degrees(np.arccos(mu))), 0.0) for mu in VIEWS)
+WO = float32([_direction(o, 0.0) for o in POLES for _ in POLES for _ in AZIMUTHS])
+WI = float32([_direction(i, azimuth) for _ in POLES for i in POLES for azimuth in AZIMUTHS])
+SEEN = float32([_direction(float(np.degrees(np.arccos(mu))), 0.0) for mu in VIEWS])
 
 
 def pairs() -> tuple[tuple[Direction, Direction], ...]:

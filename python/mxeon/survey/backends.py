@@ -92,14 +92,9 @@ class Native(backends.CyclesPictures):
         title, own = (reference.diffuse_model(name).title for name in (claimed, self.node.model))
         return title, own
 
-    def picture(self, batch: Batch) -> Array:
-        scene, inputs = backends.scene_of(batch), batch.inputs
-        material = self.node.made(inputs["color"].tolist(), float(inputs["roughness"]))
-        image = self.renderer.node(material, scene)
-        return image[self.seen(scene)][self.points(scene)[2]].astype(np.float64)
-
-    def seen(self, scene: Scene) -> Mask:
-        return sphere(scene.size).mask
+    def image(self, inputs: samples.Values, scene: Scene) -> Array:
+        color, roughness = np.asarray(inputs["color"]), float(np.asarray(inputs["roughness"]))
+        return self.renderer.node(self.node.made(color.tolist(), roughness), scene)
 
 
 class Exact(Native):
@@ -156,11 +151,8 @@ class Facets(Exact):
     def points(self, scene: Scene) -> backends.Pairs:
         return facet_pairs(scene)
 
-    def seen(self, scene: Scene) -> Mask:
+    def pixels(self, scene: Scene) -> Mask:
         return facet_points(scene.size).mask
-
-    def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
-        return *self.points(scene), self.seen(scene)
 
 
 class CoarseFacets(Facets):
@@ -198,7 +190,7 @@ class FacetPairs(Facets):
         return self.batches[:2]
 
     def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
-        return backends.Backend.portrait(self, scene)
+        return *backends.Backend.points(self, scene), sphere(scene.size).mask
 
     def direct(self, batch: Batch) -> Array:
         count = len(batch.wo)

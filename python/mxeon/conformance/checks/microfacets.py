@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance import backends, controls, diagnosis, samples
-from mxeon.conformance.case import SCATTERING, Case, dead_inputs, remembered
+from mxeon.conformance.case import SCATTERING, Case, dead_inputs, model_values
 from mxeon.conformance.check import Check, family
 from mxeon.conformance.checks import lobes, states
 from mxeon.conformance.checks.lobes import CLEAR, FILMS, TRANSMITTING
 from mxeon.conformance.diagnosis import ALBEDO, NEAR, UNKNOWN, UNMASKED, VALUE, defect, not_finite
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
-from mxeon.conformance.samples import Array, Batch, Mask, Values, directions_at, rounded
+from mxeon.conformance.samples import Array, Batch, Mask, Values, directions_at, float32, rounded
 from mxeon.conformance.spec import Ability, Spec
 from mxeon.conformance.specs import microfacets
 from mxeon.conformance.specs.lobes import PbrSpec
@@ -104,7 +104,7 @@ def anisotropy(case: Case) -> Compared:
     angle = np.linspace(0.0, 2.0 * np.pi, len(batch.wo))
     x, y, zero = np.cos(angle), np.sin(angle), np.zeros(len(angle))
     axes = np.array([[x, -y, zero], [y, x, zero], [zero, zero, zero + 1.0]]).transpose(2, 0, 1)
-    turned = replace(batch.altered(tangent=rounded(axes[:, :, 0].T)), frame=axes)
+    turned = replace(batch.altered(tangent=float32(axes[:, :, 0])), frame=axes)
     local = batch.altered(tangent=(1.0, 0.0, 0.0))
     return Compared(turned, case.direct(turned), case.direct(local))
 
@@ -253,7 +253,7 @@ def transmitted(case: Case) -> Iterator[Compared]:
 def limited(spec: TransmissionSpec, batch: Batch, measured: Array, opaque: bool) -> Compared:
     if opaque and not spec.reflects:
         return Compared(batch, measured, batch.strength * spec.functions.tint(batch.inputs))
-    least, most = batch.strength * np.sort(remembered(spec, "ends")(batch), axis=0)
+    least, most = batch.strength * np.sort(model_values(spec, "ends")(batch), axis=0)
     return Compared(batch, measured, np.clip(measured, least, most))
 
 
@@ -411,7 +411,7 @@ def refraction(case: Case) -> Compared:
     out = through_sphere(batch.wo, index(batch.inputs))
     place = samples.texel_middles(out)
     frames = samples.aimed(np.broadcast_to(np.eye(3), (len(out), 3, 3)), out, place)
-    axes = {"tangent": rounded(frames[:, :, 0].T), "normal": rounded(frames[:, :, 2].T)}
+    axes = {"tangent": float32(frames[:, :, 0]), "normal": float32(frames[:, :, 2])}
     batch = replace(batch.altered(**axes), frame=frames)
     slope = (index(batch.inputs) ** 2 / batch.wo[:, 2])[:, np.newaxis]
     condition = np.maximum(1.0, slope / BENT)  # amplification of a cosine's error

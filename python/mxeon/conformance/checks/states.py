@@ -93,7 +93,7 @@ def framed(
     if scaled:
         length = 10.0 ** rng.uniform(-1.0, 1.0, (len(frame), 1))
         tangent = length * (tangent + rng.uniform(-0.5, 0.5, (len(frame), 1)) * normal)
-    axes = {"normal": rounded(normal.T), "tangent": rounded(tangent.T)}
+    axes = {"normal": float32(normal), "tangent": float32(tangent)}
     wo = np.broadcast_to(calls.NORMAL, batch.wo.shape) if along else batch.wo
     # Do not turn an uneven environment here: the normal may be its pole, where a turn makes the
     # azimuth depend on roundings.
@@ -160,7 +160,7 @@ def leaning(pixels: Pixels, rng: Random) -> Pixels:
     normal = batch.frame[:, :, 2]
     middle = batch.world(batch.wo) * (np.arange(EACH) >= EACH // 3)[:, np.newaxis] + normal
     aside = aimed(batch.frame, normal, middle / np.linalg.norm(middle, axis=1, keepdims=True))
-    axes = {"normal": rounded(aside[:, :, 2].T), "tangent": rounded(aside[:, :, 0].T)}
+    axes = {"normal": float32(aside[:, :, 2]), "tangent": float32(aside[:, :, 0])}
     second = broadcast_inputs(batch) | axes
     return replace(
         pixels,

@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from mxeon.conformance.cache import Remembered
+from mxeon.conformance.cache import remembered
 from mxeon.conformance.case import LIGHT, Case, albedos, dead_inputs, frames, throughputs, values
 from mxeon.conformance.diagnosis import faults, regions
 from mxeon.conformance.diagnosis.faults import NO_FAULT, Fault, exchanges, scaled_by
@@ -84,7 +84,7 @@ def explain(
     few = case.backend.counts.diagnosed
     short = [Compared(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
     # Many faults leave the inputs of the node's own model unchanged, so its values are cached.
-    own = replace(candidates[0], values=Remembered(candidates[0].values))
+    own = replace(candidates[0], values=remembered(candidates[0].values))
     candidates = [own, *candidates[1:]]
     models = {each.title: _distance(short, each, NO_FAULT, tolerance) for each in candidates}
     ranking = sorted(models.items(), key=lambda item: item[1])

@@ -180,7 +180,7 @@ class ConeSpec(EmissionSpec):
         wo = samples.directions_at(np.clip(np.where(soft, falloff, mu), 0.0, 1.0), 0.0)
         frames = samples.turned_frames(rng, count)
         view = samples.turned_directions(rng, len(frames))
-        axes = self.random_inputs(rng, len(frames)) | {"normal": samples.rounded(frames[:, :, 2].T)}
+        axes = self.random_inputs(rng, len(frames)) | {"normal": samples.float32(frames[:, :, 2])}
         near, turned = Batch(wo, wo, inputs), Batch(view, view, axes, frame=frames)
         return *super().batches(counts), _away(near), _away(turned)
 

@@ -382,7 +382,7 @@ def _below_0(inputs: Mapping[str, Array], cosine: Array | float) -> samples.Mask
 
 def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
     """Reflect views at normals that are visible to them, (N, 3)."""
-    return rounded(sampling.ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0].T)
+    return samples.float32(sampling.ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0])
 
 
 FACET_SPECS = tuple(
