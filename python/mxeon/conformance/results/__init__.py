@@ -218,7 +218,7 @@ class Difference:
     that is brighter.
 
     - `scene`: Name of the scene, which determines the light.
-    - `largest`: Difference at the worst pixel, positive if too bright; infinite if it is not finite.
+    - `largest`: Difference at the worst pixel, positive if too bright; infinite for NaN or infinity.
     - `highlight`: Whether the reference is brighter than white at the worst pixel.
     - `visible`: Share of the object's pixels whose difference exceeds VISIBLE.
     """
@@ -336,7 +336,7 @@ class Picture:
     """A host's picture of one element, and the reference picture if the models can compute it.
 
     - `image`: Linear radiance, (size, size, 3), float32; see `mxeon.shaders.scene` for its scale.
-    - `reference`: The same from the NumPy models; None if the material has unsupported lobes.
+    - `reference`: The NumPy models' picture; None if the material has unsupported lobes.
     - `metadata`: Origin of the picture: version, host, device, library, document, element, scene.
     - `judged`: 1 for compared pixels, 0 for others, (size, size, 1); None if all were compared.
     """
@@ -361,11 +361,11 @@ class Picture:
         if self.judged is not None:
             mask = np.asarray(self.judged)[..., 0] > 0.0
         image, reference = image[mask], reference[mask]
-        apart = difference(image, reference)
-        worst = int(np.abs(apart).argmax())
+        differences = difference(image, reference)
+        worst = int(np.abs(differences).argmax())
         highlight = bool(np.abs(reference[worst]).max() > 1.0)
-        visible = float(np.mean(np.abs(apart) > VISIBLE))
-        return Difference(self.scene, float(apart[worst]), highlight, visible)
+        visible = float(np.mean(np.abs(differences) > VISIBLE))
+        return Difference(self.scene, float(differences[worst]), highlight, visible)
 
     def difference_map(self) -> NDArray[np.float64]:
         """Absolute `mxeon.io.images.difference` of each pixel, (size, size).
@@ -375,16 +375,16 @@ class Picture:
         """
         if self.reference is None:
             raise ValueError(f"{self.element}: a difference needs a reference; there is none")
-        apart = np.abs(difference(self.image, self.reference))
+        differences = np.abs(difference(self.image, self.reference))
         if self.judged is None:
-            return apart
+            return differences
         judged = np.asarray(self.judged)[..., 0] > 0.0
         nearest = []
         for axis in (1, 0):
             lines = np.flatnonzero(judged.any(axis))
             gaps = np.abs(np.subtract.outer(np.arange(len(judged)), lines))
             nearest.append(lines[gaps.argmin(axis=1)])
-        return np.where(judged, apart, np.nan)[np.ix_(*nearest)]
+        return np.where(judged, differences, np.nan)[np.ix_(*nearest)]
 
 
 def report_files(folder: AnyPath) -> Iterator[Path]:
@@ -451,11 +451,11 @@ class Run(Scope):
 
     @property
     def exit_status(self) -> int:
-        """The exit status of `mxeon check`: 0 passed, 1 failed, 2 a document was refused, 3 not run."""
+        """Exit status of `mxeon check`: 0 passed, 1 failed, 2 a document was refused, 3 not run."""
         return errors.MISUSE if self.refused else STATUSES[self.verdict]
 
     def raise_for_failure(self) -> None:
-        """Raise `mxeon.errors.CheckError` unless the run passed, with the verdict and its causes."""
+        """Raise `mxeon.errors.CheckError` with verdict and causes unless the run passed."""
         if self.passed:
             return
         causes = [

@@ -20,20 +20,19 @@ from mxeon.shaders.library import data_folder
 
 STOCK, EONLIB = "stock", "eonlib"
 RENDERER_NODES = "its own nodes"  # stands for the library in results of a renderer's own nodes
-Row = tuple[str, str]  # key of a check, and subject
+Row = tuple[str, str]  # key of a check, and title of the subject
 Table = Mapping[str, Sequence[str]]  # subject -> keys of checks
 GENERATED_GLSL = ("webgl", "vulkan", "wgsl", "slang")  # hosts that draw the same GLSL as "gl"
-# A page begins with its row as TOML in a comment, which may be missing, and its title.
+# A page begins with a row as TOML in a comment, which may be missing, and with a title.
 PAGE = re.compile(r"(?:<!--\n(?P<row>.*?)\n-->\n)?(?P<text># (?P<title>[^\n]*)\n.*)", re.DOTALL)
 
 
 @dataclass(frozen=True)
 class Issue:
-    """A defect: its page's row, whose keys are these fields, and its measurements from
-    `measured.json`.
+    """A defect: the row of its page, whose keys are these fields, and numbers of `measured.json`.
 
-    In a page, `rows`, `implied` and `repaired` are tables from one subject, or several separated
-    by `; `, to checks. The key of a cause in `remains` may also be several, separated by `; `.
+    In a page, `rows`, `implied` and `repaired` are tables from subjects, separated by `; `, to
+    checks. The key of a cause in `remains` may also be several keys, separated by `; `.
     """
 
     page: str  # file name without suffix
@@ -83,7 +82,7 @@ def folder() -> Path:
 
 @cache
 def issues() -> Mapping[str, Issue]:
-    """All defects by page; they are read when a check first fails."""
+    """All defects by page, which are read when a check first fails."""
     measured = json.loads((folder() / "measured.json").read_text("utf-8"))
     pages = sorted(path for path in folder().glob("*.md") if path.stem != "README")
     names = {path.stem: path.read_text("utf-8") for path in pages}
@@ -91,7 +90,7 @@ def issues() -> Mapping[str, Issue]:
 
 
 def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
-    """The defect of a page, with its measurements.
+    """The defect of a page, with the page's measurements.
 
     Raises CheckError if the page does not begin with a row or title, or the row has an unknown key.
     """
@@ -108,8 +107,7 @@ def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
     except UNREADABLE as error:
         raise errors.CheckError(f"row of {page}.md: {cattrs.transform_error(error)[0]}") from error
     if issue.patch and not issue.repaired:
-        repaired = tuple(pair for pair in issue.rows if pair not in issue.remains)
-        return replace(issue, repaired=repaired)
+        return replace(issue, repaired=tuple(row for row in issue.rows if row not in issue.remains))
     return issue
 
 
@@ -119,17 +117,17 @@ def _converter() -> cattrs.Converter:
     converter = strict_converter({})
 
     def remains(entries: Sequence[dict[str, Any]]) -> dict[Row, tuple[Cause, ...]]:
-        found: dict[Row, tuple[Cause, ...]] = {}
+        causes_of: dict[Row, tuple[Cause, ...]] = {}
         for entry in entries:
-            pairs, keys = _pairs(entry.pop("rows")), entry.pop("key", "").split("; ")
+            rows, keys = _rows(entry.pop("rows")), entry.pop("key", "").split("; ")
             causes = tuple(converter.structure(entry | {"key": key}, Cause) for key in keys)
-            found |= {pair: (*found.get(pair, ()), *causes) for pair in pairs}
-        return found
+            causes_of |= {row: (*causes_of.get(row, ()), *causes) for row in rows}
+        return causes_of
 
     def sizes(table: Mapping[str, Mapping[str, float]]) -> dict[Row, float]:
         return {(check, name): size for check, each in table.items() for name, size in each.items()}
 
-    hooks: dict[object, Callable[..., object]] = {tuple[Row, ...]: _pairs}
+    hooks: dict[object, Callable[..., object]] = {tuple[Row, ...]: _rows}
     hooks |= {Mapping[Row, tuple[Cause, ...]]: remains, Mapping[Row, float]: sizes}
     converter.register_structure_hook_func(
         hooks.__contains__, lambda value, kind: hooks[kind](value)
@@ -137,7 +135,7 @@ def _converter() -> cattrs.Converter:
     return converter
 
 
-def _pairs(table: Table) -> tuple[Row, ...]:
+def _rows(table: Table) -> tuple[Row, ...]:
     return tuple(
         (check, subject)
         for names, each in table.items()
@@ -148,7 +146,7 @@ def _pairs(table: Table) -> tuple[Row, ...]:
 
 # Hosts that use their own closures with every library.
 OWN_CLOSURES = tuple(row.name for row in hosts.HOSTS if row.way == "functions")
-LEFT = 30.0  # an error this many times smaller than the issue's has another cause
+REPAIRED = 30.0  # an error that is smaller than the issue's by this factor has another cause
 SPREAD = 1.5  # engines, drivers and MaterialX versions may exceed an issue's error by this factor
 
 
@@ -158,11 +156,11 @@ def issues_of(result: Result) -> tuple[Issue, ...]:
 
 
 def blamed(result: Result) -> list[set[str]]:
-    """Lobes that make a combination fail, a set for each page or cause; [] for a single lobe."""
+    """Lobes that make a combination fail, as a set per page or cause; [] for a single lobe."""
     if _is_lobe(result.subject):
         return []
-    if pages := issues_of(result):
-        rows = [(*each.rows, *each.implied) for each in pages]
+    if found := issues_of(result):
+        rows = [(*each.rows, *each.implied) for each in found]
         return [{subject for _, subject in each if _is_lobe(subject)} for each in rows]
     causes = (each for each in result.diagnosis.causes if each.key == "throughput_of_lobes")
     return [set(each.names) for each in causes]
@@ -173,7 +171,7 @@ def _is_lobe(subject: str) -> bool:
 
 
 def with_pages(result: Result, materialx: str = "") -> Result:
-    """A result with the pages of the issues that explain it, if any.
+    """A result with the pages of the issues that explain the result.
 
     `materialx` is the folder whose `libraries` were judged instead of the installed ones. A copy of
     MaterialX's libraries has the issues of stock, except those that the copy repairs.
@@ -181,7 +179,7 @@ def with_pages(result: Result, materialx: str = "") -> Result:
     if result.verdict not in (FAILED, DIFFERS):
         return replace(result, pages=())
     library = STOCK if materialx else result.library
-    found = [
+    explaining = [
         issue
         for issue in issues().values()
         if (library == issue.library or issue.unavoidable or result.host in OWN_CLOSURES)
@@ -190,28 +188,29 @@ def with_pages(result: Result, materialx: str = "") -> Result:
         and _explains(issue, result, materialx)
     ]
     # Issues on points that the specification leaves open do not explain a failure by themselves.
-    left_open = result.verdict == FAILED and all(issue.differs for issue in found)
-    return replace(result, pages=() if left_open else tuple(issue.page for issue in found))
+    if result.verdict == FAILED and all(issue.differs for issue in explaining):
+        explaining = []
+    return replace(result, pages=tuple(issue.page for issue in explaining))
 
 
 def _explains(issue: Issue, result: Result, materialx: str) -> bool:
     """Whether an issue explains a result's error, diagnosis and shader text."""
     row = result.check, result.subject
-    # Hosts that only render pictures measure relative errors, which cannot be compared with sizes
-    # in other units.
-    sized = result.host == issue.host or result.quantity is not Quantity.RELATIVE
     if result.error is None and issue.sizes:  # e.g. the shader does not compile
         return False
-    size = issue.sizes.get(row, math.inf)
-    if sized and (result.error or 0.0) > SPREAD * size:
-        return False
-    # If the node's own model is nearest and the issue's error is many times larger, the issue is
-    # repaired, and the remaining error has another cause.
-    own, *others = result.diagnosis.distances.values() or (math.inf,)
-    if sized and own < min(others, default=own) and (result.error or 0.0) < size / LEFT:
-        return False
-    gone = row in issue.mended or issue.mended.issuperset(issue.rows)
-    if result.diagnosis.kind is Kind.FAULT or (gone and _is_repaired(issue, materialx)):
+    # Hosts that only render pictures measure relative errors, which cannot be compared with sizes
+    # in other units.
+    if result.host == issue.host or result.quantity is not Quantity.RELATIVE:
+        error, size = result.error or 0.0, issue.sizes.get(row, math.inf)
+        if error > SPREAD * size:
+            return False
+        # If the node's own model is nearest and the issue's error is many times larger, the issue
+        # is repaired, and the remaining error has another cause.
+        own, *others = result.diagnosis.distances.values() or (math.inf,)
+        if own < min(others, default=own) and error < size / REPAIRED:
+            return False
+    mended = row in issue.mended or issue.mended.issuperset(issue.rows)
+    if result.diagnosis.kind is Kind.FAULT or (mended and _is_repaired(issue, materialx)):
         return False
     first = result.host == issue.host and issue.rows[:1] == (row,)
     known = issue.cause if first and result.diagnosis.causes else None
@@ -220,7 +219,7 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
 
 @cache
 def _is_repaired(issue: Issue, materialx: str) -> bool:
-    """Whether a MaterialX (by default the installed one) has the patch of an issue."""
+    """Whether MaterialX in a folder, by default the installed one, has the patch of an issue."""
     if not issue.patch:
         return False
     import MaterialX as mx

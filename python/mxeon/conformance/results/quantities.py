@@ -69,15 +69,13 @@ class Quantity(Enum):
     @property
     def counted(self) -> bool:
         """Whether the quantity is a count of faults, which must be 0."""
-        return self in COUNTS
+        return self.value in COUNTED
 
     @property
     def of_views(self) -> bool:
         """Whether the quantity only depends on the view, not on the light's direction."""
-        return self in ALBEDOS
+        return self.value in OF_VIEWS
 
 
-COUNTED = "inputs values faults differences nodes functions pixels documents"
-COUNTS = frozenset(Quantity(each) for each in COUNTED.split())
-VIEWED = "albedo mean_albedo value_or_albedo material_mean"
-ALBEDOS = frozenset(Quantity(each) for each in VIEWED.split())
+COUNTED = ["inputs", "values", "faults", "differences", "nodes", "functions", "pixels", "documents"]
+OF_VIEWS = ["albedo", "mean_albedo", "value_or_albedo", "material_mean"]

@@ -11,7 +11,6 @@ from dataclasses import fields, replace
 from functools import lru_cache, partial
 from itertools import chain, product
 from pathlib import Path
-from typing import cast
 
 from mxeon.conformance.results import NOT_RUN, REPORT, SOURCE, Run, Scope
 from mxeon.conformance.run import plan
@@ -30,7 +29,7 @@ from mxeon.shaders.methods import UNCHOSEN, Methods
 
 __all__ = ["check", "read_run", "to_run", "work"]
 
-EVALUATING = tuple(row.name for row in HOSTS if row.way == "pairs")  # hosts of all libraries
+EVALUATING = {row.name for row in HOSTS if row.way == "pairs"}  # hosts of all libraries
 
 Outcomes = Iterable[tuple[int, Findings]]
 Executor = Callable[[Sequence[Task]], Iterable[tuple[int, pool.Outcome]]]
@@ -67,16 +66,16 @@ def check(
       work in this process.
     - `timeout`: Seconds per task in a worker.
     - `folder`: Folder of the journal, from which an interrupted run can be resumed; None for
-      no journal. It must not contain files that the run reads, nor another interrupted run. Results of an
-      earlier run move to its subfolder `previous_run`.
+      no journal. The folder must not contain files that the run reads, nor another interrupted
+      run. Results of an earlier run move to the subfolder `previous_run`.
     - `resume`: Continue the run in `folder`.
     - `scheduler`, `wait`: Address of a Dask scheduler whose workers do the work, and seconds to
       wait for a compatible worker.
     - `policy`: Permissions and limits of documents; None for `Policy()`.
     - `nodes`: Categories of nodes to judge; "all", or "common" for the nodes of an audit. None for
       the nodes of `files`, or for the common nodes if there are no files.
-    - `progress`: Called as `progress(tasks, total)`; returns the tasks as an iterator that shows its
-      progress, such as `lambda tasks, total: tqdm(tasks, total=total)`.
+    - `progress`: Called as `progress(tasks, total)`; returns the tasks as an iterator that shows
+      the progress, such as `lambda tasks, total: tqdm(tasks, total=total)`.
     - `refuse`: Called with each fault of each document that cannot be read, before any other work.
     - `compared`: Additional libraries for comparison: their failures do not change the
       verdict. The command uses `compared="stock"` for documents.
@@ -119,10 +118,18 @@ def check(
             raise InputError(f"seed must be at least 0; got {seed}")
         check_timeout(timeout)
         check_timeout(wait, "waitForWorkers")
-        reading = plan.read_documents(documents, loaded, policy, workers, timeout)
-        keep = folder is not None
-        subjects = documents, engines, loaded, policy, keep, categories
-        planned = make_plan(*subjects, reading, others, seed, methods or UNCHOSEN)
+        planned = make_plan(
+            documents,
+            engines,
+            loaded,
+            policy,
+            resumable=folder is not None,
+            nodes=categories,
+            reading=plan.read_documents(documents, loaded, policy, workers, timeout),
+            compared=others,
+            seed=seed,
+            methods=methods or UNCHOSEN,
+        )
         if refuse:
             for line in chain.from_iterable(to_run(planned, {}).refused.values()):
                 refuse(line)
@@ -131,26 +138,24 @@ def check(
                 journal.begin(planned)
             done: dict[int, Findings] = journal.findings if journal else {}
             numbers = [n for n in range(len(planned.tasks)) if n not in done]
-            waiting = [planned.tasks[number] for number in numbers]
+            tasks = [planned.tasks[number] for number in numbers]
             # Hosts on a cluster's machines may differ from those of the earlier run.
-            earlier = [] if scheduler else [host for part in done.values() for host in part.hosts]
-            identities = {host.name: host for host in earlier}
-            found = (
-                (
-                    position,
-                    cast(Findings | None, outcome.value)
-                    or one_result(waiting[position], NOT_RUN, reason=outcome.failure),
-                )
-                for position, outcome in executor(waiting)
+            earlier = {
+                host.name: host
+                for findings in ([] if scheduler else done.values())
+                for host in findings.hosts
+            }
+            all_findings = (
+                (position, outcome.value or one_result(tasks[position], NOT_RUN, outcome.failure))
+                for position, outcome in executor(tasks)
             )
-            with closing(found) as outcomes:  # workers run until this closes
-                shown = progress(outcomes, len(waiting)) if progress else outcomes
-                for position, findings in shown:
+            with closing(all_findings) as outcomes:  # workers run until the generator closes
+                for position, findings in progress(outcomes, len(tasks)) if progress else outcomes:
                     if differences := [
-                        f"host {before.name} ({before.version}, {before.device}, now {host.version}, {host.device})"
-                        for host in findings.hosts
-                        for before in [identities.get(host.name, host)]
-                        if before != host
+                        f"host {old.name} ({old.version}, {old.device}, now {new.version}, "
+                        f"{new.device})"
+                        for new in findings.hosts
+                        if (old := earlier.get(new.name, new)) != new
                     ]:
                         raise InputError(refusal(folder, differences))
                     if journal:
@@ -158,8 +163,9 @@ def check(
                     else:
                         done[numbers[position]] = findings
             seconds = round(time.monotonic() - begin, 3)
-            left = None if journal else policy  # a journal already has the studio pictures
-            return replace(to_run(planned, done), seconds=seconds, policy=left)
+            # A report has to draw the pictures in the studio that a journal already has.
+            studio = None if journal else policy
+            return replace(to_run(planned, done), seconds=seconds, policy=studio)
 
 
 def with_studio(run: Run, policy: Policy) -> Run:
@@ -167,8 +173,8 @@ def with_studio(run: Run, policy: Policy) -> Run:
     libraries = dict.fromkeys(each.library for each in run.results if each.host == "gl")
     subjects = product(libraries, list(run.contents)[: plan.STUDIED])
     tasks = [Task(plan.STUDIO, file, "gl", library) for library, file in subjects]
-    drawn = [cast(Findings, each.value) for _, each in _run_inline(policy, tasks)]
-    pictures = chain.from_iterable(each.pictures for each in drawn)
+    findings = (each.value for _, each in _run_inline(policy, tasks))
+    pictures = chain.from_iterable(each.pictures for each in findings)
     return replace(run, policy=None, pictures=(*run.pictures, *pictures))
 
 
@@ -183,12 +189,12 @@ def _inputs(files: Sequence[AnyPath], libraries: Iterable[str], policy: Policy) 
 
 
 def read_run(folder: AnyPath) -> Run:
-    """The completed part of a folder's run; ValueError if it has no journal of this version."""
+    """The completed part of a folder's run; ValueError without a journal of this version."""
     return to_run(*read_journal(folder))
 
 
 def work(policy: Policy, rows: Sequence[Row], task: Task) -> Findings:
-    """Findings of a task; runs in workers, and registers the rows of renderers there.
+    """Findings of a task in a worker, which first registers the rows of renderers.
 
     Raise NotRun if the host cannot be opened here.
     """
@@ -197,7 +203,7 @@ def work(policy: Policy, rows: Sequence[Row], task: Task) -> Findings:
 
 
 def work_or_not_run(work: Callable[[Task], Findings], task: Task) -> Findings:
-    """Findings of a task; the verdict is "not run" if the host cannot be opened here."""
+    """Findings of a task, or a result "not run" if the host cannot be opened here."""
     try:
         return work(task)
     except NotRun as reason:
@@ -210,10 +216,9 @@ def _judge(policy: Policy) -> Judge:
 
 
 def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
-    """A run from its plan and the findings of the completed tasks, by number."""
+    """A run from its plan and the findings of the completed tasks, by the number of the task."""
     done = [findings[number] for number in sorted(findings)]
-    results = tuple(result for part in done for result in part.results)
-    notes = tuple(note for part in done for note in part.notes)
+    notes = [note for each in done for note in each.notes]
     refused = dict(planned.refused)
     for number in sorted(findings):
         if lines := findings[number].errors:
@@ -222,29 +227,28 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     # Faults of documents that only a compared library cannot read become notes.
     for document, library in product(planned.contents, planned.compared):
         lines = refused.pop(f"{document} with {library}", ())
-        notes += tuple((line, document) for line in lines)
+        notes += [(line, document) for line in lines]
     version = planned.software.get("MaterialX")
     if version and (warning := untested(version)):
-        notes += ((warning, "every result"),)
-    places: dict[str, list[str]] = {}  # note -> its places
+        notes.append((warning, "every result"))
+    places: dict[str, list[str]] = {}  # note -> places that the note does not name
     for text, place in dict.fromkeys(notes):
-        places.setdefault(text, []).append(place)
-    hosts = tuple(dict.fromkeys(host for part in done for host in part.hosts))
+        places.setdefault(text, []).extend([] if place in text else [place])
+    hosts = tuple(dict.fromkeys(host for each in done for host in each.hosts))
     audited = any(task.check == SOURCE for task in planned.tasks)
     unjudged = (
         *(texts_not_run({host.name for host in hosts}) if audited else ()),
         *planned.unjudged,
-        *(row for part in done for row in part.unjudged),
+        *(row for each in done for row in each.unjudged),
     )
     shared = {each.name: getattr(planned, each.name) for each in fields(Scope)}
     return Run(
         **shared | {"refused": refused, "unjudged": tuple(dict.fromkeys(unjudged))},
         hosts=hosts,
-        results=results,
-        pictures=tuple(picture for part in done for picture in part.pictures),
+        results=tuple(result for each in done for result in each.results),
+        pictures=tuple(picture for each in done for picture in each.pictures),
         notes=tuple(
-            ": ".join(filter(None, (text, ", ".join(each for each in listed if each not in text))))
-            for text, listed in places.items()
+            f"{text}: {', '.join(listed)}" if listed else text for text, listed in places.items()
         ),
         missing=tuple(str(task) for n, task in enumerate(planned.tasks) if n not in findings),
     )
@@ -275,9 +279,9 @@ def _executor(
 
 
 def _subject(task: Task) -> tuple[str, str, str]:
-    """A key for tasks that share shader, samples and diagnosis, so they run in one worker.
+    """A key of tasks that run in one worker because they share shaders, samples and diagnoses.
 
-    Expected values do not depend on the library; only some hosts must reopen for another library.
+    Libraries share the expected values, but some hosts must be opened anew for each library.
     """
     return task.host, "" if task.host in EVALUATING else task.library, task.subject
 

@@ -76,8 +76,9 @@ class Journal:
         try:
             if not self._resume and (remaining := _remaining(self._path)):
                 raise InputError(
-                    f"{self._folder}: holds an interrupted run with {remaining} left: --resume "
-                    f"continues it; to begin anew, remove {self._path.parent} or name another folder"
+                    f"{self._folder}: holds an interrupted run with {remaining} left: "
+                    f"--resume continues it; to begin anew, remove {self._path.parent} or name "
+                    "another folder"
                 )
             self._clear()
         except BaseException:

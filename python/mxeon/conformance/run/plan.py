@@ -246,9 +246,6 @@ def _selected(
     raise InputError(f"{message}, judged {'; '.join(places)}" if places else message)
 
 
-EMPTY = Reading({}, {}, {})
-
-
 def make_plan(
     files: Sequence[str | os.PathLike[str]],
     hosts: Sequence[str],
@@ -256,7 +253,7 @@ def make_plan(
     policy: Policy = DEFAULT,
     resumable: bool = False,
     nodes: Sequence[str] = (),
-    reading: Reading = EMPTY,
+    reading: Reading | None = None,
     compared: Sequence[str] = (),
     seed: int = 1,
     methods: Methods = UNCHOSEN,
@@ -269,6 +266,7 @@ def make_plan(
     name, or if no host judges the nodes; ImportError if this MaterialX is too old.
     """
     assert_known_names(hosts, nodes)
+    reading = reading or Reading({}, {}, {})
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
     hosts = tuple(dict.fromkeys(hosts))
     tasks: list[Task] = []
