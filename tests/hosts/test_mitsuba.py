@@ -1,18 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values, sampling, energy and gradients of the Mitsuba plugins match the models."""
+"""The Mitsuba plugins match the models, and Mitsuba's own BSDFs are what it documents."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from mxeon import check, models
 from mxeon import mitsuba as plugins
-from mxeon import models
 from mxeon.errors import NotRun
+from mxeon.shaders.scene import BACK, FRONT, SIDE, VIEW, local_directions
+from mxeon.survey.facets import facet_points
+from mxeon.survey.polyhedron import mitsuba
 from tests.support.availability import available, package
 from tests.support.cases import directions
+from tests.support.command import PLASTER
+from tests.support.plans import keep
 from tests.support.tolerances import MITSUBA_COAT, MITSUBA_DENSITY, MITSUBA_EVAL, MITSUBA_WEIGHT
+from tests.support.verdicts import PASSED, RENDERER_NODES
 
 PAGE = Path(__file__).parents[2] / "docs" / "mitsuba.md"
 COAT, VARNISH = "dielectric_over_eon", "varnished"
@@ -21,7 +28,7 @@ COLOR = (0.25, 0.5, 1.0)  # exact in float32
 SAMPLES = 100_000  # samples per chi-square test
 DEVIATE = 4.5  # standard deviations; a mean exceeds this once in 150,000 tests
 STEP = 2.0**-13  # exact when added in float32
-VIEW, LIGHT = np.array([[0.6, 0.0, 0.8]]), np.array([[-0.48, 0.6, 0.64]])
+WO, WI = np.array([[0.6, 0.0, 0.8]]), np.array([[-0.48, 0.6, 0.64]])
 MODELS = {
     "eon": models.eon_brdf,
     "fon": models.fon_brdf,
@@ -147,7 +154,7 @@ def test_a_scalar_variant_has_the_same_values(mi, name):
     made, point, context = mi.load_dict(bsdf(name)), mi.SurfaceInteraction3f(), mi.BSDFContext()
     point.wi = [0.6, 0.0, 0.8]
     value = np.array(made.eval(context, point, mi.Vector3f(0.0, 0.6, 0.8)))
-    right = expected(name, VIEW, np.array([[0.0, 0.6, 0.8]]))
+    right = expected(name, WO, np.array([[0.0, 0.6, 0.8]]))
     assert (np.abs(value - right) <= allowed(name, right)).all()
     record, weight = made.sample(context, point, 0.5, mi.Point2f(0.25, 0.75))
     sampled = np.array(made.eval(context, point, record.wo)) / made.pdf(context, point, record.wo)
@@ -164,10 +171,10 @@ def test_gradients_are_those_of_the_model(mi, name):
     for each in ("reflectance.value", *names.values()):
         dr.enable_grad(parameters[each])
     parameters.update()
-    dr.backward(dr.sum(made.eval(mi.BSDFContext(), surface(mi, VIEW), mi.Vector3f(LIGHT.T))))
+    dr.backward(dr.sum(made.eval(mi.BSDFContext(), surface(mi, WO), mi.Vector3f(WI.T))))
     for key, each in names.items():
         middle = float(np.float32(INPUTS[name][key]))
-        ends = [expected(name, VIEW, LIGHT, **{key: middle + x}).sum() for x in (STEP, -STEP)]
+        ends = [expected(name, WO, WI, **{key: middle + x}).sum() for x in (STEP, -STEP)]
         found = np.array(dr.grad(parameters[each])).item()
         assert found == pytest.approx((ends[0] - ends[1]) / (2.0 * STEP), rel=1e-4, abs=1e-6)
     assert np.array(dr.grad(parameters["reflectance.value"])).min() > 0.0
@@ -244,3 +251,39 @@ def test_the_example_of_the_page_runs_and_shows_gloss(mi, tmp_path, monkeypatch)
     assert seen[1] > 1.25 * seen[0]  # measured: 1.5; without a lamp: 1
     for name in ("clay", "ball", "coated"):
         assert (tmp_path / f"{name}.png").stat().st_size > 1000
+
+
+# --- Mitsuba's own BSDFs, judged by pictures of faceted solids ---------------------------------
+
+FACETS = 7e-5  # relative error of a picture, times the light's cosine
+
+
+@pytest.fixture(scope="module")
+def host():
+    with available("mitsuba"), mitsuba.MitsubaHost() as host:
+        host.identity()
+        yield host
+
+
+@pytest.mark.usefixtures("host")  # skips the test if Mitsuba is missing
+def test_mitsuba_has_the_models_that_it_documents(monkeypatch):
+    keep(monkeypatch, lambda task: task.host == "mitsuba")
+    report = check(PLASTER, ["mitsuba"], nodes=["common"])
+    results = [each for each in report.results if each.library == RENDERER_NODES]
+    assert {each.subject for each in results} == {each.title for each in mitsuba.NODES}
+    assert {each.verdict for each in results} == {PASSED}
+    assert all(each.control.caught for each in results)
+
+
+@pytest.mark.parametrize("scene", [FRONT, SIDE, BACK])
+def test_pictures_are_linear_and_have_float_precision(host, scene):
+    """One channel is very dark: 8-bit pixels or a tone curve would change it by far more."""
+    scene = replace(scene, size=64)
+    material = mitsuba.NODES[0].made((1.0, 0.02, 1e-4), 0.0)
+    picture = host.node(material, scene)[facet_points(64).mask]
+    normal = facet_points(scene.size).normal[facet_points(scene.size).mask]
+    wo, wi = (local_directions(normal, each) for each in (VIEW, scene.light))
+    mask = np.minimum(wo, wi)[:, 2] >= 0.05
+    expected = wi[mask][:, 2:] * np.array([1.0, 0.02, 1e-4])
+    relative = np.abs(picture[mask] / expected - 1.0) * wi[mask][:, 2:]
+    assert relative.max() <= FACETS
