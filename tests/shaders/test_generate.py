@@ -35,12 +35,6 @@ OSL_SOURCES = sorted((source_folder("eonlib") / "genosl").rglob("*.osl"))
 CONSTANT = {"const", "uniform", "struct", "in", "constant", "precision"}
 VALIDATED = {"glsl": (), "essl": (), "vulkan": ("-V",)}
 SURFACES = ("open_pbr_surface", "standard_surface", "gltf_pbr", "UsdPreviewSurface")
-
-
-SUM = '<add name="{}" type="BSDF"><input name="in1" type="BSDF" nodename="{}"/>' + (
-    '<input name="in2" type="BSDF" nodename="{}"/></add>'
-)
-
 COMPILE = """
 import json, sys
 import bpy, _cycles
@@ -48,7 +42,6 @@ compiled = {path: _cycles.osl_compile(path, path.replace(".osl", ".oso")) for pa
 print(json.dumps([path for path in compiled if not compiled[path]]))
 """
 
-on_each_target = pytest.mark.parametrize("target", TARGETS)
 of_each_example = pytest.mark.parametrize("path", EXAMPLES)
 
 
@@ -60,12 +53,8 @@ def pixel(text, target, **options):
 
 def kept(source):
     """Global variables of a shader that are not constant; in MSL, members of its context."""
-    text = re.sub(
-        r"//.*|/\*[\s\S]*?\*/|^ *#.*(\\\n.*)*|struct GlobalContext\s*{",
-        "",
-        source,
-        flags=re.MULTILINE,
-    )
+    ignored = r"//.*|/\*[\s\S]*?\*/|^ *#.*(\\\n.*)*|struct GlobalContext\s*{"
+    text = re.sub(ignored, "", source, flags=re.MULTILINE)
     while "{" in text and (bare := re.sub(r"{[^{}]*}", ";", text)) != text:
         text = bare
     declarations = (each.split("=")[0].split("[")[0].split() for each in text.split(";"))
@@ -89,12 +78,14 @@ def every_lobe():
     """Material that sums all BSDF nodes of pbrlib and eonlib's EON node, and the nodes' names."""
     stock = load_library("stock").getNodeDefs()
     names = sorted({each.getNodeString() for each in stock if each.getAttribute("bsdf")} | {EON})
-    nodes, total = "", "none"
+    nodes, total = "", ""
     for name in names:
-        nodes += lobe(name, f"{name}_lobe") + SUM.format(f"{name}_sum", total, f"{name}_lobe")
-        total = f"{name}_sum"
-    nodes = nodes.replace('<input name="in1" type="BSDF" nodename="none"/>', "")
-    return material(nodes.replace(f'"{total}"', '"lobe"')), names
+        operands = f'<input name="in2" type="BSDF" nodename="{name}_lobe"/>'
+        if total:
+            operands += f'<input name="in1" type="BSDF" nodename="{total}"/>'
+        total = "lobe" if name == names[-1] else f"{name}_sum"
+        nodes += lobe(name, f"{name}_lobe") + f'<add name="{total}" type="BSDF">{operands}</add>'
+    return material(nodes), names
 
 
 @of_each_example
@@ -106,7 +97,7 @@ def test_every_example_becomes_shaders_on_every_other_target(path, target):
 
 
 @pytest.mark.parametrize("category", SURFACES)
-@on_each_target
+@pytest.mark.parametrize("target", TARGETS)
 def test_the_surfaces_of_materialx_are_made_on_every_target(category, target):
     assert pixel(surface(category), target)
 
@@ -131,18 +122,8 @@ def translated(source, language, folder):
     ]
     if language == "hlsl":
         steps[1] += ["--shader-model", "50"]
-        parsed = folder / "parsed.spv"
-        steps += [
-            [
-                compiler,
-                "-D",
-                "-V",
-                "--quiet",
-                *["-S", "frag", "-e", "main", "-o"],
-                parsed,
-                text,
-            ]
-        ]
+        parse = [compiler, "-D", "-V", "--quiet", "-S", "frag", "-e", "main"]
+        steps.append([*parse, "-o", folder / "parsed.spv", text])
     for step in steps:
         done = subprocess.run(step, cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode:
@@ -150,12 +131,9 @@ def translated(source, language, folder):
     return ""
 
 
-ON_VULKAN = [spec for spec in ALL if spec not in ABSENT]
-
-
 @pytest.mark.whole
 @pytest.mark.parametrize("language", ("hlsl", "msl"))
-@pytest.mark.parametrize("spec", ON_VULKAN)
+@pytest.mark.parametrize("spec", [spec for spec in ALL if spec not in ABSENT])
 def test_every_node_and_surface_translates_from_spirv(spec, language, tmp_path):
     source = pixel(spec.within("eonlib").document(), "vulkan", lights=True)
     assert translated(source, language, tmp_path) == ""
@@ -188,28 +166,22 @@ def test_no_source_has(wrong):
 
 
 # Names of functions, structures, macros and global variables in a text.
-NAMES = re.compile(
-    r"^(?:closure )?(?:#define |struct |\w+ (?=\w+(?:\(|;|\[|$)))(\w+)", re.MULTILINE
-)
-CLOSURES = {"BSDF", "EDF", "VDF"}  # inputs of these types become no variables
+NAMES = r"(?m)^(?:closure )?(?:#define |struct |\w+ (?=\w+(?:\(|;|\[|$)))(\w+)"
 
 
 def test_no_name_in_a_source_is_one_that_materialx_makes_for_a_node():
     """MaterialX names the variables of inputs and outputs `node_input` and `node_output`."""
     ports = {
-        port.getName()
+        f"_{port.getName()}"
         for nodedef in load_library().getNodeDefs()
         for port in (*nodedef.getActiveInputs(), *nodedef.getActiveOutputs())
-        if port.getType() not in CLOSURES or "out" in port.getName()
+        # Inputs of these types become no variables.
+        if port.getType() not in ("BSDF", "EDF", "VDF") or "out" in port.getName()
     }
-    texts = {path.name: path.read_text(encoding="utf-8") for path in (*SOURCES, *OSL_SOURCES)}
-    texts["control"] = "vec3 thin_film_weight(float r)\n{\n}\nstruct hair_scale\n{"
-    found = [
-        name
-        for text in texts.values()
-        for name in NAMES.findall(text)
-        if any(name.endswith(f"_{port}") for port in ports)
-    ]
+    texts = [path.read_text(encoding="utf-8") for path in (*SOURCES, *OSL_SOURCES)]
+    texts.append("vec3 thin_film_weight(float r)\n{\n}\nstruct hair_scale\n{")  # control
+    names = [name for text in texts for name in re.findall(NAMES, text)]
+    found = [name for name in names if name.endswith((*ports,))]
     assert found == ["thin_film_weight", "hair_scale"]
 
 
@@ -272,7 +244,7 @@ def test_the_profile_warns_of_qon_alone(flag):
     assert [each.category for each in caught] == [ApproximationWarning] * (flag == "false")
 
 
-@pytest.mark.parametrize("path", EXAMPLES)
+@of_each_example
 def test_every_example_is_valid_and_renders_all_its_materials_and_nothing_else(path):
     document = read_document(path).content
     assert document.validate() == (True, "")

@@ -14,8 +14,6 @@ from mxeon.shaders.nodes import connection_text, input_text, node_text
 from mxeon.shaders.scene import SIDE, Paths
 from tests.support.documents import lobe, material, surface, written
 
-WAX = material(lobe("subsurface_bsdf"))
-
 
 def mixed(weight):
     sides = connection_text("fg", "BSDF", "inner") + connection_text("bg", "BSDF", "opaque")
@@ -26,7 +24,7 @@ def mixed(weight):
 @pytest.mark.parametrize(
     "text, kinds",
     [
-        (WAX, ("subsurface",)),
+        (material(lobe("subsurface_bsdf")), ("subsurface",)),
         (material(lobe("subsurface_bsdf", weight=0.0)), ()),
         (material(lobe("burley_diffuse_bsdf")), ()),
         (material(lobe("dielectric_bsdf", scatter_mode="R")), ()),
@@ -62,7 +60,7 @@ def test_paths_that_are_too_few_are_named(lobes, paths, words):
 
 
 def test_a_rasterized_picture_says_what_it_has_in_place_of_a_lobe(gl, judged, tmp_path):
-    file = written(tmp_path, WAX)
+    file = written(tmp_path, material(lobe("subsurface_bsdf")))
     [reason] = gl.approximations(gl.compile(file)[0], SIDE)
     assert "subsurface_bsdf is rasterized" in reason
     assert judged.document(file).notes == ((reason, "look.mtlx: look"),)

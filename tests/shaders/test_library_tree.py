@@ -18,8 +18,6 @@ from tests.support.wheels import wheel
 from tests.support.wrong_libraries import GLSL, STOCK, copy_of_stock, replace_text
 
 SHEEN, LIB = f"{GLSL}/mx_sheen_bsdf.glsl", f"{GLSL}/lib/mx_microfacet_sheen.glsl"
-IMPLEMENTATIONS = f"{GLSL}/pbrlib_genglsl_impl.mtlx"
-NODES = ("translucent_bsdf", "surface", "measured_edf", "glossiness_anisotropy")
 BURLEY = [f"{GLSL}/mx_burley_diffuse_bsdf.glsl", f"{GLSL}/lib/mx_microfacet_diffuse.glsl"]
 PARTS = {"pbrlib": ["pbrlib"], "a node and its lib": BURLEY, "a file of lib": BURLEY[1:]}
 
@@ -41,8 +39,8 @@ def findings(libraries, nodes, hosts=("gl",)):
 
 
 def test_an_unchanged_copy_of_materialx_has_the_verdicts_of_stock(gl, tmp_path):
-    copy = str(copy_of_stock(tmp_path / "whole"))
-    stock, whole = findings(["stock", copy], NODES)
+    nodes = ("translucent_bsdf", "surface", "measured_edf", "glossiness_anisotropy")
+    stock, whole = findings(["stock", str(copy_of_stock(tmp_path / "whole"))], nodes)
     assert len(stock) > 8 and whole == stock
 
 
@@ -68,20 +66,17 @@ def test_an_export_of_eonlib_has_its_verdicts(gl, tmp_path, part, name):
 FAULTS = {
     "a file of lib": (LIB, "D = mx_", "D = 3.0 * mx_", "sheen_bsdf", "value", "3 times the right"),
     "an implementation": (
-        IMPLEMENTATIONS,
+        f"{GLSL}/pbrlib_genglsl_impl.mtlx",
         'file="mx_layer_bsdf.glsl" function="mx_layer_bsdf"',
         'file="mx_add_bsdf.glsl" function="mx_add_bsdf"',
-        "layer",
-        "combination",
-        " % of view/light pairs",
+        *("layer", "combination", " % of view/light pairs"),
     ),
 }
 
 
-IN_PART = "a file of lib"  # also detected in a partial copy
-
-
-@pytest.mark.parametrize("name, parts", [(IN_PART, ["pbrlib"]), *((each, []) for each in FAULTS)])
+@pytest.mark.parametrize(
+    "name, parts", [("a file of lib", ["pbrlib"]), *((each, []) for each in FAULTS)]
+)
 def test_a_fault_in_a_copy_is_found_and_told_first(gl, tmp_path, capsys, monkeypatch, name, parts):
     file, old, new, node, key, words = FAULTS[name]
     keep(monkeypatch, lambda task: task.subject in (node, f"{node}, mode conty_kulla"))

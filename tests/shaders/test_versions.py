@@ -9,10 +9,10 @@ from mxeon.errors import InterfaceError, NotRun
 from mxeon.hosts import open_host
 from mxeon.shaders import closure_calls, generation, generators, library
 from mxeon.shaders.library import UntestedVersionWarning, load_library
+from tests.support.command import PLASTER
 from tests.support.documents import lobe, material
 from tests.support.wrong_libraries import wrong_copy
 
-EXAMPLE = str(library.examples_folder() / "plaster.mtlx")
 CACHES = (
     library.read_library,
     generators._library_generator,
@@ -48,16 +48,14 @@ def test_an_untested_version_runs_with_a_warning(fresh, monkeypatch, name):
 
 def test_a_version_that_lacks_a_method_is_refused_in_one_line(fresh, monkeypatch, capsys):
     monkeypatch.setattr(library, "REQUIRED", ((mx.Document, "setOtherLibrary"),))
-    assert main(["check", EXAMPLE]) == 2
-    assert capsys.readouterr().err.startswith(
-        f"mxeon: MaterialX {mx.getVersionString()} lacks Document.setOtherLibrary; install 1.39.3"
-    )
+    assert main(["check", PLASTER]) == 2
+    words = f"{mx.getVersionString()} lacks Document.setOtherLibrary; install 1.39.3"
+    assert capsys.readouterr().err.startswith(f"mxeon: MaterialX {words}")
 
 
 def test_another_closure_interface_is_refused_for_its_node_and_target(other_interface):
-    with pytest.raises(
-        InterfaceError, match=r"^glsl: MaterialX .* does not call eonlib's function"
-    ):
+    words = "^glsl: MaterialX .* does not call eonlib's function"
+    with pytest.raises(InterfaceError, match=words):
         generation.generate(material(lobe()), "glsl")
     assert generation.generate(material(lobe()), "osl")
     assert generation.generate(material('<eon_diffuse_bsdf name="lobe" type="BSDF"/>'), "glsl")
@@ -66,7 +64,6 @@ def test_another_closure_interface_is_refused_for_its_node_and_target(other_inte
 def test_a_host_whose_target_this_version_lacks_is_not_run(monkeypatch):
     targets = tuple(target for target in generation.TARGETS if target != "slang")
     monkeypatch.setattr(generation, "TARGETS", targets)
-    with pytest.raises(
-        NotRun, match="slang: MaterialX must have a generator for slang; .* none: pip"
-    ):
+    words = "slang: MaterialX must have a generator for slang; .* none: pip"
+    with pytest.raises(NotRun, match=words):
         open_host("slang")
