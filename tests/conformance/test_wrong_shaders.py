@@ -14,6 +14,8 @@ CLEAR = "genglsl/lib/microfacet_transmission.glsl"
 HAIR, FILM = "genglsl/chiang_hair_bsdf.glsl", "genglsl/lib/thin_film.glsl"
 FILMED, HALF = "genglsl/lib/microfacet_film.glsl", "genglsl/lib/half_vector.glsl"
 
+OPAQUE = "bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));"
+
 # Mutations by title: file, text, replacement (OLD stands for the text), the check that detects it,
 # parts of one cause in the diagnosis, and the verdict unless it is "failed".
 WRONG = {
@@ -26,7 +28,7 @@ WRONG = {
          ("fault", "weight_ignored_above_0")),
         (LOBE, "mx_environment_irradiance(N) * weight", "OLD * closureData.occlusion", "environment",
          ("fault", "occlusion_by_caller")),
-        (LOBE, "bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));", "", "throughput",
+        (LOBE, OPAQUE, "", "throughput",
          ("not_zero", "throughput", 1.0, "direct", "environment", "transmission", "emission")),
         (LOBE, "1.0 - clamp(weight, 0.0, 1.0)", "0.0", "throughput",
          ("not_zero", "throughput", 0.0, "weight_not_1", "direct", "environment", "transmission", "emission")),
@@ -424,39 +426,29 @@ PATHS = (
     ("eon_diffuse_bsdf", "genglsl/path/random.glsl", "vec4(v >> 8u)", "vec4(v >> 9u)", "path_random",
      ("other_random_numbers",)),
 )  # fmt: skip
-DIFFUSE = next(iter(WRONG))
 ROWS = [(title, *row) for title, rows in WRONG.items() for row in rows] + list(PATHS)
 
 
-def is_long(title, check):
-    """Whether shaders take seconds to compile: films, surfaces, and text for path tracers."""
-    return check in DRAWN or any(each in title for each in ("thin film", "every lobe"))
+def parameters(row):
+    """Row as a parameter of a test, marked if its shaders take seconds to compile."""
+    title, check = row[0], row[4]
+    is_long = check in DRAWN or any(each in title for each in ("thin film", "every lobe"))
+    marks = pytest.mark.whole if is_long else ()
+    return pytest.param(row, id=f"{check}, {title}", marks=marks)
 
 
-@pytest.mark.parametrize(
-    "row",
-    [
-        pytest.param(
-            row,
-            id=f"{row[4]}, {row[0]}",
-            marks=[pytest.mark.whole] * is_long(row[0], row[4]),
-        )
-        for row in ROWS
-    ],
-)
+@pytest.mark.parametrize("row", map(parameters, ROWS))
 def test_a_wrong_line_fails_the_check_meant_for_it_and_is_named(judged, tmp_path, row):
     title, file, old, new, check, cause, *verdict = row
-    result = judged(
-        check, title, library=wrong_library(tmp_path, file, old, new.replace("OLD", old))
-    )
+    library = wrong_library(tmp_path, file, old, new.replace("OLD", old))
+    result = judged(check, title, library=library)
     assert result.verdict == (verdict or [FAILED])[0] and result.control.caught
     assert has(result, *cause)
 
 
 def test_an_emission_that_a_surface_shader_drops_is_named(judged, tmp_path):
-    graph = "bxdf/open_pbr_surface.mtlx"
-    old = 'interfacename="emission_color"'
-    library = wrong_stock(tmp_path, graph, (old, 'value="1.0, 1.0, 1.0"'))
+    change = ('interfacename="emission_color"', 'value="1.0, 1.0, 1.0"')
+    library = wrong_stock(tmp_path, "bxdf/open_pbr_surface.mtlx", change)
     result = judged("reach", "open_pbr_surface, every lobe", library=library)
     assert result.verdict == FAILED and has(result, "changes_nothing", "emission_color")
 
@@ -471,17 +463,16 @@ def test_a_color_that_is_not_decoded_from_srgb_is_named(judged, tmp_path, host):
     assert has(result, "model", "the color, not decoded from sRGB")
 
 
+SWAPPED = "uv = uv.yx;\n    result = "
+
+
 @pytest.mark.parametrize(
     "host, old, new",
     [
         ("gl", ").rgb", ").bgr"),
-        ("gl", "result = ", "uv = uv.yx;\n    result = "),
         ("gl", "result = ", "uv = vec2(0.5);\n    result = "),
         ("gl", ").rgb", ").rgb;\n    result = pow(max(result, vec3(0.0)), vec3(2.2))"),
-        *(
-            (host, "result = ", "uv = uv.yx;\n    result = ")
-            for host in ("webgl", "vulkan", "wgsl")
-        ),
+        *((host, "result = ", SWAPPED) for host in ("gl", "webgl", "vulkan", "wgsl")),
     ],
 )
 def test_a_color_that_an_image_node_reads_wrongly_is_wrong_in_inputs_from_an_image(
@@ -495,26 +486,15 @@ def test_a_color_that_an_image_node_reads_wrongly_is_wrong_in_inputs_from_an_ima
 
 @pytest.mark.whole
 def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
-    """Each check fails for a row of ROWS or for stock MaterialX, except the checks in WITHOUT."""
+    """Each check fails for a row of ROWS, for stock MaterialX, or in another test."""
     failing = {row[4] for row in ROWS}
     failing |= {each.check for each in stock.results if each.verdict == FAILED}
-    asked = {each.check for each in (*stock.results, *run.results) if each.host == "gl"}
-    assert {*asked, *DRAWN} - failing == WITHOUT
-
-
-# Checks that other tests see fail: `test_wrong_libraries.py` breaks functions, frames and texts of
-# the release; a test above breaks a color space; one check only finds dead inputs.
-WITHOUT = {
-    "client",
-    "color_space",
-    "densities",
-    "loss",
-    "parts",
-    "reach",
-    "release",
-    "samples",
-    "twins",
-}
+    checks = {each.check for each in (*stock.results, *run.results) if each.host == "gl"}
+    # Other tests see these fail: `test_wrong_libraries.py` breaks functions, frames and texts of
+    # the release; tests above break a color space, and an input that a surface drops.
+    elsewhere = {"client", "color_space", "reach", "release"}
+    elsewhere |= {"densities", "loss", "parts", "samples", "twins"}
+    assert {*checks, *DRAWN} - failing == elsewhere
 
 
 @pytest.mark.parametrize("host", ["webgl", "vulkan", "wgsl", "slang"])
@@ -522,13 +502,9 @@ WITHOUT = {
     "old, check, cause",
     [
         ("N = mx_forward_facing_normal(N, wo);", "frame", ("region", "normal_away")),
-        (
-            "bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));",
-            "throughput",
-            ("not_zero", "throughput", 1.0, "direct"),
-        ),
+        (OPAQUE, "throughput", ("not_zero", "throughput", 1.0, "direct")),
     ],
 )
 def test_the_other_hosts_see_what_is_around_the_model(judged, tmp_path, host, old, check, cause):
-    result = judged(check, DIFFUSE, host, wrong_library(tmp_path, LOBE, old, ""))
+    result = judged(check, next(iter(WRONG)), host, wrong_library(tmp_path, LOBE, old, ""))
     assert result.verdict == FAILED and has(result, *cause)
