@@ -2,19 +2,18 @@
 """A run can only be resumed with the same files, options and drivers."""
 
 import re
+from pathlib import Path
 
 import pytest
 
 from mxeon import check
 from mxeon.errors import InputError
 from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.library import examples_folder
+from tests.support.command import PLASTER
 from tests.support.plans import keep_checks
 from tests.support.wrong_libraries import copy_of_eonlib
 
-INCLUDE = '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="part.mtlx"/>'
 CODE = Policy(code=True)
-TOKEN = '<token name="t" type="string" value="grid.png"/>'
 FILE = '<image name="i{}" type="color3"><input name="file" type="filename" value="{}"{}/></image>'
 # Files in a document's folder, and the XML by which the document refers to each.
 NAMES = {
@@ -25,13 +24,13 @@ NAMES = {
     "other.1001.png": FILE.format(5, "other.<UDIM>.png", ""),
     "oak.png": FILE.format(6, "[which].png", ""),
     "own.glsl": '<implementation name="i" file="own.glsl"/>',
-    "part.mtlx": INCLUDE,
+    "part.mtlx": '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="part.mtlx"/>',
 }
 
 
 def run_of(folder, *named):
     """Run the checks on a document that names files; returns the run's folder and the document."""
-    text = (examples_folder() / "plaster.mtlx").read_text(encoding="utf-8")
+    text = Path(PLASTER).read_text(encoding="utf-8")
     file = folder / "plaster.mtlx"
     file.write_text(text.replace("</materialx>", f"{''.join(named)}</materialx>"), encoding="utf-8")
     check([file], folder=folder / "run", policy=CODE)
@@ -43,18 +42,15 @@ def run(tmp_path, monkeypatch):
     """Folder and document of a run with two tasks; the document names a texture."""
     keep_checks(monkeypatch, "lambert", "picture")
     (tmp_path / "grid.png").write_bytes(b"pixels")
-    return run_of(tmp_path, TOKEN)
+    return run_of(tmp_path, '<token name="t" type="string" value="grid.png"/>')
 
 
 def refusal(folder, files, **options):
     """Part of the refusal to resume a run that lists what has changed."""
     with pytest.raises(InputError, match="holds another run") as error:
         check(files or None, folder=folder, resume=True, **{"policy": CODE} | options)
-    return (
-        str(error.value)
-        .partition("another run (")[2]
-        .removesuffix("); use a new folder, or omit --resume")
-    )
+    _, _, changed = str(error.value).partition("another run (")
+    return changed.removesuffix("); use a new folder, or omit --resume")
 
 
 def test_what_a_document_names_is_a_dependency(tmp_path, monkeypatch):

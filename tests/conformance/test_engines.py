@@ -25,40 +25,37 @@ def judged_by(gl):
         host.close()
 
 
-class Turned(GlHost):
-    def evaluate(self, shader, wo, wi, *rest, **options):
-        return super().evaluate(shader, wo, wi[:, [1, 0, 2]] * [-1, 1, 1], *rest, **options)
+def turned(wo, wi, inputs):
+    return wo, wi[:, [1, 0, 2]] * [-1, 1, 1], inputs
 
 
-class Swapped(GlHost):
-    def evaluate(self, shader, wo, wi, *rest, **options):
-        return super().evaluate(shader, wi, wo, *rest, **options)
+def exchanged(wo, wi, inputs):
+    return wi, wo, inputs
 
 
-class Uncoated(GlHost):
-    def evaluate(self, shader, wo, wi, inputs, *rest, **options):
-        bare = {**inputs, "coat": 0.0 * inputs["coat"]}
-        return super().evaluate(shader, wo, wi, bare, *rest, **options)
-
-
-class WithoutNumbers(GlHost):
-    def evaluate(self, shader, wo, *rest, **options):
-        return np.full(wo.shape, np.nan)
+def uncoated(wo, wi, inputs):
+    return wo, wi, {**inputs, "coat": 0.0 * inputs["coat"]}
 
 
 @pytest.mark.parametrize(
-    "kind, check, title, cause",
+    "change, check, title, cause",
     [
-        (Turned, "reciprocity", EON, ()),
-        (Swapped, "value", EON, ()),
-        (Uncoated, "lobes", SHADER, ("right_without", "coat")),
-        (WithoutNumbers, "value", EON, ("not finite",)),
+        (turned, "reciprocity", EON, ()),
+        (exchanged, "value", EON, ()),
+        (uncoated, "lobes", SHADER, ("right_without", "coat")),
+        (None, "value", EON, ("not finite",)),
     ],
 )
-def test_a_host_that_mistakes_its_arguments_fails(judged_by, kind, check, title, cause):
-    result = judged_by(kind)(check, title)
+def test_a_host_that_mistakes_its_arguments_fails(judged_by, change, check, title, cause):
+    class Mistaken(GlHost):
+        def evaluate(self, shader, wo, wi, inputs, *rest, **options):
+            if change is None:
+                return np.full(wo.shape, np.nan)
+            return super().evaluate(shader, *change(wo, wi, inputs), *rest, **options)
+
+    result = judged_by(Mistaken)(check, title)
     assert result.verdict == FAILED and has(result, *cause)
-    assert (result.error == np.inf) == (kind is WithoutNumbers)
+    assert (result.error == np.inf) == (change is None)
 
 
 class Failing(GlHost):

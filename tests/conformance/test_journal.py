@@ -16,8 +16,7 @@ import pytest
 
 from mxeon import check
 from mxeon.conformance.results.records import StoredImage
-from mxeon.shaders.library import examples_folder
-from tests.support.command import DEADLINE, wait_for
+from tests.support.command import DEADLINE, PLASTER, wait_for
 from tests.support.faults import room_for
 from tests.support.plans import keep_checks
 from tests.support.results import (
@@ -34,9 +33,6 @@ from tests.support.results import (
     read_run,
     to_run,
 )
-
-EXAMPLE = examples_folder() / "plaster.mtlx"
-PLAIN = replace(FINDINGS, pictures=())
 
 
 def kept(folder, *numbers, findings=FINDINGS, plan=PLAN):
@@ -68,6 +64,7 @@ def test_a_torn_last_line_is_dropped_and_its_task_done_again(tmp_path):
 
 
 def pixels(array):
+    """Contents of a file with an array."""
     stream = BytesIO()
     np.save(stream, array)
     return stream.getvalue()
@@ -118,7 +115,7 @@ def test_what_is_no_journal_is_refused(tmp_path, text):
         ({"tasks": (replace(TASKS[0], host="webgl"),)}, "hosts (gl, now webgl)"),
         ({"tasks": TASKS[:1]}, "the checks"),
         (
-            {"files": {f"{number}.png": "00" for number in range(20)} | FILES},
+            {"files": FILES | {f"{k}.png": "00" for k in range(20)}},
             "0.png, 1.png, 10.png and 17 more",
         ),
     ],
@@ -153,11 +150,8 @@ def test_a_new_run_keeps_the_old_one_in_a_folder(tmp_path):
 
 def test_an_interrupted_run_is_continued_or_kept(tmp_path):
     path = kept(tmp_path, 0)
-    before, words = (
-        path.read_bytes(),
-        "holds an interrupted run with 2 of 3 tasks left: --resume continues",
-    )
-    with pytest.raises(ValueError, match=words):
+    before = path.read_bytes()
+    with pytest.raises(ValueError, match="interrupted run with 2 of 3 tasks left: --resume"):
         journal(tmp_path).__enter__()
     assert path.read_bytes() == before
     with journal(tmp_path, resume=True) as resumed:
@@ -174,7 +168,7 @@ def test_a_full_disk_loses_nothing_that_was_finished(tmp_path):
         written.add(0, FINDINGS)
         size = (tmp_path / JOURNAL).stat().st_size
         with room_for(size + 100), pytest.raises(OSError, match="File too large"):
-            written.add(1, PLAIN)
+            written.add(1, replace(FINDINGS, pictures=()))
         assert (tmp_path / JOURNAL).stat().st_size == size
         written.add(1, FINDINGS)
     assert list(read_journal(tmp_path)[1]) == [0, 1]
@@ -201,7 +195,7 @@ Journal.add = add_three
 def test_a_killed_run_is_resumed_to_the_same_end(tmp_path, monkeypatch):
     keep_checks(monkeypatch, *KEPT)
     monkeypatch.chdir(Path(__file__).parents[2])
-    options = ["check", str(EXAMPLE), "--report", str(tmp_path)]
+    options = ["check", PLASTER, "--report", str(tmp_path)]
     code = f"{SHORT}{WAITING}sys.exit(main())"
     process = subprocess.Popen([sys.executable, "-c", code, *options], stdout=subprocess.DEVNULL)
     path = tmp_path / JOURNAL
@@ -215,7 +209,7 @@ def test_a_killed_run_is_resumed_to_the_same_end(tmp_path, monkeypatch):
     assert finished.returncode == 0, finished.stderr
     lines = path.read_text().splitlines()[1:]
     assert len(lines) == len(set(lines)) and len(done) > 0
-    assert read_run(tmp_path).results == check([EXAMPLE], libraries=["eonlib", "stock"]).results
+    assert read_run(tmp_path).results == check(PLASTER, libraries=["eonlib", "stock"]).results
 
 
 def test_threads_read_pixels_at_once(tmp_path):

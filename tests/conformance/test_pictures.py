@@ -44,17 +44,9 @@ SUM += '<add name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="lob
 SUM += '<input name="in2" type="BSDF" nodename="lobe2"/></add>'
 
 
-def colors(first, second):
-    """Document of two lobes, colored by two nodegraphs whose nodes have the given names."""
-    red = COLOR.format(graph="red", node=first, color="1, 0, 0")
-    green = COLOR.format(graph="green", node=second, color="0, 1, 0")
-    return material(red + green + SUM)
-
-
 def test_a_film_of_the_index_of_its_schlick_substrate_has_one_phase(shown):
-    result, *_ = shown(
-        material(lobe("generalized_schlick_bsdf", color0=(0.04, 0.04, 0.04), **FILM))
-    )
+    film = lobe("generalized_schlick_bsdf", color0=(0.04, 0.04, 0.04), **FILM)
+    result, *_ = shown(material(film))
     assert result.verdict == "passed"
     assert result.error < 1e-4  # another phase would be off by 0.17
 
@@ -79,7 +71,9 @@ def test_a_truth_value_is_drawn_white_or_black(shown):
 
 
 def test_nodes_of_one_name_in_two_nodegraphs_are_named(shown):
-    result, _, notes = shown(colors("tint", "tint"))
+    red = COLOR.format(graph="red", node="tint", color="1, 0, 0")
+    green = COLOR.format(graph="green", node="tint", color="0, 1, 0")
+    result, _, notes = shown(material(red + green + SUM))
     assert result.verdict == "failed"
     assert has(result, "same_names", '"red/tint" and "green/tint"')
     assert any("must have different names" in text for text, _ in notes)
@@ -145,9 +139,8 @@ def test_a_pattern_alone_is_what_a_surface_emits_of_it(shown):
 
 
 def test_materials_that_vary_are_judged_and_compared_at_some_of_the_pixels(shown):
-    metal = node_text(
-        "conductor_bsdf", "BSDF", "lobe", connection_text("roughness", "vector2", "rough")
-    )
+    port = connection_text("roughness", "vector2", "rough")
+    metal = node_text("conductor_bsdf", "BSDF", "lobe", port)
     metal += node_text("convert", "vector2", "rough", connection_text("in", "float", "noise"))
     result, pictures, _ = shown(material(NOISE + metal))
     furnace = pictures[-1]
@@ -193,15 +186,10 @@ def test_a_volume_dims_what_is_transmitted_and_not_what_is_reflected(lit):
     assert np.allclose(reflected, lit(glass(scatter_mode="R"), FURNACE))
 
 
-@pytest.mark.parametrize(
-    "node",
-    [
-        glass(scatter_mode="RT"),
-        lobe("subsurface_bsdf", radius=(0.5, 0.2, 0.05)),
-        lobe("chiang_hair_bsdf"),
-    ],
-    ids=["transmission", "subsurface", "hair"],
-)
+WAX = lobe("subsurface_bsdf", radius=(0.5, 0.2, 0.05))
+
+
+@pytest.mark.parametrize("node", [glass(scatter_mode="RT"), WAX, lobe("chiang_hair_bsdf")])
 def test_lobes_below_the_surface_have_a_picture_like_gl(shown, node):
     result, *_ = shown(material(node))
     assert (result.check, result.verdict) == ("picture", "passed")
@@ -238,8 +226,6 @@ def test_the_first_wrong_node_of_a_pattern_is_named(shown, tmp_path):
 
 # --- nodes that the models do not cover --------------------------------------------------------
 
-OUTSIDE = (("color", "0.5, 1.5, 0.5", "1"), ("weight", "1.5", "1"), ("roughness", "1.6", "pi/2"))
-
 
 @pytest.mark.parametrize(
     "nodes, scene, words",
@@ -267,7 +253,10 @@ def test_what_the_models_do_not_cover_did_not_run(reference, nodes, scene, words
         reference.picture(shader, scene)
 
 
-@pytest.mark.parametrize("name, value, high", OUTSIDE)
+@pytest.mark.parametrize(
+    "name, value, high",
+    [("color", "0.5, 1.5, 0.5", "1"), ("weight", "1.5", "1"), ("roughness", "1.6", "pi/2")],
+)
 def test_a_value_outside_its_model_is_not_judged(shown, name, value, high):
     result, pictures, notes = shown(material(lobe(**{name: value})))
     assert result.verdict == "not run" and not pictures

@@ -19,13 +19,11 @@ NODES = ("burley_diffuse_bsdf", "conical_edf", "roughness_anisotropy")
 
 def verdicts(run):
     """Verdict, and whether the control was detected, by library, subject and check."""
-    return {
-        (each.library, each.subject, each.check): (
-            each.verdict,
-            each.control is None or each.control.caught,
-        )
-        for each in run.results
-    }
+    found = {}
+    for each in run.results:
+        caught = each.control is None or each.control.caught
+        found[each.library, each.subject, each.check] = each.verdict, caught
+    return found
 
 
 @pytest.mark.parametrize("seed", SEEDS)

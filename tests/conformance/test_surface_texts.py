@@ -35,12 +35,10 @@ def shown(spec: SentenceSpec, library: str = "stock") -> np.ndarray:
     [batch] = spec.batches(Counts())
     branch, _, factor = spec.evaluated
     count, made = len(batch.wo), shader(spec.text.node, library)
-    inputs = {
-        name: np.broadcast_to(value, (count, *np.shape(value)[-1:]))
-        if np.shape(value)[:1] != (count,)
-        else value
-        for name, value in {**spec.fixed, **batch.inputs}.items()
-    }
+    inputs = {**spec.fixed, **batch.inputs}
+    for name, value in inputs.items():
+        if np.shape(value)[:1] != (count,):
+            inputs[name] = np.broadcast_to(value, (count, *np.shape(value)[-1:]))
     dark = np.broadcast_to([0.0, 0.0, -1.0], batch.wo.shape)
     wi = {"direct": batch.wi, "emission": dark}.get(branch)
     frame = (np.broadcast_to(axis, batch.wo.shape) for axis in (UP, ALONG))
