@@ -437,7 +437,7 @@ def parameters(row):
     return pytest.param(row, id=f"{check}, {title}", marks=marks)
 
 
-@pytest.mark.parametrize("row", map(parameters, ROWS))
+@pytest.mark.parametrize("row", [parameters(row) for row in ROWS])
 def test_a_wrong_line_fails_the_check_meant_for_it_and_is_named(judged, tmp_path, row):
     title, file, old, new, check, cause, *verdict = row
     library = wrong_library(tmp_path, file, old, new.replace("OLD", old))

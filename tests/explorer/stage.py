@@ -95,8 +95,5 @@ def picture(stage, name="left"):
 def towards(light):
     """Unit vector towards a light in LIGHTS."""
     azimuth, elevation = np.radians(LIGHTS[light])
-    return (
-        float(np.sin(azimuth) * np.cos(elevation)),
-        float(np.sin(elevation)),
-        float(np.cos(azimuth) * np.cos(elevation)),
-    )
+    x, z = np.cos(elevation) * np.array([np.sin(azimuth), np.cos(azimuth)])
+    return float(x), float(np.sin(elevation)), float(z)

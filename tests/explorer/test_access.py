@@ -28,14 +28,6 @@ def documents(tmp_path_factory):
     return written(file, "clay", "standard_surface_rough_base")
 
 
-def findings(page):
-    """Accessibility problems that axe-core finds in the page's current state."""
-    return [
-        f"{each['id']}: {each['help']}: {each['nodes'][0]['html']}"
-        for each in page.evaluate("axe.run()")["violations"]
-    ]
-
-
 @pytest.fixture(scope="module")
 def checked(browser, documents):
     """Explorer page with axe-core loaded; its security policy, which would block it, is off."""
@@ -50,7 +42,8 @@ def test_axe_finds_nothing(checked, name):
     checked.emulate_media(color_scheme="dark" if name == "dark" else "light")
     checked.evaluate("mxeon.show(mxeon.fromAddress(''))")
     show(checked, **VIEWS[name])
-    assert findings(checked) == []
+    violations = checked.evaluate("axe.run()")["violations"]
+    assert [(each["id"], each["help"], each["nodes"][0]["html"]) for each in violations] == []
 
 
 def test_without_webgl2_there_are_all_numbers(browser, documents):

@@ -53,9 +53,8 @@ def test_a_view_of_other_values_everywhere_comes_back(undrawn):
     ],
 )
 def test_what_cannot_be_read_keeps_its_first_value(undrawn, part):
-    assert undrawn.evaluate("address => mxeon.fromAddress(address)", part) == undrawn.evaluate(
-        "mxeon.fromAddress('')"
-    )
+    found = undrawn.evaluate("address => mxeon.fromAddress(address)", part)
+    assert found == undrawn.evaluate("mxeon.fromAddress('')")
 
 
 def test_numbers_out_of_range_come_to_its_ends(undrawn):

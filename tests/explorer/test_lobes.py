@@ -24,18 +24,15 @@ PLAIN = {"shape": "sphere", "surroundings": "none"}
 
 def choose(sheet, key):
     """Compare both libraries on a material in a view that is fast to draw."""
-    sheet.get_by_role("group", name="eonlib beside stock MaterialX").locator(
-        f"input[value='{key}/']"
-    ).check(force=True)
+    group = sheet.get_by_role("group", name="eonlib beside stock MaterialX")
+    group.locator(f"input[value='{key}/']").check(force=True)
     show(sheet, **PLAIN)
 
 
 def kinds(sheet):
     """Kinds of the verdicts on both sides."""
-    return [
-        sheet.locator(f".side.{side} .verdict").get_attribute("class").split()[1]
-        for side in ("left", "right")
-    ]
+    sides = [sheet.locator(f".side.{side} .verdict") for side in ("left", "right")]
+    return [each.get_attribute("class").split()[1] for each in sides]
 
 
 @pytest.mark.parametrize(("key", "stock"), STOCK.items())
@@ -49,17 +46,15 @@ def test_a_lobe_is_judged_by_its_values(page, key, stock):
 def mistaken(tmp_path_factory):
     """URL of a page on which the reference for sheen is one percent too bright."""
     data = page_data(pages="upstream/{}.html")
-    sources = tuple(map(brightened, data.sources))
+    sources = list(data.sources)
+    for place, source in enumerate(sources):
+        if source.id.startswith("lobe/sheen/"):
+            values = tuple(1.01 * value for value in source.reference.direct)
+            reference = replace(source.reference, direct=values, forms=())
+            sources[place] = replace(source, reference=reference)
     file = tmp_path_factory.mktemp("mistaken") / "page.html"
-    write_text(file, page(replace(data, sources=sources)))
+    write_text(file, page(replace(data, sources=tuple(sources))))
     return file.as_uri()
-
-
-def brightened(source):
-    if not source.id.startswith("lobe/sheen/"):
-        return source
-    values = tuple(1.01 * value for value in source.reference.direct)
-    return replace(source, reference=replace(source.reference, direct=values, forms=()))
 
 
 SHEEN = "a=lobe/sheen/eonlib,0,exact&b=lobe/sheen/stock,0,exact&shape=sphere&surroundings=none"

@@ -35,9 +35,7 @@ def recolored(page):
         if canvas.screenshot() != before:
             break
         page.wait_for_timeout(100)
-    else:
-        raise AssertionError("the picture stays as it was")
-    assert page.evaluate(PIXELS) == radiance
+    assert canvas.screenshot() != before and page.evaluate(PIXELS) == radiance
 
 
 def fill(page, label, value):
@@ -113,9 +111,8 @@ def test_a_reader_learns_which_is_eon_and_by_how_much_the_other_is_wrong(page):
     judged(page, "left", "EON")
     assert page.locator(".side.left .verdict").inner_text().startswith("EON Correct")
     verdict = page.locator(".side.right .verdict").inner_text()
-    here, anywhere = map(
-        float, re.search(r"up to (\S+) in this light and (\S+) in", verdict).groups()
-    )
+    found = re.search(r"up to (\S+) in this light and (\S+) in", verdict)
+    here, anywhere = map(float, found.groups())
     assert "too bright where the light comes from behind" in verdict
     until(page, "document.querySelector('.values').innerText.includes('too bright')")
     error = page.locator(".values tbody tr").nth(2).locator("td").nth(1).inner_text()
@@ -128,9 +125,8 @@ def test_paths_have_samplers_and_count_their_samples(page):
     page.locator(".side.right").get_by_label("Samples").select_option("cosine")
     side = {"source": "shader/stock", "flag": True, "sampler": "cosine"}
     shows(page, paths=True, samples=2, right=side)
-    until(
-        page, "document.querySelector('.picture .status').textContent.startsWith('2 of 2 samples')"
-    )
+    status = "document.querySelector('.picture .status').textContent"
+    until(page, f"{status}.startsWith('2 of 2 samples')")
     # The status reports noise only for 16 samples or more.
     assert "noise" not in page.locator(".picture .status").inner_text()
 
@@ -145,13 +141,12 @@ def in_sight(page):
 def drag(page, start, end):
     """Drag the mouse between two places in the picture, given in [0, 1]^2."""
     box = in_sight(page)
-    (x0, y0), (x1, y1) = (
-        (box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in (start, end)
-    )
-    page.mouse.move(x0, y0)
+    corner, size = np.array([[box["x"], box["y"]], [box["width"], box["height"]]])
+    start, end = corner + size * start, corner + size * end
+    page.mouse.move(*start)
     page.mouse.down()
-    page.mouse.move((x0 + x1) / 2, (y0 + y1) / 2)
-    page.mouse.move(x1, y1)
+    page.mouse.move(*(start + end) / 2)
+    page.mouse.move(*end)
     page.mouse.up()
 
 
@@ -227,10 +222,7 @@ def test_a_click_probes_a_point(page):
     shows(page, probe=None)
 
 
-# Relative error of a shader's value: at most 64 float32 roundings.
-SHADER = 64 * 2**-24
-
-
+SHADER = 64 * 2**-24  # relative error of a shader's value: at most 64 float32 roundings
 # JavaScript for the texts of the table's rows, false until values of both shaders are known.
 READ = """(() => {
     const rows = [...document.querySelectorAll('.values tbody tr')].map(
@@ -244,12 +236,8 @@ def numbers(text):
     return [float(word) for word in re.findall(r"[+-]?\d+\.\d+", text.replace("−", "-"))]
 
 
-def values_read(page):
-    return until(page, READ)
-
-
 def test_the_probe_shows_the_value_of_the_shader_and_the_reference(page):
-    rows = values_read(page)
+    rows = until(page, READ)
     wo, wi = np.reshape(numbers(page.locator(".directions").inner_text()), (2, 3))
     value, reference = (numbers(rows[row][0]) for row in (0, 1))
     wo, wi = wo / np.linalg.norm(wo), wi / np.linalg.norm(wi)
@@ -266,7 +254,7 @@ def copied(page, side, what):
 
 
 def test_the_python_line_runs_and_gives_the_value(page):
-    rows = values_read(page)
+    rows = until(page, READ)
     for column, side in enumerate("AB"):
         line = copied(page, side, "Python")
         found = [float(word) for word in output(sys.executable, "-c", line).split()]

@@ -68,10 +68,8 @@ def test_albedos_are_numpys(undrawn, row):
         else:
             expected = albedo_dir_quadrature(row.brdf, COSINES, RHO, *arguments, nodes=16)
         assert np.abs(np.array(dirs[k]) - expected).max() < VALUE
-        if row.albedo_avg:
-            assert (
-                np.abs(np.array(avgs[k]) - row.albedo_avg(RHO, *arguments)).max() < 1e-12
-            )  # computed without fits
+        if row.albedo_avg:  # computed without fits
+            assert np.abs(np.array(avgs[k]) - row.albedo_avg(RHO, *arguments)).max() < 1e-12
 
 
 @pytest.mark.parametrize(

@@ -172,9 +172,9 @@ def test_subsurface_keeps_its_color(host):
 
 @pytest.mark.parametrize("node", NODES)
 def test_blender_has_one_power_of_the_color_too_many(judged, node):
+    keys = ("value", "environment", "black")
     value, environment, black = (
-        judged(key, node.title, "cycles-native", RENDERER_NODES)
-        for key in ("value", "environment", "black")
+        judged(key, node.title, "cycles-native", RENDERER_NODES) for key in keys
     )
     assert (value.verdict, environment.verdict, black.verdict) == (FAILED, FAILED, PASSED)
     assert all(each.control.caught for each in (value, environment, black))

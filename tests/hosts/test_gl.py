@@ -21,25 +21,18 @@ from tests.support.tolerances import PICTURE
 
 SIZE = 96
 ROUGH = {"color": (0.8, 0.4, 0.1), "roughness": 0.9}
-LOBES = {
-    "eon": lobe(**ROUGH, energy_compensation=True),
-    "qon": lobe(**ROUGH),
-    "node": lobe(EON, **ROUGH),
-}
-
-
-def shader(nodes):
-    return generate(material(nodes), "glsl", lights=True, policy=Policy(outside=True))[0]
+LOBES = lobe(**ROUGH, energy_compensation=True), lobe(**ROUGH), lobe(EON, **ROUGH)
 
 
 def picture(host, nodes, scene):
-    return host.picture(shader(nodes), replace(scene, size=SIZE))
+    [shader] = generate(material(nodes), "glsl", lights=True, policy=Policy(outside=True))
+    return host.picture(shader, replace(scene, size=SIZE))
 
 
 @pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("name", LOBES)
-def test_every_pixel_is_the_models(gl, reference, name, scene):
-    image, expected = (picture(host, LOBES[name], scene) for host in (gl, reference))
+@pytest.mark.parametrize("nodes", LOBES, ids=["eon", "qon", "node"])
+def test_every_pixel_is_the_models(gl, reference, nodes, scene):
+    image, expected = (picture(host, nodes, scene) for host in (gl, reference))
     points = sphere(SIZE)
     mask = points.mask
     error = np.abs(image - expected)[mask].max(axis=1) * points.normal[mask][:, 2]

@@ -30,14 +30,9 @@ def altered(made, old, new):
 
 
 def names(tree):
-    return (
-        [] if tree is None else [tree.name, *(each for part in tree.parts for each in names(part))]
-    )
-
-
-def leaf(tree):
-    """First closure in a tree of closures."""
-    return leaf(tree.parts[0]) if tree.parts else tree
+    if tree is None:
+        return []
+    return [tree.name, *(each for part in tree.parts for each in names(part))]
 
 
 @pytest.fixture
@@ -128,9 +123,8 @@ def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag
     total = np.zeros((COUNT, 3))
     for rows, factor, closure in for_cycles(host, node, wo, inputs):
         color, rough = closure.arguments["color"], closure.arguments["roughness"]
-        fon, eon = (
-            each(wo[rows], wi[rows], color, rough) for each in (models.fon_brdf, models.eon_brdf)
-        )
+        inputs_here = wo[rows], wi[rows], color, rough
+        fon, eon = models.fon_brdf(*inputs_here), models.eon_brdf(*inputs_here)
         total[rows] += factor * (fon + color * (eon - fon))
     expected = inputs["weight"][:, np.newaxis] * model(wo, wi, inputs["color"], inputs["roughness"])
     error = np.pi * wi[:, 2:] * np.abs(total - expected)
@@ -148,9 +142,8 @@ def test_the_cone_for_cycles_is_the_model_on_both_sides(host, soft):
     inputs = {name: np.float64(np.float32(each)) for name, each in inputs.items()}
     turned = {**inputs, "normal": np.sign(wo[:, 2:]) * [[0.0, 0.0, 1.0]]}
     total = np.zeros((COUNT, 3))
-    for rows, factor, closure in for_cycles(
-        host, "conical_edf", -wo, turned, "backfacing()", "(dot(vector(0.0, 0.0, 1.0), I) < 0.0)"
-    ):
+    change = "backfacing()", "(dot(vector(0.0, 0.0, 1.0), I) < 0.0)"
+    for rows, factor, closure in for_cycles(host, "conical_edf", -wo, turned, *change):
         total[rows] += factor * closure.arguments["color"]
     angles = (inputs["inner_angle"], inputs["outer_angle"])
     assert np.abs(total - conical_edf(wo, inputs["color"], *angles)).max() <= 1e-5

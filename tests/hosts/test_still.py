@@ -42,10 +42,8 @@ def test_the_floor_far_away_has_the_light_of_the_open_sky_and_less_beside_the_fo
 def test_the_ball_stands_on_the_floor(hosts):
     host = hosts("gl")
     [shader] = host.compile(WHITE)
-    image, paper = (
-        still(host, shader, replace(STUDIO, size=SIZE)),
-        floor(replace(STUDIO, size=SIZE)),
-    )
+    scene = replace(STUDIO, size=SIZE)
+    image, paper = still(host, shader, scene), floor(scene)
     np.testing.assert_array_equal(image[0, [0, -1]], paper[0, [0, -1]])
     assert (image[SIZE // 4, SIZE // 2] > 1.5 * paper[SIZE // 4, SIZE // 2]).all()
 
@@ -101,9 +99,8 @@ def test_a_mesh_shades_the_floor_and_is_drawn_on_it(hosts, wall):
 def test_the_path_tracer_refuses_a_mesh(wall):
     host = PathTracerHost()
     [shader] = host.compile(WHITE)
-    with pytest.raises(
-        InputError, match="--integrator path: shape must be sphere or ball; got .*wall"
-    ):
+    words = "--integrator path: shape must be sphere or ball; got .*wall"
+    with pytest.raises(InputError, match=words):
         host.picture(shader, replace(STUDIO, size=SIZE, shape=wall))
     host.close()
 
