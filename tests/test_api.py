@@ -69,17 +69,16 @@ def test_one_name_or_path_is_taken_and_several_where_there_may_be(short, name):
         assert call(each)
 
 
-WRONG = (3, None, b"clay.mtlx", [3], [["eon"]])
-OPTIONAL = ("files", "nodes", "profile", "element")
-SOME = ("files", "hosts", "libraries", "nodes")
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_anything_else_is_refused_in_a_sentence(short, name):
-    for wrong in (*WRONG, *([[]] if name in SOME else [])):
-        if wrong is not None or name not in OPTIONAL:
-            with pytest.raises(ValueError, match=r"^[^\n]*( must be |no model |no rough)[^\n]*$"):
-                NAMES[name][0](wrong)
+    wrong = [3, b"clay.mtlx", [3], [["eon"]]]
+    if name not in ("files", "nodes", "profile", "element"):  # optional ones may be None
+        wrong.append(None)
+    if name in ("files", "hosts", "libraries", "nodes"):
+        wrong.append([])
+    for each in wrong:
+        with pytest.raises(ValueError, match=r"^[^\n]*( must be |no model |no rough)[^\n]*$"):
+            NAMES[name][0](each)
 
 
 def test_an_argument_that_is_refused_names_the_parameter(short):
@@ -97,8 +96,6 @@ def test_an_argument_that_is_refused_names_the_parameter(short):
 
 
 REFUSED = {"refused": {"cut.mtlx": ("cut.mtlx: must be XML",)}}
-
-
 STOCK = {"compared": ("stock",)}
 ALLOWED = "1 differs, but the specification allows it."
 DIRECTIONS = caused("defect", "other_directions")
@@ -155,11 +152,7 @@ def test_no_repr_prints_arrays_or_text_of_shaders(monkeypatch):
     [shader, *_] = mxeon.generate(CLAY, "glsl")
     for each in (
         Picture("a.mtlx", "clay", "gl", "eonlib", "side", pixels, pixels, {"device": "x"}),
-        made(
-            FAILED,
-            diagnosis=caused("model", "EON", distances={"EON": 0.1}),
-            worst={"wo": [0.0, 0.0, 1.0]},
-        ),
+        made(FAILED, diagnosis=DIRECTIONS, worst={"wo": [0.0, 0.0, 1.0]}),
         made_run(*[made()] * 20),
         shader,
     ):
@@ -179,9 +172,8 @@ def test_dir_shows_public_names_alone_and_defaults_are_plain():
 
 # --- the example in docs/api/conformance.md ---------------------------------------------------
 
-[GATE] = re.findall(
-    r"```python\n(.*?)```", (ROOT / "docs/api/conformance.md").read_text("utf-8"), re.DOTALL
-)
+PAGE = (ROOT / "docs/api/conformance.md").read_text("utf-8")
+[GATE] = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
 
 
 def test_the_gate_of_the_page_passes_good_materials_and_stops_others(tmp_path, monkeypatch, capsys):

@@ -35,15 +35,14 @@ def noisy(rng, model, parameters, count=200, known=True):
     wo, wi = directions((2, count), rng, least=0.05)
     value = mxeon.model(model).brdf(wo, wi, **parameters)
     error = NOISE * (value if known else np.full_like(value, 0.2))
-    return MeasuredBrdf(
-        wo, wi, value + error * rng.normal(size=value.shape), error if known else None
-    )
+    value = value + error * rng.normal(size=value.shape)
+    return MeasuredBrdf(wo, wi, value, error if known else None)
 
 
 def deviates(fit, parameters):
     """Differences of fitted from true parameters, in units of the fit's errors."""
-    pairs = [(fit.values[name] - parameters[name]) / fit.errors[name] for name in fit.values]
-    return np.concatenate([np.atleast_1d(each) for each in pairs])
+    found = [(fit.values[name] - parameters[name]) / fit.errors[name] for name in fit.values]
+    return np.hstack(found)
 
 
 @pytest.mark.parametrize("known", (True, False))
@@ -64,11 +63,8 @@ def test_the_parameters_of_a_dielectric_over_eon_lie_within_their_errors():
     assert max(each.max() for each in fit.errors.values()) < 0.1
     other = fit_brdf(data, "eon")  # EON must not fit these data
     assert fit.fits and not other.fits and other.scatter > 2.0
-    assert (
-        str(other)
-        .splitlines()[0]
-        .endswith(": the model does not fit; its errors assume that it does")
-    )
+    first = str(other).splitlines()[0]
+    assert first.endswith(": the model does not fit; its errors assume that it does")
 
 
 def test_a_fit_says_its_parameters_and_evaluates_its_model():

@@ -80,45 +80,32 @@ def conty_kulla_error(coefficients):
 
 
 @pytest.mark.parametrize(
-    "stem, function, error, stated",
+    "stem, name, error, stated",
     [
         ("ggx_albedo", "ggx_missing", ggx_albedo.largest_error, tolerances.FIT_GGX),
-        (
-            "conty_kulla_albedo",
-            "conty_kulla_albedo_dir",
-            conty_kulla_error,
-            tolerances.FIT_CONTY_KULLA,
-        ),
-        (
-            "fresnel_dielectric",
-            "eonlib_fresnel_dielectric_avg",
-            fresnel_average.dielectric_error,
-            5.35e-5,
-        ),
+        ("conty_kulla_albedo", "conty_kulla_albedo_dir", conty_kulla_error, tolerances.FIT_CONTY_KULLA),
+        ("fresnel_dielectric", "eonlib_fresnel_dielectric_avg", fresnel_average.dielectric_error, 5.35e-5),
     ],
-)
-def test_a_fit_has_the_error_that_stands_beside_it(stem, function, error, stated):
-    first, *others = shipped_coefficients(stem, function)
+)  # fmt: skip
+def test_a_fit_has_the_error_that_stands_beside_it(stem, name, error, stated):
+    first, *others = shipped_coefficients(stem, name)
     assert error((first, *others)) <= stated < error((first + 1e-2, *others))
 
 
 def test_anisotropic_facets_have_the_errors_that_their_tolerances_state():
-    stated = microfacets.ANISOTROPIC_FIT
-    assert (
-        ggx_anisotropic.largest_error()
-        <= stated
-        < ggx_anisotropic.largest_error(coefficients=(*ggx_anisotropic.MISSED[:3], 0.0))
-    )
+    wrong = ggx_anisotropic.largest_error(coefficients=(*ggx_anisotropic.MISSED[:3], 0.0))
+    assert ggx_anisotropic.largest_error() <= microfacets.ANISOTROPIC_FIT < wrong
     assert ggx_anisotropic.largest_visible_error() <= microfacets.ANISOTROPIC_LOBE_FIT
     text = source_file("glsl", "ggx_anisotropic").read_text()
     assert all(f"{abs(each):g}" in text for each in (*ggx_anisotropic.MISSED, 0.7, 0.35))
 
 
 def test_the_albedo_of_smooth_ggx_has_the_error_that_its_tolerance_states():
-    mu = np.linspace(0.05, 1.0, 400)
-    fitted = ggx_albedo.fitted(
-        mu, np.full_like(mu, 1e-6), shipped_coefficients("ggx_albedo", "ggx_missing")
+    mu, coefficients = (
+        np.linspace(0.05, 1.0, 400),
+        shipped_coefficients("ggx_albedo", "ggx_missing"),
     )
+    fitted = ggx_albedo.fitted(mu, np.full_like(mu, 1e-6), coefficients)
     error = np.abs(1.0 - fitted).max()
     assert 0.9 * microfacets.SMOOTH_ESS_FIT < error <= microfacets.SMOOTH_ESS_FIT
 
@@ -173,17 +160,11 @@ def test_the_quadrature_of_the_fit_is_that_of_the_models():
 
 def test_the_cosines_of_ggx_have_the_errors_that_stand_beside_them():
     grid = ggx_cosine.points(9, 7)
+    dielectric = [1.7e-3 if 1.05 <= n <= 2.5 else 3e-3 for n in ggx_cosine.IORS]
+    schlick = [1.9e-3 if q == 5 else 3.2e-3 for q in ggx_cosine.EXPONENTS]
     for stem, curves, largest in (
-        (
-            "fresnel_dielectric",
-            ggx_cosine.DIELECTRIC,
-            [1.7e-3 if 1.05 <= n <= 2.5 else 3e-3 for n in ggx_cosine.IORS],
-        ),
-        (
-            "fresnel_schlick",
-            ggx_cosine.SCHLICK,
-            [1.9e-3 if q == 5 else 3.2e-3 for q in ggx_cosine.EXPONENTS],
-        ),
+        ("fresnel_dielectric", ggx_cosine.DIELECTRIC, dielectric),
+        ("fresnel_schlick", ggx_cosine.SCHLICK, schlick),
     ):
         coefficients = shipped_coefficients(stem, curves.function)
         errors = ggx_cosine.errors(curves, coefficients, *grid)
@@ -195,10 +176,8 @@ def test_the_cosines_of_ggx_have_the_errors_that_stand_beside_them():
 def test_the_colors_of_a_black_body_have_the_errors_that_stand_beside_them():
     text = source_file("glsl", "blackbody").read_text(encoding="utf-8")
     stated = re.findall(r"Largest absolute errors: (\S+) and (\S+)\.", text)
-    rows = {
-        name: [float(each) for each in re.findall(rf"#define BLACKBODY_{name}_\w\d (\S+)", text)]
-        for name in "XZ"
-    }
+    found = {name: re.findall(rf"#define BLACKBODY_{name}_\w\d (\S+)", text) for name in "XZ"}
+    rows = {name: list(map(float, texts)) for name, texts in found.items()}
     errors = blackbody.largest_errors(rows, 150)
     for error, limit in zip(errors.values(), map(float, stated[0]), strict=True):
         assert 0.9 * limit < error <= limit
@@ -207,16 +186,12 @@ def test_the_colors_of_a_black_body_have_the_errors_that_stand_beside_them():
 
 
 def test_the_shader_has_the_nodes_of_a_film():
-    text = "".join(
-        source_file("glsl", each).read_text() for each in ("thin_film", "microfacet_film")
-    )
+    files = (source_file("glsl", each) for each in ("thin_film", "microfacet_film"))
+    text = "".join(each.read_text() for each in files)
 
     def rows(pattern):
-        found = re.findall(rf"#define \w+_{pattern} (.*)", text)
-        return [
-            list(map(float, re.findall(r"-?\d[\d.e-]*", re.sub(r"^vec\d", "", each))))
-            for each in found
-        ]
+        found = re.findall(rf"#define \w+_{pattern} (?:vec\d)?(.*)", text)
+        return [list(map(float, re.findall(r"-?\d[\d.e-]*", each))) for each in found]
 
     np.testing.assert_array_equal(np.transpose(rows(r"AVERAGE_\d")), thin_film.NODES)
     facets = re.findall(r"vec3\(([-\d., ]+)\)", text.partition("vec3 C = ")[2].partition(";")[0])

@@ -85,30 +85,23 @@ def test_the_action_fails_where_the_library_does_and_keeps_the_report(wrong, sta
     assert (tmp_path / "summary.md").read_text().startswith(f"    {sentence}\n")
 
 
-OPTIONS = {
-    "": [],
-    "\n--full\n": ["--full"],
-    "--node a\n\n--node  b c.mtlx": ["--node", "a", "--node", "b", "c.mtlx"],
-    "'a b.mtlx' \"$HOME/*\"\nc\\ d": ["a b.mtlx", "$HOME/*", "c d"],
-}
-
-
-@pytest.mark.parametrize("text", OPTIONS)
-def test_the_action_takes_every_line_of_its_options(text, tmp_path):
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        ("", []),
+        ("\n--full\n", ["--full"]),
+        ("--node a\n\n--node  b c.mtlx", ["--node", "a", "--node", "b", "c.mtlx"]),
+        ("'a b.mtlx' \"$HOME/*\"\nc\\ d", ["a b.mtlx", "$HOME/*", "c d"]),
+    ],
+)
+def test_the_action_takes_every_line_of_its_options(text, words, tmp_path):
     echo = tmp_path / "echo"
     echo.write_text('#!/bin/sh\nprintf "%s\\n" "$@"\n')
     echo.chmod(0o755)
     done = ended("library", tmp_path, text, echo, "look.mtlx 'my looks'")
-    given = [
-        "check",
-        "--annotations",
-        "--report",
-        str(tmp_path / "report"),
-        "look.mtlx",
-        "my looks",
-        *OPTIONS[text],
-    ]
-    assert done.stdout.splitlines() == [*given, "--library", "library"]
+    report = ["--report", str(tmp_path / "report")]
+    expected = ["check", "--annotations", *report, "look.mtlx", "my looks", *words]
+    assert done.stdout.splitlines() == [*expected, "--library", "library"]
 
 
 @pytest.mark.parametrize("status", range(4))

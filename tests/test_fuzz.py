@@ -9,7 +9,7 @@ import pytest
 
 from mxeon.jobs import pool
 from tests.fuzz import opens
-from tests.fuzz.families import COUNTS, cases
+from tests.fuzz.cases import COUNTS, cases
 from tests.fuzz.trial import judged
 from tests.support.availability import program
 

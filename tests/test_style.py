@@ -3,6 +3,7 @@
 
 import re
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -10,41 +11,27 @@ import pytest
 from tests.support.command import output
 
 ROOT = Path(__file__).parents[1]
-TOOLS = {
-    "lint": ("ruff", "check", "--no-cache"),
-    "format": ("ruff", "format", "--check", "--no-cache"),
-    "types": ("mypy",),
-    "types on Windows": ("mypy", "--platform", "win32", "--cache-dir", ".mypy_cache/win32"),
-}
+WINDOWS = ("mypy", "--platform", "win32", "--cache-dir", ".mypy_cache/win32")
+TOOLS = [("ruff", "check", "--no-cache"), ("ruff", "format", "--check", "--no-cache")]
+TOOLS += [pytest.param(tool, marks=pytest.mark.whole) for tool in (("mypy",), WINDOWS)]
 
 
-@pytest.mark.parametrize(
-    "tool",
-    [
-        "lint",
-        "format",
-        *(pytest.param(tool, marks=pytest.mark.whole) for tool in ("types", "types on Windows")),
-    ],
-)
+@pytest.mark.parametrize("tool", TOOLS)
 def test_the_code_passes(tool):
-    output(sys.executable, "-m", *TOOLS[tool], cwd=ROOT)
+    output(sys.executable, "-m", *tool, cwd=ROOT)
 
 
-FRAGMENT = re.compile(
-    "(^|  ) *# (of|from|for|to|in|by|with|that|which|whose|where|as|on|at|over|than|beside|below|above"
-    "|without) "
-)
+WORDS = "of from for to in by with that which whose where as on at over than beside below above"
+FRAGMENT = re.compile(f"(^|  ) *# ({'|'.join(WORDS.split())}|without) ")
 
 
 def fragments(text):
     """Lines whose comment begins like a fragment; continuation lines and strings are ignored."""
-    lines = [line.lstrip() for line in text.splitlines()]
-    pairs = zip(["", *lines], lines, strict=False)
-    return [
-        b
-        for a, b in pairs
-        if FRAGMENT.search(b) and not (a[:1] == b[:1] == "#") and not b.startswith('"')
-    ]
+    lines, found = [line.lstrip() for line in text.splitlines()], []
+    for before, line in pairwise(["", *lines]):
+        if FRAGMENT.search(line) and line[:1] != '"' and not (before[:1] == line[:1] == "#"):
+            found.append(line)
+    return found
 
 
 def test_comments_stand_by_themselves():

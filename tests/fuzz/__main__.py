@@ -12,7 +12,7 @@ from collections import Counter
 from tqdm import tqdm
 
 from mxeon.jobs import pool
-from tests.fuzz.families import COUNTS, cases
+from tests.fuzz.cases import COUNTS, cases
 from tests.fuzz.trial import judged
 
 LIMIT = 300.0  # time limit of a case in seconds, for busy machines

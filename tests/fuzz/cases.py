@@ -1,12 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random cases for the fuzzer, made from a seed and a number."""
+"""Cases of the fuzzer in four families.
+
+`mutated` has random documents and command lines, made from a seed and a number. `found` has small
+cases that reproduce faults found earlier. `includes` and `names` are samples of a product of tables:
+all ways to include a file, and kinds of file names.
+"""
 
 import random
 import re
 from dataclasses import dataclass
+from itertools import product
 
-from tests.fuzz.documents import XI, document, word
-from tests.fuzz.words import CANARY
+from mxeon.shaders.library import examples_folder
+from tests.fuzz.documents import CANARY, POISON, XI, document, word
+from tests.support.documents import connected, material
 
 TARGETS = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang", "osl", "mdl")
 OUT = "../out"
@@ -112,3 +119,206 @@ AROUND = (
     ("secret.png", CANARY),
     ("1001.png", CANARY),
 )
+
+
+# --- faults of earlier runs, and documents at a limit ---------------------------------------------
+
+TINTED = connected(color='nodename="tint"')
+ROUGH = connected(roughness='value="0"')
+LEFT = '<mix name="lobe" type="BSDF"><input name="fg" type="BSDF" nodename="a"/></mix>'
+ADD = '<add name="a{}" type="color3">{}</add>'
+IMAGE = '<image name="tint" type="color3"><input name="{}" type="{}" value="{}"/></image>' + TINTED
+PROPERTY = IMAGE.replace("image", "geompropvalue").format("geomprop", "string", f"x; {POISON};")
+DEFINED = '<nodedef name="ND_{0}" node="{0}" {1}><output name="out" type="BSDF"/></nodedef>'
+TWICE = """<nodegraph name="NG_g{0}" nodedef="ND_g{0}"><{1} name="x" type="BSDF"/>
+  <{1} name="y" type="BSDF"/><add name="z" type="BSDF"><input name="in1" type="BSDF" nodename="x"/>
+  <input name="in2" type="BSDF" nodename="y"/></add><output name="out" type="BSDF" nodename="z"/>
+</nodegraph>"""
+RENDER = ("render", "base.mtlx", "--host", "reference", "--size", "4", "--output", f"{OUT}/a.png")
+
+
+def row(count, names):
+    """Lobe whose color comes from a chain of nodes; each uses the previous node in all `names`."""
+    port = '<input name="{}" type="color3" nodename="a{}"/>'
+    nodes = (
+        ADD.format(number, "".join(port.format(name, number - 1) for name in names if number))
+        for number in range(count)
+    )
+    return "".join(nodes) + connected(color=f'nodename="a{count - 1}"')
+
+
+def _generate(target):
+    return "generate", "base.mtlx", "--target", target, "--outputPath", OUT
+
+
+def doubled(count):
+    definitions = "".join(DEFINED.format(f"g{number}", "") for number in range(count))
+    parts = ["eon_diffuse_bsdf", *(f"g{number}" for number in range(count))]
+    graphs = "".join(TWICE.format(number, parts[number]) for number in range(count))
+    return f'{definitions}{graphs}<{parts[count]} name="lobe" type="BSDF"/>'
+
+
+def _inherited(count):
+    rows = (DEFINED.format(f"i{n}", f'inherit="ND_i{n - 1}"' if n else "") for n in range(count))
+    return "".join(rows) + f'<i{count - 1} name="lobe" type="BSDF"/>'
+
+
+# Title, nodes of the document, and command.
+ROWS = (
+    ("a lobe in an input", f'<input name="i" type="float">{ROUGH}</input>', _generate("glsl")),
+    ("a mix of one", f'<eon_diffuse_bsdf name="a" type="BSDF"/>{LEFT}', RENDER),
+    ("an image without a file", IMAGE.format("default", "color3", "1, 0, 0"), RENDER),
+    ("a row too long for recursion", row(900, ("in1",)), RENDER),
+    ("a row of which each uses the last twice", row(60, ("in1", "in2")), RENDER),
+    ("nodegraphs of which each uses the last twice", doubled(60), _generate("osl")),
+    ("definitions of which each inherits the last", _inherited(20_000), _generate("osl")),
+    (
+        "a type of the libraries with members",
+        '<typedef name="float"><member name="a" type="float"/></typedef>' + ROUGH,
+        _generate("glsl"),
+    ),
+    (
+        "a text that ends its quotes",
+        IMAGE.format("uaddressmode", "string", f"x&quot;; {POISON}; //"),
+        _generate("osl"),
+    ),
+    (
+        "a file name that ends its quotes",
+        IMAGE.format("file", "filename", f"&lt;UDIM&gt;&quot;; {POISON}; //"),
+        _generate("osl"),
+    ),
+    ("a property that is more than a name", PROPERTY, _generate("glsl")),
+    (
+        "a choice that is none",
+        IMAGE.format("uaddressmode", "string", f"periodic); {POISON}; ("),
+        _generate("mdl"),
+    ),
+)
+FOUND = tuple(
+    Case(name, (("base.mtlx", material(nodes).encode()),), arguments)
+    for name, nodes, arguments in ROWS
+) + (
+    Case("an argument of one long word", (), ("library", "a" * 70_000)),
+    Case("an argument that turns what is said", (), ("library", "\u202elrat")),
+)
+
+
+# --- families -----------------------------------------------------------------------------------
+
+SEED = 1
+COUNTS = {"found": len(FOUND), "mutated": 20_000, "includes": 1000, "names": 400}
+
+
+def cases(family, count=None):
+    """All cases of a family, or a random sample if there are more than `count`."""
+    rows, to_case = {
+        "found": (FOUND, lambda _, found: found),
+        "mutated": (range(20_000), lambda _, number: case(SEED, number)),
+        "includes": (includes(), including),
+        "names": (product(NAMES, READERS, ENCODINGS), named),
+    }[family]
+    rng, rows = random.Random(f"{SEED}-{family}"), list(rows)
+    drawn = rng.sample(rows, min(count or COUNTS[family], len(rows)))
+    return [to_case(rng, each) for each in drawn]
+
+
+# --- shader sources that include forbidden files, in all forms and depths ---------------------
+
+NODE = """<nodedef name="ND_own" node="own"><output name="out" type="color3"/></nodedef>
+<implementation name="IM_own" nodedef="ND_own" file="{}" {}{}/><own name="own" type="color3"/>"""
+FUNCTIONS = {
+    "glsl": "void own(out vec3 result) { result = vec3(0.5); }",
+    "msl": "void own(thread vec3& result) { result = vec3(0.5); }",
+    "slang": "void own(out vec3 result) { result = vec3(0.5); }",
+    "osl": "void own(output color result) { result = color(0.5); }",
+    "mdl": "color own() { return color(0.5); }",
+}
+WAYS = (
+    '#include "{}"',
+    '  #include"{}" // it',
+    '// #include "{}"',
+    'x#include "{}"y',
+    '#include "{}" "',
+    "#include <{}>",
+    "# include '{}'",
+    '#include "{}"\r',
+    '#include "lib/../{}"',
+    '#include "./{}',
+)
+FILES = (
+    "../secret.glsl", "link/secret.glsl", "/proc/self/cwd/../secret.glsl", "linked.glsl", "pipe.glsl",
+    "zero.glsl", "/dev/zero", "/dev/stdin", "/proc/self/mem", "/etc/hostname", "", ".", "textures",
+    "missing.glsl", "own.glsl", "part0.glsl", "latin.glsl", "empty.glsl", "marked.glsl", "null.glsl",
+    "base.mtlx", "textures/brick_color.png", "$fileTransformUv", "lib/$fileTransformUv", "\x00",
+    "../secret.glsl\x00", "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl", "a" * 300, "~", "$",
+    "libraries/stdlib/genglsl/lib/$fileTransformUv", "libraries/../../../../../../../../../etc/hostname",
+    "file:///etc/hostname", "link/documents/part1.glsl",
+)  # fmt: skip
+DEPTHS = (0, 1, 3, 15, 16, 400)
+BROUGHT = ("own.glsl", *FILES)  # files named by the implementation element
+
+LINKS = (("linked.glsl", "../secret.glsl"), ("zero.glsl", "/dev/zero"), ("pipe.glsl", ""))
+OTHERS = (
+    ("latin.glsl", b"// caf\xe9\nfloat latin;"),
+    ("empty.glsl", b""),
+    ("marked.glsl", b"\xef\xbb\xbffloat marked;"),
+    ("null.glsl", b"float nothing;\0"),
+)
+
+
+def includes():
+    """Rows: implementation's file, form of the include, included file, depth, target, function."""
+    for row in product(WAYS, FILES, DEPTHS, FUNCTIONS):
+        yield "own.glsl", *row, 'function="own" '
+    for name, target in product(BROUGHT, FUNCTIONS):
+        for function in ('function="own" ', 'function="" ', ""):
+            yield name, WAYS[0], "part0.glsl", 1, target, function
+
+
+def including(rng, row):
+    """Case with a document and a chain of shader sources that include each other."""
+    name, way, file, depth, target, function = row
+    links = [WAYS[0].format(f"part{number}.glsl") for number in range(depth)]
+    first, *parts = (f"{line}\n" for line in (*links, way.format(file)))
+    sources = [("own.glsl", first + FUNCTIONS[target])]
+    sources += [(f"part{number}.glsl", text + "float x;\n") for number, text in enumerate(parts)]
+    limited = rng.choice(("", f'target="gen{target}" '))
+    node = NODE.format(name.replace("\0", "\1"), function, limited)
+    document = material(node + connected(color='nodename="own"'))
+    files = [("base.mtlx", document), *sources]
+    encoded = tuple((name, text.encode()) for name, text in files)
+    arguments = ("generate", "base.mtlx", "--target", target, "--outputPath", OUT)
+    if rng.random() < 0.1:
+        arguments = ("render", "base.mtlx", "--size", "4", "--host", "reference", "--allowCode")
+        arguments += ("--output", f"{OUT}/a.png")
+    return Case(f"{way} {file} {depth}", encoded + OTHERS, arguments, LINKS)
+
+
+# --- file names that confuse a terminal or a runner -------------------------------------------
+
+NAMES = (
+    "::error::a", "  ::add-mask::a", "\t::stop-commands::a", "a\n::error::b", "a\r::error::b",
+    "##[error]a", "a ##[add-mask]b", "\u2028::error::a", "::set-output name=a::b", "%0A::error::a",
+    "t\xf6ne", "\u3042", "\U0001f600", "\x1b[31ma", "a\u202eb", "\ufeffa", "-a", "a'b\"c", "<b>a", "|a|",
+)  # fmt: skip
+CLAY = (examples_folder() / "clay.mtlx").read_bytes()
+ENCODINGS = ("utf-8", "ascii", "latin-1", "cp1252", "shift_jis", "utf-16")
+# Commands that read a document by its name.
+READERS = (
+    ("check", "{}", "--host", "msl", "--workers", "0"),
+    ("check", "{}", "--host", "msl", "--workers", "0", "--full"),
+    ("check", "{}", "--host", "msl", "--workers", "0", "--json"),
+    ("check", "{}", "--host", "abacus"),
+    ("generate", "{}", "--target", "osl", "--outputPath", OUT),
+    ("generate", "{}", "--target", "osl", "--json", "--outputPath", OUT),
+    ("generate", "missing {}", "--target", "osl", "--outputPath", OUT),
+    ("render", "{}", "--host", "reference", "--size", "4", "--output", f"{OUT}/a.png"),
+)  # fmt: skip
+
+
+def named(_, row):
+    """Case with an oddly named document, for a command whose terminal has the given encoding."""
+    stem, command, encoding = row
+    file = f"./{stem}.mtlx" if stem.startswith("-") else f"{stem}.mtlx"
+    arguments = tuple(each.format(file) if "{}" in each else each for each in command)
+    return Case(f"{stem!r} {command[0]} {encoding}", ((file, CLAY),), arguments, (), encoding)

@@ -21,8 +21,7 @@ from pathlib import Path
 from mxeon.shaders import generation
 from mxeon.shaders.document.references import library_path
 from mxeon.shaders.library import examples_folder
-from tests.fuzz.cases import case
-from tests.fuzz.families import cases
+from tests.fuzz.cases import case, cases
 from tests.fuzz.trial import trial
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -20,7 +20,7 @@ from mxeon.errors import DocumentError, InterfaceError
 from mxeon.shaders.document.words import NAMES
 from mxeon.shaders.generation import TARGETS, generate
 from mxeon.shaders.library import load_library
-from tests.fuzz.words import ATTRIBUTES
+from tests.fuzz.documents import ATTRIBUTES
 
 XI = "http://www.w3.org/2001/XInclude"
 ElementTree.register_namespace("xi", XI)

@@ -14,7 +14,7 @@ from pathlib import Path
 from mxeon.errors import COMMAND, STEERING
 from mxeon.shaders.library import examples_folder
 from tests.fuzz.cases import AROUND, OUT
-from tests.fuzz.words import CANARY, POISON
+from tests.fuzz.documents import CANARY, POISON
 
 STATUSES = (0, 2, 3)
 OUTPUTS = ("--outputPath", "--output", "--report")

@@ -46,15 +46,10 @@ def farm(*workers):
         started = stack.enter_context(LocalCluster(**options))
         for more in workers:
             arguments = more.pop("arguments", ONE_THREAD)
-            command = [
-                sys.executable,
-                "-m",
-                "distributed.cli.dask_worker",
-                started.scheduler_address,
-            ]
+            command = [sys.executable, "-m", "distributed.cli.dask_worker", "--no-dashboard"]
             paths = os.pathsep.join(filter(None, sys.path))
             process = subprocess.Popen(
-                [*command, "--no-dashboard", *arguments],
+                [*command, started.scheduler_address, *arguments],
                 env=os.environ | {"PYTHONPATH": paths, "PYTHONSAFEPATH": "1"} | more,
                 stderr=subprocess.DEVNULL,
             )
@@ -110,10 +105,8 @@ def test_workers_that_do_not_fit_get_no_work_and_are_named(tmp_path):
     assert "it must have one thread, --nthreads 1, as OpenGL needs; got 2" in words
 
 
-NOBODY, SOMEBODY, TWO_THREADS = (
-    {"workers": workers}
-    for workers in ({}, {"tcp://a": {"nthreads": 1}}, {"tcp://a": {"nthreads": 2}})
-)
+NOBODY = {"workers": {}}
+SOMEBODY, TWO_THREADS = ({"workers": {"tcp://a": {"nthreads": each}}} for each in (1, 2))
 
 
 class Client:

@@ -15,8 +15,6 @@ from mxeon.errors import DocumentError
 from mxeon.jobs.pool import ATTEMPTS, Outcome, run
 from tests.support.faults import misbehave, once, square
 
-NUMBERS = [1, 2, 3, 4]
-
 
 @pytest.mark.parametrize(
     "fault, end",
@@ -29,9 +27,7 @@ NUMBERS = [1, 2, 3, 4]
     ],
 )
 def test_a_fault_costs_its_item_alone_and_is_named(fault, end):
-    found = dict(
-        run(misbehave, [*NUMBERS[:2], fault, *NUMBERS[2:]], 2, 1.0 if fault == "hang" else 60.0)
-    )
+    found = dict(run(misbehave, [1, 2, fault, 3, 4], 2, 1.0 if fault == "hang" else 60.0))
     assert found.pop(2) == Outcome(None, end, ATTEMPTS)
     assert sorted(outcome.value for outcome in found.values()) == [1, 4, 9, 16]
 

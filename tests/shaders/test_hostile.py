@@ -15,7 +15,7 @@ from mxeon.shaders.document.notes import DocumentWarning
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import CodeWarning, generate
-from tests.fuzz.found import doubled, row
+from tests.fuzz.cases import doubled, row
 from tests.support.documents import connected, including, lobe, material, refusal, textured, written
 
 TRUSTED = Policy(outside=True, code=True)

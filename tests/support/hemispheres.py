@@ -16,7 +16,6 @@ SCENES = [(mu, r) for mu in COSINES for r in ROUGHNESS]
 every_sampler = pytest.mark.parametrize("sampler", SAMPLERS)
 every_scene = pytest.mark.parametrize(("mu", "roughness"), SCENES)
 
-
 gauss_legendre = lru_cache(np.polynomial.legendre.leggauss)
 
 
@@ -74,9 +73,8 @@ def probability(sample, pdf, wo, u, count=12, nodes=24):
     counts = binned(sample(wo, u)[0], edges, count)
     theta, dtheta = rule(edges, nodes)
     phi, dphi = rule(2.0 * np.pi * np.arange(count + 1) / count, nodes)
-    bins = np.einsum(
-        "ikjl,ik,jl->ij", pdf(wo, directions(theta, phi)), dtheta * np.sin(theta), dphi
-    )
+    density = pdf(wo, directions(theta, phi))
+    bins = np.einsum("ikjl,ik,jl->ij", density, dtheta * np.sin(theta), dphi)
     mean = len(u) * np.append(1.0 - bins.sum(), bins)
     # Pool bins with fewer than 10 expected samples, whose statistic would not be chi-square.
     likely = mean >= 10.0

@@ -100,9 +100,8 @@ def g_f_approx(mu):
 
 def qon_albedo_dir(mu, rho, sigma):
     """[Portsmouth2025], Eq. (5)."""
-    return rho * (
-        1 - fraction(sigma, "0.5", "0.33") + fraction(sigma, "0.45", "0.09") / mp.pi * g_q(mu)
-    )
+    a, b = 1 - fraction(sigma, "0.5", "0.33"), fraction(sigma, "0.45", "0.09")
+    return rho * (a + b / mp.pi * g_q(mu))
 
 
 def fon_albedo_dir(mu, rho, r, g=g_f):
@@ -130,10 +129,8 @@ def eon(wo, wi, rho, r, g=g_f):
     """[Portsmouth2025], Eqs. (16), (19); r > 0."""
     average = fon_albedo_avg(1, r)
     losses = [max(mp.mpf(0), 1 - fon_albedo_dir(w[2], 1, r, g)) for w in (wo, wi)]
-    ms = (
-        rho**2 / mp.pi * average / (1 - rho * (1 - average)) * losses[0] * losses[1] / (1 - average)
-    )
-    return fon(wo, wi, rho, r) + ms
+    factor = rho**2 / mp.pi * average / (1 - rho * (1 - average))
+    return fon(wo, wi, rho, r) + factor * losses[0] * losses[1] / (1 - average)
 
 
 def eon_approx(wo, wi, rho, r):

@@ -14,8 +14,6 @@ from tests.support.plans import keep
 # Documents judged with each library. All examples are judged with eonlib, which must pass them.
 EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough_base.mtlx")]
 DOCUMENTS = {"eonlib": sorted(examples_folder().glob("*.mtlx")), "stock": EXAMPLES}
-
-
 _MADE = {}  # values by name, for tests in a single process
 
 
@@ -33,10 +31,8 @@ def shared(factory, name, make):
 
 
 # Checks of the text for path tracers, which only eonlib provides.
-DRAWN = (
-    *("pdf", "sample", "path_value", "path_inside", "path_energy", "path_leaving", "path_albedo"),
-    *("path_emission", "path_random"),
-)
+DRAWN = ("pdf", "sample", "path_value", "path_inside", "path_energy", "path_leaving")
+DRAWN += ("path_albedo", "path_emission", "path_random")
 
 
 def every_node(factory, library):

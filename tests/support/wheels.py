@@ -21,7 +21,6 @@ from tools.site.ledger import linked
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = ROOT / "out" / "materialx"
-DOWNLOAD = 300.0  # timeout of a 25 MB download, seconds
 # Patch that turns the data of MaterialX's release into that of its main branch.
 MAIN = ROOT / "tests" / "materialx_main" / "libraries.patch"
 
@@ -33,7 +32,8 @@ def wheel(version):
     """
     if version == mx.getVersionString():
         return ROOT  # has no MaterialX, so Python finds the installed one
-    folder = KEPT / (_main_name() if version == "main" else version)
+    name = f"main-{sha256(MAIN.read_bytes()).hexdigest()[:12]}" if version == "main" else version
+    folder = KEPT / name
     if not folder.is_dir():
         if version != "main" and PACKAGES not in required():
             pytest.skip(f"no wheel of MaterialX {version}: ./run test --all downloads it")
@@ -48,10 +48,6 @@ def wheel(version):
         finally:
             shutil.rmtree(beside, ignore_errors=True)
     return folder
-
-
-def _main_name():
-    return f"main-{sha256(MAIN.read_bytes()).hexdigest()[:12]}"
 
 
 def _main(folder):
@@ -86,7 +82,7 @@ def install(version, folder):
     """Install a version of MaterialX without its dependencies into a new folder."""
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", folder]
     command += ["--timeout", "30", f"materialx=={version}"]
-    subprocess.run(command, check=True, capture_output=True, timeout=DOWNLOAD)
+    subprocess.run(command, check=True, capture_output=True, timeout=300.0)  # 25 MB
 
 
 def run(folder, *arguments, module="mxeon"):
