@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sentences about results. Only this module makes them from fields; no code parses them."""
+"""Sentences about results, made from the fields of the results. No code parses these sentences."""
 
 import math
 from collections import Counter
@@ -11,7 +11,7 @@ from mxeon.conformance.results import Cause, Diagnosis, Difference, Kind, Region
 from mxeon.shaders.nodes import FLAG
 
 NAMED = 3  # maximum names in a list; the rest are only counted
-PARTS_SHOWN = 3  # maximum parts shown of two graphs that differ
+DIFFERENCES_SHOWN = 3  # maximum reported differences between two node graphs
 AS_SPECIFIED = "looks as specified"
 
 # --- numbers and lists -----------------------------------------------------------------------------
@@ -27,19 +27,20 @@ def in_words(number: float) -> str:
 
 
 def of_white(share: float) -> str:
-    """A radiance in words, given as a share of that of a white, matte surface facing the light.
+    """A radiance in words; `share` is relative to a white, matte surface that faces the light.
 
     >>> of_white(0.2035), of_white(1e-7), of_white(48.2)
     ('20 % of white', 'less than 0.1 % of white', '48 times white')
     """
     if share < 0.001:
         return "less than 0.1 % of white"
-    percent = f"{in_words(100.0 * share)} % of white"
-    return percent if share < 2.0 else f"{in_words(share)} times white"
+    return (
+        f"{in_words(100.0 * share)} % of white" if share < 2.0 else f"{in_words(share)} times white"
+    )
 
 
 def listed(names: Sequence[str]) -> str:
-    """The first names of a list, and the number of the rest.
+    """The first names of a list, and the number of the remaining names.
 
     >>> listed(["a", "b", "c", "d"])
     'a, b, c and 1 more'
@@ -59,7 +60,7 @@ def enumerated(names: Sequence[str]) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """A number and its noun, in the plural unless the number is 1.
+    """A count and its noun, which is plural unless the count is 1.
 
     >>> counted(1, "check"), counted(2, "check")
     ('1 check', '2 checks')
@@ -75,7 +76,7 @@ def _short(number: float, digits: int = 2) -> str:
 
 LIGHTS = {"side": "light from the side", "front": "light from the front"}
 LIGHTS |= {"back": "light from behind", "furnace": "a white environment"}
-# Named sets of pairs and inputs, see `mxeon.conformance.diagnosis.regions`.
+# Sets of direction pairs and inputs; `mxeon.conformance.diagnosis.regions` finds them.
 REGIONS = {
     "viewer_above_1": "with dot(N, V) rounded above 1",
     "light_above_1": "with dot(N, L) rounded above 1",
@@ -128,14 +129,15 @@ REGIONS = {
     "normal_away": "where the normal faces away from the viewer",
     **{scene: f"in {light}" for scene, light in LIGHTS.items()},
 }
-# Phrases for the part of an input whose range defines a region.
+# A region may be a range of an input, or of one of the input's components.
 PARTS = {
     "value": "{}",
     **{each: f"the {each} component of {{}}" for each in ("first", "second", "smaller", "larger")},
     "difference": "a difference between the components of {} of",
 }
 # fmt: off
-# Faults between the inputs and a model. {0} and {1} are names, {x} is the first number.
+# Mistakes in how a shader uses a correct model. {0} and {1} are names of the cause, {x} its first
+# number.
 FAULTS = {
     "channels_exchanged": "the color channels are exchanged: they arrive as {0}, {1}, {2}",
     "one_channel": "every channel takes the {0} of the color",
@@ -168,13 +170,10 @@ FAULTS = {
     "pi_missing": "the factor 1/pi is missing",
     "pi_twice": "the factor 1/pi is applied twice",
 }
-# Words that join the states shared by all wrong pixels, or by all wrong frames.
+# Words between the states (combinations of lobes and lights) that all wrong values share.
 STATES = {"state": "", "both_states": " and ", "either_state": " or "}
-FRAMES = {f"{key}_of_frames": word for key, word in STATES.items()}
-SUMS = (
-    "each part is right by itself, but {share} combinations of lobes and lights are wrong{states}"
-)
-# Other defects; `_filled` replaces the braces.
+SUMS = "each part is right by itself, but {share} combinations of lobes and lights are wrong{states}"
+# Other defects, and facts about them; `_filled` replaces the braces.
 DEFECTS = {
     "average_at_half_vector": "the compensation uses F at the half vector instead of its average",
     "average_by_ends": "the compensation uses the average F0 + (F90 - F0) / 21",
@@ -197,7 +196,7 @@ DEFECTS = {
     "input_at_fault": "mostly its {0}: without it, the largest difference is {x:.2g} instead of {whole:.2g}",
     "not_zero": "{0} {constant}{place} (branches: {rest})",
     **dict.fromkeys(STATES, SUMS),
-    **dict.fromkeys(FRAMES, "{share} frames are wrong{states}"),
+    **{f"{key}_of_frames": "{share} frames are wrong{states}" for key in STATES},
     "changes_nothing": "{all} changes nothing",
     "changes_something": "{all} changes something",
     "normal_of_surface": "the node's normal is ignored; the surface's is used instead",
@@ -301,10 +300,10 @@ def region(place: Region) -> str:
     elif low == high:
         ends = _short(low)
     else:
-        digits = 2 if _short(low) != _short(high) else 4  # enough digits to tell both apart
+        digits = 2 if _short(low) != _short(high) else 4  # enough digits to distinguish both ends
         ends = f"between {_short(low, digits)} and {_short(high, digits)}"
-    alone = f", in {' and '.join(place.channels)} alone" * bool(place.channels)
-    return f"with {PARTS[place.part].format(place.name)} {ends}{alone}"
+    channels = f", in {' and '.join(place.channels)} alone" if place.channels else ""
+    return f"with {PARTS[place.part].format(place.name)} {ends}{channels}"
 
 
 def diagnosis(found: Diagnosis) -> str:
@@ -312,10 +311,9 @@ def diagnosis(found: Diagnosis) -> str:
 
 
 def _cause(cause: Cause, distances: Mapping[str, float]) -> str:
-    place = f"branch {cause.branch}: " * bool(cause.branch and cause.key != "passes_other_light")
-    if cause.kind is Kind.MODEL:
-        return place + _model(cause, distances)
-    return place + SENTENCES[cause.kind](cause)
+    text = _model(cause, distances) if cause.kind is Kind.MODEL else SENTENCES[cause.kind](cause)
+    named = cause.branch and cause.key != "passes_other_light"  # that sentence names the branch
+    return f"branch {cause.branch}: {text}" if named else text
 
 
 def _rms(cause: Cause) -> str:
@@ -328,7 +326,7 @@ def _model(cause: Cause, distances: Mapping[str, float]) -> str:
     >>> _model(Cause(Kind.MODEL, "Lambert", rms=0.001), {"EON": 0.25, "Lambert": 0.001})
     'best match: Lambert (rms 0.001), then EON (0.25)'
     """
-    others = {title: far for title, far in distances.items() if title != cause.key}
+    others = {title: distance for title, distance in distances.items() if title != cause.key}
     second = min(others, key=others.__getitem__, default="")
     then = f", then {second} ({others[second]:.2g})" if second else ""
     flags = (f", as with {FLAG} {str(bool(each)).lower()}" for each in cause.values)
@@ -343,17 +341,19 @@ def _region(cause: Cause) -> str:
         return f"{begins} {wrong} of {count} pairs, all {region(cause.region)}"
     if not cause.point:
         return f"{begins} {wrong} of {count} pairs"
-    joint = ", worst" if cause.key == "wrong" else "; worst"
+    separator = ", worst" if cause.key == "wrong" else "; worst"
     percent = _short(100.0 * wrong / count, 2 if wrong < 0.995 * count else 3)
-    return f"{begins} {percent} % of view/light pairs{joint} {_point(cause.point)}"
+    if "wo" in cause.point:
+        light = f" and the light at {_degrees(cause.point['wi'])}" if "wi" in cause.point else ""
+        point = f"the view at {_degrees(cause.point['wo'])}{light} degrees"
+    else:
+        point = _point(cause.point, 3)
+    return f"{begins} {percent} % of view/light pairs{separator} with {point}"
 
 
-def _point(point: Mapping[str, Sequence[float]]) -> str:
-    if "wo" in point:
-        light = f" and the light at {_degrees(point['wi'])}" if "wi" in point else ""
-        return f"with the view at {_degrees(point['wo'])}{light} degrees"
-    numbers = (f"{name} {' '.join(f'{x:.3g}' for x in each)}" for name, each in point.items())
-    return f"with {', '.join(numbers)}"
+def _point(point: Mapping[str, Sequence[float]], digits: int) -> str:
+    rows = (f"{name} {' '.join(f'{x:.{digits}g}' for x in each)}" for name, each in point.items())
+    return ", ".join(rows)
 
 
 def _degrees(direction: Sequence[float]) -> str:
@@ -365,10 +365,9 @@ def _not_finite(cause: Cause) -> str:
     place = region(cause.region) if cause.region else ""
     if cause.wrong is None:
         return f"NaN or infinity {place}".rstrip()
-    pairs = (f"{name} {' '.join(f'{x:.6g}' for x in each)}" for name, each in cause.point.items())
-    first = f"; the first for {', '.join(pairs)}" if cause.point else ""
-    share = f"{cause.wrong} of {cause.of} values are not finite"
-    return f"{share}{place and f', all {place}'}{first}"
+    all_in = f", all {place}" if place else ""
+    first = f"; the first for {_point(cause.point, 6)}" if cause.point else ""
+    return f"{cause.wrong} of {cause.of} values are not finite{all_in}{first}"
 
 
 def _cure(cause: Cause) -> str:
@@ -379,48 +378,57 @@ def _cure(cause: Cause) -> str:
 
 
 def _filled(text: str, cause: Cause) -> str:
-    """A text with a cause's names and numbers inserted in its braces."""
-    factor = cause.values[0] if cause.values else math.nan
-    known = (name for name, x in FACTORS.items() if abs(factor / x - 1.0) <= SAME_FACTOR)
-    times = next(known, f"{factor:.3g}") if cause.values else ""
-    several = {
-        "all": ", ".join(cause.names),
-        "methods": " and with ".join(cause.names),
-        "any": " and ".join(cause.names),
-        "rest": ", ".join(cause.names[1:]),
-        "numbers": ", ".join(f"{each:g}" for each in cause.values),
-        "place": f" {region(cause.region)}" if cause.region else "",
-        "instead": "".join(f", but {each:.3g}" for each in cause.values[1:]),
-        "released": _released(cause),
-        "share": f"{cause.wrong} of {cause.of}",
-        "states": f", all with {(STATES | FRAMES).get(cause.key, '').join(cause.names)}"
-        * bool(cause.names),
-        "constant": f"{cause.values[0]:.3g}" if cause.values else "not 0",
-        "times": times,
-        "whole": cause.values[-1] if cause.values else math.nan,
-        "also": f" and {times} times as bright" * bool(times),
-    }
-    return text.format(*cause.names, x=factor, text=cause.text, branch=cause.branch, **several)
+    """A text whose braces are replaced by a cause's names and numbers."""
+    names, values = cause.names, cause.values
+    first, times, also, states = math.nan, "", "", ""
+    if values:
+        first = values[0]
+        known = (name for name, x in FACTORS.items() if abs(first / x - 1.0) <= SAME_FACTOR)
+        times = next(known, f"{first:.3g}")
+        also = f" and {times} times as bright"
+    if names:
+        joint = STATES.get(cause.key.removesuffix("_of_frames"), "")
+        states = f", all with {joint.join(names)}"
+    return text.format(
+        *names,
+        x=first,
+        whole=values[-1] if values else math.nan,
+        text=cause.text,
+        branch=cause.branch,
+        all=", ".join(names),
+        any=" and ".join(names),
+        methods=" and with ".join(names),
+        rest=", ".join(names[1:]),
+        numbers=", ".join(f"{each:g}" for each in values),
+        constant=f"{first:.3g}" if values else "not 0",
+        instead="".join(f", but {each:.3g}" for each in values[1:]),
+        place=f" {region(cause.region)}" if cause.region else "",
+        share=f"{cause.wrong} of {cause.of}",
+        released=_release(cause),
+        states=states,
+        times=times,
+        also=also,
+    )
 
 
-def _released(cause: Cause) -> str:
-    """The difference between a node and its released version."""
+def _release(cause: Cause) -> str:
+    """The differences of a node from its released version.
+
+    The cause names the node and, for each difference, a part, its value, and the released value.
+    """
     node, *rows = cause.names or ("",)
-    known = bool(cause.values and rows and math.isfinite(cause.values[0]))
-    size = f", off by up to {in_words(cause.values[0])}" if known else ""
-    others = (cause.of or 1) - 1
-    more = f", and {others} more with this text" * bool(others)
-    return f"{node}: " * bool(node) + _differences(rows) + size + more
-
-
-def _differences(names: Sequence[str]) -> str:
-    """The first parts in which two graphs differ; `names` has a name and two values for each."""
     parts = [
-        f"{name} is {own} instead of {right}"
-        for name, own, right in zip(names[::3], names[1::3], names[2::3], strict=False)
+        f"{name} is {value} instead of {released}"
+        for name, value, released in zip(rows[::3], rows[1::3], rows[2::3], strict=False)
     ]
-    more = f", and {len(parts) - PARTS_SHOWN} more differences" * (len(parts) > PARTS_SHOWN)
-    return f"{', '.join(parts[:PARTS_SHOWN])}{more}"
+    text = (f"{node}: " if node else "") + ", ".join(parts[:DIFFERENCES_SHOWN])
+    if len(parts) > DIFFERENCES_SHOWN:
+        text += f", and {len(parts) - DIFFERENCES_SHOWN} more differences"
+    if rows and cause.values and math.isfinite(cause.values[0]):
+        text += f", off by up to {in_words(cause.values[0])}"
+    if cause.of and cause.of > 1:
+        text += f", and {cause.of - 1} more with this text"
+    return text
 
 
 SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
@@ -433,49 +441,49 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
     Kind.UNKNOWN: lambda cause: UNKNOWN[cause.key],
     Kind.TEXT: lambda cause: cause.text,
     Kind.CONTROL: lambda cause: "inconclusive: the values are right, but the control passed too",
-    # These causes add nothing to the reason that the result itself states.
+    # The reason of a result already states these causes.
     **dict.fromkeys((Kind.NONE, Kind.FOLLOWS, Kind.INPUT), lambda cause: ""),
 }
 
 # --- results ---------------------------------------------------------------------------------------
 
 
-def difference(apart: Difference) -> str:
-    """The difference between a picture and the reference, in words.
+def difference(found: Difference) -> str:
+    """The difference between a picture and its reference, in words.
 
     >>> difference(Difference("back", 0.2035, False, 0.124))
     'up to 20 % of white too bright in light from behind, visible on 12 % of its pixels'
     >>> difference(Difference("side", -0.5, True, 0.997))
     'highlights up to 50 % too dark in light from the side, visible on 100 % of its pixels'
     """
-    if not math.isfinite(apart.largest):
-        return appearance(apart)
-    share = in_words(100.0 * apart.visible)
-    seen = f", visible on {share} % of its pixels" if apart.visible else ""
-    return f"{size(apart)} {appearance(apart)}{seen}"
+    if not math.isfinite(found.largest):
+        return appearance(found)
+    share = in_words(100.0 * found.visible)
+    visible = f", visible on {share} % of its pixels" if found.visible else ""
+    return f"{size(found)} {appearance(found)}{visible}"
 
 
-def size(apart: Difference) -> str:
-    largest = abs(apart.largest)
+def size(found: Difference) -> str:
+    largest = abs(found.largest)
     if not math.isfinite(largest):
         return "not finite"
     if largest < 0.001:
         return of_white(largest)
-    if apart.highlight:
+    if found.highlight:
         return f"highlights up to {in_words(100.0 * largest)} %"
     return f"up to {of_white(largest)}"
 
 
-def appearance(apart: Difference) -> str:
-    """The difference between a picture and the reference, without its size."""
-    light = LIGHTS.get(apart.scene, apart.scene)
-    if not math.isfinite(apart.largest):
+def appearance(found: Difference) -> str:
+    """The difference between a picture and its reference, without the size of the difference."""
+    light = LIGHTS.get(found.scene, found.scene)
+    if not math.isfinite(found.largest):
         return f"has pixels that are infinite or not a number in {light}"
-    return f"too {'bright' if apart.largest > 0.0 else 'dark'} in {light}"
+    return f"too {'bright' if found.largest > 0.0 else 'dark'} in {light}"
 
 
 def excess(result: Result) -> str:
-    """An error above the tolerance, or a control that passed, in words; "" without either."""
+    """An error above the tolerance, or a control that passed, in words; "" if neither occurred."""
     control = result.control
     if result.error is not None and not result.within:
         if result.difference:
@@ -517,7 +525,7 @@ def unchecked(names: Iterable[str]) -> str:
 
 
 def explanation(result: Result) -> str:
-    """The reason for a failure: its size, the diagnosis, and the page about the defect."""
+    """The reason for a failure: the error's size, the diagnosis, and pages about the defects."""
     pages = (f"see docs/upstream/{page}.md" for page in result.pages)
     return "; ".join(filter(None, (excess(result), diagnosis(result.diagnosis), *pages)))
 
@@ -537,7 +545,7 @@ ROUNDED = "with another driver, few samples leave the tolerance"
 
 
 def growth(key: str, before: float, after: float, place: Region | None) -> str:
-    """A change of a number between two runs in words, and the region that it concerns.
+    """A change of a number between two runs, in words, with the region of the counted samples.
 
     >>> growth("wrong", 0.125, 0.25, Region("roughness", "value", low=0.5))
     '12.5 % -> 25 % of the samples are wrong with roughness 0.5 or above'
@@ -545,7 +553,7 @@ def growth(key: str, before: float, after: float, place: Region | None) -> str:
     if key == "error":
         factor = max(before, after) / min(before, after) if min(before, after) else math.inf
         side = "larger" if after > before else "smaller"
-        return f"{in_words(factor)} times {side}" * math.isfinite(factor)
+        return f"{in_words(factor)} times {side}" if math.isfinite(factor) else ""
     percent = 100.0 if key in ("wrong", "not_finite") else 1.0
     numbers = (_short(percent * each, 3) for each in (before, after))
     return f"{GROWTHS[key].format(*numbers)} {region(place) if place else ''}".rstrip()
@@ -574,67 +582,68 @@ def annotation(level: str, title: str, message: str) -> str:
 
 def sentence(run: Run) -> str:
     """The verdict on all libraries, except those judged for comparison."""
-    judged, counts = run.judged, run.counts
-    total = counted(len(judged), "check")
-    groups: dict[str, dict[str, None]] = {}  # hosts by library
-    for result in judged:
-        groups.setdefault(result.library, {})[result.host] = None
-    named = (f"{enumerated(list(names))} with {library}" for library, names in groups.items())
-    hosts = " and ".join(named)
-    differ = ""
-    if counts[results.DIFFERS]:
-        verb = "differs" if counts[results.DIFFERS] == 1 else "differ"
-        differ = f"; {counts[results.DIFFERS]} {verb}, but the specification allows it"
-    # Checks that another failure prevented are not counted separately.
-    idle = sum(each.verdict == results.NOT_RUN and not each.follows for each in judged)
-    missed = f"; {idle} did not run" if idle else ""
-    if counts[results.FAILED]:
-        failed = Counter(result.location for result in judged if result.verdict == results.FAILED)
-        places = [f"{count} on {location}" for location, count in failed.items()]
-        where = f": {', '.join(places)}" if len(failed) > 1 else f" on {next(iter(failed))}"
-        text = f"{counts[results.FAILED]} of {total} failed{where}{missed}{differ}."
-    elif not counts[results.PASSED] + counts[results.DIFFERS]:
+    judged, total = run.judged, counted(len(run.judged), "check")
+    passed, differing, failed, not_run = (run.counts[each] for each in results.VERDICTS)
+    allowed = ""
+    if differing:
+        verb = "differs" if differing == 1 else "differ"
+        allowed = f"; {differing} {verb}, but the specification allows it"
+    if failed:
+        places = Counter(each.location for each in judged if each.verdict == results.FAILED)
+        counts = ", ".join(f"{count} on {location}" for location, count in places.items())
+        where = f": {counts}" if len(places) > 1 else f" on {next(iter(places))}"
+        # A check that another failure prevented is not counted separately.
+        idle = sum(each.verdict == results.NOT_RUN and not each.follows for each in judged)
+        text = (
+            f"{failed} of {total} failed{where}{f'; {idle} did not run' if idle else ''}{allowed}."
+        )
+    elif not passed + differing:
         text = "No check ran."
-    elif counts[results.NOT_RUN]:
-        text = f"Nothing failed, but {counts[results.NOT_RUN]} of {total} did not run{differ}."
-    elif differ:
-        text = f"{counts[results.PASSED]} of {total} passed on {hosts}{differ}."
+    elif not_run:
+        text = f"Nothing failed, but {not_run} of {total} did not run{allowed}."
     else:
-        passed = "The check" if len(judged) == 1 else f"All {len(judged)} checks"
-        some = f"{len(judged)} checks passed and none failed on {hosts}."
-        text = some if run.unjudged else f"{passed} passed on {hosts}."
+        hosts: dict[str, dict[str, None]] = {}  # hosts by library
+        for result in judged:
+            hosts.setdefault(result.library, {})[result.host] = None
+        named = (f"{enumerated(list(names))} with {library}" for library, names in hosts.items())
+        on = f"on {' and '.join(named)}{allowed}."
+        if differing:
+            text = f"{passed} of {total} passed {on}"
+        elif run.unjudged:
+            text = f"{len(judged)} checks passed and none failed {on}"
+        else:
+            text = f"{'The check' if len(judged) == 1 else f'All {total}'} passed {on}"
     if elsewhere := sum(map(run.is_elsewhere, judged)):
         text += f" {elsewhere} of them for inputs that no document uses."
     if run.missing:
         verb = "is" if len(run.missing) == 1 else "are"
-        items = counted(len(run.missing), "item")
-        text += f" The run is not finished: {items} {verb} missing."
+        text += f" The run is not finished: {counted(len(run.missing), 'item')} {verb} missing."
     if run.refused:
         names, faults = tuple(run.refused), counted(len(run.errors), "error")
-        checked = "was not checked" if len(names) == 1 else "were not checked"
-        if judged and counts[results.PASSED] + counts[results.DIFFERS] + counts[results.FAILED]:
-            text = f"{listed(names)} {checked}: {faults}. {text}"
+        if passed + differing + failed:
+            verb = "was" if len(names) == 1 else "were"
+            text = f"{listed(names)} {verb} not checked: {faults}. {text}"
         else:
             verb = "has" if len(names) == 1 else "have"
             text = f"{listed(names)} {verb} {faults}; nothing was checked."
     for library in run.compared:
-        other = [each.verdict for each in run.results if each.library == library]
-        ran = len(other) - other.count(results.NOT_RUN)
-        words = f" For comparison, {other.count(results.FAILED)} of {ran} failed with {library}."
-        text += words * bool(ran)
+        verdicts = Counter(each.verdict for each in run.results if each.library == library)
+        if ran := verdicts.total() - verdicts[results.NOT_RUN]:
+            text += f" For comparison, {verdicts[results.FAILED]} of {ran} failed with {library}."
     return text
 
 
 def summary(run: Run) -> str:
-    """The verdict, the judged MaterialX (with its folder unless it is installed), and the time."""
-    version, folder = (run.software.get(name) for name in ("MaterialX", "MaterialX folder"))
-    judged = f" MaterialX {version}{f', from {folder}' if folder else ''}." if version else ""
-    time = "" if run.seconds is None else f" Finished in {run.seconds:.1f} s."
-    return sentence(run) + judged + time
+    """The verdict, MaterialX's version (and folder, unless it is installed), and the time."""
+    text = sentence(run)
+    if version := run.software.get("MaterialX"):
+        folder = run.software.get("MaterialX folder")
+        text += f" MaterialX {version}{f', from {folder}' if folder else ''}."
+    return text if run.seconds is None else f"{text} Finished in {run.seconds:.1f} s."
 
 
 def origins(run: Run) -> tuple[str, ...]:
-    """For each folder judged as a library, the number of its own files and of MaterialX's."""
+    """Number of files from each folder judged as a library, and from MaterialX."""
     return tuple(
         f"library {folder}: {counted(len(files['folder']), 'file')} from the folder, "
         + (f"{len(files['MaterialX']) or 'none'} from" if "MaterialX" in files else "loaded before")
@@ -644,7 +653,7 @@ def origins(run: Run) -> tuple[str, ...]:
 
 
 def not_judged(run: Run) -> tuple[str, ...]:
-    """One line that lists the subjects no check judges, with reasons; empty if there are none."""
+    """One line that lists the subjects that no check judges, with reasons; empty without any."""
     reasons: dict[str, list[str]] = {}
     for what, reason in run.unjudged:
         reasons.setdefault(reason, []).append(what)
