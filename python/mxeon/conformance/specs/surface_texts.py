@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sentences from the specifications of four surface shaders, each with a material to test it.
 
-Each row fixes some inputs, draws others at random, and compares the shader with
-`mxeon.models.surfaces`, which is written from the text. `permitted` lists interpretations and
-simplifications that the text permits; `wrong` lists errors that a diagnosis may name.
+Each row fixes some inputs, draws others at random, and compares the shader with the specification's
+model in `mxeon.models.surfaces`. `permitted` lists alternative formulas that the specification
+permits; `wrong` lists alternative formulas that are errors, for diagnoses.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import ModuleType
 
 import numpy as np
@@ -22,8 +22,8 @@ from mxeon.models.surfaces import gltf, lobes, open_pbr, standard_surface, usd_p
 from mxeon.shaders.nodes import document_text, node_text
 
 Forms = tuple[str, ...]  # names of a model's alternative formulas
-PAIRS = 24  # few, because an albedo takes a millisecond
-GRAZING = 0.05  # SLANTED replaces directions with a smaller cosine
+PAIRS = 24  # number of direction pairs; an expected albedo takes a millisecond
+GRAZING = 0.05  # smallest cosine of the directions; SLANTED replaces directions below
 SLANTED = samples.float32([0.6, 0.0, 0.8])
 TILTED = (0.48, 0.36, 0.8)
 DIRECT, ENVIRONMENT = ("direct", "response", np.pi), ("environment", "response", 1.0)
@@ -38,25 +38,16 @@ STRETCHED = tolerance.Term(surface_shaders.STRETCHED_FIT, "the fits for two alph
 FILMED = microfacets.FILM_ERRORS["value"].term("a film")
 
 
-@dataclass(frozen=True)
-class Text:
-    """A specification: its name, the node that implements it, and its model."""
-
-    name: str
-    node: str
-    model: ModuleType
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SentenceSpec(ValueSpec):
-    """A sentence of a text. Its material has the inputs `fixed` and random `inputs`."""
+    """A sentence of a specification, tested with the inputs `fixed` and random `inputs`."""
 
     requires = Ability.MATERIAL
 
     text: Text
     section: str
-    permitted: tuple[Forms, ...] = ()
-    wrong: tuple[Forms, ...] = ()
+    permitted: tuple[Forms, ...]
+    wrong: tuple[Forms, ...]
 
     def document(self, inputs: Values | None = None) -> str:
         return document_text(node_text(self.text.node, "surfaceshader", "shading"))
@@ -64,8 +55,8 @@ class SentenceSpec(ValueSpec):
     def value(self, batch: Batch) -> Array:
         return self.form()(batch)
 
-    def form(self, *but: str) -> Callable[[Batch], Array]:
-        """Values by the text, with the alternative formulas named in `but`."""
+    def form(self, *formulas: str) -> Callable[[Batch], Array]:
+        """Values of the specification's model with some alternative formulas."""
         branch, output, factor = self.evaluated
         model = self.text.model
         function = model.emission if output == "radiance" else model.surface
@@ -73,19 +64,18 @@ class SentenceSpec(ValueSpec):
         def values(batch: Batch) -> Array:
             wi = batch.wi if branch == "direct" else None
             light = lobes.Light(batch.wo, wi, branch == "transmission")
-            given = model.parameters(**{**self.fixed, **batch.inputs})
-            return np.asarray(factor * function(light, given, but))
+            parameters = model.parameters(**{**self.fixed, **batch.inputs})
+            return np.asarray(factor * function(light, parameters, formulas))
 
         return values
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
-        own = Candidate(self.text.name, self.value)
-        others = (
-            Candidate(" and ".join(forms), self.form(*forms), forms in self.permitted)
-            for forms in (*self.permitted, *self.wrong)
+        forms = (
+            Candidate(" and ".join(each), self.form(*each), each in self.permitted)
+            for each in (*self.permitted, *self.wrong)
         )
-        return (own, *others, ZERO)
+        return (Candidate(self.text.name, self.value), *forms, ZERO)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         rng = generator()
@@ -95,32 +85,38 @@ class SentenceSpec(ValueSpec):
 
 
 @dataclass(frozen=True)
-class Says:
-    """A row of the table: a sentence, and the material that tests it; see `SentenceSpec`."""
+class Text:
+    """A specification: its name, the node that implements it, and its model."""
 
-    key: str
-    section: str
-    claim: str
-    shown: tuple[str, str, float] = DIRECT
-    fixed: Values = field(default_factory=dict)
-    permitted: tuple[str | Forms, ...] = ()
-    wrong: tuple[str | Forms, ...] = ()
-    terms: tuple[tolerance.Term, ...] = ()  # additional terms of the tolerance
-    inputs: tuple[Input, ...] = ()
+    name: str
+    node: str
+    model: ModuleType
 
-    def spec(self, text: Text) -> SentenceSpec:
+    def says(
+        self,
+        key: str,
+        section: str,
+        claim: str,
+        evaluated: tuple[str, str, float] = DIRECT,
+        fixed: Values | None = None,
+        permitted: tuple[str | Forms, ...] = (),
+        wrong: tuple[str | Forms, ...] = (),
+        terms: tuple[tolerance.Term, ...] = (),
+        inputs: tuple[Input, ...] = (),
+    ) -> SentenceSpec:
+        """The spec of a sentence; the tolerance also includes `terms`."""
         return SentenceSpec(
-            title=f"{text.name}, {self.key}",
-            node=text.name,
-            text=text,
-            section=self.section,
-            claim=self.claim,
-            evaluated=self.shown,
-            fixed=self.fixed,
-            inputs=self.inputs,
-            permitted=tuple(map(_forms, self.permitted)),
-            wrong=tuple(map(_forms, self.wrong)),
-            errors={"value": ERRORS[self.shown].plus(*self.terms)},
+            title=f"{self.name}, {key}",
+            node=self.name,
+            text=self,
+            section=section,
+            claim=claim,
+            evaluated=evaluated,
+            fixed=fixed or {},
+            inputs=inputs,
+            permitted=tuple(map(_forms, permitted)),
+            wrong=tuple(map(_forms, wrong)),
+            errors={"value": ERRORS[evaluated].plus(*terms)},
         )
 
 
@@ -130,8 +126,9 @@ def _forms(names: str | Forms) -> Forms:
 
 drawn = surface_shaders.ports_by_range
 TWICE, TINTED = "reflection taken twice", "tinted light below the {}"
-FAR = 1e6  # depth of a medium that absorbs no light over the distance that shaders assume
-THROUGH_COLOR = Input("transmission_color", "color3", low=0.05)  # keeps the logarithm finite
+FAR = 1e6  # transmission depth at which a medium absorbs nearly no light
+# The logarithm of the color must be finite.
+THROUGH_COLOR = Input("transmission_color", "color3", low=0.05)
 WEIGHT = Input("specular_weight", high=2.0)
 OPENPBR = Text("OpenPBR Surface", "open_pbr_surface", open_pbr)
 STANDARD = Text("Standard Surface", "standard_surface", standard_surface)
@@ -146,233 +143,224 @@ PLASTIC: Values = {"base": 1.0, "base_color": (0.8, 0.7, 0.6), "sheen": 0.0, "me
 BARE: Values = {**PLASTIC, "specular": 0.0}
 METAL: Values = {"metalness": 1.0, "sheen": 0.0, "base": 0.8, "base_color": (0.9, 0.7, 0.4)}
 CLEAR: Values = {"metallic": 0.0}
-METAL_COLOR = Input("diffuseColor", "color3", high=0.95)  # the indices of white metals are infinite
+METAL_COLOR = Input("diffuseColor", "color3", high=0.95)  # a white metal has an infinite index
 # fmt: off
-OPENPBR_ROWS = (
-    Says("diffuse", "Glossy-diffuse", "The diffuse lobe is EON, scaled by base_weight.", fixed=MATTE,
-         inputs=drawn(share="base_weight base_diffuse_roughness", color="base_color")),
-    Says("gloss", "Glossy-diffuse", "The dielectric reflects above the diffuse lobe, which gets 1 - E.",
-         inputs=drawn(color="base_color", index="specular_ior", rough="specular_roughness")),
-    Says("specular weight", "Base substrate",
-         "specular_weight scales the reflectance along the normal by a change of the index.",
-         fixed={"base_weight": 0.0}, inputs=(WEIGHT, *drawn(index="specular_ior", rough="specular_roughness"))),
-    Says("specular color", "Base substrate",
-         "specular_color tints the light that the dielectric reflects above.",
-         permitted=("no tint of what specular light leaves",),
-         inputs=drawn(color="specular_color", index="specular_ior", rough="specular_roughness")),
-    Says("anisotropy", "Microfacet model", "The mean of the squared alphas is r^4, their ratio 1 - a.",
-         fixed={"base_metalness": 1.0}, terms=(STRETCHED,),
-         inputs=drawn(share="specular_roughness_anisotropy", rough="specular_roughness")),
-    Says("metal", "Metal", "Metals reflect by F82-tint, scaled by specular_weight.",
-         fixed={"base_metalness": 1.0, "specular_color": (0.9, 0.8, 1.0)},
-         inputs=drawn(share="base_weight specular_weight", color="base_color", rough="specular_roughness")),
-    Says("metalness", "Base substrate", "base_metalness blends metal and dielectric.",
-         inputs=drawn(share="base_metalness", color="base_color", rough="specular_roughness")),
-    Says("transmission", "Reduction to a mixture of lobes",
-         "Light that the interface does not reflect passes, tinted by transmission_color at depth 0.",
-         shown=THROUGH, wrong=(TWICE,),
-         inputs=drawn(share="transmission_weight", color="transmission_color", index="specular_ior", rough="specular_roughness")),
-    Says("transmission depth", "Translucent base",
-         "With a depth, transmission_color does not tint the interface.", shown=THROUGH,
-         fixed={"transmission_weight": 1.0, "transmission_depth": FAR}, wrong=(TWICE,),
-         inputs=(THROUGH_COLOR, *drawn(rough="specular_roughness"))),
-    Says("film", "Thin-film iridescence",
-         "A film of thin_film_thickness micrometers covers thin_film_weight of the dielectric.",
-         fixed={"base_weight": 0.0}, terms=(FILMED,),
-         inputs=drawn(share="thin_film_weight thin_film_thickness", index="thin_film_ior", rough="specular_roughness")),
-    Says("film on metal", "Thin-film iridescence", "The film also covers metals.",
-         fixed={"base_metalness": 1.0}, terms=(FILMED,),
-         inputs=drawn(share="thin_film_weight thin_film_thickness", index="thin_film_ior", rough="specular_roughness")),
-    Says("film in transmission", "Thin-film iridescence",
-         "What a film reflects does not pass: the transmitted light has the fringes, too.", shown=THROUGH,
-         fixed={"transmission_weight": 1.0}, wrong=(TWICE,), terms=(FILMED,),
-         inputs=drawn(share="thin_film_weight thin_film_thickness", index="thin_film_ior", rough="specular_roughness")),
-    Says("coat", "Coat", "The coat reflects as a dielectric with its own index and roughness.",
-         fixed={"base_weight": 0.0, **MATTE}, terms=(STRETCHED,),
-         inputs=drawn(share="coat_weight coat_roughness_anisotropy", index="coat_ior", rough="coat_roughness")),
-    Says("coat absorption", "View-dependent absorption",
-         "The coat absorbs along the refracted path, coat_color at normal incidence.", fixed=COATED,
-         permitted=("absorption at the normal",), inputs=drawn(color="coat_color")),
-    Says("coat coverage", "Mixing",
-         "coat_weight is a share of the surface: the base is seen through lerp(1, T (1 - E), C).",
-         shown=ENVIRONMENT, fixed={"coat_darkening": 0.0, "base_color": WHITE, **MATTE},
-         wrong=("a partial coat as a product",),
-         inputs=drawn(share="coat_weight", color="coat_color", rough="coat_roughness")),
-    Says("base below a coat", "Coat",
-         "The base reflects by its index relative to the coat's, inverted where that is larger.",
-         fixed={"base_weight": 0.0, "coat_darkening": 0.0, "coat_weight": 1.0},
-         inputs=drawn(index="coat_ior specular_ior", rough="specular_roughness")),
-    Says("darkening", "Darkening", "Reflections inside the coat darken the base by (1 - K) / (1 - E K).",
-         fixed={"coat_weight": 1.0, **MATTE}, permitted=(DARKENING,),
-         inputs=drawn(share="coat_darkening", color="base_color", index="coat_ior")),
-    Says("darkening of a dark base", "Darkening", "E is the albedo of the whole base, base_weight included.",
-         fixed={"coat_weight": 1.0, **MATTE}, permitted=(DARKENING,),
-         wrong=((*DARKENING, "the base's albedo without base_weight"),),
-         inputs=drawn(share="base_weight", color="base_color")),
-    Says("roughening", "Roughening", "A rough coat widens the base's lobes to r'^4 = r^4 + 2 r_coat^4.",
-         fixed={"base_metalness": 1.0, "coat_darkening": 0.0},
-         inputs=drawn(share="coat_weight", rough="specular_roughness coat_roughness")),
-    Says("fuzz", "Fuzz", "The fuzz is Zeltner's sheen, which covers fuzz_weight of the surface.", fixed=MATTE,
-         inputs=drawn(share="fuzz_weight", fuzz_rough="fuzz_roughness", color="base_color")),
-    Says("fuzz color", "Fuzz", "fuzz_color tints the fuzz, not the light that passes it.",
-         fixed={"fuzz_weight": 1.0, **MATTE}, wrong=(TINTED.format("fuzz"),),
-         inputs=drawn(fuzz_rough="fuzz_roughness", color="fuzz_color")),
-    Says("fuzz normal", "Fuzz", "The fuzz has the normal of what is below it: the coat's, where there is one.",
-         fixed={"fuzz_weight": 1.0, "geometry_coat_normal": TILTED, **COATED},
-         wrong=("the fuzz along geometry_normal",),
-         inputs=drawn(fuzz_rough="fuzz_roughness", rough="coat_roughness")),
-    Says("frames", "Normal maps", "Base and coat have normals and tangents of their own.",
-         fixed={"base_metalness": 1.0, "coat_weight": 1.0, "coat_darkening": 0.0, "geometry_coat_normal": TILTED, "geometry_coat_tangent": (0.6, 0.0, -0.8), "geometry_tangent": (0.0, 1.0, 0.0), "specular_roughness_anisotropy": 0.5, "coat_roughness_anisotropy": 0.5},
-         terms=(STRETCHED,), inputs=drawn(rough="specular_roughness coat_roughness")),
-    Says("emission", "Emission", "The base emits emission_luminance times emission_color.", shown=EMITTED,
-         fixed={"emission_luminance": 1.0}, inputs=drawn(color="emission_color")),
-    Says("emission below a coat", "Reduction to a mixture of lobes", "The coat absorbs emitted light.",
-         shown=EMITTED, fixed={"emission_luminance": 1.0},
-         permitted=("the transmittance of one way", "a Fresnel factor of the coat", SCHLICK_EMISSION),
-         inputs=drawn(share="coat_weight", color="coat_color", index="coat_ior")),
-    Says("emission below fuzz", "Emission", "The fuzz is above the emission, too.", shown=EMITTED,
-         fixed={"emission_luminance": 1.0}, permitted=("no fuzz above",),
-         inputs=drawn(share="fuzz_weight", fuzz_rough="fuzz_roughness")),
-    Says("thin-walled subsurface", "Thin-walled mode", "A thin wall reflects (1 - g) / 2 of subsurface_color.",
-         fixed={"geometry_thin_walled": 1.0, "subsurface_weight": 1.0, **MATTE},
-         wrong=("the color twice", ("the color twice", "factors clamped to 1")),
-         inputs=(Input("subsurface_scatter_anisotropy", low=-1.0), *drawn(color="subsurface_color"))),
-    Says("thin-walled roughness", "Thin-walled mode", "base_diffuse_roughness shapes the lobes of a thin wall.",
-         fixed={"geometry_thin_walled": 1.0, "subsurface_weight": 1.0, "subsurface_color": WHITE, **MATTE},
-         wrong=("Oren-Nayar without compensation",), inputs=drawn(share="base_diffuse_roughness")),
-    Says("thin-walled transmission", "Thin-walled mode", "A thin wall passes (1 + g) / 2 of subsurface_color.",
-         shown=ENVIRONMENT, fixed={"geometry_thin_walled": 1.0, "subsurface_weight": 1.0, **MATTE},
-         wrong=("the color twice", ("the color twice", "factors clamped to 1")),
-         inputs=(Input("subsurface_scatter_anisotropy", low=-1.0), *drawn(color="subsurface_color"))),
-    Says("thin-walled color", "Thin-walled mode", "transmission_color tints a thin wall, which has no depth.",
-         shown=THROUGH,
-         fixed={"geometry_thin_walled": 1.0, "transmission_weight": 1.0, "transmission_depth": FAR, "specular_ior": 1.05},
-         wrong=("no color of a thin wall with a depth", (TWICE, "no color of a thin wall with a depth")),
-         inputs=(THROUGH_COLOR,)),
-)
+SENTENCES = (
+    OPENPBR.says("diffuse", "Glossy-diffuse", "The diffuse lobe is EON, scaled by base_weight.", fixed=MATTE,
+        inputs=drawn(share="base_weight base_diffuse_roughness", color="base_color")),
+    OPENPBR.says("gloss", "Glossy-diffuse", "The dielectric reflects above the diffuse lobe, which gets 1 - E.",
+        inputs=drawn(color="base_color", index="specular_ior", rough="specular_roughness")),
+    OPENPBR.says("specular weight", "Base substrate",
+        "specular_weight scales the reflectance along the normal by a change of the index.",
+        fixed={"base_weight": 0.0}, inputs=(WEIGHT, *drawn(index="specular_ior", rough="specular_roughness"))),
+    OPENPBR.says("specular color", "Base substrate",
+        "specular_color tints the light that the dielectric reflects above.",
+        permitted=("no tint of what specular light leaves",),
+        inputs=drawn(color="specular_color", index="specular_ior", rough="specular_roughness")),
+    OPENPBR.says("anisotropy", "Microfacet model", "The mean of the squared alphas is r^4, their ratio 1 - a.",
+        fixed={"base_metalness": 1.0}, terms=(STRETCHED,),
+        inputs=drawn(share="specular_roughness_anisotropy", rough="specular_roughness")),
+    OPENPBR.says("metal", "Metal", "Metals reflect by F82-tint, scaled by specular_weight.",
+        fixed={"base_metalness": 1.0, "specular_color": (0.9, 0.8, 1.0)},
+        inputs=drawn(share="base_weight specular_weight", color="base_color", rough="specular_roughness")),
+    OPENPBR.says("metalness", "Base substrate", "base_metalness blends metal and dielectric.",
+        inputs=drawn(share="base_metalness", color="base_color", rough="specular_roughness")),
+    OPENPBR.says("transmission", "Reduction to a mixture of lobes",
+        "Light that the interface does not reflect passes, tinted by transmission_color at depth 0.",
+        evaluated=THROUGH, wrong=(TWICE,),
+        inputs=drawn(share="transmission_weight", color="transmission_color", index="specular_ior", rough="specular_roughness")),
+    OPENPBR.says("transmission depth", "Translucent base",
+        "With a depth, transmission_color does not tint the interface.", evaluated=THROUGH,
+        fixed={"transmission_weight": 1.0, "transmission_depth": FAR}, wrong=(TWICE,),
+        inputs=(THROUGH_COLOR, *drawn(rough="specular_roughness"))),
+    OPENPBR.says("film", "Thin-film iridescence",
+        "A film of thin_film_thickness micrometers covers thin_film_weight of the dielectric.",
+        fixed={"base_weight": 0.0}, terms=(FILMED,),
+        inputs=drawn(share="thin_film_weight thin_film_thickness", index="thin_film_ior", rough="specular_roughness")),
+    OPENPBR.says("film on metal", "Thin-film iridescence", "The film also covers metals.",
+        fixed={"base_metalness": 1.0}, terms=(FILMED,),
+        inputs=drawn(share="thin_film_weight thin_film_thickness", index="thin_film_ior", rough="specular_roughness")),
+    OPENPBR.says("film in transmission", "Thin-film iridescence",
+        "What a film reflects does not pass: the transmitted light has the fringes, too.", evaluated=THROUGH,
+        fixed={"transmission_weight": 1.0}, wrong=(TWICE,), terms=(FILMED,),
+        inputs=drawn(share="thin_film_weight thin_film_thickness", index="thin_film_ior", rough="specular_roughness")),
+    OPENPBR.says("coat", "Coat", "The coat reflects as a dielectric with its own index and roughness.",
+        fixed={"base_weight": 0.0, **MATTE}, terms=(STRETCHED,),
+        inputs=drawn(share="coat_weight coat_roughness_anisotropy", index="coat_ior", rough="coat_roughness")),
+    OPENPBR.says("coat absorption", "View-dependent absorption",
+        "The coat absorbs along the refracted path, coat_color at normal incidence.", fixed=COATED,
+        permitted=("absorption at the normal",), inputs=drawn(color="coat_color")),
+    OPENPBR.says("coat coverage", "Mixing",
+        "coat_weight is a share of the surface: the base is seen through lerp(1, T (1 - E), C).",
+        evaluated=ENVIRONMENT, fixed={"coat_darkening": 0.0, "base_color": WHITE, **MATTE},
+        wrong=("a partial coat as a product",),
+        inputs=drawn(share="coat_weight", color="coat_color", rough="coat_roughness")),
+    OPENPBR.says("base below a coat", "Coat",
+        "The base reflects by its index relative to the coat's, inverted where that is larger.",
+        fixed={"base_weight": 0.0, "coat_darkening": 0.0, "coat_weight": 1.0},
+        inputs=drawn(index="coat_ior specular_ior", rough="specular_roughness")),
+    OPENPBR.says("darkening", "Darkening", "Reflections inside the coat darken the base by (1 - K) / (1 - E K).",
+        fixed={"coat_weight": 1.0, **MATTE}, permitted=(DARKENING,),
+        inputs=drawn(share="coat_darkening", color="base_color", index="coat_ior")),
+    OPENPBR.says("darkening of a dark base", "Darkening", "E is the albedo of the whole base, base_weight included.",
+        fixed={"coat_weight": 1.0, **MATTE}, permitted=(DARKENING,),
+        wrong=((*DARKENING, "the base's albedo without base_weight"),),
+        inputs=drawn(share="base_weight", color="base_color")),
+    OPENPBR.says("roughening", "Roughening", "A rough coat widens the base's lobes to r'^4 = r^4 + 2 r_coat^4.",
+        fixed={"base_metalness": 1.0, "coat_darkening": 0.0},
+        inputs=drawn(share="coat_weight", rough="specular_roughness coat_roughness")),
+    OPENPBR.says("fuzz", "Fuzz", "The fuzz is Zeltner's sheen, which covers fuzz_weight of the surface.", fixed=MATTE,
+        inputs=drawn(share="fuzz_weight", fuzz_rough="fuzz_roughness", color="base_color")),
+    OPENPBR.says("fuzz color", "Fuzz", "fuzz_color tints the fuzz, not the light that passes it.",
+        fixed={"fuzz_weight": 1.0, **MATTE}, wrong=(TINTED.format("fuzz"),),
+        inputs=drawn(fuzz_rough="fuzz_roughness", color="fuzz_color")),
+    OPENPBR.says("fuzz normal", "Fuzz", "The fuzz has the normal of what is below it: the coat's, where there is one.",
+        fixed={"fuzz_weight": 1.0, "geometry_coat_normal": TILTED, **COATED},
+        wrong=("the fuzz along geometry_normal",),
+        inputs=drawn(fuzz_rough="fuzz_roughness", rough="coat_roughness")),
+    OPENPBR.says("frames", "Normal maps", "Base and coat have normals and tangents of their own.",
+        fixed={"base_metalness": 1.0, "coat_weight": 1.0, "coat_darkening": 0.0, "geometry_coat_normal": TILTED, "geometry_coat_tangent": (0.6, 0.0, -0.8), "geometry_tangent": (0.0, 1.0, 0.0), "specular_roughness_anisotropy": 0.5, "coat_roughness_anisotropy": 0.5},
+        terms=(STRETCHED,), inputs=drawn(rough="specular_roughness coat_roughness")),
+    OPENPBR.says("emission", "Emission", "The base emits emission_luminance times emission_color.", evaluated=EMITTED,
+        fixed={"emission_luminance": 1.0}, inputs=drawn(color="emission_color")),
+    OPENPBR.says("emission below a coat", "Reduction to a mixture of lobes", "The coat absorbs emitted light.",
+        evaluated=EMITTED, fixed={"emission_luminance": 1.0},
+        permitted=("the transmittance of one way", "a Fresnel factor of the coat", SCHLICK_EMISSION),
+        inputs=drawn(share="coat_weight", color="coat_color", index="coat_ior")),
+    OPENPBR.says("emission below fuzz", "Emission", "The fuzz is above the emission, too.", evaluated=EMITTED,
+        fixed={"emission_luminance": 1.0}, permitted=("no fuzz above",),
+        inputs=drawn(share="fuzz_weight", fuzz_rough="fuzz_roughness")),
+    OPENPBR.says("thin-walled subsurface", "Thin-walled mode", "A thin wall reflects (1 - g) / 2 of subsurface_color.",
+        fixed={"geometry_thin_walled": 1.0, "subsurface_weight": 1.0, **MATTE},
+        wrong=("the color twice", ("the color twice", "factors clamped to 1")),
+        inputs=(Input("subsurface_scatter_anisotropy", low=-1.0), *drawn(color="subsurface_color"))),
+    OPENPBR.says("thin-walled roughness", "Thin-walled mode", "base_diffuse_roughness shapes the lobes of a thin wall.",
+        fixed={"geometry_thin_walled": 1.0, "subsurface_weight": 1.0, "subsurface_color": WHITE, **MATTE},
+        wrong=("Oren-Nayar without compensation",), inputs=drawn(share="base_diffuse_roughness")),
+    OPENPBR.says("thin-walled transmission", "Thin-walled mode", "A thin wall passes (1 + g) / 2 of subsurface_color.",
+        evaluated=ENVIRONMENT, fixed={"geometry_thin_walled": 1.0, "subsurface_weight": 1.0, **MATTE},
+        wrong=("the color twice", ("the color twice", "factors clamped to 1")),
+        inputs=(Input("subsurface_scatter_anisotropy", low=-1.0), *drawn(color="subsurface_color"))),
+    OPENPBR.says("thin-walled color", "Thin-walled mode", "transmission_color tints a thin wall, which has no depth.",
+        evaluated=THROUGH,
+        fixed={"geometry_thin_walled": 1.0, "transmission_weight": 1.0, "transmission_depth": FAR, "specular_ior": 1.05},
+        wrong=("no color of a thin wall with a depth", (TWICE, "no color of a thin wall with a depth")),
+        inputs=(THROUGH_COLOR,)),
 
-STANDARD_ROWS = (
-    Says("diffuse", "Diffuse reflection", "The diffuse lobe is Oren-Nayar's, scaled by base.", fixed=BARE,
-         inputs=drawn(share="base diffuse_roughness", color="base_color")),
-    Says("specular", "Specular reflection",
-         "The specular lobe is a dielectric's above the rest, scaled by specular and its color.", fixed=PLASTIC,
-         permitted=("no tint of what specular light leaves",),
-         inputs=drawn(share="specular", color="specular_color", index="specular_IOR", rough="specular_roughness")),
-    Says("metal", "Metal",
-         "Metals reflect base * base_color along the normal; specular * specular_color is Gulbrandsen's edge color.",
-         fixed={"metalness": 1.0, "sheen": 0.0, "base": 0.9},
-         inputs=drawn(share="specular", color="base_color specular_color", rough="specular_roughness")),
-    Says("metalness", "Metal", "metalness blends metal and the rest.", fixed={"base": 0.8, "sheen": 0.0},
-         inputs=drawn(share="metalness", color="base_color", rough="specular_roughness")),
-    Says("rotation", "Metal", "A rotation of 1 turns the anisotropy once around.",
-         fixed={**METAL, "specular_anisotropy": 0.6}, permitted=("rotation clockwise",), terms=(STRETCHED,),
-         inputs=drawn(share="specular_rotation", rough="specular_roughness")),
-    Says("coat rotation", "Coating", "A rotation of 1 turns the coat's anisotropy once around.",
-         fixed={**BARE, "base": 0.0, "coat": 1.0, "coat_anisotropy": 0.6}, permitted=("rotation clockwise",),
-         terms=(STRETCHED,), inputs=drawn(share="coat_rotation", rough="coat_roughness")),
-    Says("transmission", "Specular transmission",
-         "Light that the interface does not reflect passes, tinted by transmission_color.", shown=THROUGH,
-         fixed=PLASTIC, wrong=(TWICE,),
-         inputs=drawn(share="transmission", color="transmission_color", index="specular_IOR", rough="specular_roughness")),
-    Says("sheen", "Sheen", "The sheen is above the base, which gets 1 - sheen E.", fixed=BARE,
-         inputs=drawn(share="sheen", sheen_rough="sheen_roughness", color="base_color")),
-    Says("sheen color", "Sheen", "sheen_color tints the sheen, not the light that passes it.",
-         fixed={**BARE, "sheen": 1.0}, wrong=(TINTED.format("sheen"),),
-         inputs=drawn(sheen_rough="sheen_roughness", color="sheen_color")),
-    Says("film", "Metal", "A film of thin_film_thickness nanometers covers the dielectric.",
-         fixed={**PLASTIC, "base": 0.0}, terms=(FILMED,),
-         inputs=drawn(film="thin_film_thickness", index="thin_film_IOR", rough="specular_roughness")),
-    Says("coat", "Coating", "The coat reflects as a white dielectric with its own index and roughness.",
-         fixed={**BARE, "base": 0.0}, inputs=drawn(share="coat", index="coat_IOR", rough="coat_roughness")),
-    Says("coat color", "Coating", "coat_color tints all below the coat.", fixed={**BARE, "coat": 1.0},
-         inputs=drawn(color="coat_color base_color", rough="coat_roughness")),
-    Says("coat coverage", "Coating", "What is below is seen through lerp(1, coat_color (1 - E), coat).",
-         shown=ENVIRONMENT, fixed={**BARE, "base_color": WHITE}, wrong=("a partial coat as a product",),
-         inputs=drawn(share="coat", color="coat_color", rough="coat_roughness")),
-    Says("coat affects color", "Coating", "coat_affect_color raises the base's color to a power.",
-         fixed={**BARE, "coat": 1.0}, inputs=drawn(share="coat_affect_color", color="base_color")),
-    Says("coat affects roughness", "Coating", "coat_affect_roughness widens the lobes below.",
-         fixed={**METAL, "coat": 1.0},
-         inputs=drawn(share="coat_affect_roughness", rough="specular_roughness coat_roughness")),
-    Says("emission", "Emission", "The surface emits emission times emission_color.", shown=EMITTED,
-         inputs=drawn(share="emission", color="emission_color")),
-    Says("emission below a coat", "Coating",
-         "The coat reflects and tints emitted light as it does the light of the base.", shown=EMITTED,
-         fixed={"emission": 1.0}, permitted=("a Fresnel factor of the coat", SCHLICK_EMISSION),
-         inputs=drawn(share="coat", color="coat_color", index="coat_IOR", rough="coat_roughness")),
-    Says("thin-walled subsurface", "Diffuse transmission",
-         "On a thin wall, subsurface is diffuse transmission.", shown=ENVIRONMENT,
-         fixed={**BARE, "thin_walled": 1.0}, inputs=drawn(share="subsurface", color="subsurface_color")),
-)
+    STANDARD.says("diffuse", "Diffuse reflection", "The diffuse lobe is Oren-Nayar's, scaled by base.", fixed=BARE,
+        inputs=drawn(share="base diffuse_roughness", color="base_color")),
+    STANDARD.says("specular", "Specular reflection",
+        "The specular lobe is a dielectric's above the rest, scaled by specular and its color.", fixed=PLASTIC,
+        permitted=("no tint of what specular light leaves",),
+        inputs=drawn(share="specular", color="specular_color", index="specular_IOR", rough="specular_roughness")),
+    STANDARD.says("metal", "Metal",
+        "Metals reflect base * base_color along the normal; specular * specular_color is Gulbrandsen's edge color.",
+        fixed={"metalness": 1.0, "sheen": 0.0, "base": 0.9},
+        inputs=drawn(share="specular", color="base_color specular_color", rough="specular_roughness")),
+    STANDARD.says("metalness", "Metal", "metalness blends metal and the rest.", fixed={"base": 0.8, "sheen": 0.0},
+        inputs=drawn(share="metalness", color="base_color", rough="specular_roughness")),
+    STANDARD.says("rotation", "Metal", "A rotation of 1 turns the anisotropy once around.",
+        fixed={**METAL, "specular_anisotropy": 0.6}, permitted=("rotation clockwise",), terms=(STRETCHED,),
+        inputs=drawn(share="specular_rotation", rough="specular_roughness")),
+    STANDARD.says("coat rotation", "Coating", "A rotation of 1 turns the coat's anisotropy once around.",
+        fixed={**BARE, "base": 0.0, "coat": 1.0, "coat_anisotropy": 0.6}, permitted=("rotation clockwise",),
+        terms=(STRETCHED,), inputs=drawn(share="coat_rotation", rough="coat_roughness")),
+    STANDARD.says("transmission", "Specular transmission",
+        "Light that the interface does not reflect passes, tinted by transmission_color.", evaluated=THROUGH,
+        fixed=PLASTIC, wrong=(TWICE,),
+        inputs=drawn(share="transmission", color="transmission_color", index="specular_IOR", rough="specular_roughness")),
+    STANDARD.says("sheen", "Sheen", "The sheen is above the base, which gets 1 - sheen E.", fixed=BARE,
+        inputs=drawn(share="sheen", sheen_rough="sheen_roughness", color="base_color")),
+    STANDARD.says("sheen color", "Sheen", "sheen_color tints the sheen, not the light that passes it.",
+        fixed={**BARE, "sheen": 1.0}, wrong=(TINTED.format("sheen"),),
+        inputs=drawn(sheen_rough="sheen_roughness", color="sheen_color")),
+    STANDARD.says("film", "Metal", "A film of thin_film_thickness nanometers covers the dielectric.",
+        fixed={**PLASTIC, "base": 0.0}, terms=(FILMED,),
+        inputs=drawn(film="thin_film_thickness", index="thin_film_IOR", rough="specular_roughness")),
+    STANDARD.says("coat", "Coating", "The coat reflects as a white dielectric with its own index and roughness.",
+        fixed={**BARE, "base": 0.0}, inputs=drawn(share="coat", index="coat_IOR", rough="coat_roughness")),
+    STANDARD.says("coat color", "Coating", "coat_color tints all below the coat.", fixed={**BARE, "coat": 1.0},
+        inputs=drawn(color="coat_color base_color", rough="coat_roughness")),
+    STANDARD.says("coat coverage", "Coating", "What is below is seen through lerp(1, coat_color (1 - E), coat).",
+        evaluated=ENVIRONMENT, fixed={**BARE, "base_color": WHITE}, wrong=("a partial coat as a product",),
+        inputs=drawn(share="coat", color="coat_color", rough="coat_roughness")),
+    STANDARD.says("coat affects color", "Coating", "coat_affect_color raises the base's color to a power.",
+        fixed={**BARE, "coat": 1.0}, inputs=drawn(share="coat_affect_color", color="base_color")),
+    STANDARD.says("coat affects roughness", "Coating", "coat_affect_roughness widens the lobes below.",
+        fixed={**METAL, "coat": 1.0},
+        inputs=drawn(share="coat_affect_roughness", rough="specular_roughness coat_roughness")),
+    STANDARD.says("emission", "Emission", "The surface emits emission times emission_color.", evaluated=EMITTED,
+        inputs=drawn(share="emission", color="emission_color")),
+    STANDARD.says("emission below a coat", "Coating",
+        "The coat reflects and tints emitted light as it does the light of the base.", evaluated=EMITTED,
+        fixed={"emission": 1.0}, permitted=("a Fresnel factor of the coat", SCHLICK_EMISSION),
+        inputs=drawn(share="coat", color="coat_color", index="coat_IOR", rough="coat_roughness")),
+    STANDARD.says("thin-walled subsurface", "Diffuse transmission",
+        "On a thin wall, subsurface is diffuse transmission.", evaluated=ENVIRONMENT,
+        fixed={**BARE, "thin_walled": 1.0}, inputs=drawn(share="subsurface", color="subsurface_color")),
 
-GLTF_ROWS = (
-    Says("diffuse", "B.2.2", "The diffuse lobe is Lambert's.", fixed={**CLEAR, "specular": 0.0},
-         inputs=drawn(color="base_color")),
-    Says("specular", "KHR_materials_specular",
-         "The reflectance along the normal is min(F0 specular_color, 1) specular, at grazing specular.",
-         fixed={**CLEAR, "base_color": (0.0, 0.0, 0.0)},
-         inputs=drawn(share="specular", color="specular_color", index="ior", rough="roughness")),
-    Says("dielectric", "B.2", "The specular lobe is above the diffuse one, which gets the rest of the light.",
-         fixed=CLEAR, inputs=drawn(color="base_color", index="ior", rough="roughness")),
-    Says("metal", "B.2.1", "Metals reflect by Schlick's curve from base_color to white.",
-         inputs=drawn(color="base_color", rough="roughness")),
-    Says("metallic", "B.2", "metallic blends metal and dielectric.",
-         inputs=drawn(share="metallic", color="base_color", rough="roughness")),
-    Says("anisotropy", "KHR_materials_anisotropy",
-         "The strength widens the lobe along the tangent, which the rotation turns counterclockwise.",
-         wrong=("rotation clockwise",), terms=(STRETCHED,),
-         inputs=drawn(share="anisotropy_strength anisotropy_rotation", rough="roughness")),
-    Says("clearcoat", "KHR_materials_clearcoat",
-         "The clearcoat of index 1.5 is above all, which gets the rest of the light.", fixed=CLEAR,
-         inputs=drawn(share="clearcoat", rough="clearcoat_roughness roughness", color="base_color")),
-    Says("clearcoat normal", "KHR_materials_clearcoat", "The clearcoat has a normal of its own.",
-         fixed={**CLEAR, "clearcoat": 1.0, "clearcoat_normal": TILTED, "base_color": (0.0, 0.0, 0.0)},
-         inputs=drawn(rough="clearcoat_roughness")),
-    Says("sheen", "KHR_materials_sheen",
-         "The sheen with alpha = sheen_roughness^2 is above, and takes max(sheen_color) E for all channels.",
-         fixed=CLEAR, wrong=(TINTED.format("sheen"),),
-         inputs=drawn(color="sheen_color", fuzz_rough="sheen_roughness")),
-    Says("iridescence", "KHR_materials_iridescence",
-         "iridescence blends the dielectric's reflection with that below a film.",
-         fixed={**CLEAR, "base_color": (0.0, 0.0, 0.0)}, terms=(FILMED,),
-         inputs=drawn(share="iridescence", film="iridescence_thickness", index="iridescence_ior", rough="roughness")),
-    Says("iridescent metal", "KHR_materials_iridescence", "A film covers metals likewise.", terms=(FILMED,),
-         inputs=drawn(share="iridescence", film="iridescence_thickness", index="iridescence_ior", rough="roughness", color="base_color")),
-    Says("transmission", "KHR_materials_transmission",
-         "Of the light that penetrates the surface, transmission passes, tinted by base_color.", shown=THROUGH,
-         fixed=CLEAR, wrong=(TWICE,),
-         inputs=drawn(share="transmission", color="base_color", index="ior", rough="roughness")),
-    Says("emission", "KHR_materials_emissive_strength", "The surface emits emissive times emissive_strength.",
-         shown=EMITTED, inputs=drawn(share="emissive_strength", color="emissive")),
-    Says("emission below a clearcoat", "KHR_materials_clearcoat",
-         "The clearcoat takes its Fresnel factor from emitted light.", shown=EMITTED,
-         wrong=("emission above the clearcoat",), fixed={"emissive": WHITE}, inputs=drawn(share="clearcoat")),
-)
+    GLTF.says("diffuse", "B.2.2", "The diffuse lobe is Lambert's.", fixed={**CLEAR, "specular": 0.0},
+        inputs=drawn(color="base_color")),
+    GLTF.says("specular", "KHR_materials_specular",
+        "The reflectance along the normal is min(F0 specular_color, 1) specular, at grazing specular.",
+        fixed={**CLEAR, "base_color": (0.0, 0.0, 0.0)},
+        inputs=drawn(share="specular", color="specular_color", index="ior", rough="roughness")),
+    GLTF.says("dielectric", "B.2", "The specular lobe is above the diffuse one, which gets the rest of the light.",
+        fixed=CLEAR, inputs=drawn(color="base_color", index="ior", rough="roughness")),
+    GLTF.says("metal", "B.2.1", "Metals reflect by Schlick's curve from base_color to white.",
+        inputs=drawn(color="base_color", rough="roughness")),
+    GLTF.says("metallic", "B.2", "metallic blends metal and dielectric.",
+        inputs=drawn(share="metallic", color="base_color", rough="roughness")),
+    GLTF.says("anisotropy", "KHR_materials_anisotropy",
+        "The strength widens the lobe along the tangent, which the rotation turns counterclockwise.",
+        wrong=("rotation clockwise",), terms=(STRETCHED,),
+        inputs=drawn(share="anisotropy_strength anisotropy_rotation", rough="roughness")),
+    GLTF.says("clearcoat", "KHR_materials_clearcoat",
+        "The clearcoat of index 1.5 is above all, which gets the rest of the light.", fixed=CLEAR,
+        inputs=drawn(share="clearcoat", rough="clearcoat_roughness roughness", color="base_color")),
+    GLTF.says("clearcoat normal", "KHR_materials_clearcoat", "The clearcoat has a normal of its own.",
+        fixed={**CLEAR, "clearcoat": 1.0, "clearcoat_normal": TILTED, "base_color": (0.0, 0.0, 0.0)},
+        inputs=drawn(rough="clearcoat_roughness")),
+    GLTF.says("sheen", "KHR_materials_sheen",
+        "The sheen with alpha = sheen_roughness^2 is above, and takes max(sheen_color) E for all channels.",
+        fixed=CLEAR, wrong=(TINTED.format("sheen"),),
+        inputs=drawn(color="sheen_color", fuzz_rough="sheen_roughness")),
+    GLTF.says("iridescence", "KHR_materials_iridescence",
+        "iridescence blends the dielectric's reflection with that below a film.",
+        fixed={**CLEAR, "base_color": (0.0, 0.0, 0.0)}, terms=(FILMED,),
+        inputs=drawn(share="iridescence", film="iridescence_thickness", index="iridescence_ior", rough="roughness")),
+    GLTF.says("iridescent metal", "KHR_materials_iridescence", "A film covers metals likewise.", terms=(FILMED,),
+        inputs=drawn(share="iridescence", film="iridescence_thickness", index="iridescence_ior", rough="roughness", color="base_color")),
+    GLTF.says("transmission", "KHR_materials_transmission",
+        "Of the light that penetrates the surface, transmission passes, tinted by base_color.", evaluated=THROUGH,
+        fixed=CLEAR, wrong=(TWICE,),
+        inputs=drawn(share="transmission", color="base_color", index="ior", rough="roughness")),
+    GLTF.says("emission", "KHR_materials_emissive_strength", "The surface emits emissive times emissive_strength.",
+        evaluated=EMITTED, inputs=drawn(share="emissive_strength", color="emissive")),
+    GLTF.says("emission below a clearcoat", "KHR_materials_clearcoat",
+        "The clearcoat takes its Fresnel factor from emitted light.", evaluated=EMITTED,
+        wrong=("emission above the clearcoat",), fixed={"emissive": WHITE}, inputs=drawn(share="clearcoat")),
 
-USD_ROWS = (
-    Says("specular workflow", "Preview Surface",
-         "specularColor is the reflectance along the normal, white at grazing.",
-         fixed={"useSpecularWorkflow": 1}, inputs=drawn(color="specularColor diffuseColor", rough="roughness")),
-    Says("dielectric", "Preview Surface",
-         "Without metallic, the reflectance comes from ior and is white at grazing.",
-         inputs=drawn(color="diffuseColor", rough="roughness", index="ior")),
-    Says("metal", "Preview Surface", "Metals reflect diffuseColor along the normal and at grazing.",
-         fixed={"metallic": 1.0}, wrong=("metal by artist-friendly indices",),
-         inputs=(METAL_COLOR, *drawn(rough="roughness"))),
-    Says("metallic", "Preview Surface", "In between, both reflectances are interpolated.",
-         wrong=("metal by artist-friendly indices",),
-         inputs=(METAL_COLOR, *drawn(share="metallic", rough="roughness"))),
-    Says("clearcoat", "Preview Surface", "The clearcoat is a second, white specular lobe with the index ior.",
-         inputs=drawn(share="clearcoat", rough="clearcoatRoughness", color="diffuseColor", index="ior")),
-    Says("opacity", "Preview Surface", "Light passes by 1 - opacity, and the surface still reflects.",
-         shown=THROUGH, wrong=(TWICE,), inputs=drawn(share="opacity", index="ior", rough="roughness")),
-    Says("opacity threshold", "Preview Surface", "With a threshold, what is shown is opaque.",
-         fixed={"opacityThreshold": 0.2, "opacity": 0.5},
-         inputs=drawn(color="diffuseColor", rough="roughness")),
-    Says("emission", "Preview Surface", "The surface emits emissiveColor.", shown=EMITTED,
-         inputs=drawn(color="emissiveColor")),
+    USD.says("specular workflow", "Preview Surface",
+        "specularColor is the reflectance along the normal, white at grazing.",
+        fixed={"useSpecularWorkflow": 1}, inputs=drawn(color="specularColor diffuseColor", rough="roughness")),
+    USD.says("dielectric", "Preview Surface",
+        "Without metallic, the reflectance comes from ior and is white at grazing.",
+        inputs=drawn(color="diffuseColor", rough="roughness", index="ior")),
+    USD.says("metal", "Preview Surface", "Metals reflect diffuseColor along the normal and at grazing.",
+        fixed={"metallic": 1.0}, wrong=("metal by artist-friendly indices",),
+        inputs=(METAL_COLOR, *drawn(rough="roughness"))),
+    USD.says("metallic", "Preview Surface", "In between, both reflectances are interpolated.",
+        wrong=("metal by artist-friendly indices",),
+        inputs=(METAL_COLOR, *drawn(share="metallic", rough="roughness"))),
+    USD.says("clearcoat", "Preview Surface", "The clearcoat is a second, white specular lobe with the index ior.",
+        inputs=drawn(share="clearcoat", rough="clearcoatRoughness", color="diffuseColor", index="ior")),
+    USD.says("opacity", "Preview Surface", "Light passes by 1 - opacity, and the surface still reflects.",
+        evaluated=THROUGH, wrong=(TWICE,), inputs=drawn(share="opacity", index="ior", rough="roughness")),
+    USD.says("opacity threshold", "Preview Surface", "With a threshold, what is shown is opaque.",
+        fixed={"opacityThreshold": 0.2, "opacity": 0.5},
+        inputs=drawn(color="diffuseColor", rough="roughness")),
+    USD.says("emission", "Preview Surface", "The surface emits emissiveColor.", evaluated=EMITTED,
+        inputs=drawn(color="emissiveColor")),
 )
 # fmt: on
-
-TEXTS = (OPENPBR, OPENPBR_ROWS), (STANDARD, STANDARD_ROWS), (GLTF, GLTF_ROWS), (USD, USD_ROWS)
-SENTENCES = tuple(row.spec(text) for text, rows in TEXTS for row in rows)
