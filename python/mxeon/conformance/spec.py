@@ -233,7 +233,7 @@ class ValueSpec(Spec):
         """A subset of the samples, for controls and expensive checks."""
         return tuple(batch.first(counts.few) for batch in batches)
 
-    def alike(self, compared: Compared) -> Compared:
+    def rescaled(self, compared: Compared) -> Compared:
         """The same comparison, rescaled to a unit in which errors are uniform."""
         return compared
 

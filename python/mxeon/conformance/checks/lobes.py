@@ -262,7 +262,7 @@ def region_values(key: str, case: Case) -> Compared:
 
 
 def in_region(key: str, case: Case) -> Compared:
-    return case.valued.alike(region_values(key, case))
+    return case.valued.rescaled(region_values(key, case))
 
 
 def explain_region(key: str, case: Case) -> Diagnosis:

@@ -436,7 +436,7 @@ def path_emission(case: Case) -> Iterator[Compared]:
         placed = replace(batch, frame=frame)
         text = paths(case.host, spec.document(), case.library, tuple(batch.inputs))
         found = text.values("emission", placed.world(batch.wo), inputs={**batch.inputs, **axes})
-        yield spec.alike(Compared(batch, case.outputs(batch, found), case.expected(batch)))
+        yield spec.rescaled(Compared(batch, case.outputs(batch, found), case.expected(batch)))
 
 
 def pcg4d(v: NDArray[np.uint32]) -> NDArray[np.uint32]:

@@ -283,7 +283,7 @@ class Comparison:
 
 def _backs(case: Case) -> Iterator[Compared]:
     batch = case.backend.take(case.of(emission.EmissionSpec).backs)
-    yield case.valued.alike(case.compared(batch))
+    yield case.valued.rescaled(case.compared(batch))
 
 
 def _alike(case: Case) -> Sequence[Candidate]:
@@ -291,7 +291,7 @@ def _alike(case: Case) -> Sequence[Candidate]:
 
     def alike(candidate: Candidate, batch: Batch) -> Array:
         values = candidate.values(batch)
-        return case.valued.alike(Compared(batch, values, values)).expected
+        return case.valued.rescaled(Compared(batch, values, values)).expected
 
     return [replace(each, values=partial(alike, each)) for each in case.valued.value_candidates]
 
@@ -320,7 +320,7 @@ TRANSMISSION = Comparison(
 )
 # Comparison of a utility node's output, or of emission from the front.
 OUTPUT = Comparison(
-    "value", lambda case: map(case.valued.alike, values(case)), _alike, faults.COLOR_FAULTS
+    "value", lambda case: map(case.valued.rescaled, values(case)), _alike, faults.COLOR_FAULTS
 )
 BACK = Comparison("value", _backs, _alike)
 TRANSMITTANCE = Comparison("value", _transmittances, VALUES)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes `layer`, `mix`, `add` and `multiply`, over two lobes or a sum of them."""
+"""Specs of the nodes `layer`, `mix`, `add` and `multiply`, which combine two sheen lobes."""
 
 from dataclasses import dataclass, replace
 
@@ -7,7 +7,7 @@ import numpy as np
 
 from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.specs.lobes import FLAT_FRAME, PbrSpec, named_mode
+from mxeon.conformance.specs.lobes import FLAT_FRAME, PbrSpec, mode_of
 from mxeon.conformance.specs.sheen import ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, ZELTNER_VALUE
 from mxeon.conformance.tolerance import ROUNDING, Term, sum_of
 from mxeon.models.nodes import combinations
@@ -17,7 +17,7 @@ from mxeon.shaders import nodes
 
 PASSES = ZELTNER_THROUGHPUT.term("a throughput between them")
 VALUE = sum_of(ZELTNER_VALUE.term("two values", 2.0), PASSES)
-# This also covers a mix of a sum over a base: slopes by the two albedos are at most 1 and 2.
+# For a mix of a sum over a base, the slopes by the two albedos are at most 1 and 2.
 THREE_ALBEDOS = ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0)
 ALBEDO = sum_of(THREE_ALBEDOS, quantity=Quantity.ALBEDO)
 THIRD = ZELTNER_VALUE.term("a third value"), ZELTNER_THROUGHPUT.term("its throughput")
@@ -25,7 +25,7 @@ NESTED_VALUE = sum_of(VALUE.term("two values and a throughput"), *THIRD, exact=T
 ERRORS = {
     "albedo": ALBEDO,
     "throughput": ALBEDO,
-    # Both sides compute the same products with an exact factor.
+    # The compared values are the same products with an exact factor.
     "factor": sum_of(Term(ROUNDING, "one float32 rounding"), exact=True),
     "frame": sum_of(FLAT_FRAME.term("three lobes in another frame", 3.0)),
 }
@@ -39,7 +39,7 @@ SHEEN = nodes.Node("sheen_bsdf", "BSDF", text=nodes.input_text("mode", "string",
 LOBES = {"top": SHEEN, "base": SHEEN}
 SUM = {"sum": over("add", "top", "base")}
 WHITE_INPUT = nodes.input_text("color", "color3", np.ones(3))
-# Opaque lobes with connected mix weights; MaterialX folds these weights into the lobes' weights.
+# Opaque lobes in mixes with connected weights. MaterialX multiplies the lobes by these weights.
 MASKED = {
     **dict.fromkeys(
         ("white", "other"), nodes.Node("oren_nayar_diffuse_bsdf", "BSDF", text=WHITE_INPUT)
@@ -53,7 +53,7 @@ MASKED = {
     ),
     "lobe": over("layer", "both", "base"),
 }
-# For each row name: its title, and the nodes that combine both lobes.
+# Title of each row of `mxeon.models.nodes.combinations`, and the nodes that combine its lobes.
 # fmt: off
 NETWORKS: dict[str, tuple[str, dict[str, nodes.Node]]] = {
     "layer": ("layer", {"lobe": over("layer", "top", "base")}),
@@ -71,20 +71,20 @@ NETWORKS: dict[str, tuple[str, dict[str, nodes.Node]]] = {
     "layer_colored": ("layer, under a colored sum", {**SUM, "lobe": over("layer", "sum", "base")}),
 }
 # fmt: on
-SINGLE = ("multiply_float", "multiply_color3")  # rows of nodes with a single lobe, `top`
+SINGLE = ("multiply_float", "multiply_color3")  # rows that use only the lobe `top`
 COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CombinedSpec(PbrSpec):
-    """A node of `mxeon.models.nodes.combinations` whose lobes have weight 1."""
+    """A node that combines lobes; their own weights are 1."""
 
     requires = spec.Ability.LOBE | spec.Ability.COMBINATION
-    # MaterialX scales a lobe by a connected mix weight wherever the lobe is used.
+    # If several nodes use a lobe, MaterialX applies a connected mix weight to all of these uses.
     plain = ("lobes", "inputs from an image")
 
     def batches(self, counts: samples.Counts) -> tuple[samples.Batch, ...]:
-        """Random and special pairs. Single lobes are already checked outside the domain."""
+        """Random and special pairs; pairs outside the domain are left to specs of single lobes."""
         rng, count = samples.generator(), counts.pairs
         wo, wi = samples.directions(rng, count), samples.directions(rng, count)
         special = samples.special_directions(rng)
@@ -111,8 +111,7 @@ def _spec(row: PbrNode) -> CombinedSpec:
     if row.name in SINGLE:  # the base's roughness has no effect
         inputs[ROUGHNESS[1]] = replace(inputs[ROUGHNESS[1]], change=None)
     return CombinedSpec(
-        **named_mode(row, NETWORKS[row.name][0]),
-        row=row,
+        **mode_of(row, NETWORKS[row.name][0]),
         inputs=tuple(inputs[name] for name in row.inputs),
         errors={"value": NESTED_VALUE if row.name in combinations.NESTED else VALUE, **ERRORS},
     )

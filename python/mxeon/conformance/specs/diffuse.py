@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Specs of the rough diffuse nodes, mode by mode, and of the diffuse lobes of surface shaders."""
+"""Specs of the rough diffuse nodes and of the diffuse lobes of surface shaders."""
 
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -19,25 +20,24 @@ from mxeon.models.nodes.node import PbrNode, Variant
 from mxeon.models.table import Model
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, document_text, input_text, node_text
 
-EDGES = (0.0, 1e-6, 1e-3, 1.0)  # special colors, and special roughness / maximum
-# Colors and roughnesses of the pictures that represent a rough diffuse node.
+EDGES = (0.0, 1e-6, 1e-3, 1.0)  # special colors, and special shares of the largest roughness
 PICTURE_INPUTS: tuple[Values, ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
 )
-COUNTS = Counts(nodes=16)  # the quadrature's error, 2e-8, is as small as roundings
-LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H: tools/fits
+COUNTS = Counts(nodes=16)  # a quadrature with an error of 2e-8
+LOSS_FIT = 2.7e-7  # relative error of the fit of H, the loss in FON: tools/fits/fon_loss.py
 
 VALUE = sum_in(
     Quantity.DIFFERENCE,
     roundings(28, "(14, of numbers up to 2)"),
     Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
 )
-# The longest chain has 12 roundings, the cosine two, and the fit of H, times 0.29, two.
+# 12 in the longest chain of operations, two in the cosine, and two for 0.29 times the error of H.
 LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
 ENVIRONMENT = sum_in(Quantity.ALBEDO, LARGE_NUMBERS)
-# Two cosines of at least 1/4 have five roundings each, which count 4 times in s / t, 3 times in a
-# sine, and twice elsewhere.
+# A rounding of a cosine of at least 1/4 counts 4 times in s / t, 3 times in a sine, and twice in
+# other factors.
 FRAME = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     roundings(2 * 28, "of two values"),
@@ -74,16 +74,16 @@ def inputs_of(*names: str) -> tuple[Input, ...]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DiffuseModelSpec(ScatteringSpec):
-    """A node or lobe whose expected model is a rough diffuse model of `mxeon.models.table`."""
+    """A node or lobe with a rough diffuse model; by default, a renderer's own node."""
 
-    requires = Ability.OWN  # library nodes override this
+    requires = Ability.OWN
 
     counts: Counts = COUNTS
     flat: bool = True
 
     @property
     def drawn(self) -> tuple[Input, Input]:
-        """The inputs. Rounding to float32 must not lift roughness above the model's maximum."""
+        """Color and roughness; the largest roughness is rounded down to float32."""
         largest = reference.diffuse_model(self.model).largest
         most = np.float32(largest)
         high = float(most if most <= largest else np.nextafter(most, np.float32(0.0)))
@@ -93,16 +93,16 @@ class DiffuseModelSpec(ScatteringSpec):
     @property
     def materials(self) -> tuple[Values, ...]:
         names = {"color", "roughness", *self.names}
-        rows = PICTURE_INPUTS
-        return tuple({name: each[name] for name in each if name in names} for each in rows)
+        return tuple({name: row[name] for name in row if name in names} for row in PICTURE_INPUTS)
 
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False
     ) -> dict[str, Array]:
-        """Random inputs. Unless `edged`, the last sixteenth of the colors is gray."""
+        """Random inputs; unless `edged`, the last sixteenth of the colors is gray."""
         inputs = super().random_inputs(rng, count, edged)
-        gray = slice(count if edged else count - count // 16, None)
-        inputs["color"][gray] = inputs["color"][gray, :1]
+        if not edged:
+            gray = inputs["color"][count - count // 16 :]
+            gray[:] = gray[:, :1]
         return inputs
 
     def edges(self, counts: Counts) -> Batch:
@@ -119,34 +119,39 @@ class DiffuseModelSpec(ScatteringSpec):
 
 
 def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
-    """The row of a node with its expected model. Its variants are all other known models."""
+    """The row of a node with its expected model; the variants are all other known models."""
     known = others + reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS
     rows = {each.name: each for each in known}
-    own = reference.diffuse_model(model)
-    owners = {each.brdf_of: each.name for each in (*rows.values(), own)}
+    expected = reference.diffuse_model(model)
+    # Only one of the models with equal BRDFs has a value, but each has its own albedo.
+    owners = {each.brdf_of: each.name for each in (*rows.values(), expected)}
     variants = []
-    for each in rows.values():
-        most = each.largest
-        value = _limited(each.value, most) if owners[each.brdf_of] == each.name else None
-        albedo = _limited(each.albedo, most) if each.albedo_dir else None
-        variants += [Variant(each.title, value, albedo)] * (each.name != model)
-    return replace(own, category=node, variants=tuple(variants))
+    for name, each in rows.items():
+        value = _limited(each.value, each.largest) if owners[each.brdf_of] == name else None
+        albedo = _limited(each.albedo, each.largest) if each.albedo_dir else None
+        if name != model:
+            variants.append(Variant(each.title, value, albedo))
+    return replace(expected, category=node, variants=tuple(variants))
 
 
-def _limited(function: Callable[..., Array], most: float) -> Callable[..., Array]:
-    """A function of directions and inputs that limits the roughness to `most`."""
-    return lambda *given: function(
-        *given[:-1], {**given[-1], "roughness": np.minimum(given[-1]["roughness"], most)}
-    )
+def _limited(function: Callable[..., Array], largest: float) -> Callable[..., Array]:
+    """The function with a roughness of at most `largest`; the inputs are its last argument."""
+
+    def limited(*arguments: Any) -> Array:
+        *directions, inputs = arguments
+        roughness = np.minimum(inputs["roughness"], largest)
+        return function(*directions, {**inputs, "roughness": roughness})
+
+    return limited
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DiffuseSpec(DiffuseModelSpec):
-    """A rough diffuse node with one value of its flag."""
+    """A rough diffuse node with one value of its input `energy_compensation`."""
 
     requires = Ability.DIFFUSE
 
-    flag: bool | None  # energy_compensation, or None if the node has no such input
+    flag: bool | None  # value of `energy_compensation`; None if the node has no such input
 
 
 def _diffuse(node: str, flag: bool | None, model: str) -> DiffuseSpec:
@@ -175,29 +180,29 @@ DIFFUSE = (
 class SurfaceLobe(DiffuseModelSpec):
     """The diffuse lobe of a surface shader whose other lobes cannot be disabled.
 
-    The lobes above depend only on the directions, so two renders isolate the diffuse lobe. A black
-    color shows the other lobes. White at roughness 0, Lambert in every model, shows the share of
-    light that reaches the lobe and returns.
+    The other lobes depend only on the directions, so two evaluations isolate the diffuse lobe: with
+    a black color, only the other lobes remain; with white at roughness 0, every model is Lambert,
+    which gives the share of light that reaches the lobe and returns.
     """
 
     requires = Ability.BELOW
-    coarse = 4  # the shaders are slow
-    rim = LOBE_RIM  # position errors are divided twice
+    coarse = 4
+    rim = LOBE_RIM
 
-    ports: Mapping[str, str]  # rough diffuse node's input name -> shader's input name
+    ports: Mapping[str, str]  # names of the shader's inputs by names of the lobe's inputs
     set_inputs: tuple[tuple[str, str, str], ...] = ()  # name, type and value of additional inputs
 
     def document(self, inputs: Values | None = None) -> str:
-        types = {"color": "color3", "roughness": "float"}
-        given = {name: port for name, port in self.ports.items() if name in (inputs or {})}
-        values = [(port, types[name], (inputs or {})[name]) for name, port in given.items()]
-        ports = "".join(input_text(*each) for each in (*values, *self.set_inputs))
+        types, inputs = {"color": "color3", "roughness": "float"}, inputs or {}
+        rows = [
+            (self.ports[each], types[each], inputs[each]) for each in self.ports if each in inputs
+        ]
+        ports = "".join(input_text(*row) for row in (*rows, *self.set_inputs))
         return document_text(node_text(self.node, "surfaceshader", "shading", ports))
 
 
 # fmt: off
-# Title, model, names of color and roughness, and additional inputs. OpenPBR specifies EON; Standard
-# Surface, Oren-Nayar; USD Preview Surface and glTF, Lambert.
+# Title, specified model, names of color and roughness, and additional inputs.
 ROWS: tuple[tuple[str, str, tuple[str, ...], tuple[tuple[str, str, str], ...]], ...] = (
     ("open_pbr_surface", "eon", ("base_color", "base_diffuse_roughness"), ()),
     ("open_pbr_surface, thin-walled", "eon", ("subsurface_color", "base_diffuse_roughness"),
@@ -214,10 +219,10 @@ SURFACE_LOBES = tuple(
         model=model,
         row=model_row(model, node),
         ports=dict(zip(("color", "roughness"), ports, strict=False)),
-        set_inputs=given,
-        # Every library uses MaterialX's own thin-walled lobe, so judge it once.
+        set_inputs=additional,
+        # Every library has MaterialX's own thin-walled lobe, so judge only one library.
         libraries=("stock",) if title != node else (),
         errors={"value": LOBE_VALUE},
     )
-    for title, model, ports, given in ROWS
+    for title, model, ports, additional in ROWS
 )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Specs of EDF nodes, nodes that combine EDFs, emitting surfaces, and VDF nodes."""
+"""Specs of nodes that emit light (EDFs), emitting surfaces, and nodes of media (VDFs)."""
 
 from dataclasses import dataclass, replace
 from functools import partial
@@ -18,43 +18,45 @@ from mxeon.shaders import nodes, scene
 
 
 def title_of(row: emissions.Emission | Medium, kind: str) -> str:
-    """Title of a row. It includes the type if nodes for several types share a name."""
+    """Title of a row, with types if MaterialX has the category for several types."""
+    if "/" not in next(iter(row.inputs)):  # a node that combines no other nodes
+        return row.category
     factor = f", in2 {row.name.rpartition('_')[2]}" if row.category == "multiply" else ""
-    return f"{row.category}, {kind}{factor}" if "/" in next(iter(row.inputs)) else row.category
+    return f"{row.category}, {kind}{factor}"
 
 
 def inputs_of(row: emissions.Emission | Medium) -> tuple[Input, ...]:
-    """The inputs of a row. The last word of the row's name is the type of its factor."""
-    kind = row.name.rpartition("_")[2]
+    kind = row.name.rpartition("_")[2]  # type of the factor of a node `multiply`
     return tuple(INPUTS.get(name) or FACTORS[name, kind] for name in row.inputs)
 
 
 def chained(
     row: emissions.Emission | Medium, kind: str, source: str, name: str, text: str = ""
 ) -> dict[str, nodes.Node]:
-    """A node, and the source nodes that are named in the paths of its inputs."""
+    """The row's node, called `name`, and the nodes of category `source` that it combines.
+
+    An input whose path has the name of a node belongs to that node.
+    """
     paths = (each.rpartition("/")[0] for each in row.inputs)
     sources = tuple(dict.fromkeys(path for path in paths if path not in ("", name)))
-    own = {name: nodes.Node(row.category, kind, sources, text)}
-    return dict.fromkeys(sources, nodes.Node(source, kind)) | own
+    combined = dict.fromkeys(sources, nodes.Node(source, kind))
+    return {**combined, name: nodes.Node(row.category, kind, sources, text)}
 
 
 EMITTED = nodes.connection_text("edf", "EDF", "emission")
 EMITTING_TEXT = nodes.node_text("surface", "surfaceshader", "shading", EMITTED)
-SURFACE_COLOR = (0.2, 0.5, 2.0)  # radiance that the surface emits
-BLACK_LOBE = '  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF" />\n'
-LEAST_FALLOFF = 0.01  # least difference of the full angles, in degrees
-LEAST_CONE = 1e-3  # least full angle of narrow cones, as a share of a turn
+SURFACE_COLOR = (0.2, 0.5, 2.0)  # radiance of the emitting surface
+LEAST_FALLOFF = 0.01  # smallest difference between a cone's outer and inner angle, in degrees
+LEAST_CONE = 1e-3  # smallest full angle of a narrow cone, as a share of 360 degrees
 EXPONENTS = (0.5, 20.0)
-BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
 INNER, OUTER = "inner_angle", "outer_angle"
-LEAST, LARGEST = 1e-3, 16.0  # coefficients in 1/m that remove 1e-3 and 1 - 1e-7 of the light
-# For pictures, choose a falloff over half of the sphere, so that it is not steep.
+# Coefficients of media in 1/m: one meter takes 0.1 % of the light, or all but 1e-7.
+LEAST, LARGEST = 1e-3, 16.0
 INPUTS = {
     each.name: each
     for each in (
         *(
-            replace(color(name, BLUE, ORANGE, edges=()), high=2.0)
+            replace(color(name, (0.2, 0.5, 0.8), (2.0, 0.4, 0.1), edges=()), high=2.0)
             for name in ("color", emissions.BASE, emissions.FIRST)
         ),
         color(emissions.SECOND, (0.9, 0.1, 0.3), (0.1, 0.2, 0.3), edges=()),
@@ -62,9 +64,9 @@ INPUTS = {
         color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2), edges=()),
         color("color90", (0.9, 0.8, 0.6), (1.0, 1.0, 1.0), edges=()),
         Input("exponent", "float", *EXPONENTS, change=2.0, materials=(5.0, 2.0), default=5.0),
+        # In pictures, a cone's falloff extends over half of the sphere, so that no edge is steep.
         Input(INNER, change=20.0, materials=(60.0, 0.0), default=60.0),
         Input(OUTER, change=150.0, materials=(140.0, 150.0), default=90.0),
-        # Media from barely visible to nearly opaque.
         *(
             Input(name, "vector3", LEAST, LARGEST, change=spec.CHANGED_COLOR, logarithmic=True)
             for name in ("absorption", "scattering", media.FIRST, media.SECOND)
@@ -80,15 +82,16 @@ FACTORS = {
     (media.FACTOR, "color3"): replace(color(media.FACTOR, edges=()), high=3.0),
 }
 
-# Skip views whose cosine is closer to a hard edge, because an engine's rounding decides there.
+# Smallest difference between the cosines of a view and of a cone without falloff; closer to the
+# cone's edge, roundings decide whether the view is inside.
 EDGE = 1e-3
 SMALL = scene.Scene("dark", size=8)
 OPACITIES = (0.0, 0.25, 1.0)
 
 
-# 1 - cos of both angles has ten roundings in all, and differences have two.
+# Both cosines of a cone have ten roundings in all, and their differences have two.
 CONE_ROUNDINGS = 12
-# Keys are names of rows.
+# Tolerances by name of the model's row; all other rows have UNIFORM.
 # fmt: off
 ERRORS = {
     "conical": sum_of(
@@ -113,24 +116,24 @@ power_error = spec.POWER.error(_powers)
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class EmissionSpec(spec.RowSpec[emissions.Value]):
-    """An EDF node, or a combination of EDFs: a row of `mxeon.models.nodes.emissions`."""
+    """An EDF node, or a node that combines EDFs; `row` has its equation."""
 
     requires = Ability.EMISSION
-    coarse = 4  # all pixels of a view are equivalent
+    coarse = 4  # radiance depends only on the view's cosine, so few pixels are enough
 
     row: emissions.Emission
 
     def document(self, inputs: Values | None = None) -> str:
-        axis = turned = ""
-        if "normal" in (inputs or {}):  # a normal must be connected: values are ignored
+        axis = connection = ""
+        if "normal" in (inputs or {}):  # MaterialX ignores a normal that is not connected
             axis = nodes.vector_text("axis", (inputs or {})["normal"])
-            turned = nodes.connection_text("normal", "vector3", "axis")
-        network = chained(self.row, "EDF", "uniform_edf", "emission", turned)
-        text = axis + nodes.network_text(network, spec.ports(self.drawn, inputs)) + EMITTING_TEXT
-        return nodes.document_text(text, "look")
+            connection = nodes.connection_text("normal", "vector3", "axis")
+        network = chained(self.row, "EDF", "uniform_edf", "emission", connection)
+        text = nodes.network_text(network, spec.ports(self.drawn, inputs))
+        return nodes.document_text(axis + text + EMITTING_TEXT)
 
     def values(self, function: emissions.Value, batch: Batch) -> Array:
-        """Radiance, (N, 3); components of views are clipped to [-1, 1]."""
+        """Radiance toward each view, (N, 3); roundings of the views above 1 are clipped."""
         return function(np.clip(batch.wo, -1.0, 1.0), spec.broadcast_inputs(batch))
 
     @property
@@ -138,7 +141,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
         return (spec.ZERO,)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views from the front, and a grid of cosines from 1 to grazing."""
+        """Random views from the front, and views at the cosines of GRID."""
         rng = generator()
         special = samples.directions_at(np.repeat(samples.GRID, 64), 0.0)
         return (self.views(rng, directions(rng, counts.pairs)), self.views(rng, special))
@@ -155,23 +158,23 @@ class ConeSpec(EmissionSpec):
     """An emission inside a cone around an input axis."""
 
     def random_inputs(self, rng: samples.Rng, count: int) -> dict[str, Array]:
-        """Half of the cones have a falloff of at least LEAST_FALLOFF degrees; a quarter are narrow.
+        """Random inputs: half of the cones have a falloff, and a quarter are narrow.
 
-        Some cones without a falloff have two equal angles.
+        In a cone without a falloff, the outer angle is at most the inner angle.
         """
         inputs, turn = super().random_inputs(rng, count), rng.random(count)
-        wide = rng.random(count) < 0.5
+        soft = rng.random(count) < 0.5
         inner = 360.0 * np.where(rng.random(count) < 0.25, LEAST_CONE**turn, turn)
-        inner = np.where(wide, inner * (1.0 - LEAST_FALLOFF / 360.0), inner)
-        more = LEAST_FALLOFF * ((360.0 - inner) / LEAST_FALLOFF) ** rng.random(count)
-        outer = np.where(wide, inner + more, inner * np.minimum(1.2 * rng.random(count), 1.0))
+        inner = np.where(soft, inner * (1.0 - LEAST_FALLOFF / 360.0), inner)
+        falloff = LEAST_FALLOFF * ((360.0 - inner) / LEAST_FALLOFF) ** rng.random(count)
+        outer = np.where(soft, inner + falloff, inner * np.minimum(1.2 * rng.random(count), 1.0))
         return inputs | {INNER: float32(inner), OUTER: float32(outer)}
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views, views in falloffs or close to edges of cones, and turned cones."""
+        """Random views; views in falloffs or close to edges of cones; and rotated cones."""
         rng, count = generator(), counts.few
         inputs = self.random_inputs(rng, count)
-        inputs[INNER][0] = inputs[OUTER][0] = 0.0  # this cone has one direction, the view
+        inputs[INNER][0] = inputs[OUTER][0] = 0.0  # a cone that contains only its axis
         angle = np.where(np.arange(count) % 2, inputs[INNER], inputs[OUTER])
         step = np.where(rng.random(count) < 0.5, -2.0, 2.0) * _edge(angle)
         mu, low = cone_cosine(angle) + step, cone_cosine(inputs[OUTER])
@@ -182,10 +185,10 @@ class ConeSpec(EmissionSpec):
         view = samples.turned_directions(rng, len(frames))
         axes = self.random_inputs(rng, len(frames)) | {"normal": samples.float32(frames[:, :, 2])}
         near, turned = Batch(wo, wo, inputs), Batch(view, view, axes, frame=frames)
-        return *super().batches(counts), _away(near), _away(turned)
+        return *super().batches(counts), _without_edges(near), _without_edges(turned)
 
-    def alike(self, compared: Compared) -> Compared:
-        """Divide errors by 1 + the falloff's largest slope within a rounding of the view."""
+    def rescaled(self, compared: Compared) -> Compared:
+        """Divide values by 1 + the falloff's largest slope within CONE_ROUNDINGS of the cosine."""
         batch = compared.batch
         inner, outer = (batch.inputs[name] for name in (INNER, OUTER))
         width = np.where(outer > inner, cone_width(inner, outer), np.inf)
@@ -195,11 +198,11 @@ class ConeSpec(EmissionSpec):
         return compared.over((1.0 + 6.0 * t * (1.0 - t) / width)[:, np.newaxis])
 
     def views(self, rng: samples.Rng, wo: Array) -> Batch:
-        return _away(super().views(rng, wo))
+        return _without_edges(super().views(rng, wo))
 
 
-def _away(batch: Batch) -> Batch:
-    """Drop views that are close to the hard edge of a cone."""
+def _without_edges(batch: Batch) -> Batch:
+    """The batch without views that are close to the edge of a cone without falloff."""
     hard = batch.inputs[OUTER] <= batch.inputs[INNER]
     away = np.abs(np.maximum(batch.wo[:, 2], 0.0) - cone_cosine(batch.inputs[INNER]))
     return batch.where(~hard | (away >= _edge(batch.inputs[INNER])))
@@ -211,17 +214,17 @@ def _edge(angle: Array) -> Array:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AbsentSpec(spec.Spec):
-    """A node of which only the existence of an implementation is judged."""
+    """A node whose values no model computes; only the existence of an implementation is judged."""
 
     requires = Ability.IMPLEMENTATION
 
-    text: str  # XML nodes of a document that uses it
+    text: str  # XML of the node, and of the surface that uses the node
 
     def document(self, inputs: Values | None = None) -> str:
         return nodes.document_text(self.text)
 
 
-# A definition without any implementation, for a control.
+# A control: MaterialX has no implementation of this definition.
 UNIMPLEMENTED = AbsentSpec(
     title="a node without an implementation",
     node="mxeon_absent",
@@ -248,11 +251,14 @@ class EmittingSurface(spec.ValueSpec):
 
     def document(self, inputs: Values | None = None) -> str:
         color = nodes.input_text("color", "color3", SURFACE_COLOR)
-        emission = nodes.node_text("uniform_edf", "EDF", "emission", color)
-        lobe = nodes.connection_text("bsdf", "BSDF", "lobe") if self.has_bsdf else ""
-        opacity = nodes.input_text("opacity", "float", (inputs or {}).get("opacity", 1.0))
-        surface = nodes.node_text("surface", "surfaceshader", "shading", lobe + EMITTED + opacity)
-        return nodes.document_text((BLACK_LOBE if self.has_bsdf else "") + emission + surface)
+        text = nodes.node_text("uniform_edf", "EDF", "emission", color)
+        ports = EMITTED + nodes.input_text("opacity", "float", (inputs or {}).get("opacity", 1.0))
+        if self.has_bsdf:
+            text += nodes.node_text(nodes.OREN_NAYAR, "BSDF", "lobe")  # unlit, so black
+            ports += nodes.connection_text("bsdf", "BSDF", "lobe")
+        return nodes.document_text(
+            text + nodes.node_text("surface", "surfaceshader", "shading", ports)
+        )
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         points = scene.sphere(SMALL.size)
@@ -294,28 +300,24 @@ EMISSION_SPECS = tuple(map(_spec, (*emissions.EMISSIONS, *emissions.COMBINED_EMI
 
 # --- media: VDF nodes between two transmitting lobes ----------------------------------------------
 
-# An exponential of a sum, a product, and a quotient of two such values have 12 roundings.
+# The exponential of a sum, a product, and the quotient of two results have 12 roundings.
 TRANSMITTANCE = sum_of(roundings(12), quantity=Quantity.TRANSMITTANCE)
-TYPES = {"weight": "float", "scatter_mode": "string"}
-TOP, BOTTOM = (
-    nodes.lobe_text("dielectric_bsdf", {"weight": 1.0, "scatter_mode": "T"}, name, TYPES)
-    for name in ("top", "bottom")
+GLASS = nodes.Node(
+    "dielectric_bsdf",
+    "BSDF",
+    text=nodes.input_text("weight", "float", 1.0) + nodes.input_text("scatter_mode", "string", "T"),
 )
-
-
-def layer_text(name: str, top: str, kind: str, base: str) -> str:
-    ports = nodes.connection_text("top", "BSDF", top) + nodes.connection_text("base", kind, base)
-    return nodes.node_text("layer", "BSDF", name, ports)
-
-
-LAYERS = layer_text("filled", "top", "VDF", "medium") + layer_text(
-    "lobe", "filled", "BSDF", "bottom"
-)
+MEDIUM = nodes.connection_text("base", "VDF", "medium")
+SLAB = {
+    **dict.fromkeys(("top", "bottom"), GLASS),
+    "filled": nodes.Node("layer", "BSDF", ("top",), MEDIUM),
+    "lobe": nodes.Node("layer", "BSDF", ("filled", "bottom")),
+}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MediumSpec(spec.RowSpec[media.Value]):
-    """A VDF node, or a combination of VDFs: a row of `mxeon.models.nodes.media`."""
+    """A VDF node, or a node that combines VDFs; `row` has its equation."""
 
     requires = Ability.MEDIUM
 
@@ -324,10 +326,10 @@ class MediumSpec(spec.RowSpec[media.Value]):
     def document(self, inputs: Values | None = None) -> str:
         network = chained(self.row, "VDF", "anisotropic_vdf", "medium")
         media = nodes.network_text(network, spec.ports(self.inputs, inputs))
-        return nodes.document_text(TOP + media + BOTTOM + LAYERS + nodes.SURFACE)
+        return nodes.document_text(media + nodes.network_text(SLAB) + nodes.SURFACE)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views and inputs, without grazing views, for which refraction may fail."""
+        """Random views and inputs, without grazing views, whose refraction rounds badly."""
         rng, count = generator(), counts.pairs
         wo = samples.turned_directions(rng, count)
         return (Batch(wo, wo * [1.0, 1.0, -1.0], self.random_inputs(rng, count)),)
@@ -348,7 +350,7 @@ ENGINE = (
     EngineError("the engine's exp(), twice", exponential_error, 2.0),
     EngineError("the engine's pow(), twice", power_error, 2.0),
 )
-# A medium's anisotropy must not affect the transmittance.
+# The anisotropy of a medium must not affect the transmittance.
 ANISOTROPY = Input("anisotropy", low=-0.9, high=0.9, default=0.5)
 
 

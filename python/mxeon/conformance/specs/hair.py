@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The hair node: pairs over the sphere, pairs in its lobes, and regions where shaders differ."""
+"""Spec of the hair node, with regions of views and roughnesses in which known shaders differ.
+
+The longitudinal density M has the variance v, the azimuthal density N the scale s.
+"""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -11,7 +14,7 @@ from mxeon.conformance import samples
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import LEAST_TURNED, Array, Batch, Counts, Values, generator, rounded
 from mxeon.conformance.spec import Ability, Input, broadcast_inputs, color
-from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors, named_mode
+from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors, mode_of
 from mxeon.conformance.tolerance import Compared, Term, roundings, sum_in, sum_of
 from mxeon.models.hair import ROUGHNESSES, SCALE, TINTS, chiang_hair_attenuation, section
 from mxeon.models.nodes.lobes import BESSEL, CLAMPED, HAIR_NODE, UNIFORM
@@ -19,11 +22,12 @@ from mxeon.models.nodes.node import Scattering
 
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 9)
 LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # lower limits of random roughness
-WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # lower limits for lobes that are integrated
-MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # maximum of chiang_hair_roughness
-FRONT = np.array([1.0, 0.0, 1.0, 0.5])  # share of R, TT, TRT and TRRT+ from the viewer's side
-STEP = 1e-6  # change of an angle, in radian, that measures slopes
-LEAST = 0.01  # errors are relative to the value, but at least to this
+WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # lower limits of roughness for integrated lobes
+MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # largest outputs of the node chiang_hair_roughness
+# Share of the light in R, TT, TRT and all higher orders that comes from the viewer's side.
+FRONT = np.array([1.0, 0.0, 1.0, 0.5])
+STEP = 1e-6  # step of an angle, in radian, for finite differences
+LEAST = 0.01  # smallest value to which errors are relative
 
 # fmt: off
 INPUTS = (
@@ -37,20 +41,20 @@ INPUTS = (
     Input("cuticle_angle", change=0.55, often=0.5),
     Input("absorption_coefficient", "vector3", 0.0, 4.0, edges=(0.0,), change=(0.9, 0.1, 0.6)),
     NORMAL,
-    # By default, it is the surface's tangent.
+    # The default curve direction is the surface's tangent.
     Input("curve_direction", "vector3", change=(0.6, 0.8, 0.0), variable="tangent"),
 )
 # fmt: on
 
-# A lobe falls from the largest pi f, 1e5, to 1 within REACH times sqrt(v).
+# A lobe of variance v falls from the largest pi f, 1e5, to 1 within an angle of REACH sqrt(v).
 REACH = math.sqrt(2.0 * math.log(1e5))
 ANGLE, CHAIN = 12, 48  # roundings of an angle, and of all later operations
 
 
 def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Term, ...]:
-    """Error terms of pi f for lobes at least this wide; each angle has `angle` roundings.
+    """Error terms of pi f for lobes of at least these widths; each angle has `angle` roundings.
 
-    The largest slopes by an angle are REACH / sqrt(v) for log M, and 1 / s' for log N.
+    The largest slopes by an angle are REACH / sqrt(variance) for log M, 1 / (SCALE scale) for log N.
     """
     slope = REACH / math.sqrt(variance) + 1.0 / (SCALE * scale)
     lobe = f"v {variance:g} and s {scale:g}"
@@ -59,10 +63,11 @@ def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Ter
 
 
 VALUE = sum_of(*lobe_terms(LEAST_VARIANCE, LEAST_SCALE), quantity=Quantity.FULL_SPHERE)
-# Turned values are compared with unturned ones. Turning adds five roundings to each angle.
+# Values in a rotated frame are compared with those in the standard frame; the rotation adds five
+# roundings to each angle.
 TWO_LOBES = lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5))
 FRAME = sum_of(*TWO_LOBES, quantity=Quantity.FULL_SPHERE)
-# Mean absolute slope of the logarithm of a Gaussian, plus the mean slope for a logistic density.
+# Mean absolute slopes of log M, a Gaussian, and of log N, a logistic density.
 MEAN_SLOPE = math.sqrt(2.0 / (math.pi * WIDE_VARIANCE)) + 0.5 / (SCALE * WIDE_SCALE)
 MEAN = sum_of(
     roundings(MEAN_SLOPE * ANGLE, "(12 of an angle, times the mean slope of the logarithm)"),
@@ -76,30 +81,28 @@ REGION = sum_in(
     roundings(12 + 4, "of factors and exponents, and of each angle"),
 )
 
+# R, TT and TRT in separate channels, and only R and TT.
 LOBE_TINTS = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
-APART: Values = {**LOBE_TINTS, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in separate channels
-STRAIGHT = 0.05  # views along the normal have azimuths up to this, in radian
-SLANTED = (0.3, 1.2)  # azimuths of other views, in radian
+R_AND_TT: Values = {**LOBE_TINTS, "tint_TRT": (0.0, 0.0, 0.0)}
 
 
 @dataclass(frozen=True)
 class Region:
-    """A check of the hair node, by its range of views and roughnesses."""
+    """A check of the hair node in a range of views and roughnesses."""
 
     claim: str
-    azimuths: tuple[float, float] = SLANTED  # range of views relative to the normal, in radian
+    azimuths: tuple[float, float] = (0.3, 1.2)  # angles of views to the normal, in radian
     variances: tuple[float, float] = (0.2, 1.0)
     scales: tuple[float, float] = (0.2, 1.0)
-    tints: Values = field(default_factory=lambda: APART)  # the default gives each lobe a channel
+    tints: Values = field(default_factory=lambda: R_AND_TT)
     tilt: float = 0.05  # largest deviation of `cuticle_angle` from 1/2
-    ior: tuple[float, float] | None = None  # range of the index; None for the default range
-    # Title of the approximation that shaders may use there, or "".
-    form: str = ""
+    ior: tuple[float, float] | None = None  # range of the index; None for the range of INPUTS
+    form: str = ""  # title of the permitted approximation in this region
 
 
 NARROW = partial(Region, variances=(1e-3, 0.1), scales=(0.9, 1.0), form=BESSEL)
 # fmt: off
-# Keys are the names of checks.
+# The keys are also keys of checks.
 REGIONS = {
     "each_lobe": Region("Each lobe matches the equations: R, TT, and TRT with all higher orders.",
                         tints=LOBE_TINTS, form=UNIFORM),
@@ -108,7 +111,7 @@ REGIONS = {
     "wide_lobes": Region("R and TT match the equations beyond a roughness of 1.",
                          variances=(1.0, 100.0), scales=(1.0, 10.0), form=CLAMPED),
     "straight_views": Region("R and TT match the equations for a view along the normal.",
-                             azimuths=(0.0, STRAIGHT), scales=(0.05, 0.2)),
+                             azimuths=(0.0, 0.05), scales=(0.05, 0.2)),
     "low_index": Region("R and TT match the equations for an index below 1, including total reflection.",
                         ior=(0.6, 0.95)),
 }
@@ -122,7 +125,7 @@ ERRORS = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HairSpec(PbrSpec):
-    """The hair node. Light comes from the whole sphere, and values include no cosine."""
+    """The hair node, whose values include no cosine and are defined for light from all sides."""
 
     requires = Ability.LOBE | Ability.HAIR
 
@@ -134,7 +137,7 @@ class HairSpec(PbrSpec):
         return np.asarray(np.pi * function(batch.wo, batch.wi, broadcast_inputs(batch)) * occlusion)
 
     def sky(self, batch: Batch) -> Array:
-        """R and TRT take light from the viewer's side, TT from behind, higher orders from both."""
+        """Light of the uneven sky that each fiber scatters, weighted by FRONT."""
         inputs = broadcast_inputs(batch)
         A = chiang_hair_attenuation(batch.wo, inputs["ior"], inputs["absorption_coefficient"])
         shares = A * np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)
@@ -142,8 +145,8 @@ class HairSpec(PbrSpec):
         near, far = samples.sky(batch.normal), samples.sky(-batch.normal)
         return np.asarray(front * near + (1.0 - front) * far)
 
-    def alike(self, compared: Compared) -> Compared:
-        """Divide values by max(value, LEAST) plus the slopes by both directions' two angles."""
+    def rescaled(self, compared: Compared) -> Compared:
+        """Divide values by max(value, LEAST) plus the slopes by the four angles of a pair."""
         batch = compared.batch
         total = np.maximum(self.value(batch), LEAST)
         for step in np.eye(4) * STEP:
@@ -153,7 +156,7 @@ class HairSpec(PbrSpec):
         return compared.over(total)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs, as many pairs inside lobes, and special pairs, with roughness above 0."""
+        """Random pairs, as many pairs inside lobes, and special pairs."""
         rng, count = generator(), counts.pairs
         wo, inputs = samples.directions(rng, count), self.random_inputs(rng, count)
         free = samples.directions(rng, count) * _sides(rng, count)
@@ -165,21 +168,20 @@ class HairSpec(PbrSpec):
         )
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views of fibers without cuticle tilt, whose albedo has a closed form."""
+        """Views of fibers with untilted cuticles, whose albedo has a closed form."""
         return tuple(batch.altered(cuticle_angle=0.5) for batch in super().views(batches, counts))
 
     def edges(self, counts: Counts) -> Batch:
-        """Exact directions, some along the fiber, with inputs at the ends of their ranges."""
+        """Special pairs and pairs along the axes, with inputs at the ends of their ranges."""
         rng = generator()
         along = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
         pairs = np.repeat(along, 4, axis=0), np.tile(along, (4, 1))
-        both = zip(samples.special_directions(rng), pairs, strict=True)
-        wo, wi = (np.concatenate(each) for each in both)
+        wo, wi = map(np.concatenate, zip(samples.special_directions(rng), pairs, strict=True))
         wi = wi * _sides(rng, len(wi))
         return Batch(wo, wi, self.random_inputs(rng, len(wo), edged=True))
 
     def turned(self, counts: Counts) -> Batch:
-        """Pairs with individual frames. Rounding displaces narrow lobes, so widen them."""
+        """Pairs with individual frames and wide lobes, because rounding displaces narrow lobes."""
         batch = super().turned(counts)
         least = LEAST_TURNED**2, LEAST_TURNED
         wide = {name: np.maximum(batch.inputs[name], least) for name in ROUGHNESSES}
@@ -211,7 +213,7 @@ class HairSpec(PbrSpec):
         return {**inputs, **wide, "cuticle_angle": np.full(len(inputs["ior"]), 0.5)}
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Integrate over the whole sphere.
+        # A Gauss rule in the sine of the inclination, and uniform azimuths, over the whole sphere.
         x, w = np.polynomial.legendre.leggauss(count)
         phi = np.pi * (np.arange(2 * count) + 0.5) / count
         sine, angle = (each.ravel() for each in np.meshgrid(x, phi))
@@ -230,21 +232,21 @@ def _turned(direction: Array, inclination: float, azimuth: float) -> Array:
 
 
 def _sides(rng: samples.Rng, count: int) -> Array:
-    """Factors, (count, 3), that flip a random half of directions to the other side."""
+    """Factors that mirror a random half of the directions at the horizon, (count, 3)."""
     return np.stack([np.ones(count), np.ones(count), rng.choice([-1.0, 1.0], count)], axis=-1)
 
 
 def in_lobes(rng: samples.Rng, wo: Array, inputs: dict[str, Array]) -> Array:
-    """For each view, a light direction in a random lobe (R, TT or TRT), float32 values, (N, 3)."""
+    """For each view, a light direction in a random lobe (R, TT or TRT), (N, 3)."""
     count = len(wo)
     lobe, chosen = rng.integers(0, 3, count), np.arange(count)
     v, s = (np.stack([inputs[name] for name in ROUGHNESSES])[lobe, chosen]).T
-    # Draw the longitudinal angle around the direction set by the cuticle.
+    # The inclination is normally distributed around a direction that the cuticle's tilt changes.
     view, _ = section(wo.T, inputs["ior"])
     tilt = (2.0 - 3.0 * lobe) * np.pi * (inputs["cuticle_angle"] - 0.5)
     theta = -np.arcsin(np.clip(view.sin_o, -1.0, 1.0)) - tilt
     theta = theta + np.sqrt(np.minimum(v, 1.0)) * rng.standard_normal(count)
-    # Draw the azimuth from its logistic distribution.
+    # The azimuth has a logistic distribution.
     u = 1e-3 + 0.998 * rng.random(count)
     exit_angle = 2.0 * lobe * view.gamma_t - 2.0 * view.gamma_o + lobe * np.pi
     phi = np.arctan2(wo[:, 2], wo[:, 1]) + exit_angle + SCALE * s * np.log(u / (1.0 - u))
@@ -252,4 +254,4 @@ def in_lobes(rng: samples.Rng, wo: Array, inputs: dict[str, Array]) -> Array:
     return rounded([np.sin(theta), cosine * np.cos(phi), cosine * np.sin(phi)])
 
 
-HAIR = HairSpec(**named_mode(HAIR_NODE), row=HAIR_NODE, inputs=INPUTS, errors=ERRORS)
+HAIR = HairSpec(**mode_of(HAIR_NODE), inputs=INPUTS, errors=ERRORS)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Specs of BSDF nodes of `mxeon.models.nodes`, one per mode, and the error terms they share."""
+"""Specs of BSDF nodes, one per mode of a node, and error terms that several nodes have."""
 
 from abc import abstractmethod
 from collections.abc import Callable
@@ -19,23 +19,20 @@ from mxeon.shaders.nodes import material_text
 
 COUNTS = Counts(pairs=1 << 12, few=1 << 10, diagnosed=1 << 11)
 LEAST_VIEW = 0.02  # least cosine of views whose values are integrated
-# Weights and normals have no random range here: batches bring their own weights and frames.
 WEIGHT = spec.Input("weight", change=0.5, materials=(1.0, 0.5))
-# Roughness of every lobe except microfacet lobes.
 ROUGHNESS = spec.Input(
     "roughness", low=samples.LEAST_SHEEN, edges=(0.01, 0.05, 1.0), change=0.3, materials=(0.8, 0.4)
 )
 COLOR = spec.color("color", (0.2, 0.5, 0.8), (0.8, 0.4, 0.1))
 NORMAL = spec.Input("normal", "vector3", change=(0.0, 0.6, 0.8))
 
-# Three cosines have five roundings each, divided by the least cosine.
 FLAT_FRAME = sum_of(roundings(15 / TURNED[0], "of three cosines of at least 1/4, five in each"))
 
 
 def lobe_errors(
     value: Tolerance, albedo: Tolerance, throughput: Tolerance, frame: Tolerance, quadrature: float
 ) -> dict[str, Tolerance]:
-    """Tolerances of a lobe; `quadrature` is the quadrature error for the exact equations."""
+    """Tolerances of a lobe; `quadrature` is the error of an albedo integrated from exact values."""
     sums = Term(quadrature, "the quadrature on the equations")
     integral = sum_in(Quantity.ALBEDO, value.term("an average of values"), sums)
     light = integral.term("an albedo"), throughput.term("a throughput")
@@ -69,21 +66,22 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return material_text(self.node, {**self.mode, **(inputs or {})}, self.node, self.types)
 
     def values(self, function: Scattering, batch: Batch) -> Array:
-        """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the unlit side."""
-        side = np.where(batch.wi[:, 2:] < 0.0, -1.0, 1.0) * (-1.0 if self.row.transmits else 1.0)
-        wi = batch.wi * np.concatenate([np.ones((len(side), 2)), side], axis=1)
-        occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
-        factor = batch.strength * (1.0 if self.row.transmits else occlusion)
-        lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
+        """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 for an unlit side."""
+        wi = batch.wi.copy()
+        wi[:, 2] = self.side * np.abs(wi[:, 2])
+        lit = (batch.wi[:, 2:] < 0.0) == self.row.transmits
+        cosine = np.where(lit, np.minimum(np.abs(wi[:, 2:]), 1.0), 0.0)
+        factor = batch.strength
+        if not self.row.transmits:  # an occlusion reduces only light from above
+            factor = factor * np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
         value = function(batch.wo, wi, spec.broadcast_inputs(batch))
-        return np.asarray(np.pi * value * lit * factor)
+        return np.asarray(np.pi * value * cosine * factor)
 
     def albedo(self, batch: Batch) -> Array:
         return _albedo(self.row.albedo, batch)
 
     def throughput(self, batch: Batch) -> Array:
-        """1 - E of the lobe without its color, at least 0, (N, 3)."""
-        return np.maximum(1.0 - _albedo(self.row.taken or self.row.albedo, uncolored(batch)), 0.0)
+        return _throughput(batch, self.row.taken or self.row.albedo)
 
     def sky(self, batch: Batch) -> Array:
         return samples.sky(self.side * batch.normal)
@@ -94,54 +92,52 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
 
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
-        own = Candidate(self.row.title, self.albedo)
-        shown = (each for each in self.row.variants if not each.above)
-        rows = ((each, each.albedo) for each in shown if each.albedo)
-        variants = (Candidate(e.title, partial(_albedo, albedo), e.permitted) for e, albedo in rows)
-        return (own, *variants, spec.ZERO)
+        variants = (
+            Candidate(each.title, partial(_albedo, each.albedo), each.permitted)
+            for each in self.row.variants
+            if each.albedo and not each.above
+        )
+        return (Candidate(self.row.title, self.albedo), *variants, spec.ZERO)
 
     @property
     def throughput_candidates(self) -> tuple[Candidate, ...]:
         """Candidates for a throughput: 1 - E of each model, or 1."""
-
-        def rest(batch: Batch, albedo: Callable[[Array, Inputs], Array], above: bool) -> Array:
-            return np.maximum(1.0 - _albedo(albedo, batch if above else uncolored(batch)), 0.0)
-
         candidates = [Candidate(self.row.title, self.throughput)]
         if any(name in ABSORBING for name in self.row.inputs):
-            colored = partial(rest, albedo=self.row.albedo, above=True)
+            colored = partial(_throughput, albedo=self.row.albedo, colored=True)
             candidates.append(Candidate(COLORED, colored, permitted=True))
-        variants = (
-            Candidate(e.title, partial(rest, albedo=e.albedo, above=e.above), e.permitted)
-            for e in self.row.variants
-            if e.albedo
-        )
-        all_light = Candidate("all light passes", lambda batch: np.ones_like(batch.wo))
-        return (*candidates, *variants, all_light)
+        for each in self.row.variants:
+            if each.albedo:
+                values = partial(_throughput, albedo=each.albedo, colored=each.above)
+                candidates.append(Candidate(each.title, values, each.permitted))
+        return (*candidates, Candidate("all light passes", lambda batch: np.ones_like(batch.wo)))
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
         return spec.draw(rng, count, self.drawn, edged)
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """Change inputs where a quadrature would be inaccurate; by default, nowhere."""
+        """Inputs for which a quadrature is accurate; by default, the same inputs."""
         return inputs
 
     def integrated(
-        self, counts: Counts, taken: Callable[[dict[str, Array]], dict[str, Array]]
+        self, counts: Counts, adapt: Callable[[dict[str, Array]], dict[str, Array]]
     ) -> tuple[Batch, Array]:
-        """Random materials, each lit from all directions of a quadrature, and the weights."""
+        """Random materials, each lit from all directions of a quadrature, with their weights.
+
+        `adapt` limits the inputs to values that a backend supports.
+        """
         rng, count = samples.generator(), counts.materials
         mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(count)
         inputs = self.random_inputs(rng, count)
-        if self.row.mirror:  # a rough mirror, where the fit of the compensation matters most
+        if self.row.mirror:  # errors of the compensation are largest for a rough mirror
             mu[0] = 0.1
             for name, value in {**self.row.mirror, "roughness": 1.0}.items():
                 inputs[name][0] = value
         wo = directions_at(mu, 2.0 * np.pi * rng.random(count))
-        return self.lit(Batch(wo, wo, taken(self.integrable(inputs))), counts.nodes)
+        return self.lit(Batch(wo, wo, adapt(self.integrable(inputs))), counts.nodes)
 
     def lit(self, views: Batch, count: int) -> tuple[Batch, Array]:
-        """Repeat each view for all directions of a quadrature, and return their weights, too.
+        """Each view, lit from all directions of a quadrature, with the weights of the directions.
 
         The weighted sum of pi f cos over a view's directions is its directional albedo.
         """
@@ -154,15 +150,21 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         """Directions (M, K, 3) and weights (M, K) of a quadrature over each view's hemisphere."""
 
 
-def named_mode(row: PbrNode, title: str = "") -> spec.Names:
-    """Names of a mode's spec; by default, the title lists the inputs that select the mode."""
+class Mode(spec.Names):
+    """Fields of a spec that come from its row."""
+
+    row: PbrNode
+
+
+def mode_of(row: PbrNode, title: str = "") -> Mode:
+    """Fields of a row's spec; by default, the title lists the inputs that select the mode."""
     words = [row.category, *(f"{name} {value}" for name, value in row.fixed.items())]
-    return spec.named(row, title or ", ".join(words))
+    return {**spec.named(row, title or ", ".join(words)), "row": row}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PbrSpec(ScatteringSpec):
-    """A mode of a BSDF node: a row of `mxeon.models.nodes`."""
+    """One mode of a BSDF node of pbrlib."""
 
     requires = spec.Ability.LOBE
     coarse = 2
@@ -173,7 +175,7 @@ class PbrSpec(ScatteringSpec):
 
     @property
     def bounded(self) -> tuple[spec.Input, ...]:
-        """Inputs that are measured outside their ranges, too."""
+        """Inputs that are also tested outside their ranges."""
         return tuple(each for each in self.drawn if each.beyond)
 
     @property
@@ -182,7 +184,7 @@ class PbrSpec(ScatteringSpec):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """Other candidates for a diagnosis: zero and, for a transmitting lobe, a reflection."""
+        """Zero and, for a transmitting lobe, a reflection."""
         if not self.row.transmits:
             return (spec.ZERO,)
         opaque = replace(self, row=replace(self.row, transmits=False))
@@ -191,7 +193,7 @@ class PbrSpec(ScatteringSpec):
             return self.row.value(wo, wi * [1.0, 1.0, -1.0], inputs)
 
         def reflection(batch: Batch) -> Array:
-            return opaque.values(mirrored, batch.altered(occlusion=1.0))  # not occluded from below
+            return opaque.values(mirrored, batch.altered(occlusion=1.0))
 
         return Candidate("a reflection instead", reflection), spec.ZERO
 
@@ -201,11 +203,11 @@ class PbrSpec(ScatteringSpec):
         return tuple(batch.first(counts.albedos) for batch in views)
 
     def edges(self, counts: Counts) -> Batch:
-        """Exact directions, some with opposite light, and extreme inputs (roughness, index 0)."""
+        """Special directions, some opposite each other, and extreme inputs (an index of 0)."""
         rng = samples.generator()
         wo, wi = samples.special_directions(rng)
         inputs = self.random_inputs(rng, len(wo), edged=True)
-        # Some extinctions of 0 meet an index of 0, others do not.
+        # Only some pairs with an extinction of 0 have an index of 0.
         zeros = ("roughness", 0, 4), ("ior", 0, 3), ("extinction", 0, 6), ("extinction", 1, 6)
         for name, start, step in zeros:
             if name in inputs:
@@ -215,7 +217,7 @@ class PbrSpec(ScatteringSpec):
         return Batch(wo, wi, inputs)
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Use Gauss nodes that are dense at the horizon and the normal, and uniform azimuths.
+        # Gauss nodes in cosine, dense at the horizon and the normal, and uniform azimuths.
         x, w = np.polynomial.legendre.leggauss(count)
         t = 0.5 * (x + 1.0)
         mu = t * t * (3.0 - 2.0 * t)
@@ -228,7 +230,7 @@ class PbrSpec(ScatteringSpec):
 
 
 def uncolored(batch: Batch) -> Batch:
-    """Replace the colors that only absorb by white."""
+    """The batch with white for all colors that only absorb light."""
     return batch.altered(**{each: samples.WHITE for each in ABSORBING if each in batch.inputs})
 
 
@@ -237,17 +239,23 @@ def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
     return batch.strength * albedo(batch.wo, spec.broadcast_inputs(batch))
 
 
-# Each factor of Burley's model has 17 roundings (ten in the cosine of wh); the products add 7.
-BURLEY_ROUNDINGS = roundings(2 * 17 + 7, "of the value or 1: 17 in each factor, 7 in the products")
-BURLEY_VALUE = sum_of(BURLEY_ROUNDINGS)
-# Burley's albedo has a closed form; the albedo of other flat lobes is their color.
+def _throughput(
+    batch: Batch, albedo: Callable[[Array, Inputs], Array], colored: bool = False
+) -> Array:
+    """1 - E, at least 0, (N, 3); unless `colored`, E is the albedo without absorption."""
+    return np.maximum(1.0 - _albedo(albedo, batch if colored else uncolored(batch)), 0.0)
+
+
+BURLEY_VALUE = sum_of(
+    roundings(2 * 17 + 7, "of the value or 1: 17 in each factor, 7 in the products")
+)
 FLAT_ALBEDO = sum_of(roundings(32, "of the albedo or 1"), quantity=Quantity.ALBEDO)
 FLAT_ERRORS = lobe_errors(BURLEY_VALUE, FLAT_ALBEDO, FLAT_ALBEDO, FLAT_FRAME, quadrature=1e-8)
 
 
 WHOLE_ROUGHNESS = replace(ROUGHNESS, low=0.0, edges=(0.0, 0.05, 1.0))
 BURLEY, TRANSLUCENT = (
-    PbrSpec(**named_mode(row), row=row, inputs=inputs, errors=FLAT_ERRORS, flat=True)
+    PbrSpec(**mode_of(row), inputs=inputs, errors=FLAT_ERRORS, flat=True)
     for row, inputs in (
         (node("burley"), (WEIGHT, COLOR, WHOLE_ROUGHNESS, NORMAL)),
         (node("translucent"), (WEIGHT, COLOR, NORMAL)),

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Specs of the microfacet nodes in scatter modes R, T and RT, and under a film."""
+"""Specs of the microfacet nodes in scatter modes R, T and RT, and under a thin film.
+
+E_ss is the albedo of a GGX lobe whose facets reflect all light once, F_ss the average of a Fresnel
+curve. Compensation for multiple scattering multiplies values by 1 + F_ss (1 - E_ss) / E_ss.
+"""
 
 import math
 from collections.abc import Mapping
@@ -22,19 +26,19 @@ from mxeon.models.nodes import microfacets
 from mxeon.models.nodes.microfacets import FILM_NODES, LOBES, MICROFACET_NODES, TRANSMISSION_NODES
 from mxeon.models.nodes.node import Scattering
 
-COUNTS = replace(lobes.PbrSpec.counts, diagnosed=1 << 8)  # references are slow
+COUNTS = replace(lobes.PbrSpec.counts, diagnosed=1 << 8)  # the models are slow
 LEAST_ALPHA = 1e-3  # least alpha of random pairs
-LEAST_STRETCHED = 0.05  # least alpha and cosine for anisotropic albedos; sums are coarse
-LEAST_INVERTED = 0.1  # least index of a dielectric before it is inverted
-LEAST_INDEX = 1.05  # least index above 1 in the shaders' fits of averages: tools/fits/ggx_cosine.py
-COSINE_STEP = 2.0**-18  # largest difference of wo . wh and wi . wh
+LEAST_STRETCHED = 0.05  # least alpha and cosine of anisotropic lobes with measured albedos
+LEAST_INVERTED = 0.1  # least index of a dielectric before the index is inverted
+LEAST_INDEX = 1.05  # least index above 1 in the domain of tools/fits/ggx_cosine.py
+COSINE_STEP = 2.0**-18  # largest difference between wo . wh and wi . wh
 RIM_COLOR = 0.05  # least |wo + wi|, unless a channel of color90 is as large
-LEAST_TANGENT_ALPHA = 0.05  # least alpha with turned tangents, as roundings are divided by it
-LEAST_TANGENT_COSINE = 0.1  # least cosine with turned tangents
-COSINES = np.linspace(0.0, 1.0, 65)  # cosines at which curves are tested for values below 0
+LEAST_TANGENT_ALPHA = 0.05  # least alpha with rotated tangents: roundings are divided by alpha
+LEAST_TANGENT_COSINE = 0.1  # least cosine with rotated tangents
+COSINES = np.linspace(0.0, 1.0, 65)  # cosines at which Fresnel curves are tested for values below 0
 
 # fmt: off
-# The first material's index reflects enough light for the controls of pictures to fail.
+# With the first index of `materials`, pictures reflect enough light for the controls to fail.
 INDEX = spec.Input("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(2.5, 1.2),
               beyond=(0.0, 0.2, 1.0015, 1.02, 4.0, 10.0, 100.0))
 FILM: Values = {"thinfilm_thickness": 400.0}
@@ -71,29 +75,31 @@ INPUTS = {
     ),
 }
 # fmt: on
-# MaterialX's average is worst for a bubble, a film around index 1. `domain` keeps row 3's view.
+# MaterialX's average of a film's reflectance is worst for a bubble: a film around index 1.
 BUBBLE: Values = dict.fromkeys(("weight", "tint", "ior"), 1.0)
 BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
 
-# Largest errors of the shaders' fits. Each comment names the script in tools/fits that finds it.
-ESS_FIT = 5e-4  # ggx_albedo.py: E_ss, the albedo of GGX with perfectly reflecting facets
-SMOOTH_ESS_FIT = 5.3e-5  # E_ss of smooth lobes at cosines from 0.05
-ESS_VALUE_FIT = 1.14e-3  # relative error of E_ss (alpha 0.97, normal view), times the value or 1
-METAL_FIT = 4.6e-4  # fresnel_average.py: F_ss of a metal
-# ggx_albedo.py: largest (1 - E_ss) / E_ss, times 1 or the value of perfectly reflecting facets.
+# Largest errors of the shaders' fits; scripts in tools/fits measure these errors.
+ESS_FIT = 5e-4  # E_ss: ggx_albedo.py
+SMOOTH_ESS_FIT = 5.3e-5  # E_ss of smooth lobes for cosines of at least 0.05: ggx_albedo.py
+# Error of a compensated value due to the fit of E_ss, relative above 1: ggx_albedo.py.
+ESS_VALUE_FIT = 1.14e-3
+METAL_FIT = 4.6e-4  # F_ss of a metal: fresnel_average.py
+# Error of a compensated value for an error of 1 in F_ss, relative above 1: ggx_albedo.py.
 COMPENSATED = 0.6
-LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
-INSIDE_FIT = 2.8e-2  # ggx_inside.py: albedo of a dielectric of index below 1
-PASSING_FIT = 3.4e-2  # ggx_inside.py: share of light from the denser side that passes
-DIP_FIT = 5.9e-3  # ggx_cosine.py: error that a full dip at 82 degrees adds
-LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
+LOBE_FIT = 3.2e-3  # albedo of GGX with a Fresnel curve: ggx_cosine.py
+INSIDE_FIT = 2.8e-2  # albedo of a dielectric with an index below 1: ggx_inside.py
+PASSING_FIT = 3.4e-2  # share of light from the denser side that passes: ggx_inside.py
+DIP_FIT = 5.9e-3  # albedo with the strongest dip at 82 degrees, additionally: ggx_cosine.py
+LEAST_ESS = 1.0 - math.log(2.0)  # E_ss for alpha 1 along the normal
 
 
 def sum_over(directions: int) -> Term:
-    """Error of an environment sum over `directions` samples of a microfacet lobe, divided by E_ss.
+    """Error of a lobe's mean over `directions` samples of an environment.
 
-    `tools/fits/lattices.py` finds it for three point sets; MaterialX's own has half of this error.
+    `tools/fits/lattices.py` measures the error for three point sets; for MaterialX's own points,
+    the error is half as large.
     """
     return Term(3.6 / directions, f"a sum over {directions} directions of an environment")
 
@@ -101,7 +107,8 @@ def sum_over(directions: int) -> Term:
 HALF_TEXEL = math.sqrt(2.0) * math.pi / (2 * samples.SKY_ROWS)
 TEXEL = Term(samples.SLOPE * HALF_TEXEL, "the nearest texel, half of one away")
 
-# ggx_anisotropic.py: relative error of E_ss, error of a dielectric's albedo, ratio of alphas.
+# Errors of the fits for two alphas: the relative error of E_ss, and the error of a dielectric's
+# albedo; largest ratio of the alphas, and least cosine of the view: ggx_anisotropic.py.
 ANISOTROPIC_FIT, ANISOTROPIC_LOBE_FIT = 2.5e-2, 3.4e-2
 LARGEST_RATIO, LEAST_ANISOTROPIC_COSINE = 50.0, 0.01
 ANISOTROPIC = Term(ANISOTROPIC_FIT, "the fit of E_ss of two alphas")
@@ -116,7 +123,7 @@ HALF_DIP = Term((1.0 - samples.LEAST_COLOR82) * DIP_FIT, "half of the fit of the
 
 
 def compensated(average: float, words: str) -> Tolerance:
-    """Tolerance of values if F_ss has the error `average`."""
+    """Tolerance of compensated values if F_ss has the error `average`."""
     fit = Term(ESS_VALUE_FIT, "the fit of E_ss over E_ss")
     return sum_of(fit, Term(COMPENSATED * average, f"{words}, times 0.6"), exact=True)
 
@@ -128,7 +135,8 @@ MEAN = sum_in(Quantity.ALBEDO, ESS, MEAN_METAL)
 ENVIRONMENT = sum_in(Quantity.ALBEDO, *COMPENSATION, sum_over(1024))
 THROUGHPUT = sum_in(Quantity.ALBEDO, ESS, LOBE)
 SCHLICK_THROUGHPUT = THROUGHPUT.plus(HALF_DIP)
-# The distribution is q^-4 with q^2 = h_z^2 + (h_x / a_x)^2 + (h_y / a_y)^2; use its largest slope.
+# The distribution of normals h is proportional to q^-4 with q^2 = h_z^2 + (h_x / a_x)^2 +
+# (h_y / a_y)^2, whose logarithm has a slope of at most 2 over the least alpha.
 FRAME = sum_of(
     roundings(
         2 * 2 * 5 / (2 * samples.TURNED[0] * samples.LEAST_TURNED),
@@ -137,7 +145,7 @@ FRAME = sum_of(
 )
 WEAK = "the fit of a cosine at index 1.03, scaled"
 A_COSINE, THREE_COSINES = "the fit of a cosine, which", "F_ss in three cosines,"
-# Outside the domains of fits: quantity, input, its value, the largest error there, and the reason.
+# Errors outside the domains of fits: quantity, input, value of the input, error, and cause.
 BEYOND: tuple[tuple[str, str, float, float, str], ...] = (
     ("throughput", "ior", 1.0015, 9.3e-3, WEAK),
     ("throughput", "ior", 1.02, 2.9e-3, WEAK),
@@ -165,9 +173,8 @@ ERRORS = {
     "picture_albedo": sum_in(Quantity.ALBEDO, *COMPENSATION, sum_over(256)),
     "anisotropic_albedo": sum_of(*COMPENSATION, ANISOTROPIC, sum_over(1024), quantity=Quantity.ALBEDO),
     "anisotropic_value": VALUE.plus(ANISOTROPIC),
-    # Directions are exact here, so the half vector is, too.
     "shape": sum_in(Quantity.RELATIVE, roundings(2 * 64, "of two values")),
-    # Mirroring only changes signs.
+    # Mirroring a view changes only signs, which is exact.
     "retroreflection": lobes.BURLEY_VALUE,
     "anisotropy": sum_of(roundings(
         2 * 2 * 2 / (2 * LEAST_TANGENT_COSINE * LEAST_TANGENT_ALPHA),
@@ -176,10 +183,9 @@ ERRORS = {
     "denser": sum_in(Quantity.ALBEDO, INSIDE, ESS),
 }
 # fmt: on
-QUADRATURE = 6e-4  # quadrature error for the exact equations
-
-
-# Where MaterialX's fit B is 0, curves do not affect its prefiltered sum, and A is below 1 by this.
+QUADRATURE = 6e-4  # error of an albedo that is a quadrature of exact values
+# MaterialX fits a lobe's albedo in a prefiltered environment as F0 A + F90 B; for white, the error
+# is largest where B is 0.
 PREFILTERED = Term(5.06e-2, "MaterialX's fit of prefiltered light")
 
 
@@ -192,7 +198,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
         **lobes.lobe_errors(MEAN, ENVIRONMENT, throughput, FRAME, QUADRATURE),
         **dict.fromkeys(("value", "reciprocity"), VALUE),
         "anisotropic_throughput": throughput.plus(ANISOTROPIC, ANISOTROPIC_LOBE),
-        # An error of the E_ss fit cancels: it raises values and lowers throughputs.
+        # An error of E_ss cancels, because it raises values and lowers throughputs.
         "light": sum_in(Quantity.LIGHT, *throughput.terms[1:], quadrature),
         "methods": ENVIRONMENT.plus(PREFILTERED, few),
         "sky": sum_in(Quantity.IRRADIANCE, Term(2.0 * QUADRATURE, words), sum_over(1024), TEXEL),
@@ -201,7 +207,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FacetSpec(lobes.PbrSpec):
-    """A microfacet node, which has large values near the mirror direction."""
+    """A microfacet node in one mode; its values are largest near the mirror direction."""
 
     counts: Counts = COUNTS
     least_cosine: float = sheen.FIT_COSINE
@@ -210,17 +216,17 @@ class FacetSpec(lobes.PbrSpec):
     )
 
     def prefiltered(self, batch: Batch) -> Array:
-        """Albedo in a prefiltered environment by MaterialX's fit, (N, 3)."""
+        """Albedo by MaterialX's fit for prefiltered environments, (N, 3)."""
         return batch.strength * LOBES[self.node].prefiltered(batch.wo, spec.broadcast_inputs(batch))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """The usual batches, and lights near the mirror direction, for isotropic materials."""
-        others = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
-        return tuple(_with_one_alpha(batch) for batch in (*others, self.mirrored(counts)[0]))
+        """The batches of all lobes, and lights near the mirror direction; roughness is isotropic."""
+        batches = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
+        return tuple(_with_one_alpha(batch) for batch in (*batches, self.mirrored(counts)[0]))
 
     @property
     def value_candidates(self) -> tuple[samples.Candidate, ...]:
-        """The row's candidates, except masking at the mean alpha: it is right for equal alphas."""
+        """The candidates that differ from the model if both alphas are equal."""
         return tuple(each for each in self.all_candidates if not each.title.startswith(MEAN_ALPHA))
 
     @property
@@ -228,7 +234,7 @@ class FacetSpec(lobes.PbrSpec):
         return super().value_candidates
 
     def anisotropic(self, counts: Counts) -> Batch:
-        """Lights near the mirror direction, for materials with two alphas that the fits cover."""
+        """Lights near the mirror direction, for anisotropic materials in the domain of the fits."""
         batch = self.mirrored(counts)[0]
         alpha = batch.inputs["roughness"]
         least = alpha.max(axis=1, keepdims=True) / LARGEST_RATIO
@@ -239,18 +245,20 @@ class FacetSpec(lobes.PbrSpec):
         return *super().few(batches, counts), batches[-1].first(counts.few)
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views for albedos; the smoothest lobes become mirrors, curves below 0 are skipped."""
-        rows = [(batch, simple(batch.inputs)) for batch in super().views(batches, counts)]
-        for _, inputs in rows:
+        """Views for albedos, with simplified inputs and without curves that fall below 0.
+
+        Lobes smoother than LEAST_ALPHA become mirrors.
+        """
+        views = []
+        for batch in super().views(batches, counts):
+            inputs = simple(batch.inputs)
             inputs["roughness"][inputs["roughness"] < LEAST_ALPHA] = 0.0
-        changed = (replace(batch, inputs=inputs) for batch, inputs in rows)
-        return tuple(
-            batch.where(~np.broadcast_to(falls_below_0(batch.inputs), len(batch.wo)))
-            for batch in changed
-        )
+            positive = ~np.broadcast_to(falls_below_0(inputs), len(batch.wo))
+            views.append(replace(batch, inputs=inputs).where(positive))
+        return tuple(views)
 
     def mirrored(self, counts: Counts) -> tuple[Batch, Batch]:
-        """For each view, two lights near the mirror direction, reflected at visible normals."""
+        """Random views, each with two lights: reflections of the view at visible normals."""
         rng, count = generator(), counts.mirrored
         wo, inputs = directions(rng, count), self.random_inputs(rng, count)
         alpha = inputs["roughness"]
@@ -261,7 +269,7 @@ class FacetSpec(lobes.PbrSpec):
         return batches[0].where(known), batches[1].where(known)
 
     def stretched(self, counts: Counts) -> tuple[Batch, Array]:
-        """Views of random anisotropic materials, and their albedos."""
+        """Random views of anisotropic materials, with their albedos."""
         rng, count = generator(), counts.materials
         inputs = simple(self.random_inputs(rng, count))
         inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, count)))
@@ -270,17 +278,16 @@ class FacetSpec(lobes.PbrSpec):
         return batch, self.integral(batch)
 
     def stretched_sums(self, counts: Counts) -> tuple[Batch, Array]:
-        """The views of `stretched` with MaterialX's sums, which mask by the mean alpha."""
+        """The views of `stretched`, with their albedos by MaterialX's environment sums."""
         batch, _ = self.stretched(counts)
-        albedo = node_albedo(self.node, batch.wo, batch.inputs, summed=True)
-        return batch, batch.strength * albedo
+        return batch, batch.strength * node_albedo(self.node, batch.wo, batch.inputs, summed=True)
 
     def single(self, batch: Batch) -> Array:
-        """Values without compensation, for ratios in which the compensation cancels."""
+        """Values without compensation for multiple scattering."""
         return self.values(partial(LOBES[self.node].value, terms=Lobe(uncompensated)), batch)
 
     def summed(self, pairs: Batch) -> Array:
-        """`single`, weighted as in MaterialX's sums: G_2 / G_1 at the mean alpha."""
+        """Values without compensation, with G_2 / G_1 at the mean alpha as in MaterialX's sums."""
         alpha = pairs.inputs["roughness"]
         mean = np.sqrt(alpha.prod(axis=1))
         weight = smith_g2(pairs.wo[:, 2], pairs.wi[:, 2], mean)
@@ -289,20 +296,20 @@ class FacetSpec(lobes.PbrSpec):
         return np.asarray(self.single(pairs) * weight[:, np.newaxis])
 
     def turned(self, counts: Counts) -> Batch:
-        """Pairs with individual frames. Rounding displaces sharp lobes, so roughen them."""
+        """Pairs with individual frames and rough lobes, because rounding displaces sharp lobes."""
         batch = super().turned(counts)
         rough = np.maximum(batch.inputs["roughness"], samples.LEAST_TURNED)
         return denser(batch.altered(roughness=rough))
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """Remove curves that fall below 0: values clamp them, the albedo's fit does not."""
+        """Inputs with positive Fresnel curves; values clamp curves, the albedo's fit does not."""
         changed = simple(inputs)
         if "color82" in changed:
             changed["color82"][falls_below_0(changed)] = 1.0
         return changed
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Use Gauss nodes for the height of visible normals, and uniform azimuths.
+        # Reflect the view at visible normals: Gauss nodes in height, uniform in azimuth.
         x, w = np.polynomial.legendre.leggauss(count)
         height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(count) + 0.5) / count)
         size = height.size
@@ -316,7 +323,7 @@ class FacetSpec(lobes.PbrSpec):
 
 
 def denser(batch: Batch) -> Batch:
-    """Invert indices below 1, because curves have an infinite slope at a critical angle."""
+    """The batch with inverted indices below 1, whose curves are too steep at a critical angle."""
     if "tint" not in batch.inputs:
         return batch
     index = np.maximum(batch.inputs["ior"], LEAST_INVERTED)
@@ -324,12 +331,12 @@ def denser(batch: Batch) -> Batch:
 
 
 def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
-    """Change inputs so that the albedo is exact and a quadrature can find it.
+    """Inputs for which the albedo has a closed form and a quadrature is accurate.
 
-    Roughness becomes isotropic. The index of a dielectric becomes 1 or at least LEAST_INDEX, where
-    the shaders' fits begin (docs/loading.md has their error in between); below 1, nodes^2
-    directions do not resolve the critical angle. Deep dips at 82 degrees are removed, because they
-    make F negative.
+    Roughness becomes isotropic. The index of a dielectric becomes 1 or at least LEAST_INDEX: below
+    1, a quadrature does not resolve the critical angle, and in between, shaders are outside the
+    domain of their fits; see docs/loading.md. Color82 becomes at least LEAST_COLOR82, because deep
+    dips of a Fresnel curve at 82 degrees are negative.
     """
     changed = dict(inputs)
     changed["roughness"] = np.repeat(inputs["roughness"][:, :1], 2, axis=1)
@@ -347,28 +354,28 @@ def _with_one_alpha(batch: Batch) -> Batch:
 
 
 def _has_curve(batch: Batch) -> samples.Mask:
-    """Mask of pairs whose Fresnel curve is accurate in float32.
+    """Mask of pairs whose Fresnel curve is accurate in float32 and at least 0.
 
-    A direction's length differs from 1 by a rounding, so wo . wh and wi . wh differ by a rounding
-    over |wo + wi|, too much for nearly opposite directions; a correct shader may use either. At
-    grazing only color90 remains, and if it is dark, the curve has few digits. Shaders clamp the
-    cosine to GRAZING. Where the printed curve is below 0, the text defines no reflection.
+    A correct shader may compute the curve from wo . wh or from wi . wh. Their difference is that of
+    the squared lengths of wo and wi, a rounding, over |wo + wi|, which is too much for nearly
+    opposite directions. There, a curve with a dark color90 also has few digits, and shaders clamp
+    the cosine to GRAZING.
     """
-    half = np.linalg.norm(batch.wo + batch.wi, axis=1)
-    apart = np.abs((batch.wo**2).sum(axis=1) - (batch.wi**2).sum(axis=1))
+    length = np.linalg.norm(batch.wo + batch.wi, axis=1)
+    rounding = np.abs((batch.wo**2).sum(axis=1) - (batch.wi**2).sum(axis=1))
     bright = np.max(batch.inputs.get("color90", np.ones((1, 3))), axis=1) >= RIM_COLOR
-    known = (apart <= COSINE_STEP * half) & (half >= 2.0 * samples.GRAZING)
-    return np.asarray(known & (bright | (half >= RIM_COLOR)) & ~is_below_0(batch))
+    known = (rounding <= COSINE_STEP * length) & (length >= 2.0 * samples.GRAZING)
+    return np.asarray(known & (bright | (length >= RIM_COLOR)) & ~is_below_0(batch))
 
 
 def is_below_0(batch: Batch) -> samples.Mask:
-    """Mask of pairs whose printed curve is negative in a channel (dark colors, small color82)."""
+    """Mask of pairs for which the equation of the Fresnel curve is negative in some channel."""
     cosines = np.minimum(0.5 * np.linalg.norm(batch.wo + batch.wi, axis=1), 1.0)
     return _below_0(batch.inputs, cosines)
 
 
 def falls_below_0(inputs: Mapping[str, Array]) -> samples.Mask:
-    """Mask of materials whose printed curve is negative at some cosine."""
+    """Mask of materials for which the equation of the Fresnel curve is negative at some cosine."""
     return np.asarray(np.any([_below_0(inputs, each) for each in COSINES], axis=0))
 
 
@@ -381,14 +388,13 @@ def _below_0(inputs: Mapping[str, Array], cosine: Array | float) -> samples.Mask
 
 
 def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
-    """Reflect views at normals that are visible to them, (N, 3)."""
+    """Views reflected at visible GGX facets, which two numbers in [0, 1] select, (N, 3)."""
     return samples.float32(sampling.ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0])
 
 
 FACET_SPECS = tuple(
     FacetSpec(
-        **lobes.named_mode(row),
-        row=row,
+        **lobes.mode_of(row),
         inputs=INPUTS[row.category],
         errors=facet_errors(SCHLICK_THROUGHPUT if row.name == "schlick" else THROUGHPUT),
     )
@@ -396,7 +402,7 @@ FACET_SPECS = tuple(
 )
 
 
-# Largest slope of a Fresnel curve at cosines 0.05 or more from the critical one (index 1.02).
+# Largest slope of a Fresnel curve at a distance of at least 0.05 from the critical cosine.
 FRESNEL_SLOPE = 7.3
 
 
@@ -406,9 +412,9 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
     steep = roundings(4 * FRESNEL_SLOPE, "of a cosine, times a Fresnel curve's largest slope, 7.3")
     return {
         "methods": passed.plus(PREFILTERED),
-        "value": passed,  # here, values are transmitted light
+        "value": passed,  # the values of this spec are transmitted light
         "light": sum_in(Quantity.LIGHT, reflected, lit),
-        "kept": lobes.BURLEY_VALUE,  # both sides evaluate the same function
+        "kept": lobes.BURLEY_VALUE,  # compares two evaluations of the same function
         "inside": PASSING.plus(sum_over(1024)),
         "rough_refraction": sum_in(Quantity.IRRADIANCE, sum_over(1024), TEXEL),
         "states": sum_of(roundings(32, "of the same parts in two programs")),
@@ -418,10 +424,10 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TransmissionSpec(FacetSpec):
-    """A microfacet node that transmits, in mode T or RT."""
+    """A microfacet node that transmits light, in mode T or RT."""
 
     requires = spec.Ability.LOBE | spec.Ability.TRANSMISSION
-    # In other frames, rounding changes which refracted samples are totally reflected.
+    # The roundings of a rotated frame change which refracted samples are totally reflected.
     plain = ("frame", "shape")
 
     @property
@@ -433,13 +439,13 @@ class TransmissionSpec(FacetSpec):
         return self.row.fixed["scatter_mode"] == "RT"
 
     def ends(self, batch: Batch) -> Array:
-        """For unit light, light passed by the BTDF, and all light not reflected, (2, N, 3)."""
+        """Light that the BTDF transmits, and all light that is not reflected, (2, N, 3)."""
         wo, inputs, functions = batch.wo, batch.inputs, self.functions
         rest = functions.tint(inputs) * (1.0 - functions.reflected(wo, inputs))
         return np.stack([functions.passed(wo, inputs, True), np.maximum(rest, 0.0)])
 
     def reversed(self, mu: Array, alpha: float, index: float, inputs: Mapping[str, Array]) -> Array:
-        """Share of light that leaves a denser medium of this index, mean of channels, (N,)."""
+        """Share of light that leaves a denser medium of this index, mean over channels, (N,)."""
 
         def reflected(cosines: Array) -> Array:
             views = samples.directions_at(cosines, 0.0)
@@ -455,15 +461,12 @@ class TransmissionSpec(FacetSpec):
         """The spec of the same node in mode R."""
         row = replace(self.row, fixed={"scatter_mode": "R"})
         inputs, errors = self.inputs, self.errors
-        return FacetSpec(
-            **lobes.named_mode(row), row=row, inputs=inputs, errors=errors, counts=self.counts
-        )
+        return FacetSpec(**lobes.mode_of(row), inputs=inputs, errors=errors, counts=self.counts)
 
 
 TRANSMISSION_SPECS = tuple(
     TransmissionSpec(
-        **lobes.named_mode(row),
-        row=row,
+        **lobes.mode_of(row),
         inputs=INPUTS[row.category],
         errors=transmission_errors(THROUGHPUT if "tint" in row.inputs else SCHLICK_THROUGHPUT),
         prefiltered_fits={"value": (PREFILTERED,)},
@@ -474,23 +477,23 @@ TRANSMISSION_SPECS = tuple(
 
 # --- thin films -----------------------------------------------------------------------------------
 
-# Largest errors of the shader's thin film, for cosines of at least 0.1 and films of up to 1000 nm:
-# tools/fits/thin_film.py. FILM_SEEN adds the error of the average over the visible facets and the
-# error of F_ss times the lost light. Both averages are sums over three cosines.
+# tools/fits/thin_film.py measures the errors of a film's albedo for cosines of at least 0.1 and
+# films of up to 1000 nm. Shaders average the curve over visible facets, and for F_ss, by sums over
+# three cosines.
 FILM_SEEN = 7.82e-2
-FILM_OILED = 6.92e-2  # FILM_SEEN if film indices are at least 1.25
+FILM_OILED = 6.92e-2  # FILM_SEEN for film indices of at least 1.25
 FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
-CURVE_ROUNDINGS = 10 * 9.5 + 16  # 10 for a phase, times the curve's slope 9.5; 16 for the curve
+CURVE_ROUNDINGS = 10 * 9.5 + 16  # 10 of a phase, times the curve's slope 9.5, and 16 of the curve
 
 FILM_ALBEDO = sum_in(
     Quantity.ALBEDO,
     Term(FILM_OILED, "the mean over visible facets and F_ss, in three cosines each"),
     Term(ESS_FIT, "the fit of E_ss"),
 )
-# If a metal's index is lower than the film's, it reflects totally; three cosines miss its fringes.
+# A metal with a lower index than the film's reflects totally; three cosines do not resolve fringes.
 FILM_TRAPPED = given(FILM_SEEN - FILM_OILED, Quantity.ALBEDO, "films of a lower index than 1.25")
 
-# Pictures weight errors by the view's cosine, so errors at grazing count less.
+# Pictures weight errors by the view's cosine.
 FILM_SHOWN = sum_in(
     Quantity.PICTURE,
     Term(2.59e-2, "FILM_ALBEDO's, times the cosine"),
@@ -500,7 +503,7 @@ FILM_AVERAGE = 3.61e-2  # largest error of F_ss of a film in three cosines
 
 
 def film_terms(alpha: float) -> tuple[Term, Term]:
-    """Errors of a lobe under a film in direct light: F_ss times the light lost, and the curve."""
+    """Errors of a lobe under a film in direct light, due to F_ss and to the film's curve."""
     mu = np.linspace(1e-3, 1.0, 64)
     E = ggx_albedo_dir(mu, alpha)
     lost = min(COMPENSATED, float((mu * (1.0 - E) / E).max()))
@@ -508,11 +511,11 @@ def film_terms(alpha: float) -> tuple[Term, Term]:
 
 
 def _mean(value: float, words: str) -> Tolerance:
-    """Largest rms error over sets of films, measured by tools/fits/thin_film.py."""
+    """Tolerance of the rms error of a set of films; tools/fits/thin_film.py measures the value."""
     return given(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
 
 
-# Few films come close: thin films on metals at grazing (UNSUMMED), very different indices (F_ss).
+# UNSUMMED is largest for thin films on metals at grazing; the error of F_ss, for unequal indices.
 UNSUMMED = Term(8e-4, "orders that are not summed")
 FILM_VALUE = sum_of(*compensated(FILM_AVERAGE, "F_ss in three cosines").terms, UNSUMMED)
 # fmt: off
@@ -531,9 +534,8 @@ FILM_ERRORS = {
         Term(8.7e-7, "orders that are not summed, rms over 1024 films of 40 to 100 nm"),
         Term(1.5e-4, "the fit of E_ss at alpha 1e-3 and cosines of 0.1 to 0.2"),
         quantity=Quantity.REFLECTANCE_RMS, metric=tolerance.root_mean_square),
-    # F_ss is a sum under a film without effect, but a fit without a film.
+    # Shaders compute F_ss by a sum if there is a film, even one without effect, otherwise by a fit.
     "film_limit": sum_of(Term(4.4e-3 * COMPENSATED, "F_ss in three cosines, times 0.6")),
-    # Compensation differs between a mirror and a film.
     "film_energy": VALUE,
     "retroreflection": lobes.BURLEY_VALUE,
     "film_average": _mean(7e-3, "F_ss in three cosines of films of 50 to 1000 nm"),
@@ -546,7 +548,7 @@ FILM_ERRORS = {
 
 
 class Films(NamedTuple):
-    """A set of films in mirrored lights: its size, and ranges of alpha, cosine and thickness."""
+    """A random set of lobes under films, with lights in the mirror direction."""
 
     size: int
     alpha: tuple[float, float]
@@ -554,24 +556,22 @@ class Films(NamedTuple):
     thickness: tuple[float, float]  # nm
 
 
-# tools/fits/thin_film.py measures the mean errors of these sets.
-# Rough lobes under films with few fringes: masking changes which part of the curve is visible.
+# tools/fits/thin_film.py measures the mean errors of these sets of films.
+# Rough lobes under films with few fringes: masking decides which part of the curve is visible.
 STEEP = Films(1 << 6, (0.6, 1.0), (0.6, 1.0), (50.0, 100.0))
-FRINGED = STEEP._replace(thickness=(50.0, 1000.0))  # STEEP with few to many fringes
-# Glossy lobes with few fringes: their visible facets are similar, so few cosines are enough.
-GLOSSY = STEEP._replace(alpha=(0.03, 0.1))
-# Lobes with two alphas. Shaders fit their albedos by isotropic lobes.
+FRINGED = STEEP._replace(thickness=(50.0, 1000.0))
+GLOSSY = STEEP._replace(alpha=(0.03, 0.1))  # visible facets are similar: few cosines are enough
+# Lobes with two alphas, whose albedos shaders fit by those of isotropic lobes.
 BRUSHED = Films(1 << 5, (0.05, 1.0), (0.1, 1.0), (50.0, 100.0))
-# Smooth lobes, which show the film's curve at one cosine. Few orders matter.
+# Smooth lobes, which show the curve at one cosine. Few orders of interference matter.
 SHARP = Films(1 << 6, (1e-3, 1e-3), (0.3, 1.0), (200.0, 1000.0))
-# Smooth lobes at grazing under thin films. Many orders matter.
+# Smooth lobes at grazing under thin films. Many orders of interference matter.
 ORDERED = Films(1 << 10, (1e-3, 1e-3), (0.1, 0.2), (40.0, 100.0))
-# Averages over a film's curve are slow.
-FILM_COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)
+FILM_COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)  # slow averages
 LEAST_OIL = 1.2  # least index of films with a visible effect
-LEAST_FILM = 1.25  # least index for albedos; below, metals may reflect totally, in finer fringes
+LEAST_FILM = 1.25  # least film index for albedos; below, metals may reflect totally
 LEAST_FACET = 0.1  # least cosine with the half vector; near grazing, all orders matter
-THICK = (0.0, 1.0, 100.0, 1e4)  # thicknesses at the edges of the domain
+THICK = (0.0, 1.0, 100.0, 1e4)  # film thicknesses at the edges of the domain, in nm
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -589,9 +589,9 @@ class FilmSpec(FacetSpec):
         return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
-        """Raise dielectric indices to at least 1; if `edged`, some films match them.
+        """Random inputs with dielectric indices of at least 1; if `edged`, some films match them.
 
-        Below 1, total reflection gives the curve a kink that averages of few nodes do not resolve.
+        Below 1, averages over few cosines do not resolve the curve at the critical angle.
         """
         inputs = super().random_inputs(rng, count, edged)
         if "tint" in inputs:
@@ -602,14 +602,14 @@ class FilmSpec(FacetSpec):
         return inputs
 
     def values(self, function: Scattering, batch: Batch) -> Array:
-        """Values of the row's function; film indices below 1 are raised to 1."""
+        """Values of the row's function, which is defined for film indices of at least 1."""
         index = np.maximum(batch.inputs["thinfilm_ior"], 1.0)
         return super().values(function, batch.altered(thinfilm_ior=index))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random, special and mirrored pairs, without grazing facets."""
+        """Random pairs, special pairs, and lights near the mirror direction; no grazing facets."""
         rng, count = generator(), counts.pairs
-        special = _some_special(rng, count)
+        special = _special(rng, count)
         random = directions(rng, count), directions(rng, count)
         pairs = self._batch(rng, random), self._batch(rng, special, edged=True)
         batches = (*pairs, self.mirrored(counts)[0].first(count))
@@ -620,7 +620,7 @@ class FilmSpec(FacetSpec):
         return batch.where(_steep(batch))
 
     def stretched(self, counts: Counts) -> tuple[Batch, Array]:
-        """Lobes with two alphas under films with few fringes, and their albedos."""
+        """Random views of anisotropic lobes under thin films, with their albedos."""
         batch, rng = film_views(self, BRUSHED), generator()
         alpha = rounded(LEAST_STRETCHED ** rng.random((2, BRUSHED.size)))
         batch = batch.altered(roughness=alpha, weight=1.0)
@@ -629,7 +629,7 @@ class FilmSpec(FacetSpec):
     few = spec.ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views of the random pairs, and views for which averages over few facets are worst."""
+        """Views of the random pairs, and views for which averages over three cosines are worst."""
         batch = batches[0].where(batches[0].wo[:, 2] >= self.least_cosine)
         easy = batch.first(counts.albedos)
         easy = replace(easy, inputs=simple(easy.inputs))
@@ -642,26 +642,27 @@ class FilmSpec(FacetSpec):
         )
 
     def edges(self, counts: Counts) -> Batch:
-        """Pairs and inputs at the edges of the domain, with films near vacuum and very large values."""
+        """Special pairs with extreme inputs, very thick films, and film indices of 0."""
         rng = generator()
-        wo, wi = _some_special(rng, 2 * counts.pairs)
+        wo, wi = _special(rng, 2 * counts.pairs)
         inputs = self.random_inputs(rng, len(wo), edged=True)
         inputs["thinfilm_thickness"] = rng.choice(THICK, len(wo))
         inputs["thinfilm_ior"][::16] = 0.0
         return Batch(wo, wi, inputs)
 
 
-def _some_special(rng: samples.Rng, count: int) -> tuple[Array, Array]:
+def _special(rng: samples.Rng, count: int) -> tuple[Array, Array]:
+    """A random subset of the special pairs of directions."""
     wo, wi = samples.special_directions(rng)
     picked = rng.permutation(len(wo))[:count]
     return wo[picked], wi[picked]
 
 
-def film_views(owner: lobes.PbrSpec, films: Films) -> Batch:
+def film_views(node: lobes.PbrSpec, films: Films) -> Batch:
     rng, (count, *ranges) = generator(), films
     alpha, mu, thickness = (low + (high - low) * rng.random(count) for low, high in ranges)
     wo = samples.directions_at(mu, 2.0 * np.pi * rng.random(count))
-    inputs = simple(owner.random_inputs(rng, count))
+    inputs = simple(node.random_inputs(rng, count))
     inputs["thinfilm_ior"] = np.maximum(inputs["thinfilm_ior"], LEAST_OIL)
     inputs["roughness"] = rounded([alpha, alpha])
     inputs["thinfilm_thickness"] = rounded([thickness])[:, 0]
@@ -671,14 +672,14 @@ def film_views(owner: lobes.PbrSpec, films: Films) -> Batch:
 
 
 def _steep(batch: Batch) -> np.ndarray:
-    """Mask of pairs whose half vector is not grazing."""
+    """Mask of pairs whose half vector is not grazing to the view."""
     half = batch.wo + batch.wi
     length = np.linalg.norm(half, axis=1)
     cosine = np.abs((half * batch.wo).sum(axis=1)) / np.maximum(length, 1e-12)
     return np.asarray(cosine >= LEAST_FACET)
 
 
-# Error of the engine's cosine and sine. From 200 nm on, it counts twice in the reflectance.
+# For films of at least 200 nm, the reflectance has twice the error of a cosine or sine.
 WAVE_ERROR = spec.EngineError(
     "the engine's own cosine and sine, times 2",
     spec.WAVE.error(lambda: [samples.float32(np.linspace(0.0, FILM_PHASE, spec.ARGUMENTS))], 2.0),
@@ -686,8 +687,7 @@ WAVE_ERROR = spec.EngineError(
 )
 FILM_SPECS = tuple(
     FilmSpec(
-        **lobes.named_mode(row, f"{row.category}, thin film"),
-        row=row,
+        **lobes.mode_of(row, f"{row.category}, thin film"),
         inputs=INPUTS[row.category],
         errors=FILM_ERRORS,
         engines=dict.fromkeys(("film_curve", "film_orders"), (WAVE_ERROR,)),

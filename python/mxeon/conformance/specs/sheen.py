@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The sheen node's modes: Zeltner's, with closed forms, and Conty and Kulla's, with fits."""
+"""Specs of both modes of the sheen node: Zeltner's sheen, and Conty and Kulla's."""
 
 from dataclasses import replace
 
@@ -18,17 +18,15 @@ BOUNDED = (
     replace(lobes.ROUGHNESS, beyond=(0.0, 1e-3, 2.0), ends=(0.01, 1.0)),
 )
 INPUTS, ZELTNER_INPUTS = ((lobes.WEIGHT, lobes.COLOR, each, lobes.NORMAL) for each in BOUNDED)
-FIT_COSINE = 1e-4  # the fits are valid for cosines from here to 1
-EXPONENT = 1.0 / samples.LEAST_SHEEN  # largest exponent of the sine
+FIT_COSINE = 1e-4  # least cosine in the domains of the albedo fits
+EXPONENT = 1.0 / samples.LEAST_SHEEN  # largest exponent of the sine in Conty and Kulla's sheen
 
 ZELTNER_VALUE = sum_of(
     roundings(48, "of the value or 1: an inverse fourth power takes the 8 of a length four times"),
     roundings(10 * 11.6, "in the exponent of the albedo, 11.6 where values are about 1"),
 )
-# Tolerance of the albedo in an environment, and of the throughput 1 - E.
 CLOSED = roundings(32, "of the albedo or 1: 20 in an exponent, times 0.6, and 20 beside it")
-ZELTNER_ALBEDO = sum_of(CLOSED, quantity=Quantity.ALBEDO)
-ZELTNER_THROUGHPUT = sum_of(CLOSED, quantity=Quantity.ALBEDO)
+ZELTNER_ALBEDO = ZELTNER_THROUGHPUT = sum_of(CLOSED, quantity=Quantity.ALBEDO)
 LOGARITHM = 4 * 0.5 / samples.LEAST_SHEEN  # four roundings over twice the least roughness
 
 
@@ -43,17 +41,16 @@ FIT = (
     ZELTNER_ALBEDO.term("roundings of an albedo in closed form"),
 )
 CONTY_KULLA_ALBEDO = sum_in(Quantity.ALBEDO, *FIT, exact=True)
-CONTY_KULLA_THROUGHPUT = sum_in(Quantity.ALBEDO, *FIT, exact=True)
 
 
 def power_error(host: Host) -> float:
-    """Error that the engine's pow() adds to the sheen, beyond the terms above; relative above 1.
+    """Error of Conty and Kulla's sheen due to the engine's pow(), minus the roundings of LOGARITHM.
 
-    With n = 1 / roughness, pi f cos of the sheen is at most (2 + n) / 8 sin^n.
+    With n = 1 / roughness, pi f cos is at most (2 + n) / 8 sin^n. Errors are relative above 1.
     """
     rng = samples.generator()
     exponent = samples.LEAST_SHEEN ** -rng.random(spec.ARGUMENTS)
-    sine = samples.float32(rng.random(spec.ARGUMENTS) ** (1.0 / exponent))  # the powers are uniform
+    sine = samples.float32(rng.random(spec.ARGUMENTS) ** (1.0 / exponent))  # uniform powers
     exponent = samples.float32(exponent)
     factor = (2.0 + exponent) / 8.0
     scale = np.maximum(1.0, factor * sine**exponent)
@@ -62,21 +59,19 @@ def power_error(host: Host) -> float:
 
 
 ZELTNER = lobes.PbrSpec(
-    **lobes.named_mode(node("zeltner")),
-    row=node("zeltner"),
+    **lobes.mode_of(node("zeltner")),
     inputs=ZELTNER_INPUTS,
     errors=lobes.lobe_errors(ZELTNER_VALUE, ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, FLAT_FRAME, 1e-8),
     along=0.03,
 )
 CONTY_KULLA = lobes.PbrSpec(
-    **lobes.named_mode(node("conty_kulla")),
-    row=node("conty_kulla"),
+    **lobes.mode_of(node("conty_kulla")),
     inputs=INPUTS,
     errors={
         **lobes.lobe_errors(
-            CONTY_KULLA_VALUE, CONTY_KULLA_ALBEDO, CONTY_KULLA_THROUGHPUT, FLAT_FRAME, 2e-4
+            CONTY_KULLA_VALUE, CONTY_KULLA_ALBEDO, CONTY_KULLA_ALBEDO, FLAT_FRAME, 2e-4
         ),
-        # Exchanging the directions leaves the half vector and the power unchanged.
+        # The half vector and the power of its sine are the same for exchanged directions.
         "reciprocity": sum_of(roundings(32)),
     },
     outside_errors={("value", "roughness", x): conty_kulla_value(2.0 / x) for x in (1e-3, 1e-4)},

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
@@ -20,11 +20,13 @@ from mxeon.conformance.specs.microfacets import FILM_ERRORS, sum_over
 from mxeon.conformance.tolerance import Term, Tolerance, mean_scaled, roundings, sum_in, sum_of
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
-if TYPE_CHECKING:  # the import loads MaterialX
+if TYPE_CHECKING:  # avoid loading MaterialX
+    import MaterialX as mx
+
     from mxeon.shaders.generation import Shader
 
-# Ranges of inputs, with values for a material in which all lobes contribute. Changed values differ
-# from all defaults.
+# Ranges by kind of input. `materials` is the value in a material to which all lobes contribute;
+# `change` differs from the default value of every input.
 RANGES = {
     "color": spec.color("", (0.5, 0.6, 0.7), edges=(1.0,)),
     "share": Input("", edges=(0.0, 1.0), change=0.7, materials=(0.5,)),
@@ -35,41 +37,39 @@ RANGES = {
     "thickness": Input("", high=1000.0, change=700.0, materials=(400.0,)),
     "film": Input("", low=100.0, high=1000.0, change=730.0, materials=(400.0,)),
 }
-# Mean free paths affect only curved surfaces, but evaluations use a plane.
+# Mean free paths have no effect on a plane, the only shape that is evaluated.
 FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
 TURNED_FRAME = {"normal": (0.48, 0.36, 0.8), "tangent": (0.6, 0.8, 0.0)}
 
 
 def ports_by_range(**names: str) -> tuple[Input, ...]:
-    """Inputs from lists of names (separated by spaces) for the keys of RANGES."""
+    """Inputs with the ranges of RANGES; each argument is a key and names separated by spaces."""
     rows = ((key, name) for key, words in names.items() for name in words.split())
     return tuple(replace(RANGES[key], name=name) for key, name in rows)
 
 
-def _whole(names: str) -> Values:
-    """Values of 1, or white, for these inputs."""
+def _ones(names: str) -> Values:
+    """1 for each named number, and white for each named color."""
     return {name: WHITE if "color" in name.lower() else 1.0 for name in names.split()}
 
 
-SPREAD = 0.3  # alpha of the lobe that draws half of the lights
-STRETCHED = "anisotropy"  # input names contain it; environment sums are too coarse for anisotropy
-# Largest errors due to the fits of all lobes, over 32 sets of a check's size, compared with the
-# layer equation in float64: tools/fits/surface_shaders.py. They are a third of the sum of each
-# lobe's largest error, since no material reaches all of these. The fits for two alphas change the
-# mean of a set by up to 4e-4.
+LIGHT_ALPHA = 0.3  # alpha of the GGX lobe that draws half of the light directions
+# tools/fits/surface_shaders.py measures the errors due to the shaders' fits of all lobes: the
+# largest over 32 sets of a check's size, compared with the layer equation in float64. The result is
+# a third of the sum of every lobe's largest error, because no material reaches all of these.
 VALUE = sum_of(Term(3.5e-3, "the fits of all lobes of a material, over 32 sets of 256 pairs"))
 FITS = Term(2.7e-3, "the fits of all lobes of a material, over 32 sets of 64 views")
 ALBEDO = sum_in(Quantity.ALBEDO, FITS, sum_over(1024))
-STRETCHED_FIT = 0.019  # largest error of a value due to the fits for two alphas
-# Sums for different views have independent errors.
+STRETCHED_FIT = 0.019  # largest error of an anisotropic lobe's value due to fits
+# Environment sums for different views have independent errors.
 MEAN = sum_of(
     Term(2.4e-4, "the mean of the errors by fits, over 32 sets of 64 views"),
     Term(sum_over(1024).value / 8.0, "sums over 1024 directions, over the root of 64 views"),
     quantity=Quantity.MATERIAL_MEAN,
     metric=mean_scaled,
 )
-# R over T passes (1 - E)^2. The derivative by E is at most 2 for the transmitted light, and at most
-# 1 for the sum of both.
+# A reflecting lobe over a transmitting lobe passes (1 - E)^2 of the light, whose derivative by E is
+# at most 2 in magnitude.
 GLASS = sum_in(
     Quantity.ALBEDO,
     Term(2.0 * microfacets.LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),
@@ -90,27 +90,30 @@ ERRORS = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceShaderSpec(spec.LobeSpec):
-    """A surface shader whose lobes are all enabled."""
+    """A surface shader with contributions from all of its lobes."""
 
     requires = spec.Ability.MATERIAL
     plain = ("frame", "shape", "lobes", "inputs from an image")
 
-    judged: tuple[Input, ...]  # inputs whose effect is compared with the reference
+    judged: tuple[Input, ...]  # inputs whose effect on values is compared with the reference
     others: tuple[Input, ...]  # inputs of other lobes and films, for the checks of energy and films
-    # Inputs that change no value of rasterized targets; see
-    # docs/upstream/surface_inputs.md.
+    # Inputs without an effect in rasterizers; see docs/upstream/surface_inputs.md.
     without_effect: tuple[str, ...]
-    white: Values  # a material that is lossless by the layer equation
+    white: Values  # inputs of a material that is lossless by the layer equation
     glass: Values  # inputs of clear glass
     finish: tuple[str, ...]  # inputs of glass that may vary: roughness and index
-    # Inputs that must also be set for a changed input to have an effect.
+    # For each input that has no effect by itself, the values of other inputs that give it one.
     needs: Mapping[str, Values] = field(default_factory=dict)
     errors: Mapping[str, Tolerance] = field(default_factory=lambda: ERRORS)
     counts: Counts = COUNTS
     # Inputs that are not varied: an opacity blends the whole surface with the background, and
-    # the evaluation itself sets an occlusion.
-    unseen: tuple[str, ...] = ()
-    library: str = "eonlib"  # the reference evaluates this library's document
+    # every evaluation sets the occlusion itself.
+    fixed_inputs: tuple[str, ...] = ()
+    library: str = "eonlib"  # library whose definition of the node the reference evaluates
+
+    @property
+    def varied(self) -> tuple[Input, ...]:
+        return (*self.judged, *self.others)
 
     @property
     def film(self) -> tuple[Input, ...]:
@@ -118,15 +121,22 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return tuple(each for each in self.others if each.name.startswith(names))
 
     @cached_property
-    def further(self) -> Values:
-        """All other inputs, each with a value that differs from its default."""
+    def _ports(self) -> tuple[mx.Input, ...]:
         from mxeon.shaders.library import load_library
 
+        return tuple(load_library("stock").getMatchingNodeDefs(self.node)[0].getActiveInputs())
+
+    @cached_property
+    def changed_inputs(self) -> Values:
+        """For each input that can have an effect, a value other than the default."""
         values = dict[str, ArrayLike]()
-        known = {*(each.name for each in (*self.judged, *self.others)), *self.unseen}
-        for port in load_library("stock").getMatchingNodeDefs(self.node)[0].getActiveInputs():
+        for each in self.varied:
+            if each.change is not None and each.name not in FREE_PATHS:
+                values[each.name] = each.change
+        skipped = {*values, *FREE_PATHS, *self.fixed_inputs}
+        for port in self._ports:
             name, kind, default = port.getName(), port.getType(), port.getValue()
-            if name in known:
+            if name in skipped:
                 continue
             if kind == "vector3":
                 values[name] = TURNED_FRAME["tangent" if "tangent" in name else "normal"]
@@ -136,33 +146,23 @@ class SurfaceShaderSpec(spec.LobeSpec):
                 values[name] = 0.5 + (default or 0.0) if kind == "float" else not default
         return values
 
-    @cached_property
-    def changed_inputs(self) -> Values:
-        """Changed values of all inputs except FREE_PATHS."""
-        ports = (*self.judged, *self.others)
-        known = {each.name: each.change for each in ports if each.change is not None}
-        return {**{name: known[name] for name in known if name not in FREE_PATHS}, **self.further}
-
     @property
     def names(self) -> tuple[str, ...]:
         return tuple(self.changed_inputs)
 
     @property
     def changes(self) -> Mapping[str, samples.Changes]:
-        seen, _ = spec.materials(*self.judged, *self.others)
-        wholes = {name: {**seen, **self.needs.get(name, {})} for name in self.names}
+        material, _ = spec.materials(*self.varied)
+        before = {name: {**material, **self.needs.get(name, {})} for name in self.names}
         changed = self.changed_inputs
-        return {name: (each, {**each, name: changed[name]}) for name, each in wholes.items()}
+        return {name: (each, {**each, name: changed[name]}) for name, each in before.items()}
 
     def within(self, library: str) -> SurfaceShaderSpec:
         return replace(self, library=library)
 
     @property
     def types(self) -> dict[str, str]:
-        from mxeon.shaders.library import load_library
-
-        [definition, *_] = load_library("stock").getMatchingNodeDefs(self.node)
-        return {port.getName(): port.getType() for port in definition.getActiveInputs()}
+        return {port.getName(): port.getType() for port in self._ports}
 
     def document(self, inputs: Values | None = None) -> str:
         types = self.types
@@ -176,7 +176,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return self._reference(batch, "environment")
 
     def transmitted(self, batch: Batch, opacity: bool) -> Array:
-        """Transmitted light of a uniform environment, by refraction or as opacity."""
+        """Light of a uniform environment that passes by refraction or, if `opacity`, directly."""
         return self._reference(batch, "opacity" if opacity else "transmission")
 
     def clear(self, batch: Batch) -> Batch:
@@ -197,26 +197,29 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return Reference().evaluate(self._shader, batch.wo, batch.wi, batch.inputs, branch)
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
-        """Random judged inputs; if `edged`, extreme values of the inputs of all lobes."""
-        return draw(rng, count, (*self.judged, *self.others) if edged else self.judged, edged)
+        """Random values of the judged inputs; if `edged`, of all varied inputs, often extreme."""
+        return draw(rng, count, self.varied if edged else self.judged, edged)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs with random materials, half of them near the mirror direction."""
+        """Random pairs and materials; half of the lights are near the mirror direction."""
         rng, count = generator(), counts.pairs
         wo, wi = _views(rng, count), samples.directions(rng, count)
-        alpha = np.full((count, 2), SPREAD)
+        alpha = np.full((count, 2), LIGHT_ALPHA)
         near = microfacets.reflected(wo, alpha, rng.random(count), rng.random(count))
-        kept = (np.arange(count) % 2 == 0) & (near[:, 2] > 0.0)
-        wi = np.where(kept[:, np.newaxis], near, wi)
+        replaced = (np.arange(count) % 2 == 0) & (near[:, 2] > 0.0)
+        wi = np.where(replaced[:, np.newaxis], near, wi)
         batch = Batch(wo, wi, self.random_inputs(rng, count))
-        even, inputs = np.arange(count) % 4 < 2, batch.inputs
-        same = {name: np.where(even, 0.0, inputs[name]) for name in _stretching(batch)}
-        return (batch.altered(**same),)
+        isotropic, inputs = np.arange(count) % 4 < 2, batch.inputs
+        changed = {name: np.where(isotropic, 0.0, inputs[name]) for name in _anisotropies(batch)}
+        return (batch.altered(**changed),)
 
     few = spec.ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views of isotropic materials. Skip metal curves below 0, which MaterialX's sum allows."""
+        """Views of isotropic materials, without metals whose Fresnel curve falls below 0.
+
+        MaterialX clamps such a curve in direct light, but not in an environment.
+        """
         batch = _isotropic(batches[0].first(counts.albedos))
         if "base_metalness" in self.names:  # only OpenPBR's metal has a color at 82 degrees
             color0 = batch.inputs["base_color"] * batch.inputs["base_weight"][:, np.newaxis]
@@ -230,35 +233,39 @@ class SurfaceShaderSpec(spec.LobeSpec):
         """Views of materials in which all lobes contribute, with extreme inputs."""
         rng, count = generator(), counts.materials
         wo, inputs = _views(rng, count), self.random_inputs(rng, count, edged=True)
-        # QON itself gains up to 1.4 % of light at grazing.
+        # The model QON itself gains up to 1.4 % of light at grazing views.
         inputs |= {name: 0.0 * inputs[name] for name in inputs if name == "diffuse_roughness"}
         return _isotropic(Batch(wo, wo, inputs))
 
     def films(self, counts: Counts) -> Batch:
-        """Random pairs, with isotropic lobes under random films."""
+        """Random pairs with random isotropic materials under random films."""
         batch = _isotropic(self.batches(counts)[0])
         return batch.altered(**draw(generator(), len(batch.wo), self.film))
 
 
 def _views(rng: samples.Rng, count: int) -> Array:
-    """Random directions with cosines at which the sheen gains no energy; one is at the limit."""
+    """Random views with a cosine of at least LEAST_VIEW, below which the sheen gains energy."""
     wo = samples.directions(rng, count)
     wo = samples.float32(np.where(wo[:, 2:] < lobes.LEAST_VIEW, [0.6, 0.0, 0.8], wo))
     wo[0] = samples.directions_at(lobes.LEAST_VIEW, 0.0)
     return wo
 
 
-def _stretching(batch: Batch) -> list[str]:
-    return [name for name in batch.inputs if STRETCHED in name and "rotation" not in name]
+def _anisotropies(batch: Batch) -> list[str]:
+    """Names of the inputs that are the anisotropy of a lobe."""
+    return [each for each in batch.inputs if "anisotropy" in each and "rotation" not in each]
 
 
-def stretched(batch: Batch) -> NDArray[np.bool_]:
-    count = np.zeros(len(batch.wo), int)
-    return np.asarray(sum((batch.inputs[name] != 0.0 for name in _stretching(batch)), count) > 0)
+def stretched(batch: Batch) -> samples.Mask:
+    """Mask of the pairs with an anisotropic lobe."""
+    mask = np.zeros(len(batch.wo), bool)
+    for name in _anisotropies(batch):
+        mask |= batch.inputs[name] != 0.0
+    return mask
 
 
 def _isotropic(batch: Batch) -> Batch:
-    return batch.altered(**{name: np.zeros(len(batch.wo)) for name in _stretching(batch)})
+    return batch.altered(**dict.fromkeys(_anisotropies(batch), np.zeros(len(batch.wo))))
 
 
 def _names(node: str) -> spec.Names:
@@ -282,10 +289,10 @@ SURFACE_SHADERS = (
             "transmission_depth", "transmission_scatter", "transmission_scatter_anisotropy",
             "transmission_dispersion", "subsurface_anisotropy"),
         needs={"emission_color": {"emission": 1.0}},
-        unseen=("opacity",),
+        fixed_inputs=("opacity",),
         glass={"transmission": 1.0, "base": 0.0},
         finish=("specular_roughness", "specular_IOR"),
-        white={**_whole("base base_color sheen coat"), "specular_roughness": 0.4}),
+        white={**_ones("base base_color sheen coat"), "specular_roughness": 0.4}),
     SurfaceShaderSpec(
         **_names("open_pbr_surface"),
         judged=ports_by_range(
@@ -301,13 +308,14 @@ SURFACE_SHADERS = (
             "transmission_scatter", "transmission_scatter_anisotropy", "transmission_dispersion_scale",
             "transmission_dispersion_abbe_number", "subsurface_scatter_anisotropy"),
         needs={
-            "subsurface_weight": {"subsurface_color": CHANGED_COLOR},  # its default is the base's
+            # The default colors of subsurface and base are equal.
+            "subsurface_weight": {"subsurface_color": CHANGED_COLOR},
             "emission_color": {"emission_luminance": 1000.0}},
-        unseen=("geometry_opacity",),
+        fixed_inputs=("geometry_opacity",),
         glass={"transmission_weight": 1.0},
         finish=("specular_roughness", "specular_ior"),
         white={
-            **_whole("base_weight base_color coat_weight fuzz_weight fuzz_color"),
+            **_ones("base_weight base_color coat_weight fuzz_weight fuzz_color"),
             "base_diffuse_roughness": 0.5, "coat_roughness": 0.3, "coat_darkening": 0.0}),
     SurfaceShaderSpec(
         **_names("gltf_pbr"),
@@ -319,11 +327,11 @@ SURFACE_SHADERS = (
             share="transmission iridescence", index="iridescence_ior", film="iridescence_thickness"),
         without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
         needs={"emissive_strength": {"emissive": CHANGED_COLOR}},
-        unseen=("occlusion", "alpha", "alpha_mode", "alpha_cutoff"),
+        fixed_inputs=("occlusion", "alpha", "alpha_mode", "alpha_cutoff"),
         glass={"transmission": 1.0, "metallic": 0.0, "base_color": WHITE},
         finish=("roughness", "ior"),
         white={
-            **_whole("base_color sheen_color clearcoat"), "metallic": 0.0, "roughness": 0.5,
+            **_ones("base_color sheen_color clearcoat"), "metallic": 0.0, "roughness": 0.5,
             "sheen_roughness": 0.6, "clearcoat_roughness": 0.4}),
     SurfaceShaderSpec(
         **_names("UsdPreviewSurface"),
@@ -334,8 +342,8 @@ SURFACE_SHADERS = (
         without_effect=("displacement",),
         glass={"opacity": 0.0, "diffuseColor": WHITE},
         finish=("roughness", "ior"),
-        white={**_whole("diffuseColor clearcoat"), "clearcoatRoughness": 0.4},
+        white={**_ones("diffuseColor clearcoat"), "clearcoatRoughness": 0.4},
         needs={"specularColor": {"useSpecularWorkflow": 1}},
-        unseen=("occlusion",)),
+        fixed_inputs=("occlusion",)),
 )
 # fmt: on

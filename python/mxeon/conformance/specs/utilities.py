@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Outputs of the utility nodes, which compute numbers and colors for lobes.
+"""Specs of utility nodes, which compute inputs of lobes.
 
-They are pbrlib's nodes, and eonlib's nodes that return the reflectance for a given EON albedo.
-
-Errors are relative to the largest component if it exceeds 1; artistic indices are scaled so that
-their roundings are uniform.
+These are pbrlib's utility nodes, and eonlib's nodes that compute the color for a given EON albedo.
 """
 
 from collections.abc import Mapping
@@ -26,14 +23,14 @@ from mxeon.models.nodes.node import Variant
 from mxeon.shaders import nodes
 from mxeon.shaders.nodes import INVERSIONS, Node, connection_text, document_text, node_text
 
-NAME, COLOR = "value", "color"  # names of two nodes: the utility, its conversion to a color
-TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # input types by shape
+NAME, COLOR = "value", "color"  # names of the utility node, and of its conversion to a color
+TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # input types by array shape
 SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # special values of most inputs
 PIGMENTS = (0.01, 0.5, 1.0)
 TEMPERATURES = (800.0, 1000.0, 1667.0, 2222.0, 4000.0, 6504.0, 25000.0)
-BEYOND = (-1.0, 0.0, 0.5, 1.0, 2.0, 1e3)  # values for inputs that may leave their range
+BEYOND = (-1.0, 0.0, 0.5, 1.0, 2.0, 1e3)  # values inside and outside the range of most inputs
 # fmt: off
-# Inputs that need a range or change of their own. Changes start from a document's default.
+# Inputs with special ranges.
 INPUTS = {
     each.name: each
     for each in (
@@ -47,7 +44,8 @@ INPUTS = {
 }
 # fmt: on
 
-# 0.98 has half a rounding, which the aspect divides by 2 (1 - 0.98). The least alpha is only 1e-8.
+# The aspect divides the rounding of 0.98 by 2 (1 - 0.98). Errors are absolute, because the least
+# alpha is 1e-8.
 ALPHA = sum_in(
     Quantity.ALPHA, roundings(12), roundings(0.25 / 0.02, "(half of one of 0.98, over 0.04)")
 )
@@ -57,13 +55,12 @@ BLACKBODY = sum_of(
 )
 DECIMALS = Term(3 * 5e-7, "three constants of six decimals")
 REFLECTANCE = sum_in(Quantity.REFLECTANCE, DECIMALS, roundings(12, "of numbers up to 1"))
-# Tolerances of values, by title or category.
+# Tolerances of values, by the spec's title or the node's category.
 # fmt: off
 VALUES: Mapping[str, Tolerance] = {
     **dict.fromkeys(INVERSIONS, REFLECTANCE),
     **dict.fromkeys(("roughness_anisotropy", "glossiness_anisotropy"), ALPHA),
     "roughness_dual": sum_in(Quantity.ALPHA, roundings(2)),
-    # In this unit, n_max is at most 1.
     "artistic_ior, ior": sum_in(Quantity.INDEX, roundings(16, "four over 1 - sqrt(r), six beside, six in the mix")),
     "artistic_ior, extinction": sum_in(
         Quantity.EXTINCTION, roundings(8 + 16 + 4, "8 of the terms of k^2, 16 of n, 4 of 1 - r and the root")),
@@ -77,8 +74,8 @@ OSL_BLACKBODY = given(
     "OSL's blackbody() has an observer from 380 nm to 780 nm, its own table and primaries", tolerance.scaled)
 OTHERS: Mapping[str, dict[str, Tolerance]] = {"blackbody": {"osl_value": OSL_BLACKBODY}}
 # fmt: on
-FEWER = 1 << 12  # number of arguments for measuring an engine's functions
-LEAST_LOGARITHM = 1e-4  # smallest argument of measured logarithms
+FEWER = 1 << 12  # number of arguments at which an engine's functions are measured
+LEAST_LOGARITHM = 1e-4  # smallest argument at which a logarithm is measured
 
 
 def _shares() -> Array:
@@ -86,12 +83,12 @@ def _shares() -> Array:
     return float32(np.append(generator().random(FEWER), 1.0))
 
 
-# Engine errors of the 20th and 22nd powers in [0, 1], and of logarithms of numbers below 1.
+# Errors of an engine's 20th and 22nd powers in [0, 1], and of logarithms of numbers below 1.
 _power_error = spec.POWER.error(lambda: (_shares(), np.resize([22.0, 20.0], FEWER + 1)), 0.0)
 _logarithm_error = spec.LOGARITHM.error(
     lambda: [float32(LEAST_LOGARITHM ** (1.0 - _shares()))], 0.0
 )
-# Errors of engine functions, by node, each times the slope by which it enters the output.
+# Errors of an engine's function, by node, times the slope of the output by that function.
 # fmt: off
 ENGINE = {
     "chiang_hair_roughness": EngineError("the engine's pow(), times 2 x 3.7 / 5.24", _power_error, 1.5),
@@ -114,11 +111,10 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(  # each scale affects one lobe's output
-            name
-            for name in self.row.inputs
-            if not name.startswith("scale_") or name.endswith(self.output.removeprefix("roughness"))
-        )
+        # Each roughness depends only on its lobe's scale, such as `roughness_TT` on `scale_TT`.
+        suffix = self.output.removeprefix("roughness")
+        names = self.row.inputs
+        return tuple(x for x in names if not x.startswith("scale_") or x.endswith(suffix))
 
     def document(self, inputs: Values | None = None) -> str:
         kind, single = self.row.outputs[self.output], len(self.row.outputs) == 1
@@ -140,23 +136,22 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
 
     def outside(self, counts: Counts) -> Batch:
         rng, count = generator(), counts.pairs
-        drawn = {}
-        for each in self.inputs:
-            drawn[each.name] = rng.choice(each.beyond, (count, *spec.COMPONENTS[each.type]))
-        return _batch(drawn)
+        shapes = {each.name: (count, *spec.COMPONENTS[each.type]) for each in self.inputs}
+        return _batch({x.name: rng.choice(x.beyond, shapes[x.name]) for x in self.inputs})
 
     def values(self, function: utilities.Outputs, batch: Batch) -> Array:
-        """The output as a color with 0 for missing channels, (N, 3)."""
+        """The output as a color, whose missing channels are 0, (N, 3)."""
         output = np.asarray(function(spec.broadcast_inputs(batch))[self.output])
         color = np.zeros((len(batch.wo), 3))
         color[:, : output.shape[-1]] = output
         return color
 
-    def alike(self, compared: Compared) -> Compared:
-        """Scale artistic indices so that their roundings are uniform; keep other outputs.
+    def rescaled(self, compared: Compared) -> Compared:
+        """Scale indices of a metal so that roundings have a uniform effect; keep other outputs.
 
-        n becomes n (1 - sqrt(r))^2, since n divides a rounding of 1 - sqrt(r) by it. k becomes
-        k^2 (1 - r) / (n_max + 1)^2: k^2 is a difference of terms of that size, over 1 - r.
+        n becomes n (1 - sqrt(r))^2, because n is a quotient by 1 - sqrt(r). k becomes
+        k^2 (1 - r) / (n_max + 1)^2, because k^2 is a difference of terms as large as (n_max + 1)^2,
+        over 1 - r.
         """
         if self.node != "artistic_ior":
             return compared
@@ -169,14 +164,14 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
 
 
 def _batch(inputs: Mapping[str, Array]) -> Batch:
-    """A batch with these inputs and the normal as both directions, which do not matter."""
+    """A batch of these inputs; the directions have no effect."""
     count = len(next(iter(inputs.values())))
     up = np.broadcast_to([0.0, 0.0, 1.0], (count, 3))
     return Batch(up, up, inputs)
 
 
 def _inversion(node: str) -> utilities.UtilityNode:
-    """An inversion node of eonlib; variants are the other inversions and the unchanged color."""
+    """A row of one of eonlib's nodes; its variants are the other nodes and the unchanged color."""
 
     def output(name: str) -> utilities.Outputs:
         function = getattr(diffuse, name)
@@ -185,8 +180,7 @@ def _inversion(node: str) -> utilities.UtilityNode:
     variants = [Variant("the color itself", lambda inputs: {"out": inputs["color"]})]
     others = (each for each in dir(diffuse) if each.startswith("eon_rho_from") and each != node)
     variants += [Variant(name, output(name)) for name in others]
-    inputs: dict[str, float | tuple[float, ...]]
-    inputs = {"color": (0.18, 0.18, 0.18), "roughness": 0.0}
+    inputs: dict[str, float | tuple[float, ...]] = {"color": (0.18, 0.18, 0.18), "roughness": 0.0}
     return utilities.utility(node, inputs, {"out": "color3"}, output(node), tuple(variants))
 
 
