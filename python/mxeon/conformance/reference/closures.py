@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Evaluates a shader's closures with the models, as OSL's documentation defines the closures."""
+"""Evaluates trees of OSL closures with the NumPy models."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ from mxeon.models.shading_model import ALONG, UP
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR
 
 Arguments: TypeAlias = Mapping[str, Array]
-THROUGH, GRAPH = "transmission", "graph"  # branches of `Host.evaluate`
+THROUGH, GRAPH = "transmission", "graph"  # branches of `mxeon.hosts.base.Host.evaluate`
 ONE = np.ones((1, 1))
-ROUNDED = 1e-4  # smaller components of unit vectors count as roundings
-LEAST_HAIR = 1e-12  # smallest hair roughness; smaller ones would give a delta function
+ROUNDED = 1e-4  # differences of unit vectors below this are roundings
+LEAST_HAIR = 1e-12  # smallest hair roughness; at 0, the lobe is a delta function
 GGX = "ggx"  # the only supported microfacet distribution
 EMISSION, MEDIUM, HAIR = "uniform_edf", "anisotropic_vdf", HAIR_NODE.category
 LIGHTLESS = (EMISSION, MEDIUM, "transparent")  # closures that scatter no light at the surface
 SCHLICK = node("schlick")
 MICROFACETS = {row.category: row for row in (node("dielectric"), node("conductor"), SCHLICK)}
 OTHERS = (node("burley"), node("translucent"), HAIR_NODE)
-# Models by closure name, which is the node's category except for subsurface scattering.
+# Models by closure. Except for subsurface scattering, a closure has the name of its node.
 BY_CLOSURE = (
     MICROFACETS | {row.category: row for row in OTHERS} | {"subsurface_bssrdf": SUBSURFACE_NODE}
 )
-# Closures whose model depends on a keyword, which is 0 by default.
+# Closures with two models, selected by a keyword argument that is 0 by default.
 FLAGGED = {
     OREN_NAYAR: (FLAG, (DIFFUSE[False], DIFFUSE[True])),
     "sheen_bsdf": ("mode", (node("conty_kulla"), node("zeltner"))),
@@ -55,17 +55,17 @@ class Views:
 
     points: ShadingPoints
     occlusion: Array  # fraction of the light from above that reaches the surface
-    branch: str  # branch of `mxeon.hosts.base.Host.evaluate`
+    branch: str  # "direct", "environment" or "transmission", as in `mxeon.hosts.base.Host.evaluate`
 
     def bsdf(self, tree: ClosureTree | None, layered: bool) -> Bsdf:
         """Value of a closure tree, and its throughput if `layered`."""
         if tree is None or tree.name in LIGHTLESS:
             return NOTHING
-        if tree.name in FLAGGED:  # the keyword defaults to 0
+        if tree.name in FLAGGED:
             keyword, models = FLAGGED[tree.name]
             flag = np.asarray(tree.arguments.get(keyword, 0.0), np.float64)
-            unset, given = (partial(self._lobe, tree, each, layered) for each in models)
-            return _mixed(unset, given, column(np.where(flag == 0.0, 0.0, 1.0)))
+            unset, enabled = (partial(self._lobe, tree, each, layered) for each in models)
+            return _mixed(unset, enabled, column(np.where(flag == 0.0, 0.0, 1.0)))
         if tree.name not in OPERATIONS:
             return self._lobe(tree, BY_CLOSURE[tree.name], layered)
         first, second = (*tree.parts, None)[:2]
@@ -79,8 +79,8 @@ class Views:
             value = surface.value * (passed if self.branch == THROUGH else 1.0)
             return Bsdf(value, surface.throughput * passed)
         if tree.name == MIX:
-            one, other = (partial(self.bsdf, each, layered) for each in (first, second))
-            return _mixed(one, other, factor)
+            left, right = (partial(self.bsdf, each, layered) for each in (first, second))
+            return _mixed(left, right, factor)
         if tree.name == SUM:
             return layering.add(self.bsdf(first, layered), self.bsdf(second, layered))
         if not np.any(factor):
@@ -89,7 +89,7 @@ class Views:
         return Bsdf(factor * scaled.value, 1.0 - factor * (1.0 - scaled.throughput))
 
     def _lobe(self, closure: ClosureTree, row: PbrNode, layered: bool) -> Bsdf:
-        """Evaluate a lobe in its frame. Layers pass 1 - E without tints, as in MaterialX's text."""
+        """A lobe in its frame; the throughput is 1 - E without tints, as MaterialX specifies."""
         if (facets := closure.arguments.get("distribution", GGX)) != GGX:
             rule = f"must be {GGX}, as that of the node; got {facets}"
             raise ShaderError(f"osl: distribution of {closure.name} {rule}")
@@ -102,11 +102,11 @@ class Views:
         if np.any(opposite & ((self.points.wo * self.points.normal).sum(axis=1) > ROUNDED)):
             rule = "must be the node's, or face the viewer; got the opposite"
             raise ShaderError(f"osl: normal of {closure.name} {rule}")
-        if names[1] not in closure.arguments:  # use any vector that is not parallel to the normal
+        if names[1] not in closure.arguments:  # any vector that is not parallel to the normal
             tangent = np.where(np.abs(normal[:, :1]) > 0.9, UP, ALONG)
         wo, wi = self.points.directions(normal, tangent)
         inputs = _inputs(closure, row)
-        # The closure has a reflection tint that the model of Schlick's curve lacks.
+        # The closure of Schlick's curve has a reflection tint, which the node's model lacks.
         tinted = row is SCHLICK
         tint = np.asarray(closure.arguments["reflection_tint"], np.float64) if tinted else ONE
         try:
@@ -118,17 +118,20 @@ class Views:
                 value = np.asarray(closure.arguments["transmission_tint"] * passed)
             else:
                 value = np.zeros(wo.shape)
-            seen = albedo_at(row.albedo, row, wo, white(inputs)) if layered else None
-            if seen is not None and closure.name in microfacets.TRANSMISSIONS:
-                # In mode T, the reflection tint is black; in mode R, the transmission tint.
-                tints = (
-                    closure.arguments[f"{each}_tint"] for each in ("reflection", "transmission")
-                )
-                reflects, passes = (np.any(each, axis=-1, keepdims=True) for each in tints)
-                seen = np.where(reflects | ~passes, seen, 0.0)
+            throughput = NOTHING.throughput
+            if layered:
+                albedo = albedo_at(row.albedo, row, wo, white(inputs))
+                if closure.name in microfacets.TRANSMISSIONS:
+                    reflects, passes = (
+                        np.any(closure.arguments[f"{each}_tint"], axis=-1, keepdims=True)
+                        for each in ("reflection", "transmission")
+                    )
+                    # In mode T, which reflects nothing, only the reflection tint is black.
+                    albedo = np.where(reflects | ~passes, albedo, 0.0)
+                throughput = 1.0 - albedo
         except ValueError as error:
             raise OutsideModel(f"osl: {closure.name}: {error}") from None
-        return Bsdf(value, NOTHING.throughput if seen is None else 1.0 - seen)
+        return Bsdf(value, throughput)
 
 
 def radiance(tree: ClosureTree | None) -> Array:
@@ -137,7 +140,7 @@ def radiance(tree: ClosureTree | None) -> Array:
 
 
 def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Array | None:
-    """Sum of an argument over all closures of this name, with the tree's weights, or None."""
+    """Weighted sum of an argument over all closures of this name in the tree; None without any."""
     if tree is None:
         return None
     if tree.name == name:
@@ -159,41 +162,41 @@ def _only_medium(tree: ClosureTree | None) -> bool:
 
 
 def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Array) -> Bsdf:
-    """A mix of two lobes, with `share` of the second; lobes without a share are not evaluated."""
+    """A mix of two lobes, with `share` of the second; a lobe whose share is 0 is not evaluated."""
     if not np.any(share):
         return first()
     return second() if np.all(share == 1.0) else layering.mix(second(), first(), share)
 
 
 def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
-    given = {key: value for key, value in closure.arguments.items() if not isinstance(value, str)}
+    inputs = {key: value for key, value in closure.arguments.items() if not isinstance(value, str)}
     if closure.name == OREN_NAYAR:
-        given["roughness"] = np.minimum(given["roughness"], table.diffuse_model(row.name).largest)
+        inputs["roughness"] = np.minimum(inputs["roughness"], table.diffuse_model(row.name).largest)
     if closure.name == HAIR:
         for name in hair.ROUGHNESSES:
             lobe = name.removeprefix("roughness_")
-            rough = np.stack([given[f"variance_{lobe}"], given[f"scale_{lobe}"]], axis=-1)
-            given[name] = np.clip(rough, LEAST_HAIR, None)
+            rough = np.stack([inputs[f"variance_{lobe}"], inputs[f"scale_{lobe}"]], axis=-1)
+            inputs[name] = np.clip(rough, LEAST_HAIR, None)
     if closure.name in MICROFACETS:
         # OpenPBR computes alphas above 1 for anisotropic lobes; shaders clamp them to 1.
-        alphas = np.stack([given["roughness_x"], given["roughness_y"]], axis=-1)
-        given["roughness"] = np.clip(alphas, 0.0, 1.0)
-        given["tint"] = given.get("reflection_tint", np.ones((1, 3)))
-        given.setdefault("color82", np.ones((1, 3)))
-        given.setdefault("thinfilm_ior", np.full(1, 1.5))
-        if not np.any(given.get("thinfilm_thickness", 0.0)):
-            given.pop("thinfilm_thickness", None)
-    return given
+        alphas = np.stack([inputs["roughness_x"], inputs["roughness_y"]], axis=-1)
+        inputs["roughness"] = np.clip(alphas, 0.0, 1.0)
+        inputs["tint"] = inputs.get("reflection_tint", np.ones((1, 3)))
+        inputs.setdefault("color82", np.ones((1, 3)))
+        inputs.setdefault("thinfilm_ior", np.full(1, 1.5))
+        if not np.any(inputs.get("thinfilm_thickness", 0.0)):
+            inputs.pop("thinfilm_thickness", None)
+    return inputs
 
 
 def column(values: ArrayLike) -> Array:
-    """Values as a table: numbers become a column, (N, 1); colors, (N, 3), stay unchanged."""
+    """Numbers as a column, (N, 1); colors, (N, 3), stay unchanged."""
     array = np.asarray(values, np.float64)
     return array if array.ndim == 2 else array.reshape(-1, 1)
 
 
 def evaluate(trees: Iterable[TreeRows], query: Query) -> Array:
-    """Values of a shader's closures under a light or a uniform environment; see `Host.evaluate`."""
+    """Values of a shader's closures, as `mxeon.hosts.base.Host.evaluate` defines them."""
     _, wo, wi, inputs, branch, output, *_ = query
     values = np.zeros((len(wo), 3))
     normal = np.broadcast_to(np.asarray(inputs.get("normal", UP), np.float64), wo.shape)
@@ -203,9 +206,9 @@ def evaluate(trees: Iterable[TreeRows], query: Query) -> Array:
         if output == "radiance" or branch == GRAPH:
             values[rows] = radiance(points.tree)
             continue
-        shown, lights = wo[rows], wi[rows] if branch == "direct" else None
-        place = ShadingPoints(shown, lights, 1.0, normal[rows], np.array(ALONG))
-        views = Views(place, occlusion[rows], branch)
+        light = wi[rows] if branch == "direct" else None
+        shaded = ShadingPoints(wo[rows], light, 1.0, normal[rows], np.array(ALONG))
+        views = Views(shaded, occlusion[rows], branch)
         bsdf = views.bsdf(points.tree, output == "throughput")
         values[rows] = bsdf.throughput if output == "throughput" else bsdf.value
     return values

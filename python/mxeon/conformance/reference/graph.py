@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Evaluates material graphs in NumPy, vectorized over the points of a picture.
+"""Evaluates material graphs in NumPy, for all points of a picture at once.
 
-A graph may contain lobes with a model and their combinations, emissions, images, operations used
-in surface shaders, and nodes whose nodegraphs contain only these. Any other node raises NotRun
-with its name, unless a mix skips it.
+A graph may contain lobes with a model, nodes that combine lobes, emissions, images, operations that
+surface shaders use, and nodes that MaterialX defines by nodegraphs of such nodes. Any other node
+raises NotRun, unless a mix skips the node.
+
+A path names a node inside nested nodegraphs; a step is a function with the paths of its arguments.
 """
 
 from __future__ import annotations
@@ -32,17 +34,16 @@ from mxeon.shaders.document import drawn_values, graphs
 from mxeon.shaders.document.values import color_spaces
 from mxeon.shaders.inner_lobes import Nodes, Path
 
-# Number of components of each type that generated shaders can draw as a color.
+# Types that a generated shader can draw as a color, with their numbers of components.
 DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
-# Function that measures a node's values, given its elements, its type and the name of its output.
+# A function of nested elements, a type and the name of an output: values that a host has drawn.
 Measure: TypeAlias = Callable[[drawn_values.Elements, str, str], Array]
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
-# Values of unconnected inputs: black, or for a BSDF an absent lobe, which passes all light.
-NO_LIGHT = np.zeros(3)
+# Values of unconnected inputs by type.
 UNCONNECTED: dict[str, Value] = {"BSDF": nodes.NOTHING, "VDF": None}
-UNCONNECTED |= dict.fromkeys(("EDF", "surfaceshader"), NO_LIGHT)
-CHANNELS = {"float": 1, "color3": 3}  # number of channels of an image by the node's type
+UNCONNECTED |= dict.fromkeys(("EDF", "surfaceshader"), np.zeros(3))
+CHANNELS = {"float": 1, "color3": 3}  # number of an image's channels by the type of its node
 UTILITIES = {row.category: row for row in utilities.UTILITIES}
 
 
@@ -55,17 +56,16 @@ class Graph(Nodes):
         points: ShadingPoints,
         inputs: Mapping[str, ArrayLike] | None = None,  # values that replace the document's
         emits: bool = True,  # whether emission and opacity count
-        # Measures values of nodes without a function; if None, such nodes raise NotRun.
-        measure: Measure | None = None,
+        measure: Measure | None = None,  # returns values of unsupported nodes; None to raise NotRun
     ) -> None:
         super().__init__()
         self._document, self._points, self._inputs = document, points, inputs or {}
         self._emits, self._measure = emits, measure
-        self.measured: dict[str, None] = {}  # names of measured inputs: node.input
+        self.measured: dict[str, None] = {}  # inputs with values from `measure`, as "node.input"
         self.lobes: list[nodes.ShownLobe] = []
-        self._shader: Path | None = None  # the surface shader, if it is a nodegraph
-        self._tops: list[Path] = []  # tops of layers, whose throughputs are needed
-        self._hiding: set[Path] = set()  # tops of layers, and all their parts
+        self._shader: Path | None = None  # surface shader, if its definition is a nodegraph
+        self._tops: list[Path] = []  # upper lobes of layers, whose throughputs are needed
+        self._hiding: set[Path] = set()  # upper lobes of layers, with all their sources
         self._steps: dict[Path, Step] = {}
 
     def element(self, name_path: str) -> Array:
@@ -73,7 +73,7 @@ class Graph(Nodes):
 
         Raise NotRun if the graph contains an unsupported node.
         """
-        # Ignore warnings about non-finite values, since another node may skip the values.
+        # A node may select among values of which some are not finite.
         with np.errstate(divide="ignore", invalid="ignore"):
             path = self._root(name_path)
             self._parts([path])
@@ -81,7 +81,7 @@ class Graph(Nodes):
             return np.asarray(nodes.fitted("color3", self._evaluate(path)), np.float64)
 
     def patterns(self, name_path: str) -> Iterator[tuple[list[mx.Element], Array]]:
-        """Drawable nodes that a renderable element depends on, with their values; sources first."""
+        """Nodes on which an element depends and whose values can be drawn, sources first."""
         order = TopologicalSorter(self._parts([self._root(name_path)])).static_order()
         for path in [each for each in order if each in self.elements]:
             if self.elements[path].isA(mx.Node) and self.elements[path].getType() in DRAWN:
@@ -97,7 +97,7 @@ class Graph(Nodes):
         return graphs.reachable(roots, lambda path: self._step(path)[1])
 
     def _evaluate(self, root: Path) -> Value:
-        """Value at a path, computed without recursion; each node is evaluated once."""
+        """Value at a path; each node is evaluated once, without recursion."""
         parts = self._parts([root])
         uses = Counter(part for inner in parts.values() for part in inner)
         values: dict[Path, Value] = {}
@@ -110,7 +110,6 @@ class Graph(Nodes):
         return values[root]
 
     def _step(self, path: Path) -> Step:
-        """Function that computes the value at a path, and the paths of its arguments."""
         if path not in self._steps:
             self._steps[path] = self._node_step(path)
         return self._steps[path]
@@ -135,7 +134,7 @@ class Graph(Nodes):
 
     @cached_property
     def _operations(self) -> dict[str, nodes.Operation]:
-        """Inputs and function of each node that computes numbers or colors, by category."""
+        """Input names and function of each node that computes numbers, colors or light."""
         known = nodes.OPERATIONS | nodes.VOLUMES | {"surfacematerial": (("surfaceshader",), same)}
         for row in emissions.EMISSIONS:
             ports = tuple("base" if name == emissions.BASE else name for name in row.inputs)
@@ -147,14 +146,14 @@ class Graph(Nodes):
         def surface(bsdf: Bsdf, opacity: float | Array = 1.0, edf: float | Array = 0.0) -> Array:
             return np.asarray((bsdf.value + edf) * opacity, np.float64)
 
-        ports = ("bsdf", "opacity", "edf")  # opacity and edf are read only if they count
+        ports = ("bsdf", "opacity", "edf")  # read only the inputs that count
         known["surface"] = ports[: 1 + self._emits + emits], surface
         unlit = ("emission", "emission_color", "opacity")
         known["surface_unlit"] = unlit, lambda *values: prod(values) * (not self._points.behind)
         return known
 
     def _inside(self, path: Path, node: mx.Node, output: str = "") -> Path:
-        """Path inside a node's nodegraph that is connected to an output, or to the only output."""
+        """Path of the source of an output, inside the nodegraph that defines a node."""
         graph = node.getImplementation()
         outputs = graph.getOutputs() if graph and graph.isA(mx.NodeGraph) else []
         found = [each for each in outputs if each.getName() == output] or outputs
@@ -174,19 +173,17 @@ class Graph(Nodes):
         return lobe, self._sources(path, names)
 
     def _combination(self, path: Path, node: mx.Node) -> Step:
-        """Step of a node that combines lobes; a mix skips a lobe whose share is 0."""
         category = node.getCategory()
         ports, operation = nodes.COMBINATIONS[category]
-        if category == "mix":
+        if category == "mix":  # skip a lobe whose share is 0
             share = self._evaluate(self._source(path, "mix"))
             for port, none in (("bg", 0.0), ("fg", 1.0)):
                 if np.all(share == none):
                     return same, self._sources(path, (port,))
-        # A layer needs its top's throughput; a volume below only attenuates transmitted light.
         if category == "layer":
             self._tops.append(self._source(path, "top"))
             if node.getNodeDef().getActiveInput("base").getType() != "BSDF":
-                if not self._points.behind:
+                if not self._points.behind:  # a volume attenuates only transmitted light
                     return same, self._sources(path, ("top",))
 
                 def dimmed(top: Bsdf, medium: Array | None) -> Bsdf:
@@ -203,54 +200,51 @@ class Graph(Nodes):
     def _source(self, path: Path, name: str) -> Path:
         """Path of an input's source, which is the connected node or a constant."""
         owner = path
-        while (given := self._given(path, name)) is None:
+        while (replaced := self._replaced(path, name)) is None:
             port = self._port(path, name)
             if not port.hasInterfaceName():
                 break
             path, name = path[:-1], port.getInterfaceName()
         else:
-            return self._constant(path, name, given)
+            return self._constant(path, name, replaced)
         if not port.getConnectedNode():
             return self._constant(path, name, self._written(path, name, port))
-        # An input that a lobe or a node around a lobe reads may be measured, under this name.
+        # Only inputs of lobes and of nodes around lobes may be measured.
         scatters = any(each.getType() in drawn_values.CLOSURES for each in self._along(owner, path))
-        shown = f"{port.getParent().getName()}.{name}" if scatters else ""
-        return self._connected(path[:-1], port, shown)
+        label = f"{port.getParent().getName()}.{name}" if scatters else ""
+        return self._connected(path[:-1], port, label)
 
-    def _given(self, path: Path, name: str) -> Array | None:
+    def _replaced(self, path: Path, name: str) -> Array | None:
         """Value of an input that the caller replaces, or None; numbers are (N, 1)."""
         lobe = path in self.elements and self.elements[path].getCategory() in LOBES
         if name not in self._inputs or not (path == self._shader if self._shader else lobe):
             return None
-        value, wide = (
-            np.asarray(self._inputs[name]),
-            self._port(path, name).getType() in nodes.WIDTHS,
-        )
-        return value if wide else np.reshape(value, (-1, 1))
+        value = np.asarray(self._inputs[name])
+        is_number = self._port(path, name).getType() not in nodes.WIDTHS
+        return np.reshape(value, (-1, 1)) if is_number else value
 
-    def _connected(self, around: Path, port: mx.PortElement, shown: str = "") -> Path:
+    def _connected(self, around: Path, port: mx.PortElement, label: str = "") -> Path:
         """Path to which an input or output inside another path is connected.
 
-        If the value needs a node without a function, and the input has a name, `shown`, the value
-        is measured instead.
+        If the value needs an unsupported node, the value of an input with a label is measured.
         """
         path, kind = self.upstream(around, port), port.getType()
         assert path
         output = (port if port.getNodeName() else port.getConnectedOutput()).getOutputString()
-        if not (shown and self._measure and kind in DRAWN):
+        if not (label and self._measure and kind in DRAWN):
             return self._output(path, output)
         try:
             found = self._output(path, output)
             self._parts([found])
         except NotRun:
-            self.measured[shown] = None
+            self.measured[label] = None
             part = (*path, f"={output}")
             self._steps[part] = partial(self._measure, self._along(path), kind, output), ()
             return part
         return found
 
     def _output(self, path: Path, output: str) -> Path:
-        """Path of a node's output, by name if there are several."""
+        """Path of a node's output; only nodes with several outputs need its name."""
         node = self.elements[path]
         if node.getType() != "multioutput":
             return path
@@ -266,7 +260,7 @@ class Graph(Nodes):
         return constant
 
     def _along(self, path: Path, outer: Path = ()) -> list[mx.Element]:
-        """Elements along a path, outermost first, starting at the depth of the path `outer`."""
+        """Elements along a path, outermost first, from the depth of the path `outer` on."""
         ends = range(max(len(outer), 1), len(path) + 1)
         return [self.elements[path[:end]] for end in ends if path[:end] in self.elements]
 
@@ -276,7 +270,7 @@ class Graph(Nodes):
         raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
 
     def _written(self, path: Path, name: str, port: mx.Input) -> Value:
-        """Value of an unconnected input, converted to the document's color space and to meters."""
+        """Value of an unconnected input, in the document's color space and in meters."""
         element = self.elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
         declared = nodedef.getActiveInput(name) if nodedef else port
@@ -300,7 +294,7 @@ class Graph(Nodes):
         return constant * float(scales.get(port.getUnit(), 1.0))
 
     def _image(self, node: mx.Node) -> Array:
-        """Values of an image node. Texel centers are at half-integers; v = 0 is at the bottom."""
+        """Values of an image node at the points' own texture coordinates."""
         if self._points.texcoord is None or node.getInput("texcoord") is not None:
             raise NotRun("reference: images are read at the sphere's own coordinates only")
         file = node.getInput("file")
@@ -320,7 +314,7 @@ class Graph(Nodes):
 
 
 def _applied(node: mx.Node, operation: Callable[..., Value], *values: Value) -> Value:
-    """Apply a node's operation; OutsideModel if a library's graph passes invalid inputs."""
+    """Value of a node's operation; raises OutsideModel for invalid inputs."""
     try:
         return nodes.fitted(node.getType(), operation(*values))
     except ValueError as error:
@@ -328,7 +322,7 @@ def _applied(node: mx.Node, operation: Callable[..., Value], *values: Value) -> 
 
 
 def _rows(names: Iterable[str], values: Iterable[Array], count: int = 1) -> dict[str, Array]:
-    """Inputs of a model with one row per point, at least `count` rows; numbers have one axis."""
+    """Inputs of a model, with one row per point and at least `count` rows; numbers are (N,)."""
     columns = [np.atleast_2d(np.asarray(value, np.float64)) for value in values]
     count = max(count, *map(len, columns))
     rows = (np.broadcast_to(each, (count, each.shape[1])) for each in columns)
@@ -339,7 +333,7 @@ def _rows(names: Iterable[str], values: Iterable[Array], count: int = 1) -> dict
 def _radiance(
     row: emissions.Emission, ports: tuple[str, ...], points: ShadingPoints, *values: Array
 ) -> Array:
-    wo, _ = points.own
+    wo, _ = points.local
     return row.value(wo, _rows(ports, values, len(wo)))
 
 
@@ -350,10 +344,7 @@ def _utility(row: utilities.UtilityNode, *values: Array) -> Array | Mapping[str,
 
 
 def _linear(element: mx.Element, value: Array) -> Array:
-    """A color converted to the document's color space as generators do; alpha is unchanged.
-
-    Raise NotRun if the conversion is anything but the decoding of sRGB.
-    """
+    """A color in the document's color space; raises NotRun for a transform other than sRGB's."""
     spaces = color_spaces(element)
     if spaces is None:
         return value

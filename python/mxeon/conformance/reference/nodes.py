@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Functions of a document's nodes: BSDFs with a model, their combinations, and number operations.
+"""Functions of a document's nodes: lobes with a model, combined lobes, and number operations.
 
-For any other node that is not a nodegraph of these, a host draws the values: see `HostValues`.
-
-A value is an array with its components on the last axis; a number is () or (N, 1). If a function
-returns a number but the node's type has several components, the number is repeated.
+A value is an array with its components on the last axis; a number is () or (N, 1). A number counts
+for all components of a color or vector.
 """
 
 from __future__ import annotations
@@ -41,14 +39,14 @@ from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, value_text
 
 Albedo: TypeAlias = Callable[[Array, Inputs], Array]
 
-# An albedo is interpolated over a picture if the last coefficients of its series are below TAIL,
-# which is well below the errors of fits. The degrees are in sqrt(mu) and in cos(2 phi).
+# Over a picture, a lobe's albedo is interpolated by a Chebyshev series in sqrt(mu) and cos(2 phi).
+# The degrees increase until the last coefficients are below TAIL.
 TAIL = 1e-6
 ISOTROPIC = ((32, 0), (64, 0), (128, 0), (256, 0))
 ANISOTROPIC = ((24, 12), (48, 32))
 AT_ONCE = 1 << 12  # number of arguments for which a series is summed at once
-KEPT = 4  # maximum cached lobes of a scene's pictures, up to 2.5 megabytes each
-SEPARATE = 1000  # minimum directions for which a series is faster than individual albedos
+CACHED = 4  # maximum cached lobes of a picture, up to 2.5 megabytes each
+SEPARATE = 1000  # minimum number of directions for which a series is faster
 
 
 class ManyMaterialsError(Exception):
@@ -62,25 +60,25 @@ def _directions(mu: Array, phi: Array) -> Array:
 
 
 def _interpolated(series: Array, wo: Array, low: float, turns: bool) -> Array:
-    """Sums of a series (X, Y, 3) in sqrt(mu), over [low, 1], and in cos(2 phi), (N, 3)."""
+    """Sums of a Chebyshev series in sqrt(mu), over [low, 1], and in cos(2 phi), (N, 3)."""
     root = np.sqrt(np.minimum(wo[:, 2], 1.0))
     u = np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0)
     x, y = np.square(wo[:, 0]), np.square(wo[:, 1])
     v = np.zeros_like(u) if turns else (x - y) / np.maximum(x + y, 1e-300)
-    # A picture has many equal directions, so sum the series once for each distinct direction.
+    # A picture has many equal directions.
     each, indices = np.unique(np.round(u + 1j * v, 13), return_inverse=True)
     parts = np.array_split(each, 1 + len(each) // AT_ONCE)
     sums = [chebyshev.chebval2d(part.real, part.imag, series).T for part in parts]
     return np.asarray(np.concatenate(sums)[indices], np.float64)
 
 
-ALBEDOS, SERIES = Recent[Array](8), Recent[Array | None](32)  # caches by material
+ALBEDOS, SERIES = Recent[Array](8), Recent[Array | None](32)  # caches
 
 
 def _series(
     albedo: Albedo, inputs: Inputs, low: float, degrees: tuple[tuple[int, int], ...]
 ) -> Array | None:
-    """Chebyshev coefficients of an albedo, (., ., 3), or None if they decay too slowly."""
+    """Chebyshev coefficients of an albedo, (X, Y, 3), or None if they decay too slowly."""
     for degree, turns in degrees:
         x, y = chebyshev.chebpts1(degree + 1), chebyshev.chebpts1(turns + 1)
         cosines = np.square(low + (1.0 - low) * 0.5 * (1.0 + x))
@@ -95,7 +93,7 @@ def _series(
     return None
 
 
-COSINES = np.linspace(-1.0, 1.0, 1025)  # cosines at which the blur is computed
+COSINES = np.linspace(-1.0, 1.0, 1025)  # cosines at which diffused light is computed
 REACHES = (1e-6, 1e3)  # range of mean free paths, relative to the sphere's radius
 
 
@@ -104,7 +102,7 @@ def _dark(wo: Array, *_: object) -> Array:
 
 
 def _not_reflected(category: str, wo: Array, inputs: Inputs) -> Array:
-    """Fraction of a uniform environment that microfacets transmit."""
+    """Share of a uniform environment that a microfacet node transmits."""
     functions = TRANSMISSIONS[category]
     rest = 1.0 - functions.reflected(wo, microfacets.isotropic(inputs))
     return np.asarray(functions.tint(inputs) * np.maximum(rest, 0.0))
@@ -112,7 +110,6 @@ def _not_reflected(category: str, wo: Array, inputs: Inputs) -> Array:
 
 def _spread(wo: Array, wi: Array, inputs: Inputs) -> Array:
     """Radiance of subsurface scattering, relative to the irradiance of a distant light."""
-    # Mean free path of the equivalent isotropic scattering.
     count = len(wi)
     forward = np.broadcast_to(inputs["anisotropy"], (count,))[:, np.newaxis]
     radius = np.broadcast_to(inputs["radius"], (count, 3))
@@ -127,19 +124,19 @@ def _spread(wo: Array, wi: Array, inputs: Inputs) -> Array:
 
 @lru_cache(maxsize=64)
 def _blur(reach: float) -> Array:
-    """The cosine of the light after diffusion, at COSINES."""
+    """Light at COSINES after diffusion."""
     return diffusion_blur(COSINES, reach)
 
 
-# Transmitted fraction of a uniform environment, by name of the model's row.
+# Share of a uniform environment that a node transmits, by name of its row.
 LET_THROUGH: dict[str, Callable[[Array, Inputs], Array]] = {
     row.name: partial(_not_reflected, row.category) for row in TRANSMISSION_NODES
 }
-# Fraction of a white environment that MaterialX's sum reflects for two alphas, by category.
+# Albedo of an anisotropic lobe by MaterialX's environment sum, by category.
 SUMS: dict[str, Callable[[Array, Inputs], Array]] = {
     row.category: partial(node_albedo, row.category, summed=True) for row in MICROFACET_NODES
 }
-# Lobes over the full sphere, without a cosine factor.
+# Lobes with light from the full sphere and values that include no cosine.
 SPREAD_NODE = replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy"), value=_spread)
 AROUND = SPREAD_NODE, HAIR_NODE
 _only_passes = partial(replace, value=_dark, albedo=_dark, integral=_dark)
@@ -162,19 +159,18 @@ class ShadingPoints:
     normal: Array  # unit normal of the surface, in world space
     tangent: Array  # unit vector orthogonal to the normal, in world space
     texcoord: Array | None = None
-    # Maximum points if materials vary and albedos are integrals; more raise ManyMaterialsError.
-    most: float = np.inf
-    round: bool = False  # whether these are points of the unit sphere
+    most: float = np.inf  # maximum points with different materials whose albedos are integrals
+    round: bool = False  # whether the points lie on the unit sphere
     behind: bool = False  # whether only transmitted light counts
-    opacity: bool = False  # whether transmission-only lobes pass all light that reaches them
-    searched: bool = False  # whether eonlib's environment sum uses both alphas for masking
+    opacity: bool = False  # whether lobes in mode T pass all light, times their tint
+    searched: bool = False  # whether the environment sum masks by both alphas, as eonlib's does
 
     def lobe(
         self, node: PbrNode, inputs: Inputs, layered: bool, normal: Array, tangent: Array
     ) -> Bsdf:
-        """A lobe with weight 1 in a frame, and its throughput if `layered`."""
-        own = np.array_equal(normal, self.normal) and np.array_equal(tangent, self.tangent)
-        wo, wi = self.own if own else self.directions(normal, tangent)
+        """A lobe of weight 1 in a frame, with its throughput if `layered`, otherwise 0."""
+        plain = np.array_equal(normal, self.normal) and np.array_equal(tangent, self.tangent)
+        wo, wi = self.local if plain else self.directions(normal, tangent)
 
         def scattered() -> Bsdf:
             hides = layered and node.layerable
@@ -182,17 +178,17 @@ class ShadingPoints:
             value = self.strength * self.scattered(node, wo, wi, inputs)
             return Bsdf(value, np.broadcast_to(left, wo.shape))
 
-        if not own:
+        if not plain:
             return scattered()
-        # Cache the latest lobes, since the same document with another library repeats them.
+        # The same document with another library has the same lobes.
         key = node, layered, *((name, contents(each)) for name, each in inputs.items())
         return self._known.value(key, scattered)
 
     def scattered(self, node: PbrNode, wo: Array, wi: Array | None, inputs: Inputs) -> Array:
-        """Light that a lobe sends to the viewer, from directions in its frame, (N, 3).
+        """Light that a lobe sends to the viewer, (N, 3); directions are in the lobe's frame.
 
-        Under a distant light, it is f |cos(theta_i)|, and 0 on the dark side. In an environment, it
-        is the directional albedo or the transmitted fraction.
+        A distant light gives f |cos(theta_i)|, and 0 on the dark side. An environment gives the
+        directional albedo or the transmitted share.
         """
         if wi is None:
             share = LET_THROUGH.get(node.name) if self.behind else node.integral or node.albedo
@@ -204,21 +200,20 @@ class ShadingPoints:
             return self._albedo(share, node, wo, inputs) if share else np.zeros(wo.shape)
         if node in AROUND:
             return np.asarray(node.value(wo, wi, inputs))
-        shown = np.flatnonzero((wi[:, 2] < 0.0) if node.transmits else (wi[:, 2] > 0.0))
-        value, some = np.zeros(wo.shape), at(inputs, shown)
-        cosine = np.minimum(np.abs(wi[shown, 2:]), 1.0)
-        value[shown] = node.value(wo[shown], wi[shown], some) * cosine
+        lit = np.flatnonzero((wi[:, 2] < 0.0) if node.transmits else (wi[:, 2] > 0.0))
+        value = np.zeros(wo.shape)
+        cosine = np.minimum(np.abs(wi[lit, 2:]), 1.0)
+        value[lit] = node.value(wo[lit], wi[lit], at(inputs, lit)) * cosine
         return value
 
     def _albedo(self, albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-        """Albedo at each direction. Slow albedos of one material over a picture use a series."""
+        """Albedo at each direction; integrals for one material over a picture use a series."""
         closed = not node.fitted and node.integral is None
         varied = any(len(value) > 1 for value in inputs.values())
         if varied and not closed and len(wo) > self.most:
             raise ManyMaterialsError
         if closed or varied or not self.round or len(wo) < SEPARATE:
             return albedo_at(albedo, node, wo, inputs)
-        # Whether the lobe is invariant under rotation about the normal.
         roughness = inputs.get("roughness", np.zeros(1))
         turns = roughness.ndim == 1 or bool(np.ptp(roughness[0]) == 0.0)
         low, degrees = float(np.sqrt(wo[:, 2].min())), ISOTROPIC if turns else ANISOTROPIC
@@ -229,15 +224,15 @@ class ShadingPoints:
         if not turns:
             lobe = "the albedo of so anisotropic a lobe"
             raise NotRun(f"reference: {lobe} takes too long over a picture")
-        # Cosines of symmetric points of a sphere differ by roundings.
+        # Equal cosines of symmetric points on a sphere differ by roundings.
         mu = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
         upright = _directions(mu, np.zeros(len(mu)))
-        # All scenes of a document share these albedos.
+        # All pictures of a document have the same views.
         integrated = partial(albedo_at, albedo, node, upright, inputs)
         return ALBEDOS.value((contents(upright), *key), integrated)
 
     def geometry(self, name: str) -> Array:
-        """A geometric property by its MaterialX name; raises NotRun if it is unknown."""
+        """A geometric property by its name in MaterialX; raises NotRun for unknown names."""
         normal, tangent = self.normal, self.tangent
         known = {"Nworld": normal, "Tworld": tangent, "Bworld": np.cross(normal, tangent)}
         known |= {"UV0": self.texcoord} if self.texcoord is not None else {}
@@ -246,15 +241,16 @@ class ShadingPoints:
         return value
 
     @cached_property
-    def own(self) -> tuple[Array, Array | None]:
+    def local(self) -> tuple[Array, Array | None]:
+        """Directions to viewer and light in the surface's own frame."""
         return self.directions(self.normal, self.tangent)
 
     @cached_property
     def _known(self) -> Recent[Bsdf]:
-        return Recent(KEPT)
+        return Recent(CACHED)
 
     def directions(self, normal: Array, tangent: Array) -> tuple[Array, Array | None]:
-        """Local directions to viewer and light, in a frame whose normal faces the viewer.
+        """Directions to viewer and light in a frame, whose normal is turned toward the viewer.
 
         Raise OutsideModel if a normal is not a unit vector.
         """
@@ -272,12 +268,12 @@ class ShadingPoints:
 
 
 def at(inputs: Inputs, points: NDArray[np.intp]) -> dict[str, Array]:
-    """Inputs at some of the points; an input with one row for all points keeps its row."""
+    """Inputs at some of the points; an input may have one row for all points."""
     return {name: each[points] if len(each) > 1 else each for name, each in inputs.items()}
 
 
 def albedo_at(albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-    """An albedo of a lobe. Without a closed form, equal views and inputs are computed once."""
+    """An albedo of a lobe at each view; integrals are computed once for equal views and inputs."""
     wo = np.minimum(wo, 1.0)  # rounded cosines may exceed 1
     if not node.fitted and node.integral is None:
         return np.asarray(np.broadcast_to(albedo(wo, inputs), wo.shape))
@@ -288,7 +284,7 @@ def albedo_at(albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array
 
 
 def _within(axes: Array, directions: Array) -> Array:
-    """Unit vectors (N, 3): the directions in a frame whose axes are the matrix rows."""
+    """Unit vectors in frames whose axes are the rows of the matrices `axes`, (N, 3)."""
     local = (axes @ directions[:, :, np.newaxis])[:, :, 0]
     return np.asarray(local / np.linalg.norm(local, axis=1, keepdims=True), np.float64)
 
@@ -302,7 +298,7 @@ LOBES = {
 
 NOTHING = Bsdf(np.zeros(3), np.ones(3))  # an absent lobe
 
-# Nodes that combine lobes: category -> names of inputs, and a function of their values.
+# Nodes that combine lobes: by category, the names of their inputs, and a function of the inputs.
 COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
     "layer": (("top", "base"), layering.layer),
     "mix": (("fg", "bg", "mix"), layering.mix),
@@ -315,25 +311,24 @@ COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
 class ShownLobe:
     """A lobe that a picture shows with a nonzero weight."""
 
-    category: str  # category of the node
-    inputs: Mapping[str, Array]  # inputs as passed to `node_lobe`
+    category: str
+    inputs: Mapping[str, Array]
 
 
 def node_lobe(
     node: mx.Node, inputs: Mapping[str, Array], points: ShadingPoints, layered: bool
 ) -> Bsdf:
     """Lobe of a node; raises NotRun for input values that the models do not cover."""
-    # A lobe without a weight scatters nothing.
     weight = np.reshape(inputs.get("weight", np.ones(1)), (-1, 1))  # hair has no weight
     if (beyond := weight[~((weight >= 0.0) & (weight <= 1.0))]).size:
         raise _outside(node, f"weight must lie in [0, 1]; got {beyond[0]:g}")
     if not weight.any():
-        return Bsdf(np.zeros(3), np.ones(3))
+        return NOTHING
     row = _row(node, inputs)
     uniform = points.wi is None and row.name in LET_THROUGH
     if row in INNER_NODES and not (points.round or uniform):
         raise NotRun(f"reference: there is no model for this mode of node {node.getCategory()!r}")
-    # An input that the model lacks must have its default value.
+    # All inputs that the model lacks must have their default values.
     known = {"weight", "normal", "tangent", "curve_direction", FLAG, *FILM, *row.inputs, *row.fixed}
     for port, value in inputs.items():
         default = node.getNodeDef().getActiveInput(port).getValue()
@@ -343,7 +338,7 @@ def node_lobe(
     film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()
     arguments = {port: _argument(node, port, inputs[port], weight) for port in (*row.inputs, *film)}
     if row.name == "qon":
-        # MaterialX stores pi / 2 as a float32, which is slightly larger; lower only this value.
+        # MaterialX rounds pi / 2 to float32, which is larger than the model's largest roughness.
         rounded = np.float32(arguments["roughness"]) == np.float32(np.pi / 2.0)
         arguments["roughness"] = np.where(rounded, np.pi / 2.0, arguments["roughness"])
     tangent = inputs.get("tangent", inputs.get("curve_direction", points.tangent))
@@ -356,7 +351,7 @@ def node_lobe(
 
 
 def _outside(node: mx.Node, words: str) -> OutsideModel:
-    """The error for a value that a node's model does not cover; it names the document's input."""
+    """The error for a value that a node's model does not cover, with the name of the input."""
     document = f"{label(node.getDocument())}: "
     for port in node.getInputs():
         if text := out_of_range(port):
@@ -377,22 +372,22 @@ def _row(node: mx.Node, inputs: Mapping[str, Array]) -> PbrNode:
 def _argument(node: mx.Node, port: str, value: Array, weight: Array) -> Array:
     """Value of an input: numbers as (1,) or (N,), others as (1, C) or (N, C) with C components.
 
-    Points at which the lobe's weight is 0 take another point's value, since theirs may be NaN.
+    Where the lobe's weight is 0, a value may be NaN and is replaced by that of another point.
     """
     kind = node.getNodeDef().getActiveInput(port).getType()
     if kind not in WIDTHS:
         array = np.reshape(np.asarray(value, np.float64), -1)
     else:
         array = np.atleast_2d(np.asarray(value, np.float64))
-        if port == "roughness":  # OpenPBR's alphas can exceed 1; shaders clamp them to 1
+        if port == "roughness":  # OpenPBR's alphas can exceed 1; shaders clamp alphas to 1
             array = np.clip(array, 0.0, 1.0)
         array = np.broadcast_to(array, (len(array), WIDTHS[kind]))
     idle = weight[:, 0] == 0.0
     if len(array) != len(idle) or not idle.any():
         return array
-    shown = array.copy()
-    shown[idle] = array[int(idle.argmin())]
-    return shown
+    filled = array.copy()
+    filled[idle] = array[int(idle.argmin())]
+    return filled
 
 
 def plain(value: Plain) -> Array | bool | str | None:
@@ -408,14 +403,18 @@ def plain(value: Plain) -> Array | bool | str | None:
 
 # Value of a node or input: an array, a flag, a string, a lobe, outputs by name, or None.
 Value: TypeAlias = Array | bool | str | Bsdf | Mapping[str, Array] | None
-Operation: TypeAlias = tuple[tuple[str, ...], Callable[..., Value]]  # inputs and their function
+# Names of a node's inputs, and a function of the inputs.
+Operation: TypeAlias = tuple[tuple[str, ...], Callable[..., Value]]
 
-# Number of components of each type with more than one.
+# Number of components of each type that has several.
 WIDTHS = {"vector2": 2, "color3": 3, "vector3": 3, "color4": 4, "vector4": 4}
 
 
 def fitted(kind: str, value: Value) -> Value:
-    """Value with its type's components: a number is repeated; missing ones are 0, or alpha 1."""
+    """A value with the components of a type: numbers are repeated; missing components are 0.
+
+    A missing alpha is 1.
+    """
     width = WIDTHS.get(kind, 1)
     if width == 1 or value is None or isinstance(value, str):
         return value
@@ -447,7 +446,7 @@ def _combine(*values: Array) -> Array:
 
 
 def _rotate3d(value: Array, amount: Array, axis: Array) -> Array:
-    """Vector turned by an angle in degrees, by Rodrigues' formula for row vectors."""
+    """Vector rotated by an angle in degrees, by Rodrigues' formula for row vectors."""
     angle, axis = np.radians(amount), _normalize(axis)
     along = axis * _dot(axis, value) * (1.0 - np.cos(angle))
     return np.asarray(value * np.cos(angle) + np.cross(value, axis) * np.sin(angle) + along)
@@ -459,13 +458,13 @@ def _normalmap(
     """World-space normal from a color that encodes a vector in the surface's frame."""
     x, y, z = np.moveaxis(2.0 * value - 1.0, -1, 0)[..., np.newaxis]
     scale = np.atleast_1d(scale)
-    turned = tangent * x * scale[..., :1] + bitangent * y * scale[..., -1:] + normal * z
+    mapped = tangent * x * scale[..., :1] + bitangent * y * scale[..., -1:] + normal * z
     black = _dot(value, value) == 0.0
-    return _normalize(np.where(black, normal, turned))
+    return _normalize(np.where(black, normal, mapped))
 
 
 def _when(compare: Callable[..., NDArray[np.bool_]]) -> Operation:
-    """The operation that selects in1 if value1 and value2 compare as true, otherwise in2."""
+    """The operation that returns in1 where `compare(value1, value2)` is true, otherwise in2."""
 
     def choose(value1: Array, value2: Array, in1: Array, in2: Array) -> Array:
         return np.where(compare(value1, value2), in1, in2)
@@ -475,7 +474,7 @@ def _when(compare: Callable[..., NDArray[np.bool_]]) -> Operation:
 
 UNARY, BINARY = ("in",), ("in1", "in2")
 
-# Operations: category -> names of inputs, and a function of their values.
+# Nodes that compute numbers: by category, the names of their inputs, and a function of the inputs.
 OPERATIONS: dict[str, Operation] = {
     "constant": (("value",), same),
     "convert": (UNARY, lambda value: np.asarray(value, np.float64)),
@@ -508,7 +507,7 @@ OPERATIONS: dict[str, Operation] = {
 
 # --- volumes --------------------------------------------------------------------------------------
 
-# Volume nodes that may lie below a layer; their value is the transmittance.
+# Volume nodes that a layer may have as its base; their value is the transmittance.
 VOLUMES: dict[str, Operation] = {
     "absorption_vdf": (("absorption",), lambda a: transmittance(a, 0.0, METER)),
     "anisotropic_vdf": (("absorption", "scattering"), lambda a, s: transmittance(a, s, METER)),
