@@ -87,7 +87,7 @@ from mxeon.models.microfacet.slopes import slope_nodes
 from mxeon.models.sampling import unpack_uniforms
 
 CURVE_NODES = 40  # Chebyshev nodes per curve of a `Coat`
-KEPT = 64  # maximum interfaces in a cache
+CACHED = 64  # maximum number of interfaces in a cache
 
 
 @dataclass(frozen=True)
@@ -140,9 +140,8 @@ def coat_curves(alpha: Array, ior: Array) -> Array:
     return xp.tensordot(matrix, values, axes=1)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED)
 def constant_coat(alpha: float, ior: float) -> Coat:
-    """Curves of a dielectric with constant inputs, from a cache."""
     index = np.asarray(ior)
     return Coat(
         alpha, float(dielectric_avg(index)), *coat_curves(np.asarray(alpha), index).T.tolist()
@@ -151,12 +150,10 @@ def constant_coat(alpha: float, ior: float) -> Coat:
 
 @any_array
 def coat_of(alpha: ArrayLike, ior: ArrayLike) -> Coat:
-    """Curves of a dielectric; checks alpha and ior. Other libraries' arrays bypass the cache."""
-    numbers = {
-        name: arguments.checked(name, value, f"coat_{name}")
-        for name, value in (("alpha", alpha), ("ior", ior))
-    }
-    for name, number in numbers.items():
+    """Curves of a dielectric; checks alpha and ior. Arrays of other libraries are not cached."""
+    numbers = {}
+    for name, value in (("alpha", alpha), ("ior", ior)):
+        number = numbers[name] = arguments.checked(name, value, f"coat_{name}")
         if number.ndim:
             raise ValueError(
                 f"{name} must be one number, for all pairs; got shape {tuple(number.shape)}"
@@ -225,11 +222,9 @@ def dielectric_over_eon_albedo_avg(
         array([0.69645, 1.     ])
     """
     coat = coat_of(alpha, ior)
-    number = coat.alpha
-    xp, (x, weight) = array_namespace(number), unit_rule(AVERAGED)
-    if arrays.library(number):
-        x, weight = like(x, cast(Array, number)), like(weight, cast(Array, number))
-    mu, step = cosine_at(cast(Array, number), x)
+    number = cast(Array, coat.alpha)
+    xp, (x, weight) = array_namespace(number), (like(each, number) for each in unit_rule(AVERAGED))
+    mu, step = cosine_at(number, x)
     weight = weight * 2.0 * mu * step
     reflected = coat.at(mu)[1]
     passed = xp.sum(weight * (1.0 - reflected))
@@ -336,9 +331,9 @@ def dielectric_over_eon_pdf(
     return mixed_pdf(wo, wi, alpha, share, lambda wi: sampling.eon_pdf(wo, wi, roughness, rho=mean))
 
 
-def _facet_share(mu: Array, rho: Array, roughness: ArrayLike, of: Coat) -> Array:
+def _facet_share(mu: Array, rho: Array, roughness: ArrayLike, coat: Coat) -> Array:
     """Probability E_r / E of sampling the facets, for a gray rho; 0 if nothing is reflected."""
-    reflected = of.at(mu)[1]
+    reflected = coat.at(mu)[1]
     base = eon_albedo_dir(mu, rho[..., np.newaxis], roughness)[..., 0]
     return reflected / nonzero(reflected + (1.0 - reflected) * base)
 
@@ -440,9 +435,9 @@ def base_under_varnish(
     A, W = formulas.fon_af(r), formulas.eon_multiple_ratio(rho, r)
     again = rho * A * (1.0 - means.passed) / absorbed_share(means, rho, r)
     mixed = again * W * means.H
-    others = (W + mixed * W * means.H) * (H_o * H_i)
-    others = others + mixed * (p_o * H_i + p_i * H_o) + again * (p_o * p_i)
-    return formulas.fon_lambert(rho, r) * (first + others)
+    multiple = (W + mixed * W * means.H) * (H_o * H_i)
+    multiple = multiple + mixed * (p_o * H_i + p_i * H_o) + again * (p_o * p_i)
+    return formulas.fon_lambert(rho, r) * (first + multiple)
 
 
 def varnish_albedo(
@@ -462,9 +457,8 @@ def varnish_albedo(
 
 
 def nonzero(x: float | Array) -> Array:
-    """x as a divisor, with zeros replaced by 1; the dividend must be 0 there too."""
-    xp, zero = array_namespace(x), cast(Array, x) == 0.0
-    return xp.where(zero, 1.0, x)
+    """x as a divisor, with zeros replaced by 1; where x is 0, the dividend must be 0 too."""
+    return array_namespace(x).where(cast(Array, x) == 0.0, 1.0, x)
 
 
 def cosine_at(alpha: Array, x: Array) -> tuple[Array, Array]:
@@ -495,7 +489,6 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     places, slope, to_curves, to_nodes = (like(each, alpha) for each in integral_matrices())
     matrix = like(chebyshev_coefficients(np.eye(TERMS)), alpha)
 
-    # Coefficients of E_single and D.
     mu, _ = cosine_at(alpha, like(chebyshev_nodes(TERMS), alpha))
     missing, E_r = coat.at(mu)
     E_single = E_r / (1.0 + coat.average * missing)
@@ -533,16 +526,15 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     return [*facets, b], xp.stack([D_avg, 1.0 - R, H / divisor, b_avg])
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED)
 def constant_varnish(alpha: float, ior: float) -> Varnish:
-    """An interface with constant inputs, from a cache."""
     curves, means = varnish_curves(np.asarray(alpha), np.asarray(ior))
     return Varnish(alpha, ior, [each.tolist() for each in curves], Means(*means.tolist()))
 
 
 @any_array
 def varnish_of(alpha: ArrayLike, ior: ArrayLike) -> Varnish:
-    """An interface; checks alpha and ior. Other libraries' arrays bypass the cache."""
+    """An interface; checks alpha and ior. Arrays of other libraries are not cached."""
     coat_of(alpha, ior)
     if not arrays.library(alpha):
         return constant_varnish(float(cast(float, alpha)), float(cast(float, ior)))

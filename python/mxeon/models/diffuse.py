@@ -26,6 +26,7 @@ The formulas below have the names and arguments of the shader functions in `geng
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -153,9 +154,11 @@ def fon_quotient(mu_o: Array, mu_i: Array, s: Array) -> Array:
     return qon_quotient(mu_o, mu_i, s) + xp.minimum(s, 0.0)
 
 
-def qon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
+def qon_brdf_mu(
+    mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array, constant: float = 0.33
+) -> Array:
     """rho / pi (A_q + B_q s / t_q): [Portsmouth2025], Eqs. (1), (3)."""
-    return rho / np.pi * (qon_aq(sigma) + qon_bq(sigma) * qon_quotient(mu_o, mu_i, s))
+    return rho / np.pi * (qon_aq(sigma, constant) + qon_bq(sigma) * qon_quotient(mu_o, mu_i, s))
 
 
 def fon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
@@ -283,11 +286,7 @@ def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: Array
         >>> qon_footnote_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.066596, 0.266385])
     """
-
-    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
-        return rho / np.pi * (qon_aq(sigma, 0.57) + qon_bq(sigma) * qon_quotient(mu_o, mu_i, s))
-
-    return evaluate(of_cosines(formula), wo, wi, rho, sigma=sigma)
+    return evaluate(of_cosines(partial(qon_brdf_mu, constant=0.57)), wo, wi, rho, sigma=sigma)
 
 
 @any_array

@@ -136,19 +136,16 @@ def attenuations(
     view: Section, effective: Array, ior: Array, absorption: Array, form: HairForm
 ) -> Array:
     """A_p of the four lobes, (4, C, ...), for absorptions (C, ...): section Attenuation Factors."""
-    xp, least = (
-        array_namespace(view.sin_o, ior, absorption),
-        max(LEAST_DIVISOR, arrays.least_normal(ior)),
-    )
+    xp = array_namespace(view.sin_o, ior, absorption)
+    least = max(LEAST_DIVISOR, arrays.least_normal(ior))
     cos_gamma = xp.cos(view.gamma_o)
     if form.effective:
         F = fresnel_formulas.dielectric(cos_gamma, xp.minimum(effective, 1e50))
     else:
         F = fresnel_formulas.dielectric(view.cos_o * cos_gamma, ior)
     bends = ior > least
-    sin_t = arrays.at_most(
-        xp.abs(view.sin_o) / xp.maximum(guarded(ior, bends, least), LEAST_DIVISOR), 1.0
-    )
+    index = xp.maximum(guarded(ior, bends, least), LEAST_DIVISOR)
+    sin_t = arrays.at_most(xp.abs(view.sin_o) / index, 1.0)
     cos_t = arrays.root((1.0 - sin_t) * (1.0 + sin_t))
     passes, path = cos_t > least, 2.0 * xp.cos(view.gamma_t)
     path = xp.where(
@@ -157,9 +154,9 @@ def attenuations(
     T = xp.exp(-absorption * path)
     pass_through = xp.square(1.0 - F)
     rest = 1.0 - F * T
-    # The factor of TRRT+ has the limit 0 at F = T = 1.
-    last = pass_through * F**2 * T**3 / xp.where(rest > 0.0, rest, 1.0)
-    return xp.stack([F + 0.0 * T, pass_through * T, pass_through * F * T**2, last])
+    # At F = T = 1, A_TRRT+ has the limit 0.
+    A_TRRT = pass_through * F**2 * T**3 / xp.where(rest > 0.0, rest, 1.0)
+    return xp.stack([F + 0.0 * T, pass_through * T, pass_through * F * T**2, A_TRRT])
 
 
 def distribution(
@@ -174,16 +171,13 @@ def distribution(
     """M_p N_p of a lobe; `roughness` (2, ...) is v, s: Cuticle Tilt, Longitudinal, Azimuthal Scattering."""
     xp, (low, high) = array_namespace(wo, wi, alpha), form.limits
     v, s = (xp.minimum(xp.maximum(each, low), high) for each in roughness)
-    inclined = [(wi[0], arrays.hypot(wi[1], wi[2])), (view.sin_o, view.cos_o)]
+    sin_i, cos_i, sin_o, cos_o = wi[0], arrays.hypot(wi[1], wi[2]), view.sin_o, view.cos_o
     if lobe < 3:
-        tilt = (2.0 - 3.0 * lobe) * alpha
-        sine, cosine = inclined[not form.tilts_light]
-        turned = (
-            sine * xp.cos(tilt) + cosine * xp.sin(tilt),
-            cosine * xp.cos(tilt) - sine * xp.sin(tilt),
-        )
-        inclined[not form.tilts_light] = turned
-    (sin_i, cos_i), (sin_o, cos_o) = inclined
+        cosine, sine = xp.cos((2.0 - 3.0 * lobe) * alpha), xp.sin((2.0 - 3.0 * lobe) * alpha)
+        if form.tilts_light:
+            sin_i, cos_i = sin_i * cosine + cos_i * sine, cos_i * cosine - sin_i * sine
+        else:
+            sin_o, cos_o = sin_o * cosine + cos_o * sine, cos_o * cosine - sin_o * sine
     M = form.longitudinal(sin_i, cos_i, sin_o, xp.abs(cos_o), v)
     if lobe == 3:
         return M * form.uniform

@@ -113,9 +113,8 @@ def _checked(
     vectors, values = checked_colors(colors, **numbers)
     parts = dict(zip(colors, vectors, strict=True))
     plain = {name: value[..., 0] for name, value in zip(numbers, values, strict=True)}
-    arguments.broadcastable({"wo": directions} | parts, plain)
-    (mu,) = arguments.broadcastable({}, {"mu": directions[..., 2]})
-    return -arrays.at_most(-arrays.at_most(mu, 1.0), 1.0), vectors, values
+    lead_shape({"wo": directions} | parts, plain)
+    return -arrays.at_most(-arrays.at_most(directions[..., 2], 1.0), 1.0), vectors, values
 
 
 @any_array
@@ -130,8 +129,9 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
         >>> round(float(transmittance(0.5, 0.5, 2.0)), 6)
         0.135335
     """
-    values = {"absorption": absorption, "scattering": scattering, "distance": distance}
-    sigma_a, sigma_s, t = checked_numbers(**values)
+    sigma_a, sigma_s, t = checked_numbers(
+        absorption=absorption, scattering=scattering, distance=distance
+    )
     xp = array_namespace(sigma_a, sigma_s, t)
     return xp.exp(-(sigma_a + sigma_s) * t)[()]
 
@@ -149,11 +149,8 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
         >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
         0.477465
     """
-    views, lights, (mean,) = (
-        arguments.checked_sphere("wo", wo),
-        arguments.checked_sphere("wi", wi),
-        checked_numbers(g=g),
-    )
+    views, lights = arguments.checked_sphere("wo", wo), arguments.checked_sphere("wi", wi)
+    mean = checked("g", g)
     lead_shape({"wo": views, "wi": lights}, {"g": mean})
     xp = array_namespace(views, lights, mean)
     side = xp.where(mean < 0.0, -1.0, 1.0)[..., np.newaxis]
@@ -216,9 +213,9 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
 def blur_to(mu: Array, reach: Array, far: float) -> Array:
     """`diffusion_blur` of valid arrays; `far` is the ratio of the exponentials' lengths."""
     reach = reach[..., np.newaxis]
-    (near, share), (rest, other) = _exponential(mu, reach), _exponential(mu, far * reach)
-    total = 0.25 * share + 0.75 * other
-    return (0.25 * share * near + 0.75 * other * rest) / total
+    (first, share_1), (second, share_2) = (_exponential(mu, each) for each in (reach, far * reach))
+    total = 0.25 * share_1 + 0.75 * share_2
+    return (0.25 * share_1 * first + 0.75 * share_2 * second) / total
 
 
 def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:

@@ -55,7 +55,7 @@ from mxeon.models.core.arguments import broadcastable, checked_directions
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers, any_array, array_namespace, root
 from mxeon.models.diffuse import C1, C2, cosines, eon_multiple_ratio, fon_loss_mu, fon_quotient
 from mxeon.models.microfacet import ggx
-from mxeon.models.sheen import zeltner_matrix
+from mxeon.models.sheen import zeltner_lobe, zeltner_matrix
 
 
 @any_array
@@ -383,44 +383,44 @@ def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     return ltc_density(wo, wi, roughness, ltc_md(wo[..., 2], roughness))
 
 
-# Entries of the matrix M: [Portsmouth2025], Listing 2. mu, the cosine of wo, and roughness are in
-# [0, 1]. The paper states no error of the fit.
+# Entries a, b, c, d of the matrix M, fitted in [Portsmouth2025], Listing 2, without a stated error.
+# `mu` is the cosine of wo.
 def ltc_ma(mu: Array, roughness: Array) -> Array:
-    """Entry a of M."""
     a = 0.303392 + (-0.518982 + 0.111709 * mu) * mu + (-0.276266 + 0.335918 * mu) * roughness
     return 1.0 + roughness * a
 
 
 def ltc_mb(mu: Array, roughness: Array) -> Array:
-    """Entry b of M."""
     b = -1.16407 + 1.15859 * mu + (0.150815 - 0.150105 * mu) * roughness
     return roughness * b / (mu**3 - 1.43545)
 
 
 def ltc_mc(mu: Array, roughness: Array) -> Array:
-    """Entry c of M."""
     return 1.0 + roughness * (0.20013 + (-0.506373 + 0.261777 * mu) * mu)
 
 
 def ltc_md(mu: Array, roughness: Array | float) -> Array:
-    """Entry d of M."""
     d = 0.540852 + (-1.01625 + 0.475392 * mu) * mu
     return roughness * d / (-1.0743 + (0.0725628 + mu) * mu)
 
 
 def ltc_transformed(wo: Array, wh: Array, roughness: Array, d: Array) -> tuple[Array, Array]:
-    """Normalized M wh in the surface's local frame, and its density if wh has a clamped cosine's."""
+    """Direction of M wh in the surface's frame, and its density, for cosine-weighted wh."""
     a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_ma, ltc_mb, ltc_mc))
     x, y, z = wh[..., 0], wh[..., 1], wh[..., 2]
-    wi = stack_xyz(a * x + b * z, c * y, d * x + z)
-    length = root(array_namespace(wi).sum(wi * wi, axis=-1))
+    wi, pdf = _normalized(wo, stack_xyz(a * x + b * z, c * y, d * x + z), z / np.pi)
+    return wi, pdf / (c * (a - b * d))
+
+
+def _normalized(wo: Array, w: Array, pdf: Array) -> tuple[Array, Array]:
+    """Direction of w, given in the frame in which wo has azimuth 0, and pdf |w|^3."""
+    length = root(array_namespace(w).sum(w * w, axis=-1))
     cosine, sine, _ = azimuth_frame(wo)
-    pdf = z / np.pi * length**3 / (c * (a - b * d))
-    return rotate_z(wi / length[..., np.newaxis], cosine, sine), pdf
+    return rotate_z(w / length[..., np.newaxis], cosine, sine), pdf * length**3
 
 
 def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array) -> Array:
-    """Density of M wh / |M wh| at `wi`, if `wh` has the density of a clamped cosine."""
+    """Density at `wi` of M wh / |M wh|, for cosine-weighted wh."""
     a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_ma, ltc_mb, ltc_mc))
     cosine, sine, _ = azimuth_frame(wo)
     wi = rotate_z(wi, cosine, -sine)
@@ -551,9 +551,6 @@ def cltc_clipped(u1: Array, u2: Array, d: Array, rest: Array | None = None) -> A
     return stack_xyz(xp.where(d > 0.0, x, -x), y, z)
 
 
-UP = 0.0, 0.0, 1.0
-
-
 @any_array
 def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction reflected by a visible GGX normal, possibly below the horizon, and its density.
@@ -566,12 +563,9 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
         >>> wi.round(6), round(float(pdf), 6)
         (array([-0.835004,  0.      ,  0.550244]), 0.649904)
     """
-    u1, u2 = unpack_uniforms(u)
-    stacked = array_namespace(u1).stack([u1, u2], axis=-1)
-    vectors = {"wo": checked_directions("wo", wo), "u": stacked}
-    view, (u1, u2), alpha = _components(
-        vectors | {"roughness": arguments.checked_roughness(roughness)}
-    )
+    vectors = {"wo": checked_directions("wo", wo), "u": arguments.checked_pairs("u", u)}
+    vectors["roughness"] = arguments.checked_roughness(roughness)
+    view, (u1, u2), alpha = _components(vectors)
     wh = visible_normal(view, u1, u2, alpha)
     wi = stack_xyz(*(2.0 * array_namespace(wh).sum(view * wh, axis=0) * wh - view))
     return wi, visible_density(view, wh, alpha)
@@ -597,12 +591,10 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 
 
 def _components(vectors: dict[str, Numbers]) -> list[Array]:
-    """Vectors, broadcast against each other, as float64 arrays with the components first."""
-    lead = arguments.lead_shape(vectors, {})
-    arrays = broadcastable(vectors, {})
-    xp, order = array_namespace(*arrays), (len(lead), *range(len(lead)))
-    spread = [xp.broadcast_to(v, (*lead, *v.shape[-1:])) for v in arrays]
-    return [xp.permute_dims(vector, order) for vector in spread]
+    """Vectors, broadcast against each other, with the components first."""
+    lead, xp = arguments.lead_shape(vectors, {}), array_namespace(*vectors.values())
+    spread = [xp.broadcast_to(v, (*lead, *v.shape[-1:])) for v in vectors.values()]
+    return [xp.permute_dims(vector, (len(lead), *range(len(lead)))) for vector in spread]
 
 
 def visible_density(wo: Array, wh: Array, roughness: Array) -> Array:
@@ -626,9 +618,9 @@ def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
     x, y, z = S * xp.cos(phi) + stretched[0], S * xp.sin(phi) + stretched[1], z + stretched[2]
     normal = [roughness[0] * x, roughness[1] * y, arrays.at_least_0(z)]
     length = root(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2])
-    seen = length > 0.0
-    size = xp.where(seen, length, 1.0)
-    return xp.stack([xp.where(seen, each / size, up) for each, up in zip(normal, UP, strict=True)])
+    tilted = length > 0.0
+    x, y, z = (each / xp.where(tilted, length, 1.0) for each in normal)
+    return xp.stack([xp.where(tilted, x, 0.0), xp.where(tilted, y, 0.0), xp.where(tilted, z, 1.0)])
 
 
 @any_array
@@ -645,11 +637,8 @@ def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[A
     wh = cosine_sample(u)[0]
     a, b = zeltner_matrix(arrays.at_most(wo[..., 2], 1.0), roughness)
     x, y, z = (wh[..., 0] - b * wh[..., 2]) / a, wh[..., 1] / a, wh[..., 2]
-    wi = stack_xyz(x, y, z)
-    length = root(array_namespace(wi).sum(wi * wi, axis=-1))
-    cosine, sine, _ = azimuth_frame(wo)
-    pdf = z / np.pi * length**3 * (a * a)
-    return rotate_z(wi / length[..., np.newaxis], cosine, sine), pdf
+    wi, pdf = _normalized(wo, stack_xyz(x, y, z), z / np.pi)
+    return wi, pdf * (a * a)
 
 
 @any_array
@@ -660,11 +649,4 @@ def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     0.24421
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
-    a, b = zeltner_matrix(arrays.at_most(wo[..., 2], 1.0), roughness)
-    cosine, sine, _ = azimuth_frame(wo)
-    wi = rotate_z(wi, cosine, -sine)
-    x, y, z = wi[..., 0], wi[..., 1], wi[..., 2]
-    square = array_namespace(a, x).square
-    squared = square(a * x + b * z) + square(a * y) + square(z)
-    pdf: Array = z / np.pi * square(a / squared)
-    return pdf
+    return wi[..., 2] / np.pi * zeltner_lobe(wo, wi, roughness)

@@ -131,6 +131,12 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
 
 def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
     """BRDF of `zeltner_brdf`, (C, ...), for valid arrays."""
+    albedo = _zeltner_albedo(cosines(wo, wi)[0], roughness)
+    return tint * (albedo * zeltner_lobe(wo, wi, roughness) / np.pi)
+
+
+def zeltner_lobe(wo: Array, wi: Array, roughness: Array) -> Array:
+    """a^2 / |M^-1 wi|^4: pi times the density of sampled directions, without the cosine."""
     # Rotate the light into the frame in which wo has azimuth 0.
     xp = array_namespace(wo, wi, roughness)
     mu_o, mu_i, s = cosines(wo, wi)
@@ -140,8 +146,7 @@ def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Arr
     cross = wo[..., 0] * wi[..., 1] - wo[..., 1] * wi[..., 0]
     y = xp.where(turned, cross, wi[..., 1]) / xp.where(turned, sine, 1.0)
     a, b = zeltner_matrix(mu_o, roughness)
-    length = xp.square(a * x + b * mu_i) + xp.square(a * y) + xp.square(mu_i)
-    return tint * (_zeltner_albedo(mu_o, roughness) * xp.square(a / length) / np.pi)
+    return xp.square(a / (xp.square(a * x + b * mu_i) + xp.square(a * y) + xp.square(mu_i)))
 
 
 def _zeltner_albedo(mu: Array, roughness: Array) -> Array:

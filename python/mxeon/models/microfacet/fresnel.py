@@ -131,7 +131,7 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     ior, extinction = np.broadcast_arrays(ior, extinction)
     smooth = _is_smooth((ior + 1j * extinction) ** 2)
     total = np.empty(smooth.shape)
-    for rows, average in ((smooth, _smooth_avg), (~smooth, _split_avg)):
+    for rows, average in ((smooth, _smooth_avg), (np.logical_not(smooth), _split_avg)):
         n, k = ior[rows], extinction[rows]
         groups = (slice(start, start + GROUP) for start in range(0, len(n), GROUP))
         total[rows] = np.concatenate([np.empty(0), *(average(n[g], k[g]) for g in groups)])
