@@ -32,7 +32,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -251,12 +251,10 @@ def _distance(real: Array, imaginary: Array) -> Array:
 
 
 def _product(a: Complex, b: Complex) -> Complex:
-    """Complex product a b."""
     return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
 
 
 def _squared(a: Complex) -> Array:
-    """Squared magnitude |a|^2 of a complex number."""
     return a[0] * a[0] + a[1] * a[1]
 
 
@@ -296,7 +294,7 @@ class Form:
     clamped: bool = True
 
 
-# MaterialX 1.39.5's matrix from XYZ to CIE RGB with white E.
+# Matrix of MaterialX 1.39.5 from XYZ to CIE RGB with white E.
 CIE_RGB = (
     (2.3706743, -0.9000405, -0.4706338),
     (-0.5138850, 1.4253036, 0.0885814),
@@ -317,20 +315,12 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
     def at(
         mu: Array, *, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array
     ) -> Array:
-        def coated() -> Array:
-            return _airy(category, form, mu, thinfilm_thickness, thinfilm_ior, material)
-
+        coated = partial(_airy, category, form, mu, thinfilm_thickness, thinfilm_ior, material)
         return _where_coated(thinfilm_thickness, coated, bare.at(mu, **material))
 
-    # Interpolate the curve by a polynomial before it is clamped, since the clamp has kinks.
     def average(*, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array) -> Array:
-        def coated() -> Array:
-            film = thinfilm_thickness, thinfilm_ior
-            curve = _fine(category, replace(form, clamped=False), film, material)
-            # Clamp the values at the fine nodes, then integrate.
-            kept = arrays.within(curve) if form.clamped else curve
-            return array_namespace(curve).tensordot(like(_rule()[2], curve), kept, axes=1)
-
+        film = thinfilm_thickness, thinfilm_ior
+        coated = partial(_film_average, category, form, film, material)
         return _where_coated(thinfilm_thickness, coated, bare.average(**material))
 
     return Curve(at, average)
@@ -344,17 +334,22 @@ def _where_coated(thickness: Array, coated: Callable[[], Array], plain: Array) -
     return np.broadcast_to(plain, np.broadcast_shapes(thickness.shape, plain.shape))
 
 
-def _fine(
+def _film_average(
     category: str, form: Form, film: tuple[Array, Array], material: dict[str, Array]
 ) -> Array:
-    """The film's curve interpolated from POINTS nodes to a fine rule, shape (FINE, 3, ...)."""
-    mu, between, _ = (like(each, film[1]) for each in _rule())
+    """F_ss, (3, ...): the integral of a polynomial through the film's curve, which is then clamped.
+
+    The curve itself is not clamped, since the clamp has kinks.
+    """
+    mu, between, weights = (like(each, film[1]) for each in _rule())
     channels = {k for k, v in material.items() if k in CATEGORIES[category][1]}
     axes = max((v.ndim - 1 for k, v in material.items() if k in channels), default=film[0].ndim)
     spread = {k: v[:, np.newaxis] if k in channels else v for k, v in material.items()}
     nodes = array_namespace(mu).reshape(mu, (-1, *(1,) * max(axes, film[0].ndim, film[1].ndim)))
-    curve = _airy(category, form, nodes, *film, spread)
-    return array_namespace(curve).tensordot(between, curve, axes=((1,), (1,)))
+    curve = _airy(category, replace(form, clamped=False), nodes, *film, spread)
+    fine = array_namespace(curve).tensordot(between, curve, axes=((1,), (1,)))
+    fine = arrays.within(fine) if form.clamped else fine
+    return array_namespace(fine).tensordot(weights, fine, axes=1)
 
 
 @cache

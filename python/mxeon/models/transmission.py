@@ -169,10 +169,8 @@ def evaluate_btdf(
     )
 
 
-CAP_NODES, CAP_BLOCK = (
-    48,
-    2**4,
-)  # nodes in height and in azimuth on the cap of visible normals; views per block
+CAP_NODES = 48  # nodes in height and in azimuth on the cap of visible normals
+CAP_BLOCK = 2**4  # views per block
 MOST_SQUARED = 1.0 - 1e-15  # largest 1 - ior^2; at indices below 3e-8 almost no light passes
 
 # Arrays over nodes: cosine wo . h, cosine of wi, length of wi stretched by the roughness, weight.
@@ -203,7 +201,6 @@ def dielectric_transmittance_dir(
     """
     vectors = arguments.checked_vectors({"tint": tint})
     numbers = {"ior": checked("ior", ior)}
-
     return evaluate_transmittance(DIELECTRIC_CURVE.at, wo, roughness, vectors, numbers, shadow)
 
 
@@ -251,11 +248,8 @@ def evaluate_transmittance(
 
 def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
     """Quadrature nodes over visible facets; weight 0 if their light does not reach the far side."""
-    xp, (height, turn, weight) = (
-        array_namespace(wo),
-        (arrays.like(each, wo) for each in _nodes(wo.ndim)),
-    )
-    view = wo[:, np.newaxis]
+    height, turn, weight = (arrays.like(each, wo) for each in _nodes(wo.ndim))
+    xp, view = array_namespace(wo), wo[:, np.newaxis]
     wh = visible_normal(view, height, turn, roughness[:, np.newaxis])
     wi = refracted(view, wh, ior)
     length_i, mu_i = ggx.stretched_length(wi, roughness[:, np.newaxis]), -wi[2]
@@ -372,7 +366,7 @@ def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
         >>> schlick_ior([0.04, 0.25]).round(4), schlick_ior([0.04, 0.25], "channel").round(4)
         (array([2.2299]), array([1.5, 3. ]))
     """
-    how = _reading(reading)
+    how = READINGS[arguments.checked_choice("reading", reading, READINGS)]
     r = arguments.checked_color("color0", color0)
     return index_of(_mean(r, -1) if how.index == "average" else r, how.least)
 
@@ -385,8 +379,7 @@ def index_of(reflectance: Array, least: float) -> Array:
 
 def _mean(color: Array, axis: int) -> Array:
     """Mean of the channels, as a single channel."""
-    mean: Array = array_namespace(color).mean(color, axis=axis, keepdims=True)
-    return mean
+    return array_namespace(color).mean(color, axis=axis, keepdims=True)
 
 
 @any_array
@@ -462,31 +455,27 @@ def generalized_schlick_transmittance_dir(
 def _by_index(
     evaluate: Callable[..., Array],
     vectors: dict[str, Numbers],
-    given: Mapping[str, ArrayLike],
+    colors: Mapping[str, ArrayLike],
     exponent: ArrayLike,
     reading: str,
     inside: bool,
 ) -> Array:
     """Call `evaluate(F, index, colors, numbers)` once, or per channel if channels have own indices."""
-    how = _reading(reading)
+    how = READINGS[arguments.checked_choice("reading", reading, READINGS)]
     arguments.checked_switch("inside", inside)
-    colors = {name: arguments.checked_color(name, value) for name, value in given.items()}
-    count, numbers = channel_count(colors), {"exponent": checked("exponent", exponent)}
-    arguments.lead_shape(vectors | colors, numbers)
+    material = {name: arguments.checked_color(name, value) for name, value in colors.items()}
+    count, numbers = channel_count(material), {"exponent": checked("exponent", exponent)}
+    arguments.lead_shape(vectors | material, numbers)
 
     def index(color0: Array) -> Array:
         outside = index_of(color0, how.least)
         return 1.0 / outside if inside else outside
 
     if how.index == "average":
-        return evaluate(how.at, index(_mean(colors["color0"], -1)[..., 0]), colors, numbers)
-    xp, channels = array_namespace(*colors.values()), []
-    colors = {k: xp.broadcast_to(v, (*v.shape[:-1], count)) for k, v in colors.items()}
+        return evaluate(how.at, index(_mean(material["color0"], -1)[..., 0]), material, numbers)
+    xp, channels = array_namespace(*material.values()), []
+    material = {k: xp.broadcast_to(v, (*v.shape[:-1], count)) for k, v in material.items()}
     for channel in range(count):
-        own = {name: value[..., channel : channel + 1] for name, value in colors.items()}
-        channels.append(evaluate(how.at, index(own["color0"][..., 0]), own, numbers))
+        single = {name: value[..., channel : channel + 1] for name, value in material.items()}
+        channels.append(evaluate(how.at, index(single["color0"][..., 0]), single, numbers))
     return xp.concat(channels, axis=-1)
-
-
-def _reading(name: str) -> Reading:
-    return READINGS[arguments.checked_choice("reading", name, READINGS)]

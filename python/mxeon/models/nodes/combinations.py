@@ -132,16 +132,10 @@ def _masked(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe:
     return layering.layer(finish(layering.mix(inner, white, column(inputs, MASKS[1]))), base)
 
 
-def _hiding() -> tuple[Variant[Scattering], ...]:
-    """The variant in which opaque lobes hide their base at any weight, as in MaterialX."""
-    hidden = partial(_masked, finish=lambda lobe: replace(lobe, throughput=0.0 * lobe.throughput))
-    return (_variant("opaque lobes that hide their base at any weight", hidden),)
-
-
-def _unscaled(combine: Combine) -> tuple[Variant[Scattering], ...]:
+def _unscaled(combine: Combine) -> Variant[Scattering]:
     """The variant in which a scaled lobe keeps its unscaled throughput, which the text permits."""
     title = "the throughput of the lobe before it is scaled"
-    return (_variant(title, combine, layered=False, permitted=True),)
+    return _variant(title, combine, layered=False, permitted=True)
 
 
 def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant[Scattering], ...]:
@@ -157,6 +151,15 @@ def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant[Scatt
     return (_variant(title, clamped, layered=layered, permitted=not layered),)
 
 
+def _opaque(lobe: Bsdf) -> Bsdf:
+    return replace(lobe, throughput=0.0 * lobe.throughput)
+
+
+# In MaterialX, an opaque lobe hides its base at any weight.
+HIDING = _variant(
+    "opaque lobes that hide their base at any weight", partial(_masked, finish=_opaque)
+)
+TOP_UNSCALED = _unscaled(lambda top, base, i: top)
 COMBINATIONS = (
     _combined("layer", "a layer", "layer", lambda top, base, i: layering.layer(top, base)),
     _combined(
@@ -168,14 +171,7 @@ COMBINATIONS = (
     ),
     _combined("add", "a sum", "add", lambda top, base, i: layering.add(top, base)),
     *(
-        _combined(
-            f"multiply_{kind}",
-            title,
-            "multiply",
-            _scaled,
-            (FACTOR,),
-            _unscaled(lambda top, base, i: top),
-        )
+        _combined(f"multiply_{kind}", title, "multiply", _scaled, (FACTOR,), (TOP_UNSCALED,))
         for kind, title in (("float", "a scaled lobe"), ("color3", "a lobe scaled by a color"))
     ),
     _combined(
@@ -184,7 +180,7 @@ COMBINATIONS = (
         "multiply",
         lambda top, base, i: _scaled(layering.add(top, base), base, i),
         (FACTOR,),
-        _unscaled(lambda top, base, i: layering.add(top, base)),
+        (_unscaled(lambda top, base, i: layering.add(top, base)),),
     ),
     _combined(
         "mix_sum",
@@ -217,7 +213,7 @@ COMBINATIONS = (
         lambda top, base, i: layering.layer(layering.add(top, base), base),
         COLORS,
     ),
-    _combined("layer_masked", "a layer under masks", "layer", _masked, MASKS, _hiding()),
+    _combined("layer_masked", "a layer under masks", "layer", _masked, MASKS, (HIDING,)),
 )
 # Names of the rows that combine the sum of both lobes.
 NESTED = ("multiply_sum", "mix_sum", "layer_sum", "mix_layer", "layer_colored", "layer_masked")

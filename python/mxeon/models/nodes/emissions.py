@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -99,22 +100,13 @@ EMISSIONS = (
 )
 
 
-def _combined(
-    name: str, title: str, category: str, inputs: tuple[str, ...], color: Callable[[Inputs], Array]
-) -> Emission:
-    """Row of a node that combines uniform emissions into one with a combined color."""
-    return Emission(
-        name,
-        title,
-        category,
-        inputs,
-        lambda wo, inputs: media.uniform_edf(wo, color(inputs)),
-    )
+def _combined(color: Callable[[Inputs], Array], wo: Array, inputs: Inputs) -> Array:
+    return media.uniform_edf(wo, color(inputs))
 
 
 COMBINED_EMISSIONS = tuple(
-    _combined(*each)
-    for each in linear_nodes(
+    Emission(name, title, category, inputs, partial(_combined, color))
+    for name, title, category, inputs, color in linear_nodes(
         "emission",
         "an emission",
         "emissions",

@@ -77,9 +77,9 @@ READINGS: dict[str, HairForm] = {
 }
 
 
-def _bounded(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
-    """The albedo clamped to 1; the specification does not say what happens above 1."""
-    return lambda mu, roughness: at_most(albedo(mu, roughness), 1.0)
+def _conty_kulla(mu: Array, roughness: Array) -> Array:
+    """Albedo clamped to 1; the specification does not say what happens above 1."""
+    return at_most(conty_kulla_albedo_dir(mu, roughness), 1.0)
 
 
 def _tinted(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Inputs], Array]:
@@ -100,9 +100,7 @@ LOBE_NODES = (
         "burley_diffuse_bsdf",
         COLOR_ROUGHNESS,
         _sheen(burley_brdf),
-        lambda wo, inputs: burley_albedo_dir(
-            cosine(wo[:, 2]), inputs["color"], inputs["roughness"]
-        ),
+        lambda wo, i: burley_albedo_dir(cosine(wo[:, 2]), i["color"], i["roughness"]),
         variants=(
             Variant("MaterialX's fit of its albedo", albedo=defects.burley_albedo),
             Variant(
@@ -127,7 +125,7 @@ LOBE_NODES = (
         "sheen_bsdf",
         COLOR_ROUGHNESS,
         _sheen(sheen.conty_kulla_brdf),
-        _tinted(_bounded(conty_kulla_albedo_dir)),
+        _tinted(_conty_kulla),
         _tinted(conty_kulla_albedo_dir),
         fixed={"mode": "conty_kulla"},
         layerable=True,
@@ -136,9 +134,7 @@ LOBE_NODES = (
             Variant("Zeltner sheen", _sheen(sheen.zeltner_brdf), _tinted(zeltner_albedo_dir)),
             Variant(
                 "MaterialX's fit of its albedo",
-                albedo=lambda wo, inputs: np.asarray(
-                    defects.conty_kulla_albedo(wo, inputs) * inputs["color"]
-                ),
+                albedo=lambda wo, i: np.asarray(defects.conty_kulla_albedo(wo, i) * i["color"]),
             ),
         ),
     ),
@@ -153,11 +149,7 @@ LOBE_NODES = (
         layerable=True,
         reciprocal=False,
         variants=(
-            Variant(
-                "Conty-Kulla sheen",
-                _sheen(sheen.conty_kulla_brdf),
-                _tinted(_bounded(conty_kulla_albedo_dir)),
-            ),
+            Variant("Conty-Kulla sheen", _sheen(sheen.conty_kulla_brdf), _tinted(_conty_kulla)),
         ),
     ),
 )
@@ -218,8 +210,8 @@ LEAST_RADIUS = 0.1  # smallest radius of the diffusion profile
 def circle_blur(mu: Array, radius: Array, body: float = FLATTEST) -> Array:
     """Cosine of a light, blurred along a circle in the plane of the light as in MaterialX.
 
-    `mu` (N,): cosine. `radius` (N, 3): mean free path. `body`: radius of the circle, which MaterialX
-    derives from the curvature, at most 100.
+    `mu` (N,): Cosine. `radius` (N, 3): Mean free path. `body`: Radius of the circle, the reciprocal
+    of the surface's curvature.
     """
     theta = np.arccos(np.clip(mu, -1.0, 1.0))[:, np.newaxis]
     shape = 1.0 / np.maximum(radius, LEAST_RADIUS)

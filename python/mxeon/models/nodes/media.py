@@ -71,15 +71,12 @@ def _combined(
         share, second = column(i, AMOUNT), transmittance(i[SECOND], 0.0, METER)
         return np.asarray(share * first(i) + (1.0 - share) * second)
 
+    def value(i: Inputs) -> Array:
+        return transmittance(coefficient(i), 0.0, METER)
+
     mixed = (Variant("a mix of transmittances", linear),) if category == "mix" else ()
-    return Medium(
-        name,
-        title,
-        category,
-        inputs,
-        lambda i: transmittance(coefficient(i), 0.0, METER),
-        variants=(*mixed, Variant("the first medium alone", first)),
-    )
+    variants = (*mixed, Variant("the first medium alone", first))
+    return Medium(name, title, category, inputs, value, variants=variants)
 
 
 COMBINED_MEDIA = tuple(

@@ -19,7 +19,7 @@ from mxeon.models.core.arrays import Array
 from mxeon.models.core.colorimetry import XYZ_TO_REC709
 from mxeon.models.media import LUMINANCE, blackbody, kang_xyz
 from mxeon.models.microfacet.fresnel import artistic_ior
-from mxeon.models.microfacet.ggx import glossiness_anisotropy, roughness_anisotropy, roughness_dual
+from mxeon.models.microfacet.ggx import roughness_anisotropy, roughness_dual
 from mxeon.models.nodes.node import Inputs, Node, Variant
 
 LARGEST_REFLECTIVITY = 0.99  # limit that keeps the n of artistic_ior finite
@@ -48,56 +48,45 @@ def utility(
     inputs: Mapping[str, float | tuple[float, ...]],
     outputs: Mapping[str, str],
     value: Outputs,
-    variants: tuple[Variant[Outputs], ...] = (),
+    variants: tuple[Variant[Outputs], ...],
 ) -> UtilityNode:
-    """A utility node with a single mode."""
     title = f"the equations of {category}"
     return UtilityNode(category, title, category, inputs, value, outputs, variants=variants)
 
 
-def _share(inputs: Inputs, name: str, least: float = 0.0, largest: float = 1.0) -> Array:
-    """An input, clamped to a range."""
+def _clamped(inputs: Inputs, name: str, least: float = 0.0, largest: float = 1.0) -> Array:
     return np.clip(np.asarray(inputs[name], np.float64), least, largest)
 
 
+def _roughness(inputs: Inputs) -> Array:
+    if "glossiness" in inputs:
+        return np.asarray(1.0 - _clamped(inputs, "glossiness"))
+    return _clamped(inputs, "roughness")
+
+
 def _anisotropy(inputs: Inputs) -> dict[str, Array]:
-    return {"out": roughness_anisotropy(_share(inputs, "roughness"), _share(inputs, "anisotropy"))}
-
-
-def _glossiness(inputs: Inputs) -> dict[str, Array]:
-    return {
-        "out": glossiness_anisotropy(_share(inputs, "glossiness"), _share(inputs, "anisotropy"))
-    }
+    return {"out": roughness_anisotropy(_roughness(inputs), _clamped(inputs, "anisotropy"))}
 
 
 def _without_square(inputs: Inputs) -> dict[str, Array]:
     """alpha from a roughness that is not squared."""
-    names = {"roughness", "glossiness"} & set(inputs)
-    roots = {name: np.sqrt(_share(inputs, name)) for name in names}
-    if "glossiness" in roots:
-        roots["glossiness"] = 1.0 - np.sqrt(1.0 - _share(inputs, "glossiness"))
-    aspect = _glossiness if "glossiness" in roots else _anisotropy
-    return (aspect if "anisotropy" in inputs else _dual)({**inputs, **roots})
+    function = _anisotropy if "anisotropy" in inputs else _dual
+    root = {**inputs, "roughness": np.sqrt(_roughness(inputs))}
+    return function({name: value for name, value in root.items() if name != "glossiness"})
 
 
 def _burley_aspect(inputs: Inputs) -> dict[str, Array]:
     """alpha of [Burley2012] with the aspect sqrt(1 - 0.9 anisotropy)."""
     alpha = np.square(_roughness(inputs))
-    aspect = np.sqrt(1.0 - 0.9 * _share(inputs, "anisotropy"))
+    aspect = np.sqrt(1.0 - 0.9 * _clamped(inputs, "anisotropy"))
     return {"out": np.stack([np.minimum(alpha / aspect, 1.0), alpha * aspect], axis=-1)}
 
 
 def _openpbr_aspect(inputs: Inputs) -> dict[str, Array]:
     """alpha as in OpenPBR, where the mean of both squared alphas does not depend on anisotropy."""
-    rest = 1.0 - _share(inputs, "anisotropy")
+    rest = 1.0 - _clamped(inputs, "anisotropy")
     along = np.square(_roughness(inputs)) * np.sqrt(2.0 / (1.0 + rest * rest))
     return {"out": np.stack([along, rest * along], axis=-1)}
-
-
-def _roughness(inputs: Inputs) -> Array:
-    if "glossiness" in inputs:
-        return np.asarray(1.0 - _share(inputs, "glossiness"))
-    return _share(inputs, "roughness")
 
 
 def _dual(inputs: Inputs) -> dict[str, Array]:
@@ -108,14 +97,14 @@ def _dual(inputs: Inputs) -> dict[str, Array]:
 
 
 def _artistic(inputs: Inputs) -> dict[str, Array]:
-    reflectivity = _share(inputs, "reflectivity", 0.0, LARGEST_REFLECTIVITY)
-    ior, extinction = artistic_ior(reflectivity, _share(inputs, "edge_color"))
+    reflectivity = _clamped(inputs, "reflectivity", 0.0, LARGEST_REFLECTIVITY)
+    ior, extinction = artistic_ior(reflectivity, _clamped(inputs, "edge_color"))
     return {"ior": ior, "extinction": extinction}
 
 
 def _clipped(inputs: Inputs) -> dict[str, Array]:
     """The color scaled to luminance 1, then with negative channels set to 0."""
-    return {"out": np.maximum(blackbody(_share(inputs, "temperature", *TEMPERATURES)), 0.0)}
+    return {"out": np.maximum(blackbody(_clamped(inputs, "temperature", *TEMPERATURES)), 0.0)}
 
 
 def _blackbody(inputs: Inputs) -> dict[str, Array]:
@@ -125,7 +114,7 @@ def _blackbody(inputs: Inputs) -> dict[str, Array]:
 
 
 def _hair_roughness(inputs: Inputs) -> dict[str, Array]:
-    numbers = [_share(inputs, name, LEAST_HAIR) for name in ("longitudinal", "azimuthal")]
+    numbers = [_clamped(inputs, name, LEAST_HAIR) for name in ("longitudinal", "azimuthal")]
     scales = [np.abs(np.asarray(inputs[name], np.float64)) for name in ("scale_TT", "scale_TRT")]
     pairs = hair.chiang_hair_roughness(*numbers, *scales)
     return dict(zip(("roughness_R", "roughness_TT", "roughness_TRT"), pairs, strict=True))
@@ -141,22 +130,27 @@ def _unsquared_variance(inputs: Inputs) -> dict[str, Array]:
 
 def _melanin(inputs: Inputs) -> dict[str, Array]:
     colors = [
-        _share(inputs, name, LEAST_PIGMENT) for name in ("eumelanin_color", "pheomelanin_color")
+        _clamped(inputs, name, LEAST_PIGMENT) for name in ("eumelanin_color", "pheomelanin_color")
     ]
-    concentration = _share(inputs, "melanin_concentration", 0.0, LARGEST_MELANIN)
-    redness = _share(inputs, "melanin_redness")
+    concentration = _clamped(inputs, "melanin_concentration", 0.0, LARGEST_MELANIN)
+    redness = _clamped(inputs, "melanin_redness")
     return {"absorption": hair.deon_hair_absorption_from_melanin(concentration, redness, *colors)}
 
 
-def constant(category: str, value: float) -> Variant[Outputs]:
-    """A variant in which every output is `value`, whatever the inputs."""
+def _absorption(inputs: Inputs) -> dict[str, Array]:
+    color, roughness = (
+        _clamped(inputs, "color", LEAST_HAIR),
+        _clamped(inputs, "azimuthal_roughness"),
+    )
+    return {"absorption": hair.chiang_hair_absorption_from_color(color, roughness)}
 
-    def values(inputs: Inputs) -> dict[str, Array]:
-        return {
-            name: np.full_like(each, value) for name, each in node(category).value(inputs).items()
-        }
 
-    return Variant(f"{value:g}, whatever the inputs are", values)
+def _constant(function: Outputs, value: float) -> Variant[Outputs]:
+    """The variant of a node's function in which every output is `value`."""
+    return Variant(
+        f"{value:g}, whatever the inputs are",
+        lambda inputs: {k: np.full_like(each, value) for k, each in function(inputs).items()},
+    )
 
 
 ASPECTS = (
@@ -177,7 +171,7 @@ UTILITIES = (
         "glossiness_anisotropy",
         {"glossiness": 1.0, "anisotropy": 0.0},
         {"out": "vector2"},
-        _glossiness,
+        _anisotropy,
         ASPECTS,
     ),
     utility(
@@ -188,7 +182,7 @@ UTILITIES = (
         (
             Variant(
                 "the ends of n exchanged",
-                lambda i: _artistic({**i, "edge_color": 1.0 - _share(i, "edge_color")}),
+                lambda i: _artistic({**i, "edge_color": 1.0 - _clamped(i, "edge_color")}),
             ),
         ),
     ),
@@ -203,7 +197,7 @@ UTILITIES = (
                 "Kang's cubic, extrapolated below 1667 K",
                 lambda i: {
                     "out": np.maximum(
-                        kang_xyz(_share(i, "temperature", *TEMPERATURES)) @ XYZ_TO_REC709.T, 0.0
+                        kang_xyz(_clamped(i, "temperature", *TEMPERATURES)) @ XYZ_TO_REC709.T, 0.0
                     )
                 },
             ),
@@ -215,7 +209,7 @@ UTILITIES = (
         {name: "vector2" for name in ("roughness_R", "roughness_TT", "roughness_TRT")},
         _hair_roughness,
         (
-            constant("chiang_hair_roughness", 0.0),
+            _constant(_hair_roughness, 0.0),
             Variant(
                 "scales that are not squared",
                 lambda i: _hair_roughness(
@@ -236,10 +230,10 @@ UTILITIES = (
         {"absorption": "vector3"},
         _melanin,
         (
-            constant("deon_hair_absorption_from_melanin", 1.0),
+            _constant(_melanin, 1.0),
             Variant(
                 "the shares of both melanins exchanged",
-                lambda i: _melanin({**i, "melanin_redness": 1.0 - _share(i, "melanin_redness")}),
+                lambda i: _melanin({**i, "melanin_redness": 1.0 - _clamped(i, "melanin_redness")}),
             ),
         ),
     ),
@@ -247,12 +241,8 @@ UTILITIES = (
         "chiang_hair_absorption_from_color",
         {"color": (1.0, 1.0, 1.0), "azimuthal_roughness": 0.2},
         {"absorption": "vector3"},
-        lambda i: {
-            "absorption": hair.chiang_hair_absorption_from_color(
-                _share(i, "color", LEAST_HAIR), _share(i, "azimuthal_roughness")
-            )
-        },
-        (constant("chiang_hair_absorption_from_color", 1.0),),
+        _absorption,
+        (_constant(_absorption, 1.0),),
     ),
 )
 

@@ -24,7 +24,6 @@ from mxeon.models.shading_model import ALONG, UP
 from mxeon.models.surfaces import lobes
 from mxeon.models.surfaces.lobes import ONES, Frame, Light, Parameters, Values, lerp
 
-INF = np.inf
 FRAME: Values = {"normal": UP, "tangent": ALONG, "clearcoat_normal": UP}
 DEFAULTS: Values = {
     "base_color": WHITE,
@@ -48,7 +47,7 @@ DEFAULTS: Values = {
     "emissive": BLACK,
     "emissive_strength": 1.0,
     "thickness": 0.0,
-    "attenuation_distance": INF,
+    "attenuation_distance": np.inf,
     "attenuation_color": WHITE,
     "anisotropy_strength": 0.0,
     "anisotropy_rotation": 0.0,
@@ -100,12 +99,11 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
         E_sheen = share * light.albedo(lobes.CONTY_KULLA, plain, **fibers)
         f_sheen = p["sheen_color"] * light.response(lobes.CONTY_KULLA, plain, **fibers)
         material = f_sheen + (1.0 - E_sheen) * material
-    if not np.any(p["clearcoat"]):
-        return material
     upper = Frame(p["clearcoat_normal"], p["tangent"])
     rough = np.repeat(np.square(p["clearcoat_roughness"]), 2, axis=1)
-    f_coat, E_coat = light.both(lobes.DIELECTRIC, upper, ior=1.5, roughness=rough, tint=ONES)
-    return p["clearcoat"] * f_coat + (1.0 - p["clearcoat"] * E_coat) * material
+    return light.layered(
+        lobes.DIELECTRIC, upper, p["clearcoat"], material, ior=1.5, roughness=rough, tint=ONES
+    )
 
 
 def emission(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:

@@ -98,6 +98,15 @@ class Light:
         """`response` and `albedo` of a lobe."""
         return self.response(lobe, frame, **inputs), self.albedo(lobe, frame, **inputs)
 
+    def layered(
+        self, lobe: PbrNode, frame: Frame, weight: Array | float, base: Array, **inputs: ArrayLike
+    ) -> Array:
+        """Light of a lobe over `base` by albedo scaling: weight f + (1 - weight E) base."""
+        if not np.any(weight):
+            return base
+        f, E = self.both(lobe, frame, **inputs)
+        return weight * f + (1.0 - weight * E) * base
+
     def through(self, share: ArrayLike) -> Array:
         """Transmitted light, (N, 3): `share` of the environment behind the surface."""
         light = 1.0 if self.behind else 0.0
@@ -142,10 +151,5 @@ def schlick_inputs(
     f0: ArrayLike, f90: ArrayLike, alpha: Array, f82: ArrayLike = ONES
 ) -> dict[str, ArrayLike]:
     """Inputs of SCHLICK with exponent 5."""
-    return {
-        "color0": f0,
-        "color82": f82,
-        "color90": f90,
-        "exponent": 5.0,
-        "roughness": alpha,
-    }
+    colors = {"color0": f0, "color82": f82, "color90": f90}
+    return {**colors, "exponent": 5.0, "roughness": alpha}

@@ -189,9 +189,8 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
         tint = np.where(p["transmission_depth"] > 0.0, ONES, p["transmission_color"])
     f_transmitted = light.through(tint)
     if "reflection taken twice" in but:
-        f_transmitted = f_transmitted * (
-            1.0 - light.albedo(lobes.DIELECTRIC, frames, **{**glass, "tint": ONES})
-        )
+        white = {**glass, "tint": ONES}
+        f_transmitted = f_transmitted * (1.0 - light.albedo(lobes.DIELECTRIC, frames, **white))
     f_below = lerp(lerp(f_diffuse, f_subsurface, S), f_transmitted, T)
     f_dielectric = f_specular + (1.0 - E_specular) * f_below
 
@@ -218,11 +217,8 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
         normal = p["geometry_normal"]
     fuzz_frame = Frame(normal / np.linalg.norm(normal, axis=1, keepdims=True), lobes.PLAIN.tangent)
     fuzz = {"color": p["fuzz_color"], "roughness": p["fuzz_roughness"]}
-    E_fuzz = light.albedo(
-        lobes.ZELTNER,
-        fuzz_frame,
-        **(fuzz if "tinted light below the fuzz" in but else {**fuzz, "color": ONES}),
-    )
+    white_fuzz = fuzz if "tinted light below the fuzz" in but else {**fuzz, "color": ONES}
+    E_fuzz = light.albedo(lobes.ZELTNER, fuzz_frame, **white_fuzz)
     f_fuzz = light.response(lobes.ZELTNER, fuzz_frame, **fuzz)
     return F * f_fuzz + lerp(1.0, 1.0 - E_fuzz, F) * f_coated
 
@@ -235,9 +231,8 @@ def emission(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     if "a Fresnel factor of the coat" in but:
         T_coat = T_coat * (1.0 - fresnel_dielectric(light.wo[:, 2:], p["coat_ior"]))
     if "Schlick's factor of the coat" in but:
-        T_coat = (
-            T_coat * (1.0 - lobes.f0_from_ior(p["coat_ior"])) * (1.0 - (1.0 - light.wo[:, 2:]) ** 5)
-        )
+        T_coat = T_coat * (1.0 - lobes.f0_from_ior(p["coat_ior"]))
+        T_coat = T_coat * (1.0 - (1.0 - light.wo[:, 2:]) ** 5)
     glow = lerp(1.0, T_coat, C) * emitted
     if "no fuzz above" in but or not np.any(F):
         return np.broadcast_to(glow, light.wo.shape)

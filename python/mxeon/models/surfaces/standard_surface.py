@@ -120,14 +120,12 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     f_btdf = light.through(p["transmission_color"])
     if "reflection taken twice" in but:
         rough = np.clip(p["specular_roughness"] + p["transmission_extra_roughness"], 0.0, 1.0)
-        own = alphas(roughened(p, rough), p["specular_anisotropy"])
-        f_btdf = f_btdf * (
-            1.0 - light.albedo(lobes.DIELECTRIC, frame, **{**glass, "roughness": own})
-        )
+        wide = {**glass, "roughness": alphas(roughened(p, rough), p["specular_anisotropy"])}
+        f_btdf = f_btdf * (1.0 - light.albedo(lobes.DIELECTRIC, frame, **wide))
     f_transmission = lerp(f_sheen_layer, f_btdf, p["transmission"])
     f_specular, E_specular = light.both(lobes.DIELECTRIC, frame, **glass, **film)
-    kept = p["specular"] if "no tint of what specular light leaves" in but else edge
-    f_reflection = edge * f_specular + (1.0 - kept * E_specular) * f_transmission
+    reflected = p["specular"] if "no tint of what specular light leaves" in but else edge
+    f_reflection = edge * f_specular + (1.0 - reflected * E_specular) * f_transmission
 
     f_mixture = lerp(f_reflection, f_metal, metalness)
     if not np.any(coat):

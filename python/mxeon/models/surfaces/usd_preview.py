@@ -49,20 +49,19 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     metallic, color, specular = p["metallic"], p["diffuseColor"], p["useSpecularWorkflow"] != 0.0
     r0 = lobes.f0_from_ior(p["ior"])
     diffuse = np.where(specular, 1.0, 1.0 - metallic)
-    shown = np.where(p["opacityThreshold"] > 0.0, 1.0, p["opacity"])
+    opacity = np.where(p["opacityThreshold"] > 0.0, 1.0, p["opacity"])
     f_clear = light.through(1.0)
     if "reflection taken twice" in but:
         glass = {"ior": p["ior"], "roughness": np.zeros((1, 2)), "tint": ONES}
         f_clear = f_clear * (1.0 - light.albedo(lobes.DIELECTRIC, frame, **glass))
     f_below = lerp(
-        f_clear, diffuse * light.response(lobes.EON, frame, color=color, roughness=0.0), shown
+        f_clear, diffuse * light.response(lobes.EON, frame, color=color, roughness=0.0), opacity
     )
 
     def over(f0: Array, f90: Array) -> Array:
         """A specular lobe layered over `f_below`."""
         inputs = lobes.schlick_inputs(f0, f90, alpha)
-        f, E = light.both(lobes.SCHLICK, frame, **inputs)
-        return f + (1.0 - E) * f_below
+        return light.layered(lobes.SCHLICK, frame, 1.0, f_below, **inputs)
 
     f90 = lerp(ONES, color, metallic)
     if "metal by artist-friendly indices" in but:
@@ -72,12 +71,9 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     else:
         f_metalness = over(lerp(r0, color, metallic), f90)
     f_base = np.where(specular, over(p["specularColor"], ONES), f_metalness)
-    if not np.any(p["clearcoat"]):
-        return f_base
     rough = np.repeat(np.square(p["clearcoatRoughness"]), 2, axis=1)
     coat = lobes.schlick_inputs(r0 * ONES, ONES, rough)
-    f_coat, E_coat = light.both(lobes.SCHLICK, frame, **coat)
-    return p["clearcoat"] * f_coat + (1.0 - p["clearcoat"] * E_coat) * f_base
+    return light.layered(lobes.SCHLICK, frame, p["clearcoat"], f_base, **coat)
 
 
 def emission(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
