@@ -102,19 +102,19 @@ def visibility(pair: Pair) -> Array:
 
 
 def missing(pair: Pair) -> Array:
-    """(1 - E_ss) / E_ss of a Pair; the error is below 1e-10 if both alphas are equal."""
+    """(1 - E_ss) / E_ss; the error is below 1e-10 if both alphas are equal."""
     return missing_of(pair.wo, pair.roughness)
 
 
-# With at least MANY views of one roughness, a polynomial of these degrees replaces the quadrature. It is as accurate
-# if its last coefficients are below TAIL; very anisotropic surfaces would need higher degrees.
+# For at least MANY views of one roughness, a polynomial of these degrees in the two variables of
+# `_series_variables` replaces the quadrature, unless its last coefficients exceed TAIL.
 DEGREES, TAIL = (32, 16), 5e-6
 MANY = (DEGREES[0] + 1) * (DEGREES[1] + 1)
 
 
 @lru_cache(maxsize=8)
 def _anisotropic_missing(rows: bytes) -> Array:
-    """(1 - E_ss) / E_ss, (N,), from five float64 rows (N,): x, y, z of the views, both alphas."""
+    """(1 - E_ss) / E_ss, (N,); `rows` are float64, (5, N): x, y, z of the views, both alphas."""
     columns = np.frombuffer(rows).reshape(5, -1)
     E = evaluate_number(
         lambda wo, roughness: slope_nodes(wo, roughness)[1].sum(axis=(0, 1)),
@@ -127,7 +127,7 @@ def _anisotropic_missing(rows: bytes) -> Array:
 
 @lru_cache(maxsize=8)
 def _series(roughness: tuple[float, float]) -> Array | None:
-    """Chebyshev coefficients of (1 - E_ss) / E_ss over `_place`; None if they decay too slowly."""
+    """Chebyshev coefficients of (1 - E_ss) / E_ss; None if they decay too slowly."""
     s, turn = np.meshgrid(*(chebyshev_nodes(degree + 1) for degree in DEGREES), indexing="ij")
     squares = turn / roughness[0], (1.0 - turn) / roughness[1]
     cos_phi, sin_phi = (np.sqrt(each / sum(squares)) for each in squares)
@@ -140,8 +140,12 @@ def _series(roughness: tuple[float, float]) -> Array | None:
     return series if max(abs(series[-4:]).max(), abs(series[:, -2:]).max()) < TAIL else None
 
 
-def _place(wo: Array, roughness: Array) -> tuple[Array, Array]:
-    """Cube root of mu (1 + a) / (mu + a), with alpha a at wo's azimuth, and azimuth scaled to [0, 1]."""
+def _series_variables(wo: Array, roughness: Array) -> tuple[Array, Array]:
+    """Two variables in [0, 1], of which (1 - E_ss) / E_ss is a smooth function.
+
+    The first is the cube root of mu (1 + a) / (mu + a), with the alpha a at wo's azimuth; the
+    second grows with the square of the azimuth's cosine.
+    """
     x, y = (np.square(wo[k]) * roughness[k] for k in (0, 1))
     sine = np.maximum(np.hypot(wo[0], wo[1]), 1e-150)
     alpha = np.hypot(wo[0] * roughness[0], wo[1] * roughness[1]) / sine
@@ -149,41 +153,43 @@ def _place(wo: Array, roughness: Array) -> tuple[Array, Array]:
     return np.cbrt(s), x / np.maximum(x + y, 1e-300)
 
 
-def _of_unlike(rows: Array) -> Array:
-    """(1 - E_ss) / E_ss from rows as in `_anisotropic_missing`; equal views are evaluated once."""
+def _missing_by_views(rows: Array) -> Array:
+    """`_anisotropic_missing` that evaluates equal views once, or many views by a polynomial."""
     wo, alphas = rows[:3], rows[3:]
-    one = rows.shape[1] >= MANY and not np.ptp(alphas, axis=1).any() and alphas.all()
-    if one and (series := _series((float(alphas[0, 0]), float(alphas[1, 0])))) is not None:
-        s, turn = _place(wo, alphas[:, 0])
+    uniform = rows.shape[1] >= MANY and not np.ptp(alphas, axis=1).any() and alphas.all()
+    if uniform and (series := _series((float(alphas[0, 0]), float(alphas[1, 0])))) is not None:
+        s, turn = _series_variables(wo, alphas[:, 0])
         lines = chebyshev_sum(series[:, :, np.newaxis], s)
         return np.asarray(np.maximum(chebyshev_sum(lines, turn), 0.0))
-    each, indices = np.unique(rows, axis=1, return_inverse=True)
-    return _anisotropic_missing(each.tobytes())[indices.reshape(-1)]
+    views, indices = np.unique(rows, axis=1, return_inverse=True)
+    return _anisotropic_missing(views.tobytes())[indices.reshape(-1)]
 
 
 def missing_of(wo: Array, roughness: Array) -> Array:
     """(1 - E_ss) / E_ss from valid float64 arrays, components first."""
     isotropic = missing_light(wo[2], ggx.mean_alpha(roughness))
     if array_namespace(wo, roughness) is arrays.NUMPY:
-        unequal = roughness[0] != roughness[1]
-        if not np.any(unequal):
+        anisotropic = roughness[0] != roughness[1]
+        if not np.any(anisotropic):
             return isotropic
-        # Pairs with equal view and roughness, as in an integral over lights, share one quadrature.
-        total = np.broadcast_to(isotropic, np.broadcast_shapes(wo.shape[1:], unequal.shape)).copy()
-        chosen = np.broadcast_to(unequal, total.shape)
-        # E_ss is equal for mirrored views and independent of lights and Fresnel curves.
+        shape = np.broadcast_shapes(wo.shape[1:], anisotropic.shape)
+        total, selected = (
+            np.broadcast_to(isotropic, shape).copy(),
+            np.broadcast_to(anisotropic, shape),
+        )
+        # Mirrored views have the same E_ss.
         views = (abs(wo[0]), abs(wo[1]), wo[2])
-        rows = [np.broadcast_to(each, total.shape)[chosen] for each in (*views, *roughness)]
-        total[chosen] = _of_unlike(np.stack(rows))
+        rows = [np.broadcast_to(each, shape)[selected] for each in (*views, *roughness)]
+        total[selected] = _missing_by_views(np.stack(rows))
         return total
     # If both alphas are equal, the difference is 0 but still has a gradient by each alpha.
     mean = ggx.mean_alpha(roughness)
     xp = array_namespace(wo, roughness)
-    unlike, alike = (
+    at_both, at_mean = (
         1.0 / xp.sum(slope_nodes(wo, alphas)[1], axis=(0, 1)) - 1.0
         for alphas in (roughness, xp.stack([mean, mean]))
     )
-    return xp.where(roughness[0] == roughness[1], isotropic + (unlike - alike), unlike)
+    return xp.where(roughness[0] == roughness[1], isotropic + (at_both - at_mean), at_both)
 
 
 @dataclass(frozen=True)
@@ -193,8 +199,8 @@ class Lobe:
     - `alpha`: Function that turns the input `roughness` into the lobe's alpha.
     """
 
-    factor: Callable[[Pair], Array | float] = compensation  # compensation factor of a Pair
-    visibility: Callable[[Pair], Array] = visibility  # G2 / (4 mu_o mu_i) of a Pair
+    factor: Callable[[Pair], Array | float] = compensation
+    visibility: Callable[[Pair], Array] = visibility  # G2 / (4 mu_o mu_i)
     alpha: Callable[[Array], Array] = lambda roughness: roughness
     scale: float = 1.0
 
@@ -366,10 +372,8 @@ def generalized_schlick_brdf(
 
 
 def _lobe(compensate: bool) -> Lobe:
-    """The lobe of the specification, with or without its energy compensation."""
-    return (
-        Lobe() if arguments.checked_switch("compensate", compensate) else Lobe(factor=uncompensated)
-    )
+    arguments.checked_switch("compensate", compensate)
+    return Lobe() if compensate else Lobe(factor=uncompensated)
 
 
 QUADRATURE_BLOCK = 2**3  # elements per block of a quadrature over slopes
@@ -445,11 +449,8 @@ def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
         >>> ggx_albedo_dir_anisotropic([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]], [0.1, 0.5]).round(6)
         array([0.815356, 0.804722])
     """
-    wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
-    lead_shape({"wo": wo, "roughness": roughness}, {})
-    return lobe_albedo(
-        WHITE_CURVE, wo, roughness, {"tint": arrays.like(np.ones(1), wo)}, {}, False
-    )[..., 0][()]
+    tint = {"tint": arrays.like(np.ones(1), checked_directions("wo", wo))}
+    return lobe_albedo(WHITE_CURVE, wo, roughness, tint, {}, False)[..., 0][()]
 
 
 def lobe_albedo(
@@ -469,10 +470,8 @@ def lobe_albedo(
         wo: Array, roughness: Array, unseen: Array, average: Array, **material: Array
     ) -> Array:
         c, weight = slope_nodes(wo, roughness, summed=summed)
-        spread = {
-            k: v[:, np.newaxis, np.newaxis] if k in vectors else v for k, v in material.items()
-        }
-        xp = array_namespace(c)
+        xp, new = array_namespace(c), (slice(None), np.newaxis, np.newaxis)
+        spread = {k: v[new] if k in vectors else v for k, v in material.items()}
         E = xp.sum(curve.at(c, **spread) * weight, axis=(1, 2))
         squared = curve.critical(**material)
         if not summed and (arrays.library(squared) or np.any(squared > 0.0)):
@@ -482,20 +481,17 @@ def lobe_albedo(
             c, weight = transmitting_nodes(wo, roughness, arrays.at_least_0(squared))
             lost = xp.sum((1.0 - curve.at(c, **spread)) * weight, axis=(1, 2))
             E = xp.where(squared > 0.0, lossless - lost, E)
-        if compensate:
-            E = E * (1.0 + average * unseen)
-        total: Array = E * material["tint"] if "tint" in material else E
-        return total
+        E = E * (1.0 + average * unseen) if compensate else E
+        return E * material["tint"] if "tint" in material else E
 
-    given = {"wo": wo, "roughness": roughness, **vectors}
-    lead_shape(given, numbers)  # raises ValueError that names arguments that do not broadcast
+    views = {"wo": wo, "roughness": roughness}
+    lead_shape(views | dict(vectors), numbers)  # its message names the arguments
     # Compute multiple scattering per element, before the slope nodes add axes.
-    channels = channel_count(vectors)
-    unseen, average = np.zeros(()), np.zeros(1)
+    channels, unseen, average = channel_count(vectors), np.zeros(()), np.zeros(1)
     if compensate:
-        unseen = evaluate_number(missing_of, {"wo": wo, "roughness": roughness}, {})
+        unseen = evaluate_number(missing_of, views, {})
         average = evaluate_material(curve.average, vectors, numbers, channels)
-    given["average"] = average
+    columns = {**views, **vectors, "average": average}
     return evaluate_material(
-        value, given, {"unseen": unseen, **numbers}, channels, QUADRATURE_BLOCK
+        value, columns, {"unseen": unseen, **numbers}, channels, QUADRATURE_BLOCK
     )

@@ -46,9 +46,8 @@ class MicrofacetDefect:
 
 
 def averaged_channels(albedo: Array) -> Array:
-    """Albedo whose channels are replaced by their mean, used in throughputs of colored nodes."""
-    mean = np.mean(albedo, axis=-1, keepdims=True)
-    return np.broadcast_to(mean, albedo.shape).copy()
+    """The albedo with every channel replaced by the mean."""
+    return np.broadcast_to(np.mean(albedo, axis=-1, keepdims=True), albedo.shape).copy()
 
 
 def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float) -> Array:
@@ -72,18 +71,15 @@ def schlick_average(normal: Array, grazing: Array | float) -> Array:
     return average
 
 
-def _half(pair: Pair) -> Array:
-    """Fresnel reflectance at the half vector."""
+def _F_half(pair: Pair) -> Array:
     return pair.curve.at(pair.cosine, **pair.material)
 
 
-def _normal(pair: Pair) -> Array:
-    """Fresnel reflectance along the normal."""
+def _F_normal(pair: Pair) -> Array:
     return pair.curve.at(np.ones_like(pair.cosine), **pair.material)
 
 
-def _averaged(pair: Pair) -> Array:
-    """Average Fresnel reflectance, from the values along the normal and at grazing alone."""
+def _F_average(pair: Pair) -> Array:
     ends = (pair.curve.at(np.full_like(pair.cosine, mu), **pair.material) for mu in (1.0, 0.0))
     return schlick_average(*ends)
 
@@ -102,8 +98,8 @@ def _compensated(
     return lambda pair: 1.0 + F(pair) * lost(pair)
 
 
-fitted_half = _compensated(_half, _missing_by_fit)  # compensation in MaterialX 1.39.5
-averaged_fitted = _compensated(_averaged, _missing_by_fit)  # compensation in later MaterialX
+fitted_half = _compensated(_F_half, _missing_by_fit)  # compensation in MaterialX 1.39.5
+averaged_fitted = _compensated(_F_average, _missing_by_fit)  # compensation in later MaterialX
 
 
 def _separable(pair: Pair) -> Array:
@@ -132,24 +128,22 @@ MICROFACET_DEFECTS = (
     MicrofacetDefect(
         "compensation_half",
         "compensation with F at the half vector",
-        Lobe(_compensated(_half)),
+        Lobe(_compensated(_F_half)),
     ),
     MicrofacetDefect(
         "compensation_f0",
         "compensation with F along the normal",
-        Lobe(_compensated(_normal)),
+        Lobe(_compensated(_F_normal)),
     ),
     MicrofacetDefect(
         "compensation_f0_fitted",
         "compensation with F along the normal and MaterialX's fit of E_ss",
-        Lobe(_compensated(_normal, _missing_by_fit)),
+        Lobe(_compensated(_F_normal, _missing_by_fit)),
     ),
     MicrofacetDefect(
         "compensation_view",
         "compensation with F at the view direction",
-        Lobe(
-            _compensated(lambda pair: pair.curve.at(np.minimum(pair.wo[2], 1.0), **pair.material))
-        ),
+        Lobe(_compensated(lambda p: p.curve.at(np.minimum(p.wo[2], 1.0), **p.material))),
     ),
     MicrofacetDefect(
         "compensation_fitted",
@@ -159,7 +153,7 @@ MICROFACET_DEFECTS = (
     MicrofacetDefect(
         "compensation_average",
         "compensation with the average F0 + (F90 - F0) / 21",
-        Lobe(_compensated(_averaged)),
+        Lobe(_compensated(_F_average)),
     ),
     MicrofacetDefect(
         "compensation_average_fitted",
@@ -169,11 +163,7 @@ MICROFACET_DEFECTS = (
     MicrofacetDefect(
         "smith_separable", "masking and shadowing uncorrelated", Lobe(visibility=_separable)
     ),
-    MicrofacetDefect(
-        "smith_mean",
-        MEAN_ALPHA,
-        Lobe(_june, _at_the_mean),
-    ),
+    MicrofacetDefect("smith_mean", MEAN_ALPHA, Lobe(_june, _at_the_mean)),
     MicrofacetDefect("alpha_squared", "roughness squared once more", Lobe(alpha=np.square)),
     MicrofacetDefect("alpha_root", "square root of the roughness as alpha", Lobe(alpha=np.sqrt)),
     MicrofacetDefect("no_factor_4", "no factor 4 in the denominator", Lobe(scale=4.0)),
@@ -207,22 +197,15 @@ BSDL = MicrofacetDefect(
     "bsdl",
     "BSDL's lobe: compensation with F at the half vector",
     Lobe(
-        _compensated(
-            _half,
-            lambda pair: missing_light(pair.wo[2], 0.5 * (pair.roughness[0] + pair.roughness[1])),
-        ),
+        _compensated(_F_half, lambda pair: missing_light(pair.wo[2], pair.roughness.mean(axis=0)))
     ),
 )
 # Lobe of Blender's Cycles, whose closures have no energy compensation.
-SINGLE = MicrofacetDefect(
-    "single",
-    "single scattering alone",
-    Lobe(microfacet.uncompensated),
-)
+SINGLE = MicrofacetDefect("single", "single scattering alone", Lobe(microfacet.uncompensated))
 
 
 def burley_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
-    """Burley's albedo by mx_burley_diffuse_dir_albedo, (N, 3); error up to 0.0174 (mu 0, roughness 1/2)."""
+    """Burley's albedo by mx_burley_diffuse_dir_albedo, (N, 3), with an error up to 0.0174."""
     x, r = np.minimum(wo[:, 2], 1.0), inputs["roughness"]
     smooth = 0.97619 - 0.488095 * (1.0 - x) ** 5
     rough = 1.55754 + (-2.02221 + (2.56283 - 1.06244 * x) * x) * x
