@@ -50,8 +50,8 @@ def bessel_scaled(x: Array) -> Array:
 
 def _polynomial(coefficients: list[float], x: Array) -> Array:
     """Polynomial in x by Horner's rule; the first coefficient is the constant."""
-    total = 0.0 * x + coefficients[-1]
-    for each in reversed(coefficients[:-1]):
+    total = 0.0 * x
+    for each in reversed(coefficients):
         total = total * x + each
     return total
 
@@ -213,15 +213,12 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
         array([0.137704, 0.137704, 0.137704])
     """
     form: HairForm = inputs.pop("form", TEXT)
-    vectors = {
-        "wo": arguments.checked_directions("wo", wo),
-        "wi": arguments.checked_sphere("wi", wi),
-    }
-    values = _checked(inputs, vectors["wo"])
-    numbers = {name: values.pop(name) for name in ("ior", "cuticle_angle")}
-    colors = {name: values[name] for name in (*TINTS, "absorption_coefficient")}
+    wo, wi = arguments.checked_directions("wo", wo), arguments.checked_sphere("wi", wi)
+    vectors = _checked(inputs, wo)
+    numbers = {name: vectors.pop(name) for name in ("ior", "cuticle_angle")}
+    colors = {name: vectors[name] for name in (*TINTS, "absorption_coefficient")}
 
-    # Sum t_p A_p M_p N_p over the lobes. TRRT+ uses TRT's tint and roughness.
+    # TRRT+ has the tint and the roughness of TRT.
     def formula(wo: Array, wi: Array, **inputs: Array) -> Array:
         ior, alpha = inputs["ior"], np.pi * (inputs["cuticle_angle"] - 0.5)
         view, effective = section(wo, ior)
@@ -234,7 +231,11 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
         return form.factor * sum(lobes[1:], lobes[0])
 
     return evaluate_material(
-        formula, vectors | values, numbers, arguments.channel_count(colors), HAIR_BLOCK
+        formula,
+        {"wo": wo, "wi": wi, **vectors},
+        numbers,
+        arguments.channel_count(colors),
+        HAIR_BLOCK,
     )
 
 
@@ -282,10 +283,8 @@ DEFAULTS: dict[str, float | tuple[float, ...]] = {
 
 def _checked(inputs: dict[str, ArrayLike], wo: arrays.Numbers) -> dict[str, Array]:
     """All inputs of the node, checked, as arrays of wo's library; colors are (..., C)."""
-    unknown = set(inputs) - set(DEFAULTS)
-    if unknown:
-        known = ", ".join(DEFAULTS)
-        raise TypeError(f"inputs must be among {known}; got {', '.join(sorted(unknown))}")
+    if unknown := sorted(set(inputs) - set(DEFAULTS)):
+        raise TypeError(f"inputs must be among {', '.join(DEFAULTS)}; got {', '.join(unknown)}")
     values = {}
     for name, value in {**DEFAULTS, **inputs}.items():
         check = arguments.checked_pairs if name in ROUGHNESSES else checked

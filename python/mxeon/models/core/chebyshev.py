@@ -24,10 +24,10 @@ def chebyshev_coefficients(values: Array) -> Array:
 def chebyshev_polynomials(x: Array, count: int) -> Array:
     """The polynomials T_0 to T_(count - 1) of 2 x - 1, shape (count, ...)."""
     y = 2.0 * x - 1.0
-    found = [0.0 * y + 1.0, y]
-    while len(found) < count:
-        found.append(2.0 * y * found[-1] - found[-2])
-    return array_namespace(x).stack(found[:count])
+    rows = [0.0 * y + 1.0, y]
+    while len(rows) < count:
+        rows.append(2.0 * y * rows[-1] - rows[-2])
+    return array_namespace(x).stack(rows[:count])
 
 
 def chebyshev_sum(coefficients: Array, x: Array) -> Array:
@@ -39,13 +39,6 @@ def chebyshev_sum(coefficients: Array, x: Array) -> Array:
         last, later = twice * last + (coefficients[k] - later), last
     total: Array = y * last - later + coefficients[0]
     return total
-
-
-def cell_cubics(coefficients: Array, cells: int) -> Array:
-    """Cubic coefficients, (4, cells), from four values of the series per cell of [0, 1]."""
-    x = np.sort(chebyshev_nodes(4))
-    values = chebyshev_sum(coefficients, (np.arange(cells)[:, np.newaxis] + x) / cells)
-    return np.asarray(np.linalg.inv(np.vander(x, increasing=True)) @ values.T)
 
 
 def _angles(count: int) -> Array:

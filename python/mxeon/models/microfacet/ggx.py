@@ -132,12 +132,9 @@ def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
         >>> smith_g2(0.8, [0.6, 0.0], 0.5).round(6)
         array([0.881115, 0.      ])
     """
-
-    def value(mu_o: Array, mu_i: Array, alpha: Array) -> Array:
-        return 4.0 * mu_o * mu_i * visibility(mu_o, mu_i, alpha)
-
+    numbers = arguments.checked_all({"mu_o": mu_o, "mu_i": mu_i, "alpha": alpha})
     return evaluate_number(
-        value, {}, arguments.checked_all({"mu_o": mu_o, "mu_i": mu_i, "alpha": alpha})
+        lambda mu_o, mu_i, alpha: 4.0 * mu_o * mu_i * visibility(mu_o, mu_i, alpha), {}, numbers
     )
 
 
@@ -154,12 +151,11 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
         array([0.942466, 0.      ])
     """
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
-
-    def value(wo: Array, wi: Array, roughness: Array) -> Array:
-        G2: Array = 4.0 * wo[2] * wi[2] * visibility_anisotropic(wo, wi, roughness)
-        return G2
-
-    return evaluate_number(value, vectors | {"roughness": checked_roughness(roughness)}, {})
+    return evaluate_number(
+        lambda wo, wi, roughness: 4.0 * wo[2] * wi[2] * visibility_anisotropic(wo, wi, roughness),
+        vectors | {"roughness": checked_roughness(roughness)},
+        {},
+    )
 
 
 LARGEST_ANISOTROPY = 0.98  # clamp that avoids a division by 0 in alpha_x at anisotropy 1
@@ -179,11 +175,7 @@ def roughness_anisotropy(roughness: ArrayLike, anisotropy: ArrayLike) -> Array:
         array([[0.25 , 0.25 ],
                [0.5  , 0.125]])
     """
-    return _stretched(*arguments.checked_numbers(roughness=roughness, anisotropy=anisotropy))
-
-
-def _stretched(r: Array, a: Array) -> Array:
-    """`roughness_anisotropy` for arrays that are already checked."""
+    r, a = arguments.checked_numbers(roughness=roughness, anisotropy=anisotropy)
     xp = array_namespace(r, a)
     aspect = xp.sqrt(1.0 - arrays.at_most(a, LARGEST_ANISOTROPY))
     return xp.stack([arrays.at_most(r * r / aspect, 1.0), r * r * aspect], axis=-1)
@@ -200,9 +192,7 @@ def roughness_dual(roughness: ArrayLike) -> Array:
         >>> roughness_dual([0.5, 1.0])
         array([0.25, 1.  ])
     """
-    (pairs,) = arguments.broadcastable(
-        {"roughness": arguments.checked_pairs("roughness", roughness)}, {}
-    )
+    pairs: Array = arguments.checked_pairs("roughness", roughness)
     return pairs * pairs
 
 
@@ -216,7 +206,7 @@ def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array
         array([0.5  , 0.125])
     """
     g, a = arguments.checked_numbers(glossiness=glossiness, anisotropy=anisotropy)
-    return _stretched(1.0 - g, a)
+    return roughness_anisotropy(1.0 - g, a)
 
 
 # Gauss-Legendre nodes per panel, panels between wo and the normal, and elements per block.
@@ -227,7 +217,7 @@ RULE = np.polynomial.legendre.leggauss(RULE_NODES)
 LEAST_SCALE, LEAST_ELEVATION = 1e-8, 1e-200
 LEAST_SQUARED = 1e-15  # both limits for other libraries, whose derivatives square them in float32
 
-ALIKE = 2.0**44  # steps to which the mantissas of cosines are rounded, so that equal ones merge
+MANTISSA_STEPS = 2.0**44  # mantissas of cosines are rounded to these steps, so that many are equal
 
 # Within this distance of cosine 1, E_ss is extrapolated linearly; the error is below its square.
 ALONG = 1e-8
@@ -263,15 +253,14 @@ def albedo(mu: Array, alpha: Array) -> Array:
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 < mu.size:
         mantissa, exponent = np.frexp(mu)
-        alike = np.ldexp(np.round(mantissa * ALIKE), exponent) / ALIKE
-        each, indices = np.unique(alike, return_inverse=True)
-        found: Array = _in_blocks(each, alpha.reshape(1))[indices]
-        return found.reshape(np.broadcast_shapes(mu.shape, alpha.shape))
+        rounded = np.ldexp(np.round(mantissa * MANTISSA_STEPS), exponent) / MANTISSA_STEPS
+        cosines, indices = np.unique(rounded, return_inverse=True)
+        E_ss = _in_blocks(cosines, alpha.reshape(1))[indices]
+        return np.reshape(E_ss, np.broadcast_shapes(mu.shape, alpha.shape))
     return _in_blocks(mu, alpha)
 
 
 def _in_blocks(mu: Array, alpha: Array) -> Array:
-    """E_ss for valid float64 arrays, block by block."""
     formula = quadrature if array_namespace(mu, alpha) is NUMPY else _extrapolated
     return evaluate_number(formula, {}, {"mu": mu, "alpha": alpha}, ALBEDO_BLOCK)
 
@@ -345,8 +334,8 @@ def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
 NODES_S, NODES_ALPHA, REFINED, TABLE_BLOCK = 80, 28, 2, 2**12
 
 # For at least MANY cosines with one alpha, cubics in CELLS cells replace the polynomials; they differ
-# by less than 3e-14. KEPT is the number of alphas in the cache.
-MANY, CELLS, KEPT = 2**14, 2**12, 8
+# by less than 3e-14. CACHED is the number of alphas in the cache.
+MANY, CELLS, CACHED = 2**14, 2**12, 8
 
 
 def missing_light(mu: Array, alpha: Array) -> Array:
@@ -357,12 +346,12 @@ def missing_light(mu: Array, alpha: Array) -> Array:
     fastest: many cosines then share cubics.
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 and mu.size >= MANY:
-        return _of_one_alpha(mu, float(alpha.item()))
+        return _by_cubics(mu, float(alpha.item()))
     return evaluate_number(_interpolated, {}, {"mu": mu, "alpha": alpha}, TABLE_BLOCK)
 
 
 def _interpolated(mu: Array, alpha: Array) -> Array:
-    """`missing_light` by the table: sum the polynomials in alpha first, then those in s."""
+    """`missing_light` by the table: sums the polynomials in alpha, then those in s."""
     xp = array_namespace(mu, alpha)
     table = _table()
     powers = chebyshev.chebyshev_polynomials(root(alpha), table.shape[1])
@@ -376,7 +365,7 @@ def _interpolated(mu: Array, alpha: Array) -> Array:
     return xp.where(rough, xp.maximum(value, 0.0), 0.0)  # a mirror loses no light
 
 
-def _of_one_alpha(mu: Array, alpha: float) -> Array:
+def _by_cubics(mu: Array, alpha: float) -> Array:
     """`missing_light` for a single alpha, by a cubic in each cell of the cube root of s."""
     if alpha <= 0.0:
         return np.zeros(mu.shape)  # a mirror loses no light
@@ -393,12 +382,14 @@ def _of_one_alpha(mu: Array, alpha: float) -> Array:
     return np.maximum(value, 0.0, out=value)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED)
 def _cubics(alpha: float) -> Array:
     """Coefficients of a cubic through four points of each cell, shape (4, CELLS + 1)."""
     powers = chebyshev.chebyshev_polynomials(np.sqrt(alpha), NODES_ALPHA)
     rows = np.einsum("ij,j->i", _table(), powers)
-    cubics = chebyshev.cell_cubics(rows, CELLS)
+    x = np.sort(chebyshev.chebyshev_nodes(4))
+    values = chebyshev.chebyshev_sum(rows, (np.arange(CELLS)[:, np.newaxis] + x) / CELLS)
+    cubics = np.linalg.inv(np.vander(x, increasing=True)) @ values.T
     # The end of the last cell is stored as an extra cell that is evaluated only at its start.
     end = [chebyshev.chebyshev_sum(rows, np.ones(1))[0], 0.0, 0.0, 0.0]
     return np.concatenate([cubics, np.reshape(end, (4, 1))], axis=1)

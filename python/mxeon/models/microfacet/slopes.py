@@ -183,9 +183,9 @@ def refracting_nodes(
     wi = (L h - wo) / n points below the horizon; n^2 = 1 - squared, L = |wo + n wi|. If r is smaller
     than the root of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2, wi would point above the horizon.
     """
-    # Split the azimuths where h on the critical cone is at the horizon.
     slopes = Slopes.seen(wo, roughness)
     mu_o = slopes.mu_o
+    # Split the azimuths where h on the critical cone is at the horizon.
     omega, weight_omega = _split_azimuths(slopes, wo, squared, _cone_azimuth(mu_o, squared))
     B, _, slope = slopes.rays(omega)
     g = _squared(slope)
@@ -297,8 +297,8 @@ def _between(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
 def _crowded(panels: int, nodes: int, array: Array) -> tuple[Array, Array]:
     """Nodes and weights of [0, 1], quadratically dense at both ends, on a new first axis."""
     (u, weight), shape = unit_rule(nodes, panels), (-1, *(1,) * array.ndim)
-    both = (u * u * (3.0 - 2.0 * u)).reshape(shape), (6.0 * u * (1.0 - u) * weight).reshape(shape)
-    return like(both[0], array), like(both[1], array)
+    x, weight = u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u) * weight
+    return like(x.reshape(shape), array), like(weight.reshape(shape), array)
 
 
 def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:

@@ -14,12 +14,12 @@ from mxeon.models.microfacet.ggx import missing_light
 from mxeon.models.nodes import microfacets, node
 from mxeon.models.nodes.microfacets import CONDUCTOR_LOBE, DIELECTRIC_LOBE, SCHLICK_LOBE, undipped
 from mxeon.models.nodes.node import Inputs, Scattering, Variant, white
+from mxeon.models.transmission import index_of
 
 INDEX = (1.001, 5.0)  # range to which BSDL clamps the index of a dielectric
 
 
 def _indexed(inputs: Inputs) -> dict[str, Array]:
-    """Inputs whose index is clamped as in BSDL."""
     return {**inputs, "ior": np.clip(inputs["ior"], *INDEX)}
 
 
@@ -32,8 +32,7 @@ def _dielectric_albedo(wo: Array, inputs: Inputs) -> Array:
 
 def _schlick_albedo(wo: Array, inputs: Inputs) -> Array:
     """Albedo of a dielectric whose normal reflectance is the mean of `color0`, the same per channel."""
-    root = np.sqrt(np.clip(np.mean(inputs["color0"], axis=-1), 0.0, 0.99))
-    return _dielectric_albedo(wo, {**inputs, "ior": (1.0 + root) / (1.0 - root)})
+    return _dielectric_albedo(wo, {**inputs, "ior": index_of(inputs["color0"].mean(axis=-1), 0.0)})
 
 
 def gray(albedo: Callable[[Array, Inputs], Array], wo: Array, inputs: Inputs) -> Array:
@@ -42,8 +41,7 @@ def gray(albedo: Callable[[Array, Inputs], Array], wo: Array, inputs: Inputs) ->
     return np.asarray(np.minimum(albedo(wo, inputs) * largest, 1.0))
 
 
-def _zeltner(wo: Array, inputs: Inputs) -> Array:
-    """Albedo of a white Zeltner sheen."""
+def _white_zeltner(wo: Array, inputs: Inputs) -> Array:
     return node("zeltner").albedo(wo, white(inputs))
 
 
@@ -64,8 +62,7 @@ BSDL_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
             lambda wo, wi, i: SCHLICK_LOBE.value(wo, wi, undipped(i), BSDL.lobe),
         ),
         Variant(
-            "the albedo of a dielectric of the mean F0, of an index up to 5",
-            albedo=_schlick_albedo,
+            "the albedo of a dielectric of the mean F0, of an index up to 5", None, _schlick_albedo
         ),
     ),
     "conty_kulla": (
@@ -78,7 +75,7 @@ BSDL_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
     "zeltner": (
         Variant(
             "its albedo times the largest channel of the color",
-            albedo=partial(gray, _zeltner),
+            albedo=partial(gray, _white_zeltner),
             above=True,
         ),
         Variant(
@@ -119,7 +116,7 @@ def _lossless_dielectric(wo: Array, inputs: Inputs) -> Array:
 
 SHEEN: Variant[Scattering] = Variant(
     "the largest channel of the Zeltner sheen's albedo, with the color squared",
-    albedo=lambda wo, i: gray(_zeltner, wo, {**i, "color": np.square(i["color"])}),
+    albedo=lambda wo, i: gray(_white_zeltner, wo, {**i, "color": np.square(i["color"])}),
     above=True,
 )
 # Variants by the name of the node's row.
