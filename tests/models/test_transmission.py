@@ -8,7 +8,6 @@ from mxeon.models import fresnel_dielectric, smith_g1, smith_g2, smith_g2_anisot
 from mxeon.models.microfacet import dielectric_albedo_dir, generalized_schlick_albedo_dir
 from mxeon.models.transmission import (
     READINGS,
-    Facet,
     dielectric_btdf,
     dielectric_transmittance_dir,
     generalized_schlick_btdf,
@@ -16,6 +15,7 @@ from mxeon.models.transmission import (
     refraction_direction,
     reversed_transmittance,
     schlick_ior,
+    transmitting_facet,
 )
 from tests.support import tolerances
 from tests.support.availability import available, package
@@ -51,14 +51,14 @@ def test_refraction_obeys_snell_and_has_the_half_vector_as_its_normal(ior):
     np.testing.assert_array_equal(passes, 1.0 - wo[:, 2] ** 2 < ior * ior)
     np.testing.assert_allclose(ior * wi[passes, :2], -wo[passes, :2], atol=1e-15 * max(ior, 1.0))
     np.testing.assert_allclose((wi[passes] ** 2).sum(axis=-1), 1.0, rtol=1e-14)
-    found = Facet.of(wo[passes].T, wi[passes].T, ior).normal
+    found = transmitting_facet(wo[passes].T, wi[passes].T, ior)[0]
     np.testing.assert_allclose(found.T, np.broadcast_to(normal, found.T.shape), atol=1e-13)
 
 
 def test_no_index_bends_nothing_and_has_no_half_vector():
     wo, wi = pairs()
     np.testing.assert_allclose(refraction_direction(wo, [0.0, 0.0, 1.0], 1.0), -wo, atol=1e-15)
-    assert not Facet.of(wo.T, wi.T, 1.0).normal.any()
+    assert not transmitting_facet(wo.T, wi.T, 1.0)[0].any()
     assert not dielectric_btdf(wo, wi, 1.0, [0.3, 0.3], 1.0).any()
 
 
@@ -67,18 +67,18 @@ def test_no_index_bends_nothing_and_has_no_half_vector():
 def test_the_density_of_refracted_directions_is_normalized(ior, alpha):
     wi, weight = below()
     wo = direction(0.6, 1.0)
-    facet = Facet.of(np.broadcast_to(wo, wi.shape).T, wi.T, np.array(ior))
-    x, y, z = facet.normal
+    views = np.broadcast_to(wo, wi.shape).T
+    (x, y, z), cosine, jacobian = transmitting_facet(views, wi.T, np.array(ior))
     area = alpha[0] * alpha[1]
     squared = (x / alpha[0]) ** 2 + (y / alpha[1]) ** 2 + z * z
     D = np.where(
         squared > 0.0, 1.0 / (np.pi * area * np.where(squared > 0.0, squared, 1.0) ** 2), 0.0
     )
-    pdf = smith_g1(wo, alpha) * D * facet.cosine_o * facet.jacobian / wo[2]
+    pdf = smith_g1(wo, alpha) * D * cosine * jacobian / wo[2]
     pdf = pdf.T * weight / np.abs(wi[..., 2])
     if ior > 1.0:
         assert np.sum(pdf) == pytest.approx(1.0, abs=tolerances.REFRACTED_GRID)
-    passed = np.sum(pdf * (1.0 - fresnel_dielectric(facet.cosine_o.T, ior)))
+    passed = np.sum(pdf * (1.0 - fresnel_dielectric(cosine.T, ior)))
     seen = dielectric_transmittance_dir(wo, 1.0, alpha, ior, shadow=False)[0]
     assert seen == pytest.approx(passed, abs=tolerances.REFRACTED_GRID)
 

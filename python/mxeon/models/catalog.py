@@ -173,10 +173,8 @@ def _coated_model(name: str, title: str) -> ShadingModel:
         Parameter("alpha", 0.05, "coat_alpha"),
         Parameter("ior", 1.5, "coat_ior"),
     )
-    brdf, albedo_dir, albedo_avg, sample, pdf = (
-        getattr(coat, f"{name}_{each}")
-        for each in ("brdf", "albedo_dir", "albedo_avg", "sample", "pdf")
-    )
+    functions = ("brdf", "albedo_dir", "albedo_avg", "sample", "pdf")
+    brdf, albedo_dir, albedo_avg, sample, pdf = (getattr(coat, f"{name}_{f}") for f in functions)
     row = PbrNode(
         name,
         title,

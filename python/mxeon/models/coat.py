@@ -204,8 +204,7 @@ def dielectric_over_eon_albedo_dir(
            [0.68356, 1.     ]])
     """
     base = eon_albedo_dir(mu, rho, roughness)
-    height = cast(Array, mu) if arrays.library(mu) else np.asarray(mu, np.float64)
-    reflected = coat_of(alpha, ior).at(arrays.cosine(arrays.at_least_0(height)))[1][..., np.newaxis]
+    reflected = coat_of(alpha, ior).at(arguments.checked("mu", mu))[1][..., np.newaxis]
     return reflected + (1.0 - reflected) * base
 
 
@@ -265,21 +264,16 @@ def mixed_pdf(
 
 @any_array
 def checked_draws(
-    wo: ArrayLike,
-    rho: ArrayLike,
-    roughness: ArrayLike,
-    u: ArrayLike | None = None,
-    wi: ArrayLike | None = None,
+    wo: ArrayLike, rho: ArrayLike, roughness: ArrayLike, **pair: arrays.Numbers
 ) -> tuple[Array, Array]:
-    """Cosine of wo and mean of rho's channels; raises ValueError unless all arguments broadcast."""
-    vectors = {"wo": checked_directions("wo", wo), "rho": checked_color("rho", rho)}
-    if wi is not None:
-        vectors["wi"] = arguments.checked_sphere("wi", wi)
-    if u is not None:
-        vectors["u"] = arguments.checked_pairs("u", u)
-    arguments.lead_shape(vectors, {"roughness": arguments.checked("roughness", roughness)})
-    color = vectors["rho"]
-    return arrays.cosine(vectors["wo"][..., 2]), array_namespace(color).mean(color, axis=-1)
+    """Cosine of wo and mean of rho's channels; raises ValueError unless all arguments broadcast.
+
+    - `pair`: The other argument of a sampler or of a density, `u` or `wi`, already checked.
+    """
+    view, color = checked_directions("wo", wo), checked_color("rho", rho)
+    numbers = {"roughness": arguments.checked("roughness", roughness)}
+    arguments.lead_shape({"wo": view, "rho": color, **pair}, numbers)
+    return arrays.cosine(view[..., 2]), array_namespace(color).mean(color, axis=-1)
 
 
 @any_array
@@ -302,7 +296,7 @@ def dielectric_over_eon_sample(
         >>> wi.round(5), round(float(pdf), 5)
         (array([0.08667, 0.64394, 0.76015]), 0.23917)
     """
-    mu, mean = checked_draws(wo, rho, roughness, u=u)
+    mu, mean = checked_draws(wo, rho, roughness, u=arguments.checked_pairs("u", u))
     share = _facet_share(mu, mean, roughness, coat_of(alpha, ior))
     wi = mixed_sample(
         wo, u, alpha, share, lambda u: sampling.eon_sample(wo, u, roughness, rho=mean)[0]
@@ -326,7 +320,7 @@ def dielectric_over_eon_pdf(
         >>> round(float(dielectric_over_eon_pdf(wo, wi, 0.7, 0.5, 0.3, 1.5)), 5)
         0.26516
     """
-    mu, mean = checked_draws(wo, rho, roughness, wi=wi)
+    mu, mean = checked_draws(wo, rho, roughness, wi=arguments.checked_sphere("wi", wi))
     share = _facet_share(mu, mean, roughness, coat_of(alpha, ior))
     return mixed_pdf(wo, wi, alpha, share, lambda wi: sampling.eon_pdf(wo, wi, roughness, rho=mean))
 
@@ -620,7 +614,8 @@ def varnished_sample(
         >>> wi.round(5), round(float(pdf), 5)
         (array([0.     , 0.6753 , 0.73755]), 0.22262)
     """
-    share = _share(*checked_draws(wo, rho, roughness, u=u), roughness, alpha, ior)
+    mu, mean = checked_draws(wo, rho, roughness, u=arguments.checked_pairs("u", u))
+    share = _share(mu, mean, roughness, alpha, ior)
     wi = mixed_sample(wo, u, alpha, share, lambda _: _by_cosine(u, share))
     return wi, mixed_pdf(wo, wi, alpha, share, sampling.cosine_pdf)
 
@@ -637,7 +632,8 @@ def varnished_pdf(
     >>> round(float(varnished_pdf(wo, wi, 0.7, 0.5, 0.3, 1.5)), 5)
     0.32231
     """
-    share = _share(*checked_draws(wo, rho, roughness, wi=wi), roughness, alpha, ior)
+    mu, mean = checked_draws(wo, rho, roughness, wi=arguments.checked_sphere("wi", wi))
+    share = _share(mu, mean, roughness, alpha, ior)
     return mixed_pdf(wo, wi, alpha, share, sampling.cosine_pdf)
 
 

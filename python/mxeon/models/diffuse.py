@@ -672,19 +672,17 @@ def eon_floor_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness:
     return rho / floor * eon_brdf_approx_mu(mu_o, mu_i, s, floor, roughness)
 
 
-@any_array
-def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """Reflection of QON multiplied by its own color a second time.
+def qon_tinted_twice_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
+    """QON multiplied by its reflectance a second time.
 
-    OpenPBR's thin-walled lobe in MaterialX 1.39.5 has this error: issue 3027 of MaterialX.
+    The thin-walled lobe of OpenPBR in MaterialX 1.39.5 has this error: issue 3027 of MaterialX.
     """
-    value: Array = arguments.checked("rho", rho) * qon_brdf(wo, wi, rho, sigma)
-    return value
+    return rho * qon_brdf_mu(mu_o, mu_i, s, rho, sigma)
 
 
 @any_array
 def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """Directional albedo of `qon_tinted_twice_brdf`."""
+    """Directional albedo of `qon_tinted_twice_brdf_mu`."""
     (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
     return color * color * qon_albedo_dir(m, s)
 

@@ -84,29 +84,21 @@ def refracted(wo: Array, normal: Array, ior: Array) -> Array:
     return xp.where(passes, wi, 0.0)
 
 
-@dataclass(frozen=True)
-class Facet:
-    """The microfacet that refracts wo to wi; float64 arrays, components first."""
+def transmitting_facet(wo: Array, wi: Array, ior: Array) -> tuple[Array, Array, Array]:
+    """The microfacet that refracts wo to wi: normal wh, |wo . wh| and the Jacobian |d wh / d wi|.
 
-    normal: Array  # unit vector on wo's side; 0 if no facet refracts wo to wi
-    cosine_o: Array  # |wo . wh|; 0 if there is no facet
-    cosine_i: Array  # |wi . wh|; 0 if there is no facet
-    jacobian: Array  # |d wh / d wi|: solid angle of normals per solid angle of wi
-
-    @classmethod
-    def of(cls, wo: Array, wi: Array, ior: Array) -> Facet:
-        """Facet for wo and wi; |wo + n wi|^2 (d wh / d wi) = n^2 |wi . wh|: [Walter2007], Eq. (17)."""
-        xp = array_namespace(wo, wi, ior)
-        total = wo + ior * wi
-        length = arrays.root(xp.sum(total * total, axis=0))
-        side_o, side_i = xp.sum(wo * total, axis=0), xp.sum(wi * total, axis=0)
-        real = (length > 0.0) & (side_o * side_i < 0.0) & (side_o * total[2] > 0.0)
-        scale = xp.where(real, 1.0, 0.0) / xp.where(length > 0.0, length, 1.0)
-        normal = total * (scale * xp.where(total[2] < 0.0, -1.0, 1.0))
-        cosine_o, cosine_i = (
-            arrays.trimmed(xp.abs(side) * scale, 1.0) for side in (side_o, side_i)
-        )
-        return cls(normal, cosine_o, cosine_i, (ior * scale) ** 2 * cosine_i)
+    All three are 0 if there is no such facet. With n = ior, |wo + n wi|^2 (d wh / d wi) is
+    n^2 |wi . wh|: [Walter2007], Eq. (17).
+    """
+    xp = array_namespace(wo, wi, ior)
+    total = wo + ior * wi
+    length = arrays.root(xp.sum(total * total, axis=0))
+    side_o, side_i = xp.sum(wo * total, axis=0), xp.sum(wi * total, axis=0)
+    real = (length > 0.0) & (side_o * side_i < 0.0) & (side_o * total[2] > 0.0)
+    scale = xp.where(real, 1.0, 0.0) / xp.where(length > 0.0, length, 1.0)
+    normal = total * (scale * xp.where(total[2] < 0.0, -1.0, 1.0))
+    cosine_o, cosine_i = (arrays.trimmed(xp.abs(side) * scale, 1.0) for side in (side_o, side_i))
+    return normal, cosine_o, (ior * scale) ** 2 * cosine_i
 
 
 @any_array
@@ -151,14 +143,14 @@ def evaluate_btdf(
     pairs = {"roughness": checked_roughness(roughness)}
 
     def value(wo: Array, wi: Array, roughness: Array, ior: Array, **material: Array) -> Array:
-        facet = Facet.of(wo, wi, ior)
-        F = at(facet.cosine_o, ior=ior, **material)
+        wh, cosine, jacobian = transmitting_facet(wo, wi, ior)
+        F = at(cosine, ior=ior, **material)
         above = array_namespace(wi).stack([wi[0], wi[1], -wi[2]])
         G2 = ggx.visibility_anisotropic(wo, above, roughness)
         bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # index 0 transmits nothing
         index = arrays.guarded(array_namespace(ior).maximum(ior, LEAST_IOR), bends, 1.0)
-        lobe = ggx.ndf(facet.normal, roughness) * G2 / index**2
-        f = (1.0 - F) * (4.0 * lobe * facet.cosine_o * facet.jacobian)
+        lobe = ggx.ndf(wh, roughness) * G2 / index**2
+        f = (1.0 - F) * (4.0 * lobe * cosine * jacobian)
         return f * material["tint"] if "tint" in material else f
 
     return evaluate_material(

@@ -170,14 +170,9 @@ def host_values(value: object) -> Numbers | None:
 
 
 def cosine(z: Array) -> Array:
-    """Cosine of a direction from its z, clamped to [0, 1] against rounding.
-
-    At 0 and 1 the derivative by z is 1.
-    """
-    xp = array_namespace(z)
-    if xp is NUMPY:
-        return xp.minimum(z, 1.0)  # negative values were already rejected or set to 0
-    return xp.where(z > 1.0, 1.0, xp.where(z < 0.0, 0.0, z))
+    """Cosine of a direction from its z, clamped to [0, 1] against rounding."""
+    # NumPy's directions are checked: z is not negative.
+    return np.minimum(z, 1.0) if array_namespace(z) is NUMPY else within(z)
 
 
 def least_normal(x: Array) -> float:
