@@ -41,25 +41,25 @@ def sampled(count):
 
 def fit():
     """Coefficients of X and Z by name, the numerator's first, rounded as printed."""
-    t, *rows = sampled(COUNT)
+    t, X, Z = sampled(COUNT)
     return {
         name: refined(FORM, (t,), values, np.ones(COUNT), STARTS[name])
-        for name, values in zip("XZ", rows, strict=True)
+        for name, values in (("X", X), ("Z", Z))
     }
 
 
 def largest_errors(coefficients, count=400):
     """Largest absolute errors of X and Z, at points that the fit did not use."""
-    t, *rows = sampled(count)
+    t, X, Z = sampled(count)
     return {
         name: float(np.abs(FORM.value((t,), coefficients[name]) - values).max())
-        for name, values in zip("XZ", rows, strict=True)
+        for name, values in (("X", X), ("Z", Z))
     }
 
 
 if __name__ == "__main__":
     found = fit()
-    for name, row in found.items():
-        print(*defines(FORM, row, f"BLACKBODY_{name}"), sep="\n")
+    for name, coefficients in found.items():
+        print(*defines(FORM, coefficients, f"BLACKBODY_{name}"), sep="\n")
     for name, error in largest_errors(found).items():
         print(f"{name}: largest absolute error {error:.3g}")

@@ -57,7 +57,7 @@ def albedo(mu, eighths):
             base, power = base * base, power >> 1
         inner = np.add.reduce(lobe * (4.0 * w / (1.0 + x * x)), axis=1)
         total += np.add.reduce((weight * mu_i / (M - mu * mu_i))[:, 0] * inner, axis=0)
-    return (1.0 + eighths / 8.0) / (4.0 * float(mp.pi)) * total
+    return (1.0 + eighths / 8.0) / (4.0 * np.pi) * total
 
 
 def variables(mu, roughness):

@@ -3,27 +3,24 @@
 
     python -m tools.fits.eon_sampling
 
-Two inverse distributions map a random number to a cosine, without further parameters. They have the
-form x = p + sum(a_k B_k(p)), where p is the root of the random number that makes x(p) analytic.
-Both ends are exact for any coefficients. Newton steps of minimax fits minimize the largest relative
-error of the density; they need the exact density but not the exact inverse.
+Two inverse distributions map a random number to a cosine, without further parameters, in the form
+x = p + sum(a_k B_k(p)), where p is the root of the random number that makes x(p) analytic. Values at
+p = 0 and 1 are exact for any coefficients. Newton steps of minimax fits minimize the largest relative
+error of the density. The fits need the exact density, but not its exact inverse distribution.
 
 ROOT, which only shaders use, fits y = (K / K(pi / 2))^(2/5) for a given cosine, where y is analytic
-in m = 1 - cos. It replaces an arc tangent, a cancellation and a power.
+in m = 1 - cos. The polynomial replaces an arc tangent, a cancellation and a power.
 """
 
 from tools.fits.fon_loss import closed_form
 from tools.fits.minimax import least_largest, mp, roots
 
 COUNT = 400  # points of a fit
-STEPS = 4  # Newton steps; a fifth changes no printed digit
+STEPS = 4  # Newton steps; a fifth step changes no printed digit
 
-# Average of H over the projected hemisphere: c1 - c2 of [Portsmouth2025].
-LOSS_AVG = 6 / (5 * mp.pi) - mp.one / 6
-
-# Integral over [0, 1] of the numerator of `upper_density`.
-UPPER_TOTAL = mp.pi / 4 - mp.one / 3
-
+LOSS_AVG = 6 / (5 * mp.pi) - mp.one / 6  # c1 - c2 of [Portsmouth2025], the average of H
+UPPER_TOTAL = mp.pi / 4 - mp.one / 3  # integral over [0, 1] of the numerator of `upper_density`
+# Exponents of the basis functions.
 MULTIPLE_POWERS = (2, 4, 5, 6, 7, 11)
 UPPER_POWERS = (0, 1, 2, 3, 4, 5)
 
@@ -89,30 +86,29 @@ def root_rows(points):
     return rows
 
 
+def dense_near_1(count):
+    return [1 - w**2 for w in roots(count)]
+
+
 # Columns: name, points, basis, density, exponent `root`.
 ROWS = (
-    (
-        "MULTIPLE",
-        lambda count: [1 - w**2 for w in roots(count)],
-        multiple_basis,
-        multiple_density,
-        mp.mpf(3),
-    ),
+    ("MULTIPLE", dense_near_1, multiple_basis, multiple_density, mp.mpf(3)),
     ("UPPER", roots, upper_basis, upper_density, mp.mpf(5) / 2),
 )
 
 
-def printed(coefficients):
-    """Coefficients with the ten decimals used in the package."""
-    return tuple(round(float(each), 10) for each in coefficients)
+def printed(name, coefficients):
+    """Print coefficients with ten decimals, as the package has them, and return these numbers."""
+    rounded = [round(float(each), 10) for each in coefficients]
+    print(f"{name} = ({', '.join(f'{c:.10f}' for c in rounded)})")
+    return rounded
 
 
 if __name__ == "__main__":
     for name, points, *row in ROWS:
-        found = printed(fitted(points(COUNT), *row))
-        print(f"{name} = ({', '.join(f'{c:.10f}' for c in found)})")
+        found = printed(name, fitted(points(COUNT), *row))
         largest = max(abs(density_error(p, *row, found)[0]) for p in points(10 * COUNT + 1))
         print(f"largest relative error of the density {float(largest):.3g}")
     found, largest = least_largest(root_rows(roots(COUNT)), [mp.one] * COUNT)
-    print(f"ROOT = ({', '.join(f'{c:.10f}' for c in printed(found))})")
+    printed("ROOT", found)
     print(f"largest relative error {float(largest):.3g}")

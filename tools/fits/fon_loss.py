@@ -3,8 +3,8 @@
 
     H(mu) = mu [P(mu) + (1 - S)(1 - mu) Q(mu)],  S = sqrt(1 - mu^2)
 
-S contains the branch point of H at mu = 1, so errors fall geometrically with the degrees. The
-second term vanishes at both ends, so nothing cancels there. P and Q are fitted together to the
+S contains the branch point of H at mu = 1, so errors fall geometrically with the degrees of P and Q.
+The term with Q vanishes at both ends, so nothing cancels there. P and Q are fitted together to the
 closed form, and minimize the largest relative error of H.
 
     python -m tools.fits.fon_loss
@@ -21,7 +21,7 @@ DEGREE_P, DEGREE_Q = 4, 3
 DIGITS = 9  # enough to distinguish any two float32 numbers
 COUNT = 200  # points of the fit
 
-# Cosines in float32 for measuring errors: dense in all decades from 1e-8, and in [0, 1].
+# Cosines in float32 at which errors are measured: dense in all decades from 1e-8, and in [0, 1].
 CHECKED = np.unique(
     np.concatenate([np.logspace(-8, 0, 100_000), np.linspace(1e-5, 1, 100_000)]).astype("f4")
 )
@@ -46,12 +46,10 @@ def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
     """Coefficients that minimize the largest relative error on `COUNT` points, dense towards both ends."""
     rows = []
     for mu in extrema(COUNT + 1)[1:]:
-        even = mu / closed_form(mu)
-        odd = even * (1 - mp.sqrt(1 - mu**2)) * (1 - mu)
-        powers = [mu**k for k in range(max(degree_p, degree_q) + 1)]
+        p = mu / closed_form(mu)
+        q = p * (1 - mp.sqrt(1 - mu**2)) * (1 - mu)
         rows.append(
-            [even * each for each in powers[: degree_p + 1]]
-            + [odd * each for each in powers[: degree_q + 1]]
+            [p * mu**k for k in range(degree_p + 1)] + [q * mu**k for k in range(degree_q + 1)]
         )
     x, _ = least_largest(rows, [mp.one] * len(rows))
     rounded = np.array([float(mp.nstr(each, DIGITS)) for each in x])

@@ -58,10 +58,10 @@ def dielectric_fit():
     D = [mp.one] * COUNT
     for _ in range(STEPS):
         rows, right = [], []
-        for x, goal, divisor in zip(t, T, D, strict=True):
+        for x, quotient, divisor in zip(t, T, D, strict=True):
             factors = [x / divisor * x**k for k in range(above)]
-            rows.append(factors + [-goal * each for each in factors[1 : 1 + len(FORM.below)]])
-            right.append(goal * factors[0])
+            rows.append(factors + [-quotient * each for each in factors[1 : 1 + len(FORM.below)]])
+            right.append(quotient * factors[0])
         found, _ = least_largest(rows, right)
         D = [1 + mp.fsum(each * x**k for k, each in enumerate(found[above:], 1)) for x in t]
     return tuple(float(mp.nstr(x, DIGITS)) for x in found)
@@ -69,9 +69,9 @@ def dielectric_fit():
 
 def dielectric_error(coefficients):
     """Largest absolute error of F_ss on a finer set of points than the fit's."""
-    t = roots(4 * COUNT + 1)
-    exact = np.array([dielectric_average(1 / x) for x in t], float)
-    t = np.array(t, float)
+    points = roots(4 * COUNT + 1)
+    exact = np.array([dielectric_average(1 / x) for x in points], float)
+    t = np.array(points, float)
     return float(np.abs(1.0 - exact - t * FORM.value((t,), coefficients)).max())
 
 
@@ -110,8 +110,8 @@ if __name__ == "__main__":
     found = dielectric_fit()
     print("dielectrics", *printed(found))
     print(f"largest absolute error, dielectrics: {dielectric_error(found):.3g}")
-    shares = conductor_fit()
-    print("metals", *printed(shares))
-    for least in (0.5, 0.2):  # least extinction: of the fit's domain, and below it
-        error = conductor_error(shares, np.linspace(0.05, 5.0, 200), np.linspace(least, 10.0, 200))
+    weights = conductor_fit()
+    print("metals", *printed(weights))
+    for least in (0.5, 0.2):  # least extinction of the fit's domain, and a smaller one
+        error = conductor_error(weights, np.linspace(0.05, 5.0, 200), np.linspace(least, 10.0, 200))
         print(f"largest absolute error, metals of an extinction from {least}: {error:.3g}")

@@ -29,32 +29,31 @@ START = (
     *(-1.49084, 5.82249, 1.60299, 0.74937, 1.79916),
     *(0.225562, -0.0983618, 4.00769, 1.57355, 0.538882, -12.0367, -1.69065, -1.00164, 7.53262),
 )
-DEGREE, PANELS = 12, 10  # quadrature nodes per panel; panels, finest at the mirror direction
+DEGREE, PANELS = 12, 10  # quadrature nodes per panel; panels, narrowest at the mirror direction
 NEWTON = 6  # Newton steps from the asymptotic root to 40 digits
 LEAST = 1e-4  # smallest alpha and cosine of the fit
 
 
 def legendre(count):
     """Gauss-Legendre nodes and weights on [0, 1], rounded from 40 digits."""
+
+    def slope(x):
+        return count * (mp.legendre(count - 1, x) - x * mp.legendre(count, x)) / (1 - x * x)
+
     nodes, weights = [], []
     for k in range(count):
         x = mp.cos(mp.pi * (k + mp.mpf(3) / 4) / (count + mp.mpf(1) / 2))
         for _ in range(NEWTON):
-            x -= mp.legendre(count, x) / (_slope(count, x))
+            x -= mp.legendre(count, x) / slope(x)
         nodes.append(float((1 + x) / 2))
-        weights.append(float(1 / ((1 - x * x) * _slope(count, x) ** 2)))
+        weights.append(float(1 / ((1 - x * x) * slope(x) ** 2)))
     return np.array(nodes), np.array(weights)
 
 
-def _slope(count, x):
-    return count * (mp.legendre(count - 1, x) - x * mp.legendre(count, x)) / (1 - x * x)
-
-
-def graded(degree=DEGREE, panels=PANELS):
+def graded():
     """Nodes and weights on [0, 1] in panels; each panel is a quarter as wide as the next."""
-    x, w = legendre(degree)
-    ends = [0.0] + [4.0 ** (k - panels + 1) for k in range(panels)]
-    pairs = list(pairwise(ends))
+    x, w = legendre(DEGREE)
+    pairs = list(pairwise([0.0] + [4.0 ** (k - PANELS + 1) for k in range(PANELS)]))
     nodes = np.concatenate([a + (b - a) * x for a, b in pairs])
     return nodes, np.concatenate([(b - a) * w for a, b in pairs])
 
@@ -63,7 +62,8 @@ def incident(mu, alpha):
     """Terms of the albedo's integrand around the mirror direction, with nodes along the first axis.
 
     With t = tan((theta_o - theta_i) / 2), D G2 / (4 mu_o) is pre (u / (u - k))^2 over the azimuth,
-    where u - k goes from `low` at the mirror's azimuth to `high` opposite.
+    where u - k goes from `low` at the mirror direction's azimuth to `high` at the opposite azimuth.
+    Returns k, `low`, `high` and `pre`.
     """
     node, weight = (each.reshape(-1, *(1,) * np.ndim(mu)) for each in graded())
     s = np.sqrt((1.0 - mu) * (1.0 + mu))
@@ -144,22 +144,14 @@ def value_errors(coefficients, across=145, along=97):
     """
     mu, alpha = points(across, along)
     E, v = albedo(mu, alpha), peak(mu, alpha)
-    wrong = np.abs(fitted(mu, alpha, coefficients) - E) / E
+    relative = np.abs(fitted(mu, alpha, coefficients) - E) / E
     factor = np.minimum(v, 1.0) * (1.0 - E) / E
-    return float(np.max(np.minimum(v / E, 1.0) * wrong)), float(np.max(factor))
-
-
-def main():
-    """Print the lines for the shaders and the errors of the fit."""
-    coefficients = fit()
-    print(*printed(coefficients))
-    print(f"largest absolute error {largest_error(coefficients):.3g}")
-    print(
-        "of a value over itself {:.3g}, times the error of F_ss {:.2g}".format(
-            *value_errors(coefficients)
-        )
-    )
+    return float(np.max(np.minimum(v / E, 1.0) * relative)), float(np.max(factor))
 
 
 if __name__ == "__main__":
-    main()
+    found = fit()
+    print(*printed(found))
+    print(f"largest absolute error {largest_error(found):.3g}")
+    error, factor = value_errors(found)
+    print(f"of a value over itself {error:.3g}, times the error of F_ss {factor:.2g}")

@@ -25,7 +25,8 @@ from mxeon.models.microfacet.slopes import slope_nodes
 from tools.fits.ggx_albedo import fitted
 from tools.fits.minimax import shipped
 
-MISSED = (-0.1268, 0.074, -0.0792, 0.0696)
+MISSED = (-0.1268, 0.074, -0.0792, 0.0696)  # the shader's C_0 to C_3
+# The grid of the fit: larger alpha, ratio of both alphas, cosine and azimuth of wo.
 LARGEST = (1.0, 0.6, 0.3, 0.1, 0.05)
 RATIOS = (1.3, 2.0, 3.0, 4.0, 8.0, 16.0, 30.0, 50.0)
 COSINES = (0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.5, 0.7, 0.9, 0.99)
@@ -38,10 +39,9 @@ def points(ratios=RATIOS):
         each.ravel() for each in np.meshgrid(LARGEST, ratios, COSINES, AZIMUTHS, indexing="ij")
     )
     s = np.sqrt(1.0 - mu * mu)
-    keep = a / ratio >= 1e-3
-    return np.stack([s * np.cos(phi), s * np.sin(phi), mu])[:, keep], np.stack([a, a / ratio])[
-        :, keep
-    ]
+    wo, alpha = np.stack([s * np.cos(phi), s * np.sin(phi), mu]), np.stack([a, a / ratio])
+    keep = alpha[1] >= 1e-3
+    return wo[:, keep], alpha[:, keep]
 
 
 def exact(wo, alpha, ior=None, block=64):
@@ -69,6 +69,12 @@ def missed(wo, alpha):
     return 1.0 - fitted(*terms(wo, alpha)[0], shipped("ggx_albedo", "ggx_missing"))
 
 
+def corrected(wo, alpha, coefficients=MISSED):
+    """E_ss of the anisotropic facets by the shaders' fit."""
+    factor = 1.0 + np.tensordot(coefficients, terms(wo, alpha)[1], axes=1)
+    return 1.0 - missed(wo, alpha) * factor
+
+
 def visible(wo, alpha):
     """Cosine and alpha of the isotropic facets for Fresnel averages."""
     r2 = 0.5 * np.sum(alpha**2, axis=0)
@@ -81,8 +87,8 @@ def visible(wo, alpha):
 
 def fit(wo, alpha):
     """The four coefficients, and the largest relative error of E_ss."""
-    E, lost, factors = exact(wo, alpha), missed(wo, alpha), terms(wo, alpha)[1]
-    slope, offset = -(lost / E * factors).T, (1.0 - lost) / E - 1.0
+    E, loss, factors = exact(wo, alpha), missed(wo, alpha), terms(wo, alpha)[1]
+    slope, offset = -(loss / E * factors).T, (1.0 - loss) / E - 1.0
     one = np.ones((len(offset), 1))
     found = linprog(
         [0.0] * 4 + [1.0],
@@ -96,21 +102,19 @@ def fit(wo, alpha):
 def largest_error(ratios=RATIOS, coefficients=MISSED):
     """Largest relative error of E_ss for these ratios of the alphas."""
     wo, alpha = points(ratios)
-    E = 1.0 - missed(wo, alpha) * (1.0 + np.tensordot(coefficients, terms(wo, alpha)[1], axes=1))
-    return float(np.max(np.abs(E / exact(wo, alpha) - 1.0)))
+    return float(np.max(np.abs(corrected(wo, alpha, coefficients) / exact(wo, alpha) - 1.0)))
 
 
 def largest_visible_error(ratios=RATIOS, ior=1.5):
-    """Largest absolute error of a dielectric's albedo if E_ss is exact."""
+    """Largest absolute error of a dielectric's albedo due to its Fresnel average, with exact E_ss."""
     wo, alpha = points(ratios)
-    mu, own = visible(wo, alpha)
-    view = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu])
-    isotropic = np.stack([own, own])
-    average = exact(view, isotropic, ior) / exact(view, isotropic)
+    mu, isotropic = visible(wo, alpha)
+    facets = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu]), np.stack([isotropic, isotropic])
+    average = exact(*facets, ior) / exact(*facets)
     return float(np.max(np.abs(average * exact(wo, alpha) - exact(wo, alpha, ior))))
 
 
-def main():
+if __name__ == "__main__":
     found, error = fit(*points())
     print("1 - E_ss:", *found.round(4), f"error {error:.3g}")
     for last in (4, 8):
@@ -118,7 +122,3 @@ def main():
             f"up to a ratio of {RATIOS[last - 1]:g}: E_ss {largest_error(RATIOS[:last]):.3g}, "
             f"albedo of a dielectric {largest_visible_error(RATIOS[:last]):.3g}"
         )
-
-
-if __name__ == "__main__":
-    main()

@@ -65,6 +65,11 @@ class Curves:
     form: Form
     below: tuple  # coefficients of the denominator, found by a search
 
+    @property
+    def functions(self):
+        """The reflectance of each curve as a function of the cosine."""
+        return [lambda c, n=n: self.reflectance(c, n) for n in self.parameters]
+
 
 def below(total, count):
     """Exponents of all monomials in `count` variables up to a total degree."""
@@ -116,7 +121,7 @@ def points(across=43, along=25):
 def averages(mu, alpha, functions):
     """E_ss, and averages of functions of the cosine over the visible facets."""
     blocks = [
-        _averages(mu[i : i + BLOCK], alpha[i : i + BLOCK], functions)
+        integrals(mu[i : i + BLOCK], alpha[i : i + BLOCK], functions)
         for i in range(0, len(mu), BLOCK)
     ]
     total = np.concatenate(blocks, axis=1)
@@ -124,9 +129,9 @@ def averages(mu, alpha, functions):
 
 
 def azimuths(scale):
-    """Nodes and weights on [0, 1], along axis 1: panels [0, scale], [scale^(7/8), ...], ..., [.., 1].
+    """Nodes and weights on [0, 1], along axis 1, in panels that end at powers k / 8 of `scale`.
 
-    Beyond the first panel they are uniform in the reciprocal, which suits the tail of a peak at 0.
+    Beyond the first panel, nodes are uniform in the reciprocal, which suits the tail of a peak at 0.
     """
     x, w = (each[None, :, None] for each in legendre(DEGREE))
     root = np.sqrt(np.sqrt(np.sqrt(scale)))
@@ -141,31 +146,21 @@ def azimuths(scale):
     return np.concatenate(nodes, axis=1), np.concatenate(weights, axis=1)
 
 
-def _averages(mu, alpha, functions):
+def integrals(mu, alpha, functions):
+    """Integrals over the visible facets: of 1, which is E_ss, and of functions of the cosine."""
     k, low, high, pre = (each[:, None] for each in incident(mu, alpha))
-    tangents, widths = azimuths(np.sqrt(low / high))
-    far, rest = (each[None, :, None] for each in legendre(OUTER))
-    # The variable is the squared sine of half the azimuth, which is 0 at the mirror's azimuth.
+    tangent, width = azimuths(np.sqrt(low / high))
     shape = (len(low), OUTER, low.shape[-1])
-    sine2 = np.concatenate(
-        [
-            tangents * tangents / (1.0 + tangents * tangents),
-            np.broadcast_to(1.0 / (1.0 + far * far), shape),
-        ],
-        axis=1,
-    )
-    step = np.concatenate(
-        [widths / (1.0 + tangents * tangents), np.broadcast_to(rest / (1.0 + far * far), shape)],
-        axis=1,
-    ) * (4.0 / PI)
+    cotangent, rest = (np.broadcast_to(each[None, :, None], shape) for each in legendre(OUTER))
+    # The variable is the squared sine of half the azimuth, which is 0 at the mirror direction's.
+    near, far = 1.0 + tangent * tangent, 1.0 + cotangent * cotangent
+    sine2 = np.concatenate([tangent * tangent / near, 1.0 / far], axis=1)
+    step = np.concatenate([width / near, rest / far], axis=1) * (4.0 / np.pi)
     w = low * (1.0 - sine2) + high * sine2
     density = step * pre * (1.0 + k / w) * (1.0 + k / w)
     c = np.minimum(0.5 * np.sqrt(w + k), 1.0)
     values = [density] + [density * function(c) for function in functions]
     return np.stack([np.add.reduce(np.add.reduce(each, axis=1), axis=0) for each in values])
-
-
-PI = float(mp.pi)
 
 
 def inverse(values, reflectance):
@@ -196,18 +191,16 @@ def sample(curves, mu, alpha):
 
     More curves would make the exchange singular: at fixed x and y, N is a cubic in s.
     """
-    functions = [lambda c, n=n: curves.reflectance(c, n) for n in curves.parameters]
+    functions = curves.functions
     albedo, means = averages(mu, alpha, functions)
-    columns = []
-    for j, (function, shape, count) in enumerate(
-        zip(functions, curves.shapes, curves.counts, strict=True)
-    ):
+    columns, rows = [], zip(functions, curves.shapes, curves.counts, strict=True)
+    for j, (function, shape, count) in enumerate(rows):
         kept = (np.arange(len(mu)) + j) % 3 == 0
         c = inverse(means[j][kept], function)
         low, high = np.maximum(c - 1e-5, 0.0), np.minimum(c + 1e-5, 1.0)
         slope = (function(low) - function(high)) / (high - low)
         arguments, factor = variables(curves, mu[kept], alpha[kept], shape)
-        # Where the curve is flat, c still needs a weight, or it could drift to steep parts.
+        # Where the curve is flat, c still needs a weight: otherwise c could drift to steep parts.
         weight = np.maximum(count * slope, FLAT) * albedo[kept] * factor
         columns.append((*arguments, (c - mu[kept]) / factor, weight))
     *arguments, value, weight = (np.concatenate(each) for each in zip(*columns, strict=True))
@@ -221,14 +214,13 @@ def fit(curves):
 
 def errors(curves, coefficients, mu, alpha):
     """Largest absolute error of the albedo E_ss F(c) for each curve."""
-    functions = [lambda c, n=n: curves.reflectance(c, n) for n in curves.parameters]
+    functions = curves.functions
     albedo, means = averages(mu, alpha, functions)
-    return [
-        float(
-            np.max(albedo * np.abs(function(cosine(curves, mu, alpha, shape, coefficients)) - mean))
-        )
-        for function, mean, shape in zip(functions, means, curves.shapes, strict=True)
-    ]
+    found = []
+    for function, mean, shape in zip(functions, means, curves.shapes, strict=True):
+        c = cosine(curves, mu, alpha, shape, coefficients)
+        found.append(float(np.max(albedo * np.abs(function(c) - mean))))
+    return found
 
 
 def dip_sample(mu, alpha, schlick_coefficients):
@@ -242,23 +234,16 @@ def dip_sample(mu, alpha, schlick_coefficients):
     return (mu, np.sqrt(alpha)), (mean - dip(c)) / factor, factor
 
 
-def main():
-    """Print the lines for the shaders and the errors of the fits."""
-    found = {}
-    for curves in (DIELECTRIC, SCHLICK):
-        found[curves.function] = coefficients = fit(curves)
-        print(curves.function, *printed(coefficients))
-        for n, error in zip(
-            curves.parameters, errors(curves, coefficients, *points(49, 33)), strict=True
-        ):
-            print(f"largest absolute error at {n}: {error:.3g}")
-    sampled = dip_sample(*points(41, 29), found[SCHLICK.function])
-    coefficients = numerator(DIP_FORM, *sampled, DIP_BELOW)
-    print("ggx_dip", *printed(coefficients))
-    arguments, value, weight = dip_sample(*points(49, 33), found[SCHLICK.function])
-    error = np.max(weight * np.abs(DIP_FORM.value(arguments, coefficients) - value))
-    print(f"largest absolute error, for a dip to 0: {error / dip(1.0 / 7.0):.3g}")
-
-
 if __name__ == "__main__":
-    main()
+    for curves in (DIELECTRIC, SCHLICK):
+        found = fit(curves)
+        print(curves.function, *printed(found))
+        largest = errors(curves, found, *points(49, 33))
+        for n, error in zip(curves.parameters, largest, strict=True):
+            print(f"largest absolute error at {n}: {error:.3g}")
+    # The coefficients for Schlick's curves, which were found last, give the cosine of the dip.
+    dip_found = numerator(DIP_FORM, *dip_sample(*points(41, 29), found), DIP_BELOW)
+    print("ggx_dip", *printed(dip_found))
+    arguments, value, weight = dip_sample(*points(49, 33), found)
+    error = np.max(weight * np.abs(DIP_FORM.value(arguments, dip_found) - value))
+    print(f"largest absolute error, for a dip to 0: {error / dip(1.0 / 7.0):.3g}")

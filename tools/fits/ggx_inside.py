@@ -59,11 +59,14 @@ def points(seed=SEED, count=COUNT):
     return np.clip(mu, LEAST, 1.0), np.clip(alpha, LEAST, 1.0)
 
 
+def view(mu):
+    return np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
+
+
 def albedo(mu, alpha, ior):
     """Directional albedo without compensation. Index 0 gives E_ss."""
-    wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
     roughness = np.stack([alpha, alpha], axis=-1)
-    return np.ravel(dielectric_albedo_dir(wo, 1.0, roughness, ior, compensate=False))
+    return np.ravel(dielectric_albedo_dir(view(mu), 1.0, roughness, ior, compensate=False))
 
 
 def passing(mu, alpha, ior, c):
@@ -85,9 +88,9 @@ def passing(mu, alpha, ior, c):
         c[19],
         c[22] + c[23] * x,
     )
-    risen = np.exp(c[24] + c[25] * ior + c[26] * alpha + c[27] * x) * alpha * bent / mu
+    rise = np.exp(c[24] + c[25] * ior + c[26] * alpha + c[27] * x) * alpha * bent / mu
 
-    def passed(a, b, k2, part, p):
+    def transmitted(a, b, k2, part, p):
         median2 = (mu * mu + a * alpha**2) / (s2 + b * alpha**2)
         critical2 = bent / (ior * ior * median2)
         v = np.clip(np.sqrt(k2 / critical2) * (1.0 - critical2), -1e6, 1e6)
@@ -100,20 +103,18 @@ def passing(mu, alpha, ior, c):
         cosine = 1.0 / np.sqrt(1.0 + 4.0 * k2 / (median2 * t * t))
         return below**p * (1.0 - fresnel_dielectric(cosine, ior))
 
-    return passed(*facets), passed(*reversed_paths) / (1.0 + risen)
+    return transmitted(*facets), transmitted(*reversed_paths) / (1.0 + rise)
 
 
 def passed(mu, alpha, ior):
     """Exact shares by reversed paths, for arrays of equal length."""
 
-    def albedos(a, n):
-        return lambda mu: dielectric_albedo_dir(
-            np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1), 1.0, [a, a], 1.0 / n
-        )
+    def outside(a, n):
+        return lambda mu: dielectric_albedo_dir(view(mu), 1.0, [a, a], 1.0 / n)
 
     rows = zip(mu, alpha, ior, strict=True)
     return np.array(
-        [reversed_transmittance(np.array([m]), a, n, albedos(a, n)).item() for m, a, n in rows]
+        [reversed_transmittance(np.array([m]), a, n, outside(a, n)).item() for m, a, n in rows]
     )
 
 
@@ -151,8 +152,8 @@ def shipped():
     return np.array([float(x.replace(" ", "")) for x in re.findall(r"(?:- )?-?\d+\.\d+", lines[0])])
 
 
-def main():
-    """Print the coefficients of a search, and errors of the shader's coefficients on new views."""
+if __name__ == "__main__":
+    # Print the coefficients of a search, then errors of the shader's coefficients at other points.
     mu, alpha = points()
     ior = np.random.default_rng(SEED).uniform(INDICES[0], INDICES[-1], len(mu))
     print(fit(mu, alpha, ior, sample(mu, alpha), passed(mu, alpha, ior)).round(5).tolist())
@@ -162,7 +163,3 @@ def main():
         print(f"largest absolute error of the albedo at {n}: {largest:.3g}")
     share = passing(mu, alpha, ior, shipped())[1] - passed(mu, alpha, ior)
     print(f"largest absolute error of the share by reversed paths: {np.abs(share).max():.3g}")
-
-
-if __name__ == "__main__":
-    main()

@@ -47,20 +47,15 @@ def error(lattice, count, alpha):
     for u in (numbers, numbers[::-1]):
         wi, _ = ggx_sample(wo, np.stack(u, axis=-1), [alpha, alpha])
         lit = np.maximum(wi[..., 2], 0.0)
-        both = wo[..., 2] * smith_lambda(lit, alpha) + lit * smith_lambda(wo[..., 2], alpha)
-        passed = 2.0 * wo[..., 2] * lit / both / smith_g1(wo, [alpha, alpha])
+        smith = wo[..., 2] * smith_lambda(lit, alpha) + lit * smith_lambda(wo[..., 2], alpha)
+        weight = 2.0 * wo[..., 2] * lit / smith / smith_g1(wo, [alpha, alpha])
         exact = ggx_albedo_dir(COSINES, alpha)
-        found = max(found, float(np.abs(passed.mean(axis=1) / exact - 1.0).max()))
+        found = max(found, float(np.abs(weight.mean(axis=1) / exact - 1.0).max()))
     return found
 
 
-def main():
-    """Print n times the largest error for each lattice and number of directions."""
+if __name__ == "__main__":
     for name, lattice in LATTICES.items():
         for count in (64, 256, 1024):
             worst = max((error(lattice, count, alpha), alpha) for alpha in ALPHAS)
             print(f"{name}, {count}: {count * worst[0]:.2f} at alpha {worst[1]:.2f}")
-
-
-if __name__ == "__main__":
-    main()

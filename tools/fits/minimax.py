@@ -6,15 +6,14 @@ reference, which all attain it. Stiefel's exchange replaces rows of the referenc
 grows, until no other row exceeds it. It is the simplex method on the dual linear program.
 
 A rational fit is N / D with D = 1 + ..., where N and D are sums of given monomials. A search in
-float64, which need not be repeatable, finds starting coefficients, or a denominator that stays away
-from 0. From there, linear fits give repeatable coefficients.
+float64, which need not be repeatable, finds starting coefficients, or a denominator without zeros.
+From there, linear fits in 40 digits give repeatable coefficients.
 """
 
 import math
 import re
 from dataclasses import dataclass
 
-import numpy as np
 from mpmath import MPContext
 
 from mxeon.shaders.functions import source_file
@@ -22,10 +21,10 @@ from mxeon.shaders.functions import source_file
 mp = MPContext()
 mp.dps = 40
 
-EXCHANGES = 500  # limit; ten times what the fits here need
+EXCHANGES = 500  # maximum number of exchanges; the fits of this folder need a tenth
 DIGITS = 8  # decimal digits of a printed coefficient, one more than float32 resolves
-SCATTER = 2654435769  # 2^32 over the golden ratio
-STEPS = 2  # Newton steps from coefficients with six digits; a third changes no printed error
+SCATTER = 2654435769  # 2^32 / golden ratio; its multiples modulo 2^32 are evenly scattered
+STEPS = 2  # Newton steps from coefficients with six digits; a third step changes no printed error
 
 
 def least_largest(rows, right):
@@ -85,46 +84,37 @@ class Form:
 
     def value(self, variables, coefficients):
         """Values at arrays of variables; the numerator's coefficients come first."""
-        count = len(self.above)
-        above, below = (
-            sum(
-                (c * _monomial(variables, m) for m, c in zip(monomials, row, strict=True)),
-                np.zeros_like(variables[0]),
-            )
-            for monomials, row in (
-                (self.above, coefficients[:count]),
-                (self.below, coefficients[count:]),
-            )
-        )
-        return above / (1.0 + below)
+        monomials, count = (*self.above, *self.below), len(self.above)
+        terms = [c * _monomial(variables, m) for c, m in zip(coefficients, monomials, strict=True)]
+        return sum(terms[:count]) / (1.0 + sum(terms[count:]))
 
 
 def _monomial(point, exponents):
     return math.prod(x**k for x, k in zip(point, exponents, strict=True))
 
 
-def _exact(*columns):
-    """Convert columns of numbers to 40 digits."""
-    return [[mp.mpf(x) for x in column] for column in columns]
+def _samples(form, variables, values, weights):
+    """For each point: monomials of numerator and denominator, value and weight, in 40 digits."""
+    for columns in zip(*variables, values, weights, strict=True):
+        *point, value, weight = map(mp.mpf, columns)
+        above, below = (
+            [_monomial(point, m) for m in monomials] for monomials in (form.above, form.below)
+        )
+        yield above, below, value, weight
 
 
-def refined(form, variables, values, weights, start, steps=STEPS):
+def refined(form, variables, values, weights, start):
     """Minimax coefficients of the weighted error, by Newton steps from a start."""
-    points = list(zip(*_exact(*variables), strict=True))
-    above, below = (
-        [[_monomial(point, m) for m in monomials] for point in points]
-        for monomials in (form.above, form.below)
-    )
-    goals, scale = _exact(values, weights)
+    samples = list(_samples(form, variables, values, weights))
     found, count = [mp.mpf(c) for c in start], len(form.above)
-    for _ in range(steps):
+    for _ in range(STEPS):
         rows, right = [], []
-        for a, b, goal, weight in zip(above, below, goals, scale, strict=True):
-            D = 1 + mp.fdot(b, found[count:])
-            N = mp.fdot(a, found[:count]) / D
+        for above, below, value, weight in samples:
+            D = 1 + mp.fdot(below, found[count:])
+            quotient = mp.fdot(above, found[:count]) / D
             factor = weight / D
-            rows.append([factor * x for x in a] + [-factor * N * x for x in b])
-            right.append(weight * (goal - N))
+            rows.append([factor * x for x in above] + [-factor * quotient * x for x in below])
+            right.append(weight * (value - quotient))
         change, _ = least_largest(rows, right)
         found = [x + d for x, d in zip(found, change, strict=True)]
     return tuple(float(mp.nstr(x, DIGITS)) for x in found)
@@ -133,10 +123,9 @@ def refined(form, variables, values, weights, start, steps=STEPS):
 def numerator(form, variables, values, weights, below):
     """Minimax coefficients of the numerator for a given denominator, followed by the denominator's."""
     rows, right = [], []
-    points = zip(*_exact(*variables), strict=True)
-    for point, value, weight in zip(points, *_exact(values, weights), strict=True):
-        D = 1 + mp.fdot([_monomial(point, m) for m in form.below], below)
-        rows.append([weight / D * _monomial(point, m) for m in form.above])
+    for above, monomials, value, weight in _samples(form, variables, values, weights):
+        factor = weight / (1 + mp.fdot(monomials, below))
+        rows.append([factor * x for x in above])
         right.append(weight * value)
     # Shuffle, so that the starting rows of the exchange do not lie on few grid lines.
     order = sorted(range(len(rows)), key=lambda i: i * SCATTER % 2**32)
@@ -151,11 +140,10 @@ def printed(coefficients):
 
 def defines(form, coefficients, prefix):
     """Lines of GLSL that define the coefficients, in the order of the form."""
-    names = [f"N{''.join(map(str, m))}" for m in form.above]
-    names += [f"D{''.join(map(str, m))}" for m in form.below]
+    monomials = [("N", m) for m in form.above] + [("D", m) for m in form.below]
     return [
-        f"#define {prefix}_{name} {x:.{DIGITS}g}"
-        for name, x in zip(names, coefficients, strict=True)
+        f"#define {prefix}_{part}{''.join(map(str, m))} {x:.{DIGITS}g}"
+        for (part, m), x in zip(monomials, coefficients, strict=True)
     ]
 
 

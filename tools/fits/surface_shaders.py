@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of surface shaders due to the fits of eonlib's lobes: python -m tools.fits.surface_shaders.
 
-The layer equation uses each lobe's albedo by quadrature; eonlib uses a fit. The script compares
-both in float64, for pairs and materials drawn as in the checks, but with other seeds. It prints the
-largest errors of values and albedos due to all fits together, and of their means over a set.
+The layer equation uses each lobe's albedo by quadrature; eonlib uses a fit. The script evaluates
+surfaces with quadratures and with fits, in float64, for pairs and materials drawn as in the checks,
+but with other seeds. It prints the largest errors of values and albedos due to all fits together,
+and of their means over a set.
 """
 
 from contextlib import ExitStack, contextmanager, suppress
@@ -22,7 +23,7 @@ from mxeon.models.microfacet import fresnel
 from tools.fits import conty_kulla_albedo, fresnel_average, ggx_anisotropic, ggx_cosine
 from tools.fits.minimax import shipped
 
-SETS = 32
+SETS = 32  # number of random sets of pairs and materials
 LEAST = 1e-6  # smallest cosine and roughness to which shaders apply their fits
 EXACT = nodes.ShadingPoints._albedo
 
@@ -39,16 +40,9 @@ def facets(wo, roughness):
     return np.stack([*wo[:2], np.maximum(wo[2], LEAST)]), alpha
 
 
-def albedo(wo, roughness):
-    """E_ss by the shader's fit."""
-    factors = ggx_anisotropic.terms(wo, roughness)[1]
-    scale = 1.0 + np.tensordot(ggx_anisotropic.MISSED, factors, axes=1)
-    return 1.0 - ggx_anisotropic.missed(wo, roughness) * scale
-
-
 def missing(wo, roughness):
     """(1 - E_ss) / E_ss by the shader's fit."""
-    E = albedo(*facets(wo, roughness))
+    E = ggx_anisotropic.corrected(*facets(wo, roughness))
     return (1.0 - E) / E
 
 
@@ -66,8 +60,8 @@ def conductor_average(ior, extinction):
     )
 
 
-def fitted_albedo(points, exact, node, wo, inputs):
-    """Albedo of a lobe: the shader's fit if the lobe lies over another, otherwise exact."""
+def lobe_albedo(points, exact, node, wo, inputs):
+    """Albedo of a lobe: the shader's fit if the lobe can be a top layer, otherwise exact."""
     fit = LAYERED.get(node.name)
     if fit is None or exact is not node.albedo:
         return EXACT(points, exact, node, wo, inputs)
@@ -77,7 +71,7 @@ def fitted_albedo(points, exact, node, wo, inputs):
 def _microfacets(wo, inputs, curve):
     """E_ss F(c) (1 + F_ss (1 - E_ss) / E_ss); `curve` computes F(c) and F_ss from mu and alpha."""
     wo, roughness = facets(wo.T, inputs["roughness"].T)
-    E = albedo(wo, roughness)[:, np.newaxis]
+    E = ggx_anisotropic.corrected(wo, roughness)[:, np.newaxis]
     F, average = curve(*ggx_anisotropic.visible(wo, roughness))
     return E * F + F * average * (1.0 - E)
 
@@ -111,7 +105,7 @@ def _sheen(wo, inputs):
     return inputs["color"] * E[:, np.newaxis]
 
 
-# Functions that compute fitted albedos, by name of the node.
+# Functions that compute fitted albedos of top layers, by name of the node.
 LAYERED = {"dielectric": _dielectric, "schlick": _schlick, "conty_kulla": _sheen}
 
 
@@ -121,7 +115,7 @@ def fits():
     curve = microfacets.CONDUCTOR_CURVE
     exact = curve.average
     with ExitStack() as stack:
-        stack.enter_context(patch.object(nodes.ShadingPoints, "_albedo", fitted_albedo))
+        stack.enter_context(patch.object(nodes.ShadingPoints, "_albedo", lobe_albedo))
         stack.enter_context(patch.object(microfacets, "missing_of", missing))
         stack.enter_context(patch.object(fresnel, "dielectric_avg", dielectric_average))
         stack.callback(object.__setattr__, curve, "average", exact)  # the class is frozen
@@ -135,16 +129,18 @@ def errors(shader, seed):
     [batch] = batches = shader.batches(shader.counts)
     [views] = shader.views(batches, shader.counts)
     SEED.reset(token)
-    asked = ((batch, "direct"), (views, "environment"))
-    exact = [shader._reference(*each) for each in asked]
+
+    def evaluated():
+        return np.pi * shader._reference(batch, "direct"), shader._reference(views, "environment")
+
+    value, albedo = evaluated()
     with fits():
-        fitted = [shader._reference(*each) for each in asked]
-    exact[0], fitted[0] = np.pi * exact[0], np.pi * fitted[0]
+        fitted_value, fitted_albedo = evaluated()
     stretched = specs.stretched(batch)
     pairs = {
-        "values": (fitted[0][~stretched], exact[0][~stretched]),
-        "albedos": (fitted[1], exact[1]),
-        "values of two alphas": (fitted[0][stretched], exact[0][stretched]),
+        "values": (fitted_value[~stretched], value[~stretched]),
+        "albedos": (fitted_albedo, albedo),
+        "values of two alphas": (fitted_value[stretched], value[stretched]),
     }
     return {
         f"{kind}{suffix}": float(metric(*pair).max())
@@ -154,10 +150,11 @@ def errors(shader, seed):
     }
 
 
-def largest(shader, sets=SETS):
+def largest(shader):
+    """Largest errors over random sets by name, without sets that the layer equation excludes."""
     found, seeds = [], count(SEED.get() + 1)
-    while len(found) < sets:
-        with suppress(OutsideModel):  # the layer equation does not cover the material
+    while len(found) < SETS:
+        with suppress(OutsideModel):
             found.append(errors(shader, next(seeds)))
     return {name: max(each[name] for each in found) for name in found[0]}
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of `genglsl/lib/thin_film.glsl` against all orders and exact averages: python -m tools.fits.thin_film.
 
-The shader sums only orders that matter, and averages over the hemisphere and over visible facets
-by three cosines each. Each cosine stands for a range, within which fringes partly cancel. This
-prints the largest errors for films of up to 1000 nm on each kind of substrate and cosines from 0.1.
+The shader sums only the orders of interference that matter, and averages over the hemisphere and
+over visible facets by three cosines each. Each cosine stands for a range, within which fringes
+partly cancel. The script prints the largest errors for films of up to 1000 nm on each kind of
+substrate and cosines from 0.1.
 
-A check measures the root mean square error of a set of films. Other sets, drawn in the same way,
-give its tolerance, which is at most a third of the largest error of a single film. So it detects a
-wrong digit, which affects all films, even if its effect is below the largest error of one film.
+A check measures the root mean square error of a set of films. Its tolerance is the largest error of
+other sets that are drawn in the same way, at most a third of the largest error of a single film. So
+the check detects a wrong digit, which affects all films, even if its effect is below that error.
 """
 
 import numpy as np
@@ -23,17 +24,13 @@ from mxeon.models.thin_film import SUBSTRATES, TEXT, film_albedo_dir, film_curve
 
 # Ranges of roughness, cosine of the view, thickness in nm, and index.
 FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
-CLEAR = {
-    "alpha": SHARP.alpha,
-    "mu": SHARP.mu,
-    "thickness": SHARP.thickness,
-    "index": (LEAST_OIL, 2.5),
-}
+BARE = FILMS | {"thickness": (0.0, 0.0), "index": (1.0, 1.0)}
+VISIBLE = FILMS | {"index": (LEAST_FILM, 2.5)}
+CLEAR = dict(alpha=SHARP.alpha, mu=SHARP.mu, thickness=SHARP.thickness, index=(LEAST_OIL, 2.5))
 DARK = 1e-3  # errors are relative to the reflectance, but at least to this one
 STEP = 1e-6  # relative change of the thickness for difference quotients
-# The shader's values, from `thin_film_nodes.py`. NODES: cosines, weights and widths of the nodes
-# for F_ss. FACETS: polynomials for the nodes of visible facets: mean of their cosines, reach of the
-# nodes around the mean, and the bend of their positions.
+# Values of the shader, from `thin_film_nodes.py`. NODES: cosines, weights and widths of the nodes for
+# F_ss. FACETS: polynomials of `facets`, for the mean, reach and bend of the visible facets' nodes.
 NODES = (
     (0.17999, 0.55701, 0.88292),
     (0.10982, 0.43737, 0.4528),
@@ -50,20 +47,18 @@ FACETS = (
 # square counts as at most ORDER_RATIO of the last.
 VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 8e-14, 1e-3, 0.6
 NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # narrowest spectral sensitivity
-LEAST_PATH, LEAST_LOST = (
-    1e-21,
-    1e-12,
-)  # least path difference in m, and least share of escaping light
+LEAST_PATH = 1e-21  # least path difference in m
+LEAST_LOSS = 1e-12  # least share of escaping light
 # Parameters of the search for the largest error.
 SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # seed, films per step, steps of evolution
-KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of worst films; sizes of steps from them
+WORST, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of worst films; sizes of steps from them
 NUMBERS = 10  # numbers that describe a film, its substrate and its view
-COLORED = 17  # NUMBERS, color82, color90 and the exponent of Schlick's curve
+COLORED = 17  # NUMBERS, and seven for color82, color90 and the exponent of Schlick's curve
 FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # sizes of steps with COLORED numbers
 MOVED = 0.3  # share of the COLORED numbers that change in a step
 LEAST = 1e-3  # least number, except for roughness, cosine and extinction: 0 reflects nothing
-# The worst films of longer searches, which random starts miss: a metal with total reflection in the
-# film, and glass at grazing. Both films are 1000 nm thick.
+# The worst films of longer searches, which random starts miss: a metal with total reflection in a
+# film of 1000 nm, and glass at grazing below a film of 1000 nm.
 GLASS = (0.0298, 0.001, 1.0, 0.0462, *[0.3587] * 6)
 CORNERS = {
     "dielectric_bsdf": GLASS,
@@ -82,15 +77,16 @@ def shader_curve(category, material, mu, width=0.0):
     spread = (2.0 * film.METERS * thickness) ** 2 * width * mu / np.maximum(opd, LEAST_PATH)
     interfaces = SUBSTRATES[category](mu, n, TEXT, **substrate(material))
     # `means` are reflectances averaged over phases; `weights` and `sizes` give orders' amplitudes.
-    pairs = [np.broadcast_arrays(r12**2, R23) for r12, _, R23 in interfaces]
-    lost = [np.maximum(1.0 - first * second, LEAST_LOST) for first, second in pairs]
-    means = [R + (1.0 - R) ** 2 * S / each for (R, S), each in zip(pairs, lost, strict=True)]
-    weights = [(1.0 - R) * (1.0 - S) / each for (R, S), each in zip(pairs, lost, strict=True)]
-    sizes = [np.sqrt(R * S) for R, S in pairs]
+    R, S = (
+        np.stack(each)
+        for each in zip(*(np.broadcast_arrays(r**2, R23) for r, _, R23 in interfaces), strict=True)
+    )
+    loss, sizes = np.maximum(1.0 - R * S, LEAST_LOSS), np.sqrt(R * S)
+    means, weights = R + (1.0 - R) ** 2 * S / loss, (1.0 - R) * (1.0 - S) / loss
     # Sum all orders that matter in some polarization or channel.
-    bright = 3.0 * ((0.5 * sum(means)) ** 2).mean(axis=0)
+    bright = 3.0 * ((0.5 * means.sum(axis=0)) ** 2).mean(axis=0)
     least = np.maximum(VALUE_ORDER * bright, WIDTH_ORDER * np.square(width))
-    count = order_count(np.stack(weights), np.stack(sizes), opd, spread, least)
+    count = order_count(weights, sizes, opd, spread, least)
     xyz = sum(
         mean - 2.0 * weight * counted_orders(r12 * (x + 1j * y), opd, spread, count)
         for mean, weight, (r12, (x, y), _) in zip(means, weights, interfaces, strict=True)
@@ -121,7 +117,7 @@ def counted_orders(z, opd, spread, count):
 
 
 def decay(mu, var, opd, spread):
-    """Exponent of the damping of the first order by a sensitivity and a spread of paths."""
+    """Exponent of the damping of the first order by a Gaussian sensitivity and a spread of paths."""
     return var * (2.0 * np.pi * opd) ** 2 + 0.25 * (2.0 * np.pi * mu * spread) ** 4
 
 
@@ -141,20 +137,20 @@ def order_count(weights, sizes, opd, spread, least):
     return count
 
 
-def orders_errors(category, material, _, mu):
+def orders_errors(category, material, alpha, mu):
     """Errors of the sum of orders, relative to the largest channel or DARK, whichever is larger."""
     largest = film_curve(category).at(mu, **material).max(axis=0)
-    return curve_errors(category, material, _, mu) / np.maximum(largest, DARK)
+    return curve_errors(category, material, alpha, mu) / np.maximum(largest, DARK)
 
 
 def curve_errors(category, material, _, mu):
     """Absolute errors of the sum of orders."""
-    short, exact = shader_curve(category, material, mu), film_curve(category).at(mu, **material)
-    return np.abs(short - exact).max(axis=0)
+    exact = film_curve(category).at(mu, **material)
+    return np.abs(shader_curve(category, material, mu) - exact).max(axis=0)
 
 
 def slopes(category, material, _, mu):
-    """Derivatives of a curve by log(thickness), which scale the rounding of path differences."""
+    """Derivatives of a curve by log(thickness), to scale the rounding errors of path differences."""
     curve, thickness = film_curve(category), material["thinfilm_thickness"]
     up, down = (
         curve.at(mu, **{**material, "thinfilm_thickness": thickness * (1.0 + step)})
@@ -166,28 +162,25 @@ def slopes(category, material, _, mu):
 def wave_slopes(category, material, _, mu):
     """Derivatives of a curve by the amplitude of each Gaussian's wave."""
     thickness, index = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
-    opd = film.path_difference(mu, thickness, index)
-    slopes = 0.0
-    for interface in SUBSTRATES[category](mu, index, TEXT, **substrate(material)):
-        r12, (x, y), R23 = interface
+    opd, matrix = film.path_difference(mu, thickness, index), np.abs(np.array(TEXT.matrix))
+    total = 0.0
+    for r12, (x, y), R23 in SUBSTRATES[category](mu, index, TEXT, **substrate(material)):
         R12 = r12**2
-        passed = 1.0 - R12
-        amplitude = passed**2 * R23 / np.maximum(1.0 - R12 * R23, LEAST_LOST) - passed
+        T12 = 1.0 - R12
+        amplitude = T12**2 * R23 / np.maximum(1.0 - R12 * R23, LEAST_LOSS) - T12
         for k, v, position, var in film.GAUSSIANS:
-            height = (
-                np.abs(np.array(TEXT.matrix)[:, k]) * v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
-            )
+            height = matrix[:, k] * v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
             wave = r12 * (x + 1j * y) * np.exp(2j * np.pi * position * opd)
-            decay = var * (2.0 * np.pi * opd) ** 2
-            orders = sum(m * wave**m * np.exp(-decay * m * m) for m in range(1, 30))
-            slopes = slopes + height[:, np.newaxis] * np.abs(amplitude * orders)
-    return slopes.max(axis=0)
+            fade = decay(position, var, opd, 0.0)
+            orders = sum(m * wave**m * np.exp(-fade * m * m) for m in range(1, 30))
+            total = total + height[:, np.newaxis] * np.abs(amplitude * orders)
+    return total.max(axis=0)
 
 
-def kept(category, material, _, mu):
+def single_share(category, material, _, mu):
     """F (1 - F_ss), the factor of E_ss in a smooth lobe's albedo F (E_ss + F_ss (1 - E_ss))."""
-    airy = film_curve(category)
-    return (airy.at(mu, **material) * (1.0 - airy.average(**material))).max(axis=0)
+    curve = film_curve(category)
+    return (curve.at(mu, **material) * (1.0 - curve.average(**material))).max(axis=0)
 
 
 def average_errors(category, material, *_):
@@ -212,8 +205,8 @@ def visible_errors(category, material, alpha, mu):
 
 def albedo_errors(category, material, alpha, mu):
     """Errors of the albedo: `visible_errors`, plus the errors of F_ss times 1 - E_ss."""
-    lost = 1.0 - ggx_albedo_dir(mu, alpha)
-    return visible_errors(category, material, alpha, mu) + lost * average_errors(category, material)
+    loss = 1.0 - ggx_albedo_dir(mu, alpha)
+    return visible_errors(category, material, alpha, mu) + loss * average_errors(category, material)
 
 
 def seen_errors(category, material, alpha, mu):
@@ -236,7 +229,7 @@ def visible_average(category, material, alpha, mu):
 def visible_mean(category, material, alpha, mu, coefficients=FACETS):
     """`visible_average` by the shader's three cosines, optionally with other coefficients.
 
-    They are Gauss nodes for a semicircular density: few facets are at the ends of the range.
+    The cosines are Gauss nodes for a semicircular density: few facets are at the ends of the range.
     """
     mean, reach, bend = facets(mu, alpha, coefficients)
     total = 0.0
@@ -281,18 +274,15 @@ MEASURED = {
     "orders of curves": (curve_errors, CLEAR, COLORED),
     "slope of curves": (slopes, CLEAR),
     "waves of curves": (wave_slopes, CLEAR),
-    "E_ss in curves": (kept, CLEAR, COLORED),
+    "E_ss in curves": (single_share, CLEAR, COLORED),
     "F_ss": (average_errors, FILMS, COLORED),
-    "F_ss without a film": (
-        average_errors,
-        {**FILMS, "thickness": (0.0, 0.0), "index": (1.0, 1.0)},
-    ),
+    "F_ss without a film": (average_errors, BARE),
     "visible facets": (visible_errors, FILMS),
     "albedo": (albedo_errors, FILMS),
-    "albedo from an index on": (albedo_errors, {**FILMS, "index": (LEAST_FILM, 2.5)}),
-    "albedo in a picture": (seen_errors, {**FILMS, "index": (LEAST_FILM, 2.5)}),
+    "albedo from an index on": (albedo_errors, VISIBLE),
+    "albedo in a picture": (seen_errors, VISIBLE),
 }
-# Errors of sets to measure, by name: function, and set of films.
+# Root mean square errors of sets of films to measure, by name: function, and set.
 SETS = {
     "all orders": (curve_errors, microfacets.ORDERED),
     "F_ss": (average_errors, microfacets.FRINGED),
@@ -331,33 +321,34 @@ def filmed(category, ranges, unit):
 def largest(errors, ranges, category, numbers=NUMBERS):
     """Search for the largest error of films within ranges.
 
-    It takes decreasing steps from the worst random films and a known one, then evolves the worst of
-    these. With more numbers per film, it keeps more films, and a step changes only some numbers.
+    The search takes decreasing steps from the worst random films and a known one, then evolves the
+    worst of all. With COLORED numbers per film, more films take part, and a step changes only some
+    numbers.
     """
     rng = np.random.default_rng(SEED)
     many = numbers > NUMBERS
-    count, kept, steps = (4 * COUNT, 4 * KEPT, FAR) if many else (COUNT, KEPT, STEPS)
+    count, best, steps = (4 * COUNT, 4 * WORST, FAR) if many else (COUNT, WORST, STEPS)
     least = np.full((numbers, 1), LEAST)
     least[[0, 1, *range(7, 10)]] = 0.0
 
-    def of(unit):
+    def measured(unit):
         return errors(category, *filmed(category, ranges, unit))
 
     unit = rng.random((numbers, count))
     unit[:NUMBERS, 0] = CORNERS[category]
-    found = of(unit)
+    found = measured(unit)
     for step in steps:
-        worst = unit[:, np.argsort(found)[-kept:]].repeat(count // kept // 4, axis=1)
-        way = step * rng.standard_normal(worst.shape)
+        worst = unit[:, np.argsort(found)[-best:]].repeat(count // best // 4, axis=1)
+        change = step * rng.standard_normal(worst.shape)
         if many:
-            way *= rng.random(worst.shape) < MOVED
-        near = np.clip(worst + way, least, 1.0)
-        found = np.append(found, of(near))
+            change *= rng.random(worst.shape) < MOVED
+        near = np.clip(worst + change, least, 1.0)
+        found = np.append(found, measured(near))
         unit = np.append(unit, near, axis=1)
     evolved = differential_evolution(
-        lambda unit: -of(np.maximum(unit, least)),
+        lambda unit: -measured(np.maximum(unit, least)),
         [(0.0, 1.0)] * numbers,
-        init=np.append(unit[:, np.argsort(found)[-kept:]], unit[:, : count // 4], axis=1).T,
+        init=np.append(unit[:, np.argsort(found)[-best:]], unit[:, : count // 4], axis=1).T,
         maxiter=GENERATIONS, seed=SEED, vectorized=True, updating="deferred", polish=False,
     )  # fmt: skip
     return -float(evolved.fun)
@@ -368,8 +359,8 @@ def films(spec, ranges, seed):
     DRAWN.set(seed)
     batch = microfacets.film_views(spec, ranges)
     material = {
-        name: np.moveaxis(batch.inputs[name], -1, 0)
-        for name in batch.inputs
+        name: np.moveaxis(value, -1, 0)
+        for name, value in batch.inputs.items()
         if name not in ("roughness", "retroreflective")
     }
     return spec.node, material, batch.inputs["roughness"][:, 0], batch.wo[:, 2]

@@ -36,13 +36,10 @@ def random_films(count, ranges=fit.FILMS, seed=SEED):
 
 def hemisphere():
     """Fitted cosines, weights and widths of the three nodes for F_ss."""
-    bare = {**fit.FILMS, "thickness": (0.0, 0.0), "index": (1.0, 1.0)}
+    sets = (1.0, random_films(COUNT)), (HEAVY, random_films(BARE, fit.BARE, SEED + 1))
     films = [
         (weight, category, material, film_curve(category).average(**material))
-        for weight, drawn in (
-            (1.0, random_films(COUNT)),
-            (HEAVY, random_films(BARE, bare, SEED + 1)),
-        )
+        for weight, drawn in sets
         for category, material, *_ in drawn
     ]
 
@@ -51,12 +48,9 @@ def hemisphere():
         return cosines, (low, middle, 1.0 - low - middle), widths
 
     def squares(numbers):
-        errors = np.concatenate(
-            [
-                weight * (fit.average(*film, nodes(numbers)) - exact).ravel()
-                for weight, *film, exact in films
-            ]
-        )
+        rule = nodes(numbers)
+        parts = [weight * (fit.average(*film, rule) - exact) for weight, *film, exact in films]
+        errors = np.concatenate(parts, axis=None)
         return SCALE * errors * np.abs(errors)
 
     start = np.concatenate([START[0], START[1][:2], START[2]])
@@ -67,22 +61,18 @@ def hemisphere():
 def facets():
     """Coefficients for visible facets by one Gauss-Newton step from those that match moments."""
     films = [(film, fit.visible_average(*film)) for film in random_films(FACETS)]
-    start = _moments()
+    start = moments_fit()
 
     def errors(coefficients):
-        return np.concatenate(
-            [(fit.visible_mean(*film, coefficients) - exact).ravel() for film, exact in films]
-        )
+        parts = [fit.visible_mean(*film, coefficients) - exact for film, exact in films]
+        return np.concatenate(parts, axis=None)
 
-    left = errors(start)
-    slopes = np.stack(
-        [(errors(start + NEAR * axis) - left) / NEAR for axis in np.eye(len(start))], 1
-    )
+    first = errors(start)
+    slopes = [(errors(start + NEAR * axis) - first) / NEAR for axis in np.eye(len(start))]
     # Keep coefficients near the start if the films do not determine them.
-    rows = TIE * _rows(*grid())
-    change = np.linalg.lstsq(
-        np.concatenate([slopes, rows]), np.append(-left, np.zeros(len(rows))), rcond=None
-    )[0]
+    rows = TIE * moment_rows(*grid())
+    matrix = np.concatenate([np.stack(slopes, 1), rows])
+    change = np.linalg.lstsq(matrix, np.append(-first, np.zeros(len(rows))), rcond=None)[0]
     return tuple(float(f"{each:.5g}") for each in start + change)
 
 
@@ -92,7 +82,7 @@ def grid():
     return (each.ravel() for each in np.meshgrid(axis, axis))
 
 
-def _rows(mu, alpha):
+def moment_rows(mu, alpha):
     """Contribution of each coefficient to mean, reach and bend, by view and roughness."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), np.ones_like(mu)
     terms = fit.monomials(mu, alpha)
@@ -102,20 +92,20 @@ def _rows(mu, alpha):
     return blocks.reshape(3 * mu.size, -1)
 
 
-def _moments():
+def moments_fit():
     """Coefficients that best match mean, deviation and skewness of the facets' cosines."""
     mu, alpha = grid()
     mean, deviation, skewness = facet_moments(mu, alpha)
     b = np.clip(BEND * skewness, -0.8, 0.8)
     even = np.sqrt(1.0 - b * b)
     reach, bend = deviation * even * 2.0 * np.sqrt(1.0 - 0.08), b / (2.0 * even)
-    wanted = np.concatenate([mean - mu, reach, bend])
-    return np.linalg.lstsq(_rows(mu, alpha), wanted, rcond=None)[0]
+    moments = np.concatenate([mean - mu, reach, bend])
+    return np.linalg.lstsq(moment_rows(mu, alpha), moments, rcond=None)[0]
 
 
 def facet_moments(mu, alpha):
     """Mean, deviation and skewness of the cosines between 16 visible facets and the view."""
-    cosines, weights = (np.array(each) for each in zip(*_facets(mu, alpha), strict=True))
+    cosines, weights = (np.array(each) for each in zip(*sampled_facets(mu, alpha), strict=True))
     weights /= weights.sum(axis=0)
     mean = (weights * cosines).sum(axis=0)
     central = cosines - mean
@@ -123,24 +113,24 @@ def facet_moments(mu, alpha):
     return mean, deviation, (weights * central**3).sum(axis=0) / deviation**3
 
 
-def _facets(mu, alpha):
+def sampled_facets(mu, alpha):
     """Cosines between 16 visible facets and the view, and the facets' weights.
 
-    Facets below `lowest` are excluded, because they reflect no light along the normal.
+    Facets below `lowest` are excluded: a view along the normal sees none of their light.
     """
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
     x, w = np.polynomial.legendre.leggauss(4)
-    stretched = wo * np.stack([alpha, alpha, np.ones_like(alpha)], axis=-1)
+    stretch = np.stack([alpha, alpha, np.ones_like(alpha)], axis=-1)
+    stretched = wo * stretch
     stretched /= np.linalg.norm(stretched, axis=1, keepdims=True)
-    lowest = 2.0 * alpha**2 * stretched[:, 2] / (1.0 + alpha**2)
+    v = stretched[:, 2]
+    lowest = 2.0 * alpha**2 * v / (1.0 + alpha**2)
     for u, height in zip(0.5 * (1.0 + x), w, strict=True):
         for azimuth in np.pi * (np.arange(4) + 0.5) / 4.0:
-            v = stretched[:, 2]
             z = (1.0 - u) * lowest + u * (1.0 + v) - v
             radius = np.sqrt(np.clip(1.0 - z * z, 0.0, 1.0))
-            columns = [radius * np.cos(azimuth), radius * np.sin(azimuth), z]
-            H = np.stack(columns, axis=-1) + stretched
-            H *= np.stack([alpha, alpha, np.ones_like(alpha)], axis=-1)
+            H = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), z], axis=-1)
+            H = (H + stretched) * stretch
             H /= np.linalg.norm(H, axis=1, keepdims=True)
             c = (wo * H).sum(axis=1)
             mu_i = np.maximum(2.0 * c * H[:, 2] - wo[:, 2], 0.0)

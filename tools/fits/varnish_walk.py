@@ -20,7 +20,7 @@ from mxeon.models import (
     varnished_brdf,
 )
 from mxeon.models.microfacet.fresnel import dielectric
-from mxeon.models.sampling import eon_sample
+from mxeon.models.sampling import eon_sample, visible_normal
 
 SEED, PATHS = 1, 1 << 18
 FAINT = 1e-5  # paths with a smaller weight end
@@ -30,22 +30,11 @@ COSINES, ROUGHNESSES = (1.0, 0.5, 0.15, 0.05), (0.0, 1.0)
 ALPHAS, INDICES = (0.05, 0.1, 0.2, 0.4, 0.7), (1.1, 1.3, 1.5, 2.0)
 
 
-def facets(w, alpha, rng):
-    """Samples of GGX's visible normals, [Dupuy2023]."""
-    stretch = np.array([alpha, alpha, 1.0])
-    v = w * stretch
-    v /= np.linalg.norm(v, axis=1, keepdims=True)
-    azimuth, z = 2.0 * np.pi * rng.random(len(w)), 1.0 - rng.random(len(w)) * (1.0 + v[:, 2])
-    radius = np.sqrt(np.clip(1.0 - z * z, 0.0, 1.0))
-    h = (np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), z], axis=1) + v) * stretch
-    return h / np.linalg.norm(h, axis=1, keepdims=True)
-
-
 def interface(w, alpha, ior, rng):
     """Directions, z >= 0, of light from w after the facets, and whether it leaves below them."""
-    out, passed = np.zeros_like(w), np.zeros(len(w), bool)
-    # State of each path: index, direction, share of the heights below it, and side.
-    i, d, height, below = np.arange(len(w)), -w, np.ones(len(w)), passed.copy()
+    out, transmitted = np.zeros_like(w), np.zeros(len(w), bool)
+    # State of each path: index, direction, share of the facets' heights below the path, and side.
+    i, d, height, below = np.arange(len(w)), -w, np.ones(len(w)), transmitted.copy()
     while i.size:
         # The distance to the next facet depends on Lambda, negative downwards, [Heitz2016].
         tangent2 = (1.0 - d[:, 2] ** 2) / np.maximum(d[:, 2] ** 2, 1e-12)
@@ -55,10 +44,11 @@ def interface(w, alpha, ior, rng):
         with np.errstate(over="ignore", divide="ignore"):
             height = height / rng.random(i.size) ** (1.0 / Lambda)
         leaves = (height > 1.0) & (d[:, 2] > 0.0)
-        out[i[leaves]], passed[i[leaves]] = d[leaves], below[leaves]
+        out[i[leaves]], transmitted[i[leaves]] = d[leaves], below[leaves]
         i, d, height, below = (each[~leaves] for each in (i, d, height, below))
         # Reflect or refract at a facet.
-        eta, h = np.where(below, 1.0 / ior, ior), facets(-d, alpha, rng)
+        u2, u1 = rng.random((2, i.size))
+        eta, h = np.where(below, 1.0 / ior, ior), visible_normal(-d.T, u1, u2, (alpha, alpha)).T
         c = -(d * h).sum(axis=1)
         through = rng.random(i.size) >= dielectric(c, eta)
         bent = np.sqrt(np.clip(1.0 - (1.0 - c * c) / eta**2, 0.0, None))
@@ -66,7 +56,7 @@ def interface(w, alpha, ior, rng):
         d = np.where(through[:, None], refracted, d + 2.0 * c[:, None] * h)
         d[through, 2] *= -1.0
         height, below = np.where(through, 1.0 - height, height), below ^ through
-    return out, passed
+    return out, transmitted
 
 
 def walk(mu, roughness, alpha, ior, paths=PATHS):
@@ -74,16 +64,16 @@ def walk(mu, roughness, alpha, ior, paths=PATHS):
     rng = np.random.default_rng(SEED)
     out, inside = interface(np.tile(view(mu), (paths, 1)), alpha, ior, rng)
     total, weight = np.where(inside, 0.0, 1.0)[:, np.newaxis] + 0.0 * RHO, 1.0
-    left, w = np.flatnonzero(inside), out[inside]
-    while left.size:
+    active, w = np.flatnonzero(inside), out[inside]
+    while active.size:
         # Both layers are isotropic, so the azimuth of a direction does not matter.
-        wi, pdf = eon_sample(w, rng.random((left.size, 2)), roughness, rho=1.0)
-        value = eon_brdf(w, wi, np.broadcast_to(RHO, (left.size, RHO.size)), roughness)
+        wi, pdf = eon_sample(w, rng.random((active.size, 2)), roughness, rho=1.0)
+        value = eon_brdf(w, wi, np.broadcast_to(RHO, (active.size, RHO.size)), roughness)
         weight = weight * value * (wi[:, 2] / pdf)[:, np.newaxis]
         w, leaves = interface(wi, alpha, 1.0 / ior, rng)
-        total[left[leaves]], out[left[leaves]] = weight[leaves], w[leaves]
+        total[active[leaves]], out[active[leaves]] = weight[leaves], w[leaves]
         stays = ~leaves & (weight[:, -1] > FAINT)
-        w, weight, left = w[stays], weight[stays], left[stays]
+        w, weight, active = w[stays], weight[stays], active[stays]
     return total, out
 
 
@@ -98,9 +88,9 @@ def walked_bins(total, out):
         np.minimum((x * n).astype(int), n - 1)
         for x, n in zip((out[:, 2] ** 2, azimuth), BINS, strict=True)
     )
-    which = row * BINS[1] + column
-    own = total[:, 1:] - total[:, :1]
-    return np.stack([np.bincount(which, each, np.prod(BINS)) for each in own.T], axis=1) / len(own)
+    place = row * BINS[1] + column
+    eon = total[:, 1:] - total[:, :1]
+    return np.stack([np.bincount(place, each, np.prod(BINS)) for each in eon.T], axis=1) / len(eon)
 
 
 def model_bins(mu, *inputs):
@@ -112,22 +102,21 @@ def model_bins(mu, *inputs):
     parts = S * np.cos(azimuth), S * np.sin(azimuth), np.sqrt(square)
     value = varnished_brdf(view(mu), np.stack(np.broadcast_arrays(*parts), axis=-1), RHO, *inputs)
     bins = np.einsum("abijc,i,j->abc", value, weight, weight) * np.pi / np.prod(BINS)
-    return bins.reshape(-1, RHO.size)[:, 1:] - bins.reshape(-1, RHO.size)[:, :1]
+    bins = bins.reshape(-1, RHO.size)
+    return bins[:, 1:] - bins[:, :1]
 
 
 def rows(paths=PATHS):
     """For each case, albedos by layer, varnished and walk, (3, 5), and ratios of bins, (12, 4)."""
     for ior, alpha, roughness, mu in product(INDICES, ALPHAS, ROUGHNESSES, COSINES):
         inputs = roughness, alpha, ior
-        walked = walk(mu, *inputs, paths)
-        models = (
-            function(mu, RHO, *inputs)
-            for function in (dielectric_over_eon_albedo_dir, varnished_albedo_dir)
+        total, out = walk(mu, *inputs, paths)
+        layer, varnished = (
+            albedo(mu, RHO, *inputs)
+            for albedo in (dielectric_over_eon_albedo_dir, varnished_albedo_dir)
         )
-        yield (
-            np.stack([*models, walked[0].mean(axis=0)]),
-            model_bins(mu, *inputs) / walked_bins(*walked),
-        )
+        ratios = model_bins(mu, *inputs) / walked_bins(total, out)
+        yield np.stack([layer, varnished, total.mean(axis=0)]), ratios
 
 
 def span(values):
@@ -138,8 +127,6 @@ if __name__ == "__main__":
     albedos, bins = map(np.array, zip(*rows(), strict=True))
     layer, varnished, walked = albedos.transpose(1, 2, 0)
     for k, rho in enumerate(RHO):
-        spans = span(layer[k] / walked[k]), span(varnished[k] / walked[k])
-        parts = span(bins[..., k - 1]) if k else ""
-        print(
-            f"| {rho} | {' | '.join(spans)} | {np.abs(varnished - walked)[k].max():.3f} | {parts} |"
-        )
+        spans = f"{span(layer[k] / walked[k])} | {span(varnished[k] / walked[k])}"
+        error, parts = np.abs(varnished - walked)[k].max(), span(bins[..., k - 1]) if k else ""
+        print(f"| {rho} | {spans} | {error:.3f} | {parts} |")
