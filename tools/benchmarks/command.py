@@ -9,13 +9,12 @@ import os
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
 from functools import partial
 from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from tools.benchmarks.rounds import Check, Group, figure, interleave
+from tools.benchmarks.rounds import Check, Figure, Group, interleave
 
 CACHE, FOLDER = "MESA_SHADER_CACHE_DISABLE", "MESA_SHADER_CACHE_DIR"
 MEMORY = 600.0  # goal for peak memory in MiB
@@ -27,8 +26,8 @@ JOBS = {
     BOTH: (("--library", "eonlib", "--library", "stock"), None, None),
     "gl, --node all": (("--node", "all"), 25.0, 40.0),
 }
-# Starts the command, and prints the peak memory of its largest process in KiB. This launcher must
-# be small: Linux counts the memory of the starting process as the program's.
+# Starts the command, and prints the peak memory of its largest process in KiB. The launcher must be
+# small: Linux counts the memory of the starting process as the program's.
 LAUNCHER = """
 import resource, subprocess, sys
 status = subprocess.call(sys.argv[1:])
@@ -37,17 +36,11 @@ sys.exit(status)
 """
 
 
-@dataclass(frozen=True)
-class Job:
-    """Duration of a run in seconds, its peak memory in MiB, and its number of failed checks."""
+def timed(options, cache):
+    """Run `mxeon check` with these options and this folder for the driver's shader cache.
 
-    seconds: float
-    memory: float
-    wrong: float
-
-
-def job(options, cache):
-    """Run `mxeon check` with the given options and folder for the driver's shader cache."""
+    Returns seconds, peak memory in MiB, and the number of failed checks, infinite if none passed.
+    """
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
     command = [sys.executable, "-P", "-m", "mxeon", "check", "--json", "--workers", "2", *options]
     start = time.perf_counter()
@@ -62,7 +55,7 @@ def job(options, cache):
         raise RuntimeError(f"{' '.join(command)}: {done.stderr.strip()}")
     counts = json.loads(done.stdout)["counts"]
     memory = float(done.stderr.splitlines()[-1]) / 1024.0
-    return Job(seconds, memory, float(counts["failed"]) if counts["passed"] else np.inf)
+    return seconds, memory, float(counts["failed"]) if counts["passed"] else np.inf
 
 
 def starting(rounds):
@@ -73,35 +66,36 @@ def starting(rounds):
         "help": "from mxeon.cli import main; main(['--help'])",
     }
     start = partial(subprocess.run, check=True, capture_output=True)
-    rivals = {name: partial(start, [sys.executable, "-c", code]) for name, code in codes.items()}
-    seconds = interleave(rivals, rounds)
-    over = 1e3 * (seconds["mxeon"] - seconds["numpy"])
+    runs = {name: partial(start, [sys.executable, "-c", code]) for name, code in codes.items()}
+    seconds = interleave(runs, rounds)
+    models = 1e3 * (seconds["mxeon"] - seconds["numpy"])
     return [
-        figure("import mxeon and its models, beyond import numpy", "ms", over, goal=30.0),
-        figure("mxeon --help", "ms", 1e3 * seconds["help"], goal=300.0),
+        Figure("import mxeon and its models, beyond import numpy", "ms", models, goal=30.0),
+        Figure("mxeon --help", "ms", 1e3 * seconds["help"], goal=300.0),
     ]
 
 
 def measure(rounds=3, jobs=tuple(JOBS)):
-    figures, checks, usual = starting(4 * rounds), [], {}
+    figures, checks, warm = starting(4 * rounds), [], {}
     for name in jobs:
-        options, goal, empty = JOBS[name]
+        options, goal, cold_goal = JOBS[name]
         with TemporaryDirectory() as folder:
-            first, *runs = (
-                job([each.format(folder=folder, turn=turn) for each in options], folder)
+            runs = [
+                timed([each.format(folder=folder, turn=turn) for each in options], folder)
                 for turn in range(rounds + 1)
-            )
-        usual[name] = np.array([each.seconds for each in runs])
+            ]
+        seconds, memory, failed = zip(*runs, strict=True)
+        warm[name] = np.array(seconds[1:])
         figures += [
-            figure(f"{name}, the driver's cache empty", "s", [first.seconds], empty),
-            figure(name, "s", usual[name], goal),
-            figure(f"{name}, largest process", "MiB", [max(each.memory for each in runs)], MEMORY),
+            Figure(f"{name}, the driver's cache empty", "s", [seconds[0]], cold_goal),
+            Figure(name, "s", warm[name], goal),
+            Figure(f"{name}, largest process", "MiB", [max(memory[1:])], MEMORY),
         ]
         if name != BOTH:  # failures are expected with stock MaterialX
-            checks.append(Check(name, max(each.wrong for each in (first, *runs)), 0.0))
-    one = np.median(usual[ONE])
-    if REPORT in usual:
-        figures.append(figure(f"{REPORT}, beyond one without", "s", usual[REPORT] - one, 2.0))
-    if BOTH in usual:
-        figures.append(figure(f"{BOTH} / one", "x", usual[BOTH] / one, 1.6))
-    return Group("The command, bundled examples", tuple(figures), tuple(checks))
+            checks.append(Check(name, max(failed), 0.0))
+    one = np.median(warm[ONE])
+    if REPORT in warm:
+        figures.append(Figure(f"{REPORT}, beyond one without", "s", warm[REPORT] - one, 2.0))
+    if BOTH in warm:
+        figures.append(Figure(f"{BOTH} / one", "x", warm[BOTH] / one, 1.6))
+    return Group("The command, bundled examples", figures, checks)

@@ -50,22 +50,18 @@ def walks(text, rng):
         weight = weight[:, 0]
         largest = max(largest, weight.max())
         weights = weights * weight
-        left = (wi[:, 2] < 0.0) if inside else (wi[:, 2] > 0.0)
-        total[active[left]] = weights[left]
-        kept = ~left & (weights > 0.0)
-        active, weights, mu, inside = active[kept], weights[kept], np.abs(wi[kept, 2]), True
+        leaves = (wi[:, 2] < 0.0) if inside else (wi[:, 2] > 0.0)
+        total[active[leaves]] = weights[leaves]
+        stays = ~leaves & (weights > 0.0)
+        active, weights, mu, inside = active[stays], weights[stays], np.abs(wi[stays, 2]), True
         if not len(active):
             break
     return total, largest
 
 
-def main():
-    """Print a Markdown table: mean and deviation of walks' weights, largest sample's weight."""
+if __name__ == "__main__":
+    # Print a Markdown table: mean and deviation of walks' weights, largest weight of a sample.
     print("| node, alpha | mean | deviation | largest draw |\n|---|---|---|---|")
     for name, document in ROWS.items():
         total, largest = walks(paths(open_engine("gl"), document), np.random.default_rng(1))
         print(f"| {name} | {total.mean():.3g} | {total.std():.3g} | {largest:.3g} |")
-
-
-if __name__ == "__main__":
-    main()

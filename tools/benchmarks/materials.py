@@ -18,12 +18,12 @@ from mxeon.shaders.nodes import (
     node_text,
 )
 from mxeon.shaders.scene import SIDE
-from tools.benchmarks.rounds import Group, clock_of, figure, interleave
+from tools.benchmarks.rounds import Figure, Group, clock_of, interleave
 
-SIZE = 512
+SIZE = 512  # width and height of the timed frames in pixels
 FIRST = 8  # width and height of the first frame in pixels
 FRAMES = 3  # timed frames per library and process, after one warm-up frame
-PROCESSES = 7  # median of these: in one of six, llvmpipe's code is 1/6 to 2/5 slower
+PROCESSES = 7  # processes per material: in one of six, llvmpipe's code is 1/6 to 2/5 slower
 MESH = 128  # squares along a side of the mesh; its cost is negligible
 LIBRARIES = ("eonlib", "stock")
 
@@ -67,19 +67,15 @@ OTHERS = {
 DIFFUSE = {"oren_nayar": _lobe(OREN_NAYAR, roughness=0.6, **{FLAG: True})}
 NODES = DIFFUSE | BARE | FILMED | OTHERS
 
-# Goals: largest ratio of eonlib's time to stock's.
-TIMES = (
-    dict.fromkeys(DIFFUSE, 1.0)
-    | dict.fromkeys(BARE, 1.03)
-    | dict.fromkeys(FILMED, 1.8)
-    | dict.fromkeys(OTHERS, 1.1)
-)
+# Largest ratio of eonlib's time to stock's that reaches the goal.
+RATIOS = ((DIFFUSE, 1.0), (BARE, 1.03), (FILMED, 1.8), (OTHERS, 1.1))
+GOALS = {name: goal for group, goal in RATIOS for name in group}
 
 
 class Frame:
     """A material on the sphere, drawn repeatedly with its uniforms and buffers in place.
 
-    It uses the functions of `mxeon.hosts.gl`, but separates setup from drawing.
+    The functions of `mxeon.hosts.gl` are called here separately for setup and for drawing.
     """
 
     def __init__(self, host, generated, size):
@@ -95,11 +91,10 @@ class Frame:
         width = MESH + 2 * points.MARGIN
         corner = np.arange(width * width).reshape(width, width)[:-1, :-1].ravel()
         indices = (corner[:, None] + [0, 1, width, width, 1, width + 1]).astype("u4")
+        vertices = points.vertices(points.visible(MESH, "sphere", points.MARGIN))
         buffers = [
             (context.buffer(values), f"{values.shape[1]}f", name)
-            for name, values in points.vertices(
-                points.visible(MESH, "sphere", points.MARGIN)
-            ).items()
+            for name, values in vertices.items()
             if name in program
         ]
         self._mesh = context.vertex_array(program, buffers, context.buffer(indices))
@@ -117,7 +112,7 @@ class Frame:
 
 
 def run(node, size, libraries):
-    """Device, seconds to compile, and seconds per frame by library; called in a new process."""
+    """Device, seconds to compile, and seconds per frame by library; for a new process."""
     host = gl.GlHost()
     device = host.identity().device
     clock = clock_of(device)
@@ -125,7 +120,7 @@ def run(node, size, libraries):
         host.compile(document_text(NODES[name]), library=library)[0]
         for name, library in [("oren_nayar", "stock"), *((node, each) for each in libraries)]
     )
-    with host._context:  # frames are drawn directly, not by methods of the host
+    with host._context:  # `Frame` draws without the host's methods
         # Draw another material first, to exclude the driver's start from the first compilation.
         Frame(host, first, FIRST).draw()
         frames, compilation = {}, {}
@@ -148,9 +143,9 @@ def measure(processes=PROCESSES, size=SIZE, nodes=tuple(NODES)):
         for node in nodes:
             devices, *times = zip(*pool.map(partial(run, node, size), turns), strict=True)
             for kind, seconds in zip(("compilation and first frame", "frame"), times, strict=True):
-                own, stock = (np.array([each[name] for each in seconds]) for name in LIBRARIES)
+                eonlib, stock = (np.array([each[name] for each in seconds]) for name in LIBRARIES)
                 figures += [
-                    figure(f"{kind}, {node}, eonlib", "ms", 1e3 * own),
-                    figure(f"{kind}, {node}, eonlib / stock", "x", own / stock, TIMES[node]),
+                    Figure(f"{kind}, {node}, eonlib", "ms", 1e3 * eonlib),
+                    Figure(f"{kind}, {node}, eonlib / stock", "x", eonlib / stock, GOALS[node]),
                 ]
-    return Group(f"Materials on {devices[0]}, {size} x {size}", tuple(figures))
+    return Group(f"Materials on {devices[0]}, {size} x {size}", figures)

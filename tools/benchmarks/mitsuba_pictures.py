@@ -3,10 +3,11 @@
 
     python -m tools.benchmarks.mitsuba_pictures
 
-Writes two tables. docs/mitsuba.md: a ball under a uniform sky with each BSDF. docs/sampling.md: EON
-scenes with 50 bounces and multiple importance sampling, with exact or cosine samples. Times are the
-least processor time of several pictures in llvm_ad_rgb, without compilation. Variances are measured
-over independent pictures, and averaged over pixels and channels.
+Writes two tables. The table in docs/mitsuba.md is about a ball under a uniform sky with each BSDF;
+the table in docs/sampling.md about EON scenes with 50 bounces and multiple importance sampling, with
+exact or cosine samples. Times are the least processor time of several pictures in llvm_ad_rgb,
+without compilation. Variances are measured over independent pictures, and averaged over pixels and
+channels.
 """
 
 import time
@@ -55,24 +56,24 @@ def ball(mi, bsdf):
     }
 
 
-def eon(kind, color, roughness):
+def eon(plugin, color, roughness):
     reflectance = {"type": "rgb", "value": list(color)}
-    return {"type": kind, "reflectance": reflectance, "roughness": roughness}
+    return {"type": plugin, "reflectance": reflectance, "roughness": roughness}
 
 
-def cornell_box(mi, kind, roughness):
+def cornell_box(mi, plugin, roughness):
     """Mitsuba's Cornell box with EON on its diffuse surfaces."""
     scene = mi.cornell_box()
     for name, each in scene.items():
         if isinstance(each, dict) and each.get("type") == "diffuse":
-            scene[name] = eon(kind, each["reflectance"]["value"], roughness)
+            scene[name] = eon(plugin, each["reflectance"]["value"], roughness)
     scene["sensor"]["film"] = sensor(mi, 1, [0, -1, 0], [0, 0, 0], 96)["film"]
     return scene
 
 
-def balls(mi, kind, roughness):
+def balls(mi, plugin, roughness):
     """Three balls on the ground under a uniform sky."""
-    clay = {"type": "twosided", "bsdf": eon(kind, (0.8, 0.8, 0.8), roughness)}
+    clay = {"type": "twosided", "bsdf": eon(plugin, (0.8, 0.8, 0.8), roughness)}
     ground = {"type": "rectangle", "to_world": mi.ScalarTransform4f().scale([20, 20, 1])}
     spheres = {
         f"ball{k + 2}": {"type": "sphere", "center": [1.7 * k, 0, 0.8], "radius": 0.8, "bsdf": clay}
@@ -118,8 +119,8 @@ def noise_table(mi):
     for title, make in SCENES.items():
         for roughness in (0.25, 1.0):
             scenes = {
-                kind: mi.load_dict(make(mi, kind, roughness) | {"integrator": integrator})
-                for kind in (COSINE, EXACT)
+                plugin: mi.load_dict(make(mi, plugin, roughness) | {"integrator": integrator})
+                for plugin in (COSINE, EXACT)
             }
             cosine, exact = (
                 (np.var(images, axis=0, ddof=1).mean(), min(seconds), np.mean(images))
@@ -132,7 +133,7 @@ def noise_table(mi):
             yield f"| {title} | {roughness} | {cells} |\n"
 
 
-def main():
+if __name__ == "__main__":
     mi = import_module("mitsuba")
     mi.set_variant("llvm_ad_rgb")
     register()
@@ -146,7 +147,3 @@ def main():
         print(found, end="")
         text = (DOCS / page).read_text(encoding="utf-8")
         write_text(DOCS / page, with_block(text, mark, found))
-
-
-if __name__ == "__main__":
-    main()

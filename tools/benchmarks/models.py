@@ -9,18 +9,21 @@ import numpy as np
 
 from mxeon.models import conductor_brdf, dielectric_brdf, eon_brdf, generalized_schlick_brdf
 from mxeon.models.sheen import zeltner_brdf
-from tools.benchmarks.rounds import Check, Group, figure, interleave
+from tools.benchmarks.rounds import Check, Figure, Group, interleave
 
 VALUES = 1_000_000  # number of pairs of directions
 COLORS, R = np.array([0.2, 0.5, 0.8]), 0.7  # color and roughness of the shared material
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 ROUNDINGS = 3e-6  # tolerance of pi f cos in float32
 ONE, OWN, JIT = "one material", "a material each", "jax.jit, float32"
-SECONDS = {ONE: 0.5, OWN: 3.0}  # goals for a million pairs with microfacet models
+SECONDS = {ONE: 0.5, OWN: 3.0}  # goals for microfacet models and a million pairs
 
 
 def models(wo, wi, material):
-    """Functions that evaluate each model for these pairs; `material` is ONE or OWN."""
+    """Functions that evaluate the models for pairs of directions, by model and material.
+
+    `material` is ONE or OWN.
+    """
     rng, count = np.random.default_rng(2), len(wo)
     colors, alpha, r = COLORS, np.array([0.3, 0.3]), R
     (n, k), ior = GOLD, 1.5
@@ -28,13 +31,14 @@ def models(wo, wi, material):
         colors, alpha, r = rng.random((count, 3)), rng.random((count, 2)), rng.random(count)
         n, k = rng.uniform(0.1, 3.0, (count, 3)), rng.uniform(0.5, 6.0, (count, 3))
         ior = rng.uniform(1.0, 3.0, count)
-    return {
+    functions = {
         "EON": partial(eon_brdf, wo, wi, colors, r),
         "Schlick": partial(generalized_schlick_brdf, wo, wi, colors, 1.0, 1.0, alpha, 5.0),
         "sheen": partial(zeltner_brdf, wo, wi, colors, r),
         "conductor": partial(conductor_brdf, wo, wi, alpha, n, k),
         "dielectric": partial(dielectric_brdf, wo, wi, colors, alpha, ior),
     }
+    return {(name, material): each for name, each in functions.items()}
 
 
 def traced(wo, wi):
@@ -59,25 +63,23 @@ def traced(wo, wi):
 
 
 def measure(rounds=3, pairs=VALUES):
-    """Measure values per second and seconds per million pairs, and return the `Group`."""
+    """Measure values per second and seconds per million pairs."""
     z, phi = np.random.default_rng(1).random((2, 2, pairs)) * [[[1.0]], [[2.0 * np.pi]]]
     S = np.sqrt(1.0 - z * z)
     wo, wi = np.stack([S * np.cos(phi), S * np.sin(phi), z], axis=-1)
-    rivals = {
-        (name, each): way for each in (ONE, OWN) for name, way in models(wo, wi, each).items()
-    } | traced(wo, wi)
-    seconds = interleave(rivals, rounds, time.process_time)
+    functions = models(wo, wi, ONE) | models(wo, wi, OWN) | traced(wo, wi)
+    seconds = interleave(functions, rounds, time.process_time)
     figures = [
-        figure(f"{name}, {way}", "million values/s", 1e-6 * pairs / times)
-        for (name, way), times in seconds.items()
+        Figure(f"{name}, {variant}", "million values/s", 1e-6 * pairs / times)
+        for (name, variant), times in seconds.items()
     ]
     for name in ("conductor", "dielectric"):
-        for way, goal in SECONDS.items():
-            million = 1e6 / pairs * seconds[name, way]
-            figures.append(figure(f"{name}, {way}, a million pairs", "s", million, goal))
+        for variant, goal in SECONDS.items():
+            million = 1e6 / pairs * seconds[name, variant]
+            figures.append(Figure(f"{name}, {variant}, a million pairs", "s", million, goal))
     checks = []
-    if ("EON", JIT) in rivals:
-        apart = np.array(rivals["EON", JIT]()) - eon_brdf(wo, wi, COLORS, R)
-        error = float(np.abs(np.pi * wi[:, 2:] * apart).max())
+    if ("EON", JIT) in functions:
+        difference = np.array(functions["EON", JIT]()) - eon_brdf(wo, wi, COLORS, R)
+        error = float(np.abs(np.pi * wi[:, 2:] * difference).max())
         checks.append(Check(f"EON, {JIT}", error, ROUNDINGS))
-    return Group("NumPy models", tuple(figures), tuple(checks))
+    return Group("NumPy models", figures, checks)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Registers, instructions and estimated cycles of materials on an AMD GPU, eonlib / stock.
 
-No GPU is needed: Mesa's driver RADV compiles for the chip in `RADV_FORCE_FAMILY`, and reports its
+No GPU is needed: Mesa's driver RADV compiles for the chip in `RADV_FORCE_FAMILY`, and reports
 statistics. Shaders have one light, because the compiler may unroll the loop over lights for one
-library only. The loop of films is removed for cycles, whose estimate counts its body eight times.
+library only. Cycles are estimated without the loop over the orders of films, because the driver's
+estimate counts the body of the loop eight times.
 """
 
 import os
@@ -19,7 +20,7 @@ from mxeon.errors import NotRun
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import document_text
 from tools.benchmarks.materials import BARE, DIFFUSE, LIBRARIES, NODES, OTHERS
-from tools.benchmarks.rounds import Group, figure
+from tools.benchmarks.rounds import Figure, Group
 
 COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin", "-S")
 HEADER = 5  # words before the first SPIR-V instruction; an instruction begins with its length
@@ -64,19 +65,19 @@ def compiled(source, kind, file):
     return number
 
 
-def statistics(stages, program, driver):
+def material_statistics(stages, program, driver):
     """Statistics of a material's fragment shader with one light, by the driver's names."""
-    before, loop, after = stages["pixel"].partition(LIGHTS)
-    assert loop and LIGHTS not in after
-    whole = before + LIGHT + after
-    bare = whole.replace("if (fd.airy)", "if (false)")  # only films run this branch
-    found, alone = (
-        _statistics({**stages, "pixel": text}, program, driver) for text in (whole, bare)
+    assert stages["pixel"].count(LIGHTS) == 1
+    text = stages["pixel"].replace(LIGHTS, LIGHT)
+    without_films = text.replace("if (fd.airy)", "if (false)")  # only films run this branch
+    found, bare = (
+        statistics({**stages, "pixel": each}, program, driver) for each in (text, without_films)
     )
-    return found | {"Inverse Throughput": alone["Inverse Throughput"]}
+    return found | {"Inverse Throughput": bare["Inverse Throughput"]}
 
 
-def _statistics(stages, program, driver):
+def statistics(stages, program, driver):
+    """The driver's statistics of a fragment shader, by their names."""
     files = [program.with_name("vert.spv"), program.with_name("frag.spv")]
     for stage, file in zip(("vertex", "pixel"), files, strict=True):
         compiled(stages[stage], file.stem, file)
@@ -93,7 +94,7 @@ def _statistics(stages, program, driver):
 
 
 def measure(nodes=(*DIFFUSE, *BARE, *OTHERS)):
-    """Measure nodes and return the `Group`; NotRun if RADV, a compiler or a header is missing."""
+    """Measure nodes; NotRun if RADV, a compiler or a header is missing."""
     driver = next(DRIVERS.glob("radeon_icd*.json"), None)
     tools = all(map(shutil.which, ("gcc", COMPILER[0])))
     if driver is None or not tools or not Path("/usr/include/vulkan/vulkan.h").exists():
@@ -103,11 +104,14 @@ def measure(nodes=(*DIFFUSE, *BARE, *OTHERS)):
         program = Path(folder, "statistics")
         subprocess.run(["gcc", "-O1", PROGRAM, "-o", program, "-lvulkan"], check=True)
         for node in nodes:
-            own, stock = (statistics(each, program, driver) for each in sources(node).values())
+            eonlib, stock = (
+                material_statistics(each, program, driver) for each in sources(node).values()
+            )
             for name, unit in STATISTICS.items():
+                ratio = eonlib[name] / stock[name]
                 figures += [
-                    figure(f"{node}, {unit}, eonlib", unit, [own[name]]),
-                    figure(f"{node}, {unit}, eonlib / stock", "x", [own[name] / stock[name]]),
+                    Figure(f"{node}, {unit}, eonlib", unit, [eonlib[name]]),
+                    Figure(f"{node}, {unit}, eonlib / stock", "x", [ratio]),
                 ]
     title = f"Fragment shaders as Mesa's RADV compiles them for {CHIP}, without the hardware"
-    return Group(title, tuple(figures))
+    return Group(title, figures)

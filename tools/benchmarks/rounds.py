@@ -3,34 +3,27 @@
 
 The functions to compare take turns within a round, so other load on the machine affects all of them
 equally; a ratio is the median of the rounds' ratios. Benchmark libraries time functions one after
-another, so drift of the machine would affect their ratios.
+another, so a machine whose speed drifts would change their ratios.
 """
 
 import time
-from dataclasses import dataclass
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 
-@dataclass(frozen=True)
-class Figure:
-    """A measured quantity: median and quartiles over the rounds."""
+class Figure(NamedTuple):
+    """A measured quantity, with a value for each round."""
 
     name: str
     unit: str  # "x" for a ratio
-    median: float
-    low: float
-    high: float
+    values: ArrayLike
     goal: float | None = None  # upper limit of the median
 
-    @property
-    def reached(self):
-        """Whether the median reaches the goal; None without a goal."""
-        return None if self.goal is None else self.median <= self.goal
 
-
-@dataclass(frozen=True)
-class Check:
+class Check(NamedTuple):
     """Largest error of the values that a timed function computed."""
 
     name: str
@@ -39,29 +32,27 @@ class Check:
 
     @property
     def passed(self):
-        """Whether the error is a number within the tolerance."""
-        return self.error <= self.tolerance
+        return self.error <= self.tolerance  # False for NaN
 
 
-@dataclass(frozen=True)
-class Group:
+class Group(NamedTuple):
     title: str
-    figures: tuple = ()
-    checks: tuple = ()
+    figures: Sequence[Figure]
+    checks: Sequence[Check] = ()
 
 
-def interleave(rivals, rounds, clock=time.perf_counter):
+def interleave(functions, rounds, clock=time.perf_counter):
     """Time functions in turns: an array of seconds by name, one per round after a warm-up round.
 
     The clock `time.process_time` excludes other processes, and adds up the time of all cores.
     """
-    found = {name: [] for name in rivals}
+    seconds = {name: [] for name in functions}
     for _ in range(rounds + 1):
-        for name, rival in rivals.items():
+        for name, function in functions.items():
             start = clock()
-            rival()
-            found[name].append(clock() - start)
-    return {name: np.array(seconds[1:]) for name, seconds in found.items()}
+            function()
+            seconds[name].append(clock() - start)
+    return {name: np.array(each[1:]) for name, each in seconds.items()}
 
 
 def clock_of(device):
@@ -69,27 +60,20 @@ def clock_of(device):
     return time.process_time if "llvmpipe" in device else time.perf_counter
 
 
-def figure(name, unit, values, goal=None):
-    """Summarize values, one per round, as a `Figure`.
-
-    >>> figure("value", "x", [3.0, 1.0, 2.0], goal=2.0).reached
-    True
-    """
-    low, median, high = np.quantile(values, (0.25, 0.5, 0.75)).tolist()
-    return Figure(name, unit, median, low, high, goal)
-
-
 def table(group):
     """Markdown table of a group's figures and checks."""
     lines = [f"## {group.title}", "", "| | median | quartiles | goal | |", "|---|---|---|---|---|"]
-    for each in group.figures:
-        goal = "" if each.goal is None else f"≤ {each.goal:g}"
-        verdict = {None: "", True: "reached", False: "**missed**"}[each.reached]
-        cells = f"{each.median:.3g} {each.unit} | {each.low:.3g} – {each.high:.3g} | {goal}"
-        lines.append(f"| {each.name} | {cells} | {verdict} |")
+    for name, unit, values, goal in group.figures:
+        low, median, high = np.quantile(values, (0.25, 0.5, 0.75))
+        limit = verdict = ""
+        if goal is not None:
+            limit, verdict = f"≤ {goal:g}", "reached" if median <= goal else "**missed**"
+        lines.append(
+            f"| {name} | {median:.3g} {unit} | {low:.3g} – {high:.3g} | {limit} | {verdict} |"
+        )
     if group.checks:
-        right = sum(each.passed for each in group.checks)
-        lines += ["", f"Values: {right} of {len(group.checks)} within tolerance."]
+        passed = sum(each.passed for each in group.checks)
+        lines += ["", f"Values: {passed} of {len(group.checks)} within tolerance."]
         lines += ["", "| values of | largest error | tolerance |", "|---|---|---|"]
         lines += [f"| {c.name} | {c.error:.2g} | {c.tolerance:.2g} |" for c in group.checks]
     return "\n".join(lines)

@@ -5,7 +5,7 @@
 
 No random numbers are used: the variance of one sample is an integral over the hemisphere, by
 Gauss-Legendre rules between the kinks of EON. LTC and CLTC without uniform samples have infinite
-variance: their density falls to 0 along a line where EON does not.
+variance: the density falls to 0 along a line where EON does not.
 """
 
 import numpy as np
@@ -15,8 +15,7 @@ from mxeon.models.diffuse import eon_brdf
 from mxeon.models.sampling import eon_pdf
 from tools.paper.samplers import BY_NAME, moments
 
-# They start at 0.01: towards 0 the variance of cosine sampling diverges like log(mu).
-COSINES = np.linspace(0.01, 1.0, 100)
+COSINES = np.linspace(0.01, 1.0, 100)  # towards 0, cosine sampling's variance diverges like log(mu)
 ROUGHNESSES = (0.01, 0.1, 0.5, 0.75, 1.0)
 VIEWS = (1.0, 0.3, 0.1)
 PRINTED = ("uniform", "cosine", "eon_cltc", "eon")
@@ -52,12 +51,12 @@ def print_throughput():
     def over_cosines(name, roughness):
         return np.transpose([moments(name, mu, roughness) for mu in COSINES])
 
-    worst = {r: [over_cosines(name, r)[1:].max(axis=1) for name in PRINTED] for r in ROUGHNESSES}
+    largest = {r: [over_cosines(name, r)[1:].max(axis=1) for name in PRINTED] for r in ROUGHNESSES}
     for column, title in enumerate(("variance, r", "largest weight, r")):
-        rows = {r: [f"{each[column]:.3g}" for each in found] for r, found in worst.items()}
+        rows = {r: [f"{each[column]:.3g}" for each in found] for r, found in largest.items()}
         print_table(title, [BY_NAME[name].title for name in PRINTED], rows)
-    lost = {r: np.abs(1.0 - over_cosines("cltc", r)[0]).max() for r in ROUGHNESSES}
-    print_table("r", ["lost by CLTC alone"], {r: [f"{each:.2g}"] for r, each in lost.items()})
+    losses = {r: np.abs(1.0 - over_cosines("cltc", r)[0]).max() for r in ROUGHNESSES}
+    print_table("r", ["lost by CLTC alone"], {r: [f"{each:.2g}"] for r, each in losses.items()})
 
 
 def print_lighting(name):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Times eonlib's and stock's EON in a compute shader, in nanoseconds per call and invocation.
 
-Each invocation calls its function many times with unpredictable arguments, and stores the sum. The
+Each invocation calls a function many times with unpredictable arguments, and stores the sum. The
 time of a loop that only adds up the arguments is subtracted. The first values are compared with
 float64. On software devices, processor time is measured, which excludes other processes.
 """
@@ -16,9 +16,9 @@ import numpy as np
 from mxeon.conformance.specs import diffuse
 from mxeon.models.diffuse import eon_brdf
 from mxeon.shaders import functions as twins
-from tools.benchmarks.rounds import Check, Group, clock_of, figure, interleave
+from tools.benchmarks.rounds import Check, Figure, Group, clock_of, interleave
 
-CALLS, INVOCATIONS = 256, 2**14
+COUNT, INVOCATIONS = 256, 2**14  # calls per invocation, and invocations
 KERNEL = """#version 430
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) buffer Arguments { float given[]; };
@@ -45,19 +45,14 @@ void main()
     sums[3u * k] = sum.x; sums[3u * k + 1u] = sum.y; sums[3u * k + 2u] = sum.z;
 }
 """
-BASE = "rho * (cosine + mu_o + mu_i + roughness)"
-# Calls and tolerances of pi f cos in float32, by library. Stock follows Listing 1, which loses
-# digits in 1 - E: errors are up to 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
-RIVALS = {
-    "stock": (
-        "mx_oren_nayar_compensated_diffuse(mu_o, mu_i, cosine, roughness, rho) / EON_PI",
-        3e-4,
-    ),
-    "eonlib": (
-        "eon_brdf_mu(mu_o, mu_i, cosine - mu_o * mu_i, rho, roughness)",
-        diffuse.VALUE.value,
-    ),
+CALLS = {
+    "base": "rho * (cosine + mu_o + mu_i + roughness)",
+    "stock": "mx_oren_nayar_compensated_diffuse(mu_o, mu_i, cosine, roughness, rho) / EON_PI",
+    "eonlib": "eon_brdf_mu(mu_o, mu_i, cosine - mu_o * mu_i, rho, roughness)",
 }
+# Tolerances of pi f cos in float32. Stock follows Listing 1, which loses digits in 1 - E: errors are
+# up to 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
+TOLERANCES = {"stock": 3e-4, "eonlib": diffuse.VALUE.value}
 
 
 def library_source():
@@ -66,11 +61,11 @@ def library_source():
     text = mx.readFile(mx.getDefaultDataSearchPath().find(stock).asString())
     constants = "\n".join(re.findall(r"^const float FUJII.*$", text, re.MULTILINE))
     functions = re.findall(r"^\w+ mx_oren_nayar_\w+\([^)]*\)\n\{.*?^\}", text, re.MULTILINE | re.S)
-    kept = [each for each in functions if "fibonacci" not in each]
+    functions = [each for each in functions if "fibonacci" not in each]
     square = "float mx_square(float x) { return x * x; } vec3 mx_square(vec3 x) { return x * x; }"
     macros = "#define M_PI 3.1415926535897932\n#define M_PI_INV (1.0 / M_PI)\n"
     macros += "#define M_FLOAT_EPS 1e-8\n#define mx_acos acos\n#define mx_sqrt sqrt\n"
-    return "\n".join([twins.source("glsl"), macros, square, constants, *kept])
+    return "\n".join([twins.source("glsl"), macros, square, constants, *functions])
 
 
 def value(given):
@@ -82,7 +77,7 @@ def value(given):
     return np.pi * mu_i[:, None] * eon_brdf(wo, wi, np.stack(rho, -1), roughness)
 
 
-def measure(rounds=21, invocations=INVOCATIONS, calls=CALLS):
+def measure(rounds=21, invocations=INVOCATIONS, calls=COUNT):
     context = moderngl.create_standalone_context(require=430, backend="egl")
     given = np.float32(0.001 + 0.998 * np.random.default_rng(5).random((invocations, 7)))
     context.buffer(given.tobytes()).bind_to_storage_buffer(0)
@@ -95,10 +90,9 @@ def measure(rounds=21, invocations=INVOCATIONS, calls=CALLS):
         context.finish()
 
     text, exact = library_source(), value(given)
-    statements = {"base": BASE} | {name: call for name, (call, _) in RIVALS.items()}
-    kernels = {n: context.compute_shader(KERNEL % (text, each)) for n, each in statements.items()}
+    kernels = {name: context.compute_shader(KERNEL % (text, call)) for name, call in CALLS.items()}
     checks = []
-    for name, (_, tolerance) in RIVALS.items():
+    for name, tolerance in TOLERANCES.items():
         run(kernels[name], 1)
         found = np.frombuffer(sums.read(), np.float32).reshape(-1, 3)
         error = np.abs(np.pi * np.float64(given[:, 1:2]) * found - exact).max()
@@ -106,11 +100,11 @@ def measure(rounds=21, invocations=INVOCATIONS, calls=CALLS):
     renderer = context.info["GL_RENDERER"]
     runs = {name: partial(run, each, calls) for name, each in kernels.items()}
     seconds = interleave(runs, rounds, clock_of(renderer))
-    stock, eonlib = (seconds[name] - seconds["base"] for name in RIVALS)
+    stock, eonlib = (seconds[name] - seconds["base"] for name in TOLERANCES)
     factor = 1e9 / (invocations * calls)
     figures = (
-        figure("EON, stock", "ns", factor * stock),
-        figure("EON, eonlib", "ns", factor * eonlib),
-        figure("EON, eonlib / stock", "x", eonlib / stock, 0.7),
+        Figure("EON, stock", "ns", factor * stock),
+        Figure("EON, eonlib", "ns", factor * eonlib),
+        Figure("EON, eonlib / stock", "x", eonlib / stock, 0.7),
     )
     return Group(f"Shaders on {renderer}, ns per call", figures, tuple(checks))
