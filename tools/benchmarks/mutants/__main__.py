@@ -4,7 +4,7 @@
     python -m tools.benchmarks.mutants [--only PATTERN] [--resume]    the rows of the table
     python -m tools.benchmarks.mutants --seed N [--share 0.1]         some of the operators' mutants
 
-Exit status: 0, or 1 if other mutants survive than those listed.
+Exit status: 0, or 1 if the surviving mutants are not exactly those that are listed.
 """
 
 import argparse
@@ -22,7 +22,7 @@ from mxeon.conformance.run.judge import Judge
 from mxeon.io.files import write_text
 from mxeon.shaders.document.policy import DEFAULT
 from tools.benchmarks.mutants import operators, schemata
-from tools.benchmarks.mutants.mutant import ROOT, Mutant, read_table
+from tools.benchmarks.mutants.mutant import ROOT, read_table
 from tools.benchmarks.mutants.trial import KILLED, SURVIVED, killed, trial
 
 OUTPUT = ROOT / "out" / "mutants"
@@ -39,34 +39,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     if not 0.0 < options.share <= 1.0:
         parser.error(f"--share must be above 0 and at most 1; got {options.share:g}")
-    seed, share = options.seed, options.share
-    table = read_table() if seed is None else operators.made(seed, share)
+    seeded = options.seed is not None
+    table = operators.made(options.seed, options.share) if seeded else read_table()
     chosen = [each for each in table if re.search(options.only, f"{each.group}: {each.name}")]
     file = OUTPUT / "mutants.json"
     trials: dict[str, Any] = json.loads(file.read_text()) if file.exists() else {}
     if options.resume:
         chosen = [each for each in chosen if trials.get(each.name, {}).get("digest") != each.digest]
-    together = {} if seed is None else schemata.trials(chosen)
+    in_one_program = schemata.trials(chosen) if seeded else {}
     with closing(Judge(DEFAULT)) as judge:
         for mutant in tqdm(chosen, disable=None):
-            check = together.get(mutant.name, schemata.UNWRITTEN)
-            alone = check in (SURVIVED, schemata.UNWRITTEN)
-            found = trial(mutant, judge) if alone else killed("gl", [check], "")
+            check = in_one_program.get(mutant.name, schemata.UNWRITTEN)
+            undetected = check in (SURVIVED, schemata.UNWRITTEN)
+            found = trial(mutant, judge) if undetected else killed("gl", [check], "")
             trials[mutant.name] = {"digest": mutant.digest} | found
             write_text(file, json.dumps(trials, indent=1, sort_keys=True) + "\n")
-    print(*lines(chosen, trials), sep="\n")
-    return int(any((trials[m.name]["verdict"] == KILLED) == m.survives for m in chosen))
-
-
-def lines(mutants: Sequence[Mutant], trials: dict[str, Any]) -> list[str]:
-    """Lines to print: number of mutants by group and verdict, then each unexpected verdict."""
-    counts = Counter((each.group, trials[each.name]["verdict"]) for each in mutants)
-    wrong = [
-        f"{each.name}: {trials[each.name]['verdict']} ({each.reason})"
-        for each in mutants
-        if (trials[each.name]["verdict"] == KILLED) == each.survives
-    ]
-    return [*(f"{group}: {count} {verdict}" for (group, verdict), count in counts.items()), *wrong]
+    # Print the number of mutants by group and verdict, then each unexpected verdict.
+    verdicts = {each.name: trials[each.name]["verdict"] for each in chosen}
+    counts = Counter((each.group, verdicts[each.name]) for each in chosen)
+    unexpected = [each for each in chosen if (verdicts[each.name] == KILLED) == each.survives]
+    for (group, verdict), count in counts.items():
+        print(f"{group}: {count} {verdict}")
+    for each in unexpected:
+        print(f"{each.name}: {verdicts[each.name]} ({each.reason})")
+    return int(bool(unexpected))
 
 
 if __name__ == "__main__":

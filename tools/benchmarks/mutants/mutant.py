@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of mutants: single textual changes of eonlib's sources, read from `table/*.toml`.
 
-For each file there is also a negative control that only changes its first comment. It must survive.
+For each file, a negative control only changes the first comment. The control must survive.
 """
 
 import re
 import tomllib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
@@ -29,12 +29,12 @@ class Mutant:
     file: str  # path from the root
     old: str  # occurs once in the file
     new: str
-    reason: str  # why the change is wrong, or a proof that it is equivalent
-    host: str  # cheapest host that can detect it; "text" if none is needed
+    reason: str  # why the change is wrong, or a proof that the change is equivalent
+    host: str  # cheapest host that can detect the mutant; "text" if no host is needed
     equivalent: bool  # whether values stay the same on the whole valid domain
-    survives: bool  # whether no check detects it, as `reason` explains
+    survives: bool  # whether no check detects the mutant, as `reason` explains
     tests: tuple[str, ...] = ()  # test files to run first on a wrong reference
-    operator: str = ""  # name of the operator that made it
+    operator: str = ""  # name of the operator that made the mutant
     place: tuple[int, int] = (0, 0)  # start and end of the operator's match in the file
 
     def texts(self) -> dict[str, str]:
@@ -49,9 +49,8 @@ class Mutant:
     def _replaced(self, file: str, old: str, new: str) -> str:
         text, count = re.subn(old, lambda _: new, (ROOT / file).read_text(encoding="utf-8"))
         if count != 1:
-            raise ValueError(
-                f"{self.name}: the old text must occur once in {file}; got {count} times"
-            )
+            rule = f"the old text must occur once in {file}"
+            raise ValueError(f"{self.name}: {rule}; got {count} times")
         return text
 
     @property
@@ -85,17 +84,11 @@ def read_table() -> tuple[Mutant, ...]:
         for key in ("mutants", "survivors", "equivalents")
         for name, old, new, reason in part.get(key, ())
     ]
+    reason = "Only a comment changes."
     controls = (
-        replace(
-            mutant,
-            name=f"control: {file}",
-            group=CONTROLS,
-            old=COMMENT,
-            new=COMMENT.lower(),
-            reason="Only a comment changes.",
-            host="",
-            equivalent=True,
-            survives=True,
+        Mutant(
+            *(f"control: {file}", CONTROLS, file, COMMENT, COMMENT.lower(), reason, "", True, True),
+            tests=mutant.tests,
         )
         for file, mutant in {mutant.file: mutant for mutant in table}.items()
     )

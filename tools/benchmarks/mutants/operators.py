@@ -97,8 +97,7 @@ def files() -> tuple[str, ...]:
 
 def mutants_of(file: str) -> Iterator[Mutant]:
     """Distinct mutants of a file. Changes that do not apply to its OSL twin are skipped."""
-    texts = set()
-    text = (ROOT / file).read_text(encoding="utf-8")
+    texts, text = set(), (ROOT / file).read_text(encoding="utf-8")
     code = code_of(text)
     for operator, pattern in OPERATORS.items():
         match = pattern.search(code)
@@ -109,8 +108,9 @@ def mutants_of(file: str) -> Iterator[Mutant]:
             column = match.start() - text.rfind("\n", 0, match.start())
             name = f"{operator}, {file}:{line}:{column}, {len(found)}"
             reason = f"{found.strip()!r} becomes {put.strip()!r}"
-            place = operator, match.span()
-            mutant = Mutant(name, GROUP, file, old, new, reason, "gl", False, False, (), *place)
+            flags = {"equivalent": False, "survives": False}
+            place = {"operator": operator, "place": match.span()}
+            mutant = Mutant(name, GROUP, file, old, new, reason, "gl", **flags, **place)
             match = pattern.search(code, match.start() + 1)  # matches may overlap
             try:
                 made = mutant.texts()[file]

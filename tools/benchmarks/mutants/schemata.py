@@ -3,8 +3,8 @@
 
 At each mutant's place, an expression equals the original unless the uniform `mutant` has the mutant's number: ` + `
 becomes ` + mutant_sign(mutant == 7) * `. So a node's shader compiles once for hundreds of mutants, and each mutant only
-takes the milliseconds of a check on a subset of samples. Mutants of constant expressions or of
-integers cannot be written this way. They are reported, and need a separate library.
+takes the milliseconds of a check on a subset of samples. Mutants of constant expressions and of
+integers cannot be selected by a uniform: they are UNWRITTEN, and need a separate library.
 """
 
 import re
@@ -12,7 +12,8 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache, partial
+from functools import cache, lru_cache
+from itertools import islice
 from typing import cast
 
 import moderngl
@@ -33,8 +34,7 @@ from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.tolerance import Tolerance
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import gl
-from mxeon.shaders.functions import EACH as EVERY
-from mxeon.shaders.functions import STEMS, parts, source_file
+from mxeon.shaders import functions
 from tools.benchmarks.mutants import operators
 from tools.benchmarks.mutants.mutant import ROOT, Mutant
 from tools.benchmarks.mutants.trial import SURVIVED
@@ -202,7 +202,6 @@ class SchemataHost(gl.GlHost):
         for number, mutant in self.alive.items():
             if number not in self.unwritten:
                 files.setdefault(mutant.file, {})[number] = mutant
-        helpers = HELPERS
         for file, mutants in files.items():
             if (chunk := chunk_of(file)) in pixel:
                 start = (ROOT / file).read_text(encoding="utf-8").index(chunk)
@@ -214,7 +213,7 @@ class SchemataHost(gl.GlHost):
                 made = instrumented(chunk, moved)
                 self.unwritten |= mutants.keys() - set(map(int, NUMBER.findall(made)))
                 pixel = pixel.replace(chunk, f"/*mutants*/{made}")
-        return pixel.replace("/*mutants*/", helpers, 1)
+        return pixel.replace("/*mutants*/", HELPERS, 1)
 
     def numbers_in(self, pixel: str) -> list[int]:
         """Numbers of the mutants in a shader's text that are still undetected."""
@@ -252,15 +251,15 @@ LAST = (
 COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # their lobes are also checked separately
 UNWRITTEN = "unwritten"
 OSL_TWINS = {
-    source_file("osl", stem).relative_to(ROOT).as_posix()
-    for stem in (*STEMS, "ggx_albedo", "conty_kulla_albedo")
+    functions.source_file("osl", stem).relative_to(ROOT).as_posix()
+    for stem in (*functions.STEMS, "ggx_albedo", "conty_kulla_albedo")
 }
 # Sources that no check of a node runs: code for path tracers, and functions that only OSL calls.
-APART = ("genglsl/path/", "genglsl/lib/hair_parameters.glsl")
-EACH = 8  # shader functions are evaluated at every eighth point
+NOT_CHECKED = ("genglsl/path/", "genglsl/lib/hair_parameters.glsl")
+STRIDE = 8  # shader functions are evaluated at every eighth point
 GROUP = 1024  # mutants per program; larger programs slow the driver down
-Asked = Callable[[], Iterator[tuple[str, bool]]]  # yields each check and whether it failed
-Subject = tuple[str, bool, str, Asked]
+Checks = Callable[[], Iterator[tuple[str, bool]]]  # yields each check and whether it failed
+Subject = tuple[str, bool, str, Checks]
 
 
 def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
@@ -269,74 +268,82 @@ def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
     The value is SURVIVED if no check detects the mutant, UNWRITTEN if a uniform cannot select it.
     """
     twins = [each for each in mutants if each.file in OSL_TWINS]
-    own = [each for each in mutants if each.file.startswith("genglsl/")]
-    mutants = [each for each in own if not each.file.startswith(APART)]
-    found = {each.name: SURVIVED for each in mutants}
-    numbered = list(enumerate(mutants, 1))
+    glsl = [each for each in mutants if each.file.startswith("genglsl/")]
+    numbered = dict(enumerate((m for m in glsl if not m.file.startswith(NOT_CHECKED)), 1))
+    found = {each.name: SURVIVED for each in numbered.values()}
     with closing(SchemataHost()) as host, np.errstate(all="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        asked = list(subjects(host))
-        for start in range(0, len(mutants), GROUP):
-            host.take(dict(numbered[start : start + GROUP]))
-            for number, words in noticed(host, asked):
-                found[mutants[number - 1].name] = words
-        found |= {mutants[number - 1].name: UNWRITTEN for number in host.unwritten}
-    return found | {each.name: "languages" if is_another_text(each) else SURVIVED for each in twins}
+        checked = list(subjects(host))
+        for start in range(0, len(numbered), GROUP):
+            host.take(dict(islice(numbered.items(), start, start + GROUP)))
+            for number, words in detections(host, checked):
+                found[numbered[number].name] = words
+        found |= {numbered[number].name: UNWRITTEN for number in host.unwritten}
+    return found | {
+        each.name: "languages" if differs_from_glsl(each) else SURVIVED for each in twins
+    }
 
 
-def is_another_text(mutant: Mutant) -> bool:
+def differs_from_glsl(mutant: Mutant) -> bool:
     """Whether a mutated OSL function or constant differs from GLSL, so that `languages` fails."""
     texts = (ROOT / mutant.file.replace("osl", "glsl")).read_text(), mutant.texts()[mutant.file]
-    glsl, osl = (parts(operators.COMMENT.sub(" ", each)) for each in texts)
+    glsl, osl = (functions.parts(operators.COMMENT.sub(" ", each)) for each in texts)
     return glsl != osl
 
 
-def noticed(host: SchemataHost, asked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
-    """Numbers of detected mutants, with the checks that detected them; removes these mutants."""
+def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
+    """Numbers of detected mutants, with the checks that detected them; removes these mutants.
+
+    A composed subject is only checked with mutants that no other subject contains.
+    """
     seen: set[int] = set()
-    for title, composed, text, ask in asked:
-        own = [each for each in host.numbers_in(text) if not composed or each not in seen]
-        for number in own:
+    for title, composed, text, checks in checked:
+        numbers = [each for each in host.numbers_in(text) if not composed or each not in seen]
+        for number in numbers:
             host.mutant = number
-            for check, failed in ask() if number not in host.unwritten else ():
+            for check, failed in checks() if number not in host.unwritten else ():
                 if failed and number not in host.unwritten:
                     del host.alive[number]
                     yield number, f"{check}, {title}"
                     break
-        seen.update(each for each in own if not composed)
+        if not composed:
+            seen.update(numbers)
         host.mutant = 0
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """What to check: title, whether it is composed, shader text, function that runs the checks."""
-    functions = Functions(host)
-    yield "functions", False, functions.text, functions
+    """Subjects: title, whether composed of other subjects, shader text, function with the checks."""
+    every = Functions(host)
+    yield "functions", False, every.text, every
     # Check films before transmission: transmission runs the same code without a film.
     specs = dict.fromkeys((*DIFFUSE, *PLAIN_LOBES, *FILM_SPECS, *PBRLIB))
-    cases = [
-        replace(
-            make_case(Evaluating, host, spec, "eonlib"), control=True
-        )  # use a subset of the samples
-        for spec in specs
-        if spec.title != "measured_edf"
-    ]
+    made = [make_case(Evaluating, host, s, "eonlib") for s in specs if s.title != "measured_edf"]
+    cases = [replace(case, control=True) for case in made]  # controls use a subset of the samples
     for turn in range(3):
         for case in cases:
             composed, text = isinstance(case.spec, COMPOSED), case.evaluating.shader.stages["pixel"]
-            yield case.spec.title, composed, text, partial(node, case, _rows(case, turn))
+            yield case.spec.title, composed, text, node_checks(case, turn)
 
 
-def _rows(case: Case, turn: int) -> Callable[[], list[tuple[Check, Tolerance]]]:
-    """A cached function that returns one of three groups of checks, with their tolerances."""
+def node_checks(case: Case, turn: int) -> Checks:
+    """Function that runs one of three groups of a node's checks."""
 
     @cache
     def rows() -> list[tuple[Check, Tolerance]]:
-        own = [each for each in CHECKS if not each.profile]
-        own = [each for each in own if (each.key not in FIRST) + (each.key in LAST) == turn]
-        own = [each for each in own if each.applies_to(case.spec, Evaluating, "gl")]
-        return [(each, each.allowed(case)) for each in own]
+        chosen = [each for each in CHECKS if not each.profile]
+        chosen = [each for each in chosen if (each.key not in FIRST) + (each.key in LAST) == turn]
+        chosen = [each for each in chosen if each.applies_to(case.spec, Evaluating, "gl")]
+        return [(each, each.allowed(case)) for each in chosen]
 
-    return rows
+    def run() -> Iterator[tuple[str, bool]]:
+        case.backend._evaluations = Recent(EVALUATIONS)
+        for check, tolerance in rows():
+            try:
+                yield check.key, not check.measured(case, tolerance).error <= tolerance.value
+            except (NotRun, ShaderError):
+                yield check.key, True
+
+    return run
 
 
 class Functions:
@@ -346,34 +353,20 @@ class Functions:
         self._host, self.language = host, host.language
         probe = FunctionProbe(cast(gl.GlHost, self), "eonlib")
         self.text, self._rows = probe.text, []
-        names = list(probe._values(1.0))
-        for name in names:
+        for name in probe._values(1.0):
             row, (values, factor) = row_of(name), exact(name)
-            scale = np.broadcast_to(factor, values.shape)[::EACH]
-            self._rows.append((row.key, probe.tolerance(row), scale, scale * values[::EACH]))
+            scale = np.broadcast_to(factor, values.shape)[::STRIDE]
+            self._rows.append((row.key, probe.tolerance(row), scale, scale * values[::STRIDE]))
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Execute on the host, and record the call of all functions with fewer points."""
-        if function == EVERY:
-            points = np.arange(len(np.asarray(arguments[0]))) % EACH == 0
-            self._asked = source, function, *(np.asarray(each)[points] for each in arguments)
+        if function == functions.EACH:
+            self._call = source, function, *(np.asarray(each)[::STRIDE] for each in arguments)
         return self._host.execute(source, function, *arguments)
 
     def __call__(self) -> Iterator[tuple[str, bool]]:
-        values = self._host.execute(*self._asked).astype(np.float64)
-        parts_of = np.split(values, len(self._rows))
-        for each, (key, tolerance, scale, right) in zip(parts_of, self._rows, strict=True):
-            error = tolerance.metric(scale * each[:, : scale.shape[1]], right).max()
+        values = self._host.execute(*self._call).astype(np.float64)
+        parts = np.split(values, len(self._rows))
+        for part, (key, tolerance, scale, reference) in zip(parts, self._rows, strict=True):
+            error = tolerance.metric(scale * part[:, : scale.shape[1]], reference).max()
             yield key, not error <= tolerance.value
-
-
-def node(
-    case: Case, rows: Callable[[], list[tuple[Check, Tolerance]]]
-) -> Iterator[tuple[str, bool]]:
-    """Run the checks of a node; yields each key and whether the check failed."""
-    case.backend._evaluations = Recent(EVALUATIONS)
-    for check, tolerance in rows():
-        try:
-            yield check.key, not check.measured(case, tolerance).error <= tolerance.value
-        except (NotRun, ShaderError):
-            yield check.key, True

@@ -34,24 +34,28 @@ from tools.benchmarks.mutants import operators
 from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
 
 KILLED, SURVIVED = "killed", "survived"
-CRASHED = "crashed"  # the check ended with a traceback
-TEXT, TESTS = "text", "tests"  # used instead of a host's name
+CRASHED = "crashed"  # a check ended with a traceback
+TEXT, TESTS = "text", "tests"  # values of `host` for mutants that no host detected
 
-# Checks on Cycles cannot detect all of these mutants; tests run the code in Blender's OSL.
-PROFILE, PROFILE_TESTS = "genosl/cycles/", ("tests/hosts/test_osl.py",)
-PATH, PATH_TESTS = "genglsl/path/", ("tests/shaders/test_path_tracing.py",)  # checks do not run it
+PATH = "genglsl/path/"  # code for path tracers, which no check runs
+# Tests by folder. Those of PATH replace the checks; others follow them, because checks on hosts
+# cannot detect all mutants of the folder.
+FOLDER_TESTS = {
+    PATH: ("tests/shaders/test_path_tracing.py",),
+    "genosl/cycles/": ("tests/hosts/test_osl.py",),  # runs the code in Blender's OSL
+    operators.ENVIRONMENT: (
+        "tests/conformance/test_conformance.py::test_other_lobes_are_lit_alike_by_eonlib_s_lookups",
+        "tests/hosts/test_document_hosts.py::"
+        "test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo",
+    ),
+}
 LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups, which no source includes
-ENVIRONMENT_TESTS = (
-    "tests/conformance/test_conformance.py::test_other_lobes_are_lit_alike_by_eonlib_s_lookups",
-    "tests/hosts/test_document_hosts.py::"
-    "test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo",
-)
-NOISY = ("environment", "furnace")  # slowest checks on Cycles
+NOISY = ("environment", "furnace")  # the slowest checks on Cycles, which run last
 # Files that no shader for gl contains: the gl host cannot detect mutants in them.
 ON_CYCLES = ("genosl/",)
 CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls closures, which only the osl host evaluates
 NOT_ON_GL = (*ON_CYCLES, CLOSURES, "libraries/diffuse/eonlib_genmdl")
-TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # its mistakes also fail slower checks
+TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # files whose text is checked before nodes
 
 
 def trial(mutant: Mutant, judge: Judge) -> dict[str, Any]:
@@ -59,17 +63,17 @@ def trial(mutant: Mutant, judge: Judge) -> dict[str, Any]:
     if mutant.tests:
         named = tuple(f"{MODEL_TESTS}/{name}" for name in mutant.tests)
         return by_tests(mutant, (named,) if mutant.equivalent else (named, (MODEL_TESTS,)))
-    if mutant.file.startswith(PATH):
-        return by_tests(mutant, (PATH_TESTS,))
-    found = _on_hosts(mutant, judge)
-    if found["verdict"] == SURVIVED and mutant.file.startswith(PROFILE):
-        return by_tests(mutant, (PROFILE_TESTS,))
-    if found["verdict"] == SURVIVED and mutant.file.startswith(operators.ENVIRONMENT):
-        return by_tests(mutant, (ENVIRONMENT_TESTS,))
+    found = {"verdict": SURVIVED}
+    if not mutant.file.startswith(PATH):
+        found = by_checks(mutant, judge)
+    for folder, tests in FOLDER_TESTS.items():
+        if found["verdict"] == SURVIVED and mutant.file.startswith(folder):
+            found = by_tests(mutant, (tests,))
     return found
 
 
-def _on_hosts(mutant: Mutant, judge: Judge) -> dict[str, Any]:
+def by_checks(mutant: Mutant, judge: Judge) -> dict[str, Any]:
+    """Verdict of checks on a mutated copy of eonlib, and the first task with failures."""
     nodes = bool(changed_nodes(mutant))
     with wrong_library(mutant) as path:
         try:
@@ -78,9 +82,9 @@ def _on_hosts(mutant: Mutant, judge: Judge) -> dict[str, Any]:
             for host, stage in islice(found, limit):
                 if failures := failures_of(stage, judge):
                     first = failures[0]
-                    seen = TEXT if first.host == SOURCE else host
+                    place = TEXT if first.host == SOURCE else host
                     cause = words.diagnosis(first.diagnosis) or f"not run: {first.reason}"
-                    return killed(seen, [each.check for each in failures], cause)
+                    return killed(place, [each.check for each in failures], cause)
         except MxeonError as error:
             return killed(TEXT, ["refused"], str(error).replace(f"{Path(path).parent}/", ""))
         except Exception as error:
@@ -90,11 +94,14 @@ def _on_hosts(mutant: Mutant, judge: Judge) -> dict[str, Any]:
 
 def killed(host: str, checks: Sequence[str], explanation: str) -> dict[str, Any]:
     """Record of a detected mutant, with only the first line of the explanation."""
-    line = re.sub(
-        rf"{re.escape(tempfile.gettempdir())}/\S*/", "", explanation.strip().split("\n")[0]
-    )
-    found = list(dict.fromkeys(checks))
-    return {"verdict": KILLED, "host": host, "checks": found, "explanation": line}
+    line, folder = explanation.strip().split("\n")[0], re.escape(tempfile.gettempdir())
+    line = re.sub(rf"{folder}/\S*/", "", line)
+    return {
+        "verdict": KILLED,
+        "host": host,
+        "checks": list(dict.fromkeys(checks)),
+        "explanation": line,
+    }
 
 
 def write_wrong(mutant: Mutant, base: str, *folders: str) -> None:
@@ -120,10 +127,10 @@ def wrong_library(mutant: Mutant) -> Iterator[str]:
 def failures_of(tasks: Sequence[Task], judge: Judge) -> list[Result]:
     """Failures of the first task with failures that eonlib itself does not have."""
     for task in tasks:
-        found = _failed(task, judge)
-        known = found and _clean_failures(replace(task, library="eonlib"), judge)
-        if failures := [each for key, each in found.items() if key not in known]:
-            return failures
+        if failures := _failed(task, judge):
+            known = _original_failures(replace(task, library="eonlib"), judge)
+            if new := [each for key, each in failures.items() if key not in known]:
+                return new
     return []
 
 
@@ -133,9 +140,7 @@ def _failed(task: Task, judge: Judge) -> dict[tuple[str, str], Result]:
     return {(each.check, each.subject): each for each in results if each.verdict != PASSED}
 
 
-@cache
-def _clean_failures(task: Task, judge: Judge) -> frozenset[tuple[str, str]]:
-    return frozenset(_failed(task, judge))
+_original_failures = cache(_failed)  # eonlib itself does not change
 
 
 # --- tasks of a library ---------------------------------------------------------------------------
@@ -145,7 +150,7 @@ def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
     """Hosts and tasks that can detect a mutant, cheapest first.
 
     The order is: text and nodes, surface shaders, pictures of documents, OSL closures, Cycles. Each
-    picture and each task of Cycles is a stage of its own.
+    picture and each task of Cycles is a separate stage.
     """
     tasks = make_plan((), ["gl"], [path]).tasks
     if mutant.file.startswith(NOT_ON_GL):
@@ -177,8 +182,7 @@ DOCUMENTS = (
 INCLUDE = re.compile(r'^#include "([\w./]+)"$', re.MULTILINE)
 # Pairs of a target and a host that runs its shaders, cheapest host first.
 HOSTS = (("genglsl", "gl"), ("genosl", "osl"), ("genosl", "cycles"))
-# The slowest checks.
-LATE = ("inputs", "transmitted_inputs", "integral", "energy")
+LATE = ("inputs", "transmitted_inputs", "integral", "energy")  # the slowest checks
 
 
 def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
@@ -187,12 +191,11 @@ def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
     changed = {LOBE if each.startswith(operators.ENVIRONMENT) else each for each in texts}
     entries: set[tuple[str, ...]] = set()
     for document in DOCUMENTS:
-        before = _entries(document, (ROOT / document).read_text(encoding="utf-8"))
-        after = _entries(document, texts[document]) if document in texts else before
-        entries |= before ^ after
-        if mutant.control and document in texts:
-            entries |= before
-        entries |= {entry for entry in before if not changed.isdisjoint(_sources(entry[2]))}
+        original = _entries(document, (ROOT / document).read_text(encoding="utf-8"))
+        entries |= {entry for entry in original if not changed.isdisjoint(_sources(entry[2]))}
+        if document in texts:
+            mutated = set() if mutant.control else _entries(document, texts[document])
+            entries |= original ^ mutated
     return {(target, title) for nodedef, target, *_ in entries for title in _titles(nodedef)}
 
 
@@ -214,8 +217,11 @@ def _tasks(host: str) -> tuple[Task, ...]:
     """
     places = {spec.title: -place for place, spec in enumerate(PBRLIB)}
     tasks = make_plan((), [host], ["eonlib"], nodes=["all"]).tasks
-    late = {task: (task.check in LATE, "film" in task.subject) for task in tasks}
-    return tuple(sorted(tasks, key=lambda task: (late[task], places.get(task.subject, 0))))
+
+    def order(task: Task) -> tuple[bool, bool, int]:
+        return task.check in LATE, "film" in task.subject, places.get(task.subject, 0)
+
+    return tuple(sorted(tasks, key=order))
 
 
 @cache
@@ -283,7 +289,7 @@ def by_tests(mutant: Mutant, steps: Sequence[tuple[str, ...]]) -> dict[str, Any]
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
         write_wrong(mutant, base, "python", *FOLDERS)
         for tests in steps:
-            if failure := _first_failure(str(ROOT / "python"), tests):
+            if failure := _original_failure(str(ROOT / "python"), tests):
                 raise RuntimeError(f"a test fails without any change: {failure}")
             if failure := _failure(str(Path(base, "python")), tests):
                 return killed(TESTS, [failure[0]], failure[1])
@@ -309,4 +315,4 @@ def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
     return test or "import", f"{file}: {message}" if message else file
 
 
-_first_failure = cache(_failure)  # cached, since the original package does not change
+_original_failure = cache(_failure)  # the original package does not change
