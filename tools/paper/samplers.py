@@ -2,7 +2,7 @@
 """The samplers of EON that the paper compares, and the moments of their weights."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from mxeon.models import sampling
 from mxeon.models.core.arrays import Array
@@ -10,20 +10,13 @@ from mxeon.models.core.quadrature import hemisphere_nodes
 from mxeon.models.diffuse import eon_brdf
 
 
-@dataclass(frozen=True)
-class Sampler:
-    """A sampler and its density; all samplers have the same arguments.
+class Sampler(NamedTuple):
+    """A sampler and its density."""
 
-    - `name`: Prefix of the functions, such as `ltc` of `ltc_sample` and `ltc_pdf`.
-    - `sample`: sample(wo, u, roughness) -> wi, pdf.
-    - `pdf`: pdf(wo, wi, roughness).
-    - `title`: Name in plots and tables.
-    """
-
-    name: str
-    sample: Callable[..., tuple[Array, Array]]
-    pdf: Callable[..., Array]
-    title: str
+    name: str  # prefix of the functions, such as `ltc` of `ltc_sample` and `ltc_pdf`
+    sample: Callable[..., tuple[Array, Array]]  # sample(wo, u, roughness) -> wi, pdf
+    pdf: Callable[..., Array]  # pdf(wo, wi, roughness)
+    title: str  # in plots and tables
 
 
 SAMPLERS = (
@@ -63,8 +56,8 @@ def moments(
     wo, wi, projected = hemisphere_nodes(mu, nodes)
     value, pdf = eon_brdf(wo, wi, 1.0, roughness)[:, 0], BY_NAME[name].pdf(wo, wi, roughness)
     value = value if light is None else value * light(wi)
-    drawn, cosine = pdf > 0.0, wi[:, 2]
-    weight = value[drawn] * cosine[drawn] / pdf[drawn]
-    share = projected[drawn] * pdf[drawn] / cosine[drawn]
-    mean = float(weight @ share)
-    return mean, float((weight - mean) ** 2 @ share), float(weight.max())
+    sampled, cosine = pdf > 0.0, wi[:, 2]
+    weight = value[sampled] * cosine[sampled] / pdf[sampled]
+    probability = projected[sampled] * pdf[sampled] / cosine[sampled]
+    mean = float(weight @ probability)
+    return mean, float((weight - mean) ** 2 @ probability), float(weight.max())

@@ -21,8 +21,6 @@ does; NaN meets no limit. The tables have the claims that do not hold, with the 
 The paper's formulas of values and albedos, and of rho for an albedo, are not among the claims: the tests compare them
 with 50 digits of the printed equations. They also test that densities integrate to 1 and mean weights are 1.
 """
-TALLY = "{count} claims; verdicts: {holds} holds, {part} holds in part, {fails} fails."
-
 
 # Result of a measurement: a sentence for the page, and the values to compare with the limits.
 Measured = tuple[str, ArrayLike]
@@ -32,7 +30,7 @@ ROUNDING = 1e-12  # largest difference between two forms of one formula
 
 @dataclass
 class Section:
-    """Claims under one heading; `rows` has a function per claim that measures its table row."""
+    """Claims under one heading; `rows` has a function per claim that measures the table row."""
 
     heading: str
     rows: list[Callable[[], tuple[str, ...]]] = field(default_factory=list)
@@ -82,20 +80,18 @@ def page(sections: Sequence[Section]) -> str:
     """Measure every claim, print those that hold, and return the page as Markdown."""
     parts = [HEAD]
     for section in sections:
-        rows = [measured() for measured in section.rows]
-        verdicts = [row[-1] for row in rows]
-        tally = TALLY.format(
-            count=len(verdicts),
-            holds=verdicts.count(HOLDS),
-            part=verdicts.count(IN_PART),
-            fails=verdicts.count(FAILS),
-        )
-        wrong = [row for row in rows if row[-1] != HOLDS]
-        lines = [f"| {' | '.join(cells)} |" for cells in (COLUMNS, *wrong)]
-        lines.insert(1, "|---" * len(COLUMNS) + "|")
-        right = [row for row in rows if row[-1] == HOLDS]
-        for row in right:
+        rows = [row() for row in section.rows]
+        holding = [row for row in rows if row[-1] == HOLDS]
+        for row in holding:
             print("; ".join(row))
-        lines += ["", f"These hold: {'; '.join(f'{row[0]}, {row[1]}' for row in right)}."]
+        others = [row for row in rows if row[-1] != HOLDS]
+        in_part = [row for row in others if row[-1] == IN_PART]
+        tally = (
+            f"{len(rows)} claims; verdicts: {len(holding)} holds, {len(in_part)} holds in part, "
+            f"{len(others) - len(in_part)} fails."
+        )
+        lines = [f"| {' | '.join(cells)} |" for cells in (COLUMNS, *others)]
+        lines.insert(1, "|---" * len(COLUMNS) + "|")
+        lines += ["", f"These hold: {'; '.join(f'{row[0]}, {row[1]}' for row in holding)}."]
         parts.append("\n".join([f"## {section.heading}", "", tally, "", *lines, ""]))
     return "\n".join(parts)

@@ -3,8 +3,7 @@
 
 import numpy as np
 
-from mxeon.models import sampling as cltc
-from mxeon.models import sampling as ltc
+from mxeon.models import sampling
 from tools.paper.claims import ROUNDING, Measured, Section
 from tools.paper.samplers import moments
 
@@ -40,11 +39,11 @@ def cosine_diverges() -> Measured:
 
     Before a peak the growth would shrink. Instead, each factor of 10 adds (A r)^2 / 2 ln 10.
     """
-    below = [moments("cosine", mu, 1.0, nodes=200)[1] for mu in (1e-3, 1e-4, 1e-5)]
-    growth = np.diff(below)
-    listed = ", ".join(f"{variance:.2f}" for variance in below)
+    variances = [moments("cosine", mu, 1.0, nodes=200)[1] for mu in (1e-3, 1e-4, 1e-5)]
+    first, second = np.diff(variances)
+    listed = ", ".join(f"{variance:.2f}" for variance in variances)
     sentence = f"{listed} at mu = 1e-3, 1e-4, 1e-5: each step adds as much as the one before"
-    return f"{sentence} (ratio {growth[1] / growth[0]:.3f}), without a bound", growth[1] / growth[0]
+    return f"{sentence} (ratio {second / first:.3f}), without a bound", second / first
 
 
 @claim("Section 4", "det of the inverse of M is positive everywhere", "det M", least=ROUNDING)
@@ -52,7 +51,7 @@ def determinant() -> Measured:
     """Determinant of the inverse of M over all cosines and roughnesses."""
     a, b, c, d = (
         entry(COSINES[:, np.newaxis], np.linspace(0.0, 1.0, 101))
-        for entry in (ltc.ltc_ma, ltc.ltc_mb, ltc.ltc_mc, ltc.ltc_md)
+        for entry in (sampling.ltc_ma, sampling.ltc_mb, sampling.ltc_mc, sampling.ltc_md)
     )
     det = c * (a - b * d)
     return f"det M from {det.min():.3f} to {det.max():.3f}", det.min()
@@ -61,8 +60,8 @@ def determinant() -> Measured:
 @claim("Section 4", "general LTC wastes samples below the horizon", "share", least=1e-3)
 def wasted() -> Measured:
     """Share of LTC's samples that fall below the horizon."""
-    d = ltc.ltc_md(COSINES, 1.0)
-    share = 1.0 - cltc.cltc_kept_fraction(d)
+    d = sampling.ltc_md(COSINES, 1.0)
+    share = 1.0 - sampling.cltc_kept_fraction(d)
     at = COSINES[share.argmax()]
     sentence = f"up to {100 * share.max():.2f} % of the samples at r = 1, at mu = {at:g}"
     return sentence, share.max()
@@ -72,9 +71,9 @@ def wasted() -> Measured:
 def side_of_the_lune() -> Measured:
     """Lowest sample of Listing 3 near the normal, where the fitted d is positive."""
     mu = np.linspace(0.999, 1.0, 100_001)
-    d = ltc.ltc_md(mu, 1.0)
+    d = sampling.ltc_md(mu, 1.0)
     u1, u2 = np.random.default_rng(2).random((2, 200_000))
-    wh = cltc.cltc_clipped(u1, u2, -d[-1])
+    wh = sampling.cltc_clipped(u1, u2, -d[-1])
     lowest = np.min(d[-1] * wh[:, 0] + wh[:, 2])
     sentence = f"d > 0 for mu > {mu[d > 0.0].min():.5f}: up to {d.max():.1e} at r = 1"
     return f"{sentence}, where the listing draws z down to {lowest:.1e}", lowest
