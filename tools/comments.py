@@ -3,7 +3,7 @@
 
     python -m tools.comments SEED COUNT FOLDER ...
 
-A reader marks those that have to be read twice. COUNT is the number per FOLDER.
+A reader marks the texts that have to be read twice. COUNT is the number of texts per FOLDER.
 """
 
 import ast
@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-OURS = re.compile(r"(?P<mark>//|#) (?!SPDX|---|noqa|type:|fmt:|ruff:)(?P<text>\S.*)")
+COMMENT = re.compile(r"(?P<mark>//|#) (?!SPDX|---|noqa|type:|fmt:|ruff:)(?P<text>\S.*)")
 SUFFIXES = (".py", ".glsl", ".osl", ".ts")
 
 
@@ -22,11 +22,11 @@ def texts(path: Path) -> list[str]:
     """The docstrings and comments of a file. Consecutive comment lines count as one comment."""
     text, found, last = path.read_text(encoding="utf-8"), [], 0
     if path.suffix == ".py":
-        nodes = (n for n in ast.walk(ast.parse(text)) if hasattr(n, "body"))
         documented = (ast.Module, ast.ClassDef, ast.FunctionDef)
-        found = [doc for n in nodes if isinstance(n, documented) if (doc := ast.get_docstring(n))]
+        nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, documented)]
+        found = [doc for node in nodes if (doc := ast.get_docstring(node))]
     for number, line in enumerate(text.splitlines(), 1):
-        match = OURS.search(line)
+        match = COMMENT.search(line)
         if not match or (match["mark"] == "#") != (path.suffix == ".py"):
             continue
         whole = not line[: match.start()].strip()

@@ -5,8 +5,9 @@
     python tools/golden.py write out/before.jsonl [--host gl ...]   every host that runs here x every library
     python tools/golden.py compare out/before.jsonl out/after.jsonl
 
-A line is one check: host, library, subject and key; verdict, tolerance, whether its control was
-caught, diagnosis and pages. Numbers in a diagnosis keep two digits, because engines differ in more.
+A line is one check: host, library, subject and key; verdict, tolerance, whether the check noticed
+its wrong control, diagnosis and pages. Numbers in a diagnosis keep two digits, because engines
+differ in more.
 """
 
 import argparse
@@ -21,7 +22,7 @@ from mxeon.hosts import host_rows, register
 
 LIBRARIES = ("eonlib", "stock", "diffuse")
 PLACE = ("host", "library", "subject", "check")
-SAME = ("verdict", "tolerance", "caught", "diagnosis", "pages", "reason")
+COMPARED = ("verdict", "tolerance", "caught", "diagnosis", "pages", "reason")
 Line = dict[str, object]
 
 
@@ -58,16 +59,16 @@ def rounded(value: object) -> object:
 def compare(before: Path, after: Path) -> int:
     """Print the differences, and return their number."""
     old, new = (
-        {tuple(each.get(key) for key in PLACE): each for each in map(json.loads, path.open())}
+        {tuple(each[key] for key in PLACE): each for each in map(json.loads, path.open())}
         for path in (before, after)
     )
     count = 0
     for place in dict.fromkeys((*old, *new)):
-        was, now = old.get(place), new.get(place)
-        rows = ["gone" if was else "new"]
-        if was and now:
-            changed = [key for key in SAME if was.get(key) != now.get(key)]
-            rows = [f"{key}: {was.get(key)!r} -> {now.get(key)!r}" for key in changed]
+        if place in old and place in new:
+            values = {key: (old[place].get(key), new[place].get(key)) for key in COMPARED}
+            rows = [f"{key}: {a!r} -> {b!r}" for key, (a, b) in values.items() if a != b]
+        else:
+            rows = ["gone" if place in old else "new"]
         for row in rows:
             print(*place, row, sep=" | ")
         count += bool(rows)
@@ -85,9 +86,9 @@ def main() -> int:
     write = jobs.add_parser("write")
     write.add_argument("file", type=Path)
     write.add_argument("--host", action="append", choices=hosts)
-    both = jobs.add_parser("compare")
-    both.add_argument("before", type=Path)
-    both.add_argument("after", type=Path)
+    comparison = jobs.add_parser("compare")
+    comparison.add_argument("before", type=Path)
+    comparison.add_argument("after", type=Path)
     options = parser.parse_args()
     if options.job == "compare":
         return int(compare(options.before, options.after) > 0)

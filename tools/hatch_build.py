@@ -9,7 +9,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 class Pages(BuildHookInterface):
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Add the pages to a standard wheel; editable installs find them in the checkout."""
+        """Add the pages to a standard wheel; an editable install finds them in the checkout."""
         if version == "standard":
             for file in Path(self.root, "docs", "upstream").iterdir():
                 if file.suffix in (".md", ".json"):

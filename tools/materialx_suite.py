@@ -3,11 +3,12 @@
 
 python -m tools.materialx_suite CHECKOUT BUILD WORK [NAME=VALUE ...]
 
-CHECKOUT is a clone of MaterialX in the version of the installed package, BUILD a build of it with
-MATERIALX_BUILD_TESTS and the GLSL renderer. Neither is changed: each library gets a folder in WORK
-with links to them, and a copy of the suite's `_options.mtlx`, in which NAME=VALUE replaces a value.
-renderGeometry=dome.obj is half a sphere of 60 faces for OpenGL on a CPU. Results in WORK are kept,
-so a second call only writes docs/materialx_suite.md and its pictures.
+CHECKOUT is a clone of MaterialX in the version of the installed package; BUILD is its build with
+MATERIALX_BUILD_TESTS and the GLSL renderer. CHECKOUT and BUILD are not changed: each library gets a
+folder in WORK with links to their files, and a copy of the suite's `_options.mtlx`, in which
+NAME=VALUE replaces a value. renderGeometry=dome.obj is half a sphere of 60 faces for OpenGL on a
+CPU. Results in WORK are reused, so a second call only writes docs/materialx_suite.md and its
+pictures.
 """
 
 import math
@@ -87,13 +88,13 @@ def slug(text: str) -> str:
 
 def change(stock: Codes, eonlib: Codes) -> tuple[float, float]:
     """Largest signed change of a picture, where white is 1; share of pixels that visibly change."""
-    apart = difference(srgb_decoded(eonlib / 255.0), srgb_decoded(stock / 255.0))
-    largest = apart.flat[np.abs(apart).argmax()]
-    return float(largest), float(np.mean(np.abs(apart) > VISIBLE))
+    changed = difference(srgb_decoded(eonlib / 255.0), srgb_decoded(stock / 255.0))
+    largest = changed.flat[np.abs(changed).argmax()]
+    return float(largest), float(np.mean(np.abs(changed) > VISIBLE))
 
 
 def stage(folder: Path, checkout: Path, build: Path) -> None:
-    """Create the folder in which the suite runs with the library of that name."""
+    """Create the folder in which the suite runs, named like the library to test."""
     if folder.exists():
         return
     for name in ("libraries", "resources"):
@@ -109,7 +110,7 @@ def stage(folder: Path, checkout: Path, build: Path) -> None:
             (folder.parent / name).symlink_to(source_folder(EONLIB) / name)
 
 
-def shown(value: str) -> str:
+def option_text(value: str) -> str:
     """An option's value for the page, such as "b/c.hdr" for "a/b/c.hdr", or "2 documents"."""
     names = ["/".join(Path(each.strip()).parts[-2:]) for each in value.split(",")]
     documents = f"{len(names)} documents" if names[0].endswith(".mtlx") else ", ".join(names)
@@ -150,21 +151,18 @@ def run_tests(folder: Path, suite: mx.Document, case: str) -> None:
     (folder / "unfinished").replace(folder / f"{name}.xml")
 
 
-def shaders(folder: Path) -> dict[str, Path]:
-    """Paths of the render test's fragment shaders, by document and element."""
+def pictures(folder: Path) -> dict[str, Path]:
+    """Paths of the render test's pictures by document and element, also of pictures that failed."""
     out = folder / slug(RENDER_TEST)
     return {
-        f"{path.relative_to(out).parts[0]}: {path.stem.removesuffix('_ps')}": path
-        for path in out.rglob("*_ps.glsl")
+        f"{shader.relative_to(out).parts[0]}: {name}": shader.with_name(f"{name}_glsl.png")
+        for shader in out.rglob("*_ps.glsl")
+        for name in [shader.stem.removesuffix("_ps")]
     }
 
 
-def picture(shader: Path) -> Path:
-    return shader.with_name(shader.name.replace("_ps.glsl", "_glsl.png"))
-
-
-def codes(shader: Path) -> Codes:
-    return np.asarray(Image.open(picture(shader)).convert("RGB"))
+def codes(picture: Path) -> Codes:
+    return np.asarray(Image.open(picture).convert("RGB"))
 
 
 def failed_tests(folder: Path) -> dict[str, bool]:
@@ -194,12 +192,8 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
         stage(work / name, checkout, build)
         for case in (RENDER_TEST, f"~{RENDER_TEST}"):
             run_tests(work / name, suite, case)
-    before, after = (shaders(work / name) for name in (STOCK, EONLIB))
-    drawn = [
-        each
-        for each in set(before) & set(after)
-        if picture(before[each]).exists() and picture(after[each]).exists()
-    ]
+    before, after = (pictures(work / name) for name in (STOCK, EONLIB))
+    drawn = [e for e in before if e in after and before[e].exists() and after[e].exists()]
     changes = {each: change(codes(before[each]), codes(after[each])) for each in drawn}
     visible = [each for each in drawn if abs(changes[each][0]) > VISIBLE]
 
@@ -210,8 +204,8 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
         largest, share = map(in_percent, changes[each])
         lines += f"| {each} | {largest} | {share.removeprefix('+')} |\n"
         file = f"{slug(each)}.webp"
-        both = np.concatenate([codes(before[each]), codes(after[each])], axis=1)
-        tile = Image.fromarray(both).resize((2 * SIZE, SIZE))
+        pair = np.concatenate([codes(before[each]), codes(after[each])], axis=1)
+        tile = Image.fromarray(pair).resize((2 * SIZE, SIZE))
         tile.save(PICTURES / file, quality=QUALITY, method=6)
         figures += (
             f'<figure><img src="images/suite/{file}" alt="stock and eonlib">'
@@ -221,8 +215,8 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
     failed = {name: [each for each, value in tests[name].items() if value] for name in tests}
     cases = (f"{len(failed[name])} of {len(tests[name])}" for name in tests)
     blank = (
-        f"{sum(not picture(each).exists() for each in found.values())} of {len(found)}"
-        for found in (before, after)
+        f"{sum(not path.exists() for path in paths.values())} of {len(paths)}"
+        for paths in (before, after)
     )
     ours = [each for each in failed[EONLIB] if each not in failed[STOCK]]
     git = ["git", "-C", str(checkout), "ls-files", "--deleted"]
@@ -239,7 +233,7 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
             untested=", ".join(f"`{each}`" for each in untested(work / EONLIB)) or "none",
             figures=figures,
             lines=lines,
-            options="; ".join(f"`{name}` {shown(value)}" for name, value in options.items())
+            options="; ".join(f"`{name}` {option_text(value)}" for name, value in options.items())
             or "none",
             absent=", ".join(Path(each).name for each in absent) or "none",
         ),

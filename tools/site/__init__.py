@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scripts that write pages of docs/. Each measured page has its own command.
+"""Scripts that write pages of docs/. Each measured page has a separate command.
 
 | command | what it writes |
 |---|---|
@@ -36,19 +36,20 @@ def in_percent(share: float) -> str:
     return f"{sign}{words.in_words(100.0 * abs(share))} %" if abs(share) >= 0.001 else "none"
 
 
-def brief(apart: Difference) -> str:
+def brief(difference: Difference) -> str:
     """Text: the largest difference of a picture, and the share of the object that visibly differs.
 
     >>> brief(Difference("back", 0.2035, False, 0.124))
     '+20 %, visible on 12 %'
     """
-    if not math.isfinite(apart.largest):
-        return words.appearance(apart)
-    seen = f", visible on {words.in_words(100.0 * apart.visible)} %" if apart.visible else ""
-    return f"{in_percent(apart.largest)}{seen}"
+    if not math.isfinite(difference.largest):
+        return words.appearance(difference)
+    share = words.in_words(100.0 * difference.visible)
+    visible = f", visible on {share} %" if difference.visible else ""
+    return f"{in_percent(difference.largest)}{visible}"
 
 
-def with_block(text: str, name: str, made: str) -> str:
+def with_block(page: str, name: str, text: str) -> str:
     """A page with new text between the comments `name` and `end`."""
     block = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end -->)", re.DOTALL)
-    return block.sub(lambda found: found[1] + made + found[2], text)
+    return block.sub(lambda found: found[1] + text + found[2], page)

@@ -16,13 +16,13 @@ def made() -> dict[Path, str]:
     tables = {each.PAGE: each.page for each in (arrays, research, note, versions)}
     return {
         **{twins.path(stem): twins.osl_text(stem) for stem in twins.STEMS},
-        **{path: of(path.read_text(encoding="utf-8")) for path, of in tables.items()},
+        **{path: page(path.read_text(encoding="utf-8")) for path, page in tables.items()},
         gallery.PAGE: gallery.page(),
     }
 
 
 if __name__ == "__main__":
-    for each, text in made().items():
-        if not each.is_file() or each.read_text(encoding="utf-8") != text:
-            write_text(each, text)
-            print(f"written: {each.relative_to(twins.ROOT)}")
+    for path, text in made().items():
+        if not path.is_file() or path.read_text(encoding="utf-8") != text:
+            write_text(path, text)
+            print(f"written: {path.relative_to(twins.ROOT)}")

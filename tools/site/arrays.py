@@ -25,23 +25,22 @@ def public():
 
 
 def arrays(function):
-    """Names of a function's array arguments, which are also those with gradients."""
+    """Names of a function's array arguments, with respect to which it has gradients."""
     parameters = inspect.signature(function).parameters.values()
     return [each.name for each in parameters if each.annotation in ARRAYS]
-
-
-def takes_any(function):
-    """Whether a function accepts arrays of any library."""
-    return inspect.unwrap(function) is not function
 
 
 def page(text):
     """The page with the current list of functions that do not accept other libraries' arrays."""
     functions = public().items()
-    others = [f"`{name.rpartition('.')[2]}`" for name, each in functions if not takes_any(each)]
+    exceptions = [
+        f"`{name.rpartition('.')[2]}`"
+        for name, each in functions
+        if inspect.unwrap(each) is each  # functions that accept any library's arrays are wrapped
+    ]
     line = (
         "Every public function of arrays in `mxeon.models` takes them, and\nhas gradients with respect to every argument of the type `ArrayLike`. "
-        f"Only {' and '.join(others)} take lobes,\nwhose arrays may be of any library. "
+        f"Only {' and '.join(exceptions)} take lobes,\nwhose arrays may be of any library. "
         "The surface shaders in `mxeon.models.surfaces` take NumPy's arrays only.\n"
     )
     return with_block(text, "functions", line)

@@ -28,11 +28,11 @@ def main() -> None:
         browser = playwright.chromium.launch(
             executable_path=program(), args=FLAGS, chromium_sandbox=not is_root()
         )
-        sheet = browser.new_page(viewport=SIZE)
-        sheet.goto(file.as_uri())
-        sheet.get_by_text("shader, float32").first.wait_for()
-        sheet.wait_for_timeout(5000)  # wait until the edges of the picture are smooth
-        sheet.screenshot(path=PICTURE)
+        tab = browser.new_page(viewport=SIZE)
+        tab.goto(file.as_uri())
+        tab.get_by_text("shader, float32").first.wait_for()
+        tab.wait_for_timeout(5000)  # until the edges of the picture are smooth
+        tab.screenshot(path=PICTURE)
         browser.close()
 
 

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +34,7 @@ from mxeon.survey.field_page import INPUTS, SCENES, Frame, frames, render
 DATA = Path(__file__).with_name("field.json")
 PICTURES = DATA.with_suffix(".webp")  # all portraits and difference maps, ACROSS per row
 SIZE, ACROSS = 96, 8
-PAGES = "upstream/{}.html"  # ledger pages, relative to this one in the built site
+PAGES = "upstream/{}.html"  # ledger pages, relative to the comparison's page in the built site
 EXAMPLE = examples_folder() / "clay.mtlx"
 DIFFUSE = tuple(dict.fromkeys(row.node for row in (*DIFFUSE_SPECS, *SURFACE_LOBES)))
 LIBRARIES = ("eonlib", "stock")
@@ -44,7 +45,7 @@ TIMEOUT = 600.0
 class Row:
     """A row of the page without its pictures.
 
-    - `entry`: The entry with the largest error among those with the same cause.
+    - `entry`: The entry with the largest error among the entries with the same cause.
     - `same`: Library and node of the other entries.
     - `frames`: The difference map's scale and the largest difference, by scene.
     """
@@ -64,19 +65,20 @@ def read() -> tuple[list[Row], Iterator[NDArray[np.uint8]]]:
 def text() -> str:
     """HTML of the page, with links to the site's ledger pages."""
     rows, pictures = read()
-    shown = {
+    uris = map(picture_uri, pictures)
+    stored = {
         (row.entry.host, row.entry.library, row.entry.node, scene): (
-            picture_uri(next(pictures)),
-            picture_uri(next(pictures)),
+            next(uris),
+            next(uris),
             *numbers,
         )
         for row in rows
         for scene, numbers in row.frames.items()
     }
 
-    def kept_frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
+    def stored_frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
         for row, entry in enumerate(entries):
-            if frame := shown.get((entry.host, entry.library, entry.node, scene)):
+            if frame := stored.get((entry.host, entry.library, entry.node, scene)):
                 yield row, entry, *frame
 
     entries = [
@@ -86,11 +88,11 @@ def text() -> str:
     ]
     hosts = {each.host for each in entries}
     absent = " ".join(
-        f"{row.name} was not measured{f': it needs {row.needs}' * bool(row.needs)}."
+        f"{row.name} was not measured{f': it needs {row.needs}' if row.needs else ''}."
         for row in host_rows()
         if row.name not in hosts
     )
-    return "".join(render(entries, PAGES, absent, kept_frames))
+    return "".join(render(entries, PAGES, absent, stored_frames))
 
 
 def keep(folder: str) -> None:
@@ -100,16 +102,16 @@ def keep(folder: str) -> None:
     old, old_pictures = read()
     rows, pictures = [], []
     for row in old:
-        own = [next(old_pictures) for _ in range(2 * len(row.frames))]
+        images = [next(old_pictures) for _ in range(2 * len(row.frames))]
         if row.entry.host not in measured:
             rows.append(row)
-            pictures += own
+            pictures += images
     for group in (group for group in groups if group[0].host in measured):
         numbers = {}
         for scene in SCENES:
             for _, _, *uris, scale, largest in frames(group[:1], scene):
                 numbers[scene] = (scale, largest)
-                pictures += [pixels(uri) for uri in uris]
+                pictures += map(pixels, uris)
         same = tuple((each.library, each.node) for each in group[1:])
         rows.append(Row(essential(group[0]), same, numbers))
     write(rows, pictures)
@@ -158,16 +160,14 @@ def main(folder: str = "") -> None:
     if folder:
         keep(folder)
         return
+    options: dict[str, Any] = {"workers": 1, "timeout": TIMEOUT}
     with TemporaryDirectory(prefix="mxeon-field-") as new:
-        for row in host_rows():
-            if not row.needs:
-                nodes = DIFFUSE if row.target else ("common",)
-                run = check(
-                    [EXAMPLE], [row.name], LIBRARIES, workers=1, timeout=TIMEOUT, nodes=nodes
-                )
-                if any(e.host == row.name and e.verdict != NOT_RUN for e in run.results):
-                    report.write(run, Path(new, row.name))
-                print(row.name, run.sentence, flush=True)
+        for row in (row for row in host_rows() if not row.needs):
+            nodes = DIFFUSE if row.target else ("common",)
+            run = check([EXAMPLE], [row.name], LIBRARIES, nodes=nodes, **options)
+            if any(e.host == row.name and e.verdict != NOT_RUN for e in run.results):
+                report.write(run, Path(new, row.name))
+            print(row.name, run.sentence, flush=True)
         keep(new)
 
 

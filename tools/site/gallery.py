@@ -36,7 +36,8 @@ SIZE = 512  # width and height of a picture in pixels
 INSET, EDGE = 112, 8  # width of the difference's inset, and its distance from the edge, in pixels
 QUALITY = 85  # WebP quality
 ROWS = 96  # rows of the studio's latitude-longitude map
-BOXES = (  # soft boxes: azimuth from the viewer and elevation, half sizes, in degrees; radiance
+# Soft boxes: azimuth from the viewer and elevation, half sizes, in degrees; radiance.
+BOXES = (
     ((-48.0, 42.0), (22.0, 15.0), (7.0, 6.8, 6.4)),
     ((66.0, 22.0), (5.0, 34.0), (8.0, 8.3, 9.0)),
     ((-118.0, 20.0), (8.0, 36.0), (9.0, 8.6, 8.0)),
@@ -90,9 +91,9 @@ def studio():
     radiance = np.where(
         up > 0.0, wall * [0.95, 1.0, 1.08], 0.2 * (1.0 + 0.6 * up) * [1.0, 0.98, 0.95]
     )
-    for (across, over), (width, height), light in BOXES:
-        apart = np.abs((azimuth - across + 180.0) % 360.0 - 180.0)
-        inside = np.minimum(width - apart, height - np.abs(elevation - over)) / SOFT
+    for (center, middle), (width, height), light in BOXES:
+        distance = np.abs((azimuth - center + 180.0) % 360.0 - 180.0)
+        inside = np.minimum(width - distance, height - np.abs(elevation - middle)) / SOFT
         radiance += light / (1.0 + np.exp(-4.0 * np.clip(inside, -9.0, 9.0)))[..., None]
     return radiance.astype(np.float32)
 
@@ -110,12 +111,11 @@ def pictures(host, document):
             shaders.append(host.compile(document, library=library))
     for pair in zip(*shaders, strict=True):
         images = [still(host, each, scene) for each in pair]
-        apart = np.abs(difference(images[0], images[-1]))
         if scene.name == STUDIO.name:
-            shown = [Image.fromarray(srgb_encoded(pbr_neutral(each))) for each in images]
+            codes = [Image.fromarray(srgb_encoded(pbr_neutral(each))) for each in images]
         else:
-            shown = [sphere_picture(each) for each in images]
-        yield pair[0].element, shown, apart
+            codes = [sphere_picture(each) for each in images]
+        yield pair[0].element, codes, np.abs(difference(images[0], images[-1]))
 
 
 def sphere_picture(image):
@@ -123,10 +123,10 @@ def sphere_picture(image):
     mask = visible(len(image), "sphere").mask[..., None]
     codes = np.where(mask, srgb_encoded(image), np.uint8(BACKGROUND))
     inner = SIZE - SIZE // 8
-    shown = Image.new("RGB", (SIZE, SIZE), (BACKGROUND,) * 3)
+    picture = Image.new("RGB", (SIZE, SIZE), (BACKGROUND,) * 3)
     reduced = Image.fromarray(codes).resize((inner, inner), Image.Resampling.BOX)
-    shown.paste(reduced, (SIZE // 16, SIZE // 16))
-    return shown
+    picture.paste(reduced, (SIZE // 16, SIZE // 16))
+    return picture
 
 
 def label(image, place, text, size=22, anchor="ls"):
@@ -135,25 +135,20 @@ def label(image, place, text, size=22, anchor="ls"):
     ImageDraw.Draw(image).text(place, text, fill="white", stroke_width=1, **style)
 
 
-def save(path, shown, apart=None):
+def save(path, pictures, difference_map):
     """Save pictures side by side, with labels if there are two, and the difference as an inset."""
-    image = Image.new("RGB", (sum(each.width for each in shown), shown[0].height))
-    for number, each in enumerate(shown):
-        image.paste(each, (number * each.width, 0))
-        if len(shown) == 2:
-            label(image, (number * each.width + 14, each.height - 14), ("stock", "eonlib")[number])
-    if apart is not None and apart.max() > VISIBLE:
-        scale = difference_scale(apart)
+    image = Image.new("RGB", (SIZE * len(pictures), SIZE))
+    for number, each in enumerate(pictures):
+        image.paste(each, (number * SIZE, 0))
+        if len(pictures) == 2:
+            label(image, (number * SIZE + 14, SIZE - 14), ("stock", "eonlib")[number])
+    if difference_map.max() > VISIBLE:
+        scale = difference_scale(difference_map)
         left, top = image.width - INSET - EDGE, image.height - INSET - EDGE
-        inset = Image.fromarray(difference_pixels(apart, scale))
+        inset = Image.fromarray(difference_pixels(difference_map, scale))
         image.paste(inset.resize((INSET, INSET), Image.Resampling.LANCZOS), (left, top))
-        label(
-            image,
-            (left + INSET // 2, top - 6),
-            f"difference, {100.0 * scale:.0f} %",
-            14,
-            "ms",
-        )
+        text = f"difference, {100.0 * scale:.0f} %"
+        label(image, (left + INSET // 2, top - 6), text, 14, "ms")
     image.save(path, quality=QUALITY, method=6)
 
 
@@ -166,46 +161,47 @@ def render():
 
     with open_host("gl") as host:
         for document in sorted(EXAMPLES.glob("*.mtlx")):
-            for name, shown, apart in pictures(host, document):
-                save(PICTURES / f"{name}.webp", shown, apart)
-        [(_, balls, apart)] = pictures(host, TITANIUM)
-    save(TITANIUM.with_suffix(".webp"), balls, apart)
+            for name, *images in pictures(host, document):
+                save(PICTURES / f"{name}.webp", *images)
+        [(_, *images)] = pictures(host, TITANIUM)
+    save(TITANIUM.with_suffix(".webp"), *images)
 
 
 def judge():
     """Write the difference that `mxeon check` finds for each material with stock MaterialX."""
     found = {}
     for each in mxeon.check(sorted(EXAMPLES.glob("*.mtlx")), ["gl"], ["stock"]).results:
-        if each.check == "picture" and (apart := each.difference):
-            light = "" if apart.scene == BACK.name else f", {words.LIGHTS[apart.scene]}"
-            said = f"{brief(apart)}{light}" if apart.is_visible else ""
-            found[each.subject.partition(": ")[2]] = said, abs(apart.largest)
+        if each.check == "picture" and (differs := each.difference):
+            light = "" if differs.scene == BACK.name else f", {words.LIGHTS[differs.scene]}"
+            description = f"{brief(differs)}{light}" if differs.is_visible else ""
+            found[each.subject.partition(": ")[2]] = description, abs(differs.largest)
     DIFFERENCES.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 
 
 def page():
     """Markdown of the gallery: documents and their materials, largest differences first."""
     found = json.loads(DIFFERENCES.read_text(encoding="utf-8"))
-    alike = [name for name, (said, _) in found.items() if not said]
-
-    def largest(name):
-        return -found[name][1] if name in found else 0.0
-
-    sections = {}
+    equal = [name for name, (description, _) in found.items() if not description]
+    sections = []
     for document in sorted(EXAMPLES.glob("*.mtlx")):
-        materials = ElementTree.parse(document).iter("surfacematerial")
-        names = [name for each in materials if (name := each.get("name")) not in alike]
-        names.sort(key=largest)
-        if names:
-            description = document.read_text(encoding="utf-8").splitlines()[2]
-            lines = [description.removeprefix("<!-- ").removesuffix(" -->")]
-            for name in names:
-                said = found[name][0] if name in found else "stock cannot generate its nodes"
-                lines += [f"![{name}](images/gallery/{name}.webp)", f"*{name}: {said}.*"]
-            sections["\n\n".join([f"## {document.stem}", *lines]) + "\n"] = largest(names[0])
-    same = f"No visible difference: {', '.join(f'`{each}`' for each in sorted(alike))}.\n"
-    ordered = sorted(sections, key=sections.__getitem__)
-    return HEAD + "\n".join([*ordered, same]) + TRACED
+        materials = [
+            each.get("name") for each in ElementTree.parse(document).iter("surfacematerial")
+        ]
+        rows = [
+            (name, *found.get(name, ("stock cannot generate its nodes", 0.0)))
+            for name in materials
+            if name not in equal
+        ]
+        rows.sort(key=lambda row: -row[2])
+        if rows:
+            comment = document.read_text(encoding="utf-8").splitlines()[2]
+            text = f"## {document.stem}\n\n{comment.removeprefix('<!-- ').removesuffix(' -->')}"
+            for name, description, _ in rows:
+                text += f"\n\n![{name}](images/gallery/{name}.webp)\n\n*{name}: {description}.*"
+            sections.append((rows[0][2], f"{text}\n"))
+    sections.sort(key=lambda section: -section[0])
+    same = f"No visible difference: {', '.join(f'`{each}`' for each in sorted(equal))}.\n"
+    return HEAD + "\n".join([*(text for _, text in sections), same]) + TRACED
 
 
 if __name__ == "__main__":

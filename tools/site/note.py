@@ -18,7 +18,7 @@ from tools.fits import ggx_albedo as albedo_fit
 from tools.fits import ggx_cosine as cosine_fit
 from tools.fits.minimax import shipped
 from tools.paper.claims.models import listing_1_albedo
-from tools.paper.samplers import EXACT_VARIANCE, moments
+from tools.paper.samplers import BY_NAME, EXACT_VARIANCE, moments
 from tools.site import DOCS, with_block
 
 PAGE = DOCS / "note.md"
@@ -78,10 +78,10 @@ def loss_errors(mu):
     return {name: np.float64(each(mu)) - exact for name, each in LOSSES.items()}, exact
 
 
-def loss_figures(stride=1):
+def loss_figures():
     """Largest absolute and relative errors of 1 - E.
 
-    The paper's forms use 4001 cosines from 1e-6 to 1, ours every `stride`-th float32 number there.
+    The paper's forms are evaluated at 4001 cosines from 1e-6 to 1, ours at all float32 numbers there.
     """
     mu = np.unique(np.geomspace(1e-6, 1.0, 4001).astype(np.float32))
     errors, exact = loss_errors(mu)
@@ -95,11 +95,11 @@ def loss_figures(stride=1):
     }
     low, high = np.float32([1e-6, 1.0]).view(np.int32)
     ours = []
-    for start in range(low, high + 1, stride << 20):
-        bits = np.arange(start, min(start + (stride << 20), high + 1), stride, dtype=np.int32)
+    for start in range(low, high + 1, 1 << 20):
+        bits = np.arange(start, min(start + (1 << 20), high + 1), dtype=np.int32)
         mu = bits.view(np.float32)
         exact = fon_loss(np.float64(mu)) / (1.0 + C1)
-        closed, fitted = (np.abs(each(mu) - exact) for each in (closed_loss, fitted_loss))
+        closed, fitted = (np.abs(loss(mu) - exact) for loss in (closed_loss, fitted_loss))
         ours.append(((closed / exact).max(), fitted.max(), (fitted / exact).max()))
     names = "closed relative", "fitted", "fitted relative"
     return found | dict(zip(names, np.max(ours, axis=0).tolist(), strict=True))
@@ -123,7 +123,7 @@ def albedo_errors(mu, alpha):
 def fresnel_errors(mu, alpha, ior=GLASS):
     """Errors of a dielectric's albedo without compensation, for three forms.
 
-    These are E_ss F(mu), MaterialX's fit for Schlick's curve with the same F0, and E_ss F(c).
+    The forms are E_ss F(mu), MaterialX's fit for Schlick's curve with the same F0, and E_ss F(c).
     """
     curves = cosine_fit.DIELECTRIC
     shape = np.sqrt((ior - 1.0) / (ior + 1.0))
@@ -150,21 +150,13 @@ def largest_figures():
         [each.ravel() for each in np.meshgrid(*2 * [np.geomspace(1e-3, 1.0, count)])]
         for count in (40, 16)
     )
-    theirs, ours = (np.abs(each) for each in albedo_errors(*fine))
-    at_view, fit, cosine = (np.abs(each) for each in fresnel_errors(*coarse).values())
+    stock_E, E = albedo_errors(*fine)
+    view, stock_F, cosine = fresnel_errors(*coarse).values()
     *_, dense = fresnel_errors(*coarse, DENSE).values()
-    return found | {
-        "stock E": theirs.max(),
-        "stock E mean": theirs.mean(),
-        "E": ours.max(),
-        "E mean": ours.mean(),
-        "view": at_view.max(),
-        "stock F": fit.max(),
-        "stock F mean": fit.mean(),
-        "cosine": cosine.max(),
-        "cosine mean": cosine.mean(),
-        "cosine dense": np.abs(dense).max(),
-    }
+    errors = {"stock E": stock_E, "E": E, "view": view, "stock F": stock_F, "cosine": cosine}
+    for name, error in (errors | {"cosine dense": dense}).items():
+        found[name], found[f"{name} mean"] = np.abs(error).max(), np.abs(error).mean()
+    return found
 
 
 # --- energy of readings -------------------------------------------------------------------------------
@@ -183,32 +175,24 @@ def energy_rows():
     yield "Microfacet BRDF, F = 1, alpha 1", "as it is", E
     whole = dielectric_albedo_dir(wo, 1.0, ROUGH, 0.0)  # index 0 reflects everything
     yield "", "times 1 + F_ss (1 - E_ss) / E_ss", whole
-    yield (
-        "alpha 0.001 and 1",
-        "masking by direction, as corrected in July 2026",
-        models.ggx_albedo_dir_anisotropic(around, [0.001, 1.0]),
-    )
+    stretched = models.ggx_albedo_dir_anisotropic(around, [0.001, 1.0])
+    yield "alpha 0.001 and 1", "masking by direction, as corrected in July 2026", stretched
     yield "Microfacet BTDF, rough glass, alpha 1", "R compensated, T as printed", R + T
     single = models.generalized_schlick_albedo_dir(wo, *SCHLICK, (0.0, 0.0), 5.0, compensate=False)
+    transmittance = transmission.generalized_schlick_transmittance_dir
     for name, reading in transmission.READINGS.items():
-        passed = transmission.generalized_schlick_transmittance_dir(
-            wo, *SCHLICK, (0.0, 0.0), 5.0, name
-        )
         head = "Generalized Schlick BTDF, smooth" if name == "text" else ""
-        yield head, reading.title, single + passed
+        transmitted = transmittance(wo, *SCHLICK, (0.0, 0.0), 5.0, name)
+        yield head, reading.title, single + transmitted
     yield "Burley, roughness 1", "as printed", burley_albedo_dir(mu, 1.0, 1.0)
     yield "Conty-Kulla sheen, roughness 0.05", "as printed", sheen.conty_kulla_albedo_dir(mu, 0.05)
-    yield (
-        "Oren-Nayar, sigma 0.3",
-        "full model",
-        albedo_dir_quadrature(oren_nayar_brdf, mu, 1.0, 0.3),
+    full, eon = (
+        albedo_dir_quadrature(brdf, mu, 1.0, parameter)
+        for brdf, parameter in ((oren_nayar_brdf, 0.3), (models.eon_brdf, 1.0))
     )
+    yield "Oren-Nayar, sigma 0.3", "full model", full
     yield "", "QON, of the node's default", qon_albedo_dir(mu, 0.3)
-    yield (
-        "EON, roughness 1",
-        "with energy compensation",
-        albedo_dir_quadrature(models.eon_brdf, mu, 1.0, 1.0),
-    )
+    yield "EON, roughness 1", "with energy compensation", eon
     fiber = hair.chiang_hair_attenuation(wo, 1.55, 0.0).sum(axis=-1)
     yield "Chiang hair, white", "with the printed factor 1/pi", fiber / np.pi
     yield "", "without it", fiber
@@ -237,12 +221,9 @@ def exact_figure():
     left.set(xlabel="$\\mu$", ylabel="relative error of $1 - E_{FON}$, float32", ylim=(1e-9, 1e3))
     left.legend()
     mu = np.cos(np.radians(np.linspace(0.0, 89.0, 60)))
-    for name, title in (
-        ("uniform", "uniform"),
-        ("cosine", "cosine"),
-        ("eon_cltc", "CLTC + uniform"),
-    ):
-        right.semilogy(np.degrees(np.arccos(mu)), variances(name, 1.0, mu), label=title)
+    for name in ("uniform", "cosine", "eon_cltc"):
+        label = BY_NAME[name].title
+        right.semilogy(np.degrees(np.arccos(mu)), variances(name, 1.0, mu), label=label)
     right.axhline(EXACT_VARIANCE, color="k", linestyle="--", label="exact, bound")
     right.set(xlabel="$\\theta_o$ (degrees)", ylabel="variance of the weight, $r = 1$")
     right.legend(loc="center left")
@@ -255,11 +236,11 @@ def albedo_figure():
     left, right = figure.subplots(1, 2)
     mu = np.geomspace(1e-3, 1.0, 120)
     for color, alpha in (("C0", 0.01), ("C1", 0.1), ("C2", 1.0)):
-        theirs, ours = albedo_errors(mu, np.full_like(mu, alpha))
-        left.loglog(mu, np.abs(theirs), color=color, label=f"MaterialX, $\\alpha$ = {alpha:g}")
-        left.loglog(
-            mu, np.abs(ours), color=color, linestyle=":", label=f"ours, $\\alpha$ = {alpha:g}"
-        )
+        labels = ("-", "MaterialX"), (":", "ours")
+        errors = albedo_errors(mu, np.full_like(mu, alpha))
+        for (line, name), error in zip(labels, errors, strict=True):
+            label = f"{name}, $\\alpha$ = {alpha:g}"
+            left.loglog(mu, np.abs(error), color=color, linestyle=line, label=label)
     left.set(xlabel="$\\mu$", ylabel="error of $E_{ss}$", ylim=(1e-8, 1.0))
     left.legend(ncols=2, fontsize=6)
     for name, error in fresnel_errors(mu, np.full_like(mu, 0.5)).items():

@@ -14,12 +14,7 @@ def blocks(text):
     return re.findall(r"```python\n(.*?)```", text, re.DOTALL)
 
 
-def printed(text):
-    """Output of the first code block of a page."""
+def page(text):
     with contextlib.redirect_stdout(io.StringIO()) as output:
         exec(blocks(text)[0], {})
-    return output.getvalue()
-
-
-def page(text):
-    return with_block(text, "fitted", f"```text\n{printed(text)}```\n")
+    return with_block(text, "fitted", f"```text\n{output.getvalue()}```\n")

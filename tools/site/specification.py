@@ -43,12 +43,11 @@ SUMMARY_HEAD = (
 def measured():
     """Results of the table's checks with both libraries."""
     rows = {row[:2] for row in SUMMARY}
-    nodes = {subject.split(",")[0] for _, subject in rows}
-    plans = [make_plan((), (HOST,), (library,), nodes=sorted(nodes)) for library in LIBRARIES]
+    nodes = sorted({subject.split(",")[0] for _, subject in rows})
+    tasks = make_plan((), (HOST,), LIBRARIES, nodes=nodes).tasks
+    chosen = [task for task in tasks if task.host == HOST and (task.check, task.subject) in rows]
     with closing(Judge(DEFAULT)) as judge:
-        tasks = [task for plan in plans for task in plan.tasks if task.host == HOST]
-        findings = [judge.work(each) for each in tasks if (each.check, each.subject) in rows]
-    return [each for finding in findings for each in finding.results]
+        return [result for task in chosen for result in judge.work(task).results]
 
 
 def summary(results):
@@ -58,9 +57,9 @@ def summary(results):
         for each in results
     }
     lines = []
-    for check, subject, words in SUMMARY:
+    for check, subject, form in SUMMARY:
         stock, eonlib = (errors.get((check, subject, each), "") for each in LIBRARIES)
-        lines.append(f"| `{check}` of {subject} | {eonlib} | {stock} | {words} |\n")
+        lines.append(f"| `{check}` of {subject} | {eonlib} | {stock} | {form} |\n")
     return "\n" + SUMMARY_HEAD + "".join(lines)
 
 

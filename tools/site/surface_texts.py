@@ -2,7 +2,7 @@
 """Writes the tables of surfaces.md: whether shaders follow each sentence of their specifications.
 
 `python -m tools.site.surface_texts` checks all sentences on HOSTS, and with VERSIONS of MaterialX
-on gl. It takes ten minutes.
+on gl, in ten minutes.
 """
 
 import json
@@ -62,28 +62,26 @@ def rows(
 ) -> Iterator[str]:
     """Table rows of a text: verdict on gl, and hosts or versions with other verdicts."""
     for spec in (each for each in SENTENCES if each.text is text):
-        found = results[spec.title]
-        said = verdicts[spec.title]
-        others: dict[str, list[str]] = defaultdict(list)
-        for place, verdict in said.items():
-            if verdict != said["gl"]:
-                others[WORDS[verdict]].append(place)
-        words = [f"{', '.join(places)}: {verdict}" for verdict, places in others.items()]
-        verdict = "; ".join([WORDS[said["gl"]], *words])
-        worst = max(found.values(), key=lambda each: each.error or 0.0)
-        yield f"| {spec.section} | {spec.claim} | {verdict}{instead(worst)} |\n"
-    for where, section, claim, reason in NOT_JUDGED:
-        if where is text:
+        places: dict[str, list[str]] = defaultdict(list)
+        for place, verdict in verdicts[spec.title].items():
+            places[WORDS[verdict]].append(place)
+        usual = WORDS[verdicts[spec.title]["gl"]]
+        others = [f"{', '.join(places[word])}: {word}" for word in places if word != usual]
+        worst = max(results[spec.title].values(), key=lambda each: each.error or 0.0)
+        cell = "; ".join([usual, *others]) + actual_form(worst)
+        yield f"| {spec.section} | {spec.claim} | {cell} |\n"
+    for unjudged, section, claim, reason in NOT_JUDGED:
+        if unjudged is text:
             yield f"| {section} | {claim} | not judged: {reason} |\n"
 
 
-def instead(result: Result) -> str:
-    """Text about the form that a shader uses instead, and its error; "" if the sentence holds."""
-    cause = result.diagnosis.first
+def actual_form(result: Result) -> str:
+    """The form that a shader uses instead of the text's, and its error; "" if the text holds."""
     if result.verdict == PASSED:
         return ""
-    named = cause.key if cause.kind is Kind.MODEL else "no known form"
-    return f": {named}; {figure(result)}"
+    cause = result.diagnosis.first
+    form = cause.key if cause.kind is Kind.MODEL else "no known form"
+    return f": {form}; {figure(result)}"
 
 
 def defaults(text: Text) -> Iterator[str]:
@@ -93,20 +91,18 @@ def defaults(text: Text) -> Iterator[str]:
         value = definition.getActiveInput(name).getValue()
         if value is None:
             continue
-        own = np.ravel(tuple(value) if hasattr(value, "asTuple") else value).astype(float)
-        if not np.allclose(own, np.ravel(default)):
-            shown = (
-                ", ".join(f"{number:.3g}" for number in np.ravel(one)) for one in (default, own)
-            )
-            yield f"| {text.name} | `{name}` | {' | '.join(shown)} |\n"
+        values = np.ravel(tuple(value) if hasattr(value, "asTuple") else value).astype(float)
+        if not np.allclose(values, np.ravel(default)):
+            cells = (", ".join(f"{x:.3g}" for x in np.ravel(each)) for each in (default, values))
+            yield f"| {text.name} | `{name}` | {' | '.join(cells)} |\n"
 
 
 def judged_with(version: str, *options: str) -> list[dict[str, Any]]:
     """Results of `mxeon check --json` on gl with a version of MaterialX."""
-    ran = run(wheel(version), "check", "--host", "gl", "--workers", "0", "--json", *options)
-    if ran.returncode not in (0, 1):
-        raise RuntimeError(f"MaterialX {version}: {ran.stderr}")
-    return list(json.loads(ran.stdout)["results"])
+    done = run(wheel(version), "check", "--host", "gl", "--workers", "0", "--json", *options)
+    if done.returncode not in (0, 1):
+        raise RuntimeError(f"MaterialX {version}: {done.stderr}")
+    return list(json.loads(done.stdout)["results"])
 
 
 def judged() -> tuple[dict[str, dict[str, Result]], Verdicts]:

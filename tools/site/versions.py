@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks eonlib and stock with all versions of MaterialX: `python -m tools.site.versions`.
 
-It runs `mxeon check --host gl --node all` and all surface shaders' texts with each version, in 14
-minutes of processor time, and stores the results in `ledger/versions.json`. `python -m tools.site`
-writes versions.md from them, and the site adds lines to the ledger's pages.
+The command runs `mxeon check --host gl --node all` and all surface shaders' texts with each version,
+in 14 minutes of processor time, and stores the results in `ledger/versions.json`. From that file,
+`python -m tools.site` writes versions.md, and the site adds lines to the ledger's pages.
 """
 
 import json
@@ -26,9 +26,11 @@ COMMAND = ("--node", "all", *surface_texts.OPTIONS, "--library", "eonlib", "--li
 def record(versions):
     """Data for the pages; `versions` has the results by version.
 
-    By version, it has the number of results per library, node and verdict, and eonlib's results
-    that do not pass; by page about MaterialX on gl or in its texts, whether all of its rows pass.
-    Sentences of surface shaders' texts are not counted, because surfaces.md has their verdicts.
+    - `nodes`: Number of results by library, version, node and verdict, without sentences of surface
+      shaders' texts, because surfaces.md has their verdicts.
+    - `open`: Subjects of eonlib's results that do not pass, by version, check and verdict.
+    - `pages`: By ledger page about MaterialX on gl or about its texts and by version, whether all
+      rows of the page pass.
     """
     found = {
         "commit": (MAIN.parent / "commits.txt").read_text().split(" ", 2)[:2],
@@ -38,7 +40,7 @@ def record(versions):
     }
     for name, results in versions.items():
         counts = {library: defaultdict(Counter) for library in LIBRARIES}
-        left, verdicts = defaultdict(list), {}
+        not_passed, verdicts = defaultdict(list), {}
         for each in results:
             check, subject, verdict = each["check"], each["subject"], each["verdict"]
             verdicts[each["library"], check, subject] = verdict
@@ -47,10 +49,10 @@ def record(versions):
             node = "documents" if ".mtlx" in subject else subject.split(",")[0]
             counts[each["library"]][node][verdict] += 1
             if each["library"] == "eonlib" and verdict != PASSED:
-                left[f"`{check}` {verdict}"].append(subject)
+                not_passed[f"`{check}` {verdict}"].append(subject)
         for library in LIBRARIES:
             found["nodes"][library][name] = dict(sorted(counts[library].items()))
-        found["open"][name] = {check: sorted(each) for check, each in sorted(left.items())}
+        found["open"][name] = {check: sorted(each) for check, each in sorted(not_passed.items())}
         for issue in issues().values():
             if issue.library in LIBRARIES and issue.host in ("gl", "source") and issue.rows:
                 passed = all(verdicts[issue.library, *pair] == PASSED for pair in issue.rows)
@@ -72,11 +74,11 @@ def page(text):
             counts = sum(map(Counter, known["nodes"][library][name].values()), Counter())
             cells = (str(counts[verdict]) for verdict in (PASSED, DIFFERS, FAILED, NOT_RUN))
             nodes.append(f"| {name} | {library} | {' | '.join(cells)} |")
-    left = defaultdict(list)
+    versions = defaultdict(list)
     for name, found in known["open"].items():
-        subjects = {each.split(",")[0] for group in found.values() for each in group}
-        left[", ".join(sorted(subjects)) or "none"].append(name)
-    lines = [f"- {' and '.join(names)}: {subjects}." for subjects, names in left.items()]
+        nodes_open = {each.split(",")[0] for subjects in found.values() for each in subjects}
+        versions[", ".join(sorted(nodes_open)) or "none"].append(name)
+    lines = [f"- {' and '.join(names)}: {subjects}." for subjects, names in versions.items()]
     text = with_block(text, "nodes", "\n".join([*nodes, ""]))
     return with_block(text, "open", "\n".join([*lines, ""]))
 

@@ -46,6 +46,7 @@ OTHER_MODELS = re.compile(
     "fon|qon|LAMBERT|shorter|compensation false|eon_diffuse|standard_surface|UsdPreview", re.I
 )
 NOT_JUDGED = "not judged"
+Names = tuple[str, str, str, str, str]  # document, element, scene, host and library of a picture
 
 HEAD = """<!-- Made by `python -m tools.site.wall`. -->
 # A wall of renderers
@@ -79,7 +80,7 @@ class Tile(NamedTuple):
     """A picture on the wall."""
 
     host: str
-    variant: str  # library or node; "" for a document with a renderer's own nodes
+    variant: str  # library or node; "" for a document with nodes of the renderer
     scene: str
     image: NDArray[np.floating]
     difference: Difference
@@ -107,7 +108,7 @@ def title(tiles: list[Tile]) -> str:
 
 
 def cause_of(result: Result) -> str:
-    """HTML of the cause: wrong lobes, the reason why it was not judged, or the diagnosis."""
+    """HTML of the cause: wrong lobes, the reason why a picture was not judged, or the diagnosis."""
     text = wrapped(escape(words.diagnosis(result.diagnosis)))
     if result.check == "finite":
         reason = text.partition(": the")[0].removeprefix(f"{result.host}: ")
@@ -138,11 +139,10 @@ def figure(
     verdict: str = "expected",
 ) -> str:
     """Save a picture as a tile; returns the HTML of its figure."""
-    shown = Image.fromarray(srgb_encoded(image.astype(np.float32)))
     name = re.sub(r"[^\w-]+", "-", name)
-    shown.resize((SIZE, SIZE), Image.Resampling.LANCZOS).save(
-        TILES / f"{name}.webp", quality=QUALITY, method=6
-    )
+    codes = Image.fromarray(srgb_encoded(image.astype(np.float32)))
+    codes = codes.resize((SIZE, SIZE), Image.Resampling.LANCZOS)
+    codes.save(TILES / f"{name}.webp", quality=QUALITY, method=6)
     return (
         f'<figure class="{verdict}"><img src="images/wall/{name}.webp" alt="{alt}">'
         f"<figcaption><b>{wrapped(escape(title))}</b><br>{caption}</figcaption></figure>\n"
@@ -151,16 +151,16 @@ def figure(
 
 def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> str:
     """HTML of the reference, then tiles by difference; equal captions share a tile."""
-    alike: dict[tuple[str, str], list[Tile]] = defaultdict(list)
+    groups: dict[tuple[str, str], list[Tile]] = defaultdict(list)
     for each in sorted(tiles, key=lambda each: each.largest):
-        alike[each.caption, each.verdict].append(each)
-    exact = alike.pop(("none", PASSED), [])
-    same = f"the same: {title(exact)}" if exact else "float64"
-    text = figure(reference, name, "reference", "reference", same)
-    for (caption, verdict), drawn in alike.items():
-        first = drawn[0]
+        groups[each.caption, each.verdict].append(each)
+    exact = groups.pop(("none", PASSED), [])
+    caption = f"the same: {title(exact)}" if exact else "float64"
+    text = figure(reference, name, "reference", "reference", caption)
+    for (caption, verdict), group in groups.items():
+        first = group[0]
         file = f"{name}-{first.host}-{first.variant}".rstrip("-")
-        text += figure(first.image, file, first.host, title(drawn), caption, verdict)
+        text += figure(first.image, file, first.host, title(group), caption, verdict)
     return f'<div class="wall">\n{text}</div>\n'
 
 
@@ -169,44 +169,41 @@ class Wall:
 
     def __init__(self, folders: list[Path]) -> None:
         self.hosts: dict[str, str] = {}
-        self.references: dict[tuple[str, str, str], Path] = {}
-        self.images: dict[tuple[str, str, str, str, str], Path] = {}
-        self.facets: dict[tuple[str, str, str, str, str], Path] = {}  # polyhedral references
-        self.results: dict[tuple[str, str, str], Result] = {}
+        self.references: dict[tuple[str, str, str], Path] = {}  # by document, element and scene
+        self.images: dict[Names, Path] = {}
+        self.facets: dict[Names, Path] = {}  # polyhedral references
+        self.results: dict[tuple[str, str, str], Result] = {}  # by subject, host and library
         for folder in folders:
             report = read_results(folder)
-            self.hosts |= {
-                each.name: f"{each.name}: {each.version}, {each.device}" for each in report.hosts
-            }
+            for host in report.hosts:
+                self.hosts[host.name] = f"{host.name}: {host.version}, {host.device}"
             for each in report.pictures:
-                shown = each.document, each.element, each.scene
-                names = (*shown, each.host, each.library)
+                view = each.document, each.element, each.scene
+                names = (*view, each.host, each.library)
                 self.images[names] = folder / each.exr
                 if each.reference and host_row(each.host).way == "coarse facets":
                     self.facets[names] = folder / each.reference
                 elif each.reference:
-                    self.references.setdefault(shown, folder / each.reference)
+                    self.references.setdefault(view, folder / each.reference)
             for result in report.results:
-                if result.check in (
-                    ("picture", "finite") if ".mtlx" in result.subject else ("value",)
-                ):
+                checks = ("picture", "finite") if ".mtlx" in result.subject else ("value",)
+                if result.check in checks:
                     self.results[result.subject, result.host, result.library] = result
 
-    def tile(self, names: tuple[str, str, str, str, str], reference: NDArray[np.floating]) -> Tile:
+    def tile(self, names: Names, reference: NDArray[np.floating]) -> Tile:
         document, element, scene, host, library = names
         image = pixels(self.images[names])
         reference = pixels(self.facets[names]) if names in self.facets else reference
-        apart = Picture(document, element, host, library, scene, image, reference, {}).difference
-        assert apart is not None
+        found = Picture(document, element, host, library, scene, image, reference, {}).difference
+        assert found is not None
+        variant = "" if library == RENDERER_NODES else library
         if document == PORTRAIT:
-            own = library == RENDERER_NODES
             result = self.results.get((element, host, library))
             claim = f"claims {result.claimed}" if result and result.claimed else ""
             verdict = result.verdict if result else NOT_RUN
-            return Tile(host, element if own else library, scene, image, apart, claim, verdict)
+            return Tile(host, variant or element, scene, image, found, claim, verdict)
         judged = self.results[f"{document}: {element}", host, library]
-        variant = "" if library == RENDERER_NODES else library
-        return Tile(host, variant, scene, image, apart, cause_of(judged), judged.verdict)
+        return Tile(host, variant, scene, image, found, cause_of(judged), judged.verdict)
 
     def section(self, material: tuple[str, str]) -> tuple[float, str]:
         """Largest difference of a material, and its section of the page."""
@@ -219,29 +216,28 @@ class Wall:
             for each in self.images
             if each[:2] == material and each[2] in references
         ]
-        lit, scene = max(
-            (([each for each in tiles if each.scene == scene], scene) for scene in references),
-            key=lambda each: (
-                sum(tile.difference.is_visible for tile in each[0]),
-                max(tile.difference.visible for tile in each[0]),
-            ),
-        )
-        name, light = f"{Path(document).stem}-{element}", words.LIGHTS[scene]
-        largest = max(each.largest for each in lit)
-        text = f"## {element}\n\n`{document}`, {light}\n\n"
-        return largest, text + figures(name, references[scene], lit)
+
+        def visibility(scene: str) -> tuple[int, float]:
+            differences = [each.difference for each in tiles if each.scene == scene]
+            return sum(e.is_visible for e in differences), max(e.visible for e in differences)
+
+        scene = max(references, key=visibility)
+        tiles = [each for each in tiles if each.scene == scene]
+        text = f"## {element}\n\n`{document}`, {words.LIGHTS[scene]}\n\n"
+        text += figures(f"{Path(document).stem}-{element}", references[scene], tiles)
+        return max(each.largest for each in tiles), text
 
     def not_drawn(self) -> str:
         """Markdown list of materials that renderers do not draw, grouped by renderer and reason."""
-        materials: dict[tuple[str, str], list[str]] = defaultdict(list)
+        elements: dict[tuple[str, str], list[str]] = defaultdict(list)
         for (subject, host, _), result in self.results.items():
-            for document, element in self.shown:
+            for document, element in self.materials:
                 if subject in (f"{document}: {element}", document) and result.verdict == NOT_RUN:
                     reason = re.sub(r' on "[^"]*"', "", result.reason.removeprefix(f"{host}: "))
-                    materials[host, reason.partition(". ")[0].rstrip(".")].append(element)
+                    elements[host, reason.partition(". ")[0].rstrip(".")].append(element)
         return "".join(
             f"- {host} does not draw {', '.join(dict.fromkeys(names))}: {reason}.\n"
-            for (host, reason), names in materials.items()
+            for (host, reason), names in elements.items()
         )
 
     def rough(self) -> str:
@@ -256,17 +252,17 @@ class Wall:
         return ROUGH + figures("rough", reference, list(tiles.values()))
 
     @cached_property
-    def shown(self) -> list[tuple[str, str]]:
+    def materials(self) -> list[tuple[str, str]]:
         """Materials with pictures of most hosts; reports may also contain other materials."""
-        drawn = defaultdict(set)
+        hosts = defaultdict(set)
         for document, element, _, host, _ in self.images:
             if document != PORTRAIT:
-                drawn[document, element].add(host)
-        most = max(map(len, drawn.values()))
-        return [each for each, hosts in drawn.items() if 2 * len(hosts) > most]
+                hosts[document, element].add(host)
+        most = max(map(len, hosts.values()))
+        return [material for material, names in hosts.items() if 2 * len(names) > most]
 
     def page(self) -> str:
-        sections = [text for _, text in sorted(map(self.section, self.shown), reverse=True)]
+        sections = [text for _, text in sorted(map(self.section, self.materials), reverse=True)]
         drawn = {host for *_, host, _ in self.images}
         measured = "".join(f"- {each}\n" for host, each in self.hosts.items() if host in drawn)
         return HEAD + "\n".join(

@@ -47,19 +47,16 @@ def dumped(found: Any, depth: int) -> str:
 
 def with_patches(found: dict[str, Any]) -> dict[str, Any]:
     """Measurements with the shortest change of each page's patch, to recognize patched copies."""
-    files = patches("materialx")
     return found | {
         page: found[page] | {"patch": _shortest_change(path.read_bytes().decode())}
-        for page, path in files.items()
+        for page, path in patches("materialx").items()
     }
 
 
 def _shortest_change(patch: str) -> tuple[str, str, str]:
     """The shortest change of a patch: file, old text, new text."""
-    changes = []
-    for file, part in re.findall(
-        r"^--- a/(\S+)\n\+\+\+ .*\n((?:[ @+-].*\n)+)", patch, re.MULTILINE
-    ):
+    changes, whole_file = [], r"^--- a/(\S+)\n\+\+\+ .*\n((?:[ @+-].*\n)+)"
+    for file, part in re.findall(whole_file, patch, re.MULTILINE):
         for run in re.findall(r"^(?: .*\n)?(?:[+-].*\n)+(?: .*\n)?", part, re.MULTILINE):
             lines = run.splitlines(keepends=True)
             if {line[0] for line in lines} >= {"+", "-"}:  # a replacement needs no context lines
@@ -94,10 +91,8 @@ def patches_of(page: str) -> list[Path]:
 
 
 def own_diff(page: str) -> str:
-    """The diff in the text of a page; "" if its repair is a patch."""
-    return "".join(
-        re.findall(r"^```diff\n(.*?)^```", issues()[page].text, re.DOTALL | re.MULTILINE)
-    )
+    """The diff in the text of a page; "" if the repair of the defect is a patch."""
+    return "".join(re.findall(r"(?ms)^```diff\n(.*?)^```", issues()[page].text))
 
 
 def needed(page: str) -> set[str]:
@@ -120,21 +115,16 @@ def apply(folder: Path, *diffs: Path | str, strip: int = 1) -> Path:
 
     `strip` is the number of path components to drop.
     """
+    # Ignore a repository around the folder, and the machine's configuration.
     alone = {"GIT_CEILING_DIRECTORIES": str(folder.resolve().parent), "GIT_CONFIG_NOSYSTEM": "1"}
+    env = os.environ | alone
     command = ["git", "-c", "core.autocrlf=false", "apply", "--unidiff-zero", f"-p{strip}", "-"]
     for each in diffs:
-        text = each if isinstance(each, str) else each.read_bytes().decode()
-        for name in re.findall(r"^--- (\S+)$", text, re.MULTILINE):
+        diff = each.encode() if isinstance(each, str) else each.read_bytes()
+        for name in re.findall(r"^--- (\S+)$", diff.decode(), re.MULTILINE):
             path = folder.joinpath(*name.split("/")[strip:])
             data = path.read_bytes()
-            path.unlink()  # it may be a link
+            path.unlink()  # `path` may be a link
             path.write_bytes(data)
-        subprocess.run(
-            command,
-            cwd=folder,
-            input=text.encode(),
-            check=True,
-            env=os.environ | alone,
-            capture_output=True,
-        )
+        subprocess.run(command, cwd=folder, input=diff, env=env, check=True, capture_output=True)
     return folder

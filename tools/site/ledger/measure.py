@@ -38,17 +38,15 @@ def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple
     rows = rows or {row for e in CHECKED if shows(e, host, library) for row in e.rows}
     hosts = () if host == SOURCE else (host,)
     tasks = make_plan((), hosts, (library,), nodes=(ALL, *node_names())).tasks
-    chosen = [
-        each
-        for each in tasks
-        if each.host == host and (host == SOURCE or (each.check, each.subject) in rows)
-    ]
+    tasks = [each for each in tasks if each.host == host]
+    if host != SOURCE:
+        tasks = [each for each in tasks if (each.check, each.subject) in rows]
     with closing(Judge(DEFAULT)) as judge:
-        findings = [judge.work(task) for task in chosen]
-    devices = [f"{each.device}, {each.version}" for each in findings[0].hosts]
-    own = host in OWN_NODES
-    place = ", ".join([*devices, *([] if own else [f"MaterialX {mx.__version__}"])])
-    return [result for each in findings for result in each.results], place
+        findings = [judge.work(task) for task in tasks]
+    place = [f"{each.device}, {each.version}" for each in findings[0].hosts]
+    if host not in OWN_NODES:
+        place.append(f"MaterialX {mx.__version__}")
+    return [result for each in findings for result in each.results], ", ".join(place)
 
 
 def shows(issue: Issue, host: str, library: str) -> bool:
@@ -58,14 +56,14 @@ def shows(issue: Issue, host: str, library: str) -> bool:
 
 def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any]:
     """Measurements for an issue's page; `results` must contain its rows."""
-    found = {(each.check, each.subject): each for each in results}
-    shown = [found[row] for row in issue.rows]
+    by_row = {(each.check, each.subject): each for each in results}
+    judged = [by_row[row] for row in issue.rows]
     rows = [
         [each.check, each.subject, figure(each), f"{each.tolerance:.2g}", each.quantity.value]
-        for each in shown
+        for each in judged
         if each.quantity
     ]
-    diagnosis = shown[0].diagnosis
+    diagnosis = judged[0].diagnosis
     measures: dict[str, Any] = {"rows": rows, "place": place, "cause": fields(diagnosis.first)}
     others = sorted((far, title) for title, far in diagnosis.distances.items())
     nearest = [title for _, title in others if title != diagnosis.first.key]
@@ -78,25 +76,21 @@ def fields(cause: Cause) -> dict[str, Any]:
     """The fields of a cause that do not depend on the driver and are not empty."""
     found = asdict(cause) | {"kind": cause.kind.value}
     if cause.region:
-        found["region"] = {
-            name: each for name, each in found["region"].items() if each not in (None, (), "")
-        }
-    left_out = ("values", "rms", "point", "text")
-    return {name: each for name, each in found.items() if each and name not in left_out}
+        region = found["region"].items()
+        found["region"] = {name: each for name, each in region if each not in (None, (), "")}
+    omitted = ("values", "rms", "point", "text")
+    return {name: each for name, each in found.items() if each and name not in omitted}
 
 
 def main(names: Sequence[str]) -> None:
     """Measure the defects on the given hosts; without names, on all hosts, and reset all errors."""
     found = measured()
-    everywhere = [host for each in issues().values() for host in each.hosts if host]
+    hosts = [host for each in issues().values() for host in each.hosts if host]
     if not names:
         found = {page: each | {"sizes": {}} for page, each in found.items()}
-    for host, library in product(names or dict.fromkeys(everywhere), (STOCK, EONLIB)):
-        here = [
-            each
-            for each in issues().values()
-            if host in each.hosts and shows(each, each.host, library)
-        ]
+    for host, library in product(names or dict.fromkeys(hosts), (STOCK, EONLIB)):
+        here = [each for each in issues().values() if host in each.hosts]
+        here = [each for each in here if shows(each, each.host, library)]
         if not here:
             continue
         rows = {row for each in here for row in (*each.rows, *each.implied)}
@@ -105,7 +99,7 @@ def main(names: Sequence[str]) -> None:
         except NotRun as reason:
             print(f"not run: {reason}", file=sys.stderr)
             continue
-        errors = {(each.check, each.subject): each for each in results if each.error is not None}
+        errors = {(e.check, e.subject): float(figure(e)) for e in results if e.error is not None}
         for issue in here:
             page = found.setdefault(issue.page, {})
             if issue.rows and host == issue.host:
@@ -114,8 +108,8 @@ def main(names: Sequence[str]) -> None:
             sizes = page.setdefault("sizes", {})
             for check, subject in (*issue.rows, *issue.implied):
                 if (check, subject) in errors:
-                    of, error = sizes.setdefault(check, {}), figure(errors[check, subject])
-                    of[subject] = max(float(error), of.get(subject, 0.0))
+                    largest = sizes.setdefault(check, {})
+                    largest[subject] = max(errors[check, subject], largest.get(subject, 0.0))
     write_measured(found)
 
 

@@ -5,7 +5,6 @@ import json
 import re
 from pathlib import Path
 from textwrap import fill
-from typing import Any
 
 from mxeon.conformance import words
 from mxeon.conformance.results import Diagnosis
@@ -14,8 +13,8 @@ from mxeon.conformance.results.quantities import Quantity
 from tools.site.ledger import ROOT, measured, patches, patches_of
 
 VERSIONS = Path(__file__).with_name("versions.json")
-PLACE = re.compile(r"<!-- patches (\S+) -->")  # placeholder for a project's table in the index
-SHOWN = 20  # maximum lines of a diff on a page
+PLACEHOLDER = re.compile(r"<!-- patches (\S+) -->")  # stands for a project's table in the index
+LINES = 20  # maximum changed lines of a diff on a page
 # Headings of the index's groups, by name.
 GROUPS = {
     "rough_diffuse": "`oren_nayar_diffuse_bsdf`",
@@ -47,7 +46,7 @@ def entries() -> str:
     """
     lines = dict.fromkeys(GROUPS, "")
     for issue in issues().values():
-        differs = " (*differs*)" * issue.differs
+        differs = " (*differs*)" if issue.differs else ""
         lines[issue.group] += f"- [{issue.title}]({issue.page}.md){differs}\n"
     return "\n".join(f"### {GROUPS[name]} {{#{name}}}\n\n{each}" for name, each in lines.items())
 
@@ -56,69 +55,60 @@ def filled(name: str, text: str) -> str:
     """Markdown of a ledger page, or of the index README, with the site's additions."""
     if name == "README":
         text = text.replace("<!-- entries -->", entries())
-        return PLACE.sub(lambda found: patch_table(found[1]), text)
+        return PLACEHOLDER.sub(lambda found: patch_table(found[1]), text)
     issue = issues()[name]
-    diff, more = short_diff(name)
-    shown = f"```diff\n{diff}\n```" if diff else ""
-    numbers = {page: path.name[:4] for page, path in patches("materialx").items()}
-    files = _joined([f"`{path.relative_to(ROOT)}`" for path in patches_of(name)])
-    left = f"; the diff above leaves out {more} of its lines" if more else ""
-    versions = json.loads(VERSIONS.read_text(encoding="utf-8"))
-    ends = (outcome(issue, numbers), seen(issue, versions), files and f"Patch: {files}{left}.")
     text = issue.text.replace("\n**Cause.**", f"\n{table(issue)}**Cause.**")
-    text, why, missed = text.partition("\n**Why tests miss it.**")
-    return (
-        "\n\n".join(each.strip("\n") for each in (text, shown, why + missed, *ends) if each) + "\n"
-    )
+    text, heading, last = text.partition("\n**Why tests miss it.**")
+    parts = [text, "", heading + last, outcome(issue), affected_versions(issue)]
+    if files := patches_of(name):
+        diff, more = short_diff(files[0])
+        parts[1] = f"```diff\n{diff}\n```"
+        omitted = f"; the diff above leaves out {more} of its lines" if more else ""
+        names = _joined([f"`{path.relative_to(ROOT)}`" for path in files])
+        parts.append(f"Patch: {names}{omitted}.")
+    return "\n\n".join(part.strip("\n") for part in parts if part) + "\n"
 
 
 def table(issue: Issue) -> str:
     """Markdown table of a page's measurements, and the first row's diagnosis; "" without rows."""
-    found = measured().get(issue.page, {})
     if not issue.rows or not issue.cause:
         return ""
-    lobes = ", and the lobes of eonlib" * (issue.library == EONLIB)
+    found = measured()[issue.page]
+    diagnosis = words.diagnosis(Diagnosis((issue.cause,)))
+    if "next" in found:  # the second-best model
+        diagnosis += f", then {found['next']}"
+    first = " (first row)" if issue.rows[1:] else ""
+    lobes = ", and the lobes of eonlib" if issue.library == EONLIB else ""
     lines = [
         *(["Among other checks:", ""] if issue.implied else []),
         "| check | subject | measured | tolerance | unit |",
         "|---|---|---|---|---|",
         *(f"| {' | '.join(row)} | {Quantity(key).unit} |" for *row, key in found["rows"]),
         "",
-        f"Diagnosis{' (first row)' * bool(issue.rows[1:])}: {said(issue, found)}. Measured with {found['place']}{lobes}.",
+        f"Diagnosis{first}: {diagnosis}. Measured with {found['place']}{lobes}.",
     ]
     return "\n".join(lines) + "\n\n"
 
 
-def said(issue: Issue, found: dict[str, Any]) -> str:
-    """The diagnosis in words: the cause, and the second-best model if the cause is a model."""
-    cause = words.diagnosis(Diagnosis((issue.cause,) if issue.cause else ()))
-    return f"{cause}, then {found['next']}" if "next" in found else cause
-
-
-def short_diff(page: str) -> tuple[str, int]:
-    """The first SHOWN changed lines of a page's first patch, and the number of omitted ones.
-
-    Returns "" and 0 for a page without a patch.
-    """
-    files = patches_of(page)
-    if not files:
-        return "", 0
-    shown: list[str] = []
-    count, inside = 0, False
-    for line in files[0].read_text(encoding="utf-8").split("\n---\n", 1)[1].splitlines():
+def short_diff(patch: Path) -> tuple[str, int]:
+    """The first LINES changed lines of a patch, and the number of omitted ones."""
+    lines: list[str] = []
+    count, follows = 0, False
+    for line in patch.read_text(encoding="utf-8").split("\n---\n", 1)[1].splitlines():
         changed = line[:1] in ("+", "-") and line[:4] not in ("--- ", "+++ ")
         count += changed
         if line.startswith("--- "):
             head = f"--- {line[4:].split('/', 1)[1]}"
-        elif changed and count <= SHOWN:
-            shown += [] if inside else [head]
-            shown.append(line)
+        elif changed and count <= LINES:
+            if not follows:
+                lines.append(head)
+            lines.append(line)
             head = "@@"
-        inside = changed
-    return "\n".join(shown), max(count - SHOWN, 0)
+        follows = changed
+    return "\n".join(lines), max(count - LINES, 0)
 
 
-def outcome(issue: Issue, numbers: dict[str, str]) -> str:
+def outcome(issue: Issue) -> str:
     """Sentence about checks that pass, or still fail, with a page's patch and those it needs."""
     subjects: dict[tuple[str, bool], list[str]] = {}
     for check, subject in issue.repaired:
@@ -126,29 +116,29 @@ def outcome(issue: Issue, numbers: dict[str, str]) -> str:
     for check, subject in issue.remains:
         if (check, subject) in issue.rows:
             subjects.setdefault((subject, False), []).append(f"`{check}`")
-    parts = [
-        f"{_joined(checks)} of {subject} "
-        + (
-            f"pass{'es' * (not checks[1:])}"
-            if passes
-            else f"show{'s' * (not checks[1:])} another cause"
+    parts = []
+    for (subject, passes), checks in subjects.items():
+        one, several = (
+            ("passes", "pass") if passes else ("shows another cause", "show another cause")
         )
-        for (subject, passes), checks in subjects.items()
-    ]
+        parts.append(f"{_joined(checks)} of {subject} {several if checks[1:] else one}")
     if not parts:
         return ""
-    needs = _joined(["this patch", *(f"[{numbers[each]}]({each}.md)" for each in issue.needs)])
-    return fill(f"With {needs}: {'; '.join(parts)}.", 110, break_on_hyphens=False)
+    files = patches("materialx")
+    needs = [f"[{files[each].name[:4]}]({each}.md)" for each in issue.needs]
+    text = f"With {_joined(['this patch', *needs])}: {'; '.join(parts)}."
+    return fill(text, 110, break_on_hyphens=False)
 
 
-def seen(issue: Issue, versions: dict[str, Any]) -> str:
-    """Sentence about the MaterialX versions with a defect; "" if they were not checked for it."""
+def affected_versions(issue: Issue) -> str:
+    """Sentence about the MaterialX versions with a defect; "" if none was checked for the defect."""
+    versions = json.loads(VERSIONS.read_text(encoding="utf-8"))
     if issue.page not in versions["pages"]:
         return ""
-    shown = versions["pages"][issue.page]
-    names = {name: f"main of {versions['commit'][1]}" if name == "main" else name for name in shown}
-    gone = [name for name in shown if shown[name]["passed"] or (issue.pull and name == "main")]
-    there = [names[name] for name in shown if name not in gone]
+    found = versions["pages"][issue.page]
+    names = {name: f"main of {versions['commit'][1]}" if name == "main" else name for name in found}
+    gone = [name for name in found if found[name]["passed"] or (issue.pull and name == "main")]
+    there = [names[name] for name in found if name not in gone]
     text = f"Seen in MaterialX {there[0]} to {there[-1]}"
     text += f"; gone in {_joined([names[name] for name in gone])}" if gone else ""
     return f"{text}, by pull request {issue.pull}." if issue.pull else f"{text}."

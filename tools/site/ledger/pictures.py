@@ -2,11 +2,10 @@
 """Draws the pictures of the ledger: `python -m tools.site.ledger.pictures`.
 
 Each picture shows a page's document on gl with the installed MaterialX, then with the page's patch
-and those it needs, then the difference.
+and the patches that it needs, then the difference.
 """
 
 import sys
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -25,7 +24,8 @@ from tests.support.wheels import run
 from tools.site.ledger import FOLDER, apply, linked, needed, patches
 
 PICTURES = FOLDER / "pictures"
-SIZE, QUALITY, BACKGROUND, LINE = 192, 90, 30, 4
+SIZE, LINE = 192, 4  # width of each part and of the line between parts, in pixels
+QUALITY, BACKGROUND = 90, 30  # WebP quality; sRGB code
 WHITE = {"color": (1.0, 1.0, 1.0)}
 FUZZ = WHITE | {"roughness": 1.0, "mode": "zeltner"}
 BASE = lobe_text("oren_nayar_diffuse_bsdf", WHITE, "base")
@@ -50,9 +50,8 @@ ADDED = {
 
 def hair(variance: float, scale: float) -> str:
     """A document of white hair whose lobes all have the same variance and scale."""
-    clear = {"absorption_coefficient": (0.0, 0.0, 0.0)}
-    inputs: Mapping[str, ArrayLike] = dict.fromkeys(LOBES, (variance, scale)) | clear
-    return material_text("chiang_hair_bsdf", inputs)
+    inputs: dict[str, ArrayLike] = {"absorption_coefficient": (0.0, 0.0, 0.0)}
+    return material_text("chiang_hair_bsdf", inputs | dict.fromkeys(LOBES, (variance, scale)))
 
 
 def thin_wall(color: tuple[float, float, float]) -> str:
@@ -63,16 +62,15 @@ def thin_wall(color: tuple[float, float, float]) -> str:
         ("subsurface_color", "color3", color),
         ("geometry_thin_walled", "boolean", True),
     )
-    return document_text(
-        network_text({"shading": Node("open_pbr_surface", "surfaceshader")}, inputs)
-    )
+    nodes = {"shading": Node("open_pbr_surface", "surfaceshader")}
+    return document_text(network_text(nodes, inputs))
 
 
 def layered(*nodes: str) -> str:
     return document_text("".join((BASE, *nodes)) + SURFACE)
 
 
-# Scene and document of each page's picture, which the page also describes.
+# Scene and document of each page's picture; the text of the page describes them.
 PAGES = {
     "genglsl_clamped_dot": ("back", material_text("oren_nayar_diffuse_bsdf", ROUGH)),
     "genglsl_film_half": ("side", material_text("generalized_schlick_bsdf", FILM)),
@@ -119,7 +117,7 @@ def draw(folder: str, *pages: str) -> None:
 
 
 def drawn(page: str, folder: Path, repair: bool) -> NDArray[np.float32]:
-    """A page's picture with stock MaterialX, or with the page's patch and those it needs."""
+    """A page's picture with stock MaterialX, or with the page's patch and the patches it needs."""
     package = linked(Path(mx.__file__).parent, folder / "MaterialX")
     if repair:
         names = needed(page)
@@ -135,14 +133,16 @@ def main() -> None:
     mask = visible(SIZE, "sphere").mask[..., None]
     for page, (scene, _) in PAGES.items():
         with TemporaryDirectory(prefix="mxeon-picture-") as base:
-            stock, own = (drawn(page, Path(base, name), name == "own") for name in ("stock", "own"))
-        apart = np.where(mask, np.abs(stock - own), 0.0)
+            stock, repaired = (
+                drawn(page, Path(base, str(repair)), repair) for repair in (False, True)
+            )
+        change = np.where(mask, np.abs(stock - repaired), 0.0)
         # Halve the exposure in white surroundings, so that excess light is visible.
         gain = 0.5 if scene == "furnace" else 1.0
-        codes = [srgb_encoded(each) for each in (gain * stock, gain * own, apart / apart.max())]
-        codes = [np.where(mask, each, np.uint8(BACKGROUND)) for each in codes]
+        images = gain * stock, gain * repaired, change / change.max()
+        a, b, c = (np.where(mask, srgb_encoded(each), np.uint8(BACKGROUND)) for each in images)
         line = np.full((SIZE, LINE, 3), 255, np.uint8)
-        picture = np.hstack([codes[0], line, codes[1], line, codes[2]])
+        picture = np.hstack([a, line, b, line, c])
         Image.fromarray(picture).save(PICTURES / f"{page}.webp", quality=QUALITY, method=6)
 
 

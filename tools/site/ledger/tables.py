@@ -16,7 +16,8 @@ from mxeon.shaders.library import load_library
 
 GROUP = "pbr"  # nodegroup of the specification's nodes; some have namesakes in other nodegroups
 NONE = ("", "__zero__", "__empty__")  # defaults that count as missing
-Port = dict[str, object]  # type, default and accepted values of a port
+KEYS = ("type", "default", "accepted values")  # what is compared
+Port = dict[str, object]  # a port's types, default and accepted values, by KEYS
 
 
 def printed(text: str) -> dict[str, dict[str, Port]]:
@@ -48,24 +49,21 @@ def defined(node: str) -> dict[str, Port]:
     ports: dict[str, Port] = {}
     for each in [each for each in default if each.getNodeGroup() == GROUP] or default:
         for port in (*each.getActiveInputs(), *each.getActiveOutputs()):
-            types = ports.get(port.getName(), {}).get("type", set())
-            text, ends = "", ("", "")
+            default, values = "", port.getAttribute("enum")
             if isinstance(port, mx.Input):
-                text = port.getDefaultGeomPropString() or port.getValueString()
-                ends = port.getAttribute("uimin"), port.getAttribute("uimax")
-            spread = (
-                f"{f'[{ends[0]}' if ends[0] else '(-inf'}, {f'{ends[1]}]' if ends[1] else 'inf)'}"
-            )
-            ports.setdefault(
-                port.getName(),
-                {
-                    "default": value(text),
-                    "accepted values": accepted(
-                        port.getAttribute("enum") or spread * bool("".join(ends))
-                    ),
-                },
-            )["type"] = {*types, port.getType()}
+                default = port.getDefaultGeomPropString() or port.getValueString()
+                values = values or interval(port.getAttribute("uimin"), port.getAttribute("uimax"))
+            found = set(), value(default), accepted(values)
+            entry = ports.setdefault(port.getName(), dict(zip(KEYS, found, strict=True)))
+            entry["type"] = {*entry["type"], port.getType()}
     return ports
+
+
+def interval(least: str, most: str) -> str:
+    """An interval of numbers as the specification writes it; "" without ends."""
+    if not least and not most:
+        return ""
+    return f"{f'[{least}' if least else '(-inf'}, {f'{most}]' if most else 'inf)'}"
 
 
 def value(text: str) -> object:
@@ -90,12 +88,13 @@ def main(path: str) -> None:
     for node, table in printed(Path(path).read_text(encoding="utf-8")).items():
         ports = defined(node)
         for name in dict.fromkeys((*table, *ports)):
-            ours, theirs = ports.get(name), table.get(name)
-            for key in ("type", "default", "accepted values"):
-                two = [each[key] if each else "no port" for each in (theirs, ours)]
-                if two[0] != two[1]:
+            for key in KEYS:
+                text, library = (
+                    each[name][key] if name in each else "no port" for each in (table, ports)
+                )
+                if text != library:
                     count += 1
-                    print(f"{node}.{name}: {key}: the text has {two[0]}, the library {two[1]}")
+                    print(f"{node}.{name}: {key}: the text has {text}, the library {library}")
     print(f"{count} entries differ")
 
 
