@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 import mxeon
 from mxeon.conformance import words
-from mxeon.conformance.results import FAILED, NOT_RUN, Diagnosis, Picture, Result, Run, quoted
+from mxeon.conformance.results import FAILED, NO_DIAGNOSIS, NOT_RUN, Picture, Result, Run, quoted
 from mxeon.errors import InputError, NotRun
 from mxeon.hosts.base import Identity
 from mxeon.io.files import regular
@@ -30,7 +30,7 @@ from mxeon.models import table
 RENDERER = "renderer"
 LIBRARY = "its own library"
 SOFTWARE = ("numpy", "scipy", "OpenImageIO")
-# Keys of kit.json that must match exactly. Last digits of scenes depend on the exporting machine.
+# Keys of kit.json that must match exactly; the last digits of scenes depend on the exporting machine.
 EXACT = ("camera", "sphere", "materials", "pictures")
 READABLE = "The picture is there, of the right size, linear float, and finite."
 
@@ -51,61 +51,59 @@ def check_kit(
         raise InputError(f"renderer must be a name on one line; got {renderer!r}")
     folder = Path(folder)
     posed, depth = questions(claims), unit_sphere().depth
-    pictures = [view for view in views(_size(folder)) if any(each.includes(view) for each in posed)]
+    needed = [view for view in views(_size(folder)) if any(each.includes(view) for each in posed)]
     place: dict[str, Any] = {"host": renderer, "library": LIBRARY}
     images: dict[str, NDArray[np.float64]] = {}  # usable pictures
     results: list[Result] = []
-    shown_pictures: list[Picture] = []
-    for view in pictures:
+    pictures: list[Picture] = []
+    for view in needed:
         about = {"check": "file", "claim": READABLE, "subject": view.name, **place}
         try:
-            image = images[view.name] = read_render(folder / RENDERS, view)
+            images[view.name] = read_render(folder / RENDERS, view)
         except Missing as error:
             results.append(Result(**about, verdict=NOT_RUN, reason=str(error)))
-            continue
         except Unusable as error:
             results.append(Result(**about, verdict=FAILED, diagnosis=quoted(str(error))))
-            continue
-        mask = judged(view.scene)
-        reference = np.zeros((*mask.shape, 3))
-        reference[mask] = pixel_means(table.diffuse_model(claims or view.material.model), view)
-        metadata = {"version": mxeon.__version__, "scene": view.scene.name} | place
-        shown_pictures.append(
-            Picture(
-                document=f"{view.material.name}.mtlx",
-                element=view.material.name,
-                **place,
-                scene=view.scene.name,
-                image=image.astype(np.float32) * mask[..., None],
-                reference=reference,
-                metadata=metadata,
+        else:
+            mask, name, scene = judged(view.scene), view.material.name, view.scene.name
+            reference = np.zeros((*mask.shape, 3))
+            reference[mask] = pixel_means(table.diffuse_model(claims or view.material.model), view)
+            pictures.append(
+                Picture(
+                    document=f"{name}.mtlx",
+                    element=name,
+                    **place,
+                    scene=scene,
+                    image=images[view.name].astype(np.float32) * mask[..., None],
+                    reference=reference,
+                    metadata={"version": mxeon.__version__, "scene": scene} | place,
+                )
             )
-        )
     if all(each.verdict == NOT_RUN for each in results) and not images:
         raise NotRun(
-            f"{folder / RENDERS}: none of the {len(pictures)} pictures is there: make them as "
+            f"{folder / RENDERS}: none of the {len(needed)} pictures is there: make them as "
             f"{folder / 'README.md'} describes"
         )
-    # Answer the questions in order: a wrong setup prevents all others.
-    notes, obstacle = [], Diagnosis()
+    # Answer the questions in order: a wrong light or encoding makes models indistinguishable, so a
+    # wrong setup prevents all other answers.
+    notes, obstacle = [], NO_DIAGNOSIS
     for question in progress(posed):
-        # A wrong light or encoding makes models indistinguishable.
-        result, shown = answer(question, pictures, images, depth, place, obstacle)
+        result, found = answer(question, needed, images, depth, place, obstacle)
         results.append(result)
         if question.key == "setup":
-            obstacle = shown
-        if shown.causes:
-            notes.append(f"{question.title}: {words.diagnosis(shown)}")
+            obstacle = found
+        if found.causes:
+            notes.append(f"{question.title}: {words.diagnosis(found)}")
     # If a model is wrong, find out whether all pictures show the same wrong model.
     wrong = any(each.check == "model" and each.verdict == FAILED for each in results)
-    if wrong and (title := one_model(posed, pictures, images, depth)):
+    if wrong and (title := one_model(posed, needed, images, depth)):
         notes.insert(0, f"every picture of a rough material shows one model: {title}")
     return Run(
         version=mxeon.__version__,
         software={"Python": platform.python_version()} | {name: version(name) for name in SOFTWARE},
         hosts=(Identity(renderer, "version not given", "device not given"),),
         results=tuple(results),
-        pictures=tuple(shown_pictures),
+        pictures=tuple(pictures),
         notes=tuple(notes),
         documents=tuple(folder / "materials" / f"{each.name}.mtlx" for each in MATERIALS),
     )

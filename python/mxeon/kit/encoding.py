@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Faults of a picture that do not depend on the model: encoding, orientation and scale.
 
-They are found on Lambert under a distant light, for which all models have equal values.
+Faults are found on Lambert under a distant light, for which all models have equal values.
 """
 
 import numpy as np
@@ -12,11 +12,11 @@ from mxeon.io.srgb import srgb_decoded
 from mxeon.kit.expected import Expected
 from mxeon.kit.noise import tiles
 
-LIKENESS = 0.02  # a fault explains a picture up to this rms error, without noise, over rms value
+MISFIT = 0.02  # largest rms error without noise over rms value that leaves a fault as explanation
 SAME_SCALE = 0.005  # factors closer to 1 are due to noise or a mesh
 
 
-def _tone_mapped_back(image: NDArray[np.float64]) -> NDArray[np.float64]:
+def _without_tone_mapping(image: NDArray[np.float64]) -> NDArray[np.float64]:
     """The inverse of x / (1 + x), whose values are below 1; infinity for other values."""
     return np.divide(image, 1.0 - image, out=np.full_like(image, np.inf), where=image < 1.0)
 
@@ -26,7 +26,7 @@ FAULTS = (
     ("scaled", lambda image: image),
     ("srgb", lambda image: srgb_decoded(np.clip(image, 0.0, None))),
     ("power", lambda image: np.clip(image, 0.0, None) ** 2.2),
-    ("tone_mapped", _tone_mapped_back),
+    ("tone_mapped", _without_tone_mapping),
     ("upside_down", lambda image: image[::-1]),
     ("mirrored", lambda image: image[:, ::-1]),
     ("rotated", lambda image: image[::-1, ::-1]),
@@ -43,10 +43,10 @@ def fault(
 
     if not image[mask].any():
         return found("black")
-    likeness = {key: _likeness(undo(image)[mask], model, mask) for key, undo in FAULTS}
-    key = min(likeness, key=lambda each: likeness[each][1])
-    factor, miss = likeness[key]
-    if miss <= LIKENESS:
+    fits = {key: _fit(undo(image)[mask], model, mask) for key, undo in FAULTS}
+    key = min(fits, key=lambda each: fits[each][1])
+    factor, misfit = fits[key]
+    if misfit <= MISFIT:
         if abs(factor - 1.0) > SAME_SCALE:
             return found(key, factor)
         return Diagnosis() if key == "scaled" else found(key)
@@ -56,17 +56,15 @@ def fault(
     return found("clipped" if clipped else "unknown")
 
 
-def _likeness(
+def _fit(
     values: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]
 ) -> tuple[float, float]:
-    """Best factor between values and model, and the error beyond noise (inf for a factor <= 0)."""
-    value = model.value
-    if not np.isfinite(values).all():
+    """Best factor between values and model, and the error beyond noise; infinite without a fit."""
+    if not np.isfinite(values).all() or (values * model.value).sum() <= 0.0:
         return 0.0, np.inf
-    factor = (values * value).sum() / (value * value).sum()
-    if not factor > 0.0:
-        return 0.0, np.inf
-    error = values - factor * value
+    factor = (values * model.value).sum() / (model.value**2).sum()
+    fitted = factor * model.value
+    error = values - fitted
     noise = tiles(error, model.slack, mask).pixel_noise
-    rest = np.sqrt(max(0.0, np.mean(error**2) - noise**2))
-    return factor, rest / np.sqrt(np.mean((factor * value) ** 2))
+    misfit = np.sqrt(max(0.0, np.mean(error**2) - noise**2))
+    return factor, misfit / np.sqrt(np.mean(fitted**2))

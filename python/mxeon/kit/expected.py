@@ -13,8 +13,8 @@ from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.table import Model
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
-# Pixels are judged if both cosines are at least this: near the rim and the terminator, the value
-# depends on the position within a pixel. From 64 pixels on, judged pixels lie fully on the sphere.
+# Least cosine of view and light at judged pixels: near the rim and the terminator, the value depends
+# on the position within a pixel. In pictures of 64 pixels or more, judged pixels lie on the sphere.
 CUT = 0.2
 # Relative rounding of half floats, which have 11 bits, and their smallest step.
 HALF_ROUNDING, HALF_STEP = 2.0**-11, 2.0**-24
@@ -47,7 +47,7 @@ def judged(scene: Scene) -> NDArray[np.bool_]:
 
 def expected(row: Model, view: View, depth: float) -> Expected:
     """Expected values of a view. The surface may be up to `depth` below the unit sphere."""
-    place = sphere(view.scene.size).normal[judged(view.scene)][:, :2]
+    place = _centers(view)
     value = pixel_means(row, view)
     center = _values(row, view, place)
     # A point of a triangle has the normal of a sphere point that is farther from the axis.
@@ -57,10 +57,15 @@ def expected(row: Model, view: View, depth: float) -> Expected:
 
 
 def pixel_means(row: Model, view: View) -> NDArray[np.float64]:
-    place = sphere(view.scene.size).normal[judged(view.scene)][:, :2]
     step = GAUSS / view.scene.size
     offsets = [(x, y) for x in (-step, step) for y in (-step, step)]
-    return np.asarray(np.mean([_values(row, view, place + offset) for offset in offsets], axis=0))
+    values = [_values(row, view, _centers(view) + offset) for offset in offsets]
+    return np.asarray(np.mean(values, axis=0))
+
+
+def _centers(view: View) -> NDArray[np.float64]:
+    """Centers of the judged pixels in the plane of the picture, (N, 2)."""
+    return sphere(view.scene.size).normal[judged(view.scene)][:, :2]
 
 
 def _values(row: Model, view: View, place: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -45,19 +45,19 @@ def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "e
     """Find a BSDF node with color and roughness in MaterialX, a library or other definitions."""
     needed = {"color": "color3", "roughness": "float"}
     data = load_library(library, None, definitions)
-    lacks = ""
+    reason = ""
     for each in data.getMatchingNodeDefs(category):
         ports = {port.getName(): port.getType() for port in each.getActiveInputs()}
         missing = [name for name, kind in needed.items() if ports.get(name) != kind]
         if each.getType() == "BSDF" and not missing:
             flagged = ports.get(FLAG) == "boolean"
             return KitNode(category, each.getName(), flagged, (library, *definitions))
-        lacks = f", which lacks {' and '.join(missing)}" if missing else ", which is none"
+        reason = f", which lacks {' and '.join(missing)}" if missing else ", which is none"
     known = {each.getNodeString() for each in data.getNodeDefs() if each.getType() == "BSDF"}
-    remedy = lacks or meant(category, known) or ": load its definition by --definitions FOLDER"
+    reason = reason or meant(category, known) or ": load its definition by --definitions FOLDER"
     raise InputError(
         "node must be a BSDF with the inputs color (color3) and roughness (float); "
-        f"got {category!r}{remedy}"
+        f"got {category!r}{reason}"
     )
 
 
@@ -69,35 +69,33 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = K
     """
     read = files_read([], Policy(), node.folders).values()
     check_output(folder, read, replaced=["*", "*/*"], apart=True)
-    known = os.path.lexists(Path(folder, DESCRIPTION))
-    if os.path.isdir(folder) and os.listdir(folder) and not known:
+    is_kit = os.path.lexists(Path(folder, DESCRIPTION))
+    if os.path.isdir(folder) and os.listdir(folder) and not is_kit:
         raise InputError(f"{folder}: must be new, empty or a kit; it holds other files")
     pictures, mesh = views(size), unit_sphere()
-    files = {}
-    for each in MATERIALS:
-        inputs: dict[str, Any] = {"color": each.color, "roughness": each.roughness}
-        inputs |= {FLAG: each.energy_compensation} if node.flagged else {}
-        text = material_text(node.category, inputs, each.name, INPUT_TYPES)
-        files[f"materials/{each.name}.mtlx"] = text
-    files |= {
-        f"scenes/{view.name}.usda": scene_layer(view, node.definition, node.flagged)
-        for view in pictures
-    }
     numbers = description(pictures, size, node.category)
-    files |= {
+    texts = {
         "sphere.obj": to_obj(mesh),
         "sphere.usda": mesh_layer(mesh),
         DESCRIPTION: json.dumps(numbers, indent=1) + "\n",
         README: _page(pictures, size, mesh, node.category),
     }
-    paths = {below(folder, name): text for name, text in files.items()}
+    for each in MATERIALS:
+        inputs: dict[str, Any] = {"color": each.color, "roughness": each.roughness}
+        if node.flagged:
+            inputs[FLAG] = each.energy_compensation
+        text = material_text(node.category, inputs, each.name, INPUT_TYPES)
+        texts[f"materials/{each.name}.mtlx"] = text
+    for view in pictures:
+        texts[f"scenes/{view.name}.usda"] = scene_layer(view, node.definition, node.flagged)
+    paths = {below(folder, name): text for name, text in texts.items()}
     for path, text in paths.items():
         write_text(path, text)
     below(folder, RENDERS).mkdir(exist_ok=True)
     return Path(folder, README)
 
 
-def description(pictures: Sequence[View], size: int, node: str = OREN_NAYAR) -> dict[str, Any]:
+def description(pictures: Sequence[View], size: int, node: str) -> dict[str, Any]:
     """The content of kit.json.
 
     `format` increases when a key changes or is removed. A distant light has `direction`, the unit
@@ -154,20 +152,21 @@ def _page(pictures: Sequence[View], size: int, mesh: Mesh, node: str) -> str:
         for each in MATERIALS
     ]
     scenes = {view.scene.name: view.scene for view in pictures}
+    lights = [f"| {name} | {_light_in_words(scene)} |" for name, scene in scenes.items()]
     return Template(text).substitute(
         version=mxeon.__version__,
         size=size,
         count=len(pictures),
         pictures="\n".join(rows),
         materials="\n".join(materials),
-        lights="\n".join(f"| {name} | {_in_words(scene)} |" for name, scene in scenes.items()),
+        lights="\n".join(lights),
         triangles=len(mesh.triangles),
         depth=f"{mesh.depth:.1e}",
         node=node,
     )
 
 
-def _in_words(scene: Scene) -> str:
+def _light_in_words(scene: Scene) -> str:
     if scene.light is None:
         return f"uniform environment of radiance {scene.environment:g} on all sides"
     direction = ", ".join(f"{each:.6f}" for each in scene.light)

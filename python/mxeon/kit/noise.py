@@ -2,8 +2,8 @@
 """Separate noise from bias, by the mean error of each tile of a picture.
 
 A tile of 8 x 8 pixels has up to 16 squares of 2 x 2. A square's contrast, (a - b - c + d) / 2, has
-the variance of a pixel's noise and cancels smooth errors; the tile's mean error keeps them. With
-normal noise, the mean is independent of the contrasts, so the quotient follows Student's t.
+the variance of a pixel's noise and cancels smooth errors; the tile's mean error keeps smooth errors.
+With normal noise, the mean is independent of the contrasts, so the quotient follows Student's t.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CONFIDENCE = 0.999  # probability that a kit of correct pictures passes
 class Tiles:
     mean: NDArray[np.float64]  # (T, 3), error of a tile
     deviation: NDArray[np.float64]  # (T, 3), estimated standard deviation of the mean
-    slack: NDArray[np.float64]  # (T, 3), mean slack of the pixels
+    slack: NDArray[np.float64]  # (T, 3), mean deviation of correct pixels without noise
     squares: NDArray[np.int64]  # (T,), degrees of freedom
 
     @property
@@ -37,34 +37,32 @@ class Tiles:
 
 def tiles(error: NDArray[np.float64], slack: NDArray[np.float64], mask: NDArray[np.bool_]) -> Tiles:
     """Tiles of a picture, from errors and slack, (N, 3), at the pixels of a mask."""
-    whole = np.asarray(_squares(mask[..., None]).all(axis=(-1, -2)))
-    square = _squares(_spread(error, mask))
+    complete = _squares(mask[..., None]).all(axis=(-1, -2))[..., None]  # all pixels in the mask
+    square, slack = (_squares(_on_picture(each, mask)) for each in (error, slack))
     contrast = (square @ [1.0, -1.0, -1.0, 1.0]) / 2.0
-    count = _sum(whole[..., None])[:, 0]
-    kept = np.asarray(count >= FEWEST)
-    count = count[kept]
-    weight = whole[..., None]
+    count = _sum(complete)
+    judged = count[:, 0] >= FEWEST
     # Average over each tile; a contrast, whose weights sum to 0, contains only noise.
-    mean = _sum(weight * square.mean(axis=-1))[kept] / count[:, None]
-    variance = _sum(weight * contrast**2)[kept] / count[:, None]
-    allowed = _sum(weight * _squares(_spread(slack, mask)).mean(axis=-1))[kept] / count[:, None]
-    return Tiles(mean, np.sqrt(variance / (4.0 * count[:, None])), allowed, count)
+    parts = square.mean(axis=-1), contrast**2, slack.mean(axis=-1)
+    mean, variance, slack = (_sum(complete * each)[judged] / count[judged] for each in parts)
+    deviation = np.sqrt(variance / (4.0 * count[judged]))
+    return Tiles(mean, deviation, slack, count[judged, 0])
 
 
 def ratio(pictures: Sequence[Tiles], share: float = 1.0) -> float:
     """The largest mean error of a tile, divided by the error that slack and noise explain.
 
-    For correct pictures, it exceeds 1 with a probability of at most share (1 - CONFIDENCE). Each of
-    n mean errors may leave its interval with 1 / n of this probability (Bonferroni).
+    For correct pictures, the ratio exceeds 1 with a probability of at most share (1 - CONFIDENCE).
+    Each of n mean errors may leave its interval with 1 / n of this probability (Bonferroni).
     """
     stdtrit = student_quantile()
     total = sum(each.mean.size for each in pictures)
     false_rate = share * (1.0 - CONFIDENCE) / total
-    largest = 0.0
+    ratios = []
     for each in pictures:
         reach = -stdtrit(each.squares, false_rate / 2.0)[:, None] * each.deviation
-        largest = max(largest, float(np.max(np.abs(each.mean) / (each.slack + reach))))
-    return largest
+        ratios.append(float(np.max(np.abs(each.mean) / (each.slack + reach))))
+    return max(ratios)
 
 
 def student_quantile() -> Callable[..., NDArray[np.float64]]:
@@ -76,7 +74,7 @@ def student_quantile() -> Callable[..., NDArray[np.float64]]:
     return cast(Callable[..., NDArray[np.float64]], stdtrit)
 
 
-def _spread(values: NDArray[np.float64], mask: NDArray[np.bool_]) -> NDArray[np.float64]:
+def _on_picture(values: NDArray[np.float64], mask: NDArray[np.bool_]) -> NDArray[np.float64]:
     image = np.zeros((*mask.shape, values.shape[-1]))
     image[mask] = values
     return image

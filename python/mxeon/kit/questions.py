@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +33,9 @@ from mxeon.kit.views import (
 from mxeon.models import table as reference
 from mxeon.shaders.nodes import FLAG
 
-# Noise hides the difference of these models from others: EON's quartic differs by at most 1e-3.
+# Models that noise hides: EON's quartic approximation differs from EON by at most 1e-3.
 TOO_NEAR = ("eon_approx",)
+Images: TypeAlias = Mapping[str, NDArray[np.float64]]  # usable pictures by the view's name
 
 
 @dataclass(frozen=True)
@@ -43,29 +44,26 @@ class ModelDistance:
 
     title: str
     distance: float  # rms of the tiles' mean errors, in units of pi f cos or of albedo
-    ratio: float  # see `mxeon.kit.noise.ratio`; the pictures agree if it is at most 1
+    ratio: float  # see `mxeon.kit.noise.ratio`; at most 1 if the pictures agree
 
 
-def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDistance]:
+def candidates(views: Sequence[View], images: Images, depth: float) -> list[ModelDistance]:
     """All known models and defects, nearest first, without duplicates."""
     rows = reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS + reference.PARAMETRIZATIONS
     rows = tuple(row for row in rows if row.name not in TOO_NEAR)
-    if all(case.view.scene.light for case in pictures):
+    if all(view.scene.light for view in views):
         # Drop models that differ only in the albedo.
         rows = tuple({row.brdf_of: row for row in rows}.values())
     ranking = []
     for row in rows:
-        models = [expected(row, case.view, depth) for case in pictures]
-        errors = _tiles(pictures, models)
+        errors = _tiles(views, images, [expected(row, view, depth) for view in views])
         rms = float(np.sqrt(np.mean(np.concatenate([each.mean for each in errors]) ** 2)))
         ranking.append(ModelDistance(row.title, rms, ratio(errors)))
-    ranking.sort(key=lambda one: one.distance)
-    # At roughness 1, models of roughness and of its square coincide; keep the first.
-    return [
-        one
-        for one, before in zip(ranking, [None, *ranking], strict=False)
-        if before is None or one.distance != before.distance
-    ]
+    distinct: dict[float, ModelDistance] = {}
+    for each in sorted(ranking, key=lambda model: model.distance):
+        # At roughness 1, models of roughness and of its square coincide; keep the first.
+        distinct.setdefault(each.distance, each)
+    return list(distinct.values())
 
 
 def nearest(ranking: Sequence[ModelDistance]) -> results.Diagnosis:
@@ -95,7 +93,7 @@ class Question:
     materials: tuple[Material, ...]
     lit: bool  # distant light; False for an environment, for which rasterizers have other formulas
     variant: str  # describes the negative control
-    wrong: Callable[[View], NDArray[np.float64]]  # the control's values (N, 3)
+    wrong: Callable[[View], NDArray[np.float64]]  # the negative control's values (N, 3)
     model: str = ""  # required model; "" for the model of each material
 
     @property
@@ -112,33 +110,25 @@ class Question:
         return view.material in self.materials and (view.scene.light is not None) == self.lit
 
 
-@dataclass(frozen=True)
-class JudgedPicture:
-    view: View
-    mask: NDArray[np.bool_]
-    values: NDArray[np.float64]  # (N, 3), at the pixels of the mask
-
-
-def _of(name: str, factor: float = 1.0) -> Callable[[View], NDArray[np.float64]]:
+def control(name: str, factor: float = 1.0) -> Callable[[View], NDArray[np.float64]]:
     """Values of a model times a factor, for a negative control."""
     return lambda view: factor * pixel_means(reference.diffuse_model(name), view)
 
 
-SETUP_RIGHT = "Lambert under a distant light has the right light, orientation and encoding."
-IS_MODEL = "The pictures equal the model, up to noise and the depth of a mesh."
-BLACK_IS = "A black surface reflects nothing."
-WHITE_IS = "A white surface in a white environment is invisible."
+SETUP = "Lambert under a distant light has the right light, orientation and encoding."
+MODEL = "The pictures equal the model, up to noise and the depth of a mesh."
+BLACK = "A black surface reflects nothing."
+WHITE = "A white surface in a white environment is invisible."
 DROPPED, STUCK = "the flag is dropped", "the flag is stuck"
+ADDED, MISSING = "a white lobe is added", "the second lobe is dropped"
 QUESTIONS = (
-    Question("setup", SETUP_RIGHT, (LAMBERT,), True, "5 % more light", _of("lambert", 1.05)),
-    Question("model", IS_MODEL, (TRUE, HALF), True, DROPPED, _of("qon")),
-    Question("model", IS_MODEL, (TRUE,), False, DROPPED, _of("qon")),
-    Question("model", IS_MODEL, (FALSE,), True, STUCK, _of("eon")),
-    Question("model", IS_MODEL, (FALSE,), False, STUCK, _of("eon")),
-    Question(
-        "black", BLACK_IS, (BLACK_MATERIAL,), True, "a white lobe is added", _of("fon_white_lobe")
-    ),
-    Question("white", WHITE_IS, (WHITE_MATERIAL,), False, "the second lobe is dropped", _of("fon")),
+    Question("setup", SETUP, (LAMBERT,), True, "5 % more light", control("lambert", 1.05)),
+    Question("model", MODEL, (TRUE, HALF), True, DROPPED, control("qon")),
+    Question("model", MODEL, (TRUE,), False, DROPPED, control("qon")),
+    Question("model", MODEL, (FALSE,), True, STUCK, control("eon")),
+    Question("model", MODEL, (FALSE,), False, STUCK, control("eon")),
+    Question("black", BLACK, (BLACK_MATERIAL,), True, ADDED, control("fon_white_lobe")),
+    Question("white", WHITE, (WHITE_MATERIAL,), False, MISSING, control("fon")),
 )
 
 CLAIMS = ("eon", "qon", "fon", "lambert")
@@ -151,40 +141,38 @@ def questions(claim: str = "") -> tuple[Question, ...]:
     assert_known("claims", claim, CLAIMS)
     # Choose materials with the model's roughness.
     rough = (FALSE,) if claim == "qon" else (TRUE, HALF)
-    dropped, acts = ("roughness is dropped", _of("lambert")), ("roughness acts", _of("eon"))
-    control = (*(acts if claim == "lambert" else dropped), claim)
+    variant = "roughness is dropped", control("lambert"), claim
+    if claim == "lambert":
+        variant = "roughness acts", control("eon"), claim
     setup, *_, black, white = QUESTIONS
     return (
         setup,
-        Question("model", IS_MODEL, rough, True, *control),
-        Question("model", IS_MODEL, rough[:1], False, *control),
+        Question("model", MODEL, rough, True, *variant),
+        Question("model", MODEL, rough[:1], False, *variant),
         black,
         *([white] if claim in ("eon", "lambert") else []),
     )
 
 
 def one_model(
-    posed: Sequence[Question],
-    views: Sequence[View],
-    images: Mapping[str, NDArray[np.float64]],
-    depth: float,
+    posed: Sequence[Question], views: Sequence[View], images: Images, depth: float
 ) -> str:
     """Title of the model that explains all pictures of rough materials; "" if none does."""
     rough = [each for each in posed if each.key == "model"]
     chosen = [view for view in views if any(each.includes(view) for each in rough)]
     if any(view.name not in images for view in chosen):
         return ""
-    nearest = candidates(_judged(chosen, images), depth)[0]
-    return nearest.title if nearest.ratio <= 1.0 else ""
+    best = candidates(chosen, images, depth)[0]
+    return best.title if best.ratio <= 1.0 else ""
 
 
 def answer(
     question: Question,
     views: Sequence[View],
-    images: Mapping[str, NDArray[np.float64]],
+    images: Images,
     depth: float,
     place: Mapping[str, Any],
-    obstacle: results.Diagnosis = results.NO_DIAGNOSIS,
+    obstacle: results.Diagnosis,
 ) -> tuple[results.Result, results.Diagnosis]:
     """Answer a question: its result, and the model or fault that the pictures show.
 
@@ -196,12 +184,11 @@ def answer(
     if obstacle.causes or missing:
         reason = words.diagnosis(obstacle) or f"no usable picture: {', '.join(missing)}"
         return results.Result(**place, verdict=results.NOT_RUN, reason=reason), results.NO_DIAGNOSIS
-    cases = _judged(chosen, images)
     models = [expected(question.row(view), view, depth) for view in chosen]
-    errors = _tiles(cases, models)
+    errors = _tiles(chosen, images, models)
     share = 1.0 / len(QUESTIONS)
     error = ratio(errors, share)
-    wrong = ratio(_tiles(cases, models, [question.wrong(view) for view in chosen]), share)
+    wrong = ratio(_tiles(chosen, images, models, [question.wrong(view) for view in chosen]), share)
     noise = float(np.sqrt(np.mean([each.pixel_noise**2 for each in errors])))
     if max(error, wrong) <= 1.0:
         reason = (
@@ -209,11 +196,11 @@ def answer(
             "render with more samples"
         )
         return results.Result(**place, verdict=results.NOT_RUN, reason=reason), results.NO_DIAGNOSIS
-    ranking = candidates(cases, depth) if question.key == "model" else []
-    shown = nearest(ranking) if ranking else results.Diagnosis()
-    if question.key == "setup" and error > 1.0:
-        name = cases[0].view.name
-        shown = fault(name, images[name], models[0], cases[0].mask)
+    found = results.NO_DIAGNOSIS
+    if question.key == "model":
+        found = nearest(candidates(chosen, images, depth))
+    elif question.key == "setup" and error > 1.0:
+        found = fault(chosen[0].name, images[chosen[0].name], models[0], judged(chosen[0].scene))
     return results.Result(
         **place,
         verdict=results.PASSED if error <= 1.0 < wrong else results.FAILED,
@@ -222,29 +209,22 @@ def answer(
         tolerance=1.0,
         derivation=DERIVATION,
         worst={"noise of a pixel, rms": [noise]},
-        diagnosis=shown if error > 1.0 else results.Diagnosis(distances=shown.distances),
+        diagnosis=found if error > 1.0 else results.Diagnosis(distances=found.distances),
         control=results.Control(question.variant, wrong, wrong > 1.0),
-    ), shown
-
-
-def _judged(
-    chosen: Sequence[View], images: Mapping[str, NDArray[np.float64]]
-) -> list[JudgedPicture]:
-    masks = [judged(view.scene) for view in chosen]
-    return [
-        JudgedPicture(view, mask, images[view.name][mask])
-        for view, mask in zip(chosen, masks, strict=True)
-    ]
+    ), found
 
 
 def _tiles(
-    cases: Sequence[JudgedPicture],
+    views: Sequence[View],
+    images: Images,
     models: Sequence[Expected],
     wrong: Sequence[NDArray[np.float64]] | None = None,
 ) -> list[Tiles]:
-    """Tiles of the errors; for `wrong` values, their difference from the model is added."""
+    """Tiles of the errors. The difference of `wrong` values from the model is added to the errors."""
     wrong = wrong or [model.value for model in models]
-    return [
-        tiles(case.values + other - 2.0 * model.value, model.slack, case.mask)
-        for case, model, other in zip(cases, models, wrong, strict=True)
-    ]
+    found = []
+    for view, model, other in zip(views, models, wrong, strict=True):
+        mask = judged(view.scene)
+        error = images[view.name][mask] + other - 2.0 * model.value
+        found.append(tiles(error, model.slack, mask))
+    return found

@@ -8,9 +8,9 @@ from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Scene
 
 COLOR = (0.2, 0.5, 0.8)  # different channels reveal a wrong power of the color
 
-# With fewer pixels, corners of pixels may miss the sphere; more pixels gain nothing.
-SMALLEST, LARGEST = 64, 2048
-USUAL = 128
+# Widths of pictures in pixels. With fewer pixels, corners of judged pixels may miss the sphere; more
+# pixels gain nothing.
+SMALLEST, USUAL, LARGEST = 64, 128, 2048
 
 
 @dataclass(frozen=True)
@@ -51,15 +51,9 @@ class View:
 SETUP = View(LAMBERT, SIDE)
 PICTURES = (
     SETUP,
-    View(TRUE, FRONT),
-    View(TRUE, SIDE),
-    View(TRUE, BACK),
-    View(TRUE, FURNACE),
+    *(View(TRUE, scene) for scene in (FRONT, SIDE, BACK, FURNACE)),
     View(HALF, SIDE),
-    View(FALSE, FRONT),
-    View(FALSE, SIDE),
-    View(FALSE, BACK),
-    View(FALSE, FURNACE),
+    *(View(FALSE, scene) for scene in (FRONT, SIDE, BACK, FURNACE)),
     View(BLACK_MATERIAL, SIDE),
     View(WHITE_MATERIAL, FURNACE),
 )
