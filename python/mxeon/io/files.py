@@ -16,7 +16,7 @@ from typing import TypeAlias
 from mxeon.errors import InputError
 
 AnyPath = str | os.PathLike[str]
-BINARY: int = getattr(os, "O_BINARY", 0)  # Windows writes "\r\n" unless it is set
+BINARY: int = getattr(os, "O_BINARY", 0)  # without this flag, Windows writes "\r\n" for "\n"
 Names: TypeAlias = AnyPath | Iterable[AnyPath]  # a name or path, or several
 TEMPORARY = ".mxeon-"  # prefix of incomplete files and folders
 
@@ -35,19 +35,19 @@ def names_of(parameter: str, given: object, least: int = 1) -> tuple[str, ...]:
     >>> names_of("hosts", "gl"), names_of("files", [Path("a.mtlx"), "b.mtlx"])
     (('gl',), ('a.mtlx', 'b.mtlx'))
     """
-    several = [given] if isinstance(given, str | bytes | os.PathLike) else given
-    if not isinstance(several, Iterable):
-        raise InputError(f"{parameter} must be a name or path, or several; got {given!r}")
-    names = tuple(
-        one_name(f"each of {parameter}" if several is given else parameter, n) for n in several
-    )
+    if isinstance(given, str | bytes | os.PathLike):
+        return (one_name(parameter, given),)
+    rule = f"{parameter} must be a name or path, or several"
+    if not isinstance(given, Iterable):
+        raise InputError(f"{rule}; got {given!r}")
+    names = tuple(one_name(f"each of {parameter}", each) for each in given)
     if len(names) < least:
-        raise InputError(f"{parameter} must be a name or path, or several; got none")
+        raise InputError(f"{rule}; got none")
     return names
 
 
 def below(folder: AnyPath, name: AnyPath) -> Path:
-    """Path of a file in a user's folder. Refuse links in the folder: they may lead out of it."""
+    """Path of a file in a user's folder. Refuse links in the folder, which may lead elsewhere."""
     path = Path(folder)
     for part in Path(name).parts:
         path /= part
@@ -87,13 +87,13 @@ def check_output(
         raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(home))
     if not os.access(home, os.W_OK | os.X_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(home))
-    known, whole = {*map(_identity, targets)} - {None}, _identity(place) if apart else None
+    existing, folder = {*map(_identity, targets)} - {None}, _identity(place) if apart else None
     parent = cache(_identity)
-    for file in inputs if known or whole else ():
-        if _identity(file) in known:
+    for file in inputs if existing or folder else ():
+        if _identity(file) in existing:
             raise InputError(f"output must not replace a file that is read; {output} is {file}")
         paths = (Path(os.path.abspath(file)), Path(os.path.realpath(file)))
-        if whole and any(whole == parent(each) for path in paths for each in path.parents):
+        if folder and any(folder == parent(each) for path in paths for each in path.parents):
             rule = "must be a folder without files that are read"
             raise InputError(f"{output}: {rule}; it holds {file}: name another folder")
 
@@ -109,10 +109,11 @@ def _identity(path: AnyPath) -> tuple[int, int] | None:
 
 @contextmanager
 def replacing(path: AnyPath) -> Iterator[Path]:
-    """Yield a new empty file; it replaces `path` if the block succeeds, otherwise it is deleted.
+    """Yield a new empty file, which replaces `path` if the block succeeds, and is deleted otherwise.
 
     The file is next to `path`; the folder is created if needed. Links are followed: use `below` for
-    names that the user did not write. The suffix stays, since image writers infer the format.
+    names that the user did not write. The new file has the suffix of `path`, from which image
+    writers infer the format.
     """
     path = Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
     if not path.name:
@@ -120,23 +121,23 @@ def replacing(path: AnyPath) -> Iterator[Path]:
     if path.exists() and not path.is_file():  # replacing a device would destroy it
         raise OSError(errno.EINVAL, "not a regular file", str(path))
     path.parent.mkdir(parents=True, exist_ok=True)
-    # The name is unpredictable, so no one else can have created a file or link of this name.
-    beside = path.with_name(f"{TEMPORARY}{token_hex(8)}{path.suffix}")
+    # The name is unpredictable, so nobody else can have created a file or link of the same name.
+    temporary = path.with_name(f"{TEMPORARY}{token_hex(8)}{path.suffix}")
     with naming(path):
-        os.close(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+        os.close(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
         try:
-            yield beside
-            with beside.open("r+b") as file:  # writable, because Windows flushes nothing else
+            yield temporary
+            with temporary.open("r+b") as file:  # Windows only flushes writable files
                 os.fsync(file.fileno())  # some file systems report a full disk only here
-            os.replace(beside, path)
+            os.replace(temporary, path)
         finally:
             with suppress(OSError):  # if the folder is not writable, the first error says so
-                beside.unlink(missing_ok=True)
+                temporary.unlink(missing_ok=True)
 
 
 @contextmanager
 def naming(path: AnyPath) -> Iterator[None]:
-    """Make system errors in this block name `path` instead of a temporary file or nothing."""
+    """Make system errors in the block name `path` instead of a temporary file or nothing."""
     try:
         yield
     except OSError as error:
@@ -150,8 +151,8 @@ def write_text(path: AnyPath, text: str) -> None:
 
     Lone surrogates become "?": file names can contain them, UTF-8 cannot.
     """
-    with replacing(path) as beside:
-        beside.write_text(text, encoding="utf-8", errors="replace", newline="\n")
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8", errors="replace", newline="\n")
 
 
 def sync(folder: AnyPath) -> None:
@@ -175,11 +176,6 @@ def regular(path: AnyPath, flags: int) -> int:
         os.close(file)
         raise OSError(errno.EINVAL, "not a regular file", os.fspath(path))
     return file
-
-
-def assert_regular(path: AnyPath) -> None:
-    """Raise OSError unless a path is a readable regular file, for libraries that open files."""
-    os.close(regular(path, os.O_RDONLY))
 
 
 def digest(path: AnyPath) -> str:

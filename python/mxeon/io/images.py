@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import errno
+import os
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -15,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import ImageError, printable
-from mxeon.io.files import AnyPath, assert_regular, check_output, replacing
+from mxeon.io.files import AnyPath, check_output, regular, replacing
 from mxeon.io.srgb import Codes, srgb_encoded
 
 if TYPE_CHECKING:
@@ -52,33 +53,33 @@ def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
     [0.25]
     """
     with np.errstate(invalid="ignore"):  # inf - inf
-        apart: Floats = np.subtract(image, reference, dtype=np.float64)
-        apart /= np.maximum(1.0, np.abs(reference))
-    apart[~np.isfinite(apart)] = np.inf
+        change: Floats = np.subtract(image, reference, dtype=np.float64)
+        change /= np.maximum(1.0, np.abs(reference))
+    change[~np.isfinite(change)] = np.inf
 
     def larger(a: Floats, b: Floats) -> Floats:
         return np.where(np.abs(a) >= np.abs(b), a, b)
 
     # Reduce channel by channel: for a short axis, NumPy's maximum takes five times as long.
-    return reduce(larger, np.moveaxis(apart, -1, 0))
+    return reduce(larger, np.moveaxis(change, -1, 0))
 
 
 def difference_scale(difference_map: ArrayLike) -> float:
     """Full scale for plotting a difference: the next of 1, 2, 5, 10, ... above almost all values.
 
-    It is based on the 99th percentile, so that a few pixels at a rim do not darken the rest, and is
-    at least 1e-9, so that equal images have a scale. Non-finite values are ignored.
+    The scale is based on the 99th percentile, so that a few pixels at a rim do not darken the rest,
+    and is at least 1e-9, so that equal images have a scale. Non-finite values are ignored.
 
         >>> difference_scale([0.0, 0.003, 0.0031, float("nan")])
         0.005
     """
     difference_map = np.asarray(difference_map)
     positive = difference_map[np.isfinite(difference_map) & (difference_map > 0.0)]
-    nearly_all = max(np.quantile(positive, 0.99) if positive.size else 0.0, 1e-9)
-    decade = int(np.floor(np.log10(nearly_all)))
+    percentile = max(np.quantile(positive, 0.99) if positive.size else 0.0, 1e-9)
+    decade = int(np.floor(np.log10(percentile)))
     # Parse decimals, because products would differ from the printed numbers in the last digit.
     steps = [float(f"{digit}e{decade}") for digit in (1, 2, 5, 10)]
-    return next((step for step in steps if nearly_all <= step), steps[-1])
+    return next((step for step in steps if percentile <= step), steps[-1])
 
 
 def read_image(path: AnyPath) -> Pixels:
@@ -107,7 +108,7 @@ def open_image(path: AnyPath) -> oiio.ImageInput:
     import OpenImageIO as oiio
 
     try:
-        assert_regular(path)
+        os.close(regular(path, os.O_RDONLY))  # OpenImageIO would also open pipes
     except OSError as error:
         raise ImageError(f"{path}: must be an image file; {error.strerror}") from None
     file = oiio.ImageInput.open(str(path))
@@ -118,7 +119,7 @@ def open_image(path: AnyPath) -> oiio.ImageInput:
 
 
 def words(message: Callable[[], str]) -> str:
-    """A library's message on one line; bytes that are not UTF-8 are escaped.
+    """A message of OpenImageIO on one line; bytes that are not UTF-8 are escaped.
 
     >>> words(lambda: b"channel \\xff is\\nmissing".decode())
     'channel \\\\xff is missing'
@@ -147,29 +148,27 @@ def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, 
     spec = oiio.ImageSpec(width, height, channels, kind)
     for name, value in attributes.items():
         spec.attribute(name, value)
-    with replacing(path) as beside:
-        file = oiio.ImageOutput.create(str(beside))
-        if not (
-            file and file.open(str(beside), spec) and file.write_image(pixels) and file.close()
-        ):
+    with replacing(path) as temporary:
+        name, file = str(temporary), oiio.ImageOutput.create(str(temporary))
+        if not (file and file.open(name, spec) and file.write_image(pixels) and file.close()):
             reason = words(file.geterror if file else oiio.geterror)
-            raise OSError(errno.EIO, reason.replace(str(beside), str(path)))
-        if not _is_whole(beside, pixels):
+            raise OSError(errno.EIO, reason.replace(name, str(path)))
+        if not _is_complete(temporary, pixels):
             raise OSError(errno.EIO, INCOMPLETE)
 
 
-def _is_whole(path: Path, pixels: Pixels | Codes) -> bool:
-    """Whether a written image file is complete, that is, ends with the last row of the pixels."""
+def _is_complete(path: Path, pixels: Pixels | Codes) -> bool:
+    """Whether a written image file ends with the last row of the pixels."""
     import OpenImageIO as oiio
 
     if path.suffix.lower() == ".png" and not path.read_bytes().endswith(PNG_END):
-        return False  # reading it would make libpng print a message
+        return False  # do not read the file: libpng would print a message
     height, _, channels = pixels.shape
     file = oiio.ImageInput.open(str(path))
     last: NDArray[Any] | None = None
     if file:
         last = file.read_scanlines(height - 1, height, 0, 0, channels, oiio.UNKNOWN)
-    words(oiio.geterror)  # otherwise the error is printed when Python ends
+    words(oiio.geterror)  # clear the error, which OpenImageIO would print when Python ends
     return last is not None and last.tobytes() == pixels[-1].tobytes()
 
 
@@ -194,8 +193,8 @@ def without_threads() -> Iterator[None]:
 def write_picture(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
     """Write a linear image as EXR or PNG, by the suffix of `path`; see `write_exr`, `write_png`."""
     check_output(path, endings=PICTURES)
-    writers = dict(zip(PICTURES, (write_exr, write_png), strict=True))
-    writers[Path(path).suffix.lower()](path, image, metadata)
+    write = write_exr if Path(path).suffix.lower() == ".exr" else write_png
+    write(path, image, metadata)
 
 
 def write_exr(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
@@ -210,7 +209,5 @@ def write_png(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -
 
 
 def _texts(metadata: Mapping[str, object]) -> dict[str, str | int]:
-    texts: dict[str, str | int] = {
-        f"mxeon:{key}": printable(str(value)) for key, value in metadata.items()
-    }
-    return {"Software": "mxeon"} | texts
+    texts: dict[str, str | int] = {"Software": "mxeon"}
+    return texts | {f"mxeon:{key}": printable(str(value)) for key, value in metadata.items()}

@@ -42,10 +42,11 @@ def strict_converter(fields: Mapping[Any, Overrides]) -> cattrs.Converter:
     converter.register_unstructure_hook(float, spelled)
     converter.register_structure_hook_func(_is_array, _array)
     converter.register_unstructure_hook_func(_is_array, lambda array: array.tolist())
-    for record, own in fields.items():
-        to_json: Any = make_dict_unstructure_fn(record, converter, **own)
+    for record, overrides in fields.items():
+        to_json: Any = make_dict_unstructure_fn(record, converter, **overrides)
+        from_json = make_dict_structure_fn(record, converter, **overrides)
         converter.register_unstructure_hook(record, to_json)
-        converter.register_structure_hook(record, make_dict_structure_fn(record, converter, **own))
+        converter.register_structure_hook(record, from_json)
     return converter
 
 
@@ -76,16 +77,15 @@ def _is_array(kind: object) -> bool:
     return (get_origin(kind) or kind) is np.ndarray
 
 
-def _array(rows: object, _: type) -> NDArray[np.float64]:
-    if not _are_rows(rows):
-        raise InputError(f"must be numbers in arrays; got {rows!r}")
-    return np.array(rows, dtype=float)
+def _array(value: object, _: type) -> NDArray[np.float64]:
+    if not _has_numbers(value):
+        raise InputError(f"must be numbers in arrays; got {value!r}")
+    return np.array(value, dtype=float)
 
 
-def _are_rows(value: object) -> bool:
-    return type(value) is list and all(
-        type(each) in (int, float) or _are_rows(each) for each in value
-    )
+def _has_numbers(value: object) -> bool:
+    """Whether a value is a list of numbers, or of such lists."""
+    return type(value) is list and all(type(e) in (int, float) or _has_numbers(e) for e in value)
 
 
 def _exactly(kind: type[T], words: str) -> Callable[[object, type], T]:

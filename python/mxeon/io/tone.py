@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tone curve for display: Khronos PBR Neutral [Khronos2024].
 
-It preserves colors under moderate studio lighting, and compresses highlights while keeping hue.
+The curve preserves colors under moderate studio lighting, and compresses highlights while keeping
+hue.
 """
 
 from __future__ import annotations
