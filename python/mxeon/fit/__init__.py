@@ -26,20 +26,14 @@ class FitModel:
     """A model to fit: `value(wo, wi, color, *scalars)`, shape (N, C). Inputs: see `mxeon.model`."""
 
     value: Callable[..., Array]
-    scalars: Mapping[
-        str, tuple[float, ...]
-    ]  # minimum, maximum, then the starting values of the search
+    scalars: Mapping[str, tuple[float, ...]]  # minimum, maximum, starting values of the search
 
     @property
     def bounds(self) -> dict[str, tuple[float, float]]:
         return {name: (low, high) for name, (low, high, *_) in self.scalars.items()}
 
 
-COAT = {
-    "roughness": (0.0, 1.0, 0.5),
-    "alpha": (LEAST_ALPHA, 1.0, 0.1, 0.4),
-    "ior": (1.0, 4.0, 1.5),
-}
+COAT = dict(roughness=(0.0, 1.0, 0.5), alpha=(LEAST_ALPHA, 1.0, 0.1, 0.4), ior=(1.0, 4.0, 1.5))
 FIT_MODELS = {
     "eon": FitModel(eon_brdf, {"roughness": (0.0, 1.0, 0.2, 0.8)}),
     "dielectric_over_eon": FitModel(dielectric_over_eon_brdf, COAT),
@@ -47,18 +41,11 @@ FIT_MODELS = {
 }
 
 
-__all__ = [
-    "Fit",
-    "MeasuredBrdf",
-    "fit_brdf",
-    "merl_directions",
-    "read_merl",
-]
+__all__ = ["Fit", "MeasuredBrdf", "fit_brdf", "merl_directions", "read_merl"]
 
 MISFIT = 1.5  # larger scatter means that the model does not fit data with known errors
 LEAST_SINGULAR = 1e-12  # smallest usable singular value, relative to the largest
-ROUNDED = 1e-24  # squared components of unit vectors up to this are rounding errors
-
+ROUNDED = 1e-24  # largest squared component of a unit vector that is a rounding error
 UNDETERMINED = "not determined by the data"  # printed if an error spans the parameter's range
 
 
@@ -93,10 +80,10 @@ class Fit:
 
     def brdf(self, wo: ArrayLike, wi: ArrayLike) -> Array:
         """BRDF of the fitted model in 1/sr, shape (..., C); directions (..., 3) broadcast."""
-        views, lights = np.broadcast_arrays(*(np.asarray(w, np.float64) for w in (wo, wi)))
-        rows = (each.reshape(-1, 3) for each in (views, lights))
+        pairs = np.broadcast_arrays(*(np.asarray(w, np.float64) for w in (wo, wi)))
+        rows = (each.reshape(-1, 3) for each in pairs)
         value = FIT_MODELS[self.model].value(*rows, *self.values.values())
-        return value.reshape(*views.shape[:-1], -1)
+        return value.reshape(*pairs[0].shape[:-1], -1)
 
     def __str__(self) -> str:
         misfit = "" if self.fits else ": the model does not fit; its errors assume that it does"
@@ -152,28 +139,27 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
         return {"color": x[:channels], **dict(zip(row.bounds, x[channels:], strict=True))}
 
     def residuals(x: Array) -> Array:
-        difference: Array = (
-            row.value(data.wo, data.wi, x[:channels], *x[channels:]) - data.value
-        ) / scale
-        return difference.ravel()
+        value = row.value(data.wo, data.wi, x[:channels], *x[channels:])
+        return np.ravel((value - data.value) / scale)
 
     lows, highs = zip(*([(0.0, 1.0)] * channels + list(row.bounds.values())), strict=True)
     albedo = list(np.clip(np.pi * data.value.mean(axis=0), 0.05, 0.95))
-    starts = ([*albedo, *start] for start in product(*(each[2:] for each in row.scalars.values())))
-    ends: dict[str, Any] = {"bounds": (lows, highs), "xtol": 1e-10, "ftol": 1e-10}
-    found = (least_squares(residuals, start, **ends) for start in starts)
+    starts = product(*(each[2:] for each in row.scalars.values()))
+    options: dict[str, Any] = {"bounds": (lows, highs), "xtol": 1e-10, "ftol": 1e-10}
+    found = (least_squares(residuals, [*albedo, *start], **options) for start in starts)
     best = min(found, key=lambda each: float(each.cost))
     x = best.x
     # Compute (J^T J)^-1. Rows of 0 complete the singular vectors if values are too few.
     freedom = data.value.size - len(x)
     _, singular, rows = np.linalg.svd(np.pad(best.jac, ((0, max(-freedom, 0)), (0, 0))), False)
-    seen = singular > LEAST_SINGULAR * singular[0]
-    covariance = (rows[seen].T / singular[seen] ** 2) @ rows[seen]
+    determined = singular > LEAST_SINGULAR * singular[0]
+    covariance = (rows[determined].T / singular[determined] ** 2) @ rows[determined]
     scatter = float(np.sqrt(2.0 * best.cost / max(freedom, 1)))
-    covariance = covariance if data.error is not None else covariance * scatter**2
-    # Parameters along undetermined directions have infinite errors; without a scatter, all parameters do.
-    blind = np.sum(rows[~seen] ** 2, axis=0) > ROUNDED
-    blind |= data.error is None and freedom <= 0
-    covariance[blind] = covariance[:, blind] = np.inf
+    if data.error is None:
+        covariance *= scatter**2
+    # Errors along undetermined directions are infinite; without a scatter, all errors are.
+    undetermined = np.sum(rows[~determined] ** 2, axis=0) > ROUNDED
+    undetermined |= data.error is None and freedom <= 0
+    covariance[undetermined] = covariance[:, undetermined] = np.inf
     errors = parameters(np.sqrt(np.diag(covariance)))
     return Fit(model, parameters(x), errors, covariance, scatter, data.error is not None)

@@ -48,11 +48,11 @@ class MeasuredBrdf:
             raise InputError(f"value must have shape ({count}, C); got {shape}")
         _require("value must be finite", self.value, np.isfinite(self.value))
         if self.error is not None:
-            own = self.error.shape
-            if len(own) > 2 or any(
-                n not in (1, m) for n, m in zip(own[::-1], shape[::-1], strict=False)
-            ):
-                raise InputError(f"error must broadcast to the shape of value, {shape}; got {own}")
+            try:
+                np.broadcast_to(self.error, shape)
+            except ValueError:
+                rule = f"error must broadcast to the shape of value, {shape}"
+                raise InputError(f"{rule}; got {self.error.shape}") from None
             _require("error must be above 0", self.error, self.error > 0.0)
 
 
