@@ -23,9 +23,10 @@ def register() -> None:
 
     `eon` and `fon` have the textures `reflectance` and `roughness`; `qon` has `reflectance` and
     `sigma`, in radian. `varnished` and `dielectric_over_eon` (MaterialX's `layer`) add the numbers
-    `alpha` and `ior` to the textures of `eon`. All are in `mitsuba.traverse` and differentiable.
-    Sampling of `eon` is exact for the mean of the reflectance's channels; coated BSDFs also sample
-    visible facets; `fon` and `qon` sample the cosine. All reflect only on the front.
+    `alpha` and `ior` to the textures of `eon`. All inputs are in `mitsuba.traverse` and
+    differentiable. Sampling of `eon` is exact for the mean of the reflectance's channels; coated
+    BSDFs also sample visible facets; `fon` and `qon` sample the cosine. All BSDFs reflect only on
+    the front.
     """
     mi = mitsuba()
     for name, kind in PLUGINS.items():

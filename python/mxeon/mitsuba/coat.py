@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Coats over EON as BSDFs of Mitsuba: a dielectric and a varnish; see `mxeon.models.coat`.
 
-The albedo of the interface depends only on a cosine. A change of `alpha` or `ior` tabulates it as
-a cubic per part of an octave, in float64; gradients of these two reach the coefficients.
+The albedo of the interface depends only on a cosine. A change of `alpha` or `ior` tabulates the
+albedo as a cubic per part of an octave, in float64. The coefficients have gradients by `alpha` and
+`ior`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,9 +16,7 @@ import numpy as np
 from mxeon.mitsuba.diffuse import EonPlugin, Mitsuba, RoughDiffusePlugin
 from mxeon.mitsuba.octaves import gather_cubic, octave_cells, octave_cubics
 from mxeon.models.coat import (
-    Coat,
     Means,
-    Varnish,
     base_under_varnish,
     constant_coat,
     constant_varnish,
@@ -73,7 +71,7 @@ class CoatPlugin(EonPlugin):
 
     def tabulate(self) -> None:
         """Compute the table, linearized in each parameter that has a gradient."""
-        numbers = self._inside("alpha"), self._inside("ior")
+        numbers = self._clamped("alpha"), self._clamped("ior")
         values = [float(np.array(self.dr.detach(each)).item()) for each in numbers]
         self.coat, self.average = self.interface(*values), dielectric_avg(numbers[1])
         if not self._compiled:
@@ -89,9 +87,9 @@ class CoatPlugin(EonPlugin):
         active = self._front(context, si.wi, wo, active)
         is_glossy, is_diffuse = self._enabled(context)
         color, number = self.reflectance.eval(si, active), self.mi.Float
-        missing, reflected = self._at(si.wi.z)
+        missing, reflected = self._interface_curves(si.wi.z)
         facets, c = self._facets(si.wi, wo)
-        F = dielectric(c, self._inside("ior")) * (1.0 + self.average * missing)
+        F = dielectric(c, self._clamped("ior")) * (1.0 + self.average * missing)
         top = type(color)(number(is_glossy * F * facets * wo.z))
         amount = self._clipped(self.amount.eval_1(si, active))
         base = self._reflected(si.wi, wo, color, amount)
@@ -100,18 +98,18 @@ class CoatPlugin(EonPlugin):
     def pdf(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
         active = self._front(context, si.wi, wo, active)
         rho, amount = self._gray(si, active)
-        share = self._share(context, si, rho, amount, active)
+        share = self._share(context, si, rho, amount)
         view, light = self._vector(si.wi), self._vector(wo)
         facets = visible_density(view, ggx.half_vector(view, light)[0], self._roughness())
-        both = share * facets + (1.0 - share) * self._density(si.wi, wo, rho, amount)
-        return self.dr.select(active, self.mi.Float(both), 0.0)
+        mixture = share * facets + (1.0 - share) * self._density(si.wi, wo, rho, amount)
+        return self.dr.select(active, self.mi.Float(mixture), 0.0)
 
     def _pick(
         self, context: Mitsuba, si: Mitsuba, choice: Mitsuba, u: Mitsuba, active: Mitsuba
     ) -> tuple[Mitsuba, Mitsuba, Mitsuba]:
         dr, flags = self.dr, self.mi.BSDFFlags
         rho, amount = map(dr.detach, self._gray(si, active))
-        share = dr.detach(self._share(context, si, rho, amount, active))
+        share = dr.detach(self._share(context, si, rho, amount))
         is_reflected = choice < share
         rest = dr.maximum(choice - share, 0.0) / dr.maximum(1.0 - share, 1e-7)
         view, roughness = self._vector(si.wi), dr.detach(self._roughness())
@@ -123,36 +121,31 @@ class CoatPlugin(EonPlugin):
         ]
         return wo, dr.select(is_reflected, *kinds), dr.select(is_reflected, self.mi.UInt32(0), 1)
 
-    def _front(self, context: Mitsuba, view: Mitsuba, light: Mitsuba, active: Mitsuba) -> Mitsuba:
-        wanted = any(self._enabled(context))
-        return self.mi.Bool(active) & wanted & (view.z > 0.0) & (light.z > 0.0)
-
-    def _enabled(self, context: Mitsuba) -> tuple[bool, bool]:
+    def _enabled(self, context: Mitsuba) -> tuple[bool, ...]:
         flags = self.mi.BSDFFlags
-        return (
-            context.is_enabled(flags.GlossyReflection, 0),
-            context.is_enabled(flags.DiffuseReflection, 1),
-        )
+        glossy = context.is_enabled(flags.GlossyReflection, 0)
+        return glossy, context.is_enabled(flags.DiffuseReflection, 1)
 
-    def _share(
-        self, context: Mitsuba, si: Mitsuba, rho: Mitsuba, amount: Mitsuba, active: Mitsuba
-    ) -> Mitsuba:
-        """Probability of sampling the glossy lobe: its share of the albedo."""
-        enabled = self._enabled(context)
-        if not all(enabled):
-            return self.mi.Float(enabled[0])
-        reflected = self._at(si.wi.z)[1]
-        base = (1.0 - reflected) * eon_albedo(fon_loss(si.wi.z), rho, amount)
-        reflected = self.mi.Float(reflected)
-        return reflected / self.dr.maximum(reflected + self.mi.Float(base), 1e-30)
+    def _share(self, context: Mitsuba, si: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> Mitsuba:
+        """Probability of sampling the facets: their share of the albedo."""
+        is_glossy, is_diffuse = self._enabled(context)
+        if not is_glossy or not is_diffuse:
+            return self.mi.Float(is_glossy)
+        facets, total = map(self.mi.Float, self._albedos(si.wi.z, rho, amount))
+        return facets / self.dr.maximum(total, 1e-30)
+
+    def _albedos(self, mu: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
+        """Directional albedos of the facets alone and of the whole."""
+        reflected = self._interface_curves(mu)[1]
+        return reflected, reflected + (1.0 - reflected) * eon_albedo(fon_loss(mu), rho, amount)
 
     def _facets(self, view: Mitsuba, light: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
         """BRDF of perfectly reflecting facets, and the cosine wo . wh = wi . wh."""
         wh, c = ggx.half_vector(self._vector(view), self._vector(light))
-        visibility = ggx.visibility(view.z, light.z, self._inside("alpha"))
+        visibility = ggx.visibility(view.z, light.z, self._clamped("alpha"))
         return ggx.ndf(wh, self._roughness()) * visibility, c
 
-    def _at(self, mu: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
+    def _interface_curves(self, mu: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
         """Missing energy of the facets, (1 - E_ss) / E_ss, and albedo of the dielectric, at mu."""
         missing, reflected = self._curves(mu)
         return self.dr.maximum(missing, 0.0), self.dr.clip(reflected, 0.0, 1.0)
@@ -167,20 +160,20 @@ class CoatPlugin(EonPlugin):
     def _rows(self, values: list[float]) -> Array:
         """Table of the curves, cell by cell, followed by the means of a varnish."""
         coat = self.interface(*values)
-        rows = [octave_cubics(partial(_curve, coat, k)) for k in range(self.count)]
+        rows = [octave_cubics(lambda mu, k=k: coat.at(mu)[k]) for k in range(self.count)]
         return np.append(np.stack(rows, axis=1), getattr(coat, "means", ()))
 
     def _slopes(self, values: list[float], k: int) -> Array:
         """Derivatives of the table by parameter `k`: finite differences that stay in its range."""
         low, high = (ALPHAS, IORS)[k]
-        ends = [min(max(values[k] + step, low), high) for step in (STEP, -STEP)]
-        rows = [self._rows([end if n == k else v for n, v in enumerate(values)]) for end in ends]
-        return (rows[0] - rows[1]) / (ends[0] - ends[1])
+        ends = min(values[k] + STEP, high), max(values[k] - STEP, low)
+        upper, lower = (self._rows([*values[:k], end, *values[k + 1 :]]) for end in ends)
+        return (upper - lower) / (ends[0] - ends[1])
 
     def _roughness(self) -> Mitsuba:
-        return (self._inside("alpha"),) * 2
+        return self._clamped("alpha"), self._clamped("alpha")
 
-    def _inside(self, name: str) -> Mitsuba:
+    def _clamped(self, name: str) -> Mitsuba:
         """The parameter clamped to its range, which an optimizer may have left."""
         return self.dr.clip(getattr(self, name), *self.numbers[name][1:])
 
@@ -191,10 +184,6 @@ class CoatPlugin(EonPlugin):
     @property
     def _compiled(self) -> bool:
         return bool(self.dr.is_jit_v(self.mi.Float))
-
-
-def _curve(coat: Coat | Varnish, k: int, mu: Array) -> Array:
-    return coat.at(mu)[k]
 
 
 class VarnishPlugin(CoatPlugin):
@@ -209,31 +198,21 @@ class VarnishPlugin(CoatPlugin):
         is_glossy, is_diffuse = self._enabled(context)
         color, amount = self.reflectance.eval(si, active), self.amount.eval_1(si, active)
         (facets, c), means = self._facets(si.wi, wo), self._means()
-        ior, s = self._inside("ior"), si.wi.x * wo.x + si.wi.y * wo.y
-        above, below = (nonnegative(self._curves(w.z)) for w in (si.wi, wo))
-        passed = (1.0 - above.E_single - above.D) * (1.0 - below.E_single - below.D) / ior**2
-        several = above.D * below.D / (np.pi * nonzero(means.D))
-        given = (si.wi.z, wo.z), s, (above.b, below.b), ior, means
-        channels = [
-            self.mi.Float(
-                is_glossy * facets * dielectric(c, ior)
-                + is_diffuse
-                * (several + passed * base_under_varnish(*given, rho, self._clipped(amount)))
-            )
-            for rho in color
-        ]
+        ior, s = self._clamped("ior"), si.wi.x * wo.x + si.wi.y * wo.y
+        o, i = (nonnegative(self._curves(w.z)) for w in (si.wi, wo))
+        transmitted = (1.0 - o.E_single - o.D) * (1.0 - i.E_single - i.D) / ior**2
+        multiple = o.D * i.D / (np.pi * nonzero(means.D))
+        arguments = (si.wi.z, wo.z), s, (o.b, i.b), ior, means
+        glossy, channels = is_glossy * facets * dielectric(c, ior), []
+        for rho in color:
+            base = base_under_varnish(*arguments, rho, self._clipped(amount))
+            value = glossy + is_diffuse * (multiple + transmitted * base)
+            channels.append(self.mi.Float(value))
         return self.dr.select(active, type(color)(*channels) * wo.z, 0.0)
 
-    def _share(
-        self, context: Mitsuba, si: Mitsuba, rho: Mitsuba, amount: Mitsuba, active: Mitsuba
-    ) -> Mitsuba:
-        """Probability of sampling the facets: their share of the albedo."""
-        enabled = self._enabled(context)
-        if not all(enabled):
-            return self.mi.Float(enabled[0])
-        curves, ior = nonnegative(self._curves(si.wi.z)), self._inside("ior")
-        total = varnish_albedo(si.wi.z, curves, ior, self._means(), rho, amount)
-        return self.mi.Float(curves.E_single) / self.dr.maximum(self.mi.Float(total), 1e-30)
+    def _albedos(self, mu: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
+        curves, ior = nonnegative(self._curves(mu)), self._clamped("ior")
+        return curves.E_single, varnish_albedo(mu, curves, ior, self._means(), rho, amount)
 
     def _means(self) -> Means:
         if not self._compiled:

@@ -25,7 +25,7 @@ OLDEST_LLVM = (16, 0, 0)
 
 
 def register_plugin(mi: Mitsuba, name: str, kind: type) -> None:
-    """Register a BSDF for the current variant; a class provides its methods."""
+    """Register a BSDF for the current variant; the class `kind` provides the methods."""
     members: dict[str, Any] = {"__init__": _initialize, "mi": mi, "dr": import_module("drjit")}
     # Mitsuba's classes cannot be combined with other base classes, so the members are copied.
     for each in reversed(kind.__mro__):
@@ -70,9 +70,8 @@ class RoughDiffusePlugin:
         if self.parameter in properties:
             value = properties[self.parameter]
             if isinstance(value, int | float) and not 0.0 <= value <= self.largest:
-                raise ValueError(
-                    f"{self.parameter} must lie in [0, {self.largest:.4g}]; got {value:g}"
-                )
+                rule = f"{self.parameter} must lie in [0, {self.largest:.4g}]"
+                raise ValueError(f"{rule}; got {value:g}")
         self.reflectance = properties.get_texture("reflectance", 0.5)
         self.amount = properties.get_texture(self.parameter, 0.0)
         flags = self.mi.BSDFFlags.DiffuseReflection | self.mi.BSDFFlags.FrontSide
@@ -129,9 +128,14 @@ class RoughDiffusePlugin:
         kind = self.mi.UInt32(+self.mi.BSDFFlags.DiffuseReflection)
         return self._draw(si.wi, choice, u, rho, amount), kind, 0
 
+    def _enabled(self, context: Mitsuba) -> tuple[bool, ...]:
+        """Whether each component is evaluated."""
+        return (context.is_enabled(self.mi.BSDFFlags.DiffuseReflection),)
+
     def _front(self, context: Mitsuba, view: Mitsuba, light: Mitsuba, active: Mitsuba) -> Mitsuba:
-        wanted = context.is_enabled(self.mi.BSDFFlags.DiffuseReflection)
-        return self.mi.Bool(active) & wanted & (view.z > 0.0) & (light.z > 0.0)
+        """Whether the BSDF is evaluated: a component is enabled, and both directions are above."""
+        enabled = any(self._enabled(context))
+        return self.mi.Bool(active) & enabled & (view.z > 0.0) & (light.z > 0.0)
 
     def _clipped(self, amount: Mitsuba) -> Mitsuba:
         """The parameter clamped to its range, which an optimizer may have left."""
@@ -189,7 +193,7 @@ class EonPlugin(RoughDiffusePlugin):
         mu_o, S_o = view.z, dr.safe_sqrt(view.x * view.x + view.y * view.y)
         lower, upper, multiple, flat = sampling.eon_integrals(mu_o, S_o, rho, amount)
         place = choice * number(lower + upper + multiple + flat)
-        is_lower, is_towards = place < number(lower), place < number(lower + upper)
+        is_lower, is_toward = place < number(lower), place < number(lower + upper)
         is_flat = place >= number(lower + upper + multiple)
         v, u2 = u.x, u.y
         x = number(v * mu_o * sampling.eon_cube_gap(mu_o, S_o))
@@ -197,18 +201,18 @@ class EonPlugin(RoughDiffusePlugin):
         limit = sampling.eon_upper_limit(mu_o, S_o)
         mu_upper = number(sampling.eon_upper_cosine(v**0.4, mu_o, limit))
         mu_multiple = number(sampling.eon_multiple_cosine(dr.cbrt(v)))
-        mu = dr.select(is_lower, mu_lower, dr.select(is_towards, mu_upper, mu_multiple))
+        mu = dr.select(is_lower, mu_lower, dr.select(is_toward, mu_upper, mu_multiple))
         # Azimuth from wo: toward wo in the lower and upper parts, uniform in the multiple part.
         S, (sine, cosine) = dr.safe_sqrt((1.0 - mu) * (1.0 + mu)), dr.sincos(2.0 * dr.pi * u2)
-        ahead = dr.select(is_towards, 2.0 * dr.safe_sqrt(u2 * (1.0 - u2)), cosine)
-        aside = dr.select(is_towards, 2.0 * u2 - 1.0, sine)
+        ahead = dr.select(is_toward, 2.0 * dr.safe_sqrt(u2 * (1.0 - u2)), cosine)
+        aside = dr.select(is_toward, 2.0 * u2 - 1.0, sine)
         r = dr.sqrt(v)
         point = sampling.eon_flat_direction(v, r * cosine, r * sine, amount * S_o)
-        wo = [
+        x, y, z = (
             dr.select(is_flat, number(each), other)
             for each, other in zip(point, (S * ahead, S * aside, mu), strict=True)
-        ]
-        tilted = S_o > 0.0
-        to_x = dr.select(tilted, view.x / dr.select(tilted, S_o, 1.0), 1.0)
-        to_y = dr.select(tilted, view.y / dr.select(tilted, S_o, 1.0), 0.0)
-        return self.mi.Vector3f(to_x * wo[0] - to_y * wo[1], to_y * wo[0] + to_x * wo[1], wo[2])
+        )
+        # Rotate from the frame with wo in the xz-plane.
+        length = dr.select(S_o > 0.0, S_o, 1.0)
+        c, s = dr.select(S_o > 0.0, view.x / length, 1.0), view.y / length
+        return self.mi.Vector3f(c * x - s * y, s * x + c * y, z)
