@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits a measured BRDF and draws its lobes: `python fit_measured.py [FILE.binary] [--out FOLDER]`.
 
-FILE is a material of the MERL database. Without one a coated clay is made, with noise, and written as
-such a file, so that the fit can be compared with what was put in. Needs scipy and matplotlib:
-`pip install '.[fit,report]'` in a checkout.
+FILE is a material of the MERL database. Without FILE, the script writes values of a coated clay with
+noise as such a file, so that the fit can be compared with the parameters of the clay. The script
+needs scipy and matplotlib: `pip install '.[fit,report]'` in a checkout.
 """
 
 import argparse
@@ -18,21 +18,21 @@ from mxeon.fit import fit_brdf, merl_directions, read_merl
 from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
 
 CLAY = {"color": [0.55, 0.28, 0.18], "roughness": 0.7, "alpha": 0.25, "ior": 1.45}
-NOISE, FLOOR, SEED = 0.03, 1e-4, 20261122  # relative, and in 1/sr
-STEP = 9  # every ninth cell of each angle
-VIEW = np.radians(50.0)
+NOISE, FLOOR, SEED = 0.03, 1e-4, 20261122  # relative noise; additional noise in 1/sr
+STEP = 9  # read every ninth cell of each angle
+VIEW = np.radians(50.0)  # polar angle of the viewer in the plot
 
 
 def write_clay(path):
-    """Write the coated clay, with noise, as a file of MERL."""
+    """Write values of the coated clay with noise as a MERL file."""
     rng, values = np.random.default_rng(SEED), np.full((3, *MERL_CELLS), -1.0)
     cells = np.meshgrid(*(np.arange(STEP // 2, n, STEP) for n in MERL_CELLS), indexing="ij")
     h, d, phi = ((each.ravel() + 0.5) / n for each, n in zip(cells, MERL_CELLS, strict=True))
     wo, wi = merl_directions(0.5 * np.pi * h**2, 0.5 * np.pi * d, np.pi * phi)
-    seen = (wo[:, 2] > 0.0) & (wi[:, 2] > 0.0)
-    clay = mxeon.model("dielectric_over_eon").brdf(wo[seen], wi[seen], **CLAY)
+    above = (wo[:, 2] > 0.0) & (wi[:, 2] > 0.0)
+    clay = mxeon.model("dielectric_over_eon").brdf(wo[above], wi[above], **CLAY)
     clay = clay + (NOISE * clay + FLOOR) * rng.normal(size=clay.shape)
-    values[:, *(each.ravel()[seen] for each in cells)] = (clay / MERL_SCALES).T
+    values[:, *(each.ravel()[above] for each in cells)] = (clay / MERL_SCALES).T
     path.write_bytes(np.array(MERL_CELLS, "<i4").tobytes() + values.astype("<f8").tobytes())
 
 
@@ -41,7 +41,6 @@ def draw(path, data, fits):
     matplotlib.use("agg")
     from matplotlib import pyplot
 
-    # Evaluate the fits in the plane of incidence.
     theta = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 361)
     wi = np.stack([np.sin(theta), np.zeros_like(theta), np.cos(theta).clip(0.0)], axis=-1)
     wo = np.broadcast_to([-np.sin(VIEW), 0.0, np.cos(VIEW)], wi.shape)
@@ -49,10 +48,8 @@ def draw(path, data, fits):
     for fit in fits:
         lobe.plot(np.degrees(theta), fit.brdf(wo, wi)[:, 0], label=fit.model)
         against.plot(data.value[:, 0], fit.brdf(data.wo, data.wi)[:, 0], ".", ms=2, label=fit.model)
-    # Say what is seen.
-    lobe.set(
-        xlabel="angle of the light, degrees", ylabel="BRDF, 1/sr", title="viewer at -50 degrees"
-    )
+    title = "viewer at -50 degrees"
+    lobe.set(xlabel="angle of the light, degrees", ylabel="BRDF, 1/sr", title=title)
     against.set(xlabel="measured, 1/sr", ylabel="fitted, 1/sr", xscale="log", yscale="log")
     against.axline((0.1, 0.1), (1.0, 1.0), color="gray", lw=0.8)
     lobe.legend()
@@ -60,7 +57,6 @@ def draw(path, data, fits):
 
 
 def main():
-    # Take a file, or make one.
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("file", nargs="?", type=Path)
     parser.add_argument("--out", default=Path("out"), type=Path)
@@ -70,8 +66,8 @@ def main():
     if options.file is None:
         write_clay(path)
         print("put in:", CLAY)
-    # Fit it, with errors in proportion to the data at first, and then to the fit: those of the data
-    # alone would trust a value the more, the more noise has lowered it.
+    # Fit with errors in proportion to the data, then with errors in proportion to the first fit:
+    # errors in proportion to the data give more weight to values that noise has lowered.
     data, models = read_merl(path, STEP), ("eon", "dielectric_over_eon")
     first = fit_brdf(replace(data, error=NOISE * data.value + FLOOR), models[-1])
     data = replace(data, error=NOISE * first.brdf(data.wo, data.wi) + FLOOR)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the images of this folder: `python make_textures.py [FOLDER]`.
+"""Makes the images of `textures/`: `python make_textures.py [FOLDER]`.
 
-Colors are chosen as sRGB code values, as in a paint program. Only sums, products and square
-roots of seeded random numbers enter, which IEEE 754 rounds alike everywhere, so that the
-pixels are the same on every machine. All images tile. They are twice as wide as high, which
-keeps bricks in shape under a latitude-longitude mapping.
+Colors are chosen as sRGB code values, as in a paint program. The pixels are the same on every
+machine, because they are computed from seeded random numbers by sums, products and square roots,
+which IEEE 754 rounds alike everywhere. All images tile, and are twice as wide as high, so that
+bricks keep their shape under a latitude-longitude mapping.
 """
 
 import sys
@@ -17,18 +17,18 @@ COLUMNS, ROWS = 8, 12
 BRICK = (16, 48)  # height and width in pixels, half of a joint on each side included
 SEED = 20250304
 
-# sRGB code values: the range of fired clay, the few bricks burnt in the kiln, the joints.
+# sRGB code values of bricks: lightest and darkest fired clay, clay burnt in the kiln, and joints.
 PALE, DARK = np.array([0.72, 0.40, 0.28]), np.array([0.52, 0.22, 0.16])
 BURNT, MORTAR = np.array([0.33, 0.21, 0.20]), np.array([0.68, 0.65, 0.59])
 BURNT_SHARE = 0.12
 
-# The same of wood: early and late growth of a year, and how many years there are.
+# sRGB code values of wood: early and late growth of a year.
 EARLY, LATE = np.array([0.72, 0.47, 0.26]), np.array([0.42, 0.22, 0.11])
-YEARS = 14
+YEARS = 14  # growth rings across the image
 
 
 def tileable_noise(rng, shape, cells):
-    """Value noise in [0, 1] over `shape` pixels with `cells` periods down and across."""
+    """Value noise in [0, 1] over `shape` pixels, with `cells` cells down and across."""
     lattice = rng.random(cells)
     for axis, (length, count) in enumerate(zip(shape, cells, strict=True)):
         position = (np.arange(length) + 0.5) * count / length
@@ -42,14 +42,17 @@ def tileable_noise(rng, shape, cells):
 
 
 def bricks():
-    """Index of the brick under each pixel, and the depth below its face: 0 face, 1 joint."""
+    """Index of the brick at each pixel, and the distance from the brick's face in pixels.
+
+    The distance is negative on the face.
+    """
     y, x = np.mgrid[: ROWS * BRICK[0], : COLUMNS * BRICK[1]]
     row = y // BRICK[0]
     shifted = x + (row % 2) * BRICK[1] // 2
     index = row * COLUMNS + shifted // BRICK[1] % COLUMNS
     down = np.abs(y % BRICK[0] + 0.5 - BRICK[0] / 2)
     across = np.abs(shifted % BRICK[1] + 0.5 - BRICK[1] / 2)
-    # A box with rounded corners, one pixel smaller than the cell on every side.
+    # The face is a box with rounded corners, one pixel smaller than the cell on every side.
     corner = 3.0
     outside_y = np.maximum(0.0, down - (BRICK[0] / 2 - 1.0 - corner))
     outside_x = np.maximum(0.0, across - (BRICK[1] / 2 - 1.0 - corner))
@@ -62,12 +65,12 @@ def images():
     rng = np.random.default_rng(SEED)
     index, distance = bricks()
     shape = index.shape
-    # One random number per brick for each of its properties.
+    # Each brick has random numbers for tone, burning and roughness.
     tone, burnt, rough = (rng.random(ROWS * COLUMNS)[index] for _ in range(3))
     coarse = tileable_noise(rng, shape, (24, 48))
     fine = tileable_noise(rng, shape, (96, 192))
     grain = 0.6 * coarse + 0.4 * fine - 0.5
-    # Weathered edges: the noise moves the border of the face by up to a pixel.
+    # Weather the edges: noise moves the border of the face by up to a pixel.
     joint = np.clip(distance + 2.0 * grain + 0.5, 0.0, 1.0)[..., None]
     face = DARK + (PALE - DARK) * np.clip(tone + 0.5 * grain, 0.0, 1.0)[..., None]
     is_burnt = burnt < BURNT_SHARE
@@ -88,20 +91,16 @@ def wood():
     pores = tileable_noise(rng, shape, (16, 192))
     year = np.arange(shape[1]) * YEARS / shape[1] + 2.5 * bend + 0.15 * fibers
     part = year - np.floor(year)
-    # Late growth darkens slowly and ends at once.
+    # Late growth darkens slowly and ends abruptly.
     late = part * part * np.clip(8.0 * (1.0 - part), 0.0, 1.0)
     color = EARLY + (LATE - EARLY) * late[..., None]
     dark = 1.0 + 0.25 * fibers - 0.3 * np.clip(4.0 * pores - 3.2, 0.0, 1.0)
     return np.clip(color * dark[..., None], 0.0, 1.0)
 
 
-def quantized(image):
-    """The image in 8 bits, with a channel axis."""
-    return np.floor(np.atleast_3d(image) * 255.0 + 0.5).astype(np.uint8)
-
-
-def save(path, pixels, space):
-    """Writes `pixels` as PNG that says which color space it is in."""
+def save(path, image, space):
+    """Write an image with values in [0, 1] as PNG with the name of its color space."""
+    pixels = np.floor(np.atleast_3d(image) * 255.0 + 0.5).astype(np.uint8)
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, oiio.UINT8)
     spec.attribute("oiio:ColorSpace", space)
@@ -114,11 +113,11 @@ def save(path, pixels, space):
 
 
 def main(folder):
-    """Writes the images into `folder`."""
+    """Write the images to a folder."""
     color, roughness = images()
-    save(Path(folder) / "brick_color.png", quantized(color), "srgb_rec709_scene")
-    save(Path(folder) / "brick_roughness.png", quantized(roughness), "data")
-    save(Path(folder) / "wood_color.png", quantized(wood()), "srgb_rec709_scene")
+    save(Path(folder) / "brick_color.png", color, "srgb_rec709_scene")
+    save(Path(folder) / "brick_roughness.png", roughness, "data")
+    save(Path(folder) / "wood_color.png", wood(), "srgb_rec709_scene")
 
 
 if __name__ == "__main__":
