@@ -8,15 +8,7 @@ from multiprocessing import get_context
 import numpy as np
 
 from mxeon.hosts import gl, points, raster
-from mxeon.shaders.nodes import (
-    FLAG,
-    OREN_NAYAR,
-    SURFACE,
-    document_text,
-    input_text,
-    lobe_text,
-    node_text,
-)
+from mxeon.shaders import nodes
 from mxeon.shaders.scene import SIDE
 from tools.benchmarks.rounds import Figure, Group, clock_of, interleave
 
@@ -29,12 +21,12 @@ LIBRARIES = ("eonlib", "stock")
 
 
 def _lobe(category, **inputs):
-    return lobe_text(category, inputs) + SURFACE
+    return nodes.lobe_text(category, inputs) + nodes.SURFACE
 
 
 def _surface(category, **inputs):
-    texts = (input_text(name, "float", value) for name, value in inputs.items())
-    return node_text(category, "surfaceshader", "shading", "".join(texts))
+    ports = (nodes.input_text(name, "float", value) for name, value in inputs.items())
+    return nodes.node_text(category, "surfaceshader", "shading", "".join(ports))
 
 
 FILM = {"thinfilm_thickness": 500.0, "thinfilm_ior": 1.5}
@@ -64,7 +56,7 @@ OTHERS = {
     "subsurface_bsdf": _lobe("subsurface_bsdf"),
     "translucent_bsdf": _lobe("translucent_bsdf"),
 }
-DIFFUSE = {"oren_nayar": _lobe(OREN_NAYAR, roughness=0.6, **{FLAG: True})}
+DIFFUSE = {"oren_nayar": _lobe(nodes.OREN_NAYAR, roughness=0.6, **{nodes.FLAG: True})}
 NODES = DIFFUSE | BARE | FILMED | OTHERS
 
 # Largest ratio of eonlib's time to stock's that reaches the goal.
@@ -117,7 +109,7 @@ def run(node, size, libraries):
     device = host.identity().device
     clock = clock_of(device)
     first, *shaders = (
-        host.compile(document_text(NODES[name]), library=library)[0]
+        host.compile(nodes.document_text(NODES[name]), library=library)[0]
         for name, library in [("oren_nayar", "stock"), *((node, each) for each in libraries)]
     )
     with host._context:  # `Frame` draws without the host's methods
@@ -135,12 +127,12 @@ def run(node, size, libraries):
     return device, compilation, {library: np.median(each) for library, each in drawing.items()}
 
 
-def measure(processes=PROCESSES, size=SIZE, nodes=tuple(NODES)):
+def measure(processes=PROCESSES, size=SIZE):
     """Measure each material in `processes` separate processes, and return the `Group`."""
     figures = []
     turns = [LIBRARIES[:: -1 if turn % 2 else 1] for turn in range(processes)]
     with ProcessPoolExecutor(1, get_context("spawn"), max_tasks_per_child=1) as pool:
-        for node in nodes:
+        for node in NODES:
             devices, *times = zip(*pool.map(partial(run, node, size), turns), strict=True)
             for kind, seconds in zip(("compilation and first frame", "frame"), times, strict=True):
                 eonlib, stock = (np.array([each[name] for each in seconds]) for name in LIBRARIES)

@@ -13,12 +13,7 @@ from itertools import product
 
 import numpy as np
 
-from mxeon.models import (
-    dielectric_over_eon_albedo_dir,
-    eon_brdf,
-    varnished_albedo_dir,
-    varnished_brdf,
-)
+from mxeon import models
 from mxeon.models.microfacet.fresnel import dielectric
 from mxeon.models.sampling import eon_sample, visible_normal
 
@@ -68,7 +63,7 @@ def walk(mu, roughness, alpha, ior, paths=PATHS):
     while active.size:
         # Both layers are isotropic, so the azimuth of a direction does not matter.
         wi, pdf = eon_sample(w, rng.random((active.size, 2)), roughness, rho=1.0)
-        value = eon_brdf(w, wi, np.broadcast_to(RHO, (active.size, RHO.size)), roughness)
+        value = models.eon_brdf(w, wi, np.broadcast_to(RHO, (active.size, RHO.size)), roughness)
         weight = weight * value * (wi[:, 2] / pdf)[:, np.newaxis]
         w, leaves = interface(wi, alpha, 1.0 / ior, rng)
         total[active[leaves]], out[active[leaves]] = weight[leaves], w[leaves]
@@ -100,7 +95,9 @@ def model_bins(mu, *inputs):
     square, azimuth = square[:, np.newaxis, :, np.newaxis], np.pi * azimuth[:, np.newaxis]
     S = np.sqrt(1.0 - square)
     parts = S * np.cos(azimuth), S * np.sin(azimuth), np.sqrt(square)
-    value = varnished_brdf(view(mu), np.stack(np.broadcast_arrays(*parts), axis=-1), RHO, *inputs)
+    value = models.varnished_brdf(
+        view(mu), np.stack(np.broadcast_arrays(*parts), axis=-1), RHO, *inputs
+    )
     bins = np.einsum("abijc,i,j->abc", value, weight, weight) * np.pi / np.prod(BINS)
     bins = bins.reshape(-1, RHO.size)
     return bins[:, 1:] - bins[:, :1]
@@ -113,7 +110,7 @@ def rows(paths=PATHS):
         total, out = walk(mu, *inputs, paths)
         layer, varnished = (
             albedo(mu, RHO, *inputs)
-            for albedo in (dielectric_over_eon_albedo_dir, varnished_albedo_dir)
+            for albedo in (models.dielectric_over_eon_albedo_dir, models.varnished_albedo_dir)
         )
         ratios = model_bins(mu, *inputs) / walked_bins(total, out)
         yield np.stack([layer, varnished, total.mean(axis=0)]), ratios
