@@ -14,8 +14,7 @@ import matplotlib
 import numpy as np
 
 import mxeon
-from mxeon.fit import fit_brdf, merl_directions, read_merl
-from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
+from mxeon.fit import MERL_CELLS, MERL_SCALES, fit_brdf, merl_directions, read_merl
 
 CLAY = {"color": [0.55, 0.28, 0.18], "roughness": 0.7, "alpha": 0.25, "ior": 1.45}
 NOISE, FLOOR, SEED = 0.03, 1e-4, 20261122  # relative noise; additional noise in 1/sr

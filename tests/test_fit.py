@@ -12,8 +12,7 @@ import pytest
 
 import mxeon
 from mxeon.errors import InputError, PackageError
-from mxeon.fit import MeasuredBrdf, fit_brdf, merl_directions, read_merl
-from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
+from mxeon.fit import MERL_CELLS, MERL_SCALES, MeasuredBrdf, fit_brdf, merl_directions, read_merl
 from mxeon.models import eon_brdf
 from tests.support.availability import available, package
 from tests.support.cases import directions

@@ -24,10 +24,10 @@ from mxeon.io.images import write_exr
 from mxeon.kit import check as judging
 from mxeon.kit import questions
 from mxeon.kit.check import check_kit
-from mxeon.kit.encoding import fault
 from mxeon.kit.expected import expected, judged, pixel_means
 from mxeon.kit.export import export_kit
 from mxeon.kit.noise import ratio, tiles
+from mxeon.kit.questions import fault
 from mxeon.kit.views import MATERIALS, SETUP, views
 from mxeon.models import table as reference
 from mxeon.shaders.document.policy import Policy

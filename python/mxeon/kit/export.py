@@ -15,8 +15,7 @@ from typing import Any
 import mxeon
 from mxeon.errors import InputError
 from mxeon.io.files import below, check_output, write_text
-from mxeon.kit.mesh import Mesh, to_obj, unit_sphere
-from mxeon.kit.usd import mesh_layer, scene_layer
+from mxeon.kit.scenes import Mesh, mesh_layer, scene_layer, to_obj, unit_sphere
 from mxeon.kit.views import MATERIALS, USUAL, View, views
 from mxeon.names import meant
 from mxeon.shaders.document.policy import Policy

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dr.Jit's functions under the names of the array API standard, for the formulas of `mxeon.models`.
+"""Dr.Jit's functions under the names of the array API standard, and curves as piecewise cubics.
 
 A Dr.Jit number is an array of values. A direction is an `Array3f`, components on the first axis.
+With these names, Dr.Jit evaluates the formulas of `mxeon.models`.
+
+A curve over (0, 1] is a cubic in each of 16 equal parts of each octave. The bits of a float32 give
+the index of the part without a logarithm. Octaves resolve curves at any scale, such as the albedo of
+facets, which depends on cosine / alpha.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from types import SimpleNamespace
 from typing import cast
@@ -14,6 +19,11 @@ from typing import cast
 import numpy as np
 
 from mxeon.models.core.arrays import FUNCTIONS, OTHERS, Array, Namespace
+from mxeon.models.core.chebyshev import chebyshev_nodes
+
+OCTAVES, PARTS = 126, 16  # octaves from the smallest normal float32 to 1; parts per octave
+LOWER_BITS = 19  # bits of a float32 below those that give octave and part
+MIDDLE = 1.5  # middle of the octave that starts at 1
 
 
 def register_functions() -> None:
@@ -35,3 +45,30 @@ def vector(parts: Sequence[Array]) -> Array:
     kind = type(parts[0])
     name = f"Array{len(parts)}f{'64' * kind.__name__.endswith('64')}"
     return cast(Array, getattr(import_module(kind.__module__), name)(*parts))
+
+
+def octave_cells(x: Array) -> tuple[Array, Array]:
+    """Index of the part that contains x, and (x - middle) / start of the octave."""
+    drjit = import_module("drjit")
+    integer, single = drjit.uint32_array_t(type(x)), drjit.float32_array_t(type(x))
+    x = drjit.maximum(x, 2.0**-OCTAVES)
+    inside = drjit.minimum(drjit.detach(x), 1.0 - 2.0**-24)
+    bits = drjit.reinterpret_array(integer, single(inside))
+    # Reciprocal of the octave's start, a power of two, from the exponent bits.
+    scale = type(x)(drjit.reinterpret_array(single, 0x7F000000 - (bits & 0x7F800000)))
+    return (bits >> LOWER_BITS) - PARTS, drjit.fma(x, scale, -MIDDLE)
+
+
+def octave_cubics(curve: Callable[[Array], Array]) -> Array:
+    """Coefficients of a cubic through four points, for each part, (parts, 4), constant first."""
+    places = 1.0 + (np.arange(PARTS)[:, np.newaxis] + np.sort(chebyshev_nodes(4))) / PARTS
+    octaves = 2.0 ** np.arange(-OCTAVES, 0)[:, np.newaxis, np.newaxis]
+    powers = np.linalg.inv(np.vander((places - MIDDLE).ravel(), 4, True).reshape(-1, 4, 4))
+    return np.asarray(np.einsum("pij,opj->opi", powers, curve(octaves * places)).reshape(-1, 4))
+
+
+def gather_cubic(table: Array, cell: Array, x: Array) -> Array:
+    """Value at x of a cell's cubic; each row of the table has the four coefficients of a cell."""
+    drjit = import_module("drjit")
+    c = drjit.gather(type(vector([x] * 4)), table, cell)
+    return cast(Array, drjit.fma(drjit.fma(drjit.fma(c.w, x, c.z), x, c.y), x, c.x))

@@ -13,8 +13,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from mxeon.mitsuba.arrays import gather_cubic, octave_cells, octave_cubics
 from mxeon.mitsuba.diffuse import EonPlugin, Mitsuba, RoughDiffusePlugin
-from mxeon.mitsuba.octaves import gather_cubic, octave_cells, octave_cubics
 from mxeon.models.coat import (
     Means,
     base_under_varnish,

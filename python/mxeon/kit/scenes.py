@@ -1,10 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The scenes of the kit in USD's text form, written without USD."""
+"""The scenes of the kit in USD's text form, written without USD, and the unit sphere as a mesh.
+
+The mesh is for renderers without an exact sphere. Each vertex is on the sphere and equals its normal,
+so the interpolated normal at a point has the direction of the point.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mxeon.kit.mesh import Mesh
 from mxeon.kit.views import View
+
+SUBDIVISIONS = 5  # 20,480 triangles of about two degrees; one more subdivision quarters the error
 
 MESH = """#usda 1.0
 (
@@ -105,6 +116,64 @@ DOME = """    def DomeLight "light"
     {{
         float inputs:intensity = {radiance!r}
     }}"""
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Triangles between points of the unit sphere."""
+
+    vertices: NDArray[np.float64]  # (V, 3), positions and normals
+    triangles: NDArray[np.int64]  # (T, 3), counter-clockwise as seen from outside
+
+    @property
+    def depth(self) -> float:
+        """Largest distance of a triangle from the sphere."""
+        a, b, c = np.moveaxis(self.vertices[self.triangles], 1, 0)
+        normal = np.cross(b - a, c - a)
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+        return float(1.0 - (normal * a).sum(axis=1).min())
+
+
+def unit_sphere() -> Mesh:
+    """The unit sphere: an icosahedron whose triangles are repeatedly split into four."""
+    golden = (1.0 + np.sqrt(5.0)) / 2.0
+    rectangle = np.array([[0, 1, golden], [0, -1, golden], [0, 1, -golden], [0, -1, -golden]])
+    vertices = np.concatenate([np.roll(rectangle, shift, axis=1) for shift in range(3)])
+    mesh = Mesh(_on_sphere(vertices), _faces(vertices))
+    for _ in range(SUBDIVISIONS):
+        # Split each triangle into four, and move the middles of its edges onto the sphere.
+        edges = mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]]
+        pairs, place = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+        middles = _on_sphere(mesh.vertices[pairs].sum(axis=1))
+        (a, b, c), (d, e, f) = mesh.triangles.T, place.reshape(-1, 3).T + len(mesh.vertices)
+        parts = [[a, d, f], [d, b, e], [f, e, c], [d, e, f]]
+        triangles = np.concatenate([np.stack(part, axis=1) for part in parts])
+        mesh = Mesh(np.concatenate([mesh.vertices, middles]), triangles)
+    return mesh
+
+
+def _faces(vertices: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Triangles of vertices at distance 2, oriented outward."""
+    near = np.isclose(np.linalg.norm(vertices[:, None] - vertices, axis=-1), 2.0)
+    triples = combinations(range(len(vertices)), 3)
+    faces = np.array(
+        [each for each in triples if all(near[pair] for pair in combinations(each, 2))]
+    )
+    outward = np.linalg.det(vertices[faces]) > 0.0
+    return np.where(outward[:, None], faces, faces[:, ::-1])
+
+
+def _on_sphere(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(points / np.linalg.norm(points, axis=1, keepdims=True))
+
+
+def to_obj(mesh: Mesh) -> str:
+    """A mesh as Wavefront OBJ, with normals and smooth shading."""
+    rows = [f"{x:.9f} {y:.9f} {z:.9f}" for x, y, z in mesh.vertices]
+    corners = [" ".join(f"{each}//{each}" for each in row) for row in mesh.triangles + 1]
+    lines = ["# Unit sphere around the origin; normals are positions.", "o sphere", "s 1"]
+    lines += [f"v {row}" for row in rows] + [f"vn {row}" for row in rows]
+    return "\n".join(lines + [f"f {row}" for row in corners]) + "\n"
 
 
 def mesh_layer(mesh: Mesh) -> str:
