@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits a measured BRDF and draws its lobes: `python fit_measured.py [FILE.binary] [--out FOLDER]`.
 
-FILE is a material of the MERL database. Without FILE, the script writes values of a coated clay with
-noise as such a file, so that the fit can be compared with the parameters of the clay. The script
-needs scipy and matplotlib: `pip install '.[fit,report]'` in a checkout.
+FILE is a material of the MERL database. Without FILE, the script writes values of a coated clay
+with noise as such a file, so that the fit can be compared with the parameters of the clay. The
+script needs scipy and matplotlib: `pip install '.[fit,report]'` in a checkout.
 """
 
 import argparse

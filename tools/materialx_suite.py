@@ -99,9 +99,9 @@ def stage(folder: Path, checkout: Path, build: Path) -> None:
         return
     for name in ("libraries", "resources"):
         shutil.copytree(checkout / name, folder / name, copy_function=os.symlink)
-    (folder / OPTIONS).unlink()  # `run_tests` writes its own
+    (folder / OPTIONS).unlink()  # a link; `run_tests` writes a changed copy
     (folder / "bin").mkdir()
-    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # finds data next to itself
+    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # finds data next to the program
     # MaterialX reads files before subfolders, so eonlib's documents take precedence.
     for path in documents_folder().rglob("*.mtlx") if folder.name == EONLIB else ():
         (folder / "libraries" / path.name).symlink_to(path)

@@ -4,8 +4,8 @@
     python -m tools.benchmarks.mitsuba_pictures
 
 Writes two tables. The table in docs/mitsuba.md is about a ball under a uniform sky with each BSDF;
-the table in docs/sampling.md about EON scenes with 50 bounces and multiple importance sampling, with
-exact or cosine samples. Times are the least processor time of several pictures in llvm_ad_rgb,
+the table in docs/sampling.md about EON scenes with 50 bounces and multiple importance sampling,
+with exact or cosine samples. Times are the least processor time of several pictures in llvm_ad_rgb,
 without compilation. Variances are measured over independent pictures, and averaged over pixels and
 channels.
 """

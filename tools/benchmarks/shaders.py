@@ -50,8 +50,8 @@ CALLS = {
     "stock": "mx_oren_nayar_compensated_diffuse(mu_o, mu_i, cosine, roughness, rho) / EON_PI",
     "eonlib": "eon_brdf_mu(mu_o, mu_i, cosine - mu_o * mu_i, rho, roughness)",
 }
-# Tolerances of pi f cos in float32. Stock follows Listing 1, which loses digits in 1 - E: errors are
-# up to 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
+# Tolerances of pi f cos in float32. Stock follows Listing 1, which loses digits in 1 - E: errors
+# are up to 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
 TOLERANCES = {"stock": 3e-4, "eonlib": diffuse.VALUE.value}
 
 

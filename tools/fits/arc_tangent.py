@@ -3,10 +3,11 @@
 
     python -m tools.fits.arc_tangent
 
-The shaders' `oren_nayar_angle` uses them on [0, tan(pi / 8)] in float32.
+The shaders' `oren_nayar_angle` uses the coefficients on [0, tan(pi / 8)] in float32.
 
-The polynomial meets atan(t) / t at the roots of a Chebyshev polynomial in t^2, and is solved with 40
-digits. The nearest singularity is the branch point t^2 = -1, so each term gains a factor of 25.
+The polynomial equals atan(t) / t at the roots of a Chebyshev polynomial in t^2, and is computed
+with 40 digits. The nearest singularity is the branch point t^2 = -1, so each term gains a factor of
+25.
 """
 
 from tools.fits.minimax import mp, roots

@@ -3,10 +3,11 @@
 
     python -m tools.fits.eon_sampling
 
-Two inverse distributions map a random number to a cosine, without further parameters, in the form
-x = p + sum(a_k B_k(p)), where p is the root of the random number that makes x(p) analytic. Values at
-p = 0 and 1 are exact for any coefficients. Newton steps of minimax fits minimize the largest relative
-error of the density. The fits need the exact density, but not its exact inverse distribution.
+Two inverse distributions map a random number to a cosine, without further parameters, in the form x
+= p + sum(a_k B_k(p)), where p is the root of the random number that makes x(p) analytic. Values at
+p = 0 and 1 are exact for any coefficients. Newton steps of minimax fits minimize the largest
+relative error of the density. The fits need the exact density, but not its exact inverse
+distribution.
 
 ROOT, which only shaders use, fits y = (K / K(pi / 2))^(2/5) for a given cosine, where y is analytic
 in m = 1 - cos. The polynomial replaces an arc tangent, a cancellation and a power.

@@ -3,9 +3,9 @@
 
     H(mu) = mu [P(mu) + (1 - S)(1 - mu) Q(mu)],  S = sqrt(1 - mu^2)
 
-S contains the branch point of H at mu = 1, so errors fall geometrically with the degrees of P and Q.
-The term with Q vanishes at both ends, so nothing cancels there. P and Q are fitted together to the
-closed form, and minimize the largest relative error of H.
+S contains the branch point of H at mu = 1, so errors fall geometrically with the degrees of P and
+Q. The term with Q vanishes at both ends, so nothing cancels there. P and Q are fitted together to
+the closed form, and minimize the largest relative error of H.
 
     python -m tools.fits.fon_loss
 """
@@ -43,7 +43,7 @@ def fitted(mu, p, q):
 
 
 def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
-    """Coefficients that minimize the largest relative error on `COUNT` points, dense towards both ends."""
+    """Coefficients with the least largest relative error at COUNT points, dense at both ends."""
     rows = []
     for mu in extrema(COUNT + 1)[1:]:
         p = mu / closed_form(mu)

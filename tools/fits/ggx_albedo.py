@@ -139,8 +139,8 @@ def peak(mu, alpha, count=400):
 def value_errors(coefficients, across=145, along=97):
     """Largest error of a compensated value, and the largest factor of F_ss in such a value.
 
-    Both are relative where the value exceeds 1. With v the value without compensation, the error is
-    that of v / E_ss, and the factor is v (1 - E_ss) / E_ss.
+    Error and factor are relative where the value exceeds 1. With v the value without compensation,
+    the error is that of v / E_ss, and the factor is v (1 - E_ss) / E_ss.
     """
     mu, alpha = points(across, along)
     E, v = albedo(mu, alpha), peak(mu, alpha)

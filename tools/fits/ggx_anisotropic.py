@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Isotropic facets to replace anisotropic ones in the shaders' fits of E_ss and Fresnel averages.
 
-With r^2 = (alpha_x^2 + alpha_y^2) / 2, the squared roughness along the azimuth of wo and across it are
+With r^2 = (alpha_x^2 + alpha_y^2) / 2, the squared roughness along and across wo's azimuth is
 
     v^2 = (alpha_x x)^2 + (alpha_y y)^2 + (r z)^2,  u^2 = 2 r^2 - v^2,
 
@@ -106,7 +106,7 @@ def largest_error(ratios=RATIOS, coefficients=MISSED):
 
 
 def largest_visible_error(ratios=RATIOS, ior=1.5):
-    """Largest absolute error of a dielectric's albedo due to its Fresnel average, with exact E_ss."""
+    """Largest absolute error of a dielectric's albedo due to the Fresnel average alone."""
     wo, alpha = points(ratios)
     mu, isotropic = visible(wo, alpha)
     facets = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu]), np.stack([isotropic, isotropic])

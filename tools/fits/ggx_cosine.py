@@ -10,8 +10,9 @@ where N and D are polynomials in x = mu / (mu + alpha), a root y of alpha, and s
 curve within its kind. The fit is for c, but minimizes the largest error of the albedo E_ss F(c).
 Among Schlick's curves, (1 - c)^q, exponent 5 has twice the weight of other exponents.
 
-Hoffman's dip c (1 - c)^6 is not monotone. A third fit makes its average the dip at the cosine c of
-Schlick's curve with exponent 5, plus alpha^2 / (mu + alpha) N / D in mu and sqrt(alpha).
+Hoffman's dip c (1 - c)^6 is not monotone. A third fit makes the dip's average the value of the dip
+at the cosine c of Schlick's curve with exponent 5, plus alpha^2 / (mu + alpha) N / D, where N and D
+are polynomials in mu and sqrt(alpha).
 
 Arithmetic is restricted as in `ggx_albedo.py`.
 
@@ -131,7 +132,7 @@ def averages(mu, alpha, functions):
 def azimuths(scale):
     """Nodes and weights on [0, 1], along axis 1, in panels that end at powers k / 8 of `scale`.
 
-    Beyond the first panel, nodes are uniform in the reciprocal, which suits the tail of a peak at 0.
+    Nodes beyond the first panel are uniform in the reciprocal, which suits the tail of a peak at 0.
     """
     x, w = (each[None, :, None] for each in legendre(DEGREE))
     root = np.sqrt(np.sqrt(np.sqrt(scale)))
@@ -152,7 +153,7 @@ def integrals(mu, alpha, functions):
     tangent, width = azimuths(np.sqrt(low / high))
     shape = (len(low), OUTER, low.shape[-1])
     cotangent, rest = (np.broadcast_to(each[None, :, None], shape) for each in legendre(OUTER))
-    # The variable is the squared sine of half the azimuth, which is 0 at the mirror direction's.
+    # The variable is the squared sine of half the azimuth relative to the mirror direction.
     near, far = 1.0 + tangent * tangent, 1.0 + cotangent * cotangent
     sine2 = np.concatenate([tangent * tangent / near, 1.0 / far], axis=1)
     step = np.concatenate([width / near, rest / far], axis=1) * (4.0 / np.pi)

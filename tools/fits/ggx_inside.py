@@ -10,7 +10,8 @@ tau_c^2 = (1 - n^2) / n^2. The share of facets below the critical angle is
 and the share of transmitted light is S^p (1 - F), where F is taken at the tau that a part of S
 exceeds. This tau has a closed form by the same distribution: if a share Q exceeds tau,
 
-    k (tau_m / tau - tau / tau_m) = w = (Q - 1/2) / sqrt(Q (1 - Q)),  2 k tau / tau_m = sqrt(w^2 + 4 k^2) - w.
+    k (tau_m / tau - tau / tau_m) = w = (Q - 1/2) / sqrt(Q (1 - Q)),
+    2 k tau / tau_m = sqrt(w^2 + 4 k^2) - w.
 
 Along the normal, GGX's share 1 / (1 + alpha^2 tau_c^2) is S with k = 1/2. For a smooth surface, S
 is the distribution of GGX's slopes in one direction, with 2 k = mu s / alpha. The fit is, with mu

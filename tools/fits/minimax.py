@@ -3,7 +3,8 @@
 
 With N unknowns, the minimax residual over many rows equals that over some N + 1 of them, called a
 reference, which all attain it. Stiefel's exchange replaces rows of the reference, so its residual
-grows, until no other row exceeds it. It is the simplex method on the dual linear program.
+grows, until no other row exceeds the residual. The exchange is the simplex method on the dual
+linear program.
 
 A rational fit is N / D with D = 1 + ..., where N and D are sums of given monomials. A search in
 float64, which need not be repeatable, finds starting coefficients, or a denominator without zeros.
@@ -121,7 +122,7 @@ def refined(form, variables, values, weights, start):
 
 
 def numerator(form, variables, values, weights, below):
-    """Minimax coefficients of the numerator for a given denominator, followed by the denominator's."""
+    """Minimax coefficients of the numerator for a given denominator, then the denominator's."""
     rows, right = [], []
     for above, monomials, value, weight in _samples(form, variables, values, weights):
         factor = weight / (1 + mp.fdot(monomials, below))

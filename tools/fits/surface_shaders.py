@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of surface shaders due to the fits of eonlib's lobes: python -m tools.fits.surface_shaders.
+"""Errors of surface shaders due to the fits of eonlib's lobes.
+
+    python -m tools.fits.surface_shaders
 
 The layer equation uses each lobe's albedo by quadrature; eonlib uses a fit. The script evaluates
 surfaces with quadratures and with fits, in float64, for pairs and materials drawn as in the checks,

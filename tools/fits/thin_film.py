@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of `genglsl/lib/thin_film.glsl` against all orders and exact averages: python -m tools.fits.thin_film.
+"""Errors of `genglsl/lib/thin_film.glsl` against all orders and exact averages.
+
+    python -m tools.fits.thin_film
 
 The shader sums only the orders of interference that matter, and averages over the hemisphere and
 over visible facets by three cosines each. Each cosine stands for a range, within which fringes
@@ -27,10 +29,10 @@ FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "in
 BARE = FILMS | {"thickness": (0.0, 0.0), "index": (1.0, 1.0)}
 VISIBLE = FILMS | {"index": (LEAST_FILM, 2.5)}
 CLEAR = dict(alpha=SHARP.alpha, mu=SHARP.mu, thickness=SHARP.thickness, index=(LEAST_OIL, 2.5))
-DARK = 1e-3  # errors are relative to the reflectance, but at least to this one
+DARK = 1e-3  # errors of smaller reflectances are relative to DARK
 STEP = 1e-6  # relative change of the thickness for difference quotients
-# Values of the shader, from `thin_film_nodes.py`. NODES: cosines, weights and widths of the nodes for
-# F_ss. FACETS: polynomials of `facets`, for the mean, reach and bend of the visible facets' nodes.
+# Values of the shader, from `thin_film_nodes.py`. NODES: cosines, weights and widths of the nodes
+# for F_ss. FACETS: coefficients of the polynomials in `facets`, for the nodes of visible facets.
 NODES = (
     (0.17999, 0.55701, 0.88292),
     (0.10982, 0.43737, 0.4528),
@@ -117,7 +119,7 @@ def counted_orders(z, opd, spread, count):
 
 
 def decay(mu, var, opd, spread):
-    """Exponent of the damping of the first order by a Gaussian sensitivity and a spread of paths."""
+    """Exponent of the first order's damping by a Gaussian sensitivity and a spread of paths."""
     return var * (2.0 * np.pi * opd) ** 2 + 0.25 * (2.0 * np.pi * mu * spread) ** 4
 
 
@@ -150,7 +152,7 @@ def curve_errors(category, material, _, mu):
 
 
 def slopes(category, material, _, mu):
-    """Derivatives of a curve by log(thickness), to scale the rounding errors of path differences."""
+    """Derivatives of a curve by log(thickness), to scale roundings of path differences."""
     curve, thickness = film_curve(category), material["thinfilm_thickness"]
     up, down = (
         curve.at(mu, **{**material, "thinfilm_thickness": thickness * (1.0 + step)})

@@ -26,7 +26,7 @@ ALPHAS, INDICES = (0.05, 0.1, 0.2, 0.4, 0.7), (1.1, 1.3, 1.5, 2.0)
 
 
 def interface(w, alpha, ior, rng):
-    """Directions, z >= 0, of light from w after the facets, and whether it leaves below them."""
+    """Directions, z >= 0, of light from w after the facets, and whether light leaves below them."""
     out, transmitted = np.zeros_like(w), np.zeros(len(w), bool)
     # State of each path: index, direction, share of the facets' heights below the path, and side.
     i, d, height, below = np.arange(len(w)), -w, np.ones(len(w)), transmitted.copy()

@@ -38,7 +38,7 @@ SAMPLERS = (
     Sampler("eon", sampling.eon_sample, sampling.eon_pdf, "exact"),
 )
 BY_NAME = {sampler.name: sampler for sampler in SAMPLERS}
-# Variance of exact samples. Two fits change their true density by up to 1.3e-5.
+# Variance of exact samples. Two fits change the true density of the samples by up to 1.3e-5.
 EXACT_VARIANCE = 1.7e-10
 
 

@@ -10,7 +10,7 @@
 | `... versions` | versions.md and ledger/versions.json; a quarter of an hour |
 | `... gallery`, `... explorer`, `... note` | pictures of the pages of these names |
 | `... wall REPORT...` | wall.md and its tiles, from reports of `mxeon check` |
-| `... ledger.measure [HOST ...]`, `... ledger.pictures` | docs/upstream/measured.json; its pictures |
+| `... ledger.measure [HOST ...]`, `... ledger.pictures` | docs/upstream: measured.json, pictures |
 """
 
 import math

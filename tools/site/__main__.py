@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes every generated file that needs no engine and no other version of MaterialX: `python -m tools.site`.
+"""Writes the OSL twins and some tables of pages: `python -m tools.site`.
 
-These are the OSL twins and some tables of pages. Measurements on hosts (`specification`, `field`,
-`versions`, `ledger.measure`, pictures) have their own commands.
+These files need no engine and no other version of MaterialX. Measurements on hosts
+(`specification`, `field`, `versions`, `ledger.measure`, pictures) have separate commands.
 """
 
 from pathlib import Path

@@ -37,7 +37,7 @@ STYLE = {
 }
 
 
-# --- energy that FON loses, in float32 --------------------------------------------------------------
+# --- energy that FON loses, in float32 ------------------------------------------------------------
 
 
 def quartic_loss(mu):
@@ -81,7 +81,7 @@ def loss_errors(mu):
 def loss_figures():
     """Largest absolute and relative errors of 1 - E.
 
-    The paper's forms are evaluated at 4001 cosines from 1e-6 to 1, ours at all float32 numbers there.
+    The paper's forms are evaluated at 4001 cosines from 1e-6 to 1, ours at all such float32 numbers.
     """
     mu = np.unique(np.geomspace(1e-6, 1.0, 4001).astype(np.float32))
     errors, exact = loss_errors(mu)
@@ -105,7 +105,7 @@ def loss_figures():
     return found | dict(zip(names, np.max(ours, axis=0).tolist(), strict=True))
 
 
-# --- sampling and albedos -----------------------------------------------------------------------------
+# --- sampling and albedos -------------------------------------------------------------------------
 
 
 def variances(name, roughness, mu):
@@ -159,7 +159,7 @@ def largest_figures():
     return found
 
 
-# --- energy of readings -------------------------------------------------------------------------------
+# --- energy of readings ---------------------------------------------------------------------------
 
 
 def energy_rows():

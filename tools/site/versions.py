@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks eonlib and stock with all versions of MaterialX: `python -m tools.site.versions`.
 
-The command runs `mxeon check --host gl --node all` and all surface shaders' texts with each version,
-in 14 minutes of processor time, and stores the results in `ledger/versions.json`. From that file,
-`python -m tools.site` writes versions.md, and the site adds lines to the ledger's pages.
+The command runs `mxeon check --host gl --node all` and all surface shaders' texts with each
+version, in 14 minutes of processor time, and stores the results in `ledger/versions.json`. From
+that file, `python -m tools.site` writes versions.md, and the site adds lines to the ledger's pages.
 """
 
 import json

@@ -109,7 +109,7 @@ def _identity(path: AnyPath) -> tuple[int, int] | None:
 
 @contextmanager
 def replacing(path: AnyPath) -> Iterator[Path]:
-    """Yield a new empty file, which replaces `path` if the block succeeds, and is deleted otherwise.
+    """Yield a new empty file that replaces `path` if the block succeeds, and is deleted otherwise.
 
     The file is next to `path`; the folder is created if needed. Links are followed: use `below` for
     names that the user did not write. The new file has the suffix of `path`, from which image

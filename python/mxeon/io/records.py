@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from mxeon.errors import InputError
 
 NOT_FINITE = ("NaN", "Infinity", "-Infinity")
-# Reading JSON of unknown origin may raise these.
+# Exceptions that reading JSON of unknown origin may raise.
 UNREADABLE = (
     ValueError,
     KeyError,

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float64]
 Codes = NDArray[np.uint8]
 
-SLOPE = 2.4 / 1.055  # largest slope of the decoding curve; it is at 1
+SLOPE = 2.4 / 1.055  # largest slope of the decoding curve, which is at 1
 STEPS = 2**13  # steps of the lookup table in [0, 1]; each has at most two codes
 NOT_FINITE = (255, 0, 255)  # magenta, the code values of non-finite pixels
 
@@ -52,7 +52,7 @@ def srgb_encoded(image: ArrayLike) -> Codes:
 def _codes() -> tuple[NDArray[np.float32], Codes]:
     """The linear value at which each sRGB code ends, and the least code of each of STEPS steps.
 
-    No step contains two ends: even at 0, where they are closest, the curve's slope is only 12.92.
+    No step contains two ends: even at 0, where ends are closest, the curve's slope is only 12.92.
     """
     ends = srgb_decoded((np.arange(255) + 0.5) / 255.0).astype(np.float32)
     least = np.searchsorted(

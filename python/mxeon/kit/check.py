@@ -33,7 +33,8 @@ from mxeon.shaders.scene import sphere
 RENDERER = "renderer"
 LIBRARY = "its own library"
 SOFTWARE = ("numpy", "scipy", "OpenImageIO")
-# Keys of kit.json that must match exactly; the last digits of scenes depend on the exporting machine.
+# Keys of kit.json that must match exactly; the last digits of scenes depend on the exporting
+# machine.
 EXACT = ("camera", "sphere", "materials", "pictures")
 READABLE = "The picture is there, of the right size, linear float, and finite."
 CHANNELS = "RGB"

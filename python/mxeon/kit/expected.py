@@ -13,14 +13,15 @@ from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.table import Model
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
-# Least cosine of view and light at judged pixels: near the rim and the terminator, the value depends
-# on the position within a pixel. In pictures of 64 pixels or more, judged pixels lie on the sphere.
+# Least cosine of view and light at judged pixels: near the rim and the terminator, the value
+# depends on the position within a pixel. In pictures of 64 pixels or more, judged pixels lie on the
+# sphere.
 CUT = 0.2
 # Relative rounding of half floats, which have 11 bits, and their smallest step.
 HALF_ROUNDING, HALF_STEP = 2.0**-11, 2.0**-24
 
-# Albedos are integrated at these cosines, 1/128 apart, and interpolated linearly. Their second
-# derivative is below 2, so the error is below 2e-5.
+# Albedos are integrated at these cosines, 1/128 apart, and interpolated linearly. The albedo's
+# second derivative is below 2, so the error is below 2e-5.
 COSINES = np.linspace(CUT / 2.0, 1.0, 117)
 INTERPOLATION = 2e-5
 QUADRATURE_NODES = 16  # the models' albedos have an error of 1e-9

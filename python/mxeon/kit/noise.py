@@ -2,8 +2,9 @@
 """Separate noise from bias, by the mean error of each tile of a picture.
 
 A tile of 8 x 8 pixels has up to 16 squares of 2 x 2. A square's contrast, (a - b - c + d) / 2, has
-the variance of a pixel's noise and cancels smooth errors; the tile's mean error keeps smooth errors.
-With normal noise, the mean is independent of the contrasts, so the quotient follows Student's t.
+the variance of a pixel's noise and cancels smooth errors; the tile's mean error keeps smooth
+errors. With normal noise, the mean is independent of the contrasts, so the quotient follows
+Student's t.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ Images: TypeAlias = Mapping[str, NDArray[np.float64]]  # usable pictures by the 
 # Wrong encoding, orientation or scale can be found independently of the model on Lambert under a
 # distant light, where all models have equal values.
 
-MISFIT = 0.02  # largest rms error without noise over rms value that leaves a fault as explanation
+MISFIT = 0.02  # largest relative rms error, without noise, of a picture that a fault explains
 SAME_SCALE = 0.005  # factors closer to 1 are due to noise or a mesh
 
 
@@ -201,7 +201,7 @@ CLAIMS = ("eon", "qon", "fon", "lambert")
 
 
 def questions(claim: str = "") -> tuple[Question, ...]:
-    """Questions for a renderer that claims one model; for "", for one that supports the flag."""
+    """Questions for a renderer that claims one model, or, for "", that supports the flag."""
     if not claim:
         return QUESTIONS
     assert_known("claims", claim, CLAIMS)
@@ -242,7 +242,7 @@ def answer(
 ) -> tuple[results.Result, results.Diagnosis]:
     """Answer a question: its result, and the model or fault that the pictures show.
 
-    An `obstacle` prevents the answer, and becomes its reason.
+    An `obstacle` prevents the answer, and becomes the reason of the result.
     """
     chosen = [view for view in views if question.includes(view)]
     place = {"check": question.key, "claim": question.claim, "subject": question.title, **place}
@@ -286,7 +286,7 @@ def _tiles(
     models: Sequence[Expected],
     wrong: Sequence[NDArray[np.float64]] | None = None,
 ) -> list[Tiles]:
-    """Tiles of the errors. The difference of `wrong` values from the model is added to the errors."""
+    """Tiles of the errors, to which the difference of `wrong` values from the model is added."""
     wrong = wrong or [model.value for model in models]
     found = []
     for view, model, other in zip(views, models, wrong, strict=True):

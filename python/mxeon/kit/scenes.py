@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The scenes of the kit in USD's text form, written without USD, and the unit sphere as a mesh.
 
-The mesh is for renderers without an exact sphere. Each vertex is on the sphere and equals its normal,
-so the interpolated normal at a point has the direction of the point.
+The mesh is for renderers without an exact sphere. Each vertex is on the sphere and equals its
+normal, so the interpolated normal at a point has the direction of the point.
 """
 
 from __future__ import annotations

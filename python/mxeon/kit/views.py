@@ -8,8 +8,8 @@ from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Scene
 
 COLOR = (0.2, 0.5, 0.8)  # different channels reveal a wrong power of the color
 
-# Widths of pictures in pixels. With fewer pixels, corners of judged pixels may miss the sphere; more
-# pixels gain nothing.
+# Widths of pictures in pixels. With fewer pixels, corners of judged pixels may miss the sphere;
+# more pixels gain nothing.
 SMALLEST, USUAL, LARGEST = 64, 128, 2048
 
 

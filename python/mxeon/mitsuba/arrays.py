@@ -5,8 +5,8 @@ A Dr.Jit number is an array of values. A direction is an `Array3f`, components o
 With these names, Dr.Jit evaluates the formulas of `mxeon.models`.
 
 A curve over (0, 1] is a cubic in each of 16 equal parts of each octave. The bits of a float32 give
-the index of the part without a logarithm. Octaves resolve curves at any scale, such as the albedo of
-facets, which depends on cosine / alpha.
+the index of the part without a logarithm. Octaves resolve curves at any scale, such as the albedo
+of facets, which depends on cosine / alpha.
 """
 
 from __future__ import annotations

@@ -135,7 +135,7 @@ class CoatPlugin(EonPlugin):
         return facets / self.dr.maximum(total, 1e-30)
 
     def _albedos(self, mu: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        """Directional albedos of the facets alone and of the whole."""
+        """Directional albedos of the facets alone and of the whole coat."""
         reflected = self._interface_curves(mu)[1]
         return reflected, reflected + (1.0 - reflected) * eon_albedo(fon_loss(mu), rho, amount)
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """EON, FON and QON as BSDFs of Mitsuba.
 
-Mitsuba's `si.wi` points to the viewer and is wo in this project; its `wo` points to the light: wi.
+Mitsuba's `si.wi` points to the viewer and is wo in this project; Mitsuba's `wo` points to the light
+and is wi.
 """
 
 from __future__ import annotations

@@ -27,8 +27,8 @@ class Mutant:
     name: str  # unique in the table
     group: str  # title of the mutated implementation
     file: str  # path from the root
-    old: str  # occurs once in the file
-    new: str
+    old: str  # text to replace, which occurs once in the file
+    new: str  # its replacement
     reason: str  # why the change is wrong, or a proof that the change is equivalent
     host: str  # cheapest host that can detect the mutant; "text" if no host is needed
     equivalent: bool  # whether values stay the same on the whole valid domain

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """All mutants of the operators in one program, chosen by a uniform.
 
-At each mutant's place, an expression equals the original unless the uniform `mutant` has the mutant's number: ` + `
-becomes ` + mutant_sign(mutant == 7) * `. So a node's shader compiles once for hundreds of mutants, and each mutant only
-takes the milliseconds of a check on a subset of samples. Mutants of constant expressions and of
-integers cannot be selected by a uniform: they are UNWRITTEN, and need a separate library.
+At each mutant's place, an expression equals the original unless the uniform `mutant` has the
+mutant's number: ` + ` becomes ` + mutant_sign(mutant == 7) * `. So a node's shader compiles once
+for hundreds of mutants, and each mutant only takes the milliseconds of a check on a subset of
+samples. Mutants of constant expressions and of integers cannot be selected by a uniform: they are
+UNWRITTEN, and need a separate library.
 """
 
 import re
@@ -139,7 +140,7 @@ def _end(code: str, place: int) -> int:
 
 
 def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
-    """A source with the edits of all its mutants; `mutants` has them by number."""
+    """A source with the edits of all its mutants, which are given by number."""
     code = operators.code_of(text)
     made = [each for number, mutant in mutants.items() for each in edits(number, mutant, code)]
     opens: dict[int, list[str]] = {}
@@ -248,7 +249,7 @@ LAST = (
     *("frame", "finite", "layer", "integral", "energy", "states", "lossless", "domain", "sky"),
     *("narrow_lobes", "tilted_lobes", "wide_lobes", "straight_views", "low_index", "each_lobe"),
 )
-COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # their lobes are also checked separately
+COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # specs whose lobes are also checked separately
 UNWRITTEN = "unwritten"
 OSL_TWINS = {
     functions.source_file("osl", stem).relative_to(ROOT).as_posix()
@@ -312,7 +313,7 @@ def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """Subjects: title, whether composed of other subjects, shader text, function with the checks."""
+    """Subjects: title, whether composed of others, shader text, function that runs the checks."""
     every = Functions(host)
     yield "functions", False, every.text, every
     # Check films before transmission: transmission runs the same code without a film.

@@ -280,7 +280,9 @@ MODEL_TESTS = "tests/models"
 OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
 FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
 WIDTH = {"COLUMNS": "200"}  # wide enough for whole messages of pytest
-BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}  # copies lack the folder
+BLENDER = {
+    "MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"
+}  # the copy of a mutant lacks Blender
 GOOD, NO_TEST = 0, 5  # exit statuses of pytest
 
 

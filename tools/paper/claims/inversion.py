@@ -43,7 +43,7 @@ def _polynomial(slope: float, zero: float, exact: np.ndarray) -> Measured:
     least=FLOAT32,
 )
 def printed_root() -> Measured:
-    """Errors of Eq. (30) as printed, at low roughness; the error at the lowest counts."""
+    """Errors of Eq. (30) as printed, at low roughness; only the last error must be large."""
     errors = {}
     for r in (1e-3, 1e-6, 1e-9):
         A, B = _quadratic(r)
@@ -55,7 +55,7 @@ def printed_root() -> Measured:
 
 @claim("below Eq. (31)", "a series serves at low roughness", "error up to r = 0.1", most=STATED)
 def taylor() -> Measured:
-    """Errors of the series below Eq. (31); those at roughness 0.01 and 0.1 count."""
+    """Errors of the series below Eq. (31); only errors up to roughness 0.1 must be small."""
     errors = {}
     for r in (0.01, 0.1, 1.0):
         A, B = _quadratic(r)

@@ -67,7 +67,7 @@ def _shortest_change(patch: str) -> tuple[str, str, str]:
 
 
 def figure(result: Result) -> str:
-    """The error of a result as printed."""
+    """The error of a result as text for pages."""
     return f"{result.error:.0f}" if result.quantity is Quantity.VALUES else f"{result.error:.2g}"
 
 

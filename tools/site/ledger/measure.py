@@ -69,7 +69,7 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
     nearest = [title for _, title in others if title != diagnosis.first.key]
     if diagnosis.kind is Kind.MODEL and nearest:
         measures["next"] = nearest[0]
-    return dict(json.loads(json.dumps(measures)))  # the same types as after reading
+    return dict(json.loads(json.dumps(measures)))  # lists, as after reading, instead of tuples
 
 
 def fields(cause: Cause) -> dict[str, Any]:

@@ -131,7 +131,7 @@ def outcome(issue: Issue) -> str:
 
 
 def affected_versions(issue: Issue) -> str:
-    """Sentence about the MaterialX versions with a defect; "" if none was checked for the defect."""
+    """Sentence about the MaterialX versions with a defect; "" if no version was checked."""
     versions = json.loads(VERSIONS.read_text(encoding="utf-8"))
     if issue.page not in versions["pages"]:
         return ""
