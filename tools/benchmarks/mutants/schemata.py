@@ -218,9 +218,8 @@ class SchemataHost(gl.GlHost):
 
     def numbers_in(self, pixel: str) -> list[int]:
         """Numbers of the mutants in a shader's text that are still undetected."""
-        known = {
-            file for file in {each.file for each in self.alive.values()} if chunk_of(file) in pixel
-        }
+        files = {each.file for each in self.alive.values()}
+        known = {file for file in files if chunk_of(file) in pixel}
         return [number for number, each in self.alive.items() if each.file in known]
 
 

@@ -95,13 +95,8 @@ def by_checks(mutant: Mutant, judge: Judge) -> dict[str, Any]:
 def killed(host: str, checks: Sequence[str], explanation: str) -> dict[str, Any]:
     """Record of a detected mutant, with only the first line of the explanation."""
     line, folder = explanation.strip().split("\n")[0], re.escape(tempfile.gettempdir())
-    line = re.sub(rf"{folder}/\S*/", "", line)
-    return {
-        "verdict": KILLED,
-        "host": host,
-        "checks": list(dict.fromkeys(checks)),
-        "explanation": line,
-    }
+    line, found = re.sub(rf"{folder}/\S*/", "", line), list(dict.fromkeys(checks))
+    return {"verdict": KILLED, "host": host, "checks": found, "explanation": line}
 
 
 def write_wrong(mutant: Mutant, base: str, *folders: str) -> None:
@@ -231,15 +226,13 @@ def _titles(nodedef: str) -> frozenset[str]:
     if not definition:
         return frozenset()
     kind, node = definition.getType(), definition.getNodeString()
-    return frozenset(
-        spec.title
-        for spec in PBRLIB
-        if (
-            spec.node == node
-            and all((word == kind) == (word in spec.title.upper()) for word in ("EDF", "VDF"))
-        )
-        or (kind == "BSDF" and spec in COMBINED_SPECS and f"<{node} " in spec.document())
-    )
+    titles = {spec.title for spec in PBRLIB if spec.node == node}
+    for word in ("EDF", "VDF"):  # nodes such as `add` exist for several types
+        titles = {title for title in titles if (word in title.upper()) == (word == kind)}
+    if kind == "BSDF":
+        combined = (spec for spec in PBRLIB if spec in COMBINED_SPECS)
+        titles |= {spec.title for spec in combined if f"<{node} " in spec.document()}
+    return frozenset(titles)
 
 
 @cache
@@ -249,10 +242,8 @@ def _sources(file: str) -> frozenset[str]:
     if not path.is_file():
         return frozenset()
     included = INCLUDE.findall(path.read_text(encoding="utf-8"))
-    folder = Path(file).parent
-    return frozenset(
-        {file}.union(*(_sources(os.path.normpath(folder / each)) for each in included))
-    )
+    paths = (os.path.normpath(Path(file).parent / each) for each in included)
+    return frozenset({file}.union(*map(_sources, paths)))
 
 
 def _entries(document: str, text: str) -> set[tuple[str, ...]]:
@@ -261,17 +252,12 @@ def _entries(document: str, text: str) -> set[tuple[str, ...]]:
         elements = ElementTree.fromstring(text).iter("implementation")
     except ElementTree.ParseError:
         return set()
-    return {
-        (
-            each.get("nodedef", ""),
-            each.get("target", ""),
-            os.path.normpath(Path(document).parent / each.get("file", "")),
-            each.get("function", ""),
-            each.get("name", ""),
-            each.get("sourcecode", ""),
-        )
-        for each in elements
-    }
+    found = set()
+    for each in elements:
+        path = os.path.normpath(Path(document).parent / each.get("file", ""))
+        others = (each.get(name, "") for name in ("function", "name", "sourcecode"))
+        found.add((each.get("nodedef", ""), each.get("target", ""), path, *others))
+    return found
 
 
 # --- tests that judge a reference -----------------------------------------------------------------
@@ -280,9 +266,8 @@ MODEL_TESTS = "tests/models"
 OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
 FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
 WIDTH = {"COLUMNS": "200"}  # wide enough for whole messages of pytest
-BLENDER = {
-    "MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"
-}  # the copy of a mutant lacks Blender
+# The copy of a mutant lacks Blender.
+BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}
 GOOD, NO_TEST = 0, 5  # exit statuses of pytest
 
 
@@ -300,14 +285,9 @@ def by_tests(mutant: Mutant, steps: Sequence[tuple[str, ...]]) -> dict[str, Any]
 
 def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
     """Name and message of the first test that fails with the package in a folder, or None."""
-    ended = subprocess.run(
-        [sys.executable, "-m", "pytest", *OPTIONS, *tests],
-        cwd=ROOT,
-        env=BLENDER | os.environ | WIDTH | {"PYTHONPATH": package},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    command = [sys.executable, "-m", "pytest", *OPTIONS, *tests]
+    env = BLENDER | os.environ | WIDTH | {"PYTHONPATH": package}
+    ended = subprocess.run(command, cwd=ROOT, env=env, capture_output=True, text=True, check=False)
     if ended.returncode == GOOD:
         return None
     match = FAILED.search(ended.stdout)
