@@ -4,8 +4,8 @@
 # It needs root and the Debian package mmdebstrap.
 # usage: tools/bare.sh [--all] [--keep FOLDER] [--copy PATH]...
 #   --all          also run every test, build eonlib's archive, and install the package with pip
-#   --keep FOLDER  use the root in this folder, made if it does not exist
-#   --copy PATH    copy this path into the root: pip's configuration, certificates, wheels
+#   --keep FOLDER  use the root in FOLDER, which is made if it does not exist
+#   --copy PATH    copy PATH into the root: pip's configuration, certificates, wheels
 set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
 root="" all="" copies=""

@@ -15,15 +15,7 @@ import numpy as np
 
 from mxeon.mitsuba.arrays import gather_cubic, octave_cells, octave_cubics
 from mxeon.mitsuba.diffuse import EonPlugin, Mitsuba, RoughDiffusePlugin
-from mxeon.models.coat import (
-    Means,
-    base_under_varnish,
-    constant_coat,
-    constant_varnish,
-    nonnegative,
-    nonzero,
-    varnish_albedo,
-)
+from mxeon.models import coat as formulas
 from mxeon.models.core.arguments import RANGES
 from mxeon.models.core.arrays import Array
 from mxeon.models.diffuse import eon_albedo
@@ -44,7 +36,7 @@ class CoatPlugin(EonPlugin):
         "alpha": (0.05, *ALPHAS),
         "ior": (1.5, *IORS),
     }
-    interface: Callable[[float, float], Any] = staticmethod(constant_coat)
+    interface: Callable[[float, float], Any] = staticmethod(formulas.constant_coat)
     count = 2  # number of tabulated curves
 
     def configure(self, properties: Mitsuba) -> None:
@@ -189,7 +181,7 @@ class CoatPlugin(EonPlugin):
 class VarnishPlugin(CoatPlugin):
     """EON below a rough dielectric interface. Samples come from visible facets or the cosine."""
 
-    interface: Callable[[float, float], Any] = staticmethod(constant_varnish)
+    interface: Callable[[float, float], Any] = staticmethod(formulas.constant_varnish)
     count = 3
     _density, _draw = RoughDiffusePlugin._density, RoughDiffusePlugin._draw
 
@@ -199,24 +191,26 @@ class VarnishPlugin(CoatPlugin):
         color, amount = self.reflectance.eval(si, active), self.amount.eval_1(si, active)
         (facets, c), means = self._facets(si.wi, wo), self._means()
         ior, s = self._clamped("ior"), si.wi.x * wo.x + si.wi.y * wo.y
-        o, i = (nonnegative(self._curves(w.z)) for w in (si.wi, wo))
+        o, i = (formulas.nonnegative(self._curves(w.z)) for w in (si.wi, wo))
         transmitted = (1.0 - o.E_single - o.D) * (1.0 - i.E_single - i.D) / ior**2
-        multiple = o.D * i.D / (np.pi * nonzero(means.D))
+        multiple = o.D * i.D / (np.pi * formulas.nonzero(means.D))
         arguments = (si.wi.z, wo.z), s, (o.b, i.b), ior, means
         glossy, channels = is_glossy * facets * dielectric(c, ior), []
         for rho in color:
-            base = base_under_varnish(*arguments, rho, self._clipped(amount))
+            base = formulas.base_under_varnish(*arguments, rho, self._clipped(amount))
             value = glossy + is_diffuse * (multiple + transmitted * base)
             channels.append(self.mi.Float(value))
         return self.dr.select(active, type(color)(*channels) * wo.z, 0.0)
 
     def _albedos(self, mu: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        curves, ior = nonnegative(self._curves(mu)), self._clamped("ior")
-        return curves.E_single, varnish_albedo(mu, curves, ior, self._means(), rho, amount)
+        curves, ior = formulas.nonnegative(self._curves(mu)), self._clamped("ior")
+        return curves.E_single, formulas.varnish_albedo(mu, curves, ior, self._means(), rho, amount)
 
-    def _means(self) -> Means:
+    def _means(self) -> formulas.Means:
         if not self._compiled:
-            means: Means = self.coat.means
+            means: formulas.Means = self.coat.means
             return means
         start = self.dr.width(self.table) - 4
-        return Means(*(self.dr.gather(self.mi.Float, self.table, start + k) for k in range(4)))
+        return formulas.Means(
+            *(self.dr.gather(self.mi.Float, self.table, start + k) for k in range(4))
+        )
