@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from mxeon.conformance import samples, tolerance
 from mxeon.conformance.cache import EVALUATIONS, Recent, contents, parts
-from mxeon.conformance.results import Quantity
+from mxeon.conformance.results import Quantity, grouped
 from mxeon.conformance.samples import RIM, Array, Batch, Counts, Mask, Values
 from mxeon.conformance.spec import POWER, Ability, LobeSpec, Spec, ValueSpec, broadcast_inputs
 from mxeon.conformance.specs.diffuse import LOBE_VALUE, SurfaceLobe
@@ -70,7 +70,7 @@ class Backend(ABC):
     plain: ClassVar[tuple[str, ...]] = ()
     whole: ClassVar[bool] = False  # whether controls and expensive checks use all samples
     fewer: ClassVar[Counts | None] = None  # counts that replace those of specs with more pairs
-    own_errors: ClassVar[Errors | None] = None  # errors that replace those of the spec
+    engine_errors: ClassVar[Errors | None] = None  # errors that replace those of the spec
     methods: ClassVar[Methods] = UNCHOSEN  # lighting methods fixed by the engine
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
@@ -87,7 +87,7 @@ class Backend(ABC):
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
         """The tolerance of each quantity, before the errors of engine functions are added."""
-        return spec.errors if cls.own_errors is None else cls.own_errors
+        return spec.errors if cls.engine_errors is None else cls.engine_errors
 
     @property
     def prefiltered(self) -> bool:
@@ -165,7 +165,7 @@ class Backend(ABC):
 
     @cached_property
     def integrated(self) -> tuple[Batch, Array]:
-        return cast(ScatteringSpec, self.spec).integrated(self.counts, self.taken)
+        return cast(ScatteringSpec, self.spec).integrated(self.counts, self.supported)
 
     @cached_property
     def integrals(self) -> Array:
@@ -174,7 +174,7 @@ class Backend(ABC):
         views = batch.where(np.arange(len(weights)) * weights.shape[1])
         return cast(ScatteringSpec, self.spec).integral(views)
 
-    def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
+    def supported(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
         """Inputs, limited to values that the backend supports."""
         return dict(inputs)
 
@@ -321,7 +321,7 @@ class Evaluating(Backend):
         return self._evaluations.value(key, compute)
 
 
-class InTheDark(Evaluating):
+class Media(Evaluating):
     """A renderer that evaluates media, and nodes judged only by having an implementation."""
 
     abilities = Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.PAIRS | Ability.LIGHT
@@ -391,10 +391,8 @@ class Closures(Evaluating):
     @cached_property
     def few(self) -> tuple[Batch, ...]:
         """A subset of each kind of samples, joined if possible, because a run has a fixed cost."""
-        groups: dict[tuple[str, ...], list[Batch]] = {}
-        for batch in self.batches:
-            few, names = batch.first(self.counts.few), tuple(sorted(batch.inputs))
-            groups.setdefault((*names, str(batch.frame is None)), []).append(few)
+        few = (batch.first(self.counts.few) for batch in self.batches)
+        groups = grouped(few, lambda batch: (*sorted(batch.inputs), batch.frame is None))
         return tuple(map(joined, groups.values()))
 
     @cached_property
@@ -498,12 +496,12 @@ INTEGRAL = sum_in(Quantity.ALBEDO, SHARP.term("an average of values"), NODES_MOV
 LIGHT = sum_in(Quantity.LIGHT, INTEGRAL.term("an integral of values"), PASSED.term("a throughput"))
 
 
-def _is_shown(batch: Batch, rim: float = RIM) -> Mask:
+def _is_renderable(batch: Batch, rim: float = RIM) -> Mask:
     least = np.minimum(batch.wo[:, 2], np.abs(batch.wi[:, 2]))
     return np.asarray(visible(batch.wo, batch.wi) & (least >= rim))
 
 
-class Shown(Evaluating):
+class RenderablePairs(Evaluating):
     """A renderer, or a host restricted to the pairs and inputs that renderers support.
 
     Both cosines are at least RIM, and no lobe is so sharp that the pixel position matters.
@@ -515,7 +513,7 @@ class Shown(Evaluating):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        batches = (self._supported(batch, _is_shown(batch)) for batch in super().batches)
+        batches = (self._restricted(batch, _is_renderable(batch)) for batch in super().batches)
         return tuple(batch for batch in batches if len(batch.wo))
 
     @cached_property
@@ -526,13 +524,13 @@ class Shown(Evaluating):
     @cached_property
     def edges(self) -> Batch:
         edges = super().edges
-        return self._supported(edges, _is_shown(edges))
+        return self._restricted(edges, _is_renderable(edges))
 
     @cached_property
     def mirrored(self) -> tuple[Batch, Batch]:
         first, second = super().mirrored
-        shown = _is_shown(first) & _is_shown(second)
-        return self._supported(first, shown), self._supported(second, shown)
+        shown = _is_renderable(first) & _is_renderable(second)
+        return self._restricted(first, shown), self._restricted(second, shown)
 
     @cached_property
     def integrated(self) -> tuple[Batch, Array]:
@@ -543,23 +541,22 @@ class Shown(Evaluating):
         oblique = height * np.sqrt(1.0 - height * height) >= OBLIQUE
         return batch.where(np.repeat(oblique, nodes)), weights[oblique]
 
-    def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
+    def supported(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
         least = 0.0 if self.spec.model in SMOOTH else samples.LEAST_TURNED
-        taken = dict(inputs)
-        taken.pop("occlusion", None)
-        for name, values in taken.items():
+        supported = {name: inputs[name] for name in inputs if name != "occlusion"}
+        for name, values in supported.items():
             if name == "weight":
-                taken[name] = np.maximum(values, 0.0)
+                supported[name] = np.maximum(values, 0.0)
             elif name.endswith("roughness"):
-                taken[name] = np.clip(values, least, 1.0)
-        return taken
+                supported[name] = np.clip(values, least, 1.0)
+        return supported
 
-    def _supported(self, batch: Batch, mask: Mask) -> Batch:
+    def _restricted(self, batch: Batch, mask: Mask) -> Batch:
         pairs = batch.where(mask)
-        return replace(pairs, inputs=self.taken(pairs.inputs))
+        return replace(pairs, inputs=self.supported(pairs.inputs))
 
 
-class Rendered(Shown):
+class Rendered(RenderablePairs):
     """OSL's testrender, which lights a point with its own closures."""
 
     abilities = (
@@ -604,7 +601,7 @@ class Traced(Rendered):
     flat, sharp, place = TRACED_FLAT, TRACED_SHARP, TRACED_SHARP
 
 
-class LobesBelow(Shown):
+class LobesBelow(RenderablePairs):
     """The diffuse lobe of a surface shader, isolated from the lobes above; see SurfaceLobe."""
 
     abilities = Ability.BELOW | Ability.LIGHT
@@ -614,10 +611,10 @@ class LobesBelow(Shown):
     def batches(self) -> tuple[Batch, ...]:
         """Random pairs far from the rim, with random colors and roughnesses of the lobe."""
         rng, count = samples.generator(), self.counts.few
-        inputs = self.taken(self.lobe.random_inputs(rng, count))
+        inputs = self.supported(self.lobe.random_inputs(rng, count))
         wo, wi = samples.directions(rng, count), samples.directions(rng, count)
         batch = Batch(wo, wi, inputs)
-        return (batch.where(_is_shown(batch, samples.LOBE_RIM)),)
+        return (batch.where(_is_renderable(batch, samples.LOBE_RIM)),)
 
     def direct(self, batch: Batch) -> Array:
         ports = cast(SurfaceLobe, self.spec).ports
@@ -632,7 +629,7 @@ class LobesBelow(Shown):
 class RenderedLobes(LobesBelow):
     """Diffuse lobes below other lobes, rendered by testrender."""
 
-    own_errors: ClassVar[Errors] = {"value": BELOW}
+    engine_errors: ClassVar[Errors] = {"value": BELOW}
 
 
 def diffuse_alone(evaluate: Callable[[Batch], Array], batch: Batch) -> Array:
@@ -787,7 +784,7 @@ class CyclesPictures(Spheres):
     """Pictures of a rough diffuse node by Cycles, which uses a closure of its own for the node."""
 
     abilities = Ability.DIFFUSE | Ability.LIGHT
-    own_errors: ClassVar[Errors] = {
+    engine_errors: ClassVar[Errors] = {
         "value": CYCLES_RAY,
         "albedo": CYCLES_NOISE,
         "lambert": CYCLES_RAY,
@@ -873,7 +870,7 @@ class EmissionPictures(Spheres):
 
     abilities = Ability.EMISSION | Ability.LIGHT
     scenes = (Scene("dark"),)
-    own_errors: ClassVar[Errors] = {"value": PICTURE_RADIANCE}
+    engine_errors: ClassVar[Errors] = {"value": PICTURE_RADIANCE}
 
     def shader_of(self, inputs: Values) -> Shader:
         return self.implemented(self.spec.document(inputs))
@@ -902,7 +899,7 @@ BACKENDS: dict[str, tuple[type[Backend], ...]] = {
     "closures": (Closures,),
     "functions": (Functions,),
     "rendered": (Rendered, RenderedLobes),
-    "pictures": (CyclesPictures, Traced, EmissionPictures, InTheDark, DarkPictures, UtilityOsl),
+    "pictures": (CyclesPictures, Traced, EmissionPictures, Media, DarkPictures, UtilityOsl),
     "drawn pictures": (Drawn,),
     "half pictures": (Half,),
 }

@@ -7,7 +7,7 @@ lacks nodes of the release is an older version and is not compared. A library wi
 in MaterialX's own documents may be a newer version, so differences of that library are permitted.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -20,7 +20,7 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.conformance import check, spec
-from mxeon.conformance.results import NOT_RUN, Cause, Diagnosis, Kind, Quantity, Result
+from mxeon.conformance.results import NOT_RUN, Cause, Diagnosis, Kind, Quantity, Result, grouped
 from mxeon.conformance.samples import Array, float32, generator, sky_map
 from mxeon.conformance.specs import ALL, utilities
 from mxeon.conformance.tolerance import Measurement, Term, Tolerance, count_of, roundings, sum_of
@@ -226,10 +226,9 @@ class Comparison:
 
         If several nodes differ in the same text, only the first with different values is reported.
         """
-        groups: dict[object, list[str]] = {}
-        for definition in self._release.getNodeDefs():
-            if change := self._change(definition.getName()):
-                groups.setdefault(change, []).append(definition.getName())
+        names = (definition.getName() for definition in self._release.getNodeDefs())
+        groups = grouped(names, self._change)
+        groups.pop(None, None)
         causes: list[Cause] = []
         remaining = list(groups.values())
         for _ in range(MOST):
@@ -248,17 +247,16 @@ class Comparison:
             elif others:
                 remaining.append(others)
         if remaining:
-            names = ", ".join(chain.from_iterable(remaining))
+            unevaluated = ", ".join(chain.from_iterable(remaining))
             reason = f"written differently, and {MOST} others with other changes were evaluated"
-            self.unjudged.append((names, reason))
+            self.unjudged.append((unevaluated, reason))
         return causes
 
     def _pair(self, name: str) -> tuple[mx.NodeDef, mx.NodeDef, mx.Element, mx.Element]:
-        """A node's definitions in the library and the release, and their implementations."""
         own, released = (each.getNodeDef(name) for each in (self._document, self._release))
         return own, released, *(each.getImplementation(self._target) for each in (own, released))
 
-    def _change(self, name: str) -> object:
+    def _change(self, name: str) -> Hashable:
         """A key for how a node differs from the release; None for equal nodes and for models."""
         own, released, code, released_code = self._pair(name)
         if released_code is None:

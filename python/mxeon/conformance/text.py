@@ -146,23 +146,20 @@ def _arguments(library: str, release: mx.Document) -> Faults:
 
 SOURCES = ("genglsl", "genslang", "genmsl", "genosl")  # targets with source files
 TEXT_ONLY = tuple(row.target for row in hosts.HOSTS if row.needs)  # targets without a host
-# Matches the call that fills a node's lobe, or the lobe's expression.
+# A call that fills the variable `lobe_out`, or an expression that the variable is set to.
 FILLED = re.compile(r"\b(\w+\([^;]*), lobe_out\);")
 ASSIGNED = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
 CALLEE = re.compile(r"(?:\w+::)*\w+(?=\()")
 
 
-def source(subject: lobes.ScatteringSpec, target: str, library: str) -> str:
-    """Generated pixel shader of a node, whose inputs are variables named `lobe_` plus the name."""
+def _lobe_expression(subject: lobes.ScatteringSpec, target: str, library: str) -> str:
+    """The expression of a node in a generated shader; `lobe_` and a name is an input's variable."""
     frame = {"normal": (0.0, 0.6, 0.8), "tangent": (1.0, 0.0, 0.0)}
     document = subject.document({name: frame[name] for name in frame if name in subject.names})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", generation.ApproximationWarning)
-        return generation.generate(document, target, library=library)[0].stages["pixel"]
-
-
-def _expression(text: str) -> str:
-    if filled := FILLED.search(text):
+        text = generation.generate(document, target, library=library)[0].stages["pixel"]
+    if filled := FILLED.search(text):  # such a variable is also set to an empty lobe
         return f"{filled[1]})"
     if assigned := ASSIGNED.search(text):
         return assigned[1]
@@ -176,7 +173,7 @@ def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object])
 
 def _dropped_inputs(subject: lobes.ScatteringSpec, target: str, library: str) -> Faults:
     """Inputs that are never passed: no argument of a call has the unique value of the input."""
-    expression = _expression(source(subject, target, library))
+    expression = _lobe_expression(subject, target, library)
     names = tuple(subject.types) if isinstance(subject, lobes.PbrSpec) else subject.names
     inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}
 
@@ -238,7 +235,7 @@ FUNCTIONS: Mapping[str, object] = {
 
 def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
     """Closure arguments that differ from the node's inputs; the control drops the weight."""
-    expression = _expression(source(subject, "mdl", library))
+    expression = _lobe_expression(subject, "mdl", library)
     rng = generator()
     drawn = subject.random_inputs(rng, DRAWS)
     rows = {name: each.reshape(DRAWS, -1) for name, each in drawn.items()}

@@ -100,7 +100,7 @@ class Native(backends.CyclesPictures):
 class Exact(Native):
     """A node on a sphere, for renderers whose points and light are exact up to rounding."""
 
-    own_errors: ClassVar[Errors] = {
+    engine_errors: ClassVar[Errors] = {
         "value": backends.EXACT,
         "albedo": backends.EXACT_ALBEDO,
         "lambert": backends.EXACT,
@@ -158,13 +158,13 @@ class Facets(Exact):
 class CoarseFacets(Facets):
     """A node on the polyhedron, for a renderer that stores light in few bits."""
 
-    own_errors: ClassVar[Errors] = {"value": COARSE_FACETS, "albedo": COARSE_FACETS}
+    engine_errors: ClassVar[Errors] = {"value": COARSE_FACETS, "albedo": COARSE_FACETS}
 
 
 class FacetPairs(Facets):
     """A node that can be evaluated for any pair; only environments need the polyhedron."""
 
-    own_errors: ClassVar[Errors] = {
+    engine_errors: ClassVar[Errors] = {
         "value": FACET_PAIRS,
         "albedo": FACET_NOISE,
         "reciprocity": FACET_PAIRS,
