@@ -68,7 +68,7 @@ class Backend(ABC):
     abilities: ClassVar[Ability]  # supported kinds of nodes and checks
     # Axes of `checks.states` on which the backend supports only the first state.
     plain: ClassVar[tuple[str, ...]] = ()
-    whole: ClassVar[bool] = False  # whether controls and expensive checks use all samples
+    all_samples: ClassVar[bool] = False  # whether controls and expensive checks use all samples
     fewer: ClassVar[Counts | None] = None  # counts that replace those of specs with more pairs
     engine_errors: ClassVar[Errors | None] = None  # errors that replace those of the spec
     methods: ClassVar[Methods] = UNCHOSEN  # lighting methods fixed by the engine
@@ -144,7 +144,7 @@ class Backend(ABC):
     def few(self) -> tuple[Batch, ...]:
         """A subset of the samples, for expensive checks and controls."""
         spec = cast(ValueSpec, self.spec)
-        return self.batches if self.whole else spec.few(self.batches, self.counts)
+        return self.batches if self.all_samples else spec.few(self.batches, self.counts)
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
@@ -490,7 +490,7 @@ VIEWS, PIXELS = 8, 1 << 12  # number of views per case, and of pixels in their c
 MEAN_OF_PATHS = "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms"
 NOISE = sum_in(Quantity.ALBEDO, Term(5.0 * 0.01 / math.sqrt(PIXELS / VIEWS), MEAN_OF_PATHS))
 TABLES = "testrender's tables, off by 1e-3 for a white dielectric"
-PASSED = tolerance.given(2e-3, Quantity.ALBEDO, TABLES)
+PASSED = tolerance.single(2e-3, Quantity.ALBEDO, TABLES)
 NODES_MOVED = Term(1.2e-3, "32 x 32 nodes, those next to the view moved by up to 0.08")
 INTEGRAL = sum_in(Quantity.ALBEDO, SHARP.term("an average of values"), NODES_MOVED)
 LIGHT = sum_in(Quantity.LIGHT, INTEGRAL.term("an integral of values"), PASSED.term("a throughput"))
@@ -605,7 +605,7 @@ class LobesBelow(RenderablePairs):
     """The diffuse lobe of a surface shader, isolated from the lobes above; see SurfaceLobe."""
 
     abilities = Ability.BELOW | Ability.LIGHT
-    whole = True
+    all_samples = True
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -728,7 +728,7 @@ class Spheres(Pictures):
     """One picture per light and material; lit points far from the rim are the samples."""
 
     scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
-    whole = True
+    all_samples = True
 
     @property
     def materials(self) -> Sequence[Values]:
@@ -880,7 +880,7 @@ class UtilityOsl(Evaluating):
     """Outputs of a utility node on an OSL renderer, which has its own math functions."""
 
     abilities = Ability.OUTPUT | Ability.LIGHT
-    whole = True
+    all_samples = True
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:

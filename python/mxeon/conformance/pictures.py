@@ -32,9 +32,9 @@ from mxeon.conformance.tolerance import (
     Tolerance,
     count_of,
     errors_of,
-    given,
     roundings,
     scaled,
+    single,
     sum_in,
 )
 from mxeon.errors import DocumentError, NotRun, OutsideModel, ShaderError
@@ -64,9 +64,9 @@ COSINES = 256  # number of views tried to find a sheen's largest albedo
 POINT_AND_VALUE = roundings(16, "of a pixel's point"), roundings(32, "in the value")
 PLAIN = sum_in(Quantity.PICTURE, *POINT_AND_VALUE, exact=True)
 # OpenGL requires this filtering precision; neighboring texels differ by at most 1.
-TEXTURED = given(2.0**-8, Quantity.PICTURE, "a filter's weights of 8 bits")
+TEXTURED = single(2.0**-8, Quantity.PICTURE, "a filter's weights of 8 bits")
 CODES = f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
-ENCODED = given(SLOPE * TEXTURED.value, Quantity.PICTURE, CODES)
+ENCODED = single(SLOPE * TEXTURED.value, Quantity.PICTURE, CODES)
 FITTED, SHADED = (
     Tolerance((each, microfacets.sum_over(256)), Quantity.FITTED_PICTURE, scaled, exact=True)
     for each in (

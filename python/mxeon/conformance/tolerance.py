@@ -202,13 +202,13 @@ def sum_in(quantity: Quantity, *terms: Term, exact: bool = False) -> Tolerance:
     return Tolerance(terms, quantity, absolute, exact)
 
 
-def given(value: float, quantity: Quantity, words: str, metric: Metric = absolute) -> Tolerance:
+def single(value: float, quantity: Quantity, words: str, metric: Metric = absolute) -> Tolerance:
     """A tolerance with a single term, which is not rounded up."""
     return Tolerance((Term(value, words),), quantity, metric, exact=True)
 
 
 def count_of(quantity: Quantity) -> Tolerance:
-    return given(0.0, quantity, "a count")
+    return single(0.0, quantity, "a count")
 
 
 def rounded_up(value: float) -> float:

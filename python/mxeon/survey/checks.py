@@ -12,13 +12,13 @@ from mxeon.conformance.check import Check, family
 from mxeon.conformance.checks import CHECKS, paths
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, generator
-from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
+from mxeon.conformance.tolerance import Compared, Measurement, roundings, single, sum_of
 from mxeon.models.sampling import eon_cltc_pdf
 from mxeon.survey.backends import Renderer
 from mxeon.survey.specs import RendererSpec
 
 # A correct sampler exceeds this in one run of 3.5 million.
-CHI_SQUARE = given(5.0, Quantity.DEVIATIONS, "five standard deviations")
+CHI_SQUARE = single(5.0, Quantity.DEVIATIONS, "five standard deviations")
 # The density has the fourth power of the transformed direction, which loses three bits.
 OWN_DENSITY = sum_of(
     roundings(48 * 2.0**3, "of a density, three bits of it lost"), quantity=Quantity.DENSITY

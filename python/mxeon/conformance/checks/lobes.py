@@ -26,7 +26,7 @@ from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, Transmissio
 from mxeon.conformance.specs.subsurface import ON_SPHERES, RINGS, SubsurfaceSpec, inner, spread
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.specs.utilities import UtilitySpec
-from mxeon.conformance.tolerance import Compared, Term, given, roundings, sum_in, sum_of
+from mxeon.conformance.tolerance import Compared, Term, roundings, single, sum_in, sum_of
 from mxeon.errors import Implied
 from mxeon.hosts import HOSTS, front_lit_only
 from mxeon.hosts.calls import NORMAL
@@ -47,7 +47,7 @@ SURROUNDINGS = sum_in(
     Term(samples.SLOPE * ARC_SINE, "an engine's arc sine, times the slope"),
     Term(2.0**-11, "half floats"),
 )
-ZERO = given(0.0, Quantity.DIFFERENCE, "a product with 0 is 0 in any precision")
+ZERO = single(0.0, Quantity.DIFFERENCE, "a product with 0 is 0 in any precision")
 OPAQUE = sum_in(Quantity.THROUGHPUT, roundings(1, "of 1 - weight"))
 
 
@@ -279,7 +279,7 @@ def explain_region(key: str, case: Case) -> Diagnosis:
 
 PAIRS = 16  # pairs per value
 LEAST_WEIGHT = 0.3  # least weight and occlusion, so that effects stay visible
-TOLERANCES = given(1.0, Quantity.TOLERANCES, "the tolerance of each quantity")
+TOLERANCES = single(1.0, Quantity.TOLERANCES, "the tolerance of each quantity")
 
 
 def quantities(case: Case, batch: Batch, right: Batch) -> Iterator[tuple[str, Compared]]:

@@ -26,7 +26,7 @@ from mxeon.conformance.spec import NO_ABILITY, Ability, LobeSpec, Spec, draw, ma
 from mxeon.conformance.specs import combinations, emission
 from mxeon.conformance.specs.microfacets import PASSING, THROUGHPUT, FacetSpec, TransmissionSpec
 from mxeon.conformance.specs.surface_shaders import ALBEDO, SurfaceShaderSpec
-from mxeon.conformance.tolerance import Compared, Measurement, Term, given, roundings, sum_of
+from mxeon.conformance.tolerance import Compared, Measurement, Term, roundings, single, sum_of
 from mxeon.hosts import base, host_row
 from mxeon.hosts.calls import NORMAL, TANGENT
 
@@ -670,7 +670,7 @@ ROWS = (
     PATHS(key="pdf",
           claim="A path tracer draws by the density that it states, which integrates to the share of draws it keeps.",
           applies=DRAWN, measure=pdf,
-          tolerance=given(
+          tolerance=single(
               MOST_DEVIATIONS, Quantity.DEVIATIONS,
               "chance reaches 6 once in 10^7 draws of a chi-square"),
           control=controls.with_values(
@@ -701,7 +701,7 @@ ROWS = (
     PATHS(key="path_random",
           claim="The random numbers of a tracer's text are those of pcg4d.",
           applies=check.family(LobeSpec, lambda spec: spec.node == "eon_diffuse_bsdf"), measure=path_random,
-          tolerance=given(0.0, Quantity.VALUE, "the same bits"),
+          tolerance=single(0.0, Quantity.VALUE, "the same bits"),
           control=controls.scale("numbers are half as large", 0.5),
           explain=diagnosis.defect("other_random_numbers")),
     PATHS(key="path_inside",

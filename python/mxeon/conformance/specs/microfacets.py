@@ -17,7 +17,7 @@ from mxeon.conformance import samples, spec, tolerance
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, generator, rounded
 from mxeon.conformance.specs import lobes, sheen
-from mxeon.conformance.tolerance import Term, Tolerance, given, roundings, sum_in, sum_of
+from mxeon.conformance.tolerance import Term, Tolerance, roundings, single, sum_in, sum_of
 from mxeon.models import sampling, transmission
 from mxeon.models.microfacet import Lobe, fresnel, node_albedo, uncompensated
 from mxeon.models.microfacet.defects import MEAN_ALPHA
@@ -165,7 +165,7 @@ BEYOND: tuple[tuple[str, str, float, float, str], ...] = (
 OUTSIDE_ERRORS = {
     (quantity, name, value): compensated(error, words)
     if quantity == "value"
-    else given(error, Quantity.ALBEDO, words)
+    else single(error, Quantity.ALBEDO, words)
     for quantity, name, value, error, words in BEYOND
 }
 # fmt: off
@@ -491,7 +491,7 @@ FILM_ALBEDO = sum_in(
     Term(ESS_FIT, "the fit of E_ss"),
 )
 # A metal with a lower index than the film's reflects totally; three cosines do not resolve fringes.
-FILM_TRAPPED = given(FILM_SEEN - FILM_OILED, Quantity.ALBEDO, "films of a lower index than 1.25")
+FILM_TRAPPED = single(FILM_SEEN - FILM_OILED, Quantity.ALBEDO, "films of a lower index than 1.25")
 
 # Pictures weight errors by the view's cosine.
 FILM_SHOWN = sum_in(
@@ -512,7 +512,7 @@ def film_terms(alpha: float) -> tuple[Term, Term]:
 
 def _mean(value: float, words: str) -> Tolerance:
     """Tolerance of the rms error of a set of films; tools/fits/thin_film.py measures the value."""
-    return given(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
+    return single(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
 
 
 # UNSUMMED is largest for thin films on metals at grazing; the error of F_ss, for unequal indices.

@@ -30,9 +30,9 @@ EVEN = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
 FARTHER = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 6.0, 9.0, 12.0)
 
 # The largest error is 9.3e-3 and on the light's axis.
-RINGS = tolerance.given(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
+RINGS = tolerance.single(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
 MEAN_OF_CIRCLES = "twice the mean over a sphere of the errors of six circles"
-RINGS_MEAN = tolerance.given(0.003, Quantity.MEAN, MEAN_OF_CIRCLES, tolerance.mean_error)
+RINGS_MEAN = tolerance.single(0.003, Quantity.MEAN, MEAN_OF_CIRCLES, tolerance.mean_error)
 
 
 class SubsurfaceSpec(PbrSpec):

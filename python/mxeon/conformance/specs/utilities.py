@@ -15,7 +15,7 @@ from mxeon.conformance import spec, tolerance
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, float32, generator
 from mxeon.conformance.spec import EngineError, Input
-from mxeon.conformance.tolerance import Compared, Term, Tolerance, given, roundings, sum_in, sum_of
+from mxeon.conformance.tolerance import Compared, Term, Tolerance, roundings, single, sum_in, sum_of
 from mxeon.hosts.calls import GRAPH
 from mxeon.models import diffuse
 from mxeon.models.nodes import utilities
@@ -69,7 +69,7 @@ VALUES: Mapping[str, Tolerance] = {
     "deon_hair_absorption_from_melanin": sum_of(roundings(16), quantity=Quantity.OUTPUT),
     "chiang_hair_absorption_from_color": sum_of(roundings(2 * 12, "of a square"), quantity=Quantity.OUTPUT),
 }
-OSL_BLACKBODY = given(
+OSL_BLACKBODY = single(
     4e-3, Quantity.OUTPUT,
     "OSL's blackbody() has an observer from 380 nm to 780 nm, its own table and primaries", tolerance.scaled)
 OTHERS: Mapping[str, dict[str, Tolerance]] = {"blackbody": {"osl_value": OSL_BLACKBODY}}
