@@ -29,12 +29,12 @@ def texts(path: Path) -> list[str]:
         match = COMMENT.search(line)
         if not match or (match["mark"] == "#") != (path.suffix == ".py"):
             continue
-        whole = not line[: match.start()].strip()
-        if whole and last == number - 1:
+        is_line = not line[: match.start()].strip()
+        if is_line and last == number - 1:
             found[-1] += f" {match['text']}"
         else:
-            found.append(match["text"] if whole else line.strip())
-        last = number if whole else 0
+            found.append(match["text"] if is_line else line.strip())
+        last = number if is_line else 0
     return found
 
 

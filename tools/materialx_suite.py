@@ -49,7 +49,7 @@ loaded before them:
 | pictures of the C++ render test | {blank} |
 
 - Failed with both: {both}.
-- Failed with eonlib alone: {ours}.
+- Failed with eonlib alone: {new}.
 - Implementations of eonlib that no document of the suite uses: {untested}. With its option `checkImplCount`, the suite's
   tests of generated GLSL fail if there are any. They cannot notice [nodes that have no
   implementation](upstream/genglsl_missing_nodes.md), like all of these but `eon_diffuse_bsdf` in stock GLSL.
@@ -218,7 +218,7 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
         f"{sum(not path.exists() for path in paths.values())} of {len(paths)}"
         for paths in (before, after)
     )
-    ours = [each for each in failed[EONLIB] if each not in failed[STOCK]]
+    new = [each for each in failed[EONLIB] if each not in failed[STOCK]]
     git = ["git", "-C", str(checkout), "ls-files", "--deleted"]
     absent = subprocess.run(git, capture_output=True, text=True).stdout.split()
     PAGE.write_text(
@@ -229,7 +229,7 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
             drawn=len(drawn),
             visible=len(visible),
             both="; ".join(failed[STOCK]) or "nothing",
-            ours="; ".join(ours) or "nothing",
+            new="; ".join(new) or "nothing",
             untested=", ".join(f"`{each}`" for each in untested(work / EONLIB)) or "none",
             figures=figures,
             lines=lines,

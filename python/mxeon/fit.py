@@ -99,8 +99,8 @@ def read_merl(path: AnyPath, step: int = 6) -> MeasuredBrdf:
     theta_h, theta_d, phi_d = ((each + 0.5) / n for each, n in zip(cells, MERL_CELLS, strict=True))
     wo, wi = merl_directions(0.5 * np.pi * theta_h**2, 0.5 * np.pi * theta_d, np.pi * phi_d)
     value = np.stack([each[tuple(cells)] for each in values], axis=-1) * MERL_SCALES
-    kept = (wo[:, 2] > 0.0) & (wi[:, 2] > 0.0) & (value >= 0.0).all(axis=1)
-    return MeasuredBrdf(wo[kept], wi[kept], value[kept])
+    valid = (wo[:, 2] > 0.0) & (wi[:, 2] > 0.0) & (value >= 0.0).all(axis=1)
+    return MeasuredBrdf(wo[valid], wi[valid], value[valid])
 
 
 def merl_directions(theta_h: Array, theta_d: Array, phi_d: Array) -> tuple[Array, Array]:

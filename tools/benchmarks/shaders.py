@@ -21,15 +21,15 @@ from tools.benchmarks.rounds import Check, Figure, Group, clock_of, interleave
 COUNT, INVOCATIONS = 256, 2**14  # calls per invocation, and invocations
 KERNEL = """#version 430
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) buffer Arguments { float given[]; };
+layout(std430, binding = 0) buffer Arguments { float arguments[]; };
 layout(std430, binding = 1) buffer Sums { float sums[]; };
 uniform int calls;
 %s
 void main()
 {
     uint k = gl_GlobalInvocationID.x, n = 7u * k;
-    float mu_o = given[n], mu_i = given[n + 1u], turn = given[n + 2u], roughness = given[n + 3u];
-    vec3 rho = vec3(given[n + 4u], given[n + 5u], given[n + 6u]);
+    float mu_o = arguments[n], mu_i = arguments[n + 1u], turn = arguments[n + 2u], roughness = arguments[n + 3u];
+    vec3 rho = vec3(arguments[n + 4u], arguments[n + 5u], arguments[n + 6u]);
     vec3 sum = vec3(0.0);
     for (int i = 0; i < calls; ++i)
     {
@@ -68,9 +68,9 @@ def library_source():
     return "\n".join([twins.source("glsl"), macros, square, constants, *functions])
 
 
-def value(given):
+def value(arguments):
     """pi f cos in float64 for the first arguments of all invocations."""
-    mu_o, mu_i, turn, roughness, *rho = np.float64(given.T)
+    mu_o, mu_i, turn, roughness, *rho = np.float64(arguments.T)
     S_o, S_i, x = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2), 2.0 * turn - 1.0
     wo = np.stack([S_o, 0.0 * S_o, mu_o], -1)
     wi = np.stack([S_i * x, S_i * np.sqrt(1.0 - x * x), mu_i], -1)
@@ -79,8 +79,8 @@ def value(given):
 
 def measure(rounds=21, invocations=INVOCATIONS, calls=COUNT):
     context = moderngl.create_standalone_context(require=430, backend="egl")
-    given = np.float32(0.001 + 0.998 * np.random.default_rng(5).random((invocations, 7)))
-    context.buffer(given.tobytes()).bind_to_storage_buffer(0)
+    arguments = np.float32(0.001 + 0.998 * np.random.default_rng(5).random((invocations, 7)))
+    context.buffer(arguments.tobytes()).bind_to_storage_buffer(0)
     sums = context.buffer(reserve=12 * invocations)
     sums.bind_to_storage_buffer(1)
 
@@ -89,13 +89,13 @@ def measure(rounds=21, invocations=INVOCATIONS, calls=COUNT):
         kernel.run(invocations // 64)
         context.finish()
 
-    text, exact = library_source(), value(given)
+    text, exact = library_source(), value(arguments)
     kernels = {name: context.compute_shader(KERNEL % (text, call)) for name, call in CALLS.items()}
     checks = []
     for name, tolerance in TOLERANCES.items():
         run(kernels[name], 1)
         found = np.frombuffer(sums.read(), np.float32).reshape(-1, 3)
-        error = np.abs(np.pi * np.float64(given[:, 1:2]) * found - exact).max()
+        error = np.abs(np.pi * np.float64(arguments[:, 1:2]) * found - exact).max()
         checks.append(Check(f"EON, {name}", float(error), tolerance))
     renderer = context.info["GL_RENDERER"]
     runs = {name: partial(run, each, calls) for name, each in kernels.items()}

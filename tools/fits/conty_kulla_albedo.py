@@ -82,8 +82,8 @@ def points(count=37):
         scaled = np.arange(1, count + 1) * 6.0 / count * np.sqrt(roughness)
         mu = np.unique(np.concatenate([ends[1:], scaled[scaled < 1.0], [1e-4, 1e-3]]))
         E = albedo(mu, eighths)
-        kept = (E > LEAST) & (E < TOP)
-        rows.append((mu[kept], np.full_like(mu, roughness)[kept], E[kept]))
+        selected = (E > LEAST) & (E < TOP)
+        rows.append((mu[selected], np.full_like(mu, roughness)[selected], E[selected]))
     return tuple(np.concatenate(each) for each in zip(*rows, strict=True))
 
 

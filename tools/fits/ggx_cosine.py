@@ -196,14 +196,14 @@ def sample(curves, mu, alpha):
     albedo, means = averages(mu, alpha, functions)
     columns, rows = [], zip(functions, curves.shapes, curves.counts, strict=True)
     for j, (function, shape, count) in enumerate(rows):
-        kept = (np.arange(len(mu)) + j) % 3 == 0
-        c = inverse(means[j][kept], function)
+        selected = (np.arange(len(mu)) + j) % 3 == 0
+        c = inverse(means[j][selected], function)
         low, high = np.maximum(c - 1e-5, 0.0), np.minimum(c + 1e-5, 1.0)
         slope = (function(low) - function(high)) / (high - low)
-        arguments, factor = variables(curves, mu[kept], alpha[kept], shape)
+        arguments, factor = variables(curves, mu[selected], alpha[selected], shape)
         # Where the curve is flat, c still needs a weight: otherwise c could drift to steep parts.
-        weight = np.maximum(count * slope, FLAT) * albedo[kept] * factor
-        columns.append((*arguments, (c - mu[kept]) / factor, weight))
+        weight = np.maximum(count * slope, FLAT) * albedo[selected] * factor
+        columns.append((*arguments, (c - mu[selected]) / factor, weight))
     *arguments, value, weight = (np.concatenate(each) for each in zip(*columns, strict=True))
     return arguments, value, weight
 

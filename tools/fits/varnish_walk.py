@@ -57,9 +57,9 @@ def interface(w, alpha, ior, rng):
 def walk(mu, roughness, alpha, ior, paths=PATHS):
     """Light that each path returns for each of RHO, (paths, 5), and its direction, (paths, 3)."""
     rng = np.random.default_rng(SEED)
-    out, inside = interface(np.tile(view(mu), (paths, 1)), alpha, ior, rng)
-    total, weight = np.where(inside, 0.0, 1.0)[:, np.newaxis] + 0.0 * RHO, 1.0
-    active, w = np.flatnonzero(inside), out[inside]
+    out, below = interface(np.tile(view(mu), (paths, 1)), alpha, ior, rng)
+    total, weight = np.where(below, 0.0, 1.0)[:, np.newaxis] + 0.0 * RHO, 1.0
+    active, w = np.flatnonzero(below), out[below]
     while active.size:
         # Both layers are isotropic, so the azimuth of a direction does not matter.
         wi, pdf = eon_sample(w, rng.random((active.size, 2)), roughness, rho=1.0)

@@ -94,15 +94,15 @@ def loss_figures():
         "quartic relative": (quartic / exact).max(),
     }
     low, high = np.float32([1e-6, 1.0]).view(np.int32)
-    ours = []
+    largest = []
     for start in range(low, high + 1, 1 << 20):
         bits = np.arange(start, min(start + (1 << 20), high + 1), dtype=np.int32)
         mu = bits.view(np.float32)
         exact = fon_loss(np.float64(mu)) / (1.0 + C1)
         closed, fitted = (np.abs(loss(mu) - exact) for loss in (closed_loss, fitted_loss))
-        ours.append(((closed / exact).max(), fitted.max(), (fitted / exact).max()))
+        largest.append(((closed / exact).max(), fitted.max(), (fitted / exact).max()))
     names = "closed relative", "fitted", "fitted relative"
-    return found | dict(zip(names, np.max(ours, axis=0).tolist(), strict=True))
+    return found | dict(zip(names, np.max(largest, axis=0).tolist(), strict=True))
 
 
 # --- sampling and albedos -------------------------------------------------------------------------
@@ -173,8 +173,8 @@ def energy_rows():
     )
     around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # views along tangent and bitangent
     yield "Microfacet BRDF, F = 1, alpha 1", "as it is", E
-    whole = dielectric_albedo_dir(wo, 1.0, ROUGH, 0.0)  # index 0 reflects everything
-    yield "", "times 1 + F_ss (1 - E_ss) / E_ss", whole
+    compensated = dielectric_albedo_dir(wo, 1.0, ROUGH, 0.0)  # index 0 reflects everything
+    yield "", "times 1 + F_ss (1 - E_ss) / E_ss", compensated
     stretched = models.ggx_albedo_dir_anisotropic(around, [0.001, 1.0])
     yield "alpha 0.001 and 1", "masking by direction, as corrected in July 2026", stretched
     yield "Microfacet BTDF, rough glass, alpha 1", "R compensated, T as printed", R + T

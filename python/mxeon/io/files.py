@@ -21,26 +21,26 @@ Names: TypeAlias = AnyPath | Iterable[AnyPath]  # a name or path, or several
 TEMPORARY = ".mxeon-"  # prefix of incomplete files and folders
 
 
-def one_name(parameter: str, given: object) -> str:
+def one_name(parameter: str, value: object) -> str:
     """A name or path as text; raise InputError for anything else, such as a list."""
-    name = os.fspath(given) if isinstance(given, str | os.PathLike) else given
+    name = os.fspath(value) if isinstance(value, str | os.PathLike) else value
     if not isinstance(name, str):
-        raise InputError(f"{parameter} must be one name or path; got {given!r}")
+        raise InputError(f"{parameter} must be one name or path; got {value!r}")
     return name
 
 
-def names_of(parameter: str, given: object, least: int = 1) -> tuple[str, ...]:
+def names_of(parameter: str, value: object, least: int = 1) -> tuple[str, ...]:
     """Convert a name or path, or several, to strings.
 
     >>> names_of("hosts", "gl"), names_of("files", [Path("a.mtlx"), "b.mtlx"])
     (('gl',), ('a.mtlx', 'b.mtlx'))
     """
-    if isinstance(given, str | bytes | os.PathLike):
-        return (one_name(parameter, given),)
+    if isinstance(value, str | bytes | os.PathLike):
+        return (one_name(parameter, value),)
     rule = f"{parameter} must be a name or path, or several"
-    if not isinstance(given, Iterable):
-        raise InputError(f"{rule}; got {given!r}")
-    names = tuple(one_name(f"each of {parameter}", each) for each in given)
+    if not isinstance(value, Iterable):
+        raise InputError(f"{rule}; got {value!r}")
+    names = tuple(one_name(f"each of {parameter}", each) for each in value)
     if len(names) < least:
         raise InputError(f"{rule}; got none")
     return names

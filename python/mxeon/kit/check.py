@@ -225,8 +225,8 @@ def _channels(names: Sequence[str]) -> list[int]:
     for index, name in enumerate(names):
         layer, _, channel = name.rpartition(".")
         layers.setdefault(layer, {})[channel.upper()] = index
-    whole = {layer: rgb for layer, rgb in layers.items() if rgb.keys() >= set(CHANNELS)}
-    chosen = whole.get("") or (len(whole) == 1 and next(iter(whole.values())))
+    complete = {layer: rgb for layer, rgb in layers.items() if rgb.keys() >= set(CHANNELS)}
+    chosen = complete.get("") or (len(complete) == 1 and next(iter(complete.values())))
     if not chosen:
         raise Unusable(f"must hold one R, G and B; got channels {', '.join(names)}")
     return [chosen[channel] for channel in CHANNELS]
@@ -236,7 +236,7 @@ def _check_depth(values: NDArray[np.float64]) -> None:
     """Refuse eight-bit values: few distinct values, all multiples of 1 / 255 up to 1."""
     distinct = len(np.unique(values))
     steps = values * LEVELS
-    whole = values.max() <= 1.0 and np.abs(steps - np.rint(steps)).max() <= ROUNDED
-    if 2 < distinct < len(values) / DISTINCT and whole:
+    rounded = values.max() <= 1.0 and np.abs(steps - np.rint(steps)).max() <= ROUNDED
+    if 2 < distinct < len(values) / DISTINCT and rounded:
         rule = "must hold numbers that were never rounded to eight bits"
         raise Unusable(f"{rule}; got multiples of 1/255")

@@ -35,8 +35,8 @@ def register_functions() -> None:
         rounded = drjit.log(u) * (x / drjit.select(u == 1.0, 1.0, u - 1.0))
         return cast(Array, drjit.select(u == 1.0, x, rounded))
 
-    others = {"stack": vector, "where": drjit.select, "log1p": log1p, "finfo": np.finfo}
-    FUNCTIONS["drjit"] = cast(Namespace, SimpleNamespace(**vars(drjit) | others))
+    functions = {"stack": vector, "where": drjit.select, "log1p": log1p, "finfo": np.finfo}
+    FUNCTIONS["drjit"] = cast(Namespace, SimpleNamespace(**vars(drjit) | functions))
     OTHERS["drjit"] = drjit.ArrayBase
 
 
@@ -52,8 +52,8 @@ def octave_cells(x: Array) -> tuple[Array, Array]:
     drjit = import_module("drjit")
     integer, single = drjit.uint32_array_t(type(x)), drjit.float32_array_t(type(x))
     x = drjit.maximum(x, 2.0**-OCTAVES)
-    inside = drjit.minimum(drjit.detach(x), 1.0 - 2.0**-24)
-    bits = drjit.reinterpret_array(integer, single(inside))
+    clamped = drjit.minimum(drjit.detach(x), 1.0 - 2.0**-24)
+    bits = drjit.reinterpret_array(integer, single(clamped))
     # Reciprocal of the octave's start, a power of two, from the exponent bits.
     scale = type(x)(drjit.reinterpret_array(single, 0x7F000000 - (bits & 0x7F800000)))
     return (bits >> LOWER_BITS) - PARTS, drjit.fma(x, scale, -MIDDLE)

@@ -255,8 +255,8 @@ def _entries(document: str, text: str) -> set[tuple[str, ...]]:
     found = set()
     for each in elements:
         path = os.path.normpath(Path(document).parent / each.get("file", ""))
-        others = (each.get(name, "") for name in ("function", "name", "sourcecode"))
-        found.add((each.get("nodedef", ""), each.get("target", ""), path, *others))
+        rest = (each.get(name, "") for name in ("function", "name", "sourcecode"))
+        found.add((each.get("nodedef", ""), each.get("target", ""), path, *rest))
     return found
 
 

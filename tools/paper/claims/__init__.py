@@ -84,13 +84,13 @@ def page(sections: Sequence[Section]) -> str:
         holding = [row for row in rows if row[-1] == HOLDS]
         for row in holding:
             print("; ".join(row))
-        others = [row for row in rows if row[-1] != HOLDS]
-        in_part = [row for row in others if row[-1] == IN_PART]
+        rest = [row for row in rows if row[-1] != HOLDS]
+        in_part = [row for row in rest if row[-1] == IN_PART]
         tally = (
             f"{len(rows)} claims; verdicts: {len(holding)} holds, {len(in_part)} holds in part, "
-            f"{len(others) - len(in_part)} fails."
+            f"{len(rest) - len(in_part)} fails."
         )
-        lines = [f"| {' | '.join(cells)} |" for cells in (COLUMNS, *others)]
+        lines = [f"| {' | '.join(cells)} |" for cells in (COLUMNS, *rest)]
         lines.insert(1, "|---" * len(COLUMNS) + "|")
         lines += ["", f"These hold: {'; '.join(f'{row[0]}, {row[1]}' for row in holding)}."]
         parts.append("\n".join([f"## {section.heading}", "", tally, "", *lines, ""]))

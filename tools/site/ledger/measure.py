@@ -65,8 +65,8 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
     ]
     diagnosis = judged[0].diagnosis
     measures: dict[str, Any] = {"rows": rows, "place": place, "cause": fields(diagnosis.first)}
-    others = sorted((far, title) for title, far in diagnosis.distances.items())
-    nearest = [title for _, title in others if title != diagnosis.first.key]
+    ranking = sorted((distance, title) for title, distance in diagnosis.distances.items())
+    nearest = [title for _, title in ranking if title != diagnosis.first.key]
     if diagnosis.kind is Kind.MODEL and nearest:
         measures["next"] = nearest[0]
     return dict(json.loads(json.dumps(measures)))  # lists, as after reading, instead of tuples

@@ -118,10 +118,10 @@ def outcome(issue: Issue) -> str:
             subjects.setdefault((subject, False), []).append(f"`{check}`")
     parts = []
     for (subject, passes), checks in subjects.items():
-        one, several = (
+        singular, plural = (
             ("passes", "pass") if passes else ("shows another cause", "show another cause")
         )
-        parts.append(f"{_joined(checks)} of {subject} {several if checks[1:] else one}")
+        parts.append(f"{_joined(checks)} of {subject} {plural if checks[1:] else singular}")
     if not parts:
         return ""
     files = patches("materialx")
