@@ -10,7 +10,7 @@ from mxeon.errors import InputError
 from mxeon.hosts.path_tracer import PathTracerHost
 from mxeon.hosts.points import visible
 from mxeon.hosts.still import PAPER, floor, still
-from mxeon.io.tone import pbr_neutral
+from mxeon.io.srgb import pbr_neutral
 from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import FURNACE, STUDIO, Scene
 from mxeon.shaders.shader_ball import OBJECT

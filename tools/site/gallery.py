@@ -21,8 +21,7 @@ from mxeon.hosts import open_host
 from mxeon.hosts.points import visible
 from mxeon.hosts.still import still
 from mxeon.io.images import difference, difference_scale
-from mxeon.io.srgb import srgb_encoded
-from mxeon.io.tone import pbr_neutral
+from mxeon.io.srgb import pbr_neutral, srgb_encoded
 from mxeon.report.pieces import difference_pixels
 from mxeon.shaders.scene import BACK, FURNACE, STUDIO
 from tools.site import DOCS, brief

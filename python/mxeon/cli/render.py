@@ -86,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
     """Write a picture and print its path; return the exit status."""
     from mxeon.io.files import check_output
     from mxeon.io.images import PICTURES, write_picture
-    from mxeon.io.tone import pbr_neutral
+    from mxeon.io.srgb import pbr_neutral
     from mxeon.shaders.library import library_name
 
     inputs = arguments.inputs(options, [options.file], options.environment, options.shape)

@@ -21,7 +21,7 @@ from mxeon.hosts.points import MARGIN, visible, visible_at
 from mxeon.hosts.raster import FragmentHost
 from mxeon.hosts.textures import RADIANCE_SIZE, latlong_directions, read_latlong, reduced
 from mxeon.io.images import Floats
-from mxeon.io.tone import pbr_neutral
+from mxeon.io.srgb import pbr_neutral
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene, VisiblePoints, pixel_centers
 from mxeon.shaders.shader_ball import CENTER, FOOT_HEIGHT, FOOT_RADIUS, GROUND, OBJECT, RADIUS

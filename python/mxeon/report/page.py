@@ -30,8 +30,7 @@ from mxeon.conformance.results import (
 )
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.io.images import difference, difference_scale
-from mxeon.io.srgb import srgb_encoded
-from mxeon.io.tone import pbr_neutral
+from mxeon.io.srgb import pbr_neutral, srgb_encoded
 from mxeon.report import in_threads, pieces
 from mxeon.report.formats import causes_of, linked, nearest, vector
 from mxeon.shaders.scene import STUDIO
