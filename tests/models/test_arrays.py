@@ -28,26 +28,20 @@ from tools.site import arrays as table
 
 TINTS = ("rho", "color", "tint", "radiance", "base", "absorption", "scattering")
 TINTS += ("emission", "scattered", "behind")
-COLORS = {"rho", "color", "color0", "color82", "color90", "tint", "ior", "extinction"} | set(TINTS)
-PAIRS = (
-    "microfacet",
-    "ggx_",
-    "btdf",
-    "transmittance_dir",
-)  # name parts of functions whose roughness has two components
+COLORS = {"color0", "color82", "color90", "ior", "extinction", *TINTS}
+# Parts of the names of functions whose roughness has two components.
+PAIRS = ("microfacet", "ggx_", "btdf", "transmittance_dir")
 INTERFACES = "dielectric_over_eon", "varnished"
-# Functions that JAX takes seconds to compile; the functions of their factors are tested instead.
-COATS = ("brdf", "albedo_dir", "sample", "pdf")
-LONG = (
-    "chiang_hair_bcsdf",
-    *(f"{name}_{each}" for name in INTERFACES for each in COATS),
-)
-LONG += ("film_albedo_dir", "dielectric_albedo_dir", "conty_kulla_albedo_dir", "transmittance_dir")
 ROWS, FEW = 48, 4
-# Functions that sum thousands of quadrature nodes per row.
+# Functions that sum thousands of quadrature nodes per row, by the end of their names.
 FACETS = ("dielectric_albedo_dir", "conductor_albedo_dir", "schlick_albedo_dir")
 QUADRATURES = (*FACETS, "film_albedo_dir", "transmittance_dir", "ggx_albedo_dir_anisotropic")
 QUADRATURES += ("conty_kulla_albedo_dir",)
+# Functions that JAX takes seconds to compile; the functions of their factors are tested instead.
+LONG = ("chiang_hair_bcsdf", "film_albedo_dir", "dielectric_albedo_dir", "conty_kulla_albedo_dir")
+LONG += ("transmittance_dir",)
+ENDS = ("brdf", "albedo_dir", "sample", "pdf")
+LONG += tuple(f"{name}_{end}" for name in INTERFACES for end in ENDS)
 SEED = 11
 GRADIENT = 1e-7  # error of finite differences, relative to the larger of 1 and the gradient
 WIDTH = 1e-4  # step of the finite differences
@@ -122,24 +116,18 @@ def film_schlick(
 PORTABLE |= {each.__name__: each for each in (film_conductor, film_schlick)}
 COMPENSATED = ("dielectric_brdf", "conductor_brdf", "generalized_schlick_brdf")
 # Ends of ranges for tests, if a range is unbounded or slopes diverge at its end.
-LOW = (
-    dict.fromkeys(("eumelanin_color", "pheomelanin_color", "hair_color"), 0.05)
-    | dict.fromkeys(("separation", "radius", "reach"), 0.2)
-    | {"temperature": 500.0, "melanin_concentration": 0.0}
-)
-HIGH = (
-    {"temperature": 9000.0, "melanin_concentration": 0.9, "u": 0.99}
-    | dict.fromkeys(("emission", "scattered", "behind", "intensity", "exposure", "albedo"), 3.0)
-    | dict.fromkeys(("separation", "radius", "reach", "scale_tt", "scale_trt"), 2.0)
-    | {"scatter_anisotropy": 0.95}
-) | (
-    {"exponent": 8.0, "ior": 3.0, "g": 0.99, "reflectivity": 0.99}
-    | dict.fromkeys(("extinction", "radiance", "base", "absorption", "scattering", "distance"), 4.0)
-    | dict.fromkeys(("absorption_coefficient", "phi"), 3.0)
-    | dict.fromkeys(("variance", "scale"), 1.0)
-    | dict.fromkeys(("thickness", "thinfilm_thickness"), 900.0)
-    | dict.fromkeys(("film_ior", "thinfilm_ior"), 2.5)
-)
+LOW = dict.fromkeys(("eumelanin_color", "pheomelanin_color", "hair_color"), 0.05)
+LOW |= dict.fromkeys(("separation", "radius", "reach"), 0.2)
+LOW |= {"temperature": 500.0, "melanin_concentration": 0.0}
+HIGH = {"temperature": 9000.0, "melanin_concentration": 0.9, "scatter_anisotropy": 0.95}
+HIGH |= {"exponent": 8.0} | dict.fromkeys(("u", "g", "reflectivity"), 0.99)
+HIGH |= dict.fromkeys(("emission", "scattered", "behind", "intensity", "exposure", "albedo"), 3.0)
+HIGH |= dict.fromkeys(("absorption_coefficient", "phi", "ior"), 3.0)
+HIGH |= dict.fromkeys(("separation", "radius", "reach", "scale_tt", "scale_trt"), 2.0)
+HIGH |= dict.fromkeys(("extinction", "radiance", "base", "absorption"), 4.0)
+HIGH |= dict.fromkeys(("scattering", "distance"), 4.0)
+HIGH |= dict.fromkeys(("variance", "scale"), 1.0) | dict.fromkeys(("film_ior", "thinfilm_ior"), 2.5)
+HIGH |= dict.fromkeys(("thickness", "thinfilm_thickness"), 900.0)
 
 
 def pytorch():
@@ -150,10 +138,8 @@ def pytorch():
         tensors = {k: torch.tensor(v, requires_grad=True) for k, v in values.items()}
         value = function(**tensors)
         scalar(value).sum().backward()
-        found = {
-            k: np.zeros_like(values[k]) if t.grad is None else t.grad.numpy()
-            for k, t in tensors.items()
-        }
+        found = {name: np.zeros_like(array) for name, array in values.items()}
+        found |= {name: t.grad.numpy() for name, t in tensors.items() if t.grad is not None}
         return whole(value).detach().numpy(), found
 
     return SimpleNamespace(
@@ -219,11 +205,8 @@ def sampled(function):
         names = [*names, *values["inputs"]]
         values |= values.pop("inputs")
     for name, value in values.items():
-        if (
-            not isinstance(value, float | tuple | np.ndarray)
-            or name not in names
-            or name == "light"
-        ):
+        is_array = isinstance(value, float | tuple | np.ndarray) and name in names
+        if not is_array or name == "light":
             switches[name] = value  # the same for all rows
         elif np.shape(value) == (3,) and name[0] in "wn":
             arrays[name] = directions(rng, value[2] < 0.0, rows)
@@ -253,11 +236,9 @@ def whole(value):
     if not isinstance(value, tuple):
         return value
     w, pdf, *others = value
-    if w.ndim == pdf.ndim:
-        return array_namespace(w).stack([w, pdf, *others], axis=-1)
-    return array_namespace(w).stack(
-        [w[..., 0], w[..., 1], w[..., 2], pdf + 0.0 * w[..., 0]], axis=-1
-    )
+    if w.ndim != pdf.ndim:
+        w, pdf, *others = w[..., 0], w[..., 1], w[..., 2], pdf + 0.0 * w[..., 0]
+    return array_namespace(w).stack([w, pdf, *others], axis=-1)
 
 
 def scalar(value, axes=1):
@@ -282,22 +263,19 @@ def moved(function, arrays, switches, name):
     values[name] = several.reshape(values[name].shape)
     # vmap traces the values, so offsets may leave ranges and directions need not be unit vectors.
     torch = package("torch")
-    row = torch.func.vmap(
-        lambda *a: scalar(function(**dict(zip(values, a, strict=True)), **switches), 0)
-    )
-    found = row(*map(torch.tensor, values.values())).numpy()
+
+    def row(*arguments):
+        return scalar(function(**dict(zip(values, arguments, strict=True)), **switches), 0)
+
+    found = torch.func.vmap(row)(*map(torch.tensor, values.values())).numpy()
     return [dict(zip(OFFSETS, each, strict=True)) for each in found.reshape(size, -1, rows)]
 
 
 def slopes(f, step):
     """Third-order one-sided derivatives, forward then backward, with `step` times WIDTH."""
     with np.errstate(invalid="ignore"):
-        return [
-            s
-            * (18 * f[s * step] - 9 * f[2 * s * step] + 2 * f[3 * s * step] - 11 * f[0])
-            / (6 * step * WIDTH)
-            for s in (1, -1)
-        ]
+        changes = [18 * f[k] - 9 * f[2 * k] + 2 * f[3 * k] - 11 * f[0] for k in (step, -step)]
+        return [each / (6 * k * WIDTH) for each, k in zip(changes, (step, -step), strict=True)]
 
 
 def differences(function, arrays, switches, name):
@@ -315,15 +293,11 @@ def differences(function, arrays, switches, name):
         yield best, spread <= RELIABLE * np.maximum(1.0, np.abs(best))
 
 
-@pytest.mark.parametrize(
-    ("make", "name"),
-    [
-        (make, name)
-        for name in PORTABLE
-        for make in (pytorch, jax)
-        if make is pytorch or not name.endswith(LONG)
-    ],
-)
+CASES = [(make, name) for name in PORTABLE for make in (pytorch, jax)]
+CASES = [(make, name) for make, name in CASES if make is pytorch or not name.endswith(LONG)]
+
+
+@pytest.mark.parametrize(("make", "name"), CASES)
 def test_gradients_are_finite_and_those_of_differences(make, name):
     with untraced() if make is jax else nullcontext():  # PyTorch's tests trace the same lines
         assert_gradients(make(), name, False)
@@ -331,9 +305,8 @@ def test_gradients_are_finite_and_those_of_differences(make, name):
 
 @pytest.mark.parametrize("name", COMPENSATED)
 def test_gradients_of_the_compensation_are_those_of_differences(name):
-    assert_gradients(
-        pytorch(), f"mxeon.models.microfacet.{name}", True
-    )  # JAX takes seconds to compile the polynomials
+    # JAX takes seconds to compile the polynomials.
+    assert_gradients(pytorch(), f"mxeon.models.microfacet.{name}", True)
 
 
 @lru_cache(maxsize=4)  # PyTorch and JAX share the reference
@@ -371,13 +344,8 @@ def assert_gradients(library, name, compensate):
             error = np.abs(column - expected) / np.maximum(1.0, np.abs(expected))
             worst = np.where(reliable, error, 0.0).argmax()
             row = {each: value[worst] for each, value in arrays.items()}
-            assert error[reliable].max(initial=0.0) <= GRADIENT, (
-                argument,
-                k,
-                column[worst],
-                expected[worst],
-                row,
-            )
+            place = argument, k, column[worst], expected[worst], row
+            assert error[reliable].max(initial=0.0) <= GRADIENT, place
             judged += reliable.sum()
         assert judged >= CUT.get(function.__name__, COMPARED) * columns[:, ~kink].size, argument
 

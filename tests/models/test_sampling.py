@@ -229,14 +229,12 @@ def multiple_error():
     a, b, c, d, e, f = sampling.MULTIPLE
     t = 1.0 - w**2
     mu = t * (1.0 + w**2 * (a + w**2 * (b + w * (c + w * (d + w * (e + w**4 * f))))))
-    np.testing.assert_allclose(
-        sampling.eon_multiple_cosine(t(ROOTS)), mu(ROOTS), atol=tolerances.DIRECTION
-    )
+    cosines = sampling.eon_multiple_cosine(t(ROOTS))
+    np.testing.assert_allclose(cosines, mu(ROOTS), atol=tolerances.DIRECTION)
     # The random number is t^3, and its derivative with respect to w is -6 w t^2.
     slope = mu.deriv()(ROOTS) / (-6.0 * ROOTS * t(ROOTS) ** 2)
-    return mu(ROOTS), 1.0 / (
-        slope * 2.0 * diffuse.fon_loss_mu(mu(ROOTS)) * mu(ROOTS) / (diffuse.C1 - diffuse.C2)
-    ) - 1.0
+    density = 2.0 * diffuse.fon_loss_mu(mu(ROOTS)) * mu(ROOTS) / (diffuse.C1 - diffuse.C2)
+    return mu(ROOTS), 1.0 / (slope * density) - 1.0
 
 
 def upper_error(mu_o):
@@ -259,9 +257,8 @@ def excess(mu, roughness):
     """Relative excess of exact samples' true density over `eon_pdf`, and probabilities."""
     wi, solid_angle = hemisphere(mu, 32)
     mu_i, s = wi[:, 2], direction(mu)[0] * wi[:, 0]
-    multiple = (
-        roughness * diffuse.fon_loss_mu(mu_i) * diffuse.fon_loss_mu(mu) / (diffuse.C1 - diffuse.C2)
-    )
+    losses = diffuse.fon_loss_mu(mu_i) * diffuse.fon_loss_mu(mu)
+    multiple = roughness * losses / (diffuse.C1 - diffuse.C2)
     upper = np.where(mu_i >= mu, roughness * np.maximum(s, 0.0) * (1.0 / mu_i - 1.0), 0.0)
     total = 1.0 + roughness * diffuse.fon_quotient(mu, mu_i, s) + multiple
     extra = multiple * np.interp(mu_i, *(row[::-1] for row in multiple_error()))

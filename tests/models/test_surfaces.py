@@ -62,11 +62,10 @@ def test_clear_glass_and_mixtures_lose_no_light(weight):
 
 def test_an_undarkened_coat_keeps_the_albedo_along_the_normal():
     """A smooth coat over a matte base has E_c = lerp(F_0, 1, E_b)."""
-    p = open_pbr.parameters(
-        base_color=(0.2, 0.5, 0.9), specular_weight=0.0, coat_weight=1.0, coat_darkening=0.0
-    )
+    color, coat = (0.2, 0.5, 0.9), {"coat_weight": 1.0, "coat_darkening": 0.0}
+    p = open_pbr.parameters(base_color=color, specular_weight=0.0, **coat)
     f0 = (0.6 / 2.6) ** 2
-    expected = f0 + (1.0 - f0) * np.array([[0.2, 0.5, 0.9]])
+    expected = f0 + (1.0 - f0) * np.array([color])
     found = open_pbr.surface(Light(VIEWS[-1:]), p)
     np.testing.assert_allclose(found, expected, atol=1e-6)
 

@@ -24,11 +24,7 @@ STEP, SLOPE = 1e-5, 3e-5  # step of central differences, and their error near a 
 VALUE = 1e-11  # absolute and relative difference of values
 # Ranges by quantity, and their ends. The default range is [0.3, 0.7], and its ends are 0 and 1.
 INSIDE = {"ior": (1.2, 2.0), "extinction": (1.0, 3.0), "thinfilm_thickness": (200.0, 900.0)}
-INSIDE |= {
-    "thinfilm_ior": (1.2, 1.9),
-    "exponent": (2.0, 6.0),
-    "coat_ior": (1.2, 2.0),
-}
+INSIDE |= {"thinfilm_ior": (1.2, 1.9), "exponent": (2.0, 6.0), "coat_ior": (1.2, 2.0)}
 INSIDE |= dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), (0.1, 0.6))
 ENDS = {"ior": (1.0, 2.0), "extinction": (0.0, 3.0), "exponent": (1.0, 5.0)}
 ENDS |= {"thinfilm_thickness": (1.0, 900.0)}  # thickness 0 has a different formula

@@ -35,10 +35,8 @@ def test_anisotropy_stretches_along_the_tangent_and_keeps_the_geometric_mean():
 
 
 def test_glossiness_is_inverted_roughness_and_dual_is_two_squares():
-    assert np.array_equal(
-        glossiness_anisotropy(1.0 - SHARES[0], SHARES[1]),
-        roughness_anisotropy(1.0 - (1.0 - SHARES[0]), SHARES[1]),
-    )
+    glossy = glossiness_anisotropy(1.0 - SHARES[0], SHARES[1])
+    assert np.array_equal(glossy, roughness_anisotropy(1.0 - (1.0 - SHARES[0]), SHARES[1]))
     assert np.array_equal(roughness_dual(SHARES.T), SHARES.T**2)
 
 
@@ -107,14 +105,10 @@ def test_a_row_takes_any_input_and_returns_each_output(row):
     for value in (-1.0, 0.0, 0.5, 1.0, 3.0, 1e6):
         inputs = {name: np.full((4, *np.shape(each)), value) for name, each in row.inputs.items()}
         outputs = row.value(inputs)
-        assert {name: each.shape for name, each in outputs.items()} == {
-            name: (4, sizes[kind]) for name, kind in row.outputs.items()
-        }
+        shapes = {name: (4, sizes[kind]) for name, kind in row.outputs.items()}
         assert all(np.isfinite(each).all() and each.min() >= 0.0 for each in outputs.values())
-        for variant in row.variants:
-            assert {k: v.shape for k, v in variant.value(inputs).items()} == {
-                name: each.shape for name, each in outputs.items()
-            }
+        for found in (outputs, *(variant.value(inputs) for variant in row.variants)):
+            assert {name: each.shape for name, each in found.items()} == shapes
 
 
 def test_a_row_has_the_reflectivity_up_to_its_limit():
