@@ -54,7 +54,6 @@ def build(configuration, site):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    """Folder of the site that mkdocs builds."""
     package("mkdocs")
     folder = tmp_path_factory.mktemp("docs") / "site"
     built = build(ROOT / "mkdocs.yml", folder)

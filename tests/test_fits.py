@@ -40,7 +40,6 @@ by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
 
 
 def numbers(pattern, text):
-    """Values of the macros whose names match a pattern."""
     return [float(each) for each in re.findall(rf"#define EON_{pattern} (\S+)", text)]
 
 

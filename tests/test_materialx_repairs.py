@@ -47,12 +47,8 @@ PATCHES = ledger.patches("materialx")
 # Patches for the main branch: defects that no pull request has repaired.
 OF_MAIN = [path for page, path in PATCHES.items() if not ISSUES[page].pull]
 # Pages whose patched files are different on the main branch.
-CHANGED = re.findall(r"^--- a/(.*)$", MAIN.read_text(), re.MULTILINE)
-ON_MAIN = [
-    page
-    for page, path in PATCHES.items()
-    if any(f"--- a/{file}\n" in path.read_text() for file in CHANGED)
-]
+CHANGED = re.findall(r"^--- a/.*$", MAIN.read_text(), re.MULTILINE)
+ON_MAIN = [page for page in PATCHES if {*CHANGED} & {*PATCHES[page].read_text().splitlines()}]
 
 
 def rows_of(names):
@@ -66,9 +62,8 @@ def rows_of(names):
 
 def is_one_of(found, causes):
     """Whether the cause of a failure is in `causes`, by kind, key and region."""
-    return found in [
-        [each.kind.value, each.key, each.region and each.region.name] for each in causes
-    ]
+    regions = [each.region and each.region.name for each in causes]
+    return found in [[e.kind.value, e.key, name] for e, name in zip(causes, regions, strict=True)]
 
 
 @pytest.fixture(scope="module")

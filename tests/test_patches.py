@@ -48,7 +48,6 @@ def repository(folder, project, files):
 
 
 def changed(*files):
-    """Names of the files that the given patches change."""
     text = "".join(path.read_bytes().decode() for path in files)
     return sorted(set(re.findall(r"^--- a/(.*)$", text, re.MULTILINE)))
 

@@ -30,7 +30,6 @@ def start(folder, *arguments, code="from mxeon.__main__ import main; sys.exit(ma
 
 
 def wait_for_results(folder, process):
-    """Wait until a `check` with a report in `folder` has written results."""
     journal = folder / "report" / "journal" / "items.jsonl"
     wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 1, process)
 

@@ -64,7 +64,6 @@ def test_a_torn_last_line_is_dropped_and_its_task_done_again(tmp_path):
 
 
 def pixels(array):
-    """Contents of a file with an array."""
     stream = BytesIO()
     np.save(stream, array)
     return stream.getvalue()

@@ -66,7 +66,6 @@ def test_each_difference_from_a_text_has_a_name(spec):
 
 @pytest.fixture(scope="module")
 def repaired(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """MaterialX's libraries with the graphs patched as in docs/upstream."""
     package = linked(Path(mx.__file__).parent, tmp_path_factory.mktemp("repaired") / "MaterialX")
     graphs = [path for path in patches("materialx").values() if "/bxdf/" in path.read_text()]
     return str(apply(package, *graphs) / "libraries")

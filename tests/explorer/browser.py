@@ -21,7 +21,6 @@ sync_playwright = package("playwright.sync_api").sync_playwright
 
 @contextmanager
 def launched(flags=LOCAL):
-    """Context with a new Chromium browser."""
     with sync_playwright() as playwright, started(playwright.chromium, flags) as browser:
         yield browser
 
@@ -80,7 +79,6 @@ def until(page, expression, argument=None, seconds=600):
 
 
 def state(page):
-    """State of the page's current view."""
     return page.evaluate("mxeon.state()")
 
 
@@ -94,7 +92,6 @@ def shows(page, **fields):
 
 
 def show(page, **patch):
-    """Change fields of the current view."""
     page.evaluate("patch => mxeon.show({...mxeon.state(), ...patch})", patch)
 
 

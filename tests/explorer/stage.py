@@ -71,7 +71,6 @@ def view(stage, left, right=None, light="side", **patch):
 
 
 def settle(stage):
-    """Wait until the stage has drawn the final picture."""
     until(stage, "mxeon.stage.isSettled(mxeon.state())")
 
 
@@ -93,7 +92,6 @@ def picture(stage, name="left"):
 
 
 def towards(light):
-    """Unit vector towards a light in LIGHTS."""
     azimuth, elevation = np.radians(LIGHTS[light])
     x, z = np.cos(elevation) * np.array([np.sin(azimuth), np.cos(azimuth)])
     return float(x), float(np.sin(elevation)), float(z)

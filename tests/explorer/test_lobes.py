@@ -30,7 +30,6 @@ def choose(sheet, key):
 
 
 def kinds(sheet):
-    """Kinds of the verdicts on both sides."""
     sides = [sheet.locator(f".side.{side} .verdict") for side in ("left", "right")]
     return [each.get_attribute("class").split()[1] for each in sides]
 

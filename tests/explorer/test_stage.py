@@ -38,7 +38,6 @@ def parameter_of(row):
 
 
 def exact(row, size, light):
-    """Picture of a sphere by a model in float64."""
     points = sphere(size)
     normal = points.normal[points.mask]
     wo, wi = local_directions(normal, VIEW), local_directions(normal, towards(light))

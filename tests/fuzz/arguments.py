@@ -97,7 +97,6 @@ def functions():
 
 
 def modules():
-    """The package `mxeon.models` and all its modules."""
     package = mxeon.models
     names = (each.name for each in pkgutil.walk_packages(package.__path__, f"{package.__name__}."))
     return [package, *map(importlib.import_module, names)]
@@ -180,7 +179,6 @@ def call(function, values):
 
 @cache
 def base(function):
-    """Valid arguments of a function, by name."""
     parameters, reasons = _parameters(function), []
     for chosen in product(*map(_valid, parameters.values())):
         values = dict(zip(parameters, chosen, strict=True))
@@ -192,7 +190,6 @@ def base(function):
 
 @cache
 def _parameters(function):
-    """Parameters of a function by name, with evaluated annotations."""
     return inspect.signature(function, eval_str=True).parameters
 
 

@@ -128,7 +128,6 @@ def originals():
 
 
 def document(rng):
-    """Bytes of a randomly mutated document."""
     text = rng.choice(originals())
     if rng.random() < 0.8:
         root = ElementTree.fromstring(text)
@@ -185,7 +184,6 @@ def _path(rng, root):
 
 
 def _number(rng, root):
-    """Replace a number by a random number."""
     numbers = [each for each in root.iter() if each.get("type") in ("float", "color3")]
     element = rng.choice(numbers or [root])
     number = rng.choice(("0", "1", "0.5", "1e-30", "1e30", "-1", "3", "1e39", "0.99999999"))
@@ -193,7 +191,6 @@ def _number(rng, root):
 
 
 def _connect(rng, root):
-    """Connect a random input to a random node of its type."""
     inputs = [each for each in root.iter("input") if "type" in each.attrib]
     port = rng.choice(inputs or [root])
     fitting = [each for each in root.iter() if each.get("type") == port.get("type")]

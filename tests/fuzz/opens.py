@@ -50,7 +50,6 @@ def selected(count, bare):
 
 
 def opens(count, bare=False):
-    """Count how often MaterialX itself opened each path."""
     with tempfile.TemporaryDirectory(prefix="mxeon-opens-") as folder:
         log, audit = Path(folder, "strace"), Path(folder, "audit")
         command = ["strace", "-f", "-qq", "-s", "4096", "-e", "trace=open,openat,openat2"]
@@ -67,7 +66,6 @@ def strangers(paths):
 
 
 def _traced(log):
-    """Count the paths in strace's log between the two marks."""
     lines = log.split(START.encode())[1].split(END.encode())[0].splitlines()
     found = (OPEN.search(line) for line in lines)
     return Counter(

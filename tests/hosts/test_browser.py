@@ -7,7 +7,7 @@ from mxeon.errors import NotRun
 from mxeon.hosts import open_engine
 from mxeon.shaders.library import examples_folder
 from mxeon.survey import browser
-from mxeon.survey.browser import babylon, pathtracer, three
+from mxeon.survey.browser import pathtracer, three
 from tests.support.availability import available
 from tests.support.documents import surface, written
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED, RENDERER_NODES, Verdicts, said
@@ -16,8 +16,7 @@ from tools.site import ledger
 from tools.site.ledger import measure
 
 QUARTIC = "EON with the paper's quartic"
-# Nodes whose pictures are tested, one per engine of a host.
-PICTURED = {"three": three.NODES[:2], "babylon": babylon.NODES[:4:3]}
+DEFECTIVE = ("three", "babylon")  # hosts whose defects are measured here
 PAGE = """
 export async function draw({ task }) {
     if (task === "hang") await new Promise(() => {});
@@ -33,10 +32,6 @@ PACKAGES = {
 }
 EON, FON, LOBE = "WebGPUPathTracer, eonBrdf", "WebGPUPathTracer, fonBrdf", pathtracer.LOBE
 
-of_each_issue = pytest.mark.parametrize(
-    "issue", [each for each in measure.CHECKED if each.host in PICTURED]
-)
-
 
 @pytest.fixture
 def own(judged):
@@ -51,7 +46,7 @@ def test_three_has_eon_with_the_quartic(own, renderer):
     assert result.claimed == "energy-preserving Oren-Nayar (EON)"
 
 
-@of_each_issue
+@pytest.mark.parametrize("issue", [each for each in measure.CHECKED if each.host in DEFECTIVE])
 def test_each_defect_is_as_its_page_says(own, issue):
     results = [own(issue.host, *row) for row in issue.rows]
     assert all(each.verdict == FAILED for each in results), f"{issue.page}.md is out of date"

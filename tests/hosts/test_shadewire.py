@@ -61,9 +61,8 @@ def test_values_and_throughputs_of_pairs_are_those_of_stock_glsl(shadewire, gl, 
 def test_pictures_in_direct_light_are_those_of_stock_glsl(shadewire, gl, name, scene):
     scene = replace(scene, size=32)
     file = examples_folder() / f"{name}.mtlx"
-    for own, stock in zip(
-        *(each.compile(file, library="stock") for each in (shadewire, gl)), strict=True
-    ):
+    shaders = (each.compile(file, library="stock") for each in (shadewire, gl))
+    for own, stock in zip(*shaders, strict=True):
         expected = gl.picture(stock, scene)
         np.testing.assert_allclose(shadewire.picture(own, scene), expected, rtol=SAME, atol=SAME)
 

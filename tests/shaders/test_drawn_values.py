@@ -23,11 +23,8 @@ def test_no_port_of_a_librarys_graph_gets_a_color_space(make):
     color.addInput("value", "color3").setValueString("0.5, 0.5, 0.5")
     output = graph.addOutput("out", "color3")
     output.setNodeName("color")
-    drawn, _ = (
-        make(document, (graph, color), "color3")
-        if make is value_document
-        else make(document, output)
-    )
+    values = ((graph, color), "color3") if make is value_document else (output,)
+    drawn, _ = make(document, *values)
     own = drawn.getNodeGraph("own").getNode("color").getInput("value")
     assert own.getColorSpace() == "srgb_texture"
     assert [port.getAttributeNames() for port in ports] == before

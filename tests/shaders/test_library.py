@@ -111,10 +111,8 @@ def test_whatever_is_missing_of_eonlib_is_named():
 def test_eons_graph_serves_only_the_targets_without_an_implementation_of_their_own(folders):
     document = loaded(folders)
     definition = document.getNodeDef("ND_eon_diffuse_bsdf")
-    found = {
-        each.getName(): definition.getImplementation(each.getName())
-        for each in document.getTargetDefs()
-    }
+    targets = [each.getName() for each in document.getTargetDefs()]
+    found = {each: definition.getImplementation(each) for each in targets}
     graphs = {target for target, each in found.items() if each.isA(mx.NodeGraph)}
     assert graphs == {"genoslnetwork"} and {"genglsl", "genosl", "genmdl"} < found.keys()
     for each in document.getImplementations():
@@ -215,9 +213,8 @@ def test_materials_in_a_folder_do_not_replace_nodes_of_other_documents(tmp_path)
     (tmp_path / "materials.mtlx").write_text(material(image("own.png", "own") + own))
     [shader] = generate(material(constant.format("0.7, 0, 0") + own), "glsl", library=tmp_path)
     assert not any(port.type == "filename" for port in shader.inputs)
-    assert {type(each) for each in library.load_library(tmp_path).getChildren()}.isdisjoint(
-        {mx.Node}
-    )
+    children = library.load_library(tmp_path).getChildren()
+    assert mx.Node not in {type(each) for each in children}
 
 
 @pytest.mark.parametrize("text", ["<materialx", '<materialx version="1.39">text</materialx>'])

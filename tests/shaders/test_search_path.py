@@ -80,8 +80,6 @@ def test_the_command_searches_folders(home, workers, capfd, monkeypatch):
 @pytest.mark.parametrize("host", ["gl", "reference"])
 def test_a_set_of_textures_is_shown_as_its_first_tile(home, host, name):
     rest = ("front", None, 16, "sphere", None, "eonlib", searched(home), Paths())
-    shown, expected = (
-        batch.picture(str(written(home, textured([each]))), host, *rest)[0]
-        for each in (name, "maps/a.exr")
-    )
+    paths = (written(home, textured([each])) for each in (name, "maps/a.exr"))
+    shown, expected = (batch.picture(str(each), host, *rest)[0] for each in paths)
     assert expected.any() and np.array_equal(shown, expected)

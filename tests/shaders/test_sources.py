@@ -121,11 +121,9 @@ def test_a_source_is_a_regular_file_of_text(home, kind, included):
     }
     make[kind](path)
     said = {"bytes": "text in UTF-8; byte 6 is not", "mark": "text in UTF-8; byte 0 is not"}
+    rule = said.get(kind, "readable; not a regular file")
     message = refusal(home, TRUSTED if kind == "device" else CODE)
-    assert message == (
-        f"{home / 'look.mtlx'}: source {path}: must be "
-        + said.get(kind, "readable; not a regular file")
-    )
+    assert message == f"{home / 'look.mtlx'}: source {path}: must be {rule}"
 
 
 # --- limits -------------------------------------------------------------------------------------

@@ -22,11 +22,8 @@ STRUCTURES += "".join(
     'sourcecode="{{in}}.p.y"/>'
     for each in ("glsl", "msl", "osl", "mdl", "slang")
 )
-PICK = (
-    STRUCTURES
-    + """<pick name="pick" type="float">
-    <input name="in" type="nest" value="{{0.75;0.5};2}"/></pick>"""
-)
+PICK = f"""{STRUCTURES}<pick name="pick" type="float">
+    <input name="in" type="nest" value="{{{{0.75;0.5}};2}}"/></pick>"""
 PICK += connected(weight='nodename="pick"')
 NODE = """<transformmatrix name="t" type="vector{size}">
     <input name="in" type="vector{size}" value="{vector}"/>

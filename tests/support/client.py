@@ -65,7 +65,6 @@ def rendered(document, definition):
 
 
 def connect(document, node, name, kind, category):
-    """Add a node of the given category and connect it to the input `name`."""
     node.addInput(name, kind).setConnectedNode(document.addNode(category, f"node_{name}", kind))
 
 

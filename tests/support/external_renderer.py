@@ -58,7 +58,6 @@ def set_cycles(scene, samples):
 
 
 def set_material(sphere, source):
-    """Compile an OSL file and assign it to the sphere."""
     compiled = source.with_suffix(".oso")
     assert _cycles.osl_compile(str(source), str(compiled))
     material = bpy.data.materials.new("material")
@@ -74,7 +73,6 @@ def set_material(sphere, source):
 
 
 def set_light(scene, description):
-    """Light the scene as one of the kit's scenes describes."""
     for lamp in list(bpy.data.lights):
         bpy.data.lights.remove(lamp)
     scene.world = bpy.data.worlds.new("world")
@@ -92,7 +90,6 @@ def set_light(scene, description):
 
 
 def main(folder, sources, samples):
-    """Render every picture of the kit."""
     kit = json.loads((folder / "kit.json").read_text())
     scene, sphere = set_up(kit, folder)
     for number, picture in enumerate(kit["pictures"]):

@@ -16,7 +16,6 @@ def decimal(text):
 
 
 def s_of(wo, wi):
-    """dot(wo, wi) - mu_o mu_i."""
     return sum(a * b for a, b in zip(wo, wi, strict=True)) - wo[2] * wi[2]
 
 
@@ -33,7 +32,6 @@ def fon_quotient(wo, wi):
 
 
 def fraction(sigma, weight, constant):
-    """weight sigma^2 / (sigma^2 + constant)."""
     return decimal(weight) * sigma**2 / (sigma**2 + decimal(constant))
 
 

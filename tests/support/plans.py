@@ -15,7 +15,6 @@ def keep_checks(patch, *keys):
 
 
 def keep(patch, kept):
-    """Restrict plans to tasks for which `kept` is true."""
     whole = run.make_plan
 
     def make_plan(*arguments, **options):

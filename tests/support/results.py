@@ -67,7 +67,6 @@ FINDINGS = Findings(
 
 
 def caused(kind, key="", *names, distances=None, **fields):
-    """Diagnosis with a single cause."""
     return Diagnosis((Cause(Kind(kind), key, names, **fields),), distances or {})
 
 

@@ -8,7 +8,6 @@ from coverage import Coverage
 
 @contextmanager
 def untraced():
-    """Context without coverage's slow line tracing."""
     coverage = Coverage.current()
     if coverage is None:
         yield

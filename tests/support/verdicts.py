@@ -57,7 +57,6 @@ def has(result, *wanted):
 
 
 def said(result):
-    """Text of a result's diagnosis."""
     return words.diagnosis(result.diagnosis)
 
 

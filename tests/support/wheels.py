@@ -62,20 +62,12 @@ def _main(folder):
 
 def git(folder, *arguments):
     """Output of git in a folder, without the user's settings and enclosing repositories."""
-    who = {"user.name": "tests", "user.email": "tests@mxeon.invalid", "core.autocrlf": "false"}
-    options = [word for name, value in who.items() for word in ("-c", f"{name}={value}")]
-    alone = {
-        "GIT_CONFIG_GLOBAL": os.devnull,
-        "GIT_CONFIG_NOSYSTEM": "1",
-        "GIT_CEILING_DIRECTORIES": str(Path(folder).resolve().parent),
-    }
-    return subprocess.run(
-        ["git", "-C", folder, *options, *arguments],
-        check=True,
-        capture_output=True,
-        text=True,
-        env=os.environ | alone,
-    ).stdout
+    user = {"user.name": "tests", "user.email": "tests@mxeon.invalid", "core.autocrlf": "false"}
+    options = [word for name, value in user.items() for word in ("-c", f"{name}={value}")]
+    env = os.environ | {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
+    env["GIT_CEILING_DIRECTORIES"] = str(Path(folder).resolve().parent)
+    command = ["git", "-C", folder, *options, *arguments]
+    return subprocess.run(command, check=True, capture_output=True, text=True, env=env).stdout
 
 
 def install(version, folder):
@@ -99,7 +91,6 @@ def run(folder, *arguments, module="mxeon"):
 
 
 def run_with(version, module, *arguments):
-    """Run a module with a version of MaterialX, assert that it succeeds, and return its output."""
     done = run(wheel(version), *map(str, arguments), module=module)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout

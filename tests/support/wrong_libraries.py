@@ -27,7 +27,6 @@ def replace_text(folder, old, new, *files):
 
 
 def wrong_copy(folder, old, new, *files):
-    """Path of a copy of eonlib in which a text is replaced in the given files."""
     library = copy_of_eonlib(folder)
     replace_text(folder, old, new, *files)
     return str(library)

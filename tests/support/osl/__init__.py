@@ -42,7 +42,6 @@ cp "{folder}/pairs.tif" "$last"
 
 
 def shader():
-    """The shader of the recorded picture."""
     return generate(material_text(OREN_NAYAR, INPUTS, OREN_NAYAR), "osl")[0]
 
 
