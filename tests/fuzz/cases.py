@@ -66,9 +66,8 @@ def case(seed, number):
 
 
 def _including(rng):
-    name = rng.choice(
-        ("part.mtlx", "base.mtlx", "./part.mtlx", "../documents/part.mtlx", word(rng))
-    )
+    names = ("part.mtlx", "base.mtlx", "./part.mtlx", "../documents/part.mtlx", word(rng))
+    name = rng.choice(names)
     href = "".join(each for each in name if each.isprintable() and each not in '"&<')
     includes = f'<xi:include href="{href}"/>' * rng.choice((1, 1, 2))
     return f'<materialx version="1.39" {XI}>{includes}</materialx>'.encode()
@@ -140,11 +139,10 @@ RENDER = ("render", "base.mtlx", "--host", "reference", "--size", "4", "--output
 def row(count, names):
     """Lobe whose color comes from a chain of nodes; each uses the previous node in all `names`."""
     port = '<input name="{}" type="color3" nodename="a{}"/>'
-    nodes = (
-        ADD.format(number, "".join(port.format(name, number - 1) for name in names if number))
-        for number in range(count)
-    )
-    return "".join(nodes) + connected(color=f'nodename="a{count - 1}"')
+    nodes = ADD.format(0, "")
+    for number in range(1, count):
+        nodes += ADD.format(number, "".join(port.format(name, number - 1) for name in names))
+    return nodes + connected(color=f'nodename="a{count - 1}"')
 
 
 def _generate(target):

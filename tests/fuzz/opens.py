@@ -68,11 +68,8 @@ def strangers(paths):
 def _traced(log):
     lines = log.split(START.encode())[1].split(END.encode())[0].splitlines()
     found = (OPEN.search(line) for line in lines)
-    return Counter(
-        _line(os.fsdecode(codecs.escape_decode(each[1])[0]))
-        for each in found
-        if each and b"O_DIRECTORY" not in each[2]
-    )
+    paths = (each[1] for each in found if each and b"O_DIRECTORY" not in each[2])
+    return Counter(_line(os.fsdecode(codecs.escape_decode(path)[0])) for path in paths)
 
 
 def _line(path):
@@ -96,7 +93,5 @@ def generate(count, bare, audit):
         trial(each)
     with contextlib.suppress(OSError):
         os.open(END, os.O_RDONLY)
-    named = (
-        _line(os.fsdecode(path)) for path in paths if isinstance(path, str | bytes | os.PathLike)
-    )
-    Path(audit).write_text("".join(f"{path}\n" for path in named))
+    named = (path for path in paths if isinstance(path, str | bytes | os.PathLike))
+    Path(audit).write_text("".join(f"{_line(os.fsdecode(path))}\n" for path in named))

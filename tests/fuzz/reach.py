@@ -29,9 +29,7 @@ POISON = "poison"
 GAP = "gap00000gap"  # placeholder for hostile text
 # Hostile texts: some end a string or a line, the rest have a meaning outside strings.
 BREAKING = tuple(each + POISON for each in ("\n#define ", "\r", '"', "\\", '\\"', "\x7f"))
-MEANING = tuple(
-    each + POISON for each in (" ", ";", "(", ")", ",", "=", "//", "/*", "*/", "#", "$", "{", "-")
-)
+MEANING = tuple(each + POISON for each in (" ", "//", "/*", "*/", *";(),=#${-"))
 MARK = re.compile(r"mark\d{5}x|77\d{5}")
 QUOTED = re.compile(r'"[^"]*"')
 
@@ -69,9 +67,10 @@ def furnish(folder):
 def attributes(root):
     """Attribute names in a document, MaterialX's Python module, its libraries, and the fuzzer."""
     kinds = [kind for kind in vars(mx).values() if isinstance(kind, type)]
-    named = {
-        getattr(kind, name) for kind in kinds for name in dir(kind) if name.endswith("_ATTRIBUTE")
+    constants = {
+        (each, name) for each in kinds for name in dir(each) if name.endswith("_ATTRIBUTE")
     }
+    named = {getattr(kind, name) for kind, name in constants}
     used = {name for each in root.iter() for name in each.attrib}
     library = {name for each in load_library().traverseTree() for name in each.getAttributeNames()}
     return sorted(named | used | library | set(ATTRIBUTES))
@@ -117,13 +116,10 @@ def unjudged(root, found, targets=TARGETS):
     for kind, place in alike.items():
         written = _written(root, place)
         texts = (*BREAKING, *(() if ways[kind] == {"quoted"} else MEANING))
-        wrong += [
-            (kind[0], place.attribute, text)
-            for text in texts
-            if not _judged(
-                elements[place.number], place, written.replace(GAP, _escaped(text)), targets
-            )
-        ]
+        for text in texts:
+            document = written.replace(GAP, _escaped(text))
+            if not _judged(elements[place.number], place, document, targets):
+                wrong.append((kind[0], place.attribute, text))
     return wrong
 
 

@@ -256,10 +256,8 @@ def moved(function, arrays, switches, name):
     several = np.tile(array.reshape(rows, size), (size, len(OFFSETS), 1, 1))
     for k in range(size):
         several[k, ..., k] += WIDTH * np.array(OFFSETS)[:, np.newaxis]
-    values = {
-        each: np.tile(value, (size * len(OFFSETS), *np.ones(value.ndim - 1, int)))
-        for each, value in arrays.items()
-    }
+    count = size * len(OFFSETS)
+    values = {k: np.tile(each, (count, *np.ones(each.ndim - 1, int))) for k, each in arrays.items()}
     values[name] = several.reshape(values[name].shape)
     # vmap traces the values, so offsets may leave ranges and directions need not be unit vectors.
     torch = package("torch")

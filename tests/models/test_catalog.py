@@ -114,10 +114,8 @@ def test_a_viewer_below_the_horizon_is_refused_but_by_a_fiber(name):
 def test_the_words_of_a_model_show_its_inputs_with_ranges_and_units():
     words = repr(mxeon.model("qon")).splitlines()
     assert words[0].startswith("qon: qualitative Oren-Nayar (QON); brdf, bsdf, albedo_dir")
-    assert words[1:] == [
-        "  color = (0.18, 0.18, 0.18), in [0, 1]",
-        "  roughness = 0.0, in [0, pi/2] rad",
-    ]
+    color, roughness = "color = (0.18, 0.18, 0.18), in [0, 1]", "roughness = 0.0, in [0, pi/2] rad"
+    assert words[1:] == [f"  {color}", f"  {roughness}"]
     assert "without a cosine" in repr(mxeon.model("hair"))
 
 
@@ -142,10 +140,11 @@ def test_a_material_each_gives_the_values_of_single_calls(name):
     row = mxeon.model(name)
     light = LIGHT[row.lights]
     rng = np.random.default_rng(0)
-    defaults = {each.name: np.asarray(each.default) for each in row.parameters}
-    inputs = {
-        key: 0.9 * each + 0.1 * rng.random((2, *each.shape)) for key, each in defaults.items()
-    }
+    inputs = {}
+    for each in row.parameters:
+        inputs[each.name] = 0.9 * np.asarray(each.default) + 0.1 * rng.random(
+            (2, *np.shape(each.default))
+        )
     values = row.bsdf(WO, light, **inputs)
     for n in range(2):
         own = {key: value[n] for key, value in inputs.items()}

@@ -106,9 +106,11 @@ def test_both_rules_of_a_conductors_average_agree_where_the_curve_is_smooth():
 @pytest.mark.parametrize("exponent", [0.0, 0.5, 5.0, 30.0])
 def test_the_average_of_the_schlick_curve_is_its_integral(exponent):
     colors = (0.3, 0.4, 0.9)
-    integral, bound = quad(
-        lambda mu: 2.0 * mu * fresnel_schlick(mu, *colors, exponent)[0], 0.0, 1.0, epsabs=1e-13
-    )
+
+    def integrand(mu):
+        return 2.0 * mu * fresnel_schlick(mu, *colors, exponent)[0]
+
+    integral, bound = quad(integrand, 0.0, 1.0, epsabs=1e-13)
     assert abs(fresnel_schlick_avg(*colors, exponent)[0] - integral) < bound + tolerances.FRESNEL
 
 

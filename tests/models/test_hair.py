@@ -97,10 +97,8 @@ def test_only_a_tilt_of_the_viewer_keeps_the_furnace():
     cuticle = 0.5 + 2.0 / 180.0
     tilted = np.pi * furnace(VIEWS[2], cuticle_angle=cuticle)
     np.testing.assert_allclose(tilted, 0.9775, atol=1e-3)
-    kept = FORMS[TILTED]
-    np.testing.assert_allclose(
-        np.pi * furnace(VIEWS[2], cuticle_angle=cuticle, form=kept), 1.0, atol=1e-9
-    )
+    viewer = np.pi * furnace(VIEWS[2], cuticle_angle=cuticle, form=FORMS[TILTED])
+    np.testing.assert_allclose(viewer, 1.0, atol=1e-9)
 
 
 def test_the_sign_of_a_tilted_cosine_has_no_effect():
@@ -134,30 +132,16 @@ def test_mitsuba_has_the_values_of_the_model(tilt):
     absorption, beta = (0.1, 0.2, 0.3), 0.6
     v, s = (0.726 * beta + 0.812 * beta**2 + 3.7 * beta**20) ** 2, 0.265 * beta + 1.194 * beta**2
     s += 5.372 * beta**22
-    bsdf = mi.load_dict(
-        {
-            "type": "hair",
-            "longitudinal_roughness": beta,
-            "azimuthal_roughness": beta,
-            "scale_tilt": tilt,
-            "int_ior": 1.55,
-            "ext_ior": 1.0,
-            "sigma_a": {"type": "rgb", "value": list(absorption)},
-        }
-    )
+    fiber = {"type": "hair", "longitudinal_roughness": beta, "azimuthal_roughness": beta}
+    fiber |= {"scale_tilt": tilt, "int_ior": 1.55, "ext_ior": 1.0}
+    bsdf = mi.load_dict(fiber | {"sigma_a": {"type": "rgb", "value": list(absorption)}})
     point = mi.SurfaceInteraction3f()
     for wo, wi in zip(VIEWS[1:], [[0.2, -0.5, 0.4], [0.1, 0.3, -0.9]], strict=True):
         wi = np.array(wi) / np.linalg.norm(wi)
         point.wi = mi.Vector3f(*wo[[1, 0, 2]])  # Mitsuba's fibers run along +y
         value = np.array(bsdf.eval(mi.BSDFContext(), point, mi.Vector3f(*wi[[1, 0, 2]])))
-        expected = np.pi * chiang_hair_bcsdf(
-            wo,
-            wi,
-            roughness_R=(v, s),
-            roughness_TT=(v / 4.0, s),
-            roughness_TRT=(4.0 * v, s),
-            absorption_coefficient=absorption,
-            cuticle_angle=0.5 - tilt / 180.0,
-            form=FORMS[TILTED],
-        )
+        rough = {"roughness_R": (v, s), "roughness_TT": (v / 4.0, s), "roughness_TRT": (4.0 * v, s)}
+        cuticle = {"cuticle_angle": 0.5 - tilt / 180.0, "form": FORMS[TILTED]}
+        inputs = rough | cuticle | {"absorption_coefficient": absorption}
+        expected = np.pi * chiang_hair_bcsdf(wo, wi, **inputs)
         np.testing.assert_allclose(value, expected, rtol=2e-6)

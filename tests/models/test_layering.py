@@ -13,9 +13,8 @@ NOTHING, BLACK = Bsdf(np.zeros(3), np.ones(3)), Bsdf(np.zeros(3), np.zeros(3))
 
 
 def same(one, other):
-    return np.array_equal(one.value, other.value) and np.array_equal(
-        one.throughput, other.throughput
-    )
+    pairs = (one.value, other.value), (one.throughput, other.throughput)
+    return all(np.array_equal(*each) for each in pairs)
 
 
 def test_identities():

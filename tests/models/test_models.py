@@ -90,9 +90,8 @@ def test_eon_is_a_mixture_of_its_own_white_and_of_white_fon():
     wo, wi, rho, r = pairs(1000, seed=6)
     average = diffuse.fon_albedo_avg(r)[:, np.newaxis]
     weight = rho**2 * average / (1.0 - rho * (1.0 - average))
-    mixture = (rho - weight) * diffuse.fon_brdf(wo, wi, 1.0, r) + weight * diffuse.eon_brdf(
-        wo, wi, 1.0, r
-    )
+    fon, eon = diffuse.fon_brdf(wo, wi, 1.0, r), diffuse.eon_brdf(wo, wi, 1.0, r)
+    mixture = (rho - weight) * fon + weight * eon
     scale = largest_quotient(wo, wi)[:, np.newaxis]
     error = np.pi * np.abs(mixture - diffuse.eon_brdf(wo, wi, rho, r)) / scale
     assert error.max() <= 2.0 * tolerances.BRDF
@@ -115,9 +114,8 @@ def test_model_agrees_with_fifty_digits_of_the_printed_equations(row):
 
 def test_quartic_agrees_with_eon_to_its_documented_error():
     wo, wi, rho, r = pairs(20000, seed=8)
-    error = np.pi * np.abs(
-        diffuse_model("eon_approx").brdf(wo, wi, rho, r) - diffuse.eon_brdf(wo, wi, rho, r)
-    )
+    approximation = diffuse_model("eon_approx").brdf(wo, wi, rho, r)
+    error = np.pi * np.abs(approximation - diffuse.eon_brdf(wo, wi, rho, r))
     assert error.max() <= tolerances.QUARTIC_BRDF
 
 
@@ -162,10 +160,8 @@ def test_directions_rounded_to_float32_are_valid_and_give_float64(row):
 
 
 def test_towards_the_light_at_grazing_the_quotient_without_a_limit_counts_as_zero():
-    grazing = [1.0, 0.0, 0.0]
-    assert diffuse.fon_brdf(grazing, grazing, 1.0, 1.0) == diffuse.fon_brdf(
-        [0, 0, 1], [0, 0, 1], 1.0, 1.0
-    )
+    grazing, up = (diffuse.fon_brdf(w, w, 1.0, 1.0) for w in ([1, 0, 0], [0, 0, 1]))
+    assert grazing == up
 
 
 def test_away_from_the_light_at_grazing_full_oren_nayar_takes_its_limit():
@@ -177,11 +173,8 @@ def test_away_from_the_light_at_grazing_full_oren_nayar_takes_its_limit():
 # --- evaluation ------------------------------------------------------------------------------
 
 SHAPES = (
-    ((3,), (3,), (3,), ()),
-    ((5, 3), (3,), (1,), (5,)),
-    ((4, 1, 3), (5, 3), (4, 5, 2), (5,)),
-    ((3,), (3,), (2, 6, 3), (6,)),
-    ((0, 3), (3,), (3,), ()),
+    *(((3,), (3,), (3,), ()), ((5, 3), (3,), (1,), (5,)), ((0, 3), (3,), (3,), ())),
+    *(((4, 1, 3), (5, 3), (4, 5, 2), (5,)), ((3,), (3,), (2, 6, 3), (6,))),
 )
 
 

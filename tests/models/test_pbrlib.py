@@ -66,10 +66,8 @@ def test_values_integrate_to_the_albedo(row):
         view = direction(wo[number : number + 1, 2])
         _, wi, weights = hemisphere_nodes(float(wo[number, 2]), 48)
         wi = wi * [1.0, 1.0, -1.0 if row.transmits else 1.0]
-        one = {
-            name: np.repeat(each[number : number + 1], len(wi), axis=0)
-            for name, each in values.items()
-        }
+        rows = np.full(len(wi), number)
+        one = {name: each[rows] for name, each in values.items()}
         f = row.value(np.repeat(view, len(wi), axis=0), wi, one)
         albedo = (weights[:, np.newaxis] * f).sum(axis=0)  # the weights include the cosine
         np.testing.assert_allclose(albedo, expected[number], rtol=0.0, atol=INTEGRAL)
@@ -141,20 +139,14 @@ def burley_error(mu, roughness):
 
 def conty_kulla_error(mu, roughness):
     exact = np.minimum(conty_kulla_albedo_dir(mu, roughness), 1.0)
-    return (
-        materialx_fits.conty_kulla_albedo(
-            mu[..., np.newaxis] * [0.0, 0.0, 1.0], {"roughness": roughness}
-        )[:, 0]
-        - exact
-    )
+    wo = mu[..., np.newaxis] * [0.0, 0.0, 1.0]
+    return materialx_fits.conty_kulla_albedo(wo, {"roughness": roughness})[:, 0] - exact
 
 
 def kang_error(share, _):
     kelvin = 1667.0 * (25000.0 / 1667.0) ** share
-    x, exact = (
-        each[:, :2] / each.sum(axis=1)[:, np.newaxis]
-        for each in (kang_xyz(kelvin), blackbody_xyz(kelvin))
-    )
+    colors = kang_xyz(kelvin), blackbody_xyz(kelvin)
+    x, exact = (each[:, :2] / each.sum(axis=1)[:, np.newaxis] for each in colors)
     return x - exact
 
 

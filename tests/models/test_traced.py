@@ -34,8 +34,8 @@ FUNCTIONS = [
     for function in mxeon.model(name).functions
     if function != "brdf"  # brdf is an alias of bsdf
 ]
-# Films that JAX does not trace, since it takes seconds for one; test_arrays.py covers their curves.
-OTHER_FILMS = ("conductor_film", "schlick_film")
+# JAX takes seconds to trace the other films, whose curves test_arrays.py covers.
+TRACED = [row for row in FUNCTIONS if row[0] not in ("conductor_film", "schlick_film")]
 
 
 def vectors(row, function, ends=False):
@@ -148,9 +148,7 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
 
 
 @pytest.mark.whole
-@pytest.mark.parametrize(
-    ("name", "function"), [each for each in FUNCTIONS if each[0] not in OTHER_FILMS]
-)
+@pytest.mark.parametrize(("name", "function"), TRACED)
 def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
     """Functions are traced but not compiled, which would take minutes for films and facets.
 
