@@ -3,6 +3,7 @@
 
 import json
 import re
+from collections import defaultdict
 from pathlib import Path
 from textwrap import fill
 
@@ -110,18 +111,16 @@ def short_diff(patch: Path) -> tuple[str, int]:
 
 def outcome(issue: Issue) -> str:
     """Sentence about checks that pass, or still fail, with a page's patch and those it needs."""
-    subjects: dict[tuple[str, bool], list[str]] = {}
+    checks: dict[tuple[str, str, str], list[str]] = defaultdict(list)
     for check, subject in issue.repaired:
-        subjects.setdefault((subject, True), []).append(f"`{check}`")
+        checks[subject, "passes", "pass"].append(f"`{check}`")
     for check, subject in issue.remains:
         if (check, subject) in issue.rows:
-            subjects.setdefault((subject, False), []).append(f"`{check}`")
-    parts = []
-    for (subject, passes), checks in subjects.items():
-        singular, plural = (
-            ("passes", "pass") if passes else ("shows another cause", "show another cause")
-        )
-        parts.append(f"{_joined(checks)} of {subject} {plural if checks[1:] else singular}")
+            checks[subject, "shows another cause", "show another cause"].append(f"`{check}`")
+    parts = [
+        f"{_joined(names)} of {subject} {plural if names[1:] else singular}"
+        for (subject, singular, plural), names in checks.items()
+    ]
     if not parts:
         return ""
     files = patches("materialx")
@@ -155,22 +154,20 @@ def patch_table(project: str) -> str:
     for page, path in files.items():
         issue = issues()[page]
         text = " ".join(path.read_text(encoding="utf-8").split("\n\n", 1)[0].split())
-        # Prefer the figure of a row that the patch repairs.
-        measures = found.get(page, {}).get("rows", [])
-        chosen = [row for row in measures if (row[0], row[1]) in issue.mended]
-        figures = [
-            words.counted(int(figure), quantity.unit.removesuffix("s"))
-            if quantity.counted
-            else f"{figure} {quantity.unit}, tolerance {tolerance}"
-            for _, _, figure, tolerance, key in (*chosen, *measures)
-            for quantity in [Quantity(key)]
-        ]
+        rows = found.get(page, {}).get("rows", [])
+        repaired = [row for row in rows if (row[0], row[1]) in issue.mended]
+        measure = ""
+        for _, _, figure, tolerance, key in (*repaired, *rows)[:1]:
+            unit, counted = Quantity(key).unit, Quantity(key).counted
+            measure = f"{figure} {unit}, tolerance {tolerance}"
+            if counted:
+                measure = words.counted(int(figure), unit.removesuffix("s"))
         needs = ", ".join(sorted(files[each].name[:4] for each in issue.needs if each in files))
         cells = (
             path.name[:4],
             f"[{text.split('[PATCH] ')[1]}]({page}.md)",
             f"in main, #{issue.pull}" if issue.pull else issue.kind,
-            figures[0] if figures else "",
+            measure,
             needs,
         )
         lines.append(f"| {' | '.join(cells)} |")
