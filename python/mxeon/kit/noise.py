@@ -38,7 +38,7 @@ class Tiles:
 
 def tiles(error: NDArray[np.float64], slack: NDArray[np.float64], mask: NDArray[np.bool_]) -> Tiles:
     """Tiles of a picture, from errors and slack, (N, 3), at the pixels of a mask."""
-    complete = _squares(mask[..., None]).all(axis=(-1, -2))[..., None]  # all pixels in the mask
+    complete = np.asarray(_squares(mask[..., None]).all(axis=-1))  # squares inside the mask
     square, slack = (_squares(_on_picture(each, mask)) for each in (error, slack))
     contrast = (square @ [1.0, -1.0, -1.0, 1.0]) / 2.0
     count = _sum(complete)

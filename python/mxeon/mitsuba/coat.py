@@ -9,7 +9,8 @@ albedo as a cubic per part of an octave, in float64. The coefficients have gradi
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, ClassVar
+from functools import partial
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
@@ -152,7 +153,7 @@ class CoatPlugin(EonPlugin):
     def _rows(self, values: list[float]) -> Array:
         """Table of the curves, cell by cell, followed by the means of a varnish."""
         coat = self.interface(*values)
-        rows = [octave_cubics(lambda mu, k=k: coat.at(mu)[k]) for k in range(self.count)]
+        rows = [octave_cubics(partial(_curve, coat, k)) for k in range(self.count)]
         return np.append(np.stack(rows, axis=1), getattr(coat, "means", ()))
 
     def _slopes(self, values: list[float], k: int) -> Array:
@@ -176,6 +177,10 @@ class CoatPlugin(EonPlugin):
     @property
     def _compiled(self) -> bool:
         return bool(self.dr.is_jit_v(self.mi.Float))
+
+
+def _curve(coat: Any, k: int, mu: Array) -> Array:
+    return cast(Array, coat.at(mu)[k])
 
 
 class VarnishPlugin(CoatPlugin):
