@@ -270,19 +270,18 @@ DEFECTS = {
     "picture_upside_down": "{0} is upside down{also}",
     "picture_mirrored": "{0} is mirrored left to right{also}",
     "picture_rotated": "{0} is rotated by 180 degrees{also}",
-    "picture_unknown": "{0} is not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise",
-}
-# fmt: on
-FACTORS = {"pi": math.pi, "1/pi": 1.0 / math.pi, "pi^2": math.pi**2, "2": 2.0, "1/2": 0.5}
-SAME_FACTOR = 0.005
-UNKNOWN = {
     "unknown": "the cause is unknown",
     "no_model": "it matches no known mistake",
     "no_input": "no input alone is at fault",
     "singly_right": "each value on its own is within tolerance",
     "other_average": "the compensation uses a different average of the film's reflectance",
     "unmasked": "the visible facets are not weighted by masking and shadowing",
+    "picture_unknown": "{0} is not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise",
 }
+# fmt: on
+FACTORS = {"pi": math.pi, "1/pi": 1.0 / math.pi, "pi^2": math.pi**2, "2": 2.0, "1/2": 0.5}
+SAME_FACTOR = 0.005
+
 # --- diagnoses -------------------------------------------------------------------------------------
 
 
@@ -334,7 +333,6 @@ def _model(cause: Cause, distances: Mapping[str, float]) -> str:
 
 
 def _region(cause: Cause) -> str:
-    """The number of wrong pairs, and their region or the worst pair."""
     begins = "wrong for" if cause.key == "wrong" else "correct except for"
     wrong, count = cause.wrong or 0, cause.of or 1
     if cause.region:
@@ -357,7 +355,6 @@ def _point(point: Mapping[str, Sequence[float]], digits: int) -> str:
 
 
 def _degrees(direction: Sequence[float]) -> str:
-    """Angle between a direction and the normal, in whole degrees."""
     return f"{math.degrees(math.acos(max(-1.0, min(1.0, direction[2])))):.0f}"
 
 
@@ -380,15 +377,10 @@ def _cure(cause: Cause) -> str:
 def _filled(text: str, cause: Cause) -> str:
     """A text whose braces are replaced by a cause's names and numbers."""
     names, values = cause.names, cause.values
-    first, times, also, states = math.nan, "", "", ""
-    if values:
-        first = values[0]
-        known = (name for name, x in FACTORS.items() if abs(first / x - 1.0) <= SAME_FACTOR)
-        times = next(known, f"{first:.3g}")
-        also = f" and {times} times as bright"
-    if names:
-        joint = STATES.get(cause.key.removesuffix("_of_frames"), "")
-        states = f", all with {joint.join(names)}"
+    first = values[0] if values else math.nan
+    known = (name for name, x in FACTORS.items() if abs(first / x - 1.0) <= SAME_FACTOR)
+    times = next(known, f"{first:.3g}")
+    joint = STATES.get(cause.key.removesuffix("_of_frames"), "")
     return text.format(
         *names,
         x=first,
@@ -405,9 +397,9 @@ def _filled(text: str, cause: Cause) -> str:
         place=f" {region(cause.region)}" if cause.region else "",
         share=f"{cause.wrong} of {cause.of}",
         released=_release(cause),
-        states=states,
+        states=f", all with {joint.join(names)}" if names else "",
         times=times,
-        also=also,
+        also=f" and {times} times as bright" if values else "",
     )
 
 
@@ -438,7 +430,7 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
     Kind.NOT_FINITE: _not_finite,
     Kind.CURE: _cure,
     Kind.DEFECT: lambda cause: _filled(DEFECTS[cause.key], cause),
-    Kind.UNKNOWN: lambda cause: UNKNOWN[cause.key],
+    Kind.UNKNOWN: lambda cause: DEFECTS[cause.key],
     Kind.TEXT: lambda cause: cause.text,
     Kind.CONTROL: lambda cause: "inconclusive: the values are right, but the control passed too",
     # The reason of a result already states these causes.
@@ -499,7 +491,6 @@ def excess(result: Result) -> str:
 
 
 def look(result: Result) -> str:
-    """The appearance of a material in its pictures, in words."""
     if result.verdict == results.NOT_RUN:
         return f"not judged: {result.reason}"
     if result.verdict != results.PASSED:
@@ -540,6 +531,7 @@ GROWTHS = {
     "wrong": "{0} % -> {1} % of the samples are wrong",
     "not_finite": "{0} % -> {1} % of the samples are not finite",
 }
+LOST_PAGE, FOUND_PAGE = "{} no longer explains it", "{} explains it"
 UNEXPLAINED = "the specification no longer allows it"
 ROUNDED = "with another driver, few samples leave the tolerance"
 
@@ -557,14 +549,6 @@ def growth(key: str, before: float, after: float, place: Region | None) -> str:
     percent = 100.0 if key in ("wrong", "not_finite") else 1.0
     numbers = (_short(percent * each, 3) for each in (before, after))
     return f"{GROWTHS[key].format(*numbers)} {region(place) if place else ''}".rstrip()
-
-
-def lost_page(pages: Sequence[str]) -> str:
-    return f"{listed(pages)} no longer explains it"
-
-
-def found_page(pages: Sequence[str]) -> str:
-    return f"{listed(pages)} explains it"
 
 
 def annotation(level: str, title: str, message: str) -> str:

@@ -352,12 +352,12 @@ def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
     if new.verdict == PASSED:
         return (OTHER, "", grown or fallen) if grown or fallen else ("", "", ())
     if old.pages and not new.pages and new.verdict == FAILED and not _is_repaired(old, new):
-        return WORSE, words.lost_page(old.pages), grown
+        return WORSE, words.LOST_PAGE.format(words.listed(old.pages)), grown
     if grown:
         return WORSE, "", grown
     found = sorted({*new.pages} - {*old.pages})
     if found and old.samples == new.samples:
-        return BETTER, words.found_page(found), fallen
+        return BETTER, words.FOUND_PAGE.format(words.listed(found)), fallen
     return (BETTER, "", fallen) if fallen else ("", "", ())
 
 
