@@ -11,7 +11,7 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.reference.graph import DRAWN, Graph
+from mxeon.conformance.reference.graph import DRAWN, Graph, Measure
 from mxeon.conformance.reference.nodes import ManyMaterialsError, ShadingPoints, ShownLobe
 from mxeon.conformance.samples import Array
 from mxeon.errors import DocumentError, NotRun
@@ -74,6 +74,10 @@ class HostValues:
             self.pictures[key] = np.asarray(image, np.float64)
         return self.pictures[key][..., : DRAWN[kind]]
 
+    def at(self, mask: NDArray[np.bool_]) -> Measure:
+        """The values of elements at some pixels of a square picture."""
+        return lambda elements, kind, output: self(len(mask), elements, kind, output)[mask]
+
 
 @dataclass(frozen=True, eq=False)
 class ExpectedPicture:
@@ -117,17 +121,14 @@ class Reference(base.Host):
         if shader.methods.searched:
             points = replace(points, searched=True)
 
-        def measure(elements: Elements, kind: str, output: str) -> NDArray[np.float64]:
-            assert values
-            return values(scene.size, elements, kind, output)[chosen]
-
+        measure = values.at(chosen) if values else None
         image = np.zeros((*mask.shape, 3))
         try:
-            graph = Graph(shader.document, points, measure=measure if values else None)
+            graph = Graph(shader.document, points, measure=measure)
             image[chosen] = graph.element(shader.element)
             if points.wi is None and TRANSMISSION in inner_lobes(shader):
                 behind = replace(points, behind=True)
-                passed = Graph(shader.document, behind, measure=measure if values else None)
+                passed = Graph(shader.document, behind, measure=measure)
                 image[chosen] += passed.element(shader.element)
         except ManyMaterialsError:
             return self.expected(shader, scene, values, -(-scene.size // LATTICE))
@@ -145,15 +146,11 @@ class Reference(base.Host):
     def other_node(self, shader: Shader, values: HostValues) -> tuple[str, ...]:
         """Category and name of the first pattern node that the judged host evaluates wrongly, or ()."""
         scene = Scene(NAME, VIEW, size=PATTERN_SIZE)
-        mask = sphere(scene.size).mask
-
-        def drawn(elements: Elements, kind: str, output: str) -> NDArray[np.float64]:
-            return values(scene.size, elements, kind, output)[mask]
-
-        graph = Graph(shader.document, _points(scene, 1, np.inf), measure=drawn)
+        measure = values.at(sphere(scene.size).mask)
+        graph = Graph(shader.document, _points(scene, 1, np.inf), measure=measure)
         try:
             for elements, expected in islice(graph.patterns(shader.element), PATTERNS_DRAWN):
-                found = drawn(elements, elements[-1].getType(), "")
+                found = measure(elements, elements[-1].getType(), "")
                 scale = max(1.0, np.abs(expected).max())
                 if np.abs(found - expected).max() > PATTERN_ERROR * scale:
                     return elements[-1].getCategory(), elements[-1].getName()

@@ -134,11 +134,6 @@ class Views:
         return Bsdf(value, throughput)
 
 
-def radiance(tree: ClosureTree | None) -> Array:
-    emitted = _coefficient(tree, "color", EMISSION)
-    return np.zeros((1, 3)) if emitted is None else emitted
-
-
 def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Array | None:
     """Weighted sum of an argument over all closures of this name in the tree; None without any."""
     if tree is None:
@@ -204,7 +199,8 @@ def evaluate(trees: Iterable[TreeRows], query: Query) -> Array:
     for points in trees:
         rows = points.rows
         if output == "radiance" or branch == GRAPH:
-            values[rows] = radiance(points.tree)
+            emitted = _coefficient(points.tree, "color", EMISSION)
+            values[rows] = 0.0 if emitted is None else emitted
             continue
         light = wi[rows] if branch == "direct" else None
         shaded = ShadingPoints(wo[rows], light, 1.0, normal[rows], np.array(ALONG))

@@ -8,7 +8,7 @@ for all components of a color or vector.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
 from operator import add, mul, pow, sub, truediv
 from typing import TypeAlias
@@ -54,7 +54,6 @@ class ManyMaterialsError(Exception):
 
 
 def _directions(mu: Array, phi: Array) -> Array:
-    """Unit vectors with cosine mu at azimuth phi, (N, 3)."""
     sine = np.sqrt((1.0 - mu) * (1.0 + mu))
     return np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=1)
 
@@ -97,12 +96,7 @@ COSINES = np.linspace(-1.0, 1.0, 1025)  # cosines at which diffused light is com
 REACHES = (1e-6, 1e3)  # range of mean free paths, relative to the sphere's radius
 
 
-def _dark(wo: Array, *_: object) -> Array:
-    return np.zeros(wo.shape)
-
-
 def _not_reflected(category: str, wo: Array, inputs: Inputs) -> Array:
-    """Share of a uniform environment that a microfacet node transmits."""
     functions = TRANSMISSIONS[category]
     rest = 1.0 - functions.reflected(wo, microfacets.isotropic(inputs))
     return np.asarray(functions.tint(inputs) * np.maximum(rest, 0.0))
@@ -124,7 +118,6 @@ def _spread(wo: Array, wi: Array, inputs: Inputs) -> Array:
 
 @lru_cache(maxsize=64)
 def _blur(reach: float) -> Array:
-    """Light at COSINES after diffusion."""
     return diffusion_blur(COSINES, reach)
 
 
@@ -139,13 +132,17 @@ SUMS: dict[str, Callable[[Array, Inputs], Array]] = {
 # Lobes with light from the full sphere and values that include no cosine.
 SPREAD_NODE = replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy"), value=_spread)
 AROUND = SPREAD_NODE, HAIR_NODE
+
+
+def _dark(wo: Array, *_: object) -> Array:
+    return np.zeros(wo.shape)
+
+
 _only_passes = partial(replace, value=_dark, albedo=_dark, integral=_dark)
 INNER_NODES = (
     *(x if x.fixed["scatter_mode"] == "RT" else _only_passes(x) for x in TRANSMISSION_NODES),
     *AROUND,
 )
-
-
 UNIT = 1e-3  # tolerance for the length of a normal
 
 
@@ -164,6 +161,7 @@ class ShadingPoints:
     behind: bool = False  # whether only transmitted light counts
     opacity: bool = False  # whether lobes in mode T pass all light, times their tint
     searched: bool = False  # whether the environment sum masks by both alphas, as eonlib's does
+    _lobes: Recent[Bsdf] = field(default_factory=lambda: Recent(CACHED), init=False)
 
     def lobe(
         self, node: PbrNode, inputs: Inputs, layered: bool, normal: Array, tangent: Array
@@ -182,7 +180,7 @@ class ShadingPoints:
             return scattered()
         # The same document with another library has the same lobes.
         key = node, layered, *((name, contents(each)) for name, each in inputs.items())
-        return self._known.value(key, scattered)
+        return self._lobes.value(key, scattered)
 
     def scattered(self, node: PbrNode, wo: Array, wi: Array | None, inputs: Inputs) -> Array:
         """Light that a lobe sends to the viewer, (N, 3); directions are in the lobe's frame.
@@ -233,9 +231,8 @@ class ShadingPoints:
 
     def geometry(self, name: str) -> Array:
         """A geometric property by its name in MaterialX; raises NotRun for unknown names."""
-        normal, tangent = self.normal, self.tangent
-        known = {"Nworld": normal, "Tworld": tangent, "Bworld": np.cross(normal, tangent)}
-        known |= {"UV0": self.texcoord} if self.texcoord is not None else {}
+        known = {"Nworld": self.normal, "Tworld": self.tangent, "UV0": self.texcoord}
+        known["Bworld"] = np.cross(self.normal, self.tangent)
         if (value := known.get(name)) is None:
             raise NotRun(f"reference: the surface has no {name} here")
         return value
@@ -244,10 +241,6 @@ class ShadingPoints:
     def local(self) -> tuple[Array, Array | None]:
         """Directions to viewer and light in the surface's own frame."""
         return self.directions(self.normal, self.tangent)
-
-    @cached_property
-    def _known(self) -> Recent[Bsdf]:
-        return Recent(CACHED)
 
     def directions(self, normal: Array, tangent: Array) -> tuple[Array, Array | None]:
         """Directions to viewer and light in a frame, whose normal is turned toward the viewer.
@@ -309,7 +302,7 @@ COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
 
 @dataclass(frozen=True, eq=False)
 class ShownLobe:
-    """A lobe that a picture shows with a nonzero weight."""
+    """A lobe with a nonzero weight."""
 
     category: str
     inputs: Mapping[str, Array]

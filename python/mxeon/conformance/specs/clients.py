@@ -14,7 +14,6 @@ LOBES = {"first": (0.9, 0.3, 0.1), "second": (0.2, 0.5, 0.8), "behind": (0.3, 0.
 SHARE = 0.25  # share of the first lobe in the front surface
 FRONT = SHARE * np.array(LOBES["first"]) + (1.0 - SHARE) * np.array(LOBES["second"])
 BACK = np.array(LOBES["behind"])
-CLIENT_ERROR = sum_of(roundings(64, "of directions, distances and powers, four lights in all"))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -43,5 +42,9 @@ class FrameSpec(Spec):
 
 
 CLIENT_FRAME = FrameSpec(
-    title="surface, a client's frame", node="surface", errors={"frame": CLIENT_ERROR}
+    title="surface, a client's frame",
+    node="surface",
+    errors={
+        "frame": sum_of(roundings(64, "of directions, distances and powers, four lights in all"))
+    },
 )

@@ -38,12 +38,12 @@ def over(category: str, *lobes: str) -> nodes.Node:
 SHEEN = nodes.Node("sheen_bsdf", "BSDF", text=nodes.input_text("mode", "string", "zeltner"))
 LOBES = {"top": SHEEN, "base": SHEEN}
 SUM = {"sum": over("add", "top", "base")}
-WHITE_INPUT = nodes.input_text("color", "color3", np.ones(3))
+WHITE = nodes.Node(
+    "oren_nayar_diffuse_bsdf", "BSDF", text=nodes.input_text("color", "color3", np.ones(3))
+)
 # Opaque lobes in mixes with connected weights. MaterialX multiplies the lobes by these weights.
 MASKED = {
-    **dict.fromkeys(
-        ("white", "other"), nodes.Node("oren_nayar_diffuse_bsdf", "BSDF", text=WHITE_INPUT)
-    ),
+    **dict.fromkeys(("white", "other"), WHITE),
     **dict.fromkeys(("inner", "outer"), nodes.Node("multiply", "float")),
     "masked": over("mix", "white", "top")._replace(
         text=nodes.connection_text("mix", "float", "inner")

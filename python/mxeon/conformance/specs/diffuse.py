@@ -154,10 +154,9 @@ class DiffuseSpec(DiffuseModelSpec):
     flag: bool | None  # value of `energy_compensation`; None if the node has no such input
 
 
-def _diffuse(node: str, flag: bool | None, model: str) -> DiffuseSpec:
-    words = "" if flag is None else f", energy_compensation {str(flag).lower()}"
-    return DiffuseSpec(
-        title=node + words,
+DIFFUSE = tuple(
+    DiffuseSpec(
+        title=node if flag is None else f"{node}, {FLAG} {str(flag).lower()}",
         node=node,
         model=model,
         row=model_row(model, node),
@@ -167,12 +166,11 @@ def _diffuse(node: str, flag: bool | None, model: str) -> DiffuseSpec:
         errors=ERRORS,
         along=0.1 if model == "qon" else 0.0,
     )
-
-
-DIFFUSE = (
-    _diffuse(OREN_NAYAR, True, "eon"),
-    _diffuse(OREN_NAYAR, False, "qon"),
-    _diffuse(EON, None, "eon"),
+    for node, flag, model in (
+        (OREN_NAYAR, True, "eon"),
+        (OREN_NAYAR, False, "qon"),
+        (EON, None, "eon"),
+    )
 )
 
 

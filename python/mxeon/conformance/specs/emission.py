@@ -279,23 +279,21 @@ EMITTING_SURFACES = (
 )
 
 
-def _spec(row: emissions.Emission) -> EmissionSpec:
-    drawn, cone = inputs_of(row), row.name == "conical"
-    power = (EngineError("the engine's pow()", power_error),)
-    return (ConeSpec if cone else EmissionSpec)(
+POWER = {"value": (EngineError("the engine's pow()", power_error),)}
+EMISSION_SPECS = tuple(
+    (ConeSpec if row.name == "conical" else EmissionSpec)(
         **spec.named(row, title_of(row, "EDF")),
         row=row,
-        inputs=(*drawn, NORMAL) if cone else drawn,
+        inputs=inputs_of(row) + ((NORMAL,) if row.name == "conical" else ()),
         errors={"value": ERRORS.get(row.name, UNIFORM)},
-        closure=not cone,
+        closure=row.name != "conical",
         counts=Counts(1 << 12, 1 << 10),
         evaluated=("emission", "radiance", 1.0),
         optional=True,
-        engines={"value": power} if row.name == "schlick_emission" else {},
+        engines=POWER if row.name == "schlick_emission" else {},
     )
-
-
-EMISSION_SPECS = tuple(map(_spec, (*emissions.EMISSIONS, *emissions.COMBINED_EMISSIONS)))
+    for row in (*emissions.EMISSIONS, *emissions.COMBINED_EMISSIONS)
+)
 
 
 # --- media: VDF nodes between two transmitting lobes ----------------------------------------------
@@ -354,19 +352,17 @@ ENGINE = (
 ANISOTROPY = Input("anisotropy", low=-0.9, high=0.9, default=0.5)
 
 
-def _medium_spec(row: Medium) -> MediumSpec:
-    inputs, combined = inputs_of(row), row in media.COMBINED_MEDIA
-    return MediumSpec(
+MEDIUM_SPECS = tuple(
+    MediumSpec(
         **spec.named(row, title_of(row, "VDF")),
         row=row,
-        inputs=(*inputs, ANISOTROPY) if row.category == "anisotropic_vdf" else inputs,
+        inputs=inputs_of(row) + ((ANISOTROPY,) if row.category == "anisotropic_vdf" else ()),
         errors={"value": TRANSMITTANCE},
         counts=Counts(1 << 8),
         fixed={"top/weight": 0.0, "bottom/weight": 0.0},
         evaluated=("transmission", "throughput", 1.0),
         optional=True,
-        engines={"value": ENGINE if combined else ENGINE[:1]},
+        engines={"value": ENGINE if row in media.COMBINED_MEDIA else ENGINE[:1]},
     )
-
-
-MEDIUM_SPECS = tuple(map(_medium_spec, (*media.MEDIA, *media.COMBINED_MEDIA)))
+    for row in (*media.MEDIA, *media.COMBINED_MEDIA)
+)

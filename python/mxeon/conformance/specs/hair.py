@@ -23,7 +23,6 @@ from mxeon.models.nodes.node import Scattering
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 9)
 LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # lower limits of random roughness
 WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # lower limits of roughness for integrated lobes
-MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # largest outputs of the node chiang_hair_roughness
 # Share of the light in R, TT, TRT and all higher orders that comes from the viewer's side.
 FRONT = np.array([1.0, 0.0, 1.0, 0.5])
 STEP = 1e-6  # step of an angle, in radian, for finite differences
@@ -34,7 +33,7 @@ INPUTS = (
     *(color(name, edges=()) for name in TINTS),
     Input("ior", low=1.1, high=2.5, edges=(1.0, 1.55), change=1.3),
     *(
-        Input(name, "vector2", (LEAST_VARIANCE, LEAST_SCALE), (MOST_VARIANCE, MOST_SCALE),
+        Input(name, "vector2", (LEAST_VARIANCE, LEAST_SCALE), (100.0, 10.0),
               edges=(0.0, 1e-3, 1.0, 100.0), change=(0.3, 0.7), logarithmic=True)
         for name in ROUGHNESSES
     ),

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Specs of the microfacet nodes in scatter modes R, T and RT, and under a thin film.
 
-E_ss is the albedo of a GGX lobe whose facets reflect all light once, F_ss the average of a Fresnel
-curve. Compensation for multiple scattering multiplies values by 1 + F_ss (1 - E_ss) / E_ss.
+E_ss is the albedo of GGX facets that reflect all light, without multiple scattering; F_ss is the
+average of a Fresnel curve. Compensation multiplies values by 1 + F_ss (1 - E_ss) / E_ss.
 """
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple
 
@@ -211,9 +211,6 @@ class FacetSpec(lobes.PbrSpec):
 
     counts: Counts = COUNTS
     least_cosine: float = sheen.FIT_COSINE
-    outside_errors: Mapping[tuple[str, str, float], Tolerance] = field(
-        default_factory=lambda: OUTSIDE_ERRORS
-    )
 
     def prefiltered(self, batch: Batch) -> Array:
         """Albedo by MaterialX's fit for prefiltered environments, (N, 3)."""
@@ -396,6 +393,7 @@ FACET_SPECS = tuple(
     FacetSpec(
         **lobes.mode_of(row),
         inputs=INPUTS[row.category],
+        outside_errors=OUTSIDE_ERRORS,
         errors=facet_errors(SCHLICK_THROUGHPUT if row.name == "schlick" else THROUGHPUT),
     )
     for row in MICROFACET_NODES
@@ -609,7 +607,7 @@ class FilmSpec(FacetSpec):
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs, special pairs, and lights near the mirror direction; no grazing facets."""
         rng, count = generator(), counts.pairs
-        special = _special(rng, count)
+        special = _some_special(rng, count)
         random = directions(rng, count), directions(rng, count)
         pairs = self._batch(rng, random), self._batch(rng, special, edged=True)
         batches = (*pairs, self.mirrored(counts)[0].first(count))
@@ -644,15 +642,14 @@ class FilmSpec(FacetSpec):
     def edges(self, counts: Counts) -> Batch:
         """Special pairs with extreme inputs, very thick films, and film indices of 0."""
         rng = generator()
-        wo, wi = _special(rng, 2 * counts.pairs)
+        wo, wi = _some_special(rng, 2 * counts.pairs)
         inputs = self.random_inputs(rng, len(wo), edged=True)
         inputs["thinfilm_thickness"] = rng.choice(THICK, len(wo))
         inputs["thinfilm_ior"][::16] = 0.0
         return Batch(wo, wi, inputs)
 
 
-def _special(rng: samples.Rng, count: int) -> tuple[Array, Array]:
-    """A random subset of the special pairs of directions."""
+def _some_special(rng: samples.Rng, count: int) -> tuple[Array, Array]:
     wo, wi = samples.special_directions(rng)
     picked = rng.permutation(len(wo))[:count]
     return wo[picked], wi[picked]

@@ -25,9 +25,6 @@ MATERIALS: tuple[Values, ...] = (
     {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
     *(dict[str, ArrayLike](color=(1, 1, 1), radius=each, anisotropy=0.0) for each in np.eye(3)),
 )
-# Wrong mean free paths for a diagnosis, and wrong lengths of the profile's far exponential.
-EVEN = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
-FARTHER = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 6.0, 9.0, 12.0)
 
 # The largest error is 9.3e-3 and on the light's axis.
 RINGS = tolerance.single(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
@@ -108,12 +105,12 @@ ON_SPHERES = (
     *(
         Candidate(f"the profile of a mean free path of {each:g}, whatever the radius",
                   partial(spread, radius=(each, each, each)))
-        for each in EVEN
+        for each in (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
     ),
     *(
         Candidate(f"a far exponential of {each:g} mean free paths instead of {FAR:g}",
                   partial(spread, far=each))
-        for each in FARTHER
+        for each in (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 6.0, 9.0, 12.0)
     ),
 )
 # fmt: on

@@ -39,7 +39,6 @@ RANGES = {
 }
 # Mean free paths have no effect on a plane, the only shape that is evaluated.
 FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
-TURNED_FRAME = {"normal": (0.48, 0.36, 0.8), "tangent": (0.6, 0.8, 0.0)}
 
 
 def ports_by_range(**names: str) -> tuple[Input, ...]:
@@ -139,7 +138,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
             if name in skipped:
                 continue
             if kind == "vector3":
-                values[name] = TURNED_FRAME["tangent" if "tangent" in name else "normal"]
+                values[name] = (0.6, 0.8, 0.0) if "tangent" in name else (0.48, 0.36, 0.8)
             elif kind == "color3":
                 values[name] = CHANGED_COLOR
             else:
@@ -252,7 +251,6 @@ def _views(rng: samples.Rng, count: int) -> Array:
 
 
 def _anisotropies(batch: Batch) -> list[str]:
-    """Names of the inputs that are the anisotropy of a lobe."""
     return [each for each in batch.inputs if "anisotropy" in each and "rotation" not in each]
 
 
