@@ -31,8 +31,8 @@ ERRORS = {
 }
 
 
-def over(category: str, *lobes: str) -> nodes.Node:
-    return nodes.Node(category, "BSDF", lobes)
+def over(category: str, *lobes: str, text: str = "") -> nodes.Node:
+    return nodes.Node(category, "BSDF", lobes, text)
 
 
 SHEEN = nodes.Node("sheen_bsdf", "BSDF", text=nodes.input_text("mode", "string", "zeltner"))
@@ -45,12 +45,8 @@ WHITE = nodes.Node(
 MASKED = {
     **dict.fromkeys(("white", "other"), WHITE),
     **dict.fromkeys(("inner", "outer"), nodes.Node("multiply", "float")),
-    "masked": over("mix", "white", "top")._replace(
-        text=nodes.connection_text("mix", "float", "inner")
-    ),
-    "both": over("mix", "masked", "other")._replace(
-        text=nodes.connection_text("mix", "float", "outer")
-    ),
+    "masked": over("mix", "white", "top", text=nodes.connection_text("mix", "float", "inner")),
+    "both": over("mix", "masked", "other", text=nodes.connection_text("mix", "float", "outer")),
     "lobe": over("layer", "both", "base"),
 }
 # Title of each row of `mxeon.models.nodes.combinations`, and the nodes that combine its lobes.
