@@ -42,6 +42,8 @@ def test_every_mutant_has_a_name_of_its_own_and_changes_the_sources():
     read = cache(lambda file: (trial.ROOT / file).read_text())
     texts = [(each.name, *text) for each in TABLE for text in each.texts().items()]
     assert [name for name, file, text in texts if text == read(file)] == []
+    tests = {trial.ROOT / trial.MODEL_TESTS / name for each in TABLE for name in each.tests}
+    assert [path for path in tests if not path.is_file()] == []
 
 
 def test_every_source_and_every_document_of_implementations_has_mutants():
