@@ -28,7 +28,7 @@ from mxeon.conformance.spec import POWER, Ability, LobeSpec, Spec, ValueSpec, br
 from mxeon.conformance.specs.diffuse import LOBE_VALUE, SurfaceLobe
 from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
 from mxeon.conformance.specs.microfacets import FacetSpec
-from mxeon.conformance.tolerance import Term, Tolerance, relative, roundings, sum_in, sum_of
+from mxeon.conformance.tolerance import Term, Tolerance, relative, roundings, single, sum_in, sum_of
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts import front_lit_only, host_row
 from mxeon.hosts.base import Host, Query
@@ -138,7 +138,12 @@ class Backend(ABC):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        return cast(ValueSpec, self.spec).batches(self.counts)
+        batches = map(self.adapted, cast(ValueSpec, self.spec).batches(self.counts))
+        return tuple(batch for batch in batches if len(batch.wo))
+
+    def adapted(self, batch: Batch) -> Batch:
+        """The pairs of a batch that the backend supports, with inputs that it supports."""
+        return batch
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
@@ -376,17 +381,18 @@ class Closures(Evaluating):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """Samples with weights >= 0, which OSL closures need, and index 0 for some dielectrics."""
-        batches: list[Batch] = []
-        for batch in super().batches:
-            changes: dict[str, Array] = {}
-            if "weight" in batch.inputs:
-                changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
-            if {"tint", "ior"} <= batch.inputs.keys():
-                index = broadcast_inputs(batch)["ior"]
-                changes["ior"] = np.where(np.arange(len(index)) % 7 == 3, 0.0, index)
-            batches.append(batch.altered(**changes).first(SOME if batches else len(batch.wo)))
-        return tuple(batches)
+        random, *others = super().batches
+        return (random, *(batch.first(SOME) for batch in others))
+
+    def adapted(self, batch: Batch) -> Batch:
+        """Weights become nonnegative, as OSL closures need, and some dielectrics get index 0."""
+        changes: dict[str, Array] = {}
+        if "weight" in batch.inputs:
+            changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
+        if {"tint", "ior"} <= batch.inputs.keys():
+            index = broadcast_inputs(batch)["ior"]
+            changes["ior"] = np.where(np.arange(len(index)) % 7 == 3, 0.0, index)
+        return batch.altered(**changes)
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
@@ -451,13 +457,9 @@ class Functions(Evaluating):
     def unset(self) -> tuple[str, ...]:
         return tuple(name for name in self.spec.names if name.startswith("transmission"))
 
-    @cached_property
-    def batches(self) -> tuple[Batch, ...]:
-        """Samples with occlusion 1, because the renderer, not the function, applies occlusion."""
-        return tuple(
-            each.altered(occlusion=1.0) if "occlusion" in each.inputs else each
-            for each in super().batches
-        )
+    def adapted(self, batch: Batch) -> Batch:
+        """Occlusion becomes 1, because the renderer, not the function, applies occlusion."""
+        return batch.altered(occlusion=1.0) if "occlusion" in batch.inputs else batch
 
 
 # Renderers in which each pixel shows one pair of directions.
@@ -489,8 +491,7 @@ BELOW = sum_of(
 VIEWS, PIXELS = 8, 1 << 12  # number of views per case, and of pixels in their common picture
 MEAN_OF_PATHS = "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms"
 NOISE = sum_in(Quantity.ALBEDO, Term(5.0 * 0.01 / math.sqrt(PIXELS / VIEWS), MEAN_OF_PATHS))
-TABLES = "testrender's tables, off by 1e-3 for a white dielectric"
-PASSED = tolerance.single(2e-3, Quantity.ALBEDO, TABLES)
+PASSED = single(2e-3, Quantity.ALBEDO, "testrender's tables, off by 1e-3 for a white dielectric")
 NODES_MOVED = Term(1.2e-3, "32 x 32 nodes, those next to the view moved by up to 0.08")
 INTEGRAL = sum_in(Quantity.ALBEDO, SHARP.term("an average of values"), NODES_MOVED)
 LIGHT = sum_in(Quantity.LIGHT, INTEGRAL.term("an integral of values"), PASSED.term("a throughput"))
@@ -511,10 +512,9 @@ class RenderablePairs(Evaluating):
 
     fewer = FEW_RENDERED
 
-    @cached_property
-    def batches(self) -> tuple[Batch, ...]:
-        batches = (self._restricted(batch, _is_renderable(batch)) for batch in super().batches)
-        return tuple(batch for batch in batches if len(batch.wo))
+    def adapted(self, batch: Batch) -> Batch:
+        pairs = batch.where(_is_renderable(batch))
+        return replace(pairs, inputs=self.supported(pairs.inputs))
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
@@ -523,14 +523,13 @@ class RenderablePairs(Evaluating):
 
     @cached_property
     def edges(self) -> Batch:
-        edges = super().edges
-        return self._restricted(edges, _is_renderable(edges))
+        return self.adapted(super().edges)
 
     @cached_property
     def mirrored(self) -> tuple[Batch, Batch]:
         first, second = super().mirrored
-        shown = _is_renderable(first) & _is_renderable(second)
-        return self._restricted(first, shown), self._restricted(second, shown)
+        mask = _is_renderable(first) & _is_renderable(second)
+        return self.adapted(first.where(mask)), self.adapted(second.where(mask))
 
     @cached_property
     def integrated(self) -> tuple[Batch, Array]:
@@ -550,10 +549,6 @@ class RenderablePairs(Evaluating):
             elif name.endswith("roughness"):
                 supported[name] = np.clip(values, least, 1.0)
         return supported
-
-    def _restricted(self, batch: Batch, mask: Mask) -> Batch:
-        pairs = batch.where(mask)
-        return replace(pairs, inputs=self.supported(pairs.inputs))
 
 
 class Rendered(RenderablePairs):

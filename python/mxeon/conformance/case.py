@@ -26,16 +26,15 @@ F = TypeVar("F", bound=Spec)
 Change = Callable[[Batch, Array], Array]  # batch, values -> changed values
 # Engines may compile two documents differently, so even unchanged values may differ by roundings.
 ROUNDED = 64 * ROUNDING
-CACHED_SPECS = 2  # number of specs with cached values: a case's spec, and a related one
 
 
-@lru_cache(maxsize=3 * CACHED_SPECS)
+@lru_cache(maxsize=6)  # three quantities of two specs: a case's spec, and a related one
 def model_values(spec: Spec, quantity: str) -> Callable[[Batch], Array]:
     """The model's function for a quantity, with a cache of its values."""
     return cache.remembered(getattr(spec, quantity))
 
 
-@lru_cache(maxsize=2 * CACHED_SPECS)
+@lru_cache(maxsize=4)  # two quantities of two specs
 def candidates(spec: Spec, quantity: str) -> tuple[Candidate, ...]:
     """Functions that may explain the albedo or the throughput, with caches of their values."""
     functions: tuple[Candidate, ...] = getattr(spec, f"{quantity}_candidates")

@@ -85,16 +85,14 @@ def released(library: str) -> mx.Document | None:
 
 def newer_nodes(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
     """Nodes in MaterialX's own documents that the release lacks, or has in another version."""
-    known_files = {Path(each.getActiveSourceUri()).name for each in release.getNodeDefs()}
-    newer = []
-    for each in document.getNodeDefs():
-        if released := release.getNodeDef(each.getName()):
-            differs = released.getVersionString() != each.getVersionString()
-        else:
-            differs = Path(each.getActiveSourceUri()).name in known_files
-        if differs:
-            newer.append(each.getNodeString())
-    return tuple(newer)
+    files = {Path(each.getActiveSourceUri()).name for each in release.getNodeDefs()}
+    versions = {each.getName(): each.getVersionString() for each in release.getNodeDefs()}
+    return tuple(
+        each.getNodeString()
+        for each in document.getNodeDefs()
+        if versions.get(each.getName()) != each.getVersionString()
+        and (each.getName() in versions or Path(each.getActiveSourceUri()).name in files)
+    )
 
 
 def definition_facts(
@@ -206,9 +204,8 @@ class Comparison:
             if own is None or (number and own in (reference, released)):
                 continue
             attributes = ATTRIBUTES if released == reference else (*ATTRIBUTES, *RANGE)
-            facts, expected = (
-                definition_facts(each, reference, attributes) for each in (own, reference)
-            )
+            facts = definition_facts(own, reference, attributes)
+            expected = definition_facts(reference, reference, attributes)
             if changed and number == 0:
                 facts[f"version of {name}"] = "1234"
             if released:  # an omitted range is no difference, because the release also omits some
@@ -268,10 +265,8 @@ class Comparison:
             return None
         if code is None or any(graphs):
             return name
-        names, expected = (
-            [port.getName() for port in each.getActiveInputs()] for each in (own, released)
-        )
-        if names != expected:
+        ports, expected = (each.getActiveInputs() for each in (own, released))
+        if [each.getName() for each in ports] != [each.getName() for each in expected]:
             return name
         sides = (code, search_path(self._library)), (released_code, search_path("stock"))
         if texts.whole(*sides[0]) == texts.whole(*sides[1]):

@@ -118,18 +118,9 @@ def check(
             raise InputError(f"seed must be at least 0; got {seed}")
         check_timeout(timeout)
         check_timeout(wait, "waitForWorkers")
-        planned = make_plan(
-            documents,
-            engines,
-            loaded,
-            policy,
-            resumable=folder is not None,
-            nodes=categories,
-            reading=plan.read_documents(documents, loaded, policy, workers, timeout),
-            compared=others,
-            seed=seed,
-            methods=methods or UNCHOSEN,
-        )
+        reading = plan.read_documents(documents, loaded, policy, workers, timeout)
+        options = policy, folder is not None, categories, reading, others, seed, methods or UNCHOSEN
+        planned = make_plan(documents, engines, loaded, *options)
         if refuse:
             for line in chain.from_iterable(to_run(planned, {}).refused.values()):
                 refuse(line)
