@@ -14,7 +14,7 @@ NAMED = 3  # maximum names in a list; the rest are only counted
 DIFFERENCES_SHOWN = 3  # maximum reported differences between two node graphs
 AS_SPECIFIED = "looks as specified"
 
-# --- numbers and lists -----------------------------------------------------------------------------
+# --- numbers and lists ---------------------------------------------------------------------------
 
 
 def in_words(number: float) -> str:
@@ -282,7 +282,7 @@ DEFECTS = {
 FACTORS = {"pi": math.pi, "1/pi": 1.0 / math.pi, "pi^2": math.pi**2, "2": 2.0, "1/2": 0.5}
 SAME_FACTOR = 0.005
 
-# --- diagnoses -------------------------------------------------------------------------------------
+# --- diagnoses -----------------------------------------------------------------------------------
 
 
 def region(place: Region) -> str:
@@ -437,7 +437,7 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
     **dict.fromkeys((Kind.NONE, Kind.FOLLOWS, Kind.INPUT), lambda cause: ""),
 }
 
-# --- results ---------------------------------------------------------------------------------------
+# --- results -------------------------------------------------------------------------------------
 
 
 def difference(found: Difference) -> str:
@@ -521,7 +521,7 @@ def explanation(result: Result) -> str:
     return "; ".join(filter(None, (excess(result), diagnosis(result.diagnosis), *pages)))
 
 
-# --- changes ---------------------------------------------------------------------------------------
+# --- changes -------------------------------------------------------------------------------------
 
 # Changes of a number between two runs of a check: {0} is its old value, {1} its new one.
 GROWTHS = {
@@ -561,7 +561,7 @@ def annotation(level: str, title: str, message: str) -> str:
     return f"::{level} title={title.replace(':', '%3A').replace(',', '%2C')}::{message}"
 
 
-# --- runs ------------------------------------------------------------------------------------------
+# --- runs ----------------------------------------------------------------------------------------
 
 
 def sentence(run: Run) -> str:

@@ -144,7 +144,7 @@ class Reference(base.Host):
         return ExpectedPicture(image, chosen, tuple(graph.measured), tuple(graph.lobes))
 
     def other_node(self, shader: Shader, values: HostValues) -> tuple[str, ...]:
-        """Category and name of the first pattern node that the judged host evaluates wrongly, or ()."""
+        """Category and name of the first pattern node with a wrong value on the host, or ()."""
         scene = Scene(NAME, VIEW, size=PATTERN_SIZE)
         measure = values.at(sphere(scene.size).mask)
         graph = Graph(shader.document, _points(scene, 1, np.inf), measure=measure)

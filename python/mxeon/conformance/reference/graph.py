@@ -198,7 +198,6 @@ class Graph(Nodes):
         return tuple(self._source(path, name) for name in names)
 
     def _source(self, path: Path, name: str) -> Path:
-        """Path of an input's source, which is the connected node or a constant."""
         owner = path
         while (replaced := self._replaced(path, name)) is None:
             port = self._port(path, name)

@@ -33,7 +33,7 @@ VALUE = sum_in(
     roundings(28, "(14, of numbers up to 2)"),
     Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
 )
-# 12 in the longest chain of operations, two in the cosine, and two for 0.29 times the error of H.
+# 12 roundings in the longest chain of operations, two in the cosine, two for the fit of H.
 LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
 ENVIRONMENT = sum_in(Quantity.ALBEDO, LARGE_NUMBERS)
 # A rounding of a cosine of at least 1/4 counts 4 times in s / t, 3 times in a sine, and twice in
@@ -123,7 +123,7 @@ def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
     known = others + reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS
     rows = {each.name: each for each in known}
     expected = reference.diffuse_model(model)
-    # Only one of the models with equal BRDFs has a value, but each has its own albedo.
+    # Of models with equal BRDFs, only one is a variant for values; all are variants for albedos.
     owners = {each.brdf_of: each.name for each in (*rows.values(), expected)}
     variants = []
     for name, each in rows.items():

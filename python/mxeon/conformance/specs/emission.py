@@ -133,7 +133,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
         return nodes.document_text(axis + text + EMITTING_TEXT)
 
     def values(self, function: emissions.Value, batch: Batch) -> Array:
-        """Radiance toward each view, (N, 3); roundings of the views above 1 are clipped."""
+        """Radiance toward each view, (N, 3); components that round above 1 are clipped."""
         return function(np.clip(batch.wo, -1.0, 1.0), spec.broadcast_inputs(batch))
 
     @property
@@ -224,7 +224,7 @@ class AbsentSpec(spec.Spec):
         return nodes.document_text(self.text)
 
 
-# A control: MaterialX has no implementation of this definition.
+# A definition without any implementation, which a control judges.
 UNIMPLEMENTED = AbsentSpec(
     title="a node without an implementation",
     node="mxeon_absent",

@@ -26,7 +26,7 @@ WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # lower limits of roughness for integrate
 # Share of the light in R, TT, TRT and all higher orders that comes from the viewer's side.
 FRONT = np.array([1.0, 0.0, 1.0, 0.5])
 STEP = 1e-6  # step of an angle, in radian, for finite differences
-LEAST = 0.01  # smallest value to which errors are relative
+LEAST = 0.01  # errors are relative to the larger of this number and the value
 
 # fmt: off
 INPUTS = (
@@ -80,7 +80,7 @@ REGION = sum_in(
     roundings(12 + 4, "of factors and exponents, and of each angle"),
 )
 
-# R, TT and TRT in separate channels, and only R and TT.
+# Tints that put R, TT and TRT, or only R and TT, into separate channels.
 LOBE_TINTS = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
 R_AND_TT: Values = {**LOBE_TINTS, "tint_TRT": (0.0, 0.0, 0.0)}
 
@@ -101,7 +101,7 @@ class Region:
 
 NARROW = partial(Region, variances=(1e-3, 0.1), scales=(0.9, 1.0), form=BESSEL)
 # fmt: off
-# The keys are also keys of checks.
+# Regions by the key of their check.
 REGIONS = {
     "each_lobe": Region("Each lobe matches the equations: R, TT, and TRT with all higher orders.",
                         tints=LOBE_TINTS, form=UNIFORM),
@@ -136,7 +136,7 @@ class HairSpec(PbrSpec):
         return np.asarray(np.pi * function(batch.wo, batch.wi, broadcast_inputs(batch)) * occlusion)
 
     def sky(self, batch: Batch) -> Array:
-        """Light of the uneven sky that each fiber scatters, weighted by FRONT."""
+        """Mean of both sides of the sky, weighted by their shares of the scattered light."""
         inputs = broadcast_inputs(batch)
         A = chiang_hair_attenuation(batch.wo, inputs["ior"], inputs["absorption_coefficient"])
         shares = A * np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)

@@ -217,7 +217,7 @@ class FacetSpec(lobes.PbrSpec):
         return batch.strength * LOBES[self.node].prefiltered(batch.wo, spec.broadcast_inputs(batch))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """The batches of all lobes, and lights near the mirror direction; roughness is isotropic."""
+        """The batches of any lobe, and lights near the mirror direction; roughness is isotropic."""
         batches = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
         return tuple(_with_one_alpha(batch) for batch in (*batches, self.mirrored(counts)[0]))
 

@@ -117,7 +117,6 @@ ON_SPHERES = (
 
 
 def _points(scene: Scene, inputs: Values) -> Batch:
-    """All points of the sphere away from the rim, including points in shadow."""
     normal = sphere(scene.size).normal[inner(scene.size)]
     wo, wi = (local_directions(normal, each) for each in (VIEW, scene.light or VIEW))
     return Batch(wo, wi, samples.arrays(inputs), scene)
