@@ -334,7 +334,7 @@ class Media(Evaluating):
 
 # OSL: closures are trees of arguments and weights, which the models evaluate in float64.
 
-# Few pairs: the models compute the values of closures, so many would test only the models.
+# The models compute the values of closures, so that more pairs would only test the models.
 FEW_CLOSURES = Counts(1 << 11, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
 SOME = 1 << 8  # maximum number of pairs of each kind except random pairs
 # The models round in float64, 2^-53; the sharpest lobe, with alpha 1e-4, amplifies errors by 1e8.
@@ -465,8 +465,8 @@ class Functions(Evaluating):
 # Renderers in which each pixel shows one pair of directions.
 
 SMOOTH = ("eon", "qon", "burley")  # models without a sharp lobe at any roughness
-# Smallest product of a view's sine and cosine. It keeps the view away from the mirror direction and
-# from the opposite direction.
+# Smallest product of a view's sine and cosine, for views far from the mirror direction and from
+# the opposite direction.
 OBLIQUE = 0.25
 FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=32, mirrored=1 << 10)
 FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # stated in OpenImageIO's source
@@ -667,8 +667,8 @@ FOUR_PICTURES = Term(
 )
 HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR_PICTURES, *DRAWN_LOBE.terms, exact=True)
 
-# A pixel's point is a ray's origin plus its length. Both are at most 2, with three roundings of
-# 2^-23. A grazing view divides the error by cos(theta_o), and relative values by cos(theta_i).
+# A pixel's point is a ray's origin plus the ray, both of a length up to 2, with three roundings of
+# 2^-23. A grazing view divides the error by cos(theta_o), and a relative error by cos(theta_i).
 CYCLES_RAY = sum_of(
     roundings(3.0 * 2.0 / RIM**2, "of a pixel's point, over the least cosine squared"),
     Term(1e-5, "a roughness that counts as 0"),
@@ -751,7 +751,7 @@ class Spheres(Pictures):
 def _compile(host: Host, text: str, library: str, methods: Methods) -> Shader:
     from mxeon.shaders.generation import ApproximationWarning  # this import loads MaterialX
 
-    with warnings.catch_warnings():  # CyclesPictures.points excludes pairs of approximations
+    with warnings.catch_warnings():  # CyclesPictures.points excludes approximated pairs
         warnings.simplefilter("ignore", ApproximationWarning)
         return host.compile(text, library=library, methods=methods)[0]
 

@@ -123,7 +123,7 @@ NAMED: Mapping[str, Callable[..., Array | tuple[Array, ...]]] = {
     "eon_pdf": lambda wo, wi, rho, roughness: sampling.eon_pdf(wo, wi, roughness, rho=rho),
     "eon_rotate_z": sampling.rotate_z,
     "eon_sample": lambda wo, u, rho, roughness: sampling.eon_sample(wo, u, roughness, rho=rho),
-    # The shader has a fit of y for the angle with cosine 1 - m; NumPy evaluates the integral.
+    # The shader function is a fit; NumPy evaluates the integral for the angle with cosine 1 - m.
     "eon_upper_root": lambda m: sampling.eon_upper_limit(1.0 - m, np.sqrt(m * (2.0 - m))),
     "oren_nayar_s": lambda wo, wi: diffuse.cosines(wo, wi)[2],
 }

@@ -33,12 +33,12 @@ class Input:
     name: str  # name or path
     type: str = "float"  # MaterialX type
     low: ArrayLike = 0.0  # lower end of the range of random values, also per component
-    high: ArrayLike = 1.0  # upper end of that range
+    high: ArrayLike = 1.0  # upper end of the range of random values
     edges: tuple[float, ...] = ()  # values that half of the special samples use; () for none
     # Value that must have an effect, unlike the default; None for inputs without a visible effect.
     change: ArrayLike | None = None
     needs: Values = field(default_factory=dict, hash=False)  # inputs that make the change visible
-    # Whether random values are log-uniform; otherwise a tenth of them is at each end of the range.
+    # Whether random values are log-uniform; otherwise a tenth of the values is at each end.
     logarithmic: bool = False
     often: float | None = None  # value in every other sample, for rarely set inputs
     equal: bool = False  # whether both components are equal in every other sample
@@ -159,7 +159,7 @@ class Spec(ABC):
     claim: str = ""  # claim of all checks of the node; "" for each check's own claim
     closure: bool = True  # whether eonlib's OSL uses a renderer's closure for the node
     counts: Counts = DEFAULT_COUNTS
-    fixed: Values = field(default_factory=dict)  # inputs of all batches that do not set them
+    fixed: Values = field(default_factory=dict)  # values of inputs that a batch does not set
     # The evaluated branch and output, and a factor for the host's values.
     evaluated: tuple[str, str, float] = ("direct", "response", np.pi)
     flat: bool = False  # whether values have no sharp peak

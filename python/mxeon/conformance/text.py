@@ -159,7 +159,7 @@ def _lobe_expression(subject: lobes.ScatteringSpec, target: str, library: str) -
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", generation.ApproximationWarning)
         text = generation.generate(document, target, library=library)[0].stages["pixel"]
-    if filled := FILLED.search(text):  # such a variable is also set to an empty lobe
+    if filled := FILLED.search(text):  # `lobe_out` is declared as an empty lobe before
         return f"{filled[1]})"
     if assigned := ASSIGNED.search(text):
         return assigned[1]
@@ -263,7 +263,7 @@ def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
                 key = f"tint_is_not_{subject.model}" if name == TINT else "is_not_the_node_s"
                 values = [error]
                 if np.ptp(measured, axis=0).max() <= ROUNDED:
-                    values.append(float(measured.flat[0]))  # the constant passed instead
+                    values.append(float(measured.flat[0]))  # a constant instead of the input
                 yield Cause(Kind.DEFECT, key, (name,), tuple(values))
 
     causes = list(faults(rows))

@@ -33,7 +33,7 @@ DIFFERS: Final = "differs"
 FAILED: Final = "failed"
 NOT_RUN: Final = "not run"
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
-# Exit status of a run by its verdict.
+# Exit status of a run, by verdict.
 STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
 # Stands for the path of a document in pictures of one material of each node.
 PORTRAIT = "portrait"
@@ -41,7 +41,7 @@ SOURCE = "source"  # stands for the host in checks of text, which run no host
 SHADER_FUNCTIONS = "shader twins"  # stands for the node in checks of a library's functions
 RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
 REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # file patterns of a report
-DIRECT = ("value", "lobe")  # checks of a node in direct light; each node has one of them
+DIRECT = ("value", "lobe")  # checks in direct light, of which every node has one
 VISIBLE = 0.01  # approximate smallest visible contrast, as a share of white or of a highlight
 
 Item = TypeVar("Item")
@@ -218,7 +218,7 @@ class Difference:
     that is brighter.
 
     - `scene`: Name of the scene, which determines the light.
-    - `largest`: Difference at the worst pixel, positive if too bright; infinite for NaN or infinity.
+    - `largest`: Difference at the worst pixel, positive if too bright; infinite if not a number.
     - `highlight`: Whether the reference is brighter than white at the worst pixel.
     - `visible`: Share of the object's pixels whose difference exceeds VISIBLE.
     """

@@ -49,11 +49,11 @@ class Issue:
     unavoidable: bool = False  # every library has the defect, because no library can repair it
     differs: bool = False  # the specification permits both behaviors
     rows: tuple[Row, ...] = ()  # results that all fail, listed in the page's table
-    # Other results on these hosts that fail or differ, or may do so, because of the defect.
+    # Other results on hosts with the defect that fail or differ, or may do so, due to the defect.
     implied: tuple[Row, ...] = ()
     # Results that pass with the patch; by default `rows` without `remains`.
     repaired: tuple[Row, ...] = ()
-    # Results that pass with the patch, or still fail for one of these causes.
+    # Results that pass with the patch, or still fail for one of the causes.
     remains: Mapping[Row, tuple[Cause, ...]] = field(default_factory=dict, hash=False)
     needs: tuple[str, ...] = ()  # pages whose patches must also be applied
     kind: str = ""  # kind of the patch: "choice", "NaN" or "compiles"
@@ -196,7 +196,9 @@ def with_pages(result: Result, materialx: str = "") -> Result:
 def _explains(issue: Issue, result: Result, materialx: str) -> bool:
     """Whether an issue explains a result's error, diagnosis and shader text."""
     row = result.check, result.subject
-    if result.error is None and issue.sizes:  # e.g. the shader does not compile
+    if (
+        result.error is None and issue.sizes
+    ):  # nothing was measured, e.g. the shader does not compile
         return False
     # Hosts that only render pictures measure relative errors, which cannot be compared with sizes
     # in other units.

@@ -23,7 +23,7 @@ IMAGES = ("image", "reference", "judged")  # fields of a picture
 class StoredImage:
     """Pixels in a file; each `np.asarray` reads them again, so that a run keeps none in memory."""
 
-    path: Path  # its stem is the file's SHA-256
+    path: Path  # a file named by the SHA-256 of its contents
 
     def __array__(
         self, dtype: DTypeLike | None = None, copy: bool | None = None

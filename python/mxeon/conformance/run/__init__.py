@@ -29,7 +29,9 @@ from mxeon.shaders.methods import UNCHOSEN, Methods
 
 __all__ = ["check", "read_run", "to_run", "work"]
 
-EVALUATING = {row.name for row in HOSTS if row.way == "pairs"}  # hosts of all libraries
+EVALUATING = {
+    row.name for row in HOSTS if row.way == "pairs"
+}  # hosts that stay open for all libraries
 
 Outcomes = Iterable[tuple[int, Findings]]
 Executor = Callable[[Sequence[Task]], Iterable[tuple[int, pool.Outcome]]]
@@ -154,7 +156,7 @@ def check(
                     else:
                         done[numbers[position]] = findings
             seconds = round(time.monotonic() - begin, 3)
-            # A report has to draw the pictures in the studio that a journal already has.
+            # A report without a journal still has to draw the studio pictures.
             studio = None if journal else policy
             return replace(to_run(planned, done), seconds=seconds, policy=studio)
 

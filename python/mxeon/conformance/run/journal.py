@@ -192,7 +192,9 @@ def _read(folder: Path) -> tuple[Plan, dict[int, Findings], int]:
     path, converter = folder / JOURNAL, make_converter((folder / JOURNAL).parent)
     try:
         with open(path, "rb", opener=regular) as file:
-            lines = [line for line in file if line.endswith(b"\n")]  # the last may be incomplete
+            lines = [
+                line for line in file if line.endswith(b"\n")
+            ]  # the last line may be incomplete
     except FileNotFoundError:
         raise InputError(f"{folder}: must hold the {JOURNAL} of a run; there is none") from None
     completed: dict[int, Findings] = {}

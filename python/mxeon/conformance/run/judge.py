@@ -41,10 +41,10 @@ def one_result(
     diagnosis: results.Diagnosis = results.NO_DIAGNOSIS,
 ) -> Findings:
     """Findings without a measurement: a single result with a reason or a diagnosis."""
-    if task.check == plan.STUDIO:  # such a task has no results
+    if task.check == plan.STUDIO:  # a STUDIO task has no results
         return Findings(notes=((f"not drawn in the studio: {reason}", Path(task.subject).name),))
     if not (claim := CLAIMS.get(task.check)):
-        own_nodes(task.host)  # adds the checks of a renderer
+        own_nodes(task.host)  # imports the checks of a renderer
         claim = next(each.claim for each in checks.CHECKS if each.key == task.check)
     place = (task.check, claim, task.subject, task.host, task.library)
     return Findings((results.Result(*place, verdict, reason=reason, diagnosis=diagnosis),))
@@ -116,7 +116,7 @@ class Judge:
             if task.check == plan.PICTURE:
                 return self._document(task, host)
             if task.check == plan.STUDIO:
-                with suppress(MxeonError):  # the result of the PICTURE task has the error
+                with suppress(MxeonError):  # the result of the PICTURE task states the error
                     subject = Path(task.subject), host, task.library, self._policy
                     return Findings(pictures=pictures.studio_pictures(*subject))
                 return Findings()
@@ -130,7 +130,7 @@ class Judge:
         result = check.judge(case)
         images: tuple[results.Picture, ...] = ()
         if task.check in results.DIRECT:
-            with suppress(NotRun, ShaderError):  # the result has the error
+            with suppress(NotRun, ShaderError):  # the check's result states the error
                 images = pictures.comparison_pictures(case)
         return Findings((result,), images)
 
