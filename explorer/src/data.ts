@@ -32,7 +32,7 @@ export interface Port {
   readonly value: number | boolean | readonly number[] | null; // null for a filename
   readonly path: string; // name path of the input in the document
   readonly label: string; // uiname, or the name split into words
-  readonly min: number | null; // uimin or uisoftmin; the smallest component
+  readonly min: number | null; // uimin or uisoftmin, for vectors its first component
   readonly max: number | null;
   readonly image: Texels | null; // null unless the type is filename
   readonly shown: boolean; // whether readers may want to change it
@@ -57,7 +57,7 @@ export interface ShaderSource {
   readonly inputs: readonly Port[];
   /** Uniforms that the page's own controls set; "" for missing ones. */
   readonly controls: { readonly color: string; readonly roughness: string; readonly flag: string };
-  readonly meant: Models | null; // the intended models; null unless it is one diffuse node
+  readonly meant: Models | null; // intended models; null unless it is one rough diffuse node
   readonly actual: Models | null; // the model of this library's code, according to the diagnosis
   readonly document: string; // MaterialX text for the copy button
   readonly pages: readonly string[]; // names of the pages about its defects

@@ -21,7 +21,7 @@ export type SideName = "left" | "right";
 export interface Side {
   readonly source: string; // id of a Source
   readonly flag: boolean; // energy_compensation, if the source has it
-  readonly sampler: Sampler; // whether to trace paths through the generated text
+  readonly sampler: Sampler; // how path tracing samples a model; see SAMPLERS in stage/texts.ts
 }
 
 export interface State {
@@ -54,7 +54,7 @@ export interface State {
   // Whether `wanted` is the average albedo instead of the one at normal incidence.
   readonly average: boolean;
   readonly keep: boolean; // whether `color` follows from `wanted`
-  readonly paths: boolean; // trace paths instead of using the generated shader's own lighting
+  readonly paths: boolean; // whether paths are traced instead of using the shader's own lighting
   readonly samples: number; // paths per pixel at which path tracing stops
   /** Input values that differ from the document's own, by source id and uniform name. */
   readonly inputs: Readonly<Record<string, Readonly<Record<string, Value>>>>;

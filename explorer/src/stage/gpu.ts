@@ -74,7 +74,7 @@ export class Programs {
 }
 
 function compiled(gl: WebGL2RenderingContext, kind: number, text: string): WebGLShader {
-  // Null only if the context is lost; gl ignores it.
+  // The shader is null only if the context is lost, and WebGL ignores null.
   const shader = gl.createShader(kind) as WebGLShader;
   gl.shaderSource(shader, text);
   gl.compileShader(shader);

@@ -28,7 +28,7 @@ export class Pace {
   /** Record a new state. */
   change(dragging: boolean): void {
     const now = performance.now();
-    // A control in motion also calls often, without reporting a drag.
+    // While a control moves, states change often without a reported drag.
     const often = !this.dragging && now - this.changed < REST;
     this.moving = dragging || often;
     this.dragging = dragging;

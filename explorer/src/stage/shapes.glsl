@@ -46,7 +46,7 @@ struct Hit {
     int part;
 };
 
-// Keep a hit if it is in front and the nearest so far.
+// Replace the nearest hit so far by a nearer one in front of the ray's origin.
 void stage_keep(inout Hit hit, float t, vec3 normal, int part)
 {
     if (t > 0.0 && t < hit.t)

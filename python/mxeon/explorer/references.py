@@ -23,6 +23,7 @@ from mxeon.errors import NotRun
 from mxeon.explorer.data import Direction, ReferenceBounds, ReferenceTable, ShaderForm
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.nodes import DIFFUSE_NODES
+from mxeon.shaders.scene import direction
 
 DIGITS = 7
 POLES = (8.0, 35.0, 60.0, 80.0)  # degrees from the normal, of both directions
@@ -33,15 +34,9 @@ VIEWS = (0.05, 0.2, 0.4, 0.6, 0.8, 0.98)  # cosines of views in a white environm
 LOBES = ("BSDF", "VDF", "surfaceshader")
 FILM = "thinfilm_thickness"
 
-
-def _direction(pole: float, azimuth: float) -> Array:
-    theta, phi = np.radians((pole, azimuth))
-    return np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
-
-
-WO = float32([_direction(o, 0.0) for o in POLES for _ in POLES for _ in AZIMUTHS])
-WI = float32([_direction(i, azimuth) for _ in POLES for i in POLES for azimuth in AZIMUTHS])
-SEEN = float32([_direction(float(np.degrees(np.arccos(mu))), 0.0) for mu in VIEWS])
+WO = float32([direction(0.0, o) for o in POLES for _ in POLES for _ in AZIMUTHS])
+WI = float32([direction(azimuth, i) for _ in POLES for i in POLES for azimuth in AZIMUTHS])
+SEEN = float32([direction(0.0, float(np.degrees(np.arccos(mu)))) for mu in VIEWS])
 
 
 def pairs() -> tuple[tuple[Direction, Direction], ...]:

@@ -107,8 +107,8 @@ class Scene:
             raise InputError(f"shape must be one of {names}; got {self.shape!r}")
 
 
-def _towards(azimuth: float, polar: float) -> tuple[float, float, float]:
-    """Unit vector at `polar` degrees from the viewer, `azimuth` degrees from x, as a tuple."""
+def direction(azimuth: float, polar: float) -> tuple[float, float, float]:
+    """Unit vector at `polar` degrees from the z axis; `azimuth` is in degrees from x to y."""
     theta, phi = np.radians(polar), np.radians(azimuth)
     return (
         float(np.sin(theta) * np.cos(phi)),
@@ -119,8 +119,8 @@ def _towards(azimuth: float, polar: float) -> tuple[float, float, float]:
 
 VIEW = (0.0, 0.0, 1.0)  # towards the viewer
 FRONT = Scene("front", light=(0.0, 0.0, 1.0))
-SIDE = Scene("side", light=_towards(azimuth=20, polar=60))
-BACK = Scene("back", light=_towards(azimuth=160, polar=130))
+SIDE = Scene("side", light=direction(azimuth=20, polar=60))
+BACK = Scene("back", light=direction(azimuth=160, polar=130))
 FURNACE = Scene("furnace", environment=1.0)
 SCENES = (FRONT, SIDE, BACK, FURNACE)
 # Floor, ceiling and three soft boxes, painted by tools/site/gallery.py, and a light from behind.
