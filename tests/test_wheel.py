@@ -31,11 +31,11 @@ LOAD = """
 import mxeon
 from mxeon.conformance.results.known_issues import issues
 from mxeon.shaders.document.reading import read_document
-from mxeon.shaders.library import assert_ours, data_folder, examples_folder, load_library
+from mxeon.shaders.library import assert_eonlib, data_folder, examples_folder, load_library
 print(data_folder())
-assert_ours(load_library())
+assert_eonlib(load_library())
 assert issues()
-assert_ours(load_library(profile="cycles"))
+assert_eonlib(load_library(profile="cycles"))
 for path in sorted(examples_folder().glob("*.mtlx")):
     print(path.name, len(mxeon.generate(path, "glsl")))
 """

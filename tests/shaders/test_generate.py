@@ -19,7 +19,7 @@ from mxeon.errors import InputError, NotRun
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
-from mxeon.shaders.generators import ERROR, lines_left_out
+from mxeon.shaders.generators import ERROR, without_lines
 from mxeon.shaders.library import examples_folder, load_library, source_folder
 from mxeon.shaders.methods import Methods
 from mxeon.shaders.nodes import EON, OREN_NAYAR
@@ -255,7 +255,7 @@ def test_every_example_is_valid_and_renders_all_its_materials_and_nothing_else(p
 
 
 def test_lines_with_the_words_are_left_out_of_what_libraries_print(capfd):
-    with lines_left_out("of no use"):
+    with without_lines("of no use"):
         os.write(ERROR, b"this is of no use\nthis is\n")
     assert capfd.readouterr().err == "this is\n"
     generate(material(lobe()), "wgsl")  # the flag is a boolean in WGSL

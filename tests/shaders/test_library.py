@@ -102,7 +102,7 @@ def test_whatever_is_missing_of_eonlib_is_named():
         node, target = each.getNodeDefString(), each.getTarget()
         each.removeAttribute("nodedef")
         with pytest.raises(library.LibraryError, match=f"implementation of {node} for {target}"):
-            library.assert_ours(document)
+            library.assert_eonlib(document)
         each.setNodeDefString(node)
     assert count == len(listed([EONLIB]))
 
@@ -147,7 +147,7 @@ def test_eons_graph_is_eon_and_the_checks_notice_each_change_of_it(old, new, not
 
 def test_the_wrong_order_raises_with_node_target_and_remedy():
     with pytest.raises(library.LibraryError) as raised:
-        library.assert_ours(loaded([*STOCK, OURS]))
+        library.assert_eonlib(loaded([*STOCK, OURS]))
     message = str(raised.value)
     assert "\n" not in message
     assert re.search(r"ND_\w+ for gen\w+ must be eonlib's; got ", message)
@@ -203,7 +203,7 @@ def test_a_folder_is_loaded_before_the_standard_libraries(tmp_path):
     [shader] = generate(material(BRICKS), "glsl", library=tmp_path)
     assert "0.8" in shader.stages["pixel"]
     with pytest.raises(library.LibraryError, match="must be eonlib's"):
-        library.assert_ours(library.load_library(str(tmp_path)))
+        library.assert_eonlib(library.load_library(str(tmp_path)))
 
 
 def test_materials_in_a_folder_do_not_replace_nodes_of_other_documents(tmp_path):

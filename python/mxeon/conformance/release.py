@@ -269,9 +269,9 @@ class Comparison:
         if [each.getName() for each in ports] != [each.getName() for each in expected]:
             return name
         sides = (code, search_path(self._library)), (released_code, search_path("stock"))
-        if texts.whole(*sides[0]) == texts.whole(*sides[1]):
+        if texts.all_texts(*sides[0]) == texts.all_texts(*sides[1]):
             return None
-        lines, expected_lines = (set(texts.said(*each)) for each in sides)
+        lines, expected_lines = (set(texts.used_texts(*each)) for each in sides)
         return frozenset(lines ^ expected_lines) or None
 
     def _evaluated(self, name: str) -> Cause | None:

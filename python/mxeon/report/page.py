@@ -185,17 +185,17 @@ def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
 
 def _pair(pictures: Sequence[Picture]) -> dict[str, Any]:
     """Large studio pictures, and the difference of the first two, relative to the second."""
-    shown = [
+    figures = [
         _figure("image", title_of(one.library), "", srgb_encoded(pbr_neutral(one.image)), LARGE)
         for one in pictures[:2]
     ]
     scale = VISIBLE
-    if len(shown) == 2:
-        apart = np.abs(difference(*(np.asarray(one.image) for one in pictures[:2])))
-        scale = max(scale, difference_scale(apart))
-        pixels = pieces.difference_pixels(apart, scale)
-        shown.append(_figure("difference", "Difference of the two", "", pixels, LARGE))
-    return {"figures": shown, "scale": scale}
+    if len(figures) == 2:
+        differences = np.abs(difference(*(np.asarray(one.image) for one in pictures[:2])))
+        scale = max(scale, difference_scale(differences))
+        pixels = pieces.difference_pixels(differences, scale)
+        figures.append(_figure("difference", "Difference of the two", "", pixels, LARGE))
+    return {"figures": figures, "scale": scale}
 
 
 def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
@@ -203,31 +203,32 @@ def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
 
     All differences share a scale up to at least the tolerance, so correct pixels are dark.
     """
-    shown: list[dict[str, Any]] = []
-    apart: list[tuple[Picture, NDArray[np.float64]]] = []
+    figures: list[dict[str, Any]] = []
+    differences: list[tuple[Picture, NDArray[np.float64]]] = []
     reference = None
     for one in pictures:
         # Read pixels only once: those of a stored run are in files.
-        shown.append(_figure("image", title_of(one.library), "", srgb_encoded(one.image)))
+        figures.append(_figure("image", title_of(one.library), "", srgb_encoded(one.image)))
         if one.reference is not None:
             reference = one.reference if reference is None else reference
-            apart.append((one, one.difference_map()))
+            differences.append((one, one.difference_map()))
     if reference is not None:
         pixels = srgb_encoded(np.asarray(reference))
-        partly = ", at the pixels to compare" if any(p.judged is not None for p in pictures) else ""
-        shown.append(_figure("reference", "Reference", f"NumPy, float64{partly}", pixels))
-    largest = [abs(one.difference.largest) for one, _ in apart if one.difference]
-    scale = max([LEAST_SCALE, tolerance, *(difference_scale(values) for _, values in apart)])
-    scale = max([scale, *(top for top in largest if top < 2.0 * scale)])
-    for one, values in apart:
+        judged = any(each.judged is not None for each in pictures)
+        note = f"NumPy, float64{', at the pixels to compare' if judged else ''}"
+        figures.append(_figure("reference", "Reference", note, pixels))
+    largest = [abs(one.difference.largest) for one, _ in differences if one.difference]
+    scale = max([LEAST_SCALE, tolerance, *(difference_scale(values) for _, values in differences)])
+    scale = max([scale, *(each for each in largest if each < 2.0 * scale)])
+    for one, values in differences:
         note = words.size(one.difference) if one.difference else ""
         if one.judged is not None:
             note += f" at the {np.count_nonzero(one.judged):,} pixels that were compared"
         pixels = pieces.difference_pixels(values, scale)
-        shown.append(_figure("difference", f"Difference, {one.library}", note, pixels))
+        figures.append(_figure("difference", f"Difference, {one.library}", note, pixels))
     scene = words.LIGHTS.get(pictures[0].scene, pictures[0].scene)
     common = {"host": pictures[0].host, "scene": scene}
-    return common | {"figures": shown, "largest": largest, "scale": scale}
+    return common | {"figures": figures, "largest": largest, "scale": scale}
 
 
 def title_of(library: str) -> str:
@@ -256,19 +257,20 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
     audits = [each for each in results if _is_audit(each)]
     checked = [each for each in results if not _is_audit(each)]
     places, audit = checks_by_place(checked), checks_by_place(audits, "audit")
-    every = [*places.items(), *audit.items()]
+    sections = [*places.items(), *audit.items()]
     failed_rows = sum(
-        len(check.results) for _, checks in every for check in checks if check.verdict == FAILED
+        len(check.results) for _, checks in sections for check in checks if check.verdict == FAILED
     )
     pictures, verdicts = materials(run)
     shown = pictures[:SHOWN_MATERIALS]
-    at_once = [each for each in shown if not is_portrait(each)][:OPEN_MATERIALS] or shown[:1]
-    nodes = sum(map(is_portrait, shown[len(at_once) :]))
-    folded = []
-    if others := len(shown) - len(at_once) - nodes:
-        folded.append(words.counted(others, "more material"))
+    opened = [each for each in shown if not is_portrait(each)][:OPEN_MATERIALS] or shown[:1]
+    folded = shown[len(opened) :]
+    nodes = sum(map(is_portrait, folded))
+    titles = []
+    if len(folded) > nodes:
+        titles.append(words.counted(len(folded) - nodes, "more material"))
     if nodes:
-        folded.append(
+        titles.append(
             f"{words.counted(nodes, 'node')} rendered without a document, as pictures only"
         )
     filters: dict[str, Callable[..., Any]] = {
@@ -291,7 +293,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
             judged=list(
                 dict.fromkeys(each.library for each in checked if each.library not in run.compared)
             ),
-            every=every,
+            sections=sections,
             located=checks_by_place(run.results),
             places=places,
             audit=audit,
@@ -299,10 +301,10 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
             reasons=grouped(not_run, lambda each: each.reason),
             causes=[] if run.contents else causes(run.results),
             open_checks=failed_rows <= OPEN_ROWS,
-            at_once=len(at_once),
-            folded=len(shown) - len(at_once),
-            folded_words=", ".join(folded),
-            listed=pictures[SHOWN_MATERIALS:],
+            open_count=len(opened),
+            folded_count=len(folded),
+            folded_title=", ".join(titles),
+            linked_materials=pictures[SHOWN_MATERIALS:],
             next_material=drawn.__next__,
             file_of=file_of,
             compared=[

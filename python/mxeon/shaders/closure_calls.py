@@ -50,7 +50,7 @@ def check_closure_calls(
             )
 
 
-def leftover(text: str) -> str:
+def unreplaced_token(text: str) -> str:
     """The first `$token` in a generated text that the generator did not replace, or ""."""
     found = TOKEN.search(TEXT.sub("", text)) if "$" in text else None
     return found[0] if found else ""

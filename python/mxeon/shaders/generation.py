@@ -15,7 +15,7 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 from mxeon.errors import DocumentError, InputError, InterfaceError, NotRun, assert_known
 from mxeon.io.files import AnyPath, one_name
 from mxeon.shaders import path_tracing
-from mxeon.shaders.closure_calls import check_closure_calls, leftover
+from mxeon.shaders.closure_calls import check_closure_calls, unreplaced_token
 from mxeon.shaders.document.notes import CodeWarning, warn_of_files, warn_of_names
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.reading import read_document
@@ -37,7 +37,7 @@ from mxeon.shaders.library import (
     load_library,
     own_folders,
 )
-from mxeon.shaders.library_tree import in_words, root
+from mxeon.shaders.library_tree import root, with_user_paths
 from mxeon.shaders.methods import UNCHOSEN, UNTABLED, Methods, assert_generated
 
 __all__ = [
@@ -211,7 +211,7 @@ def generate(
         try:
             source = generated(generator, names[path], each, context)
         except (mx.Exception, LookupError) as error:
-            reason = in_words(library, str(error).strip().splitlines()[0])
+            reason = with_user_paths(library, str(error).strip().splitlines()[0])
             if "nodedef" in reason:
                 reason += ": load further definitions by --definitions FOLDER"
             raise DocumentError(
@@ -223,7 +223,7 @@ def generate(
         )
         if methods != UNCHOSEN:
             assert_generated(stages["pixel"], methods)
-        if token := leftover("\n".join(stages.values())):
+        if token := unreplaced_token("\n".join(stages.values())):
             raise InterfaceError(
                 f"{target}: the generator of MaterialX {mx.getVersionString()} does not replace "
                 f"{token} in the library's sources; use those of its version"
@@ -291,10 +291,10 @@ def check_generator(library: str, target: str) -> None:
         text = "\n".join(map(shader.getSourceCode, stages))
         missing = {*CALLED.findall(text)} - {*DEFINED.findall(text)}
         reason = f"it has no {min(missing)}, which {target} calls" if missing else ""
-        if token := leftover(text):
+        if token := unreplaced_token(text):
             reason = f"{target} does not replace its {token}"
     except (mx.Exception, LookupError) as error:
-        reason = in_words(library, str(error).strip().splitlines()[0])
+        reason = with_user_paths(library, str(error).strip().splitlines()[0])
     if reason:
         raise InterfaceError(
             f"library {library}: cannot be combined with the generator of MaterialX "

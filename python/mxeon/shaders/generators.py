@@ -127,7 +127,7 @@ def generated(
 ) -> mx_gen.Shader:
     """Shader of an element, without MaterialX's warnings about booleans in WGSL."""
     wordy = isinstance(generator, GENERATORS.get("wgsl", ()))
-    with lines_left_out(BOOLEANS) if wordy else nullcontext():
+    with without_lines(BOOLEANS) if wordy else nullcontext():
         return generator.generate(name, element, context)
 
 
@@ -147,7 +147,7 @@ ERROR = 2  # file descriptor
 
 
 @contextmanager
-def lines_left_out(words: str) -> Iterator[None]:
+def without_lines(words: str) -> Iterator[None]:
     """Context that drops lines with `words` from the process's error output.
 
     All other lines appear at the end of the context.

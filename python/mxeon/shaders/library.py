@@ -2,7 +2,7 @@
 """The data libraries: where they are and in which order MaterialX has to load them.
 
 MaterialX silently ignores later definitions of a name, so eonlib is loaded before the standard
-libraries. `assert_ours` then checks which implementations MaterialX chooses.
+libraries. `assert_eonlib` then checks which implementations MaterialX chooses.
 
 No version of MaterialX is refused by its number: mxeon looks up the methods that it needs, and checks
 generated code against the closure interface of eonlib's sources.
@@ -203,7 +203,7 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
         folders = [*own_folders(library), *mx.getDefaultDataLibraryFolders()]
         mx.loadLibraries(folders, path, document, readOptions=options)
     except (mx.Exception, mx.ExceptionParseError, LookupError) as error:
-        reason = library_tree.in_words(library, str(error))
+        reason = library_tree.with_user_paths(library, str(error))
         raise InputError(f"{' '.join(('library', library, *definitions))}: {reason}") from None
     # Materials in the folder would replace nodes of the same name in other documents.
     used = {each.getNodeGraph() for each in document.getImplementations()}
@@ -217,7 +217,7 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
     if definitions:
         library_tree.check_definitions(document, load_library(library, profile), definitions, path)
     if library in ("eonlib", "diffuse"):
-        assert_ours(document, library, profile)
+        assert_eonlib(document, library, profile)
     return document
 
 
@@ -261,7 +261,9 @@ def _shipped(library: str, profile: str | None) -> tuple[tuple[str, str], ...]:
     return tuple(dict.fromkeys(pair for pair in pairs if pair[0]))
 
 
-def assert_ours(document: mx.Document, library: str = "eonlib", profile: str | None = None) -> None:
+def assert_eonlib(
+    document: mx.Document, library: str = "eonlib", profile: str | None = None
+) -> None:
     """Raise LibraryError unless MaterialX chooses eonlib's implementation of every nodedef.
 
     The message has the node, the target and the other file; parameters as for `implementations`.

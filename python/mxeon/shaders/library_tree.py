@@ -132,8 +132,8 @@ def root(library: str) -> str:
 @cache
 def _root(library: str) -> str:
     with block_signals():
-        _KEPT[library] = Temporary("mxeon-library-")
-    temporary = os.path.realpath(_KEPT[library].name)
+        _FOLDERS[library] = Temporary("mxeon-library-")
+    temporary = os.path.realpath(_FOLDERS[library].name)
     for path, file in tree(library).links.items():
         link = Path(temporary, "libraries", path)
         link.parent.mkdir(parents=True, exist_ok=True)
@@ -141,7 +141,7 @@ def _root(library: str) -> str:
     return temporary
 
 
-_KEPT: dict[str, TemporaryDirectory[str]] = {}  # deleted when the process ends
+_FOLDERS: dict[str, TemporaryDirectory[str]] = {}  # deleted when the process ends
 
 
 def search_path(library: str) -> mx.FileSearchPath:
@@ -151,10 +151,10 @@ def search_path(library: str) -> mx.FileSearchPath:
 
 def roots() -> list[str]:
     """The folders that `root` created in this process."""
-    return [root(library) for library in _KEPT]
+    return [root(library) for library in _FOLDERS]
 
 
-def in_words(library: str, text: str) -> str:
+def with_user_paths(library: str, text: str) -> str:
     """A message of MaterialX that names the user's files instead of the links to them."""
     if laid := root(library):
         for path, file in tree(library).links.items():

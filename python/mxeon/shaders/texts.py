@@ -115,7 +115,7 @@ def source_of(element: mx.Element | None) -> Source | None:
     return element.getFunction(), Path(os.path.normpath(path))
 
 
-def whole(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ...]:
+def all_texts(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ...]:
     """Texts of all files of an implementation."""
     names = sorted(
         f"{each.getName()} {each.getImplementationName()}" for each in element.getInputs()
@@ -126,10 +126,10 @@ def whole(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, .
     return (code, *names, element.getFunction(), *texts)
 
 
-def said(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ...]:
+def used_texts(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ...]:
     """Texts of the functions and constants that an implementation's function uses."""
     if (source := source_of(element)) is None:
-        return whole(element, search)
+        return all_texts(element, search)
     known: dict[str, list[str]] = defaultdict(list)
     for file in _reached(source[1], search):
         for definition, text in definitions(file).items():

@@ -45,7 +45,7 @@ def folder(document: mx.Document) -> Path:
     return Path(file).resolve().parent if file else Path.cwd()
 
 
-def inside(path: AnyPath, home: Path, others: Iterable[str] = ()) -> bool:
+def is_inside(path: AnyPath, home: Path, others: Iterable[str] = ()) -> bool:
     """Whether a path, after following links, lies in `home`, in `others` or in the libraries."""
     real = Path(os.path.realpath(path))
     roots = [home, *(Path(os.path.realpath(each)) for each in others), *_libraries()]
@@ -54,7 +54,7 @@ def inside(path: AnyPath, home: Path, others: Iterable[str] = ()) -> bool:
 
 def check_inside(path: AnyPath, home: Path, policy: Policy, prefix: str) -> None:
     """Raise DocumentError unless a document in the folder `home` may name the file."""
-    if not policy.outside and not inside(path, home, policy.path):
+    if not policy.outside and not is_inside(path, home, policy.path):
         raise DocumentError(
             f"{prefix} must name a file in {home}, on the search path or in the libraries; got "
             f"{path}: pass --allowOutside to permit it"
@@ -155,7 +155,7 @@ def named_files(document: str, policy: Policy) -> list[str]:
         # Documents with too many elements are refused, so their files do not matter.
         for key, name in islice(_names(_text(text, policy)), 6 * policy.elements):
             for path in _paths(name, folders):
-                if path not in seen and (policy.outside or inside(path, home, policy.path)):
+                if path not in seen and (policy.outside or is_inside(path, home, policy.path)):
                     seen[path] = None
                     if key in ("href", "file"):
                         texts.append(path)
