@@ -7,7 +7,7 @@ export type Vec3 = readonly [number, number, number];
 export type Triple = [number, number, number];
 
 /** A node's models with energy_compensation true and false; equal if it has no such flag. */
-export interface Models {
+interface Models {
   readonly on: ModelName;
   readonly off: ModelName;
 }
@@ -66,7 +66,7 @@ export interface ShaderSource {
 }
 
 /** Result of `mxeon check` for a material: its pictures on gl compared with the reference. */
-export interface Checked {
+interface Checked {
   readonly kind: "correct" | "within" | "wrong" | "differs" | "unknown";
   readonly text: string;
 }

@@ -15,7 +15,7 @@ export interface Pair {
 }
 
 /** The pair for a normal, a viewer and a light, all unit vectors in one frame. */
-export function pairOf(normal: Vec3, viewer: Vec3, light: Vec3): Pair {
+function pairOf(normal: Vec3, viewer: Vec3, light: Vec3): Pair {
   const muO = Math.min(dot(normal, viewer), 1.0);
   const muI = Math.min(dot(normal, light), 1.0);
   const s = dot(viewer, light) - muO * muI;

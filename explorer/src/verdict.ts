@@ -14,7 +14,7 @@ import { actualModel, hasTable, meantModel, type Sources, sourceOf, valuesOf } f
  * "within": a visible difference within the tolerance. "differs": from the reference, in a way that
  * the specification permits.
  */
-export type Kind = "correct" | "within" | "wrong" | "differs" | "model" | "unknown" | "measuring";
+type Kind = "correct" | "within" | "wrong" | "differs" | "model" | "unknown" | "measuring";
 
 export interface Verdict {
   readonly kind: Kind;

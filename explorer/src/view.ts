@@ -76,7 +76,7 @@ export function consistent(state: State, sources: Sources): State {
 }
 
 /** The model whose albedo is inverted: the intended one of the left side. */
-export function inversionModel(state: State, sources: Sources): Model {
+function inversionModel(state: State, sources: Sources): Model {
   return meantModel(sourceOf(sources, state.left), state.left, state) ?? model("eon");
 }
 

@@ -74,7 +74,7 @@ export function toView({ axes }: Camera, world: Vec3): Triple {
 }
 
 /** Convert a direction from the viewer's frame to the world's. */
-export function toWorld({ axes }: Camera, view: Vec3): Triple {
+function toWorld({ axes }: Camera, view: Vec3): Triple {
   const along = (k: 0 | 1 | 2) =>
     axes[0][k] * view[0] + axes[1][k] * view[1] + axes[2][k] * view[2];
   return [along(0), along(1), along(2)];

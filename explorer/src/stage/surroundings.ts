@@ -6,7 +6,7 @@ import type { Surroundings } from "../state";
 import { dot, unit } from "./scenes";
 
 /** RGBA for each direction, top row first; the middle column looks along -z. */
-export interface SkyMap {
+interface SkyMap {
   readonly width: number;
   readonly height: number;
   readonly pixels: Float32Array<ArrayBuffer>;

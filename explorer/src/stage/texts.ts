@@ -164,7 +164,7 @@ const POINTS: Record<string, string> = {
  * missing in POINTS are zero, as on the gl host, which does not have these vertex attributes
  * either.
  */
-export function withPoints(pixel: string): string {
+function withPoints(pixel: string): string {
   const inputs: string[] = [];
   const text = pixel
     .replace(/^in (\w+) (\w+);/gm, (_, type: string, name: string) => {

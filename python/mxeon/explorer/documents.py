@@ -156,9 +156,9 @@ def document_text(document: mx.Document) -> str:
 
 def _tree(element: mx.Element) -> ElementTree.Element:
     """Copy an element and its children, without comments and empty lines."""
-    named = {"name": element.getName()} if element.getName() else {}
+    name = {"name": element.getName()} if element.getName() else {}
     attributes = {name: element.getAttribute(name) for name in element.getAttributeNames()}
-    tree = ElementTree.Element(element.getCategory(), named | attributes)
+    tree = ElementTree.Element(element.getCategory(), name | attributes)
     tree.extend(_tree(each) for each in element.getChildren() if each.getCategory() not in LAYOUT)
     return tree
 

@@ -162,8 +162,8 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
         write_text(below(folder, f"{PAGES}/{issue.page}.md"), issue.text)
     with (
         closing(html(run)) as pieces,
-        replacing(below(folder, PAGE)) as beside,
-        open(beside, "w", encoding="utf-8") as page,
+        replacing(below(folder, PAGE)) as temporary,
+        open(temporary, "w", encoding="utf-8") as page,
     ):
         page.writelines(pieces)
     return folder / PAGE

@@ -182,8 +182,8 @@ def read_results(folder: str | PathLike[str]) -> Report:
 
 def read_report(content: dict[str, object]) -> Report:
     """Convert JSON that `mxeon.report.to_json` wrote to a report."""
-    if (named := content.pop("$schema")) != SCHEMA:
-        raise InputError(f"$schema must be {SCHEMA}; got {named!r}")
+    if (identifier := content.pop("$schema")) != SCHEMA:
+        raise InputError(f"$schema must be {SCHEMA}; got {identifier!r}")
     return read_strictly(make_converter(), content, Report)
 
 
@@ -411,9 +411,9 @@ def _is_rounding(old: Result, new: Result) -> bool:
 def _is_farther(old: Result, new: Result) -> bool:
     """Whether values are clearly farther from the nearest known model than before."""
     was, now = old.diagnosis.distance, new.diagnosis.distance
-    own = next(iter(new.diagnosis.distances.values()), math.inf)
+    right = next(iter(new.diagnosis.distances.values()), math.inf)
     factor = SPREAD if old.samples == new.samples else DISTANCE
-    return SAME * own < now < math.inf and now > factor * was + (new.tolerance or 0.0)
+    return SAME * right < now < math.inf and now > factor * was + (new.tolerance or 0.0)
 
 
 def _is_repaired(old: Result, new: Result) -> bool:
@@ -421,8 +421,8 @@ def _is_repaired(old: Result, new: Result) -> bool:
 
     With other samples, an error that exceeds the size on the defect's page may be noise.
     """
-    own = next(iter(new.diagnosis.distances.values()), math.inf)
-    nearest = old.samples != new.samples or own == new.diagnosis.distance < math.inf
+    right = next(iter(new.diagnosis.distances.values()), math.inf)
+    nearest = old.samples != new.samples or right == new.diagnosis.distance < math.inf
     return nearest and not _is_farther(old, new)
 
 

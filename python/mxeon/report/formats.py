@@ -104,8 +104,8 @@ def _site() -> str:
         urls = metadata("mxeon").get_all("Project-URL") or []
     except PackageNotFoundError:  # mxeon is imported from a folder
         return ""
-    named = dict(each.split(", ", 1) for each in urls)
-    return str(named.get("Documentation", "")).rstrip("/")
+    addresses = dict(each.split(", ", 1) for each in urls)
+    return str(addresses.get("Documentation", "")).rstrip("/")
 
 
 def vector(values: ArrayLike) -> str:

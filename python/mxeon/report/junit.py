@@ -60,8 +60,8 @@ def to_junit(run: Run) -> str:
         totals = {"tests": count, "failures": "0", "errors": count, "skipped": "0"}
         suite = ElementTree.SubElement(root, "testsuite", {"name": "documents"} | totals)
         for document, lines in run.refused.items():
-            named = {"classname": "mxeon.documents", "name": _xml(document)}
-            case = ElementTree.SubElement(suite, "testcase", named)
+            attributes = {"classname": "mxeon.documents", "name": _xml(document)}
+            case = ElementTree.SubElement(suite, "testcase", attributes)
             first = ElementTree.SubElement(case, "error", type="refused", message=_xml(lines[0]))
             first.text = _xml("\n".join(lines))
     ElementTree.indent(root)

@@ -165,5 +165,5 @@ def without_lines(words: str) -> Iterator[None]:
             os.dup2(output, ERROR)
             os.close(output)
             file.seek(0)
-            rest = [line for line in file if words.encode() not in line]
-            os.write(ERROR, b"".join(rest))
+            remaining = [line for line in file if words.encode() not in line]
+            os.write(ERROR, b"".join(remaining))

@@ -108,9 +108,9 @@ class Walk(Nodes):
             kind = TRANSMISSION
         if kind:
             self.kinds.add(kind)
-        inside = node.getImplementation()
-        if inside and inside.isA(mx.NodeGraph):
-            outputs = (output.getConnectedNode() for output in inside.getOutputs())
+        implementation = node.getImplementation()
+        if implementation and implementation.isA(mx.NodeGraph):
+            outputs = (output.getConnectedNode() for output in implementation.getOutputs())
             return tuple(self.path(path, output) for output in outputs if output)
         sources = (self.source(path, name) for name in self._effective(path, node))
         return tuple(source for source in sources if source)

@@ -48,8 +48,10 @@ def eonlib_folder() -> Path:
 
 def documents_folder(part: str = "eonlib") -> Path:
     """Folder of eonlib's MaterialX documents, or of its part "diffuse"."""
-    inside = eonlib_folder() / "documents"  # a folder called libraries would hide MaterialX's own
-    folder = inside if inside.is_dir() else eonlib_folder()
+    installed = (
+        eonlib_folder() / "documents"
+    )  # a folder called libraries would hide MaterialX's own
+    folder = installed if installed.is_dir() else eonlib_folder()
     return folder / part if part == "diffuse" else folder
 
 
@@ -63,9 +65,11 @@ def kind_of(library: str) -> str:
         return library
     if tree(library).kind != OVERLAY:
         return "stock"
-    own = {Path(path).name for path in tree(library).own if path.endswith(library_tree.DOCUMENT)}
+    documents = {
+        Path(path).name for path in tree(library).own if path.endswith(library_tree.DOCUMENT)
+    }
     for name in ("eonlib", "diffuse"):
-        if own == {path.name for path in documents_folder(name).rglob("*.mtlx")}:
+        if documents == {path.name for path in documents_folder(name).rglob("*.mtlx")}:
             return name
     return OVERLAY
 

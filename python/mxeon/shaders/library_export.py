@@ -55,23 +55,23 @@ def export_library(path: AnyPath) -> Path:
         raise InputError(f"{target}: must be a new or empty folder, or end in .zip")
     check_output(path, files_read([], Policy()).values(), replaced=names)
     if target.suffix == ".zip":
-        with replacing(target) as beside, ZipFile(beside, "w") as archive:
+        with replacing(target) as temporary, ZipFile(temporary, "w") as archive:
             for name, data in _content().items():
                 entry = ZipInfo(f"{target.stem}/{name}")  # dated 1980, so archives are reproducible
                 entry.external_attr = 0o644 << 16
                 archive.writestr(entry, data, ZIP_DEFLATED)
         return target
     target.parent.mkdir(parents=True, exist_ok=True)
-    beside = target.with_name(f"{TEMPORARY}{token_hex(8)}")
+    temporary = target.with_name(f"{TEMPORARY}{token_hex(8)}")
     with naming(target):
-        beside.mkdir()
+        temporary.mkdir()
         try:
             for name, data in _content().items():
-                (beside / name).parent.mkdir(parents=True, exist_ok=True)
-                (beside / name).write_bytes(data)
-            os.replace(beside, target)
+                (temporary / name).parent.mkdir(parents=True, exist_ok=True)
+                (temporary / name).write_bytes(data)
+            os.replace(temporary, target)
         finally:
-            shutil.rmtree(beside, ignore_errors=True)
+            shutil.rmtree(temporary, ignore_errors=True)
     return target
 
 

@@ -59,8 +59,8 @@ def tree(library: str) -> Tree:
 
 @cache
 def _tree(folder: str) -> Tree:
-    own = dict(files_in(folder))
-    named = tuple(each for each in own if each.endswith(FILES))
+    files = dict(files_in(folder))
+    recognized = tuple(each for each in files if each.endswith(FILES))
     if all(os.path.isdir(os.path.join(folder, "libraries", each)) for each in NEEDED):
         raise InputError(
             f"library {folder}: must be the folder with {', '.join(NEEDED)}; pass {folder}/libraries"
@@ -68,27 +68,27 @@ def _tree(folder: str) -> Tree:
     installed = {path: file for root in standard_folders() for path, file in files_in(str(root))}
     if all(os.path.isdir(os.path.join(folder, each)) for each in NEEDED):
         # Libraries that a whole lacks entirely, such as lights/, come from the package.
-        tops = {each.partition("/")[0] for each in own}
+        tops = {each.partition("/")[0] for each in files}
         kind = WHOLE
-        rest = {
+        completing = {
             path: file for path, file in installed.items() if path.partition("/")[0] not in tops
         }
     else:
         # Reject a source that would not be used, since it has the name of one of MaterialX's but lies
         # elsewhere. Paths that end in libraries/ and MaterialX's path are found by a search path.
         known = {PurePosixPath(each).name: each for each in installed if each.endswith(CODE)}
-        for each in named:
+        for each in recognized:
             other = known.get(PurePosixPath(each).name)
             if other and each not in installed and not each.endswith(f"/libraries/{other}"):
                 raise InputError(
                     f"library {folder}: {each} must lie at {other}, as MaterialX's file of that name, to "
                     "replace it; or rename it"
                 )
-        if installed.keys().isdisjoint(named):
-            return Tree(folder, OVERLAY, named, (), {})
-        kind, rest = PART, installed
-    package = tuple(each for each in rest if each.endswith(FILES) and each not in own)
-    return Tree(folder, kind, named, package, rest | own)
+        if installed.keys().isdisjoint(recognized):
+            return Tree(folder, OVERLAY, recognized, (), {})
+        kind, completing = PART, installed
+    package = tuple(each for each in completing if each.endswith(FILES) and each not in files)
+    return Tree(folder, kind, recognized, package, completing | files)
 
 
 def files_in(folder: str) -> Iterator[tuple[str, str]]:

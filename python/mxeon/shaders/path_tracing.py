@@ -60,9 +60,9 @@ def path_text(text: str, target: str, element: mx.TypedElement, library: str) ->
         text = re.sub(old, new, text, flags=re.MULTILINE)
     declared = re.search(r"^(?:#define|static float4) path_out.*\n", text, re.MULTILINE)
     assert declared
-    inside = "struct VertexData" in text
-    block = text[text.index("struct VertexData") if inside else 0 : declared.start()]
-    prefix = "vd." if inside else ""
+    has_block = "struct VertexData" in text
+    block = text[text.index("struct VertexData") if has_block else 0 : declared.start()]
+    prefix = "vd." if has_block else ""
     places = [
         f"    {prefix}{name} = {PLACES[kind]};\n"
         for name, kind in MEMBER.findall(block)

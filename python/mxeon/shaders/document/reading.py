@@ -311,10 +311,10 @@ def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
         return
     ports = {each.getName(): each.getType() for each in definition.getActiveInputs()}
     for each in node.getInputs():
-        name, kind, own = each.getName(), each.getType(), node.getCategory()
-        rule = f"must be an input of {own}; got {name!r}{meant(name, ports)}"
+        name, kind, category = each.getName(), each.getType(), node.getCategory()
+        rule = f"must be an input of {category}; got {name!r}{meant(name, ports)}"
         if name in ports:
-            rule = f"must have the type {ports[name]} of {own}; got {kind}"
+            rule = f"must have the type {ports[name]} of {category}; got {kind}"
         source = each.getNodeName()
         if kind != ports.get(name):
             yield each, f"{location(each)} {rule}"

@@ -196,12 +196,12 @@ def documents_in(files: Iterable[AnyPath]) -> tuple[str, ...]:
     """
     documents: list[str] = []
     for file in files:
-        inside = [os.fspath(file)]
+        found = [os.fspath(file)]
         if os.path.isdir(file):
-            inside = sorted(map(str, Path(file).rglob("*.mtlx")))
-        if not inside:
+            found = sorted(map(str, Path(file).rglob("*.mtlx")))
+        if not found:
             raise InputError(f"{file}: must hold MaterialX documents (*.mtlx); there is none")
-        documents += inside
+        documents += found
     return tuple(dict.fromkeys(documents))
 
 
@@ -214,8 +214,8 @@ def files_read(
     are their paths; those of installed files begin with "mxeon", "eonlib" or "MaterialX".
     """
     paths = {path: path for document in documents for path in named_files(str(document), policy)}
-    own = {*map(os.path.abspath, {*libraries, *policy.definitions} - {*LIBRARIES})}
-    paths |= {path: path for each in sorted(own) for path in _library_files(each)}
+    trusted = {*map(os.path.abspath, {*libraries, *policy.definitions} - {*LIBRARIES})}
+    paths |= {path: path for each in sorted(trusted) for path in _library_files(each)}
     folders = [("mxeon", Path(mxeon.__file__).parent), ("eonlib", documents_folder())]
     folders += [(f"eonlib/{name}", source_folder("eonlib") / name) for name in SOURCE_FOLDERS]
     folders += [("MaterialX/libraries", folder) for folder in standard_folders()]
