@@ -451,33 +451,34 @@ def _failures(run: Run) -> Iterator[Line]:
         known = run.is_elsewhere(result), bool(result.pages)
         return result.library in run.compared, *known, not lit, -size
 
-    def heading(result: Result) -> str:
-        kind = "cause" if result.library in run.compared else "failed"
-        inputs = ", for inputs that no document uses" if run.is_elsewhere(result) else ""
-        return f"{kind}: {result.location}{inputs}"
+    def place(result: Result) -> tuple[str, bool]:
+        return result.location, run.is_elsewhere(result)
+
+    def line(results: Sequence[Result], text: str) -> Line:
+        """A line on failures in one place; those of compared libraries have no color."""
+        location, elsewhere = place(results[0])
+        inputs = ", for inputs that no document uses" if elsewhere else ""
+        if results[0].library in run.compared:
+            return _line(f"cause: {location}{inputs}: {text}")
+        return _line(f"failed: {location}{inputs}: {text}", FAILED)
 
     nodes = {(each.location, each.subject.partition(",")[0]) for each in failures}
     explained = []  # pictures that failing nodes explain
     groups = grouped(
         sorted(failures, key=order),
-        lambda each: (heading(each), " ".join(each.pages) or words.explanation(each)),
+        lambda each: (place(each), each.pages or words.explanation(each)),
     )
-    for (place, _), results in groups.items():
+    for results in groups.values():
         if pictures := [each for each in results if nodes & _lobes(each)]:
             explained += pictures
         else:
-            yield _line(f"{place}: {_sentence(results)}", _severity(run, results))
-    # For documents, other sentences cover pictures.
-    for place, results in grouped(explained, heading).items() if not run.contents else ():
+            yield line(results, _sentence(results))
+    if run.contents:  # the sentences on materials cover pictures
+        return
+    for results in grouped(explained, place).values():
         names = _unique(name for each in results for _, name in sorted(nodes & _lobes(each)))
         subjects = listed([each.subject for each in results])
-        pictures_of = f"{counted(len(results), 'picture')} of {listed(names)}: {subjects}"
-        yield _line(f"{place}: {pictures_of}", _severity(run, results))
-
-
-def _severity(run: Run, results: Iterable[Result]) -> Verdict | None:
-    """The verdict of failures; None if all are of libraries that are judged for comparison."""
-    return None if all(each.library in run.compared for each in results) else FAILED
+        yield line(results, f"{counted(len(results), 'picture')} of {listed(names)}: {subjects}")
 
 
 def _lobes(result: Result) -> set[tuple[str, str]]:
