@@ -98,7 +98,6 @@ def add_parser(commands: arguments.Commands) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Check hosts and libraries; return the exit status."""
     progress = output.Progress("mxeon check", _label)
     progress.show("reads the documents" if options.files else "reads the library")
     from mxeon.cli.answer import show_run

@@ -46,7 +46,6 @@ def add_parser(commands: arguments.Commands) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the page and print its path, or serve it; return the exit status."""
     from mxeon.explorer import document_sources, page, page_data, sky_of
     from mxeon.explorer.serve import Server
     from mxeon.io.files import check_output, write_text

@@ -52,7 +52,6 @@ def add_parser(commands: arguments.Commands) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the shaders of all documents for all targets; return the exit status."""
     from mxeon.io.files import below, check_output, write_text
 
     stems = {glob.escape(stem(file)) for file in options.files}

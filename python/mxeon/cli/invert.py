@@ -31,7 +31,6 @@ def add_parser(commands: arguments.Commands) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print rho; return the exit status."""
     from mxeon.models.diffuse import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 
     invert: Callable[..., Any] = (

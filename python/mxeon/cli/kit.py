@@ -67,7 +67,6 @@ def run_export(options: argparse.Namespace) -> int:
 
 
 def run_check(options: argparse.Namespace) -> int:
-    """Check images of the kit; return the exit status."""
     from mxeon.cli.answer import show_run
     from mxeon.conformance.results import REPORT
     from mxeon.conformance.run.journal import Journal

@@ -25,7 +25,6 @@ def add_parser(commands: arguments.Commands) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the folder, or write a copy; return the exit status."""
     from mxeon.shaders.library import documents_folder, eonlib_folder
 
     if options.export is not None:

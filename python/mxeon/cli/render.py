@@ -83,7 +83,6 @@ def add_parser(commands: arguments.Commands) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write a picture and print its path; return the exit status."""
     from mxeon.io.files import check_output
     from mxeon.io.images import PICTURES, write_picture
     from mxeon.io.srgb import pbr_neutral

@@ -42,7 +42,6 @@ def add_parser(commands: arguments.Commands) -> None:
 
 
 def run_make(options: argparse.Namespace) -> int:
-    """Write the report of a run; return the exit status of the run."""
     from mxeon.cli.answer import show_run
     from mxeon.conformance.run import read_run
     from mxeon.report import require_extra
@@ -73,7 +72,6 @@ def run_field(options: argparse.Namespace) -> int:
 
 
 def run_schema(options: argparse.Namespace) -> int:
-    """Print the JSON Schema of results.json; return PASSED."""
     from mxeon.report.schema import schema
 
     print(as_output(json.dumps(schema(), indent=1)))

@@ -24,6 +24,7 @@ from mxeon.conformance.results import (
     Region,
     Result,
     Verdict,
+    grouped,
 )
 from mxeon.conformance.results.known_issues import SPREAD
 from mxeon.conformance.results.quantities import Quantity
@@ -77,6 +78,10 @@ class Change:
     after: str
     reason: str = ""
     growths: tuple[Growth, ...] = ()
+
+    @property
+    def location(self) -> str:
+        return f"{self.host} with {self.library}" if self.host else ""
 
     @property
     def place(self) -> str:
@@ -189,16 +194,17 @@ def read_report(content: dict[str, object]) -> Report:
 
 def compare(before: Report, after: Report) -> tuple[Change, ...]:
     """Changes between two reports, sorted by kind, host, library and subject, largest first."""
-    before = _renamed(before, _matching_folders(list(before.libraries), list(after.libraries)))
+    folders = _matching_folders(list(before.libraries), list(after.libraries))
+    renamed = (
+        replace(each, library=folders.get(each.library, each.library)) for each in before.results
+    )
     names = {Path(each).name for each in (*after.documents, *after.refused)}
     known = {each.name: each for each in before.hosts}
     renewed = {each.name for each in after.hosts if known.get(each.name, each) != each}
     removed = {each for each in before.documents if Path(each).name not in names}
     changes = [
         *(Change(OTHER, "", "", "", each, "checked", "removed") for each in sorted(removed)),
-        *_result_changes(
-            _by_place(before.results), _by_place(after.results), bool(removed), renewed
-        ),
+        *_result_changes(_by_place(renamed), _by_place(after.results), bool(removed), renewed),
         *(  # refused documents have no results that could be compared
             Change(WORSE, "", "", "", each, "not refused", "refused")
             if each in after.refused
@@ -207,10 +213,8 @@ def compare(before: Report, after: Report) -> tuple[Change, ...]:
         ),
         *_version_changes(before, after),
     ]
-    largest: dict[tuple[str, ...], float] = {}
-    for each in changes:
-        group = _group(each)
-        largest[group] = max(each.size, largest.get(group, 0.0))
+    groups = grouped(changes, _group).items()
+    largest = {group: max(each.size for each in rows) for group, rows in groups}
 
     def order(change: Change) -> tuple[object, ...]:
         kind, *location, subject = group = _group(change)
@@ -231,14 +235,13 @@ def _group(change: Change) -> tuple[str, str, str, str]:
 
 def lines(changes: Sequence[Change]) -> Iterator[str]:
     """Format sorted changes as text, grouped by kind, host and library, then by subject."""
-    location: list[str] = []
-    for group, rows in groupby(changes, key=_group):
-        kind, host, library, subject = group
-        if location != (location := [kind, host, library]):
-            yield f"{kind}: {one_line(f'{host} with {library}' if host else '')}".rstrip()
-        if subject:
-            yield f"  {one_line(subject)}"
-        yield from (f"  {'  ' * bool(subject)}{one_line(each)}" for each in rows)
+    for (kind, location), group in groupby(changes, key=lambda each: (each.kind, each.location)):
+        yield f"{kind}: {one_line(location)}".rstrip()
+        for subject, rows in groupby(group, key=lambda each: each.subject):
+            if subject:
+                yield f"  {one_line(subject)}"
+            indent = "    " if subject else "  "
+            yield from (f"{indent}{one_line(each)}" for each in rows)
     tally = Counter(each.kind for each in changes)
     yield ", ".join(f"{tally[kind]} {kind}" for kind in KINDS if tally[kind]) or "no difference"
 
@@ -251,10 +254,9 @@ def to_json(changes: Iterable[Change]) -> list[dict[str, object]]:
 
 def annotations(changes: Iterable[Change]) -> Iterator[str]:
     """Regressions and lost checks as GitHub annotations, one per subject: GitHub shows few."""
-    for (kind, host, library, subject), rows in groupby(changes, key=_group):
+    for (kind, *_, subject), rows in grouped(changes, _group).items():
         if level := {WORSE: "error", LOST: "warning"}.get(kind):
-            place = f"{host} with {library}" if host else ""
-            title = ", ".join(filter(None, (kind, place, subject)))
+            title = ", ".join(filter(None, (kind, rows[0].location, subject)))
             yield words.annotation(level, title, "\n".join(map(one_line, rows)))
 
 
@@ -275,14 +277,6 @@ def _matching_folders(before: Sequence[str], after: Sequence[str]) -> dict[str, 
             if old not in matches and (new := next(candidates, "")):
                 matches[old] = new
     return matches
-
-
-def _renamed(report: Report, libraries: Mapping[str, str]) -> Report:
-    def name(library: str) -> str:
-        return libraries.get(library, library)
-
-    results = (replace(each, library=name(each.library)) for each in report.results)
-    return replace(report, results=tuple(results), compared=tuple(map(name, report.compared)))
 
 
 def _by_place(results: Iterable[Result]) -> dict[tuple[str, ...], Result]:

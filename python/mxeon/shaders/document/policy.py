@@ -50,16 +50,9 @@ class Policy:
     Raises ValueError if a limit is negative.
 
     The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst known documents; reading
-    images for pictures takes less than another 15 s and 2.75 GiB. Seconds on a shared processor:
-
-    ======================================================  =====
-    9,800 names of files, with tokens                          12
-    one node of 2,490 inputs in 80 shaders                      9
-    7 nodegraphs of 2,500 inputs, all unused                    7
-    3,000 outputs of one nodegraph                              5
-    3,000 materials whose names only differ in `_` and `:`      3
-    200,000 attributes                                          2
-    ======================================================  =====
+    images for pictures takes less than another 15 s and 2.75 GiB. The slowest documents at a limit
+    have 9,800 names of files with tokens (12 s), a node of 2,490 inputs in 80 shaders (9 s), or 7
+    unused nodegraphs of 2,500 inputs (7 s).
 
     The time grows with the square of the number of file names (94 s at 50,000), of outputs of a
     nodegraph, of unused inputs of an element, and of definitions that inherit each other (50 s at

@@ -97,7 +97,11 @@ def read_document(
         ]
     )
     faults = list(_faults(content, elements, policy))
-    renderables = _renderables(content)
+    # MaterialX's own search visits all elements of the data library, so look for materials first.
+    nodes = (each for each in content.getChildren() if each.isA(mx.Node))
+    materials = (each for each in nodes if each.getType() == "material")
+    renderables = tuple(filter(mx.getShaderNodes, materials))
+    renderables = renderables or tuple(mx_gen.findRenderableElements(content))
     shown = graphs.upstream(content, elements, renderables)
     faults += _undefined(content, shown)
     missing = tuple(_missing(shown, policy))
@@ -107,9 +111,9 @@ def read_document(
             f"{label(content)}: must contain a renderable element (a surfacematerial, a surface "
             "shader or an output of one); there is none"
         )
-    nodes = graphs.check_shaders(content, renderables, policy)
+    count = graphs.check_shaders(content, renderables, policy)
     warn_of_elements(content, elements)
-    return Document(content, renderables, nodes, missing)
+    return Document(content, renderables, count, missing)
 
 
 def _resolve_files(
@@ -348,14 +352,3 @@ def _missing(nodes: Iterable[mx.Node], policy: Policy) -> Iterator[str]:
             missing = references.missing_fault(port.getDocument(), port.getNamePath(), name)
             if missing and not references.file_fault(port, policy):
                 yield missing
-
-
-def _renderables(document: mx.Document) -> tuple[mx.TypedElement, ...]:
-    """Renderable elements of a document.
-
-    MaterialX's own search also visits the thousands of elements of the data library.
-    """
-    nodes = (each for each in document.getChildren() if each.isA(mx.Node))
-    materials = [each for each in nodes if each.getType() == "material"]
-    elements = tuple(filter(mx.getShaderNodes, materials))
-    return elements or tuple(mx_gen.findRenderableElements(document))

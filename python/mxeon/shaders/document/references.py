@@ -192,7 +192,7 @@ def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
 def documents_in(files: Iterable[AnyPath]) -> tuple[str, ...]:
     """Files, and the documents in and below folders, in order.
 
-    Raise ValueError if a folder holds no document.
+    Raise InputError if a folder holds no document.
     """
     documents: list[str] = []
     for file in files:
