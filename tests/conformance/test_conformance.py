@@ -138,7 +138,7 @@ def test_other_lobes_are_lit_alike_by_eonlib_s_lookups(judged, environment):
 @pytest.mark.parametrize(
     "check, methods, verdict, reason",
     [
-        # MaterialX's sum masks twice, so eonlib brings its own lookups; stock has none.
+        # MaterialX's sum applies masking twice. Only eonlib has lookups without this error.
         ("anisotropic_albedo", Methods("fis", searched=True), NOT_RUN, "library stock: has no genglsl/environment to search"),
         # Stock does not compensate by the exact average.
         ("environment", Methods("prefilter"), FAILED, ""),

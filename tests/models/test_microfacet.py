@@ -26,7 +26,7 @@ INPUTS = {
     "generalized_schlick_bsdf": dict(zip(("color0", "color82", "color90"), COLORS, strict=True))
     | {"exponent": 5.0},
 }
-FEWER = {  # two channels, for albedos
+FEWER = {  # inputs with two channels, for the tests of albedos
     "dielectric_bsdf": {"tint": [0.2, 1.0], "ior": 1.5},
     "conductor_bsdf": {"ior": [0.183, 1.373], "extinction": [3.424, 1.77]},
     "generalized_schlick_bsdf": {

@@ -127,8 +127,8 @@ def test_the_transmittance_below_index_1_is_a_sum_over_the_critical_cone(mu, alp
 
 @pytest.mark.parametrize("alpha", [0.1, 0.4, 1.0])
 def test_as_much_light_leaves_a_solid_as_enters(alpha):
-    # The cosine-weighted average from outside equals n^2 times that from inside, for traced paths
-    # and for integrated light.
+    # The cosine-weighted average transmittance from outside equals n^2 times that from inside, for
+    # traced paths and for integrated light.
     n, (x, w) = 1.5, np.polynomial.legendre.leggauss(32)
     mu, weight = 0.5 * (x + 1.0), 0.5 * w * (x + 1.0)
 
