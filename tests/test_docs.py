@@ -129,15 +129,11 @@ def test_the_python_example_of_the_readme_runs(tmp_path):
 
 
 COMMAND = re.compile(r"^(?:\$ |.* IMAGE )?mxeon (\w.*?)(?: \|\| .*| [|>] .*|\\)?$", re.MULTILINE)
-COMMANDS = dict.fromkeys(
-    line
-    for text in prose().values()
-    for fence in re.findall(r"^```(?:sh|console)\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
-    for line in COMMAND.findall(fence)
-)
+FENCE = re.compile(r"^```(?:sh|console)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+FENCES = [fence for text in prose().values() for fence in FENCE.findall(text)]
 
 
-@pytest.mark.parametrize("line", COMMANDS)
+@pytest.mark.parametrize("line", dict.fromkeys(COMMAND.findall("\n".join(FENCES))))
 def test_a_command_line_of_the_pages_is_one_that_mxeon_takes(tmp_path, monkeypatch, line):
     monkeypatch.chdir(tmp_path)
     words = shlex.split(line, comments=True)

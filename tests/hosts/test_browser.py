@@ -57,11 +57,10 @@ def test_each_defect_is_as_its_page_says(own, issue):
 def repaired(tmp_path_factory):
     """Judges by host, for renderers with all repairs applied."""
     opened = {}
+    pages = [each.page for each in measure.CHECKED if each.host == "babylon"]
     diffs = {
         "three": ledger.patches("three.js").values(),
-        "babylon": [
-            ledger.own_diff(each.page) for each in measure.CHECKED if each.host == "babylon"
-        ],
+        "babylon": [ledger.own_diff(page) for page in pages],
         "three-gpu-pathtracer": ledger.patches("three-gpu-pathtracer").values(),
     }
     for name, package in PACKAGES.items():

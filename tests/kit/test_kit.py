@@ -103,9 +103,8 @@ def read(path):
 
 def result_of(run, check, subject):
     """The single result of a check whose subject starts with the given text."""
-    (result,) = [
-        each for each in run.results if each.check == check and each.subject.startswith(subject)
-    ]
+    results = [each for each in run.results if each.check == check]
+    [result] = [each for each in results if each.subject.startswith(subject)]
     return result
 
 

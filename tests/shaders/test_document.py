@@ -183,12 +183,9 @@ def test_all_faults_of_a_document_are_told_together(tmp_path):
     inputs = '<input name="in1" type="color3" nodename="image"/>'
     inputs += '<input name="in2" type="color3" nodename="other"/><input name="inn" type="float"/>'
     nodes += f'<add name="a" type="color3">{inputs}</add><nosuch name="n" type="float"/>'
-    text = connected(color='nodename="a"').replace(
-        "</",
-        '<input name="rougness" type="float" value="nan"/>'
-        '<input name="wight" type="float" nodename="n"/></',
-        1,
-    )
+    more = '<input name="rougness" type="float" value="nan"/>'
+    more += '<input name="wight" type="float" nodename="n"/></'
+    text = connected(color='nodename="a"').replace("</", more, 1)
     path = written(tmp_path, material(nodes + text))
     with pytest.raises(DocumentError) as refused:
         read_document(path)

@@ -13,12 +13,8 @@ from tests.support.command import PLASTER
 from tests.support.documents import lobe, material
 from tests.support.wrong_libraries import wrong_copy
 
-CACHES = (
-    library.read_library,
-    generators._library_generator,
-    closure_calls._functions,
-    closure_calls._signatures,
-)
+CACHES = (library.read_library, generators._library_generator)
+CACHES += (closure_calls._functions, closure_calls._signatures)
 
 
 @pytest.fixture

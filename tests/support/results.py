@@ -49,16 +49,10 @@ def made_run(*results, documents=("a/clay.mtlx",), **fields):
     return Run("1", software, hosts, results, contents=contents, **fields)
 
 
+INFINITE = {"error": float("inf"), "worst": {"wo": [0.0, 1.0]}}
+INFINITE["control"] = Control("wrong", 2.0, True)
 FINDINGS = Findings(
-    results=(
-        made(
-            FAILED,
-            subject="a",
-            error=float("inf"),
-            worst={"wo": [0.0, 1.0]},
-            control=Control("wrong", 2.0, True),
-        ),
-    ),
+    results=(made(FAILED, subject="a", **INFINITE),),
     pictures=(Picture("d", "e", "gl", "eonlib", "side", PIXELS, None, {"version": "1"}),),
     notes=(("text", "place"),),
     errors=("broken",),
