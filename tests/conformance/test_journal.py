@@ -150,7 +150,8 @@ def test_a_new_run_keeps_the_old_one_in_a_folder(tmp_path):
 def test_an_interrupted_run_is_continued_or_kept(tmp_path):
     path = kept(tmp_path, 0)
     before = path.read_bytes()
-    with pytest.raises(ValueError, match="interrupted run with 2 of 3 tasks left: --resume"):
+    words = "holds an interrupted run with 2 of 3 tasks left: --resume continues"
+    with pytest.raises(ValueError, match=words):
         journal(tmp_path).__enter__()
     assert path.read_bytes() == before
     with journal(tmp_path, resume=True) as resumed:

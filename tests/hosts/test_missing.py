@@ -39,7 +39,7 @@ MODULES = [  # host, attribute that holds a package, and words of the message
     ("hlsl", "vulkan.wgpu", "wgpu is not installed"),
     ("naga", "vulkan.wgpu", "wgpu is not installed"),
     ("dxc", "translated.dxc", r"compushady is not installed; pip install '\.\[dxc\]'"),
-    ("shadewire", "shadewire.mtlx", r"the package is not installed; pip install '\.\[shade"),
+    ("shadewire", "shadewire.mtlx", r"the package is not installed; pip install '\.\[shadewire\]'"),
     ("slang", "slang.slangpy", r"slangpy is not installed; pip install '\.\[slang\]'"),
 ]
 

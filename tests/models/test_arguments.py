@@ -117,7 +117,8 @@ def test_an_index_of_nothing_reflects_all(ior):
 
 
 def test_a_quantity_without_a_range_is_refused():
-    with pytest.raises(LookupError, match="'sparkle' must have a range in mxeon.models.core"):
+    rule = "'sparkle' must have a range in mxeon.models.core.arguments"
+    with pytest.raises(LookupError, match=rule):
         RANGES["sparkle"]
 
 

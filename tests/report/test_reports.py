@@ -409,6 +409,9 @@ def refusal_of(folder, capsys):
     return error
 
 
+VERDICTS = "verdict must be one of passed, differs, failed, not run"
+
+
 @pytest.mark.parametrize(
     "key, value, words",
     [
@@ -416,7 +419,7 @@ def refusal_of(folder, capsys):
         ("error", "1e-7", "must be a number; got '1e-7'"),
         ("tolerance", None, "an error must have a tolerance; got 1e-07 and none"),
         ("error", -1.0, "error and tolerance must be at least 0; got -1.0 and 1e-06"),
-        ("verdict", "maybe", "verdict must be one of passed, differs, failed, not run; got 'm"),
+        ("verdict", "maybe", f"{VERDICTS}; got 'maybe'"),
         ("more", 1, "more"),
     ],
 )

@@ -20,7 +20,7 @@ CYCLE = (
     '<add name="a" type="color3"><input name="in1" type="color3" nodename="b"/></add>'
     '<add name="b" type="color3"><input name="in1" type="color3" nodename="a"/></add>'
 )
-A = '<a name="lobe" type="BSDF"/>'
+A, DEEP = '<a name="lobe" type="BSDF"/>', material("<a>" * 1000 + "</a>" * 1000)
 
 # Invalid files: contents, and the error message.
 FILES = {
@@ -28,7 +28,7 @@ FILES = {
     "prose": ("hello\n", "must be a MaterialX document; XML parse error"),
     "binary": ("".join(map(chr, range(256))), "must be a MaterialX document in UTF-8; invalid"),
     "cut short": (material(lobe())[:150], "must be a MaterialX document; XML parse error"),
-    "too deep": (material("<a>" * 1000 + "</a>" * 1000), "must have at most 64 elements within"),
+    "too deep": (DEEP, "must have at most 64 elements within each other; got 65"),
     "future": ('<materialx version="1.99"/>', "MaterialX upgrades to 1.39; got '1.99'"),
     "no version": ('<materialx version="x"/>', "MaterialX upgrades to 1.39; got 'x'"),
     "no include": (including("none.mtlx"), "none.mtlx"),
@@ -55,8 +55,14 @@ OUTSIDE = (
     ({"color": "0,&#10;2,&#10;0"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0, 2, 0'),
     ({"weight": "-1"}, f'input "lobe/weight" must lie in [0, 1], {MODEL} -1'),
     ({"roughness": "1.6"}, f'input "lobe/roughness" must lie in [0, pi/2], {MODEL} 1.6'),
-    ({"roughness": "1.2", "energy_compensation": True}, f"must lie in [0, 1], {MODEL} 1.2"),
-    ({"roughness": "1.2"}, "must lie in [0.0, 1.0], the range of its node; got 1.2"),
+    (
+        {"roughness": "1.2", "energy_compensation": True},
+        f'input "lobe/roughness" must lie in [0, 1], {MODEL} 1.2',
+    ),
+    (
+        {"roughness": "1.2"},
+        'input "lobe/roughness" must lie in [0.0, 1.0], the range of its node; got 1.2',
+    ),
 )
 
 # Malformed texts of a float, and the value that MaterialX reads from them.

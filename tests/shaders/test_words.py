@@ -66,7 +66,10 @@ def test_text_that_reaches_source_where_it_does_not_belong_is_words(materials):
 
 
 REFUSED = {
-    "index": ('<geompropdef name="a" type="vector2" index="0&#10;;"/>', "\"a\": 'index'"),
+    "index": (
+        '<geompropdef name="a" type="vector2" index="0&#10;;"/>',
+        "geompropdef \"a\": 'index'",
+    ),
     "space": ('<geompropdef name="a" type="vector3" space="x&quot;"/>', "'space' must be a name"),
     "namespace": ('<nodegraph name="a" namespace="x y"/>', "'namespace' must be a name of letters"),
     "color space": ('<nodegraph name="a" colorspace="a\\"/>', "must be without quotes"),
