@@ -41,7 +41,7 @@ def test_the_scaled_bessel_function_has_the_value_of_50_digits():
     assert bessel_scaled(np.array(1e300)) == pytest.approx(1.0 / np.sqrt(2e300 * np.pi), rel=ROUND)
 
 
-@pytest.mark.parametrize("v", [1e-3, 0.05, 1.0, 30.0])
+@pytest.mark.parametrize("v", [1e-3, 0.01, 0.05, 0.3, 1.0, 2.0, 30.0, 100.0])
 def test_the_longitudinal_function_has_the_value_of_50_digits(v):
     for theta_i, theta_o in [(0.3, -0.2), (-1.2, 1.3), (0.0, 0.0), (1.5, 1.5)]:
         a, b, u = mp.mpf(theta_i), mp.mpf(theta_o), mp.mpf(v)
@@ -49,14 +49,6 @@ def test_the_longitudinal_function_has_the_value_of_50_digits(v):
         value /= 2 * u * mp.sinh(1 / u)
         found = longitudinal(*inclined(theta_i), *inclined(theta_o), np.float64(v))
         assert found == pytest.approx(float(value), rel=ROUND / min(v, 1.0))
-
-
-@pytest.mark.parametrize("v", [1e-3, 0.01, 0.3, 2.0, 100.0])
-def test_the_longitudinal_function_is_normalized(v):
-    x, w = np.polynomial.legendre.leggauss(400)
-    theta_i, theta_o = np.arcsin(x), np.array([[0.0], [0.5], [-1.2]])
-    norms = (w * longitudinal(*inclined(theta_i), *inclined(theta_o), np.float64(v))).sum(axis=1)
-    np.testing.assert_allclose(norms, 1.0, atol=1e-9)
 
 
 @pytest.mark.parametrize("s", [0.01, 0.3, 2.0, 100.0])

@@ -103,14 +103,6 @@ def test_a_schlick_curve_is_the_printed_one(exponent):
     assert np.abs(values - 2.0 * (0.2 + 0.5 * (1.0 - mu) ** exponent)).max() <= ROUNDING
 
 
-def test_a_cone_without_falloff_is_hard_and_one_with_it_smooth():
-    cosines = np.cos(np.radians([29.9, 30.1, 44.9, 45.1]))
-    hard = media.conical_edf(direction(cosines), [1.0], 60.0, 0.0)[:, 0]
-    soft = media.conical_edf(direction(cosines), [1.0], 60.0, 90.0)[:, 0]
-    assert hard.tolist() == [1.0, 0.0, 0.0, 0.0]
-    assert soft[0] == 1.0 and soft[3] == 0.0 and 0.0 < soft[2] < 1e-3 and soft[1] > 0.999
-
-
 def test_a_narrow_falloff_nears_the_hard_edge():
     mu = np.linspace(0.0, 1.0, 999)
     hard, narrow = (media.conical_edf(direction(mu), [1.0], 60.0, 60.0 + x) for x in (0, 1e-9))
