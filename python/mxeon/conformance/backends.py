@@ -668,7 +668,7 @@ FOUR_PICTURES = Term(
 HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR_PICTURES, *DRAWN_LOBE.terms, exact=True)
 
 # A pixel's point is a ray's origin plus the ray, both of a length up to 2, with three roundings of
-# 2^-23. A grazing view divides the error by cos(theta_o), and a relative error by cos(theta_i).
+# 2^-23. Grazing views divide the error by cos(theta_o), and relative errors also by cos(theta_i).
 CYCLES_RAY = sum_of(
     roundings(3.0 * 2.0 / RIM**2, "of a pixel's point, over the least cosine squared"),
     Term(1e-5, "a roughness that counts as 0"),

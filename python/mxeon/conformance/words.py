@@ -311,7 +311,7 @@ def diagnosis(found: Diagnosis) -> str:
 
 def _cause(cause: Cause, distances: Mapping[str, float]) -> str:
     text = _model(cause, distances) if cause.kind is Kind.MODEL else SENTENCES[cause.kind](cause)
-    named = cause.branch and cause.key != "passes_other_light"  # that sentence names the branch
+    named = cause.branch and cause.key != "passes_other_light"  # the sentence names the branch
     return f"branch {cause.branch}: {text}" if named else text
 
 

@@ -218,7 +218,7 @@ class Difference:
     that is brighter.
 
     - `scene`: Name of the scene, which determines the light.
-    - `largest`: Difference at the worst pixel, positive if too bright; infinite if not a number.
+    - `largest`: Difference at the worst pixel, positive if too bright; infinite for NaN.
     - `highlight`: Whether the reference is brighter than white at the worst pixel.
     - `visible`: Share of the object's pixels whose difference exceeds VISIBLE.
     """
