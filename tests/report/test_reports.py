@@ -504,6 +504,13 @@ def test_a_row_has_the_claimed_model_the_model_that_is_there_and_the_pages(tmp_p
     }  # fmt: skip
 
 
+def test_a_node_whose_renderer_did_not_run_has_the_claim_of_this_renderer(tmp_path):
+    """EEVEE's node of the same title claims Lambert."""
+    place = {"host": "cycles-native", "subject": "Diffuse BSDF", "claimed": ""}
+    stopped = replace(WRONG[0], **place, verdict=NOT_RUN, error=None, tolerance=None, control=None)
+    assert written(tmp_path, results=(stopped,)).claimed == TITLE
+
+
 def test_a_portrait_is_not_judged_if_its_check_did_not_run(tmp_path):
     stopped = replace(WRONG[0], verdict=NOT_RUN, error=None, tolerance=None, control=None)
     pixels = np.zeros((96, 96, 3))

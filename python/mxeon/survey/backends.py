@@ -25,9 +25,7 @@ from mxeon.survey.specs import Material, RendererSpec
 
 FACET_PIXELS = 7169  # pixels of the polyhedron's picture that lie within one facet
 FEW_CALLS = samples.Counts(1 << 13)  # calls of a renderer's own function
-SHORTEST = (
-    2.0**-10
-)  # least |wo + wi| of special pairs: Fresnel's formulas square the rounded cosine
+SHORTEST = 2.0**-10  # least |wo + wi| of special pairs: Fresnel's formulas square rounded cosines
 EXACT_INPUTS: tuple[samples.Values, ...] = (  # dark to white, and rough to smooth
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.02, 0.05, 0.1), "roughness": 1.0},
@@ -88,9 +86,7 @@ class Native(backends.CyclesPictures):
     @property
     def claims(self) -> tuple[str, str]:
         """Titles of the claimed model and of the form that the checks use."""
-        claimed, *_ = self.node.forms or (self.node.model,)
-        title, own = (reference.diffuse_model(name).title for name in (claimed, self.node.model))
-        return title, own
+        return self.node.claimed, reference.diffuse_model(self.node.model).title
 
     def image(self, inputs: samples.Values, scene: Scene) -> Array:
         color, roughness = np.asarray(inputs["color"]), float(np.asarray(inputs["roughness"]))
@@ -137,7 +133,7 @@ class Facets(Exact):
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """Points in a white environment, for only two materials, because they render slowly."""
+        """Points in a white environment, for only two materials, because environments render slowly."""
         scene = replace(FURNACE, size=self.size)
         names = ("color", "roughness")
         return tuple(

@@ -48,7 +48,7 @@ class CallableHost(Host):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ClaimedModel(DiffuseModelSpec):
-    """The model that a function claims to implement; it takes the place of a node."""
+    """The spec of a function, which has the claimed model in place of a node."""
 
     def document(self, inputs: samples.Values | None = None) -> str:
         return ""  # a function has no document
@@ -71,17 +71,17 @@ class Function(backends.Backend):
     @cached_property
     def edges(self) -> Batch:
         """Pairs at the edges of the domain, and all pairs of other checks, for `finite`."""
-        used = [super().edges]
+        batches = [super().edges]
 
-        def note(batch: Batch) -> Batch:
-            used.append(batch)
+        def record(batch: Batch) -> Batch:
+            batches.append(batch)
             return batch
 
-        noted = Case(self.spec, self, inputs=note, control=True)
+        recorded = Case(self.spec, self, inputs=record, control=True)
         for check in _checks(self.spec.model):
             if check.key != "finite":
-                compared_of(check.measure(noted))
-        columns = zip(*map(_arguments, used), strict=True)
+                compared_of(check.measure(recorded))
+        columns = zip(*map(_arguments, batches), strict=True)
         wo, wi, rho, roughness = map(np.concatenate, columns)
         return Batch(wo, wi, {"color": rho, "roughness": roughness})
 
@@ -110,35 +110,35 @@ def _arguments(batch: Batch) -> tuple[Array, Array, Array, Array]:
     return batch.wo, batch.wi, rho, roughness
 
 
-def _finite_rows(found: Compared | Iterable[Compared]) -> Iterator[Compared]:
+def _finite_rows(compared: Compared | Iterable[Compared]) -> Iterator[Compared]:
     """Drop non-finite rows, which `finite` reports; keep all rows if none is finite."""
-    for each in [found] if isinstance(found, Compared) else found:
+    for each in [compared] if isinstance(compared, Compared) else compared:
         expected = np.broadcast_to(each.expected, each.measured.shape)
         rows = np.asarray(np.isfinite(each.measured + expected).all(axis=1))
-        kept = Compared(each.batch.where(rows), each.measured[rows], expected[rows])
-        yield kept if rows.any() else each
+        finite = Compared(each.batch.where(rows), each.measured[rows], expected[rows])
+        yield finite if rows.any() else each
 
 
-VALUE_OF_REST = replace(diagnosis.VALUE, compared=lambda case: _finite_rows(diagnosis.VALUE(case)))
+FINITE_VALUE = replace(diagnosis.VALUE, compared=lambda case: _finite_rows(diagnosis.VALUE(case)))
 
 
 def _explain_not_finite(case: Case) -> Diagnosis:
     """Report the number and region of non-finite values, and the arguments of the first one."""
-    found = unbounded(edge_values(case))
-    wrong = correct_except([found], EXACT, smallest([found], EXACT))
-    point = point_of(found.batch, int(EXACT.wrong(found).argmax()))
+    values = unbounded(edge_values(case))
+    wrong = correct_except([values], EXACT, smallest([values], EXACT))
+    point = point_of(values.batch, int(EXACT.wrong(values).argmax()))
     return Diagnosis((replace(wrong, kind=Kind.NOT_FINITE, point=point),))
 
 
-def _of_rest(check: Check) -> Check:
-    """Restrict a check to finite values; `finite` reports the other ones."""
+def _finite_only(check: Check) -> Check:
+    """Restrict a check to finite values; the check `finite` reports the others."""
     if check.key == "finite":
         return replace(check, explain=_explain_not_finite)
     if check.key == "inputs":
         return check
     measure = cast(Callable[[Case], Iterable[Compared]], check.measure)
     return replace(
-        check, measure=lambda case: _finite_rows(measure(case)), explain=VALUE_OF_REST.diagnose
+        check, measure=lambda case: _finite_rows(measure(case)), explain=FINITE_VALUE.diagnose
     )
 
 
@@ -187,7 +187,7 @@ def _checks(model: str) -> tuple[Check, ...]:
             "model", model, (row.name for row in reference.DIFFUSE_MODELS if row.parameter)
         )
     return tuple(
-        _of_rest(check)
+        _finite_only(check)
         for check in checks.CHECKS
         if check.key in KEYS and (check.key != "integral" or row.albedo_dir)
     )

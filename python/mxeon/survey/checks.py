@@ -27,7 +27,6 @@ COSINES = (0.05, 0.3, 0.7, 0.99)  # view cosines
 SAMPLES = 1 << 15
 ROUGHNESS = 1.0
 
-
 # Nodes whose sampling function can be called.
 SAMPLED = family(RendererSpec, lambda spec: spec.sampled and spec.model in ("eon", "eon_fitted"))
 
@@ -48,7 +47,7 @@ def _density(case: Case, batch: Batch) -> Array:
 def samples(case: Case) -> Measurement:
     """Largest deviation of samples from their density, in standard deviations of a chi-square test.
 
-    Views have COSINES, and the material ROUGHNESS. For a control, one view is enough.
+    The cosines of the views are COSINES, and the material has ROUGHNESS. A control needs one view.
     """
     deviations = [_deviation(case, mu) for mu in COSINES[: 1 if case.control else None]]
     worst = int(np.argmax(deviations))

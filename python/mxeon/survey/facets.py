@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A convex polyhedron with known normals, for renderers that spread samples over a pixel.
 
-A pixel inside a facet has one normal, wherever its samples fall. The shape is convex, so facets
-neither shadow nor light each other. Frame and camera are the same as in `mxeon.shaders.scene`.
+All samples of a pixel within a facet have the same normal. The shape is convex, so facets neither
+shadow nor light each other. Frame and camera are the same as in `mxeon.shaders.scene`.
 """
 
 from functools import lru_cache
@@ -17,8 +17,6 @@ MARGIN = 1.05  # pixels of this relative size must lie within one facet
 
 
 class Polyhedron(NamedTuple):
-    """A closed mesh of flat facets."""
-
     vertices: NDArray[np.float64]  # points of the unit sphere
     triangles: NDArray[np.int64]  # indices, counterclockwise from outside
     normals: NDArray[np.float64]  # outward unit normals of the facets, in float64
@@ -26,17 +24,15 @@ class Polyhedron(NamedTuple):
 
 
 class Points(NamedTuple):
-    """Normals at the pixels of a rendered polyhedron."""
-
     normal: NDArray[np.float64]
     mask: NDArray[np.bool_]  # pixels within one facet
 
 
 @lru_cache(maxsize=1)
 def polyhedron() -> Polyhedron:
-    """The polyhedron. Its vertices are a grid of angles around AXIS, rounded to float32.
+    """The polyhedron, whose vertices are a grid of angles around AXIS, rounded to float32.
 
-    Its facets are trapezoids, which are flat, and triangles at the poles.
+    The facets are trapezoids, which are flat, and triangles at the poles.
     """
     polar, azimuth = np.linspace(0.0, np.pi, RINGS + 1), np.arange(SECTORS) * 2.0 * np.pi / SECTORS
     theta, phi = np.meshgrid(polar[1:-1], azimuth, indexing="ij")
@@ -48,7 +44,7 @@ def polyhedron() -> Polyhedron:
     across /= np.linalg.norm(across)
     frame = np.stack([across, np.cross(axis, across), axis])
     vertices = (local @ frame).astype(np.float32).astype(np.float64)
-    # Find the corners of the facets. At the poles, a ring is a single vertex.
+    # Corners of the facets. At the poles, a ring is a single vertex.
     row, column = np.meshgrid(np.arange(RINGS + 1), np.arange(SECTORS), indexing="ij")
     index = np.clip(1 + (row - 1) * SECTORS + column, 0, 1 + (RINGS - 1) * SECTORS)
     after = np.roll(index, -1, axis=1)
@@ -83,14 +79,12 @@ def facet_points(size: int) -> Points:
 def _facets(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
     """Index of the facet that each ray along -z hits first; -1 for none."""
     _, _, normals, offsets = polyhedron()
-    above, below = normals[:, 2] > 0.0, normals[:, 2] < 0.0
     first, top = np.full(x.shape, -1), np.full(x.shape, np.inf)
     bottom = np.full(x.shape, -np.inf)
-    for index in range(len(normals)):
-        if above[index] or below[index]:
-            nx, ny, nz = normals[index]
+    for index, (nx, ny, nz) in enumerate(normals):
+        if nz:  # the plane of the facet is not parallel to the rays
             height = (offsets[index] - nx * x - ny * y) / nz
-            if above[index]:
+            if nz > 0.0:
                 first = np.where(height < top, index, first)
                 top = np.minimum(top, height)
             else:

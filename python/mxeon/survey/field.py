@@ -8,7 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
-from mxeon.conformance import backends, words
+from mxeon.conformance import words
 from mxeon.conformance.results import (
     DIRECT,
     FAILED,
@@ -21,18 +21,17 @@ from mxeon.conformance.results import (
     Result,
     Verdict,
 )
-from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES
 from mxeon.errors import InputError
 from mxeon.io.files import AnyPath
-from mxeon.models import table as reference
+from mxeon.models.table import diffuse_model
 from mxeon.report.diff import Report, read_results
-from mxeon.survey import ROWS, specs
+from mxeon.survey import ROWS, nodes
 
 Place: TypeAlias = tuple[str, str, str]  # host, library and node
 
 BACK = "back"
-# Checks of each column; the first check that a node has counts. `back` comes from portraits.
+# Checks of each column, of which the first that a node has counts. BACK is judged by portraits.
 CHECKS = {
     "direct": DIRECT,
     "surroundings": ("environment",),
@@ -99,7 +98,7 @@ class Entry:
 
     @property
     def found_around(self) -> str:
-        """The model found in a white environment; "" if this was not checked."""
+        """The model found in a white environment; "" without such a check."""
         cell = self.cells.get("surroundings")
         return model_of(cell, self.form or self.claimed) if cell else ""
 
@@ -135,10 +134,10 @@ def reports_in(folder: AnyPath) -> list[Path]:
 
 
 def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
-    """Nodes that claim a rough diffuse model, from the reports in some folders.
+    """Nodes that claim a rough diffuse model, from folders that are, or contain, reports.
 
-    A folder is a report, or contains reports; the last report on a host, version, library and node
-    counts. Raises InputError if a folder has no report, or no report has such a node.
+    The last report on a host, version, library and node counts. Raises InputError if a folder has
+    no report, or no report has a node that claims a rough diffuse model.
     """
     entries = {}
     for folder in folders:
@@ -155,15 +154,17 @@ def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
 
 
 def _entries(report: Report, folder: Path) -> Iterator[Entry]:
-    own = (spec for row in ROWS for spec in backends.own_nodes(row.name))
-    claims = {each.title: claim(each) for each in (*DIFFUSE, *SURFACE_LOBES, *own)}
+    claims = {spec.title: diffuse_model(spec.model).title for spec in (*DIFFUSE, *SURFACE_LOBES)}
+    native = {(row.name, spec.title): spec.claimed for row in ROWS for spec in nodes(row.name)}
     places: dict[Place, dict[str, Result]] = {}
     for result in report.results:
         place = result.host, result.library, result.subject
         places.setdefault(place, {})[result.check] = result
     for place, results in places.items():
         direct = next((results[key] for key in DIRECT if key in results), None)
-        claimed = direct and (direct.claimed or claims.get(direct.subject))
+        # A result does not name the claim if its host did not run.
+        default = native.get((place[0], place[2])) or claims.get(place[2])
+        claimed = direct and (direct.claimed or default)
         if direct and claimed:
             portraits = {each.scene: each for each in _portraits(report, place, folder)}
             cells = {
@@ -175,19 +176,13 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
             if BACK in portraits and direct.tolerance is not None:
                 error, allowed = portraits[BACK].difference, direct.tolerance
                 verdict: Verdict = PASSED if error <= allowed else FAILED
-                claim_of_back = PORTRAIT, "Light from behind, at the points of a sphere."
-                about = *claim_of_back, direct.subject, direct.host, direct.library
-                cells[BACK] = Result(*about, verdict, error, direct.quantity, allowed)
+                check = PORTRAIT, "Light from behind, at the points of a sphere."
+                node = direct.subject, direct.host, direct.library
+                cells[BACK] = Result(*check, *node, verdict, error, direct.quantity, allowed)
             pages = tuple(dict.fromkeys(page for each in results.values() for page in each.pages))
             hosts = {each.name: (each.version, each.device) for each in report.hosts}
             names = (*place, *hosts.get(direct.host, ("", "")), claimed, direct.model)
             yield Entry(report.version, *names, cells, pages, portraits, folder)
-
-
-def claim(spec: Spec) -> str:
-    """Title of the claimed model, or of its first published form."""
-    forms = spec.forms if isinstance(spec, specs.RendererSpec) else ()
-    return reference.diffuse_model((*forms, spec.model)[0]).title
 
 
 def _portraits(report: Report, place: Place, folder: Path) -> Iterator[Portrait]:

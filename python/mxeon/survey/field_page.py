@@ -39,7 +39,7 @@ def write_field(entries: Sequence[Entry], file: str | PathLike[str]) -> Path:
     """Write the page that compares renderers, and return its path; see `render`."""
     read = (each for entry in entries for each in report_files(entry.report))
     check_output(file, read, [".html"])
-    with replacing(Path(file)) as beside, open(beside, "w", encoding="utf-8") as page:
+    with replacing(Path(file)) as temporary, open(temporary, "w", encoding="utf-8") as page:
         page.writelines(render(entries))
     return Path(file)
 
@@ -51,11 +51,10 @@ def frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
         if portrait is None:
             continue
         image, model = read_image(portrait.image), read_image(portrait.reference)
-        apart = np.abs(difference(image, model))
-        scale = max(difference_scale(apart), entry.cells["direct"].tolerance or 0.0)
-        shown, apart = srgb_encoded(image), difference_pixels(apart, scale)
-        uris = picture_uri(shown), picture_uri(apart)
-        yield row, entry, *uris, scale, portrait.difference
+        differences = np.abs(difference(image, model))
+        scale = max(difference_scale(differences), entry.cells["direct"].tolerance or 0.0)
+        pictures = srgb_encoded(image), difference_pixels(differences, scale)
+        yield row, entry, *map(picture_uri, pictures), scale, portrait.difference
 
 
 def render(
@@ -68,7 +67,7 @@ def render(
 
     `pages` is the address of a page of the ledger, with `{}` for its name, or "" for no links.
     `note` follows the counts. `frames` returns the portraits of the rows' first entries. The page
-    loads nothing and runs only its own script, which it does not need. Report text is escaped.
+    loads nothing, is complete without its script, and escapes the text of reports.
     """
     counts = Counter(entry.verdict for entry in entries)
     rows = by_harm(entries)

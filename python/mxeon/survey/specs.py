@@ -10,7 +10,7 @@ from typing import Any, Self, TypeAlias
 from mxeon.conformance.samples import Values
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, inputs_of, model_row
 from mxeon.models.nodes.node import PbrNode
-from mxeon.models.table import OTHERS
+from mxeon.models.table import OTHERS, diffuse_model
 
 Material: TypeAlias = Mapping[str, Any]  # properties of a renderer's material
 
@@ -23,13 +23,18 @@ PUBLISHED = ("eon", "eon_fitted")  # EON in the paper: with the exact albedo, or
 class RendererSpec(DiffuseModelSpec):
     """A renderer's own node and its documented model.
 
-    In `material`, "{color}" and "{roughness}" are placeholders for the inputs. Only the diffuse
-    lobe may depend on them.
+    In `material`, "{color}" and "{roughness}" are placeholders for the inputs, on which only the
+    diffuse lobe may depend.
     """
 
     material: Material = field(default_factory=dict)
     forms: tuple[str, ...] = ()  # published forms; the nearest one is judged
     sampled: bool = False  # whether its sampling function can be called
+
+    @property
+    def claimed(self) -> str:
+        """Title of the claimed model, or of its first published form."""
+        return diffuse_model((*self.forms, self.model)[0]).title
 
     def of_model(self, model: str) -> Self:
         """The same node, judged as another model."""
@@ -40,11 +45,8 @@ class RendererSpec(DiffuseModelSpec):
         return ""
 
     def made(self, color: Sequence[float], roughness: float) -> Material:
-        """The material, with its placeholders replaced by these inputs."""
-        inputs = {
-            "{color}": tuple(map(float, color)),
-            "{roughness}": float(roughness),
-        }
+        """The material with input values for the placeholders."""
+        inputs = {"{color}": tuple(map(float, color)), "{roughness}": float(roughness)}
         return {
             name: inputs.get(value, value) if isinstance(value, str) else value
             for name, value in self.material.items()
@@ -69,5 +71,5 @@ def _row(model: str, node: str) -> PbrNode:
     """The row of a renderer's node. Its variants include only one of the two Burley models."""
     name = model if model.startswith("burley") else "burley"
     left_out = {"burley", "burley_lambert"} - {name}
-    others = tuple(each for each in OTHERS if each.name not in left_out)
-    return model_row(model, node, others)
+    variants = tuple(each for each in OTHERS if each.name not in left_out)
+    return model_row(model, node, variants)

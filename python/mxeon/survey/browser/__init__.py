@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers from npm. Each is a page in a headless Chromium that draws one picture per request.
+"""Renderers from npm, each a page in a headless Chromium that draws one picture per request.
 
-The page is an ES module next to this file. It imports the renderer from `node_modules` through a
-route inside the browser: nothing is bundled, and nothing leaves the machine.
+The page is an ES module next to this file, which imports the renderer from `node_modules` through a
+route of the browser: nothing is bundled, and nothing leaves the machine.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ import json
 import math
 import os
 from abc import abstractmethod
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import MaterialX as mx
 import numpy as np
@@ -24,12 +24,9 @@ from numpy.typing import NDArray
 
 from mxeon.errors import NotRun
 from mxeon.hosts import base, webgl
-from mxeon.io.files import AnyPath
 from mxeon.shaders.document.graphs import surface_shader
-from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.library import data_folder
-from mxeon.shaders.methods import UNCHOSEN, Methods
 from mxeon.shaders.scene import Scene, sphere
 from mxeon.survey.specs import Material
 
@@ -47,8 +44,7 @@ window.answer = async (job) => {{
 }};
 </script>"""
 SHARED = {"Access-Control-Allow-Origin": "*"}
-PICTURES = 64  # cached, because the checks of a node share some
-LIMIT = 60.0  # seconds for a picture, including the renderer's start
+PICTURES = 64  # cached pictures, which the checks of a node share
 TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json"}
 
 
@@ -80,22 +76,23 @@ def material(backend: str, **more: str) -> Material:
 
 
 class PackageHost(webgl.Chromium, base.Engine):
-    """Materials of an npm package, drawn by a page, each in at most `limit` seconds.
+    """Materials of an npm package, drawn by a page.
 
     The page, an ES module next to the host's, exports `draw(job)`, which returns `pixels` or
     `failed`. `imports` maps names to paths in node_modules; `assets` are PNG files by address.
     """
 
     flags = (*webgl.FLAGS, "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader")
+    limit = 60.0  # seconds for a picture, including the renderer's start
     title: ClassVar[str]
     package: ClassVar[str]
     imports: ClassVar[Mapping[str, str]]
     assets: ClassVar[Mapping[str, bytes]] = {}
     backends: ClassVar[tuple[str, ...]] = ("webgl", "webgpu")
 
-    def __init__(self, limit: float = LIMIT) -> None:
+    def __init__(self) -> None:
         self._modules = modules_folder(self.package, self.name)
-        super().__init__(self.name, limit)
+        super().__init__()
         self._script = Path(inspect.getfile(type(self))).with_suffix(".js")
         self._picture = lru_cache(maxsize=PICTURES)(
             lambda job, size: pixels(self.ask(json.loads(job)), size)
@@ -119,7 +116,6 @@ class PackageHost(webgl.Chromium, base.Engine):
         return self._picture(json.dumps(job), scene.size)
 
     def ask(self, job: Mapping[str, object]) -> webgl.Answer:
-        """The page's answer to a job."""
         return self._ask("job => answer(job)", dict(job))
 
     def _load(self) -> None:
@@ -139,8 +135,8 @@ class PackageHost(webgl.Chromium, base.Engine):
             html = HTML.format(imports=json.dumps(imports))
             route.fulfill(body=html, content_type="text/html")
             return
-        own = {"page.js": self._script, "sphere.js": Path(__file__).with_name("sphere.js")}
-        file = own.get(path, self._modules / path)
+        pages = {"page.js": self._script, "sphere.js": Path(__file__).with_name("sphere.js")}
+        file = pages.get(path, self._modules / path)
         if file.suffix in TYPES and file.is_file():
             route.fulfill(path=file, content_type=TYPES[file.suffix])
         else:
@@ -150,23 +146,15 @@ class PackageHost(webgl.Chromium, base.Engine):
 class ReadingHost(PackageHost, base.Host):
     """A package that loads MaterialX documents: `mxeon check FILE --host three`.
 
-    GLSL from `compile` is not executed. Light is distant: packages prefilter environments.
+    The package generates its own shaders, so the GLSL from `compile` is not executed. Only distant
+    lights are supported, because packages prefilter environments.
     """
 
     target, fixed = "glsl", True
 
-    def compile(
-        self,
-        document: AnyPath | mx.Document,
-        element: str | None = None,
-        *,
-        library: str = "stock",
-        methods: Methods = UNCHOSEN,
-        policy: Policy = DEFAULT,
-        client: Collection[str] = (),
-    ) -> tuple[Shader, ...]:
+    def compile(self, *arguments: Any, **options: Any) -> tuple[Shader, ...]:
         """Compile with stock MaterialX definitions, because the package uses no library."""
-        return super().compile(document, element, library="stock", policy=policy, client=client)
+        return super().compile(*arguments, **options | {"library": "stock"})
 
     def picture(self, shader: Shader, scene: Scene) -> base.Array:
         self.refuse_shape(scene)
@@ -183,11 +171,11 @@ class ReadingHost(PackageHost, base.Host):
         defaults = {
             each.getName(): each.getValueString() for each in surface.getNodeDef().getActiveInputs()
         }
-        given = {each.getName(): each.getValueString() for each in surface.getInputs()}
+        values = {each.getName(): each.getValueString() for each in surface.getInputs()}
         ignored = [
             each
             for each in self.ask(self.read(shader))["ignored"]
-            if each not in given or given[each] != defaults[each]
+            if each not in values or values[each] != defaults[each]
         ]
         return f"it ignores {', '.join(ignored)}" if ignored else ""
 

@@ -28,13 +28,14 @@ import "@babylonjs/core/Engines/WebGPU/Extensions/engine.readTexture.js";
 import "@babylonjs/core/Materials/Textures/baseTexture.polynomial.js";
 import { encode, sphere } from "/sphere.js";
 
-// Babylon.js takes the direction of view from the position of the camera, orthographic or not.
+// Distance of the camera: Babylon.js computes directions of view from the camera's position, even
+// of an orthographic camera.
 const FAR = 1e7;
 
 const stages = {};
 
-// A canvas whose WebGPU context is a plain texture: Chromium's software adapter has none that could
-// be shown, and nothing is.
+// A canvas whose WebGPU context is a plain texture: Chromium's software adapter cannot show a
+// canvas.
 function hiddenCanvas() {
     const canvas = document.createElement("canvas");
     let texture;
@@ -92,7 +93,7 @@ function pbrMaterial(scene, { color, roughness, model }) {
     const material = new PBRMaterial("material", scene);
     material.albedoColor = new Color3(...color);
     material.metallic = 0;
-    material.roughness = model === "LEGACY" ? roughness : 1; // its one roughness, also of the lobe
+    material.roughness = model === "LEGACY" ? roughness : 1; // LEGACY has no other roughness
     material.metallicF0Factor = 0; // no specular lobe
     material.baseDiffuseRoughness = roughness;
     material.brdf.baseDiffuseModel = Constants[`MATERIAL_DIFFUSE_MODEL_${model}`];
@@ -107,7 +108,7 @@ function openPbrMaterial(scene, { color, roughness }) {
     return material;
 }
 
-// OpenPBRMaterial with values of open_pbr_surface, and the inputs that it lacks.
+// An OpenPBRMaterial with values of open_pbr_surface, and the names of inputs that the class lacks.
 function readMaterial(scene, inputs) {
     const material = new OpenPBRMaterial("material", scene), ignored = [];
     for (const [name, value] of Object.entries(inputs)) {
@@ -117,7 +118,7 @@ function readMaterial(scene, inputs) {
     return { material, ignored };
 }
 
-// Radiance 1 from everywhere, with the polynomial that Babylon.js makes of it.
+// An environment map of radiance 1, with the spherical polynomial that Babylon.js computes.
 async function surroundings(stage) {
     if (!stage.map) {
         const size = 16;

@@ -48,10 +48,10 @@ class BabylonHost(browser.ReadingHost):
             raise NotRun(f"babylon: it has no {surface.getCategory()}, only {OPEN_PBR}")
         values: dict[str, object] = {}
         for port in surface.getNodeDef().getActiveInputs():
-            name, own = port.getName(), surface.getInput(port.getName())
-            if own and own.getValue() is None:
+            name, given = port.getName(), surface.getInput(port.getName())
+            if given and given.getValue() is None:
                 raise NotRun(f"babylon: {name} must be a value; it is connected")
-            if (value := (own or port).getValue()) is not None:
+            if (value := (given or port).getValue()) is not None:
                 parts = name.split("_")
                 key = parts[0] + "".join(map(str.title, parts[1:]))
                 values[key] = tuple(value) if port.getType() in ("color3", "vector3") else value

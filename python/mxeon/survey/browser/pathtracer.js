@@ -4,7 +4,7 @@
 import * as eon from "three-gpu-pathtracer/src/webgpu/nodes/eon.wgsl.js";
 import { encode } from "/sphere.js";
 
-// What a call needs of the surface: the package's struct has many more members.
+// The members of the package's struct that the called functions read.
 const SURFACE = "struct SurfaceRecord { color: vec3f, diffuseRoughness: f32 }";
 
 // Columns of a row: wo, wi or two random numbers and 0, color, roughness.
@@ -32,13 +32,13 @@ async function start() {
     device = await adapter.requestDevice();
 }
 
-// The text of a function and of all that it includes, each once.
+// The text of a function and its includes, without repetition.
 function textOf(node, seen = new Set()) {
-    const own = node.functionNode ?? node;
-    if (seen.has(own)) return "";
-    seen.add(own);
-    const parts = (own.includes ?? []).map((each) => textOf(each, seen));
-    return [...parts, own.code ?? ""].join("\n");
+    const included = node.functionNode ?? node;
+    if (seen.has(included)) return "";
+    seen.add(included);
+    const parts = (included.includes ?? []).map((each) => textOf(each, seen));
+    return [...parts, included.code ?? ""].join("\n");
 }
 
 function shader(call) {

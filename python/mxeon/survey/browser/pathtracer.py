@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""three-gpu-pathtracer: the diffuse functions of its path tracers, called for pairs of directions."""
+"""three-gpu-pathtracer: diffuse functions of its path tracers, called for pairs of directions."""
 
 from __future__ import annotations
 
@@ -23,9 +23,8 @@ PACKAGE = "three-gpu-pathtracer"
 IMPORTS = {**three.IMPORTS, f"{PACKAGE}/": f"{PACKAGE}/"}
 
 LOBE = "WebGLPathTracer, diffuseEval"
-SHORTER = (
-    1.0 - 2.0**-22
-)  # length of a half vector whose product with wo is at most 1 after rounding
+# Length of a half vector whose product with wo is at most 1 after rounding.
+SHORTER = 1.0 - 2.0**-22
 # Materials have a function of WebGPUPathTracer's WGSL, or a half vector's length for the GLSL.
 NODES = (
     node("WebGPUPathTracer, eonBrdf", "eon", {"call": "eon"}, forms=PUBLISHED, sampled=True),

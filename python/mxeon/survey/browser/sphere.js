@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The visible points of the unit sphere as quads, one for each pixel, and pixels as text.
 //
-// A quad lies in the plane of the picture and its four corners have the one normal of the sphere
-// under the pixel's center. So every pixel has an exact normal, whatever the rasterizer interpolates.
+// A quad lies in the plane of the picture, and its four corners have the sphere's normal under the
+// pixel's center. So every pixel has an exact normal, whatever the rasterizer interpolates.
 
 export function sphere(size) {
     const positions = [], normals = [], tangents = [], indices = [];

@@ -62,9 +62,9 @@ function loadedMaterial({ document: text, element }) {
     return { material, ignored };
 }
 
-const maps = new Map(); // by library: filtering one takes seconds on a software driver
+const maps = new Map(); // by library, because filtering a map takes seconds on a software driver
 
-// Radiance 1 from everywhere, as an environment map.
+// An environment map of radiance 1.
 function surroundings(three) {
     if (maps.has(three)) return maps.get(three);
     const texels = new Float32Array(8 * 4 * 4).fill(1);

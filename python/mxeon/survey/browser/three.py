@@ -63,8 +63,8 @@ class ThreeHost(browser.ReadingHost):
 
 def document(category: str, color: Sequence[float], roughness: float, backend: str) -> str:
     """MaterialX text of a material that has only a diffuse lobe."""
-    color_input, roughness_input, others = INPUTS[category]
+    color_input, roughness_input, weight_input = INPUTS[category]
     text = input_text(color_input, "color3", color)
     text += input_text(roughness_input, "float", roughness)
-    text += input_text(others, "float", 0.0)
+    text += input_text(weight_input, "float", 0.0)
     return document_text(node_text(category, "surfaceshader", "shading", text))

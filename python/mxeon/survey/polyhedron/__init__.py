@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renderers with a Python package, which render their own nodes on a polyhedron.
 
-Each runs in its own process. Samples spread over a pixel, so flat facets replace the sphere.
+A renderer runs in its own process. Samples spread over a pixel, so flat facets replace the sphere.
 """
 
 from __future__ import annotations
@@ -22,20 +22,19 @@ from mxeon.shaders.scene import Scene
 from mxeon.survey.facets import polyhedron
 from mxeon.survey.specs import Material
 
-PICTURES = 64  # cached, because the checks of a node share some
+PICTURES = 64  # cached pictures, which the checks of a node share
 MESH = "polyhedron.npz"
 
 
 class PolyhedronHost(Engine):
-    """A renderer in its own process; `limit` is the maximum time of a request in seconds."""
-
     samples: ClassVar[int]  # samples per pixel under an environment; a distant light needs one
     script: ClassVar[Path]  # program of the worker process
     device: ClassVar[str]
     missing: ClassVar[str] = ""  # message if the renderer is not installed
 
-    def __init__(self, limit: float = 120.0) -> None:
-        self.worker = Worker(self.name, self._interpreter(), self.script, limit)
+    def __init__(self) -> None:
+        self.worker = Worker(self.name, self._interpreter(), self.script)
+        self.worker.limit = 120.0  # seconds
         self._folder = self.worker.folder
         mesh = polyhedron()
         np.savez(self._folder / MESH, vertices=mesh.vertices, triangles=mesh.triangles)

@@ -17,7 +17,7 @@ NODES = tuple(node(title, "lambert", material, COLOR) for title, material in MAT
 class EeveeHost(PolyhedronHost):
     name = "eevee"
     script = Path(process.__file__).with_name("worker.py")
-    samples = 1  # it has no noise
+    samples = 1  # EEVEE has no noise
     device = "OpenGL"
     missing = (
         "no Blender: pip install bpy==5.0.1 in an environment of Python 3.11 and name "

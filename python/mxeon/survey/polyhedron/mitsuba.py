@@ -33,8 +33,6 @@ NODES = (
 
 
 class MitsubaHost(PolyhedronHost):
-    """Mitsuba with its own BSDFs, which it evaluates for any pair of directions."""
-
     name = "mitsuba"
     script = Path(__file__).with_name("mitsuba_worker.py")
     samples = 64

@@ -22,8 +22,8 @@ function filter() {
   for (const figure of document.querySelectorAll("[data-row]")) {
     figure.hidden = document.getElementById(figure.dataset.row).hidden;
   }
-  const shown = rows.filter((row) => !row.hidden).length;
-  document.querySelector("[role=status]").textContent = `${shown} of ${rows.length} rows`;
+  const visible = rows.filter((row) => !row.hidden).length;
+  document.querySelector("[role=status]").textContent = `${visible} of ${rows.length} rows`;
 }
 
 function key(row, column) {
