@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """OSL's own programs: generated OSL compiled by oslc and rendered by testrender.
 
-Each pixel of a picture shows its own pair of directions; see `testrender_scene`. testshade evaluates functions.
+Each pixel of a picture shows its own pair of directions; see `testrender_scene`. The program
+testshade evaluates functions.
 """
 
 from __future__ import annotations
@@ -62,9 +63,9 @@ class TestrenderHost(PairHost):
         wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
         scene = scenes.pair_scene(wo, wi, points.side(len(wo)))
         columns = points.columns_of(shader, inputs, scene.turned)
-        block = points.statements(columns, self._folder / points.IMAGE, len(wo), scenes.PLACE)
-        text = points.with_variables(shader, block, lambda output: last.format(output=output))
-        for name, each in {shader.name: points.with_header(text, shader), **HELPERS}.items():
+        variables = columns, self._folder / points.IMAGE, len(wo), scenes.PLACE
+        text = points.with_variables(shader, *variables, last)
+        for name, each in {shader.name: text, **HELPERS}.items():
             self._compile(name, each)
         for name, each in scene.files(shader.name, lit).items():
             (self._folder / name).write_text(each, encoding="utf-8")
@@ -134,8 +135,8 @@ def output(
 ) -> str:
     """Standard output of a program; its warnings become `RendererWarning`.
 
-    Raises `failure` with the last lines of a failed program, ShaderError if a successful program reports an error:
-    testrender continues without lobes that exceed its memory.
+    Raises `failure` with the last lines of a failed program, and ShaderError if a successful
+    program reports an error: testrender continues without lobes that exceed its memory.
     """
     try:
         process = subprocess.run(

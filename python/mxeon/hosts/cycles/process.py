@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Blender's process: its interpreter, and how Cycles samples a picture.
 
-A point cloud is an exact sphere, but Cycles finds no exit for paths inside it, so materials with lobes below the surface
-are rendered on a mesh.
+A point cloud is an exact sphere, but Cycles finds no exit for paths inside a point, so materials
+with lobes below the surface are rendered on a mesh.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ def interpreter(name: str = "cycles") -> Path:
 class Blender(Worker):
     """A process of Blender, which renders OSL or a node of Blender's."""
 
-    def __init__(self, name: str, limit: float = 300.0) -> None:
-        super().__init__(name, interpreter(name), Path(__file__).with_name("worker.py"), limit)
+    def __init__(self, name: str) -> None:
+        super().__init__(name, interpreter(name), Path(__file__).with_name("worker.py"))
 
     def render(self, folder: Path, text: str = "", **frame: object) -> list[str]:
         """Render a shader's text, or a node, to PICTURE in a folder; return the printed lines."""
@@ -60,16 +60,14 @@ PICTURE = "output.exr"
 # Samples of a pixel; 1 is enough under a distant light.
 ENVIRONMENT_SAMPLES = 256
 INNER_SAMPLES = 64
-# A random walk below the surface counts as one bounce, and on a convex body no second bounce follows. Refracted light is
-# reflected inside: under a uniform sky a sphere of dielectric_bsdf is equally bright with 6 and 16 bounces in float32;
-# with 2 it is darker by 1e-3.
+# A random walk below the surface counts as one bounce, and on a convex body no second bounce
+# follows. Refracted light is reflected inside: under a uniform sky, a sphere of dielectric_bsdf is
+# equally bright with 6 and 16 bounces in float32, and darker by 1e-3 with 2 bounces.
 SURFACE_BOUNCES, REFRACTED_BOUNCES = 1, 8
 
-
-DARK = Scene("dark")  # no light; for emission or other lights
-PLACE = (
-    "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"  # OSL expressions of a point's place on the body "plane"
-)
+DARK = Scene("dark")  # a scene without light, for emission or other lights
+# OSL expressions of a point's place in an image on the body "plane".
+PLACE = "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"
 FEWEST_SAMPLES = 16  # minimum for lobes below the surface, which are too noisy with fewer
 
 

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the hosts `cycles`, `osl` and `eevee` that runs in Blender's Python; see `mxeon.hosts.process`."""
+"""The half of the hosts `cycles`, `osl` and `eevee` that runs in Blender's Python.
+
+`mxeon.hosts.process` starts it.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +36,8 @@ KINDS = ("objects", "cameras", "meshes", "pointclouds", "materials", "lights", "
 def unit_scene(distance: float) -> Blender:
     """An empty scene, the square [-1, 1]^2 seen orthographically from z = `distance`.
 
-    It removes the objects of earlier requests: reloading Blender's settings would take as long as a picture.
+    The objects of earlier requests are removed one by one, because reloading Blender's settings
+    would take as long as a picture.
     """
     bpy.data.batch_remove([each for kind in KINDS for each in getattr(bpy.data, kind)])
     scene = bpy.context.scene
@@ -157,7 +161,8 @@ def render(
 ) -> None:
     """Render the OSL file `shader`, or a Blender node, on a body or on the triangles in a file.
 
-    Every sample is at its pixel's center. The body is "points", "mesh" or "plane", a triangle that fills the picture.
+    Every sample is at its pixel's center. The body is "points" (an exact sphere), "mesh" (a sphere
+    of triangles) or "plane" (a triangle that fills the picture).
     """
     compiled = ""
     if shader:

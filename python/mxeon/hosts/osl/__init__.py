@@ -27,7 +27,8 @@ from mxeon.shaders.generation import Shader
 
 LINE = re.compile(r"^mxeon (\d+) (\S+) (.*)$")  # row of a point, label, text of the label
 VERSION = "float version(float x)\n{\n    return OSL_VERSION;\n}\n"
-# OSL's I points to the surface. A macro replaces it, since functions that read it do not see local variables.
+# OSL's global I points to the surface. A macro replaces I, because functions that read the global
+# do not see local variables.
 VIEW = """
 vector mxeon_view()
 {{
@@ -40,7 +41,9 @@ TROUBLE = ("ERROR", "WARNING")  # first words of Blender's messages
 ROOT = "root"
 SHADERS, POINTS = 8, 1 << 14  # cached shaders, and cached points per shader
 VIEWED = re.compile(r"\bI\b")  # matches texts that read the view
+# Statements that print the label of a color or a closure.
 PRINT = f'printf("mxeon %d {ROOT} %s\\n", MXEON_ROW, mxeon_text({{0}}));'
+LAST = f"    {PRINT.format('{output}')}\n    {{output}} = 0;\n"
 
 
 class OslHost(base.Host):
@@ -69,12 +72,12 @@ class OslHost(base.Host):
     def trees(self, shader: Shader, wo: base.Array, inputs: base.Inputs) -> tuple[TreeRows, ...]:
         """Trees of a shader's closures, with their arguments and weights.
 
-        `wo`, shape (N, 3), and `inputs` are as in `evaluate`. Points whose closures differ only in numbers share a tree.
-        ShaderError for a closure that OSL does not document.
+        `wo`, shape (N, 3), and `inputs` are as in `evaluate`. Points whose closures differ only in
+        numbers share a tree. ShaderError for a closure that OSL does not document.
         """
         text, columns = shader.stages["pixel"], points.columns_of(shader, inputs)
         view = Column("vector", wo)
-        # Closures do not depend on the light, and mostly not on the view, so other checks request the same points.
+        # Closures do not depend on the light, and mostly not on the view, so checks repeat points.
         read = [*columns.values(), *([view] if VIEWED.search(text) else [])]
         values = [np.broadcast_to(each.rows, (len(wo), each.rows.shape[1])) for each in read]
         keys = [row.tobytes() for row in np.concatenate(values, axis=1)]
@@ -83,8 +86,8 @@ class OslHost(base.Host):
             known.clear()
         if missing := {key: row for row, key in enumerate(keys) if key not in known}:
             rows = np.array([*missing.values()], np.intp)
-            some = {name: each.some(rows) for name, each in columns.items()}
-            labels = self._run(shader, some, view.some(rows), len(rows))
+            taken = {name: each.take(rows) for name, each in columns.items()}
+            labels = self._run(shader, taken, view.take(rows), len(rows))
             known.update(zip(missing, labels, strict=True))
         return read_trees([known[key] for key in keys])
 
@@ -94,10 +97,9 @@ class OslHost(base.Host):
         """Labels of a shader's closures for each value of its variables."""
         with self._blender.temporary() as name:
             folder, place = Path(name), process.PLACE
-            block = points.statements(columns, folder / points.IMAGE, count, place)
             [read] = points.statements({"view": view}, folder / "view.tif", count, place)
-            shown = points.with_variables(shader, block, f"    {PRINT}\n    {{0}} = 0;\n".format)
-            text = VIEW.format(read=read) + points.with_header(shown, shader)
+            variables = columns, folder / points.IMAGE, count, place
+            text = VIEW.format(read=read) + points.with_variables(shader, *variables, LAST)
             return [whole_label(each, ROOT) for each in self._printed(folder, text, count)]
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> base.Array:
@@ -105,7 +107,7 @@ class OslHost(base.Host):
             place, output = (Path(name, points.IMAGE), process.PLACE), "output closure color out"
             text, count = points.call_text(source, function, arguments, *place, output, PRINT)
             rows = self._printed(Path(name), text, count)
-        return np.array([row[ROOT].split() for row in rows], np.float32)
+        return np.array([row[ROOT].strip("[]").split(",") for row in rows], np.float32)
 
     def _printed(self, folder: Path, text: str, count: int) -> list[dict[str, str]]:
         """Lines that a shader prints at each point, by label."""

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """OSL text before a generated shader that turns its closures into printable labels.
 
-OSL prints closures with six digits, and only closures that the renderer supports. Here every closure of MaterialX, and
-every operation on closures, is a function that returns a holdout, labeled with its text. Nine digits
-restore a float32 exactly. The shader itself is unchanged.
+OSL prints closures with six digits, and only closures that the renderer supports. Here every
+closure of MaterialX, and every operation on closures, is a function that returns a holdout, labeled
+with its text as JSON. Nine digits restore a float32 exactly. The shader itself is unchanged.
 
-    layer<mul<0.5|sheen_bsdf<0 0 1|1 1 1|0.300000012>>|burley_diffuse_bsdf<0 0 1|1 1 1|0>>
+    ["layer",["mul",0.5,["sheen_bsdf",[0,0,1],[1,1,1],0.300000012]],["burley_diffuse_bsdf",...]]
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
@@ -23,57 +24,49 @@ class Signature:
     """Arguments of a closure, as OSL's stdosl.h documents them."""
 
     arguments: Mapping[str, str]  # OSL types by name, in order
-    keywords: tuple[str, ...] = ()  # `label` has no effect and is not included
-    kind: str = "float"  # type of the keywords' values; OSL drops a keyword with another type
+    keywords: tuple[str, ...]  # `label` has no effect and is not included
+    kind: str  # type of the keywords' values; OSL drops a keyword with another type
 
 
-FRAME_TYPES = {"normal": "normal", "tangent": "vector"}
-TINTS = {"reflection_tint": "color", "transmission_tint": "color"}
-ALPHAS = {"roughness_x": "float", "roughness_y": "float"}
-ROUGH = {"normal": "normal", "color": "color", "roughness": "float"}
-DISTRIBUTION = {"distribution": "string"}
-FILM = ("thinfilm_thickness", "thinfilm_ior")
-# `energy_compensation` came with OSL 1.14.1, `mode` with OSL 1.13; stdosl.h names neither.
-CLOSURES = {
-    "oren_nayar_diffuse_bsdf": Signature(ROUGH, ("energy_compensation",), "int"),
-    "burley_diffuse_bsdf": Signature(ROUGH),
-    "sheen_bsdf": Signature(ROUGH, ("mode",), "int"),
-    "translucent_bsdf": Signature({"normal": "normal", "color": "color"}),
-    "subsurface_bssrdf": Signature(
-        {"normal": "normal", "color": "color", "radius": "color", "anisotropy": "float"}
-    ),
-    "dielectric_bsdf": Signature(
-        FRAME_TYPES | TINTS | ALPHAS | {"ior": "float"} | DISTRIBUTION, FILM
-    ),
-    "conductor_bsdf": Signature(
-        FRAME_TYPES | ALPHAS | {"ior": "color", "extinction": "color"} | DISTRIBUTION, FILM
-    ),
-    "generalized_schlick_bsdf": Signature(
-        FRAME_TYPES
-        | TINTS
-        | ALPHAS
-        | {"color0": "color", "color90": "color", "exponent": "float"}
-        | DISTRIBUTION,
-        FILM,
-    ),
-    "chiang_hair_bsdf": Signature(
-        {"normal": "normal", "curve_direction": "vector"}
-        | {f"tint_{lobe}": "color" for lobe in ("R", "TT", "TRT")}
-        | {"ior": "float"}
-        | {f"variance_{lobe}": "float" for lobe in ("R", "TT", "TRT")}
-        | {f"scale_{lobe}": "float" for lobe in ("R", "TT", "TRT")}
-        | {"cuticle_angle": "float", "absorption_coefficient": "color"}
-    ),
-    "uniform_edf": Signature({"color": "color"}),
-    "anisotropic_vdf": Signature({"albedo": "color", "extinction": "color", "anisotropy": "float"}),
-    "transparent": Signature({}),
-}
+# Keywords follow a semicolon. `energy_compensation` came with OSL 1.14.1, and `mode` with OSL 1.13;
+# stdosl.h does not name these two.
+SIGNATURES = """
+oren_nayar_diffuse_bsdf(normal normal, color color, float roughness; int energy_compensation)
+burley_diffuse_bsdf(normal normal, color color, float roughness)
+sheen_bsdf(normal normal, color color, float roughness; int mode)
+translucent_bsdf(normal normal, color color)
+subsurface_bssrdf(normal normal, color color, color radius, float anisotropy)
+dielectric_bsdf(normal normal, vector tangent, color reflection_tint, color transmission_tint,
+    float roughness_x, float roughness_y, float ior, string distribution;
+    float thinfilm_thickness, float thinfilm_ior)
+conductor_bsdf(normal normal, vector tangent, float roughness_x, float roughness_y,
+    color ior, color extinction, string distribution; float thinfilm_thickness, float thinfilm_ior)
+generalized_schlick_bsdf(normal normal, vector tangent, color reflection_tint,
+    color transmission_tint, float roughness_x, float roughness_y, color color0, color color90,
+    float exponent, string distribution; float thinfilm_thickness, float thinfilm_ior)
+chiang_hair_bsdf(normal normal, vector curve_direction, color tint_R, color tint_TT, color tint_TRT,
+    float ior, float variance_R, float variance_TT, float variance_TRT, float scale_R,
+    float scale_TT, float scale_TRT, float cuticle_angle, color absorption_coefficient)
+uniform_edf(color color)
+anisotropic_vdf(color albedo, color extinction, float anisotropy)
+transparent()
+"""
 
+
+def _signature(text: str) -> Signature:
+    arguments, keywords = (
+        {name: kind for kind, name in re.findall(r"(\w+) (\w+)", part)}
+        for part in (text + ";").split(";")[:2]
+    )
+    return Signature(arguments, tuple(keywords), next(iter(keywords.values()), "float"))
+
+
+CLOSURES = {name: _signature(text) for name, text in re.findall(r"(\w+)\(([^)]*)\)", SIGNATURES)}
 
 # Text that Blender's OSL prints before and after the label of a closure.
 BEFORE, AFTER = '(1, 1, 1) * holdout ("label", "', '")'
-# OSL truncates formatted closures after 1024 characters, and Blender truncates lines. So each closure is printed where
-# it is made, and its label is the hash of its text.
+# OSL truncates formatted closures after 1024 characters, and Blender truncates lines. Each closure
+# is therefore printed where it is created, and labeled with the hash of its text.
 LABELS = """\
 closure color mxeon_label(string text)
 {{
@@ -83,15 +76,15 @@ closure color mxeon_label(string text)
 }}
 string mxeon_text(int x) {{ return format("%d", x); }}
 string mxeon_text(float x) {{ return format("%.9g", x); }}
-string mxeon_text(color x) {{ return format("%.9g %.9g %.9g", x[0], x[1], x[2]); }}
+string mxeon_text(color x) {{ return format("[%.9g,%.9g,%.9g]", x[0], x[1], x[2]); }}
 string mxeon_text(vector x) {{ return mxeon_text((color) x); }}
 string mxeon_text(normal x) {{ return mxeon_text((color) x); }}
-string mxeon_text(string x) {{ return format("'%s'", x); }}
+string mxeon_text(string x) {{ return format("\\"%s\\"", x); }}
 string mxeon_text(closure color x)
 {{
     string label = format("%s", x);
     return startswith(label, "{before}")
-        ? substr(label, {start}, strlen(label) - {rest}) : label;
+        ? substr(label, {start}, strlen(label) - {rest}) : label == "" ? "null" : label;
 }}
 """
 
@@ -131,5 +124,5 @@ def _function(name: str, label: str, *kinds: str) -> str:
     """OSL function that returns a label with the texts of its arguments."""
     declared = ", ".join(f"{kind} a{n}" for n, kind in enumerate(kinds))
     texts = "".join(f", mxeon_text(a{n})" for n in range(len(kinds)))
-    pattern = f'"{label}<{"|".join(["%s"] * len(kinds))}>"'
+    pattern = f'"[\\"{label}\\"{",%s" * len(kinds)}]"'
     return f"closure color {name}({declared}) {{ return mxeon_label(format({pattern}{texts})); }}"

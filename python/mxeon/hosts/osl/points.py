@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values for each point of a run: images with a pixel per point, and OSL statements that read them."""
+"""Values for each point of a run: images with a pixel per point, and OSL that reads the images."""
 
 from __future__ import annotations
 
@@ -19,20 +19,21 @@ from mxeon.io.images import write_image
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 
-LEAST_SIZE = 4  # Blender renders no smaller picture.
+LEAST_SIZE = 4  # pixels on a side; Blender renders no smaller picture
 # MaterialX's types in OSL.
 TYPES = {"color3": "color", "vector3": "vector", "boolean": "int", "integer": "int"}
 WIDTHS = {"color": 3, "vector": 3, "normal": 3, "vector2": 2}
-# Computes the row of a point from its place in the picture.
+# OSL that computes the row of a point from the point's place in the picture.
 ROW = """#define MXEON_AT(x, y) ((int) floor({size} * (y)) * {size} + (int) floor({size} * (x)))
 #define MXEON_ROW MXEON_AT({place})
 """
 FILTER = '0.0, 0.0, 0.0, 0.0, "interp", "closest"'
-# Blender 5.3 ignores "firstchannel" and "closest" and turns images upside down: columns stand side by
-# side in an image of three channels that is the same either way up, with 2 x 2 equal pixels per point.
+# Blender 5.3 ignores "firstchannel" and "closest" and turns images upside down. Therefore the
+# columns are side by side in an image of three channels, a mirror image follows below, and a point
+# has 2 x 2 equal pixels.
 READ = f'texture("{{image}}", ({{column}} + {{x}}) / {{columns}}, 0.5 * ({{y}}), {FILTER})'
 NO_WARNING = "#pragma osl nowarn"  # oslc warns if a surface shader sets a global
-IMAGE = "points.tif"  # EXR would sort more than ten channels by their names
+IMAGE = "points.tif"  # name of the image; EXR would sort more than ten channels by name
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class Column:
         """The values, (N or 1, components)."""
         return np.asarray(self.values, np.float32).reshape(-1, WIDTHS.get(self.kind, 1))
 
-    def some(self, rows: NDArray[np.intp]) -> Column:
+    def take(self, rows: NDArray[np.intp]) -> Column:
         return self if len(self.rows) == 1 else replace(self, values=self.rows[rows])
 
 
@@ -102,8 +103,8 @@ def call_text(
 ) -> tuple[str, int]:
     """Text of a shader that calls a function of `source` at each point, and the number of points.
 
-    `image` and `place` are as in `statements`; `output` declares the shader's output, and `last` is its last statement,
-    with {} for the value, a color.
+    `image` and `place` are as in `statements`; `output` declares the shader's output, and `last` is
+    the last statement, with {} for the value, a color.
     """
     parameters = functions.parameters(source, function)
     if len(parameters) != len(arguments):
@@ -119,22 +120,21 @@ def call_text(
 
 
 OUTPUT = re.compile(r"\boutput MATERIAL (\w+) *=")
-# Types and default values of the surface's globals.
+# OSL types, names of inputs, and default values of the surface's globals.
 SURFACE = {
-    "N": ("normal", (0.0, 0.0, 1.0)),
-    "dPdu": ("vector", (1.0, 0.0, 0.0)),
-    "dPdv": ("vector", (0.0, 1.0, 0.0)),
+    "N": ("normal", "normal", (0.0, 0.0, 1.0)),
+    "dPdu": ("vector", "tangent", (1.0, 0.0, 0.0)),
+    "dPdv": ("vector", "bitangent", (0.0, 1.0, 0.0)),
 }
-NAMES = {"N": "normal", "dPdu": "tangent", "dPdv": "bitangent"}
 
 
 def columns_of(
     shader: Shader, inputs: Inputs, turned: Callable[[Array], Array] = lambda rows: rows
 ) -> Mapping[str, Column]:
-    """Columns of the surface and of a shader's inputs by variable name; `turned` is applied to directions."""
+    """Columns of the surface and a shader's inputs by variable name; `turned` maps directions."""
     columns = {
-        each: Column(kind, inputs.get(NAMES[each], value), declared=False)
-        for each, (kind, value) in SURFACE.items()
+        variable: Column(kind, inputs.get(name, default), declared=False)
+        for variable, (kind, name, default) in SURFACE.items()
     }
     for port in shader.inputs:
         key = port.path if port.path in inputs else port.path.rsplit("/", 1)[-1]
@@ -146,15 +146,24 @@ def columns_of(
     }
 
 
-def with_variables(shader: Shader, block: Iterable[str], last: Callable[[str], str]) -> str:
-    """Text of a shader with statements before its body, and one more at its end.
+def with_variables(
+    shader: Shader,
+    columns: Mapping[str, Column],
+    image: Path,
+    count: int,
+    place: str,
+    last: str,
+) -> str:
+    """Text of a shader that reads variables at each point, with another statement at its end.
 
-    `block` begins a nested scope, so its declarations hide the inputs; `last` takes the name of the shader's output.
+    The variables, as in `statements`, hide inputs of the shader. `last` is the statement at the
+    end, with {output} for the name of the shader's output.
     """
     head, brace, body = shader.stages["pixel"].rpartition("\n)\n{\n")
     main, end, _ = body.rpartition("}")
-    statement = last(OUTPUT.findall(head)[-1])
-    return f"{head}{brace}{{\n{indented(block)}{main}{statement}}}\n{end}\n"
+    block = indented(statements(columns, image, count, place))
+    statement = last.format(output=OUTPUT.findall(head)[-1])
+    return with_header(f"{head}{brace}{{\n{block}{main}{statement}}}\n{end}\n", shader)
 
 
 def indented(lines: Iterable[str]) -> str:

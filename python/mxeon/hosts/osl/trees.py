@@ -3,26 +3,26 @@
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.hosts.osl.carriers import CLOSURES, MIX, MULTIPLE, OPERATIONS
+from mxeon.hosts.osl.carriers import CLOSURES, OPERATIONS
 
 Array: TypeAlias = NDArray[np.float64]
-Argument: TypeAlias = "Array | str | ClosureTree | None"  # None is the closure without light
 
 DEEPEST = 200  # maximum nesting of closures
 LONGEST = 1 << 20  # maximum characters of an expanded label
 LABEL = re.compile(r"@-?\d+")
-NUMBER = re.compile(r"(?<=[<| ])-?(?:\d+(?:\.\d+)?(?:e[-+]?\d+)?|nan|inf)(?=[>| ])")
-TOKEN = re.compile(r"(\w+)<|(#(?: #)*)|'([^'<>|]*)'|([|>])")
+NUMBER = re.compile(r"(?<=[\[,])-?(?:\d+(?:\.\d+)?(?:e[-+]?\d+)?|nan|inf)(?=[\],])")
+PLACEHOLDER = re.compile(r"(?<=[\[,])#")  # stands for a number
 
 
 @dataclass(frozen=True)
@@ -62,76 +62,45 @@ def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
     for row, label in enumerate(labels):
         shapes.setdefault(NUMBER.sub("#", label), []).append(row)
         numbers.append(NUMBER.findall(label))
-    return tuple(
+    trees = []
+    for shape, rows in shapes.items():
         # Nine digits restore a float32.
-        TreeRows(np.array(rows), _tree(shape, np.array([numbers[row] for row in rows], np.float32)))
-        for shape, rows in shapes.items()
-    )
+        values = np.array([numbers[row] for row in rows], np.float32).astype(np.float64)
+        columns = count()
+        text = PLACEHOLDER.sub(lambda _: str(next(columns)), shape)  # noqa: B023, used at once
+        try:
+            trees.append(TreeRows(np.array(rows), _tree(json.loads(text), values)))
+        except json.JSONDecodeError as error:
+            rule = f"osl: closure must be one of {', '.join(CLOSURES)}"
+            raise ShaderError(f"{rule}; got {text[error.pos :][:60]!r}") from None
+    return tuple(trees)
 
 
-def _tree(shape: str, numbers: Array) -> ClosureTree | None:
-    """Tree of a label with placeholders for the numbers, which differ from point to point."""
-    numbers = numbers.astype(np.float64)
-    columns = iter(range(numbers.shape[1])) if numbers.size else count()
-    stack: list[tuple[str, list[Argument]]] = [("", [])]
-    expected = "closure"
-    position = 0
-    while position < len(shape):
-        token = TOKEN.match(shape, position)
-        if token is None:
-            raise ShaderError(_unreadable(shape[position:]))
-        name, values, text, mark = token.groups()
-        position = token.end()
-        if name:
-            stack.append((name, []))
-            expected = "closure"
-        elif values:
-            rows = numbers[:, [next(columns) for _ in range(values.count("#"))]]
-            stack[-1][1].append(rows[:, 0] if rows.shape[1] == 1 else rows)
-            expected = ""
-        elif text is not None:
-            stack[-1][1].append(text)
-            expected = ""
-        # An empty argument is the closure without light.
-        elif (
-            mark
-            and expected
-            and not (mark == ">" and not stack[-1][1] and stack[-1][0] in CLOSURES)
-        ):
-            stack[-1][1].append(None)
-        if mark == "|":
-            expected = "closure"
-        if mark == ">":
-            name, arguments = stack.pop()
-            stack[-1][1].append(_closure(name, arguments))
-            expected = ""
-    [root] = stack[0][1] or [None]
-    assert root is None or isinstance(root, ClosureTree)
-    return root
-
-
-def _closure(name: str, values: Iterable[Argument]) -> ClosureTree:
-    values = list(values)
+def _tree(label: Any, numbers: Array) -> ClosureTree | None:
+    """Tree of a label in which columns of `numbers`, (points, columns), replace the numbers."""
+    if label is None:
+        return None
+    name, *values = label
     if name in OPERATIONS:
-        factor = [each for each in values if isinstance(each, np.ndarray)]
-        parts = tuple(each for each in values if each is None or isinstance(each, ClosureTree))
-        assert bool(factor) == (name in (MIX, MULTIPLE))
-        return ClosureTree(name, parts, {"factor": factor[0]} if factor else {})
-    if name not in CLOSURES:
-        raise ShaderError(_unreadable(name))
+        parts = [each for each in values if each is None or _is_closure(each)]
+        factors = [numbers[:, each] for each in values if each not in parts]
+        arguments = {"factor": factors[0]} if factors else {}
+        return ClosureTree(name, tuple(_tree(each, numbers) for each in parts), arguments)
     # The arguments of a closure come in order, then pairs of keywords and values.
-    signature = CLOSURES[name]
-    plain = [each for each in values if isinstance(each, (np.ndarray, str))]
-    arguments = dict(zip(signature.arguments, plain, strict=False))
-    pairs = plain[len(signature.arguments) :]
-    for keyword, value in zip(pairs[::2], pairs[1::2], strict=True):
-        assert isinstance(keyword, str)
-        if keyword not in (*signature.keywords, "label"):
-            known = ", ".join((*signature.keywords, "label"))
-            raise ShaderError(f"osl: keyword of {name} must be one of {known}; got {keyword!r}")
-        arguments[keyword] = value
+    signature, known = CLOSURES[name], (*CLOSURES[name].keywords, "label")
+    positional = len(signature.arguments)
+    keywords = values[positional::2]
+    for keyword in keywords:
+        if keyword not in known:
+            rule = f"keyword of {name} must be one of {', '.join(known)}"
+            raise ShaderError(f"osl: {rule}; got {keyword!r}")
+    values = values[:positional] + values[positional + 1 :: 2]
+    arguments = {
+        argument: value if isinstance(value, str) else numbers[:, value]
+        for argument, value in zip((*signature.arguments, *keywords), values, strict=True)
+    }
     return ClosureTree(name, (), arguments)
 
 
-def _unreadable(text: str) -> str:
-    return f"osl: closure must be one of {', '.join(CLOSURES)}; got {text[:60]!r}"
+def _is_closure(label: Any) -> bool:
+    return isinstance(label, list) and isinstance(label[0], str)
