@@ -38,14 +38,14 @@ class MxeonError(Exception):
 
 
 class InputError(MxeonError, ValueError):
-    """An argument, a name or a file that cannot be used; names the place, the rule and the value."""
+    """An argument, name or file that cannot be used; names the place, the rule and the value."""
 
 
 class DocumentError(InputError):
-    """A document for which no shader can be generated; its arguments are its faults, one per line."""
+    """A document for which no shader can be generated; the arguments are its faults, as lines."""
 
     def __init__(self, *faults: str) -> None:
-        super().__init__(*_some(faults, "faults"))
+        super().__init__(*_shortened(faults, "faults"))
 
     def __str__(self) -> str:
         return "\n".join(self.args)
@@ -62,7 +62,7 @@ class CheckError(MxeonError, RuntimeError):
     """
 
     def __init__(self, *lines: str, status: int = FAILED) -> None:
-        super().__init__(*_some(lines, "lines"))
+        super().__init__(*_shortened(lines, "lines"))
         self.status = status
 
     def __str__(self) -> str:
@@ -85,8 +85,7 @@ class ShaderError(MxeonError, RuntimeError):
     status = FAILED
 
 
-# Formats of compiler messages: "0:12(3): error: words", "ERROR: 0:12: words"; Slang quotes the
-# line.
+# Formats of compiler messages: "0:12(3): error: words", "ERROR: 0:12: words"; Slang quotes a line.
 REFUSED = re.compile(
     r"error\[\w+\]: (?P<slang>.+)\n.*\n.*\n\d+ \| (?P<line>.+)|"
     r"[:(](?P<number>\d+)[:()\d]*:\s*(?:error\b[^:]*:\s*)?(?P<words>.+)"
@@ -95,23 +94,22 @@ FUNCTION = re.compile(r"^\w[\w ]* (\w+)\([^;]*$", re.MULTILINE)
 
 
 def refused(host: str, words: str, text: str) -> ShaderError:
-    """The error for a shader that a compiler rejected: the function, the line and the first
-    message.
+    """The error for a rejected shader: the function, the line and the compiler's first message.
 
-    >>> str(refused("gl", "0:2(1): warning: no use\\n0:3(1): error: no x", "float f()\\n{\\n    return x;\\n}\\n"))
-    "gl: the shader does not compile, in f: 'return x;': no x"
+    >>> str(refused("gl", "0:2(1): warning: no use\\n0:3(1): error: no x", "float f()\\n{\\n
+    return x;\\n}\\n")) "gl: the shader does not compile, in f: 'return x;': no x"
     """
     lines = text.split("\n")
     found = REFUSED.search("\n".join(each for each in words.split("\n") if "warning" not in each))
-    number = (
-        int(found["number"] or text[: text.find(found["line"])].count("\n") + 1) if found else 0
-    )
+    number = 0
+    if found:
+        number = int(found["number"] or text[: text.find(found["line"])].count("\n") + 1)
     if not found or not 0 < number <= len(lines):
         return ShaderError(f"{host}: the shader does not compile: {words.strip()}")
     functions = FUNCTION.findall("\n".join(lines[:number]))
     place = f"in {functions[-1]}: " if functions else ""
-    line, complaint = lines[number - 1].strip(), (found["slang"] or found["words"]).strip()
-    return ShaderError(f"{host}: the shader does not compile, {place}{line!r}: {complaint}")
+    line, message = lines[number - 1].strip(), (found["slang"] or found["words"]).strip()
+    return ShaderError(f"{host}: the shader does not compile, {place}{line!r}: {message}")
 
 
 class NotRun(MxeonError, RuntimeError):
@@ -129,7 +127,7 @@ class Implied(NotRun):
 
 
 class OutsideModel(NotRun):
-    """A value outside the range for which a model is defined; `input` is its path in the document."""
+    """A value outside the range of a model; `input` is the path of the input in the document."""
 
     def __init__(self, message: str, input: str = "") -> None:
         super().__init__(message)
@@ -140,8 +138,8 @@ class InterfaceError(NotRun):
     """A MaterialX that calls closures differently from their definitions in eonlib's sources."""
 
 
-def _some(lines: Sequence[str], noun: str) -> Iterator[str]:
-    """The first lines, and the number of the rest."""
+def _shortened(lines: Sequence[str], noun: str) -> Iterator[str]:
+    """The first MOST lines, and a line with the number of the others."""
     if len(lines) > MOST + 1:
         lines = (*lines[:MOST], f"and {len(lines) - MOST} more {noun}")
     return map(one_line, lines)
@@ -154,7 +152,7 @@ def assert_known(rule: str, name: object, known: Iterable[str], listing: str = "
 
 
 def printable(text: str) -> str:
-    """Text with U+FFFD in place of characters that control a terminal or GitHub's runner, or cannot be encoded."""
+    """Text with U+FFFD for characters that control a terminal or GitHub's runner, or surrogates."""
     return COMMAND.sub("\ufffd", STEERING.sub("\ufffd", text))
 
 

@@ -12,7 +12,7 @@ NONE: Mapping[str, str] = {}
 def meant(
     name: object, known: Iterable[str], alike: float = 0.65, titles: Mapping[str, str] = NONE
 ) -> str:
-    """The end of a message about an unknown name: the known names that it may stand for, or "".
+    """The end of a message about an unknown name: similar known names, or "".
 
     >>> meant("cycels", ("gl", "cycles")), meant("EON", ("eon", "fon"))
     (': did you mean cycles?', ': did you mean eon?')
@@ -34,9 +34,9 @@ def unknown(
     titles: Mapping[str, str] = NONE,
     listing: str = "",
 ) -> str:
-    """The message that a name is not one of the known; "" if it is.
+    """The message that a name is unknown, or "" for a known name.
 
-    It lists them, unless one of many is near or `listing` says where they are listed.
+    The message lists the known names, unless one of many is similar or `listing` names a list.
 
     >>> unknown("model", "nope", ("eon", "fon"), listing="mxeon.model_names()")
     "no model 'nope'; see mxeon.model_names()"

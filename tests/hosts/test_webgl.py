@@ -16,9 +16,9 @@ from tests.support.availability import available
 MU = np.array([0.5])
 
 
-def started(**options):
+def started():
     with available("webgl"):
-        return webgl.WebGlHost(**options)
+        return webgl.WebGlHost()
 
 
 def test_a_browser_that_hangs_is_not_run_and_the_next_one_works():

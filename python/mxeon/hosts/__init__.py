@@ -24,26 +24,14 @@ def start(name: str) -> Engine:
             from mxeon.hosts.webgl import WebGlHost
 
             return WebGlHost()
-        case "vulkan":
-            from mxeon.hosts.vulkan import VulkanHost
+        case "vulkan" | "wgsl":
+            from mxeon.hosts import vulkan
 
-            return VulkanHost()
-        case "hlsl":
-            from mxeon.hosts.translated import HlslHost
+            return vulkan.HOSTS[name]()
+        case "hlsl" | "dxc" | "naga":
+            from mxeon.hosts import translated
 
-            return HlslHost()
-        case "dxc":
-            from mxeon.hosts.translated import DxcHost
-
-            return DxcHost()
-        case "naga":
-            from mxeon.hosts.translated import NagaHost
-
-            return NagaHost()
-        case "wgsl":
-            from mxeon.hosts.vulkan import WgslHost
-
-            return WgslHost()
+            return translated.HOSTS[name]()
         case "slang":
             from mxeon.hosts.slang import SlangHost
 
@@ -76,7 +64,7 @@ def start(name: str) -> Engine:
 
 @dataclass(frozen=True)
 class Row:
-    """A host, and what is judged on it.
+    """A host, and what is judged on the host.
 
     - `nodes`: Returns the specs of a renderer's own nodes, and registers its backends and checks.
     """
@@ -84,11 +72,11 @@ class Row:
     name: str
     target: str  # shading language; "" for a renderer that only has its own materials
     way: str = ""  # key of `mxeon.conformance.backends.BACKENDS`, or ""
-    needs: str = ""  # what a host needs to run; with a value, only its text is checked
-    scenes: tuple[Scene, ...] = ()  # lights under which it renders the materials of documents
-    surfaces: bool = False  # whether surface shaders are checked on it
+    needs: str = ""  # requirement of a target that mxeon cannot run; its text is still checked
+    scenes: tuple[Scene, ...] = ()  # lights in pictures of a document's materials
+    surfaces: bool = False  # whether surface shaders are checked on the host
     rounding: float = 0.0  # relative rounding of its pixels, in addition to float32's
-    front_lit: tuple[str, ...] = ()  # models that it supports only for s >= 0
+    front_lit: tuple[str, ...] = ()  # models that the host computes correctly only for s >= 0
     start: Callable[[str], Engine] = start
     nodes: Callable[[str], Sequence[Any]] | None = None
 
@@ -153,9 +141,9 @@ def host_names() -> tuple[str, ...]:
     return tuple(row.name for row in host_rows())
 
 
-def host_row(name: str, *others: Row) -> Row:
-    """The row of a host in `host_rows` or `others`; otherwise InputError lists the known ones."""
-    rows = {row.name: row for row in (*host_rows(), *others)}
+def host_row(name: str, *additional: Row) -> Row:
+    """The row of a host in `host_rows` or `additional`; InputError for an unknown name."""
+    rows = {row.name: row for row in (*host_rows(), *additional)}
     assert_known("host", name, rows)
     return rows[name]
 
@@ -165,23 +153,23 @@ def front_lit_only(host: str, model: str) -> bool:
     return any(row.name == host and model in row.front_lit for row in HOSTS)
 
 
-def open_host(name: str, *others: Row) -> Host:
+def open_host(name: str, *additional: Row) -> Host:
     """Start the host with this name; Unsupported for a renderer with only its own materials."""
-    engine = open_engine(name, *others)
+    engine = open_engine(name, *additional)
     if isinstance(engine, Host):
         return engine
     engine.close()
     raise Unsupported(f"{name}: this renderer only has its own materials; gl renders MaterialX's")
 
 
-_OPENED: set[int] = set()  # ids of processes that opened an engine: this one and its ancestors
+_OPENED: set[int] = set()  # ids of this process and its ancestors that opened an engine
 
 
-def open_engine(name: str, *others: Row) -> Engine:
-    """Start the host or renderer with this name, or raise NotRun; `others` are additional rows."""
+def open_engine(name: str, *additional: Row) -> Engine:
+    """Start the host or renderer of a row in `host_rows` or `additional`, or raise NotRun."""
     from mxeon.shaders.generation import TARGETS
 
-    row = host_row(name, *others)
+    row = host_row(name, *additional)
     if _OPENED - {os.getpid()}:
         raise NotRun(
             f"{name}: this process was forked from one that had opened an engine, whose threads are "

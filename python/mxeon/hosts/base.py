@@ -26,19 +26,17 @@ if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
 Array: TypeAlias = NDArray[Any]  # float32 or float64, whichever the caller or engine uses
-Inputs: TypeAlias = Mapping[
-    str, ArrayLike
-]  # a node's inputs by name, constant or one value per pair
+Inputs: TypeAlias = Mapping[str, ArrayLike]  # a node's inputs: constants, or one value per pair
 
 TABLE = "u_albedoTable"
 
-# Generated shaders turn a direction by this matrix before they look it up in an environment, so the middle of a
-# latitude-longitude map faces the viewer.
+# Generated shaders turn a direction by this matrix before they look up the environment, so the
+# middle of a latitude-longitude map faces the viewer.
 TURN = np.reshape(scene.TURN, (4, 4))
 
 
 class RendererWarning(UserWarning):
-    """A renderer's own warning, which may explain its picture."""
+    """A warning that a renderer prints, which may explain its picture."""
 
 
 class LobeWarning(UserWarning):
@@ -50,19 +48,18 @@ class LobeWarning(UserWarning):
 
 @dataclass(frozen=True)
 class Identity:
-    """Name, version and device of a host."""
-
     name: str
     version: str
     device: str
 
 
 class Engine(ABC):
-    """A program that executes shaders, or renders its own materials; a context manager closes it."""
+    """A program that executes shaders, or renders its own materials; a context manager."""
 
     name: str
     draws_images: ClassVar[bool] = False  # whether pictures may have an image as their environment
-    default: ClassVar[Methods] = UNCHOSEN  # used if none are chosen; UNCHOSEN: methods do not apply
+    # Methods of a shader for which no others are chosen; UNCHOSEN if methods do not apply.
+    default: ClassVar[Methods] = UNCHOSEN
     methods: Methods = UNCHOSEN  # methods chosen for all shaders
 
     @property
@@ -117,8 +114,7 @@ class Host(Engine):
     """An engine that executes generated shaders; hosts override the methods that they support.
 
     Unsupported methods raise `Unsupported`; shaders that the compiler refuses raise `ShaderError`.
-    Only `compile` knows the target, the profile and the lights. Results are in the order of the
-    request, as linear radiance or 1/sr.
+    Results are in the order of the request, as linear radiance or 1/sr.
     """
 
     target: ClassVar[str]
@@ -139,8 +135,8 @@ class Host(Engine):
     ) -> tuple[Shader, ...]:
         """Shaders of a document for this host; arguments and errors as for `mxeon.generate`.
 
-        `methods` override the host's. Images that are too large in total are refused; see
-        `mxeon.hosts.textures.check_images`.
+        `methods` override those chosen for the host. Images that are too large in total are
+        refused; see `mxeon.hosts.textures.check_images`.
         """
         from mxeon.shaders.generation import generate
 
@@ -210,17 +206,17 @@ class Host(Engine):
         """Values of a shader's BSDF for pairs of directions, shape (N, 3).
 
         - `wo`, `wi`: (N, 3). Unit vectors in world space. The surface has the normal +z.
-        - `inputs`: Node inputs by name, (N, ...) or constant, and "occlusion", 1 by default. The default normal is
-          that of the surface.
-        - `branch`: "direct", "environment", "transmission" or "emission"; or "graph": the color of the uniform EDF,
-          independent of the directions; or "lit": pi times the sum over up to two lights plus an environment in one
-          pixel, given by the inputs of `mxeon.hosts.calls.LIT`.
-        - `output`: "response", f cos(theta_i) in 1/sr or the directional albedo times the irradiance; "throughput",
-          the share of the light from below that passes the BSDF; or "radiance", emitted by the EDF towards `wo`, in
-          any branch.
-        - `irradiance`: (rows, columns, 3). Irradiance over pi of the environment for every normal, as a
-          latitude-longitude map with row 0 upwards (+y) and its middle towards +z, also used for lookups of radiance.
-          None for a uniform environment of radiance 1.
+        - `inputs`: Node inputs by name, (N, ...) or constant, and "occlusion", 1 by default. The
+          default normal is that of the surface.
+        - `branch`: "direct", "environment", "transmission" or "emission"; or "graph": the color of
+          the uniform EDF, independent of the directions; or "lit": pi times the sum over up to two
+          lights plus an environment in one pixel, given by the inputs of `mxeon.hosts.calls.LIT`.
+        - `output`: "response", f cos(theta_i) in 1/sr or the directional albedo times the
+          irradiance; "throughput", the share of the light from below that passes the BSDF; or
+          "radiance", emitted by the EDF towards `wo`, in any branch.
+        - `irradiance`: (rows, columns, 3). Irradiance over pi of the environment for every normal,
+          as a latitude-longitude map with row 0 upwards (+y) and its middle towards +z, also used
+          for lookups of radiance. None for a uniform environment of radiance 1.
         - `client`: How the environment is turned and scaled, and whether refraction is two-sided.
 
         Raises ValueError if the shader calls no BSDF, or branch or output is unknown.
@@ -234,8 +230,8 @@ class Host(Engine):
         """Values of a function defined in a text, shape (N, 3); a float fills all three columns.
 
         - `source`: Functions in the host's language, without includes.
-        - `*arguments`: (N, 3) for a vector or color, (N,) for a float, rounded to float32; a constant may have one
-          row.
+        - `*arguments`: (N, 3) for a vector or color, (N,) for a float, rounded to float32; a
+          constant may have one row.
 
         Raises ValueError if there is no such function.
         """

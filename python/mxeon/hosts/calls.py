@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Statements of a generated shader's main that evaluate its BSDFs, EDFs or graph.
 
-A host repeats them with its own arguments, in local variables that hide the shader's.
+A host repeats these statements with other arguments, in local variables that hide the uniforms.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from mxeon.shaders.nodes import types_of
 if TYPE_CHECKING:  # the import would load MaterialX
     from mxeon.shaders.generation import Input, Shader
 
-# Matches a function that fills in a surface shader, and its statements before the loop over lights. In Slang the first
-# parameter is the vertex data.
+# Matches a function that fills in a surface shader, and the function's statements before the loop
+# over lights. In Slang the first parameter is the vertex data.
 FUNCTION = re.compile(
     r"^void \w+\(([^)]*)out surfaceshader \w+\)\n\{\n(.*?)^ *surfaceshader \w+ = ",
     re.MULTILINE | re.DOTALL,
@@ -44,23 +44,24 @@ KINDS = {
 @dataclass(frozen=True)
 class Prelude:
     statements: str
-    inputs: dict[str, str]  # types of the parameters and of the geometric properties it reads
+    inputs: dict[str, str]  # types of the function's parameters and geometric properties, by name
 
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader
 def prelude(text: str, end: int) -> Prelude | None:
     """The statements before the first BSDF, at `end`; None outside a surface shader's function."""
-    *_, function = [None, *FUNCTION.finditer(text, 0, end)]
-    if function is None or "\n}\n" in text[function.end() : end]:
+    functions = list(FUNCTION.finditer(text, 0, end))
+    if not functions or "\n}\n" in text[functions[-1].end() : end]:
         return None
+    function = functions[-1]
     parameters = (each.split() for each in function[1].split(",") if each.strip())
     inputs = {name: KINDS[kind] for kind, name in parameters if kind in KINDS}
     properties = dict.fromkeys(GEOMETRY.findall(function[2]), "vector3")
     return Prelude(GEOMETRY.sub("", function[2]), inputs | properties)
 
 
-# Closure type of the repeated call and first step of its evaluation, by branch. BSDFs that only reflect are called only
-# in the first two branches.
+# Closure type of the repeated call and first step of its evaluation, by branch. Only in the first
+# two branches do shaders call BSDFs that do not transmit.
 CLOSURES = {
     "direct": ("CLOSURE_TYPE_REFLECTION", 1),
     "environment": ("CLOSURE_TYPE_INDIRECT", 2),
@@ -70,7 +71,8 @@ CLOSURES = {
 EMISSION = "CLOSURE_TYPE_EMISSION"  # closure type that evaluates EDFs, in every branch
 GRAPH = "graph"  # branch: the color of the uniform EDF
 LIT = "lit"  # branch: several lights, then an environment on both sides, in one pixel
-# Inputs of LIT: number of lights (up to 2), direction of the second in world space, and whether an environment follows.
+# Inputs of the branch LIT: number of lights (up to 2), direction of the second light in world
+# space, and whether there is an environment.
 LIGHTS, SECOND_LIGHT, SKY = "mxeon_lights", "mxeon_second", "mxeon_sky"
 # Steps 0 and 1 are lights, 2 is the reflected and 3 the transmitted environment. All branches share
 # one program, which compiles as fast as a program for one branch. STEPS holds the first step, the
@@ -93,10 +95,10 @@ for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxe
 OUTPUTS = ("response", "throughput", "radiance")  # EDFs have radiance
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 SURFACE = "surface_normal"  # the geometric normal, not a node's normal input
-FAR = (0.0, 0.0, 1e31)  # makes the host use the position of its pixel on a plane
-GIVEN = "P = P.z < 1e30 ? P : {};"
+NO_POSITION = (0.0, 0.0, 1e31)  # the host replaces this position by POSITION's default
+POSITION = "P = P.z < 1e30 ? P : {};"
 FILES = ("filename", "string")  # types of inputs that an evaluation does not set
-# Values with which each image fills its texture, by the end of the variable's name.
+# Values with which an image fills its whole texture, by the end of the variable's name.
 PLACED = {"_uv_scale": (1.0, 1.0), "_uv_offset": (0.0, 0.0)}
 # MaterialX's text for WGSL converts integers, since WGSL has no booleans in memory.
 BOOLEAN = re.compile(r"^#define (\w+) bool\(\1\)$", re.MULTILINE)
@@ -114,7 +116,8 @@ class BsdfCall:
 def bsdf_call(query: Query) -> BsdfCall:
     """Call of a rasterized shader's BSDF.
 
-    InputError if it calls no BSDF (for GRAPH, no uniform EDF), or branch or output is unknown.
+    InputError if the shader calls no BSDF (for GRAPH, no uniform EDF), or the branch or the output
+    is unknown.
     """
     shader, wo, wi, inputs, branch, output, *_ = query
     branches = (GRAPH, LIT, *CLOSURES)
@@ -131,7 +134,7 @@ def bsdf_call(query: Query) -> BsdfCall:
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi)}
     arguments["N"] = ("vector3", inputs.get(SURFACE, NORMAL))
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
-    arguments["P"] = ("vector3", inputs.get("position", FAR))
+    arguments["P"] = ("vector3", inputs.get("position", NO_POSITION))
     if not emitted:
         steps: ArrayLike = (first, first + 1, -1.0 if output == "throughput" else 1.0)
         if branch == LIT:
@@ -145,12 +148,10 @@ def bsdf_call(query: Query) -> BsdfCall:
     if before := prelude(text, start):
         statements = before.statements + statements
         ports = {port.path.rsplit("/", 1)[-1]: port for port in shader.inputs}
-        own: Arguments = {}
         for name, kind in before.inputs.items():
             # The document's value is a number, a color or a vector.
             default = ports[name].value if name in ports else _argument(name, {}, {})[1]
-            own[name] = kind, inputs.get(name, cast(ArrayLike, default))
-        arguments = own | arguments
+            arguments.setdefault(name, (kind, inputs.get(name, cast(ArrayLike, default))))
     else:
         ports = _ports(shader)
         # Values that nodes compute for a closure, without geometric properties.
@@ -167,9 +168,10 @@ def bsdf_call(query: Query) -> BsdfCall:
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader
 def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, list[str]]:
-    """Position and text of the statements that evaluate BSDFs of a closure type, their result and arguments.
+    """Position and text of the statements that evaluate BSDFs of a closure type.
 
-    The last call combines the other results, or is the only call.
+    Also returns the variable of the result, and the names of the arguments. The last call combines
+    the results of the others, or is the only call.
     """
     # MaterialX before 1.39.5 has no makeClosureData.
     constructor = r"(?:makeClosureData|ClosureData)"
@@ -198,11 +200,11 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
         )
     statements, ports = _main(text), _ports(shader)
     words = _words(statements + color[1])
-    arguments: Arguments = {"V": ("vector3", wo), "P": ("vector3", FAR)}
+    arguments: Arguments = {"V": ("vector3", wo), "P": ("vector3", NO_POSITION)}
     # Inputs of these types keep the values of their uniforms.
     unset = (*FILES, "color4", "vector4", "matrix33", "matrix44")
-    own = [name for name in words if name in ports and ports[name].type not in unset]
-    arguments |= {name: _argument(name, ports, inputs) for name in own} | _placed(words)
+    names = [name for name in words if name in ports and ports[name].type not in unset]
+    arguments |= {name: _argument(name, ports, inputs) for name in names} | _placed(words)
     return BsdfCall(statements, color[1], arguments)
 
 

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shared code of hosts that read documents and libraries themselves, each in its own process.
 
-These hosts generate the shader again and draw it on quads with their own lights and uniforms.
+Such a host generates the shader again, and draws quads with its own lights and uniforms.
 """
 
 from __future__ import annotations
 
 import inspect
+import json
 from abc import abstractmethod
 from collections.abc import Sequence
 from functools import lru_cache
@@ -22,22 +23,22 @@ from mxeon.errors import NotRun
 from mxeon.hosts import base, process, raster
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
-from mxeon.shaders.methods import UNCHOSEN, Methods
+from mxeon.shaders.methods import UNCHOSEN
 from mxeon.shaders.scene import Scene, sphere
 
 SPREAD = 1.0 / 64.0  # scales the change of texture coordinates within a quad
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-STEEPEST = (
-    0.05  # least cosine between normal and view: closer to the rim, tangent planes leave the frame
-)
+# Least cosine between normal and view: closer to the rim, tangent planes would leave the frame.
+STEEPEST = 0.05
 
 
 def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArray[np.float32]]:
     """The quads of a picture of `size` x `size` pixels, four vertices each, counterclockwise.
 
-    Each has one normal and shows an exact point, `place` half widths from the pixel's center. A quad lies in the
-    tangent plane and covers the pixel, so derivatives of positions equal the sphere's. Derivatives of "texcoord" have
-    the same directions but are smaller, so textures are read at full size. Row 0, at the top, comes first.
+    Each quad has one normal and shows an exact point, `place` half widths from the pixel's center.
+    The quad lies in the tangent plane and covers the pixel, so derivatives of positions equal the
+    sphere's. Derivatives of "texcoord" have the same directions but are smaller, so textures are
+    read at full size. Row 0, at the top, comes first.
     """
     points = sphere(size)
     normal = points.normal[points.mask][:, np.newaxis]
@@ -65,20 +66,19 @@ def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArr
 # Side of a quad in pixels if 2 x 2 blocks must lie in one of its two triangles, and the offset of
 # the pixel that is read: right of the diagonal and below the center.
 PIXEL_BLOCK, PLACE = 4, (0.25, -0.25)
-PICTURES = 64  # cached pictures; the checks of a node request some again
+PICTURES = 64  # cached pictures, which the checks of a node share
 
 
 class DocumentHost(base.Host):
     """A renderer that reads documents, with one process at a time, for one library.
 
-    `worker.py` lies next to the module of a host. Its arguments are the folder whose `libraries` replace MaterialX's
-    own, or "", and the libraries to load before these. `limit` is in seconds per picture, with its shader's compilation.
+    The script `worker.py` lies next to the module of a host. The arguments of the script are the
+    folder whose `libraries` replace MaterialX's, or "", and the libraries to load before.
     """
 
     target: ClassVar[str] = "glsl"
 
-    def __init__(self, limit: float = 300.0) -> None:
-        self._python, self._limit = self._interpreter(), limit
+    def __init__(self) -> None:
         self._folders: tuple[str, ...] = ("",)
         self.worker = self._worker()
         self._picture = lru_cache(maxsize=PICTURES)(self._drawn)
@@ -104,9 +104,14 @@ class DocumentHost(base.Host):
             self.worker.close()
             self._folders = folders
             self.worker = self._worker()
-        blocks = self._needs_blocks(shader)
         text, element = self._document(shader)
-        return self._picture(text, element, scene, self._folders, blocks, shader.methods, card)
+        request = {"element": element, "light": scene.light, "environment": scene.environment}
+        if shader.methods != UNCHOSEN:
+            request["methods"] = shader.methods.settings
+        if card:
+            request["card"] = True
+        blocks = self._needs_blocks(shader)
+        return self._picture(folders, text, json.dumps(request), scene.size, blocks)
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
         return (*raster.approximations(shader), *filter(None, [self.unread(shader)]))
@@ -132,46 +137,35 @@ class DocumentHost(base.Host):
         return mx.writeToXmlString(shader.document), shader.element
 
     def _needs_blocks(self, shader: Shader) -> bool:
-        """Whether one triangle must cover the block of pixels around each pixel, which takes longer."""
+        """Whether one triangle must cover a block around each pixel, which takes longer."""
         return False
 
     def _worker(self) -> process.Worker:
         script = Path(inspect.getfile(type(self))).with_name("worker.py")
-        return process.Worker(self.name, self._python, script, self._limit, *self._folders)
+        return process.Worker(self.name, self._interpreter(), script, *self._folders)
 
     def _drawn(
-        self,
-        text: str,
-        element: str,
-        scene: Scene,
-        folders: tuple[str, ...],
-        blocks: bool,
-        methods: Methods,
-        card: bool,
+        self, folders: tuple[str, ...], text: str, request: str, size: int, blocks: bool
     ) -> base.Array:
         # Each document needs its own name: OpenUSD caches files.
         folder = self.worker.folder
         document = folder / f"{sha256(text.encode()).hexdigest()}.mtlx"
         document.write_text(text, encoding="utf-8")
         output, place = folder / "output.npy", PLACE if blocks else (0.0, 0.0)
-        mesh = folder / f"quads{scene.size}{place}.npz"
+        mesh = folder / f"quads{size}{place}.npz"
         if not mesh.exists():
-            np.savez(mesh, **quads(scene.size, place))  # type: ignore[arg-type]  # NumPy takes it for an option
+            np.savez(mesh, **quads(size, place))  # type: ignore[arg-type]  # NumPy takes it for an option
         reply = self.worker.ask(
             output=str(output),
             mesh=str(mesh),
             document=str(document),
-            element=element,
-            size=scene.size * (PIXEL_BLOCK if blocks else 1),
-            light=scene.light,
-            environment=scene.environment,
-            **({"methods": methods.settings} if methods != UNCHOSEN else {}),
-            **({"card": True} if card else {}),
+            size=size * (PIXEL_BLOCK if blocks else 1),
+            **json.loads(request),
         )
         self._check(reply.get("error", ""), self.worker.printed())
         pixels = np.load(output)
         if blocks:
             pixels = pixels[PIXEL_BLOCK // 2 :: PIXEL_BLOCK, PIXEL_BLOCK // 2 :: PIXEL_BLOCK]
-        image = np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
+        image = np.where(sphere(size).mask[..., None], pixels, np.float32(0.0))
         image.flags.writeable = False  # shared by all callers
         return image

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fragment shaders that evaluate a function once per pixel, around source text left unchanged.
 
-Arguments arrive in float textures, one texel per pixel. The generated text is unchanged: a macro renames its `main`, and
-a second `main` repeats the first one's statements that call the BSDF, with local variables that hide the uniforms.
+Arguments arrive in float textures, one texel per pixel. The generated text is unchanged: a macro
+renames its `main`, and a second `main` repeats the statements that call the BSDF, with local
+variables that hide the uniforms.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.hosts.base import Array, Query
-from mxeon.hosts.calls import GIVEN, booleans, bsdf_call
+from mxeon.hosts.calls import POSITION, booleans, bsdf_call
 from mxeon.shaders import functions
 from mxeon.shaders.methods import TABLE_SIZE
 
@@ -30,17 +31,17 @@ FETCH = {
 FETCH["vector3"] = FETCH["vec3"] = FETCH["color3"]
 FETCH["vector2"] = "vec2 {0} = {1}.xy;"
 FETCH["integer"] = "int {0} = int({1}.x);"
-# Texture that stacks the arguments in layers if there are too many for a texture each.
+# Name of the texture that stacks the arguments in layers if they exceed MOST.
 STACK = "mxeon_stack"
-MOST = 12  # textures for arguments; every device has 16, and the environment uses some
+MOST = 12  # maximum textures for arguments; devices have at least 16, also for the environment
 LAYER = (
     f"texelFetch({STACK}, mxeon_pixel + ivec2(0, {{0}} * (textureSize({STACK}, 0).y / {{1}})), 0)"
 )
 COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # all other types have 3
 WIDTH = 1024  # maximum pixels in a row of a frame
 PART = 1 << 15  # elements evaluated in one frame
-# One more column and row make the sides of argument textures odd: Mesa compiles a program once for textures whose sides
-# are powers of two, and once more for other sides.
+# Columns and rows that make the sides of argument textures odd: Mesa compiles a program again when
+# sides change between powers of two and other numbers.
 ODD = 1
 
 Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values, or layers, by name
@@ -59,8 +60,8 @@ class Dialect:
 
 VERTEX = "in vec3 i_position;\nvoid main() { gl_Position = vec4(i_position, 1.0); }\n"
 
-# WebGPU has separate textures and samplers, the generated text combined ones: define sampler2D as a texture that is
-# always read through the same sampler.
+# WebGPU has separate textures and samplers, but the generated text combines the two: sampler2D
+# becomes a texture that is always read through the same sampler.
 SEPARATE = """#extension GL_EXT_samplerless_texture_functions : require
 layout (set = 1, binding = 0) uniform sampler mxeon_sampler;
 vec4 mxeon_lookup(texture2D t, vec2 uv) { return texture(sampler2D(t, mxeon_sampler), uv); }
@@ -106,7 +107,7 @@ def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
     before, output = _before_main(shader.stages["pixel"], dialect)
     # Subsurface scattering divides by the derivatives of P.
     body = [
-        GIVEN.format("vec3(gl_FragCoord.xy, 0.0)"),
+        POSITION.format("vec3(gl_FragCoord.xy, 0.0)"),
         call.statements,
         f"{output} = vec4({call.value}, 1.0);",
     ]
@@ -133,7 +134,7 @@ def renamed(text: str) -> str:
 def function_evaluation(
     source: str, function: str, arguments: Sequence[ArrayLike], target: str
 ) -> tuple[str, Columns]:
-    """A pixel stage that evaluates a function of `source`, and its texels as in `bsdf_evaluation`."""
+    """A pixel stage that evaluates a function of `source`, and texels as in `bsdf_evaluation`."""
     values, call = functions.call(source, function, arguments)
     return evaluation(source, values, [f"mxeon_out = vec4(vec3({call}), 1.0);"], target)
 
@@ -141,7 +142,7 @@ def function_evaluation(
 def evaluation(
     source: str, arguments: Mapping[str, tuple[str, ArrayLike]], body: Sequence[str], target: str
 ) -> tuple[str, Columns]:
-    """A pixel stage whose main reads arguments and executes `body`, and its texels as in `bsdf_evaluation`."""
+    """A pixel stage that executes `body` with arguments, and texels as in `bsdf_evaluation`."""
     dialect = DIALECTS[target]
     main, texels = _main(dialect, arguments, body)
     return dialect.version + dialect.prelude + dialect.output + source + main, texels

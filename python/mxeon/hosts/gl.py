@@ -34,10 +34,10 @@ T = TypeVar("T")
 
 
 def _current(verb: Callable[Concatenate[GlHost, P], T]) -> Callable[Concatenate[GlHost, P], T]:
-    """Make the host's context current for a method, since each host of the process has its own.
+    """Make the host's context current for a method; every host of the process has another context.
 
-    The same number means a different object in each context, so objects that Python has dropped are
-    deleted here, while their own context is current.
+    The same number names a different object in each context, so objects that Python has dropped are
+    deleted here, while the context that has created the objects is current.
     """
 
     @wraps(verb)
@@ -97,7 +97,7 @@ class GlHost(FragmentHost):
         uniforms: Mapping[str, object],
         size: tuple[int, int],
         passes: Iterable[int],
-        textures: Mapping[str, Array] | None = None,
+        textures: Mapping[str, Array],
     ) -> NDArray[np.float32]:
         """Sum of a fragment shader's frames over the values `passes` of its uniform `tracer_pass`.
 
@@ -106,13 +106,7 @@ class GlHost(FragmentHost):
         context = self._context
         program = self._program(fragment.DIALECTS["glsl"].vertex, pixel)
         _set(program, uniforms)
-        triangle = context.vertex_array(program, _buffers(context, program, raster.TRIANGLE))
-        frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
-        for unit, (name, texture) in enumerate(self._textures(program, textures or {}).items()):
-            texture.use(location=unit)
-            _set(program, {name: unit})
-        frame.use()
-        frame.clear()
+        frame, triangle = self._begin(program, self._textures(program, textures), size)
         context.enable(context.BLEND)
         context.blend_func = context.ONE, context.ONE
         for index in passes:
@@ -120,10 +114,25 @@ class GlHost(FragmentHost):
             triangle.render()
             context.finish()
         context.disable(context.BLEND)
-        image: NDArray[np.float32] = np.frombuffer(
-            frame.read(components=4, dtype="f4"), dtype=np.float32
-        )
+        image = np.frombuffer(frame.read(components=4, dtype="f4"), dtype=np.float32)
         return image.reshape(size[1], size[0], 4)
+
+    def _begin(
+        self,
+        program: moderngl.Program,
+        textures: Mapping[str, moderngl.Texture | moderngl.TextureArray],
+        size: tuple[int, int],
+    ) -> tuple[moderngl.Framebuffer, moderngl.VertexArray]:
+        """Bind textures and a black frame; return the frame and a triangle that covers it."""
+        context = self._context
+        frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
+        frame.use()
+        frame.clear()
+        for unit, (name, texture) in enumerate(textures.items()):
+            texture.use(location=unit)
+            _set(program, {name: unit})
+        buffers = _buffers(context, program, raster.TRIANGLE)
+        return frame, context.vertex_array(program, buffers)
 
     def close(self) -> None:
         self._program.cache_clear()
@@ -136,9 +145,12 @@ class GlHost(FragmentHost):
         program = self._program(frame.vertex, frame.pixel)
         _set(program, frame.uniforms)
         count, size = fragment.frame(frame.arguments)
-        used = {n: rows for n, rows in frame.arguments.items() if program.get(n, None)}
-        own = {name: self._argument(rows, size) for name, rows in used.items()}
-        textures = {**own, **self._textures(program, frame.textures)}
+        arguments = {
+            name: self._argument(rows, size)
+            for name, rows in frame.arguments.items()
+            if program.get(name, None)
+        }
+        textures = {**arguments, **self._textures(program, frame.textures)}
         return self._draw(program, textures, size).reshape(-1, 3)[:count]
 
     def _draw(
@@ -148,17 +160,11 @@ class GlHost(FragmentHost):
         size: tuple[int, int],
         parts: Sequence[raster.Rectangle] = (),
     ) -> Array:
-        """One frame as float32 (height, width, 3), row 0 at the bottom, or only some parts of it."""
-        context = self._context
-        frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
-        # Unless a component is masked, Mesa compiles a program twice, for whole and for partial tiles.
+        """One frame, or parts of it, as float32 (height, width, 3), row 0 at the bottom."""
+        frame, triangle = self._begin(program, textures, size)
+        # Unless a component is masked, Mesa compiles a program twice, for whole and for partial
+        # tiles.
         frame.color_mask = True, True, True, False
-        frame.use()
-        frame.clear()
-        for unit, (name, texture) in enumerate(textures.items()):
-            texture.use(location=unit)
-            _set(program, {name: unit})
-        triangle = context.vertex_array(program, _buffers(context, program, raster.TRIANGLE))
         for part in parts or [(0, 0, *size)]:
             frame.scissor = part
             triangle.render()
@@ -173,17 +179,17 @@ class GlHost(FragmentHost):
         An environment map is clamped at its poles. A check's uniform map repeats: clamping would
         turn a NaN coordinate into a number and hide it from the check.
         """
-        made: dict[tuple[int, bool], moderngl.Texture] = {}
-        own: dict[str, moderngl.Texture | moderngl.TextureArray] = {}
+        created: dict[tuple[int, bool], moderngl.Texture] = {}
+        textures: dict[str, moderngl.Texture | moderngl.TextureArray] = {}
         for name, values in texels.items():
             if program.get(name, None):
                 key = id(values), name == "u_envRadiance"
-                own[name] = made[key] = made.get(key) or self._texture(values, key[1])
-        for name in own.keys() & {"u_envRadiance", "u_envIrradiance"}:
-            own[name].repeat_y = texels[name].shape[0] <= len(raster.WHITE_TEXELS)
-        if table := own.get(TABLE):
+                textures[name] = created[key] = created.get(key) or self._texture(values, key[1])
+        for name in textures.keys() & {"u_envRadiance", "u_envIrradiance"}:
+            textures[name].repeat_y = texels[name].shape[0] <= len(raster.WHITE_TEXELS)
+        if table := textures.get(TABLE):
             table.repeat_x = table.repeat_y = False
-        return own
+        return textures
 
     def _argument(self, rows: Array, size: tuple[int, int]) -> moderngl.Texture:
         if rows.ndim == 2 and len(rows) == 1:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A mesh of an .obj or .glb file as exact points. Needs the `render` extra.
 
-Embree traces the rays of the picture. The mesh stands where the shader ball does, y up, scaled to its size.
+Embree traces the rays of the picture. The mesh is y up, in the place of the shader ball and scaled
+to the ball's size.
 """
 
 import os
@@ -55,7 +56,7 @@ def mesh(file: str) -> Any:
 
 def mesh_points_at(file: str, x: Floats, y: Floats) -> VisiblePoints:
     """Points of a mesh at positions in the frame; normals are interpolated, and face the viewer."""
-    shape = mesh(file)
+    shape = mesh(file)  # raises NotRun without trimesh
     from trimesh.triangles import points_to_barycentric
 
     position = np.stack([x, y, np.full_like(x, -NEAR)], axis=-1)
@@ -103,7 +104,7 @@ def _unit(vectors: Floats) -> Floats:
 
 
 def mesh_blocks(file: str, points: Floats, towards: Floats) -> NDArray[np.bool_]:
-    """Whether a mesh blocks directions from points, both in the foot's frame; shape (points, directions)."""
+    """Whether a mesh blocks directions from points in the foot's frame, (points, directions)."""
     starts = np.repeat((points + OFFSET * np.array([0.0, 1.0, 0.0])) @ OBJECT, len(towards), axis=0)
     blocked = mesh(file).ray.intersects_any(starts, np.tile(towards @ OBJECT, (len(points), 1)))
     return np.asarray(blocked).reshape(len(points), len(towards))

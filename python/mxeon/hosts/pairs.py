@@ -20,9 +20,8 @@ if TYPE_CHECKING:
 PATHS = 1 << 12  # pixels of a picture with a sky
 DIRECT, TRANSMITTED, EMITTED = "direct", "transmission", "emission"  # branches of `evaluate`
 LAMP, SKY, DARK = "lamp", "sky", ""  # lights of a scene
-BASE = (
-    "    {output} = layer({output}, uniform_edf(color(1)));\n"  # white emission below the surface
-)
+# Last statement of a shader that adds white emission below the surface.
+BASE = "    {output} = layer({output}, uniform_edf(color(1)));\n"
 
 
 class PairHost(base.Host):
@@ -34,8 +33,9 @@ class PairHost(base.Host):
     def _values(self, query: Query) -> Array:
         """Values of a shader in a renderer; see `mxeon.hosts.base.Host`.
 
-        The throughput is the visible part of white emission below the surface. The environment is sampled with noise,
-        and includes transmitted light. InputError if a pair under the lamp is not `visible`.
+        The throughput is the visible part of white emission below the surface. The environment is
+        sampled with noise, and includes transmitted light. InputError if a pair under the lamp is
+        not `visible`.
         """
         shader, wo, wi, inputs, branch, output, irradiance, _ = query
         through = output == "throughput"
@@ -81,7 +81,7 @@ CORNERS = ((1.0, 0.0), (-0.5, 0.75**0.5), (-0.5, -(0.75**0.5)))  # corners of a 
 
 
 def frames(first: Vectors, other: Vectors) -> Vectors:
-    """Axes as columns, (N, 3, 3): the first vector, one perpendicular to both, and their cross product."""
+    """Axes as columns, (N, 3, 3): the first vectors, perpendiculars to both, and cross products."""
     across = unit(np.cross(first, other))
     return np.stack([first, across, np.cross(first, across)], axis=-1)
 
@@ -98,7 +98,7 @@ def visible(wo: Array, wi: Array) -> NDArray[np.bool_]:
 
 
 def apart(wo: Array, wi: Array) -> Array:
-    """Lights turned away from the view, or from its opposite, until the pair is visible."""
+    """Lights turned away from the view, or from its opposite, until the pairs are visible."""
     # Component of the light perpendicular to the view; any perpendicular if it is 0.
     cosine = (wo * wi).sum(axis=1, keepdims=True)
     across = wi - cosine * wo
@@ -146,8 +146,9 @@ class TiltedTriangles(TurnedPairs):
 def tilted_triangles(wo: Array, wi: Array, size: int) -> TiltedTriangles:
     """Triangles that show pairs (N, 3), N <= size^2, with a sine of at least LEAST_SINE.
 
-    The camera looks down from far away with parallel rays, and a point light is to the side of the picture. The depth
-    of a triangle along its pixel's ray sets the angle between view and light. Geometric and shaded normal are equal.
+    The camera looks down from far away with parallel rays, and a point light is to the side of the
+    picture. The depth of a triangle along its pixel's ray sets the angle between view and light.
+    Geometric and shaded normal are equal.
     """
     # Points that see the light at the required angle.
     wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A path tracer for the generated code of a material: one path per pixel and pass, on the sphere or the shader ball.
-// World frame: x right, y up, z towards the viewer, who sees parallel rays.
+// A path tracer for the generated code of a material: one path per pixel and pass, on the sphere or
+// the shader ball. World frame: x right, y up, z towards the viewer, who sees parallel rays.
 
 #define TRACER_OFFSET 2e-4  // Offset of a ray's origin, so it misses its own surface.
 #define TRACER_FAR 8.0
@@ -118,8 +118,9 @@ bool tracer_is_shadowed(vec3 position, vec3 normal, vec3 wi)
     return tracer_hit(position + TRACER_OFFSET * sign(dot(wi, normal)) * normal, wi) < TRACER_FAR;
 }
 
-// Light of the distant light and the environment that the point scatters along wo. Drawing wi from the material also
-// finds the environment, so both ways are weighted by the balance heuristic: [Veach1995].
+// Light of the distant light and the environment that the point scatters along wo. Directions drawn
+// from the material also reach the environment, so the balance heuristic weights each technique:
+// [Veach1995].
 vec3 tracer_lit(Point p, vec3 normal, vec3 wo, vec3 u)
 {
     vec3 lit = vec3(0.0);

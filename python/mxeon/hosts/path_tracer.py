@@ -19,9 +19,8 @@ from mxeon.shaders.shader_ball import BELT, OBJECT
 
 SAMPLES, BOUNCES = 64, 8  # default paths per pixel and bounces per path
 NOISY = 0.02  # share of the light; larger noise is reported with a remedy
-HEAD = (
-    "#version 430\n#define texture(map, at) textureLod(map, at, 0.0)\n"  # paths have no derivatives
-)
+# Paths have no derivatives, which `texture` would need.
+HEAD = "#version 430\n#define texture(map, at) textureLod(map, at, 0.0)\n"
 
 
 def by_light(sky: Array) -> tuple[Array, Array]:

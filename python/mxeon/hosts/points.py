@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures in which every pixel is an exact point: the vertex stage runs once for each point.
 
-A mesh that is exact at each pixel needs two triangles per pixel, and drivers shade whole blocks of pixels for each
-triangle. Instead, a host runs a generated vertex stage for points and captures its outputs. They reach the pixel stage
-in the layers of a texture, one texel per pixel, and one triangle covers the picture. Derivatives are differences between
-neighboring pixels, as usual.
+A mesh that is exact at each pixel needs two triangles per pixel, and drivers shade whole blocks of
+pixels for each triangle. Instead, a host runs a generated vertex stage for points and captures its
+outputs. The outputs reach the pixel stage in the layers of a texture, one texel per pixel, and one
+triangle covers the picture. Derivatives are differences between neighboring pixels, as usual.
 
-Both texts are unchanged: macros turn the inputs of the pixel stage into variables, and a second `main` fills these
-before it calls the first one.
+The text of each stage is unchanged: macros turn the inputs of the pixel stage into variables, and
+a second `main` fills these variables before it calls the generated `main`.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ FORMATS = {"float": "f4", "vec2": "2f4", "vec3": "3f4", "vec4": "4f4", "int": "i
 @dataclass(frozen=True)
 class Output:
     kind: str  # GLSL type
-    name: str  # name in the vertex stage, by which it is captured
+    name: str  # name in the vertex stage, for the capture
     variable: str  # name in the pixel stage
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A renderer's own process, which answers requests in sequence.
 
-The other end of the pipe is `serve.py` with a script of the host. It reads one JSON object per line on standard
-input and answers each with one on standard output, the first one with its version. The process ends when standard
-input does.
+The process runs `serve.py` with a script of the host: it writes a JSON object with its version to
+standard output, then reads requests from standard input and answers them, one JSON object per line.
+The process ends when standard input ends.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ SERVE = Path(__file__).with_name("serve.py")
 class Worker:
     """The process of a script, started by the first request and again after a crash.
 
-    Whatever the renderer prints goes to the file `log` in `folder`, which is deleted at the end. A request that takes
-    more than `limit` seconds kills the process. `version` and `device` come from the process's greeting.
+    Whatever the renderer prints goes to the file `log` in `folder`, which is deleted at the end. A
+    request that takes more than `limit` seconds kills the process. `version` and `device` come from
+    the first message of the process.
     """
 
-    def __init__(
-        self, name: str, python: Path, script: Path, limit: float, *arguments: str
-    ) -> None:
+    limit = 300.0
+
+    def __init__(self, name: str, python: Path, script: Path, *arguments: str) -> None:
         self.name = name
         self._command: list[str | Path] = [python, "-I", "-W", "ignore", SERVE, script, *arguments]
         self._temporary = Temporary(f"mxeon-{name}-")
         self.folder = Path(self._temporary.name)
         self.log = self.folder / "log.txt"
-        self.limit = limit
         self._process: Popen[str] | None = None
         self.version: str | None = None
         self.device = ""
@@ -73,7 +73,7 @@ class Worker:
         self.version, self.device = greeting["version"], greeting.get("device", "")
 
     def ask(self, **request: object) -> Reply:
-        """The reply to a request; NotRun, with the last lines printed, if the process ends or hangs."""
+        """The reply to a request; NotRun, with the last printed lines, if the process ends or hangs."""
         self.start()
         self._read = self.log.stat().st_size
         assert self._process

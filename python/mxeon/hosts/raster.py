@@ -26,14 +26,15 @@ Uniforms: TypeAlias = dict[str, Plain]  # values by name
 
 Rectangle: TypeAlias = tuple[int, int, int, int]  # left, lowest row, width, height
 
-BAND = 4  # rows of a picture in one rectangle, as wide as the shape
+BAND = 4  # rows of a picture in a rectangle, as wide as the shape
 ALPHA_THRESHOLD = 1e-3  # MaterialX's text discards pixels with a smaller alpha
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
-# More than one texel, so that it has mipmaps: otherwise Mesa compiles programs again for other environments.
+# A white environment. With a single texel, it would have no mipmaps, and Mesa would compile
+# programs again for other environments.
 WHITE_TEXELS = np.ones((2, 2, 3), dtype=np.float32)
 
-# Directions over which microfacets sum their environment: docs/hosts.md has the error and cost of each number. Only the
-# first mipmap of the environment is read.
+# Directions over which microfacets sum their environment: docs/hosts.md has the error and cost of
+# each number. Only the first mipmap of the environment is read.
 EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
 PICTURE_DIRECTIONS = 256
 DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # one direction: sums are 0
@@ -42,8 +43,7 @@ TRIANGLE = {  # attributes of a triangle's three vertices
     "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
 }
 
-# Approximations of lobes below the surface in generated GLSL.
-IN_PLACE = {
+INNER_APPROXIMATIONS = {
     SUBSURFACE: "subsurface_bsdf is rasterized: its direct light is blurred as on a sphere of the "
     "surface's curvature, and under an environment it is Lambert of its color",
     TRANSMISSION: "transmission is rasterized: what is seen through the surface is the environment "
@@ -54,7 +54,7 @@ IN_PLACE = {
 
 def approximations(shader: Shader) -> tuple[str, ...]:
     """Approximations of a shader's lobes below the surface in generated GLSL."""
-    return tuple(IN_PLACE[kind] for kind in inner_lobes(shader))
+    return tuple(INNER_APPROXIMATIONS[kind] for kind in inner_lobes(shader))
 
 
 def textures(shader: Shader, scene: Scene) -> dict[str, Array]:
@@ -91,7 +91,8 @@ def environment(irradiance: Array | None) -> dict[str, Array]:
 def inputs(shader: Shader) -> Uniforms:
     """Values of the uniforms for a shader's inputs, except images.
 
-    A matrix is a flat tuple whose rows are the uniform's columns; members of structures are separate uniforms.
+    A matrix is a flat tuple whose rows are the columns of the uniform. Members of structures are
+    separate uniforms.
     """
     return {
         name: value
@@ -190,7 +191,10 @@ class FragmentHost(base.Host):
         parts: Sequence[Rectangle] = (),
         directions: int = PICTURE_DIRECTIONS,
     ) -> Array:
-        """Radiance at points with a margin, (height, width, 3), row 0 at the top; only `parts` have to be drawn."""
+        """Radiance at points with a margin, (height, width, 3), row 0 at the top.
+
+        Pixels outside `parts` may be left black.
+        """
         bound = textures(shader, scene) | self.table(shader)
         return self._shade(shader, seen, bound, inputs(shader) | light(scene, directions), parts)
 
@@ -223,12 +227,12 @@ class FragmentHost(base.Host):
         return self.drawn(*fragment.function_evaluation(source, function, arguments, self.target))
 
     def drawn(self, pixel: str, texels: Mapping[str, Array]) -> Array:
-        """Values of a pixel stage that needs no vertex stage, one pixel per row of its texels."""
+        """Values of a pixel stage that reads no vertex outputs, one pixel per row of its texels."""
         vertex = fragment.DIALECTS[self.target].vertex
         return self._in_parts(Frame(vertex, pixel, texels, environment(None)))
 
     def _in_parts(self, frame: Frame) -> Array:
-        """Values of a pixel stage for any number of elements; engines limit the size of a texture."""
+        """Values of a pixel stage for any number of elements; engines limit textures."""
         frames = (frame._replace(arguments=part) for part in fragment.parts(frame.arguments))
         return np.concatenate(list(map(self._evaluate, frames)))
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The renderer's end of `mxeon.hosts.process`; it imports nothing of mxeon.
+"""The program that `mxeon.hosts.process` runs in a renderer's Python; imports nothing of mxeon.
 
-Its first argument is a script with a function `start`, which takes the other arguments and returns the greeting, a
-function that answers a request, and the exceptions to report as `{"error": ...}`. The script may end with a reason:
-`sys.exit("no display")`. Whatever a renderer prints to standard output goes to standard error.
+The first argument is a script with a function `start`, which takes the other arguments and returns
+the greeting, a function that answers a request, and the exceptions to report as `{"error": ...}`.
+The script may end with a reason: `sys.exit("no display")`. Whatever a renderer prints to standard
+output goes to standard error.
 """
 
 import json

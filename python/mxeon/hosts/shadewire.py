@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """shadewire, a MaterialX compiler in Rust with its own closures; its GLSL runs as on the host `gl`.
 
-It reads a document and returns a library of GLSL functions for a renderer to call. Inputs that vary are connected to
-geometric properties, whose functions the renderer has to define, so the text is unchanged.
+shadewire reads a document and returns a library of GLSL functions for a renderer to call. Inputs
+that vary are connected to geometric properties, whose functions the renderer has to define, so the
+returned text is unchanged.
 """
 
 from __future__ import annotations
@@ -45,7 +46,8 @@ RESPONSES = {
     "emission": "vec3(0.0)",
     GRAPH: EMITTED,
 }
-OUTPUTS = {"throughput": f"{BSDF}.throughput", "radiance": EMITTED}  # the same in every branch
+# Expressions of outputs that do not depend on the branch.
+OUTPUTS = {"throughput": f"{BSDF}.throughput", "radiance": EMITTED}
 FRAME = """vec3 host_normal, host_tangent;
 vec3 shadewire_host_normal_world() { return host_normal; }
 vec3 shadewire_host_tangent_world() { return host_tangent; }
@@ -60,7 +62,7 @@ Properties: TypeAlias = Mapping[str, tuple[str, str]]  # input's key and type, b
 class ShadewireHost(base.Host):
     name = "shadewire"
     target = "glsl"
-    default, fixed = Methods("prefilter"), True  # its albedos are MaterialX's fit
+    default, fixed = Methods("prefilter"), True  # shadewire's albedos are MaterialX's fit
 
     def __init__(self) -> None:
         if mtlx is None:
@@ -131,10 +133,10 @@ class ShadewireHost(base.Host):
         return self._gl.drawn(*fragment.evaluation(text, arguments, body, self.target))
 
 
-def _connected(shader: Shader, given: Collection[str]) -> tuple[str, Properties]:
+def _connected(shader: Shader, varying: Collection[str]) -> tuple[str, Properties]:
     """Text of a shader's document with the library's definitions.
 
-    Inputs in `given` read geometric properties; the renderer supplies the surface's frame.
+    The `varying` inputs read geometric properties; the renderer supplies the surface's frame.
     """
     document = mx.createDocument()
     document.copyContentFrom(shader.document)
@@ -145,9 +147,9 @@ def _connected(shader: Shader, given: Collection[str]) -> tuple[str, Properties]
         definition = node.getNodeDef()
         for port in definition.getActiveInputs() if definition else ():
             name, kind = port.getName(), port.getType()
-            keys = [key for key in (f"{node.getNamePath()}/{name}", name) if key in given]
-            own = node.getInput(name)
-            linked = own is not None and own.getValue() is None
+            keys = [key for key in (f"{node.getNamePath()}/{name}", name) if key in varying]
+            current = node.getInput(name)
+            linked = current is not None and current.getValue() is None
             if keys and kind in fragment.FETCH and name not in FRAME_INPUTS and not linked:
                 title = f"own_{len(properties)}"
                 properties[title] = keys[0], kind
@@ -162,9 +164,9 @@ def _connected(shader: Shader, given: Collection[str]) -> tuple[str, Properties]
 
 
 def _compiled(document: str, material: str) -> str:
-    """shadewire's text, without its first line, for a document's material ("": its only one).
+    """shadewire's text, without its first line, for a document's material ("" for the only one).
 
-    Raises NotRun if shadewire refuses the document; warns of a lobe that it replaces by black.
+    Raises NotRun if shadewire refuses the document; warns of a lobe that shadewire leaves black.
     """
     try:
         ir = mtlx.to_ir(document, "", material or None, models=MODELS, values_as_uniforms=False)

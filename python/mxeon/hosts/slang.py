@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Slang on a GPU or the CPU: generated Slang compiled by slangpy, in float32.
 
-The generated text is unchanged; a compute kernel after it repeats the text's statements that call the BSDF. Arguments
-arrive in buffers, one row per thread.
+The generated text is unchanged; a compute kernel that follows repeats the statements that call the
+BSDF. Arguments arrive in buffers, one row per thread.
 """
 
 from __future__ import annotations
@@ -122,8 +122,8 @@ class SlangHost(base.Host):
         else:
             remedy = "without a GPU it needs a C++ compiler: on Debian: apt-get install g++"
             raise NotRun(f"slang: no kernel for the CPU; {'; '.join([*lines, remedy])}")
-        # Slang removes the files of released kernels. A worker receives SIGTERM and is killed soon after, so it must
-        # release them immediately.
+        # Slang removes the files of released kernels. A worker process is killed soon after
+        # SIGTERM, so the handler must release the kernels immediately.
         atexit.register(self._kernels.clear)
 
         def end(*_: object) -> None:
@@ -144,7 +144,7 @@ class SlangHost(base.Host):
                 "slang: subsurface scattering needs derivatives between pixels, which a kernel lacks"
             )
         call = calls.bsdf_call(query)
-        position = calls.GIVEN.format("float3(0.0)")
+        position = calls.POSITION.format("float3(0.0)")
         body = [position, call.statements, f"float3 mxeon_value = {call.value};"]
         environment = self._environment(query.irradiance, query.client)
         sampler = self._device.create_sampler(address_u=CLAMP, address_v=CLAMP)
@@ -220,7 +220,7 @@ class SlangHost(base.Host):
         """A texture of float32 texels (height, width, 3).
 
         A CPU device reads the nearest texel and places the first and the last texel at 0 and 1.
-        Texels are therefore doubled, so that each is read in the middle of its own area.
+        Doubled texels have the same places as on a GPU.
         """
         if self._device.info.type == slangpy.DeviceType.cpu:
             for axis in (0, 1):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Antialiased stills for presentation, on a floor where the shader ball casts a shadow.
 
-A host's picture has one sample per pixel, at its center. Pixels that differ from a neighbor are redrawn with 16.
-The floor is Lambertian paper that bends up into a wall behind the ball. The ball, without its grooves, and the foot
-block the environment's light on it, as a mesh does.
+A host's picture has one sample per pixel, at its center. Pixels that differ from a neighbor are
+redrawn with 16 samples. The floor is Lambertian paper that bends up into a wall behind the ball.
+The ball without its grooves, its foot, or a mesh block the light of the environment on the floor.
 """
 
 from __future__ import annotations
@@ -42,14 +42,14 @@ BEND = -1.0, -4.5  # foot-frame z where the paper begins to bend up, and where i
 
 
 def still(host: Host, shader: Shader, scene: Scene) -> Array:
-    """Picture of a shader, linear (size, size, 3), antialiased here if the host draws single points."""
+    """Antialiased picture of a shader on a floor, linear, (size, size, 3)."""
     image = host.picture(shader, scene)
     mask = visible(scene.size, scene.shape).mask
     covered = mask.astype(np.float32)
     if isinstance(host, FragmentHost):
-        # A path tracer antialiases its picture: only the coverage of edge pixels remains to be found.
+        # A path tracer antialiases its picture, so only the coverage of edge pixels is computed.
         traced = isinstance(host, PathTracerHost)
-        for rows, columns in rough(0.0 * image if traced else image, mask, scene):
+        for rows, columns in jagged(np.zeros_like(image) if traced else image, mask, scene):
             draw = None if traced else partial(host.shade, shader, scene, directions=DIRECTIONS)
             drawn, covered[rows, columns] = samples(draw, scene, rows, columns)
             if not traced:
@@ -59,20 +59,20 @@ def still(host: Host, shader: Shader, scene: Scene) -> Array:
     return image
 
 
-def rough(image: Array, mask: Mask, scene: Scene) -> Iterator[tuple[Array, Array]]:
+def jagged(image: Array, mask: Mask, scene: Scene) -> Iterator[tuple[Array, Array]]:
     """Rows and columns of pixels that differ from a neighbor, in batches."""
-    shown, normal = pbr_neutral(image), visible(scene.size, scene.shape).normal
-    differs = mask.copy()  # the shape may end within a pixel at the edge of the frame
-    differs[1:-1, 1:-1] = False
+    display, normal = pbr_neutral(image), visible(scene.size, scene.shape).normal
+    differing = mask.copy()  # the shape may end within a pixel at the edge of the frame
+    differing[1:-1, 1:-1] = False
     for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):
-        one = slice(0, -down or None), slice(max(-right, 0), -max(right, 0) or None)
-        other = slice(down, None), slice(max(right, 0), min(right, 0) or None)
-        apart: Mask = np.abs(shown[one] - shown[other]).max(axis=-1) > SMOOTH[0]
-        apart |= (normal[one] * normal[other]).sum(axis=-1) < SMOOTH[1]
-        apart &= mask[one] | mask[other]
-        differs[one] |= apart
-        differs[other] |= apart
-    rows, columns = np.nonzero(differs)
+        first = slice(0, -down or None), slice(max(-right, 0), -max(right, 0) or None)
+        second = slice(down, None), slice(max(right, 0), min(right, 0) or None)
+        edge: Mask = np.abs(display[first] - display[second]).max(axis=-1) > SMOOTH[0]
+        edge |= (normal[first] * normal[second]).sum(axis=-1) < SMOOTH[1]
+        edge &= mask[first] | mask[second]
+        differing[first] |= edge
+        differing[second] |= edge
+    rows, columns = np.nonzero(differing)
     for start in range(0, len(rows), batch := BLOCKS[0] * BLOCKS[1]):
         yield rows[start : start + batch], columns[start : start + batch]
 
@@ -82,7 +82,8 @@ def samples(
 ) -> tuple[Array, Array]:
     """Means over the samples of pixels, 0 off the shape, and the share of samples on the shape.
 
-    A sample of largest channel m weighs 1 / (1 + m): a mean of radiances would leave bright edges jagged on a display.
+    A sample of largest channel m weighs 1 / (1 + m): a mean of radiances would leave bright edges
+    jagged on a display.
     """
     wide = BLOCKS[0]
     number = np.minimum(np.arange(-(-len(rows) // wide) * wide), len(rows) - 1).reshape(-1, wide)
@@ -129,7 +130,10 @@ def floor(scene: Scene) -> Array:
 
 
 def lights(scene: Scene) -> tuple[Floats, Floats]:
-    """Directions in the foot's frame that represent an environment, and the radiance times solid angle of each."""
+    """Directions in the foot's frame that represent an environment, and each one's contribution.
+
+    The contribution is radiance times solid angle, (DRAWN, 3).
+    """
     sky = reduced(read_latlong(scene.environment))
     if sky.shape[:2] == (1, 1):
         sky = np.broadcast_to(sky, (RADIANCE_SIZE, 2 * RADIANCE_SIZE, 3))
@@ -146,18 +150,12 @@ def blocked(points: Floats, towards: Floats) -> Mask:
     out = CENTER - points
     along = out @ towards.T
     ball = (along > 0.0) & ((out**2).sum(axis=-1)[:, None] - along**2 < RADIUS**2)
-    # Distance along the direction to the height of the foot's top.
-    reach = (
-        np.stack([towards[:, 0], towards[:, 2]], axis=-1)
-        * 2.0
-        * FOOT_HEIGHT
-        / np.maximum(towards[:, 1:2], 1e-6)
-    )
-    start = np.stack([points[:, 0], points[:, 2]], axis=-1)
-    length = (reach**2).sum(axis=-1)
-    nearest = np.clip(-start @ reach.T / np.maximum(length, 1e-12), 0.0, 1.0)
-    distance = (
-        (start**2).sum(axis=-1)[:, None] + 2.0 * nearest * (start @ reach.T) + nearest**2 * length
-    )
-    blocked: Mask = ball | ((distance < FOOT_RADIUS**2) & (towards[:, 1] > 0.0))
-    return blocked
+    # Seen from above, the part of a ray below the foot's top is the segment from `start` by
+    # `reach`.
+    start = points[:, ::2]
+    reach = towards[:, ::2] * 2.0 * FOOT_HEIGHT / np.maximum(towards[:, 1:2], 1e-6)
+    squared, product = (reach**2).sum(axis=-1), start @ reach.T
+    nearest = np.clip(-product / np.maximum(squared, 1e-12), 0.0, 1.0)  # to the foot's axis
+    distance = (start**2).sum(axis=-1)[:, None] + 2.0 * nearest * product + nearest**2 * squared
+    foot: Mask = (distance < FOOT_RADIUS**2) & (towards[:, 1] > 0.0)
+    return ball | foot

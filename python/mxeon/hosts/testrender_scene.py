@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A scene in testrender's format in which each pixel shows its own pair of directions.
 
-The camera sees a small triangle in each pixel, and a small light lies outside the picture. The place of a triangle on its
-pixel's ray sets the angle between view and light. The shaded frame is turned accordingly: shaders get their normal and
-tangent independently of the triangle.
+The camera sees a small triangle in each pixel, and a small light lies outside the picture. The
+place of a triangle on its pixel's ray sets the angle between view and light. The shaded frame is
+turned accordingly: shaders get their normal and tangent independently of the triangle.
 
     camera ------- d ------> P        wo = -d
-                            /         angle of wo and wi: foot point of the light + distance cot(angle) d
+                            /         angle of wo and wi: foot point of the light + distance
+                            cot(angle) d
                        light
 """
 
@@ -26,7 +27,8 @@ NEAREST = 0.5  # distance from the light to a ray
 CENTER = 1.5  # x of the picture's center, at the height of the light
 FOV = 5.725  # field of view in degrees; the frame is tan(FOV / 2) wide at distance 1
 LIGHT_RADIUS = 2.0**-18
-# Size of a triangle over its distance: above the camera's error of 2^-24, and too small to hide the light.
+# Size of a triangle over the distance from the camera: above the camera's error of 2^-24, and too
+# small to hide the light.
 TRIANGLE = 2e-5
 PLACE = "u, v"  # coordinates at which a point reads an image
 # Square roots of the paths per pixel: the light is a point within float32, the sky is not.
@@ -70,7 +72,7 @@ class PairScene(TurnedPairs):
         return np.asarray(np.abs(self.points @ area) / squared**1.5)
 
     def files(self, shader: str, lit: bool) -> dict[str, str]:
-        """Texts of the files of the scene, by name, with its light or with a white sky."""
+        """Texts of the scene's files by name, with the light or with a white sky."""
         light = LIGHT_GROUP if lit else SKY_GROUP
         world = WORLD.format(
             eye=EYE, center=CENTER, fov=FOV, shader=shader, points=POINTS, light=light

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Images that shaders read: textures, environments and the irradiance of an environment.
 
-They are float32 arrays (height, width, channels) as stored; shaders transform colors.
+Images are float32 arrays (height, width, channels) as stored; shaders transform colors.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ def texels_of(path: str | Path) -> int:
 def read_texture(path: str | Path) -> NDArray[np.float32]:
     """Pixels of a texture, row 0 at the bottom, where MaterialX has v = 0.
 
-    Of a set of textures, it reads the tile [0, 1]^2, which contains all coordinates of a sphere. A single channel is
-    repeated for all colors, as in MaterialX, by a view with a last stride of 0. Raises ImageError for more than four
-    channels, and warns of non-finite values.
+    For a set of textures, reads the tile [0, 1]^2, which contains all coordinates of a sphere. A
+    single channel is repeated for all colors, as in MaterialX, by a view with a last stride of 0.
+    Raises ImageError for more than four channels, and warns of non-finite values.
     """
     for token, word in FIRST_TILE.items():
         path = str(path).replace(token, word)
@@ -146,7 +146,8 @@ def image_files(shaders: Iterable[Shader]) -> tuple[str, ...]:
 def check_images(shaders: Iterable[Shader], policy: Policy) -> None:
     """Refuse images of a document that are too large in total, before reading any.
 
-    Raises DocumentError if they have more pixels than the policy permits; ImageError for a bad image.
+    Raises DocumentError if all images together have more pixels than the policy permits, and
+    ImageError for an image that cannot be used.
     """
     from mxeon.shaders.document.references import files
     from mxeon.shaders.document.values import label

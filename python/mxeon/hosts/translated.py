@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Vulkan's SPIR-V in languages that MaterialX does not generate, compiled and executed on Vulkan, in float32.
+"""Vulkan's SPIR-V translated to languages that MaterialX does not generate, and run on Vulkan.
 
-spirv-cross writes HLSL, which glslang or DXC, Microsoft's compiler, compiles to SPIR-V again. naga writes WGSL, which
-wgpu compiles.
+spirv-cross writes HLSL, which glslang or DXC, Microsoft's compiler, compiles to SPIR-V again. naga
+writes WGSL, which wgpu compiles. Values are float32.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ except ImportError:
 TRANSLATOR = ("spirv-cross", "--hlsl", "--shader-model", "60")
 COMPILER = ("glslangValidator", "-D", "-V", "--quiet", "-S", "frag", "-e", "main")
 # Optimizing, glslang inlines every function, which takes half a minute for path tracers. Texts with
-# functions that take textures (Vulkan) or with unused stage inputs (wgpu) still need it.
+# functions that take textures (Vulkan) or with unused stage inputs (wgpu) still need the
+# optimization.
 KEEP_FUNCTIONS = "-Od"
 OPTIMIZED = re.compile(r"^\w+ \w+\(.*\bTexture2D\b| : TEXCOORD\d+;$", re.MULTILINE)
 REGISTER = re.compile(r"^(?=.* : register\([bst](\d+), space(\d+)\))", re.MULTILINE)
@@ -42,7 +43,7 @@ class HlslHost(vulkan.VulkanHost):
         if stage == "vert":
             return code
         with Temporary("mxeon-translated-") as folder:
-            Path(folder, "own.spv").write_bytes(code)
+            Path(folder, "generated.spv").write_bytes(code)
             return self._translated(Path(folder))
 
     def _run(self, *command: str | Path) -> None:
@@ -50,11 +51,11 @@ class HlslHost(vulkan.VulkanHost):
 
     def _hlsl(self, folder: Path) -> Path:
         text = folder / "text"
-        self._run(*TRANSLATOR, folder / "own.spv", "--output", text)
+        self._run(*TRANSLATOR, folder / "generated.spv", "--output", text)
         return text
 
     def _translated(self, folder: Path) -> bytes | str:
-        """Code for wgpu, translated from own.spv in `folder`."""
+        """Code for wgpu, translated from generated.spv in `folder`."""
         text, compiled = self._hlsl(folder), folder / "compiled"
         flags = () if OPTIMIZED.search(text.read_text()) else (KEEP_FUNCTIONS,)
         self._run(*COMPILER, *flags, "-o", compiled, text)
@@ -62,7 +63,7 @@ class HlslHost(vulkan.VulkanHost):
 
 
 class DxcHost(HlslHost):
-    """DXC as the Python package compushady calls it; the text names the bindings."""
+    """HLSL compiled by DXC, through the Python package compushady; the text names the bindings."""
 
     name = "dxc"
     path = "HLSL, DXC, "
@@ -90,5 +91,8 @@ class NagaHost(HlslHost):
 
     def _translated(self, folder: Path) -> bytes | str:
         text = folder / "translated.wgsl"
-        self._run("naga", folder / "own.spv", text)
+        self._run("naga", folder / "generated.spv", text)
         return text.read_text()
+
+
+HOSTS = {host.name: host for host in (HlslHost, DxcHost, NagaHost)}

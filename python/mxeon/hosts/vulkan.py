@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A Vulkan device without a window: generated Vulkan GLSL as SPIR-V, in float32.
 
-glslang generates the SPIR-V; naga, which is part of wgpu, validates it and writes it again for the driver. naga rejects
-interface blocks, so the unused block of an evaluation is removed from the SPIR-V.
+glslang generates the SPIR-V; naga, a part of wgpu, validates the SPIR-V and writes it again for the
+driver. naga rejects interface blocks, so the unused block of an evaluation is removed.
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ class VulkanHost(FragmentHost):
         self._device.destroy()
 
     def _evaluate(self, frame: raster.Frame) -> Array:
-        """Values of a pixel stage; the dialect's vertex stage is used, as both stages share one block."""
+        """Values of a pixel stage after the dialect's vertex stage, as stages share one block."""
         count, size = fragment.frame(frame.arguments)
         texels = [fragment.texels(rows, size, fragment.ODD) for rows in frame.arguments.values()]
         sets: tuple[Bindings, ...] = (
@@ -182,7 +182,6 @@ class VulkanHost(FragmentHost):
         return {"module": module, "entry_point": "main"}
 
     def _vertex(self, pixel: str) -> str:
-        """The vertex stage before a pixel stage."""
         return fragment.DIALECTS[self.target].vertex
 
     def _code(self, stage: str, text: str) -> bytes | str:
@@ -226,7 +225,7 @@ class VulkanHost(FragmentHost):
 class WgslHost(VulkanHost):
     """WebGPU without a browser: MaterialX's text for its target WGSL, which is GLSL for a converter.
 
-    The converter in wgpu, naga, compiles it instead of glslang.
+    The converter is naga, a part of wgpu.
     """
 
     name = "wgsl"
@@ -236,13 +235,16 @@ class WgslHost(VulkanHost):
     interfaces = ("Vulkan", "Metal", "D3D12")
 
     def _vertex(self, pixel: str) -> str:
-        """A vertex stage with the pixel stage's block, all 0: wgpu requires it, even if it is unused."""
+        """A vertex stage with the pixel stage's block, all 0, which wgpu requires even if unused."""
         head, rest = super()._vertex(pixel).split("\n", 1)
         outputs = [f"layout (location = 0) out {block}\n" for block in INPUT_BLOCK.findall(pixel)]
         return "".join([f"{head}\n", *outputs, rest])
 
     def _code(self, stage: str, text: str) -> str:
         return text
+
+
+HOSTS = {host.name: host for host in (VulkanHost, WgslHost)}
 
 
 @lru_cache(maxsize=8)  # the vertex stage is always the same

@@ -85,7 +85,7 @@ function upload(layout, data) {
     return texture;
 }
 
-// Functions that set a uniform, by its type.
+// Functions that set a uniform, by the uniform's type.
 function setters() {
     return {
         [gl.FLOAT]: (place, value) => gl.uniform1f(place, value),
@@ -154,7 +154,7 @@ function render(program, job, data) {
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
         }
         if (["u_envRadiance", "u_envIrradiance"].includes(name) && layout.shape[0] > 2) {
-            // An environment map is clamped at its poles; a check's uniform map repeats, to keep NaN.
+            // An environment map is clamped at its poles; a check's map repeats, to keep NaN.
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
         }
         return texture;

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """WebGL2 in a headless Chromium: generated ESSL as a browser runs it, in float32.
 
-Playwright drives the installed browser. The page, `webgl.js`, draws one frame per request. It reads arrays from a file
-and returns pixels as text. The browser resolves no host names, so nothing leaves the machine.
+Playwright drives the installed browser. For each request, the page `webgl.js` reads arrays from a
+file, draws a frame and returns pixels as text. The browser resolves no host names, so nothing
+leaves the machine.
 """
 
 from __future__ import annotations
@@ -72,18 +73,19 @@ UNIFORMS: dict[str, object] = {
 class Chromium:
     """A headless browser with a page, started on demand and restarted after a crash.
 
-    Playwright needs one thread without an event loop, so it gets its own. A request that takes `limit` seconds, or loses
-    a WebGL context, ends the browser.
+    Playwright runs in its own thread, because the caller's thread may have an event loop. A request
+    that takes `limit` seconds, or loses a WebGL context, ends the browser.
     """
 
+    name: str
     flags: ClassVar[tuple[str, ...]] = FLAGS
+    limit: ClassVar[float] = 300.0
 
-    def __init__(self, host: str, limit: float) -> None:
+    def __init__(self) -> None:
         if sync_api is None:
-            raise NotRun(f"{host}: Playwright is not installed; {install('webgl')}")
-        self._host = host
-        self._program = program(host)
-        self._limit = 1000.0 * limit
+            raise NotRun(f"{self.name}: Playwright is not installed; {install('webgl')}")
+        self._program = program(self.name)
+        self._limit = 1000.0 * self.limit
         self._page: Page = None
         self._stack = ExitStack()
         self._thread = ThreadPoolExecutor(max_workers=1)
@@ -101,7 +103,7 @@ class Chromium:
         """The result of a function of the page, with the version of the browser."""
         answer = self._thread.submit(self._answer, function, job, file).result()
         if "failed" in answer:
-            raise NotRun(f"{self._host}: {answer['failed']}")
+            raise NotRun(f"{self.name}: {answer['failed']}")
         return answer
 
     def _answer(self, function: str, job: dict[str, object] | None, file: Path | None) -> Answer:
@@ -133,14 +135,12 @@ class Chromium:
 
 
 class WebGlHost(Chromium, raster.FragmentHost):
-    """WebGL2 in a browser; a frame may take `limit` seconds."""
-
     name = "webgl"
     target = "essl"
     draws_images = True
 
-    def __init__(self, limit: float = 300.0) -> None:
-        super().__init__(self.name, limit)
+    def __init__(self) -> None:
+        super().__init__()
         self._points = lru_cache(maxsize=POINTS)(self._capture)
         # Request the device now, since the browser may lack WebGL2.
         try:
@@ -173,8 +173,8 @@ class WebGlHost(Chromium, raster.FragmentHost):
 
     def _evaluate(self, frame: raster.Frame) -> Array:
         count, size = fragment.frame(frame.arguments)
-        own = {name: fragment.texels(rows, size) for name, rows in frame.arguments.items()}
-        textures = {**own, **frame.textures}
+        arguments = {name: fragment.texels(rows, size) for name, rows in frame.arguments.items()}
+        textures = {**arguments, **frame.textures}
         return self._draw(frame._replace(textures=textures), size).reshape(-1, 3)[:count]
 
     def _draw(self, frame: raster.Frame, size: tuple[int, int]) -> Array:
@@ -203,7 +203,6 @@ class WebGlHost(Chromium, raster.FragmentHost):
     def _bytes(
         self, function: str, job: Mapping[str, object], arrays: Mapping[str, Mapping[str, Array]]
     ) -> bytes:
-        """Result of a function of the page for a job and arrays."""
         with Temporary("mxeon-webgl-") as folder:
             file = Path(folder, "arrays")
             answer = self._ask(function, {**job, **_write(file, arrays)}, file)
@@ -218,7 +217,6 @@ def is_root() -> bool:
 
 
 def program(host: str = "webgl") -> str:
-    """Path of the browser."""
     name = os.environ.get(PROGRAM) or "chromium"
     path = shutil.which(name)
     if path is None:

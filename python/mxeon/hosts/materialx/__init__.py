@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """MaterialX's own renderer on OpenGL, `MaterialXRenderGlsl`: what MaterialXView shows.
 
-It generates the same shader as `gl`, and binds lights, environment and uniforms itself. It needs an X display and ends
-the process without one, so `worker.py` runs in its own process and starts Xvfb if DISPLAY names no display.
+The renderer generates the same shader as the host `gl`, and binds lights, environment and uniforms
+itself. Without an X display it ends the process, so `worker.py` runs in its own process, and starts
+Xvfb if DISPLAY names no display.
 """
 
 from __future__ import annotations

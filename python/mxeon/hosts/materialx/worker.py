@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The half of the `materialx` host in which MaterialX's renderer runs; see `mxeon.hosts.process`.
 
-Its arguments are the folder whose `libraries` replace MaterialX's own, or "", and the folders of other libraries. Its
-display ends with the process.
+The arguments of `start` are the folder whose `libraries` replace MaterialX's, or "", and the
+folders of other libraries. The display ends with the process.
 """
 
 from __future__ import annotations
@@ -147,7 +147,7 @@ def open_renderer() -> mx_render_glsl.GlslRenderer:
 
 
 def albedo_table(generator: mx_gen.ShaderGenerator, content: mx.Document) -> mx_render.Image:
-    """The table of albedos by Monte Carlo, drawn by the library's own text."""
+    """The table of albedos by Monte Carlo, drawn by the library's shader."""
     context = mx_gen.GenContext(generator)
     context.registerSourceCodeSearchPath(SEARCH_PATH)
     context.getOptions().hwWriteAlbedoTable = True
@@ -163,7 +163,7 @@ def albedo_table(generator: mx_gen.ShaderGenerator, content: mx.Document) -> mx_
 
 @lru_cache(maxsize=2)
 def geometry(path: str) -> mx_render.GeometryHandler:
-    """The quads in a NumPy file, written as a Wavefront OBJ file, which MaterialX reads; cached, since that is slow."""
+    """The quads in a NumPy file; cached, because MaterialX reads them slowly from an OBJ file."""
     data, target = np.load(path), Path(path).with_suffix(".obj")
     lines = [
         f"{word} {' '.join(f'{number:.9g}' for number in row)}"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hydra Storm, USD's own renderer.
 
-Blender's package contains it, with its own versions of OpenUSD and MaterialX. This half writes the document, and
-`worker.py` draws it.
+Blender's package contains Storm, with its own versions of OpenUSD and MaterialX. This half of the
+host writes the document, and `worker.py` draws it.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ class StormHost(DocumentHost):
         return np.asarray(self._shown(shader, dark, card=True) - self._shown(shader, dark))
 
     def _shown(self, shader: Shader, scene: Scene, card: bool = False) -> Array:
-        own = (str(folder) for each in shader.folders for folder in environment_folders(each))
-        folders = (*shader.folders, *own)
+        more = (str(folder) for each in shader.folders for folder in environment_folders(each))
+        folders = (*shader.folders, *more)
         return super()._shown(replace(shader, folders=folders), scene, card)
 
     def unread(self, shader: Shader) -> str:
@@ -67,9 +67,10 @@ class StormHost(DocumentHost):
         return interpreter(self.name)
 
     def _needs_blocks(self, shader: Shader) -> bool:
-        """Whether it has textures: outside a triangle, llvmpipe reads Storm's buffers as 0.
+        """Whether a shader has textures.
 
-        The derivatives of texture coordinates are then wrong, and textures are read at the wrong size.
+        Outside a triangle, llvmpipe reads Storm's buffers as 0. The derivatives of texture
+        coordinates are then wrong, and textures are read at the wrong size.
         """
         return any(each.type == "filename" and each.value for each in shader.inputs)
 

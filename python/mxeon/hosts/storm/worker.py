@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The half of the `storm` host that runs in Blender's Python; see `mxeon.hosts.process`.
 
-Its arguments are the folder whose `libraries` replace those of Blender's MaterialX, or "", and the folders of other
-libraries.
+The arguments of `start` are the folder whose `libraries` replace those of Blender's MaterialX, or
+"", and the folders of other libraries.
 """
 
 from __future__ import annotations
@@ -27,10 +27,12 @@ Type: TypeAlias = type[c_void_p | c_uint | c_char_p] | None  # result of a funct
 
 INSTALL, DEBIAN = "pip install bpy==5.0.1", "apt-get install libegl1 libgl1-mesa-dri"
 MODULES = ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdImagingGL", "UsdLux", "UsdShade", "Vt")
-FAR = 1e6  # distance of the camera: Storm computes the view from its position, even if it is orthographic
-ANGLE = 0.1  # degrees, of the distant light: with 0 it is black
-# Storm sums a dome's irradiance over a right angle in 64 steps. In float32 they add up to less than the angle, so it adds
-# a 65th and divides by 65: a white dome gives this irradiance.
+# Distance of the camera: Storm computes directions of view from the position of the camera, even of
+# an orthographic one.
+FAR = 1e6
+ANGLE = 0.1  # degrees, of the distant light, which is black with 0
+# Storm sums a dome's irradiance over a right angle in 64 steps. In float32 the steps add up to less
+# than the angle, so Storm adds a 65th and divides by 65: a white dome gives this irradiance.
 WHITE_DOME = math.pi / 130.0 / math.tan(math.pi / 128.0)
 CARD = 2.0  # distance of a white card that emits, behind the picture
 # A white pixel in Radiance's format: a dome without a texture is black.
@@ -191,7 +193,7 @@ class Stage:
 
 
 def import_usd(root: str, libraries: str) -> Foreign:
-    """OpenUSD of Blender's package, with libraries in addition to MaterialX's own or those in `root`."""
+    """OpenUSD of Blender's package, with `libraries` in addition to those of `root` or MaterialX."""
     # Find Blender's package without importing it.
     found = find_spec("bpy")
     if found is None or not found.submodule_search_locations:
