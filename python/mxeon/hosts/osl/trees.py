@@ -84,8 +84,8 @@ def _tree(label: Any, numbers: Array) -> ClosureTree | None:
     if name in OPERATIONS:
         parts = [each for each in values if each is None or _is_closure(each)]
         factors = [numbers[:, each] for each in values if each not in parts]
-        arguments = {"factor": factors[0]} if factors else {}
-        return ClosureTree(name, tuple(_tree(each, numbers) for each in parts), arguments)
+        operands = tuple(_tree(each, numbers) for each in parts)
+        return ClosureTree(name, operands, {"factor": factors[0]} if factors else {})
     # The arguments of a closure come in order, then pairs of keywords and values.
     signature, known = CLOSURES[name], (*CLOSURES[name].keywords, "label")
     positional = len(signature.arguments)
