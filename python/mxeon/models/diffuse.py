@@ -682,7 +682,6 @@ def qon_tinted_twice_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sig
 
 @any_array
 def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """Directional albedo of `qon_tinted_twice_brdf_mu`."""
     (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
     return color * color * qon_albedo_dir(m, s)
 

@@ -105,19 +105,19 @@ def cosine_pdf(wi: ArrayLike) -> Array:
 
 
 def checked_draw(wo: ArrayLike, u: ArrayLike, **numbers: ArrayLike) -> list[Array]:
-    """Checked arguments of a sampler, in this order, as float64 arrays whose shapes broadcast."""
+    """Checked arguments of a sampler as float64 arrays whose shapes broadcast."""
     vectors = {"wo": checked_directions("wo", wo), "u": arguments.checked_pairs("u", u)}
     return broadcastable(vectors, arguments.checked_all(numbers))
 
 
 def checked_pdf(wo: ArrayLike, wi: ArrayLike, **numbers: ArrayLike) -> list[Array]:
-    """Checked arguments of a density, in this order, as float64 arrays whose shapes broadcast."""
+    """Checked arguments of a density as float64 arrays whose shapes broadcast."""
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
     return broadcastable(vectors, arguments.checked_all(numbers))
 
 
 def unpack_uniforms(u: ArrayLike) -> tuple[Array, Array]:
-    """The two random numbers of each pair, checked, as float64 arrays of shape (...)."""
+    """Both random numbers, checked, as float64 arrays of shape (...)."""
     u = arguments.checked_pairs("u", u)
     return u[..., 0], u[..., 1]
 
@@ -251,9 +251,9 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     multiple = eon_multiple_cosine(arrays.power(v[2], 1.0 / 3.0))
     mu = xp.where(u1 < ends[0], lower, xp.where(u1 < ends[1], upper, multiple))
     S = root((1.0 - mu) * (1.0 + mu))
-    is_towards, is_flat = (u1 < ends[1])[..., np.newaxis], (u1 >= ends[2])[..., np.newaxis]
-    wi = xp.where(is_towards, eon_towards(mu, S, u2), around(mu, S, u2))
-    return xp.where(is_flat, eon_flat_draw(v[3], u2, roughness * S_o, rest), wi)
+    towards, flat = (u1 < ends[1])[..., np.newaxis], (u1 >= ends[2])[..., np.newaxis]
+    wi = xp.where(towards, eon_towards(mu, S, u2), around(mu, S, u2))
+    return xp.where(flat, eon_flat_draw(v[3], u2, roughness * S_o, rest), wi)
 
 
 def eon_integrals(
@@ -262,9 +262,8 @@ def eon_integrals(
     """Integrals of the parts lower, upper, multiple and flat over the disk, divided by pi."""
     towards = (2.0 / np.pi) * roughness * S_o
     lower = towards * (1.0 - mu_o) * eon_cube_gap(mu_o, S_o) / 3.0
-    upper = towards * eon_segment(mu_o, S_o)
     multiple = (C1 - C2) * eon_multiple_ratio(rho, roughness) * fon_loss_mu(mu_o)
-    return lower, upper, multiple, 1.0
+    return lower, towards * eon_segment(mu_o, S_o), multiple, 1.0
 
 
 def eon_cube_gap(mu: Array, S: Array) -> Array:
@@ -285,8 +284,8 @@ def stretched(u: Array, start: Array, end: Array) -> Array:
     """
     xp = array_namespace(u, start, end)
     length = xp.where(end > start, end - start, 1.0)
-    inside = xp.minimum(xp.maximum(u, start), end)
-    return xp.minimum((inside - start) / length, arrays.below_1(length))
+    clamped = xp.minimum(xp.maximum(u, start), end)
+    return xp.minimum((clamped - start) / length, arrays.below_1(length))
 
 
 def eon_towards(mu: Array, S: Array, u2: Array) -> Array:
@@ -307,8 +306,7 @@ def eon_upper_limit(mu: Array, S: Array) -> Array:
 def eon_upper_quotient(y: Array) -> Array:
     """Fitted function Q(y) of `eon_upper_cosine`; Q(1) = 1."""
     a, b, c, d, e, f = UPPER
-    y2 = y * y
-    even, odd = a + y2 * (c + y2 * e), b + y2 * (d + y2 * f)
+    even, odd = a + y * y * (c + y * y * e), b + y * y * (d + y * y * f)
     return 1.0 + (1.0 - y) * (even + y * odd)
 
 
@@ -348,9 +346,9 @@ def eon_flat_direction(
 ) -> tuple[Array, Array, Array]:
     """Direction x, y, z of `eon_flat_draw` from a uniform point of the disk; v = x^2 + y^2."""
     rest = 1.0 - v if rest is None else rest
-    ahead = 1.0 + q * x
-    length = root(ahead * ahead + q * q * rest)
-    z = root(2.0 * rest / (ahead + length))
+    linear = 1.0 + q * x
+    length = root(linear * linear + q * q * rest)
+    z = root(2.0 * rest / (linear + length))
     return (q * (1.0 - y * y) + 2.0 * x) / (1.0 + length), y, z
 
 
@@ -448,7 +446,7 @@ def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
     u1, u2 = unpack_uniforms(u)
-    return _draw(wo, u1, 1.0 - u1, u2, roughness)
+    return _cltc_draw(wo, u1, 1.0 - u1, u2, roughness)
 
 
 @any_array
@@ -482,13 +480,13 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
     u1, u2 = unpack_uniforms(u)
     P_u = eon_cltc_probability(wo[..., 2], roughness)
     is_uniform = u1 < P_u
-    # Rescale u1 on either side of P_u to [0, 1); rounding may give 1, which is excluded.
+    # Rescale u1 on either side of P_u to [0, 1).
     xp = array_namespace(u1, P_u)
     length = xp.where(is_uniform, P_u, 1.0 - P_u)
     v = xp.where(is_uniform, u1, u1 - P_u) / length
     rest = xp.where(is_uniform, P_u - u1, 1.0 - u1) / length
     v = xp.minimum(v, arrays.below_1(v))
-    clipped, _ = _draw(wo, v, rest, u2, roughness)
+    clipped, _ = _cltc_draw(wo, v, rest, u2, roughness)
     wi = xp.where(is_uniform[..., np.newaxis], uniform_direction(v, rest, u2), clipped)
     return wi, eon_cltc_pdf(wo, wi, roughness)
 
@@ -517,8 +515,10 @@ def cltc_kept_fraction(d: Array) -> Array:
     return 0.5 * (1.0 + 1.0 / root(1.0 + d * d))
 
 
-def _draw(wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array) -> tuple[Array, Array]:
-    """`cltc_sample` for two random numbers; `rest` is an accurate 1 - u1."""
+def _cltc_draw(
+    wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array
+) -> tuple[Array, Array]:
+    """`cltc_sample` without checks; `rest` is an accurate 1 - u1."""
     d = ltc_md(wo[..., 2], roughness)
     wi, pdf = ltc_transformed(wo, cltc_clipped(u1, u2, d, rest), roughness, d)
     # On the edge of the lune, d x + z is zero up to rounding of either sign.
@@ -540,14 +540,13 @@ def cltc_clipped(u1: Array, u2: Array, d: Array, rest: Array | None = None) -> A
     wh = around(root(rest), root(u1), u2)
     x, y = wh[..., 0], wh[..., 1]
     xp, kept, length = array_namespace(x, d), cltc_kept_fraction(d), root(1.0 + d * d)
-    cut = 0.5 * d * d / (length * (1.0 + length))  # 1 - kept, which is small
-    half = root(rest + x * x)
-    behind = x < 0.0
-    far = half + xp.where(behind, -x, x)
-    near = rest / far
-    ahead, back = xp.where(behind, far, near), xp.where(behind, near, far)
-    z = root(kept * ahead * (2.0 * half * cut + kept * back))
-    x = half * cut + x * kept
+    lost = 0.5 * d * d / (length * (1.0 + length))  # 1 - kept, which is small
+    half, negative = root(rest + x * x), x < 0.0
+    larger = half + xp.where(negative, -x, x)
+    smaller = rest / larger
+    minus, plus = xp.where(negative, larger, smaller), xp.where(negative, smaller, larger)
+    z = root(kept * minus * (2.0 * half * lost + kept * plus))
+    x = half * lost + x * kept
     return stack_xyz(xp.where(d > 0.0, x, -x), y, z)
 
 

@@ -172,11 +172,9 @@ class ShadingModel:
         return "\n  ".join([f"{self.name}: {self.title}; {', '.join(self.functions)}", *lines])
 
     def __dir__(self) -> Iterable[str]:
-        """Names of all attributes, without unsupported functions."""
         return [name for name in super().__dir__() if name in self.functions or name not in LACKS]
 
     def _need(self, function: str) -> None:
-        """Raise ValueError if the model lacks a function, with the reason and those it supports."""
         if function not in self.functions:
             raise ValueError(
                 f"{self.name} has no {function}{LACKS[function]}; it has {', '.join(self.functions)}"

@@ -48,7 +48,6 @@ def row(
     albedo_avg: Callable[..., Array] | None = None,
     brdf_of: str = "",
 ) -> Model:
-    """The row of a model from functions of its reflectance and its parameter."""
     category = "burley_diffuse_bsdf" if name.startswith("burley") else "oren_nayar_diffuse_bsdf"
     parameters = [node_parameter(category, "color", "rho")]
     if parameter:

@@ -371,7 +371,6 @@ def _airy(
     film_ior: Array,
     material: dict[str, Array],
 ) -> Array:
-    """F_airy in linear RGB, shape (3, ...)."""
     inputs = {k: v for k, v in material.items() if k != "tint"}
     opd = path_difference(mu, thickness, film_ior)
     p, s = SUBSTRATES[category](mu, film_ior, form, **inputs)

@@ -370,7 +370,6 @@ def index_of(reflectance: Array, least: float) -> Array:
 
 
 def _mean(color: Array, axis: int) -> Array:
-    """Mean of the channels, as a single channel."""
     return array_namespace(color).mean(color, axis=axis, keepdims=True)
 
 

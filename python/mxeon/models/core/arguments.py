@@ -248,14 +248,12 @@ def checked_colors(
 
 
 def checked_switch(name: str, value: bool) -> bool:
-    """Argument as a bool; raises ValueError unless it is True or False."""
     if not isinstance(value, bool | np.bool_):
         raise ValueError(f"{name} must be True or False; got {value!r}")
     return bool(value)
 
 
 def checked_count(name: str, value: int) -> int:
-    """Argument as an integer; raises ValueError unless it lies between 0 and 2^31."""
     if not isinstance(value, int | np.integer) or isinstance(value, bool) or not 0 < value < 2**31:
         raise ValueError(f"{name} must be a positive integer; got {value!r}")
     return int(value)
@@ -386,7 +384,6 @@ def _real(name: str, value: ArrayLike) -> Numbers:
 
 
 def _refuse(rule: str, array: Numbers, valid: Numbers, quantity: str = "") -> NoReturn:
-    """Raise ValueError for the first element of `array` that is not valid."""
     index = tuple(int(i) for i in np.argwhere(~valid)[0])
     location = f" at index {index}" if valid.size > 1 else ""
     raise ValueError(f"{rule}; got {quantity}{array[index]}{location}")

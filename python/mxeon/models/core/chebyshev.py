@@ -42,5 +42,4 @@ def chebyshev_sum(coefficients: Array, x: Array) -> Array:
 
 
 def _angles(count: int) -> Array:
-    """Angles whose cosines are the Chebyshev nodes on [-1, 1]."""
     return np.asarray(np.pi * (np.arange(count) + 0.5) / count)

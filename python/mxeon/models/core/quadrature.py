@@ -58,7 +58,6 @@ def albedo_dir_quadrature(
 def _integral(
     brdf: Callable[..., Array], mu: Array, rho: Array, parameters: Iterable[Array], nodes: int
 ) -> Array:
-    """Directional albedo for arguments that already have the same shape."""
     wo, wi, weights = hemisphere_nodes(mu, nodes)
     rows = (value[..., np.newaxis] for value in parameters)
     values = brdf(wo[..., np.newaxis, :], wi, rho[..., np.newaxis, :], *rows)

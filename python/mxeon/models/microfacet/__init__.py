@@ -92,7 +92,6 @@ def compensation(pair: Pair) -> Array:
 
 
 def uncompensated(pair: Pair) -> float:
-    """Factor 1 of a lobe without energy compensation."""
     return 1.0
 
 

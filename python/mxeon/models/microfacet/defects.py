@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -34,6 +35,9 @@ ALBEDO_FIT = np.array(
 # Smallest cosine and alpha passed to ALBEDO_FIT. The shaders of 1.39.5 clamp both to M_FLOAT_EPS, 1e-8; between the
 # two limits the fit changes by less than 2e-5.
 CLAMP = 1e-6
+
+
+Factor: TypeAlias = Callable[[Pair], Array]
 
 
 @dataclass(frozen=True)
@@ -79,21 +83,22 @@ def _F_normal(pair: Pair) -> Array:
     return pair.curve.at(np.ones_like(pair.cosine), **pair.material)
 
 
+def _F_view(pair: Pair) -> Array:
+    return pair.curve.at(np.minimum(pair.wo[2], 1.0), **pair.material)
+
+
 def _F_average(pair: Pair) -> Array:
     ends = (pair.curve.at(np.full_like(pair.cosine, mu), **pair.material) for mu in (1.0, 0.0))
     return schlick_average(*ends)
 
 
 def _missing_by_fit(pair: Pair) -> Array:
-    """(1 - E_ss) / E_ss by ALBEDO_FIT of MaterialX 1.39.5."""
     alpha = np.maximum(ggx.mean_alpha(pair.roughness), CLAMP)
     E = fitted_albedo(np.clip(pair.wo[2], CLAMP, 1.0), alpha, 1.0, 1.0)
     return (1.0 - E) / E
 
 
-def _compensated(
-    F: Callable[[Pair], Array], lost: Callable[[Pair], Array] = microfacet.missing
-) -> Callable[[Pair], Array]:
+def _compensated(F: Factor, lost: Factor) -> Factor:
     """Compensation factor that uses `F` as F_ss and `lost` as (1 - E_ss) / E_ss."""
     return lambda pair: 1.0 + F(pair) * lost(pair)
 
@@ -122,43 +127,25 @@ def _june(pair: Pair) -> Array:
 
 
 UNCOMPENSATED = "no energy compensation"
+AND_FIT, AVERAGE_BY_ENDS = "and MaterialX's fit of E_ss", "the average F0 + (F90 - F0) / 21"
 MEAN_ALPHA = "Smith at the geometric mean"
+# Name after "compensation_", title after "compensation with", F_ss and (1 - E_ss) / E_ss.
+COMPENSATIONS = (
+    ("half", "F at the half vector", _F_half, microfacet.missing),
+    ("f0", "F along the normal", _F_normal, microfacet.missing),
+    ("f0_fitted", f"F along the normal {AND_FIT}", _F_normal, _missing_by_fit),
+    ("view", "F at the view direction", _F_view, microfacet.missing),
+    ("fitted", f"F at the half vector {AND_FIT}", _F_half, _missing_by_fit),
+    ("average", AVERAGE_BY_ENDS, _F_average, microfacet.missing),
+    ("average_fitted", f"{AVERAGE_BY_ENDS} {AND_FIT}", _F_average, _missing_by_fit),
+)
 MICROFACET_DEFECTS = (
     MicrofacetDefect("no_compensation", UNCOMPENSATED, Lobe(microfacet.uncompensated)),
-    MicrofacetDefect(
-        "compensation_half",
-        "compensation with F at the half vector",
-        Lobe(_compensated(_F_half)),
-    ),
-    MicrofacetDefect(
-        "compensation_f0",
-        "compensation with F along the normal",
-        Lobe(_compensated(_F_normal)),
-    ),
-    MicrofacetDefect(
-        "compensation_f0_fitted",
-        "compensation with F along the normal and MaterialX's fit of E_ss",
-        Lobe(_compensated(_F_normal, _missing_by_fit)),
-    ),
-    MicrofacetDefect(
-        "compensation_view",
-        "compensation with F at the view direction",
-        Lobe(_compensated(lambda p: p.curve.at(np.minimum(p.wo[2], 1.0), **p.material))),
-    ),
-    MicrofacetDefect(
-        "compensation_fitted",
-        "compensation with F at the half vector and MaterialX's fit of E_ss",
-        Lobe(fitted_half),
-    ),
-    MicrofacetDefect(
-        "compensation_average",
-        "compensation with the average F0 + (F90 - F0) / 21",
-        Lobe(_compensated(_F_average)),
-    ),
-    MicrofacetDefect(
-        "compensation_average_fitted",
-        "compensation with the average F0 + (F90 - F0) / 21 and MaterialX's fit of E_ss",
-        Lobe(averaged_fitted),
+    *(
+        MicrofacetDefect(
+            f"compensation_{name}", f"compensation with {title}", Lobe(_compensated(F, lost))
+        )
+        for name, title, F, lost in COMPENSATIONS
     ),
     MicrofacetDefect(
         "smith_separable", "masking and shadowing uncorrelated", Lobe(visibility=_separable)

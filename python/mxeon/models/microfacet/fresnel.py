@@ -111,7 +111,6 @@ def schlick(mu: Array, color0: Array, color82: Array, color90: Array, exponent: 
 
 
 def dielectric_avg(ior: Array) -> Array:
-    """F_ss of a dielectric without checks; see `fresnel_dielectric_avg`."""
     xp = array_namespace(ior)
     inside = ior < 1.0
     gap = xp.where(inside, (1.0 - ior) / xp.maximum(ior, LEAST_IOR), ior - 1.0)
@@ -335,7 +334,6 @@ def fresnel_schlick_avg(
 def _colors(
     formula: Callable[..., Array], colors: dict[str, ArrayLike], **numbers: ArrayLike
 ) -> Array:
-    """A formula evaluated over broadcast colors and numbers."""
     vectors = checked_vectors(colors)
     return evaluate_material(formula, vectors, checked_all(numbers), channel_count(vectors))
 

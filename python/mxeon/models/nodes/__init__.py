@@ -12,6 +12,5 @@ PBR_NODES = (*LOBE_NODES, *MICROFACET_NODES)
 
 
 def node(name: str) -> PbrNode:
-    """The row of PBR_NODES with this name."""
     rows = {row.name: row for row in PBR_NODES}
     return rows[checked_choice("node", name, rows)]

@@ -81,7 +81,6 @@ class Parameter:
 
 
 def parameter(category: str, name: str, quantity: str = "") -> Parameter:
-    """The input `name` of the node `category`."""
     return Parameter(name, DEFAULTS[category][name], quantity or name)
 
 

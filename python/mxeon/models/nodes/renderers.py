@@ -96,7 +96,6 @@ def _single(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Arra
 
 
 def _largest(albedo: Array) -> Array:
-    """The albedo with every channel replaced by the largest."""
     return np.broadcast_to(albedo.max(axis=-1, keepdims=True), albedo.shape)
 
 

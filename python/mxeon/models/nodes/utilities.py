@@ -248,6 +248,5 @@ UTILITIES = (
 
 
 def node(category: str) -> UtilityNode:
-    """The row of UTILITIES with this category."""
     rows = {row.category: row for row in UTILITIES}
     return rows[checked_choice("category", category, rows)]

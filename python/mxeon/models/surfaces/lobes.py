@@ -95,7 +95,6 @@ class Light:
         return np.broadcast_to(lobe.albedo(wo, self._columns(inputs)), wo.shape)
 
     def both(self, lobe: PbrNode, frame: Frame = PLAIN, **inputs: ArrayLike) -> tuple[Array, Array]:
-        """`response` and `albedo` of a lobe."""
         return self.response(lobe, frame, **inputs), self.albedo(lobe, frame, **inputs)
 
     def layered(
@@ -150,6 +149,5 @@ def f0_from_ior(eta: ArrayLike) -> Array:
 def schlick_inputs(
     f0: ArrayLike, f90: ArrayLike, alpha: Array, f82: ArrayLike = ONES
 ) -> dict[str, ArrayLike]:
-    """Inputs of SCHLICK with exponent 5."""
     colors = {"color0": f0, "color82": f82, "color90": f90}
     return {**colors, "exponent": 5.0, "roughness": alpha}

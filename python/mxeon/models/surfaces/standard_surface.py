@@ -77,7 +77,6 @@ def roughened(p: Parameters, roughness: Array) -> Array:
 
 
 def alphas(roughness: Array, anisotropy: Array) -> Array:
-    """alpha along tangent and bitangent, (N, 2)."""
     rough, stretch = np.broadcast_arrays(roughness[:, 0], anisotropy[:, 0])
     return np.asarray(roughness_anisotropy(rough, stretch))
 
