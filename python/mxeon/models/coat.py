@@ -56,10 +56,8 @@ and exact at rho 1. The light that EON returns into a twelfth of the hemisphere 
 times the walk's at r 0, and 0.79 to 1.15 times at r 1. (2) is the integral of (1) to 1e-6, and to
 1e-4 at alpha 0.01 and index near 1.
 
-k and `<k>` have closed forms for EON, and so for Lambert, which is r = 0. Another base would need
-its own. A sum for any base would use the base's albedo as k and its mean albedo as `<k>`. It is not
-the integral of (1); over the same domain it changes EON's albedo by up to 0.004 at r 1/2, and
-0.0075 at r 1.
+k and `<k>` have closed forms for EON, and so for Lambert, which is r = 0. Using the base's albedo as
+k and its mean albedo as `<k>` would change EON's albedo by up to 0.004 at r 1/2 and 0.0075 at r 1.
 """
 
 from __future__ import annotations

@@ -599,8 +599,7 @@ def _components(vectors: dict[str, Numbers]) -> list[Array]:
 def visible_density(wo: Array, wh: Array, roughness: Array) -> Array:
     """Density G1(wo) D(wh) / (4 mu_o), components first; G1 / mu_o is finite at grazing."""
     masking = 0.5 * ggx.reciprocal(wo[2] + ggx.stretched_length(wo, roughness))
-    density: Array = masking * ggx.ndf(wh, roughness)
-    return density
+    return masking * ggx.ndf(wh, roughness)
 
 
 def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:

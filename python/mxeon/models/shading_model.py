@@ -152,12 +152,10 @@ class ShadingModel:
 
     @property
     def name(self) -> str:
-        """Name that `mxeon.model` accepts."""
         return self.row.name
 
     @property
     def title(self) -> str:
-        """Name for printing."""
         return self.row.title
 
     @property

@@ -221,8 +221,7 @@ def evaluate_transmittance(
             mu_i, length = within(mu_i), ggx.stretched_length(wo, roughness)
             visibility = ggx.reciprocal(2.0 * (length * mu_i + length_i * wo[2]))
             passed = passed * (2.0 * mu_i * visibility * (wo[2] + length))
-        T: Array = array_namespace(passed).sum(passed, axis=tuple(range(1, 1 + axes)))
-        return T
+        return array_namespace(passed).sum(passed, axis=tuple(range(1, 1 + axes)))
 
     def value(wo: Array, roughness: Array, **material: Array) -> Array:
         wo, roughness = wo + 0.0 * roughness[:1], roughness + 0.0 * wo[:1]
@@ -327,15 +326,13 @@ READINGS = {
     "channel": Reading("1 - F of all inputs; an index for each channel", _whole, "channel"),
     "closure": Reading(
         "1 - F without color82",
-        lambda c, color0, color82, color90, exponent: _whole(
-            c, color0, 0.0 * color82 + 1.0, color90, exponent
-        ),
+        lambda c, color82, **rest: _whole(c, color82=0.0 * color82 + 1.0, **rest),
         least=0.0,
     ),
     "grazing": Reading(
         "1 - F with color82 color90 at grazing",
-        lambda c, color0, color82, color90, exponent: _whole(
-            c, color0, 0.0 * color82 + 1.0, color82 * color90, exponent
+        lambda c, color82, color90, **rest: _whole(
+            c, color82=0.0 * color82 + 1.0, color90=color82 * color90, **rest
         ),
         "channel",
     ),

@@ -39,12 +39,10 @@ def albedo_dir_quadrature(
     """
     arguments.checked_count("nodes", nodes)
     mu, rho = arguments.checked("mu", mu), arguments.with_axis(arguments.checked("rho", rho))
-    parameters = [
-        arguments.checked_real(f"parameter {k}", value) for k, value in enumerate(parameter)
-    ]
-    numbers = {"mu": mu} | {f"parameter {k}": value for k, value in enumerate(parameters)}
-    lead, xp = arguments.lead_shape({"rho": rho}, numbers), array_namespace(mu, rho, *parameters)
-    mu, *parameters = (xp.broadcast_to(value, lead) for value in (mu, *parameters))
+    named = {f"parameter {k}": value for k, value in enumerate(parameter)}
+    numbers = {"mu": mu} | {name: arguments.checked_real(name, v) for name, v in named.items()}
+    lead, xp = arguments.lead_shape({"rho": rho}, numbers), array_namespace(rho, *numbers.values())
+    mu, *parameters = (xp.broadcast_to(value, lead) for value in numbers.values())
     rho = xp.broadcast_to(rho, (*lead, rho.shape[-1]))
     if xp is not arrays.NUMPY:
         return _integral(brdf, mu, rho, parameters, nodes)

@@ -71,8 +71,7 @@ def schlick_average(normal: Array, grazing: Array | float) -> Array:
 
     MaterialX has used it for every curve since pull request 2958 (June 2026).
     """
-    average: Array = normal + (grazing - normal) / 21.0
-    return average
+    return normal + (grazing - normal) / 21.0
 
 
 def _F_half(pair: Pair) -> Array:

@@ -325,8 +325,7 @@ def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
     azimuth = 1.0 + kq * (2.0 + 0.5 * kq * (r + 1.0 / r))
     mu_o, mu_i = xp.sin(e_o), xp.sin(e_i)
     smith = smith_lambda(mu_o, alpha) * mu_i + smith_lambda(mu_i, alpha) * mu_o
-    density: Array = alpha2 * mu_i * xp.cos(e_i) * azimuth / smith
-    return density
+    return alpha2 * mu_i * xp.cos(e_i) * azimuth / smith
 
 
 # Chebyshev nodes in the cube root of s and in the square root of alpha; `refined` of the quadrature

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -155,14 +156,9 @@ LOBE_NODES = (
 )
 
 
-def _value(form: HairForm = TEXT) -> Callable[[Array, Array, Inputs], Array]:
-    """BCSDF of the hair model in the given form, as a function of the node's inputs."""
-
-    def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
-        named = {name: inputs[name] for name in hair.DEFAULTS if name in inputs}
-        return hair.chiang_hair_bcsdf(wo, wi, **named, form=form)
-
-    return value
+def _hair(wo: Array, wi: Array, inputs: Inputs, form: HairForm = TEXT) -> Array:
+    values = {name: inputs[name] for name in hair.DEFAULTS if name in inputs}
+    return hair.chiang_hair_bcsdf(wo, wi, **values, form=form)
 
 
 def _albedo(wo: Array, inputs: Inputs) -> Array:
@@ -186,12 +182,15 @@ HAIR_NODE = PbrNode(
     "Chiang hair",
     "chiang_hair_bsdf",
     tuple(hair.DEFAULTS),
-    _value(),
+    _hair,
     _albedo,
     reciprocal=False,
     variants=(
-        *(Variant(title, _value(form)) for title, form in FORMS.items()),
-        *(Variant(title, _value(form), permitted=True) for title, form in READINGS.items()),
+        *(Variant(title, partial(_hair, form=form)) for title, form in FORMS.items()),
+        *(
+            Variant(title, partial(_hair, form=form), permitted=True)
+            for title, form in READINGS.items()
+        ),
         Variant("a GGX lobe of the mean roughness and tint, without absorption", albedo=_ggx),
         Variant(
             "no factor 1/pi, as in later versions of the text",
