@@ -193,10 +193,7 @@ def _coated_model(name: str, title: str) -> ShadingModel:
 
 
 def _per_coat(function: Callable[..., Any], inputs: Inputs, *vectors: Array) -> Any:
-    """Apply a function of `mxeon.models.coat`, which accepts one coat, to rows with several coats.
-
-    The last two inputs are `alpha` and `ior` of the coat.
-    """
+    """A function of `mxeon.models.coat`, which accepts one coat, for rows with several coats."""
     # Arrays of other libraries are passed on: the function rejects several coats.
     *others, alpha, ior = (*vectors, *inputs.values())
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):

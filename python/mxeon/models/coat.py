@@ -373,20 +373,12 @@ def nonnegative(curves: Iterable[Array]) -> Curves:
 
 
 def refracted_cosine(mu: Array, ior: float | Array) -> Array:
-    """Cosine of the refracted direction; at index 1 it equals mu to the last bit.
-
-    mu'^2 = mu^2 + (1 - mu^2) (1 - 1 / n^2)
-    """
+    """Cosine mu' of the refracted direction; at index 1 it equals mu to the last bit."""
     return root(mu * mu + (1.0 - mu) * (1.0 + mu) * (1.0 - 1.0 / ior**2))
 
 
 def mean_parts(mu: Array, b: Array, ior: float | Array, r: Array) -> tuple[Array, Array, Array]:
-    """The terms mu', 1 + r b(mu) and H(mu') from which k is computed.
-
-        k = rho A (1 + r b(mu) + W H(mu') <H>_R)
-
-    The parameter `b` is b mu' / S', as in `Curves`.
-    """
+    """The terms mu', 1 + r b(mu) and H(mu') of k; the argument `b` is `Curves.b`, b mu' / S'."""
     m = refracted_cosine(mu, ior)
     return m, 1.0 + r * b * root((1.0 - m) * (1.0 + m)) / nonzero(m), fon_loss_mu(m)
 
@@ -413,11 +405,9 @@ def base_under_varnish(
     rho: Array,
     r: Array,
 ) -> Array:
-    """BRDF of EON under the interface, the bracket in (1).
+    """BRDF of EON under the interface, the bracket in (1); at index 1, EON's to the last bit.
 
-        f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))
-
-    At index 1 it is EON's BRDF to the last bit. The product k k is expanded in powers of W: with a
+    The product k k is expanded in powers of W: with a
     single material, the coefficients have channels but no pairs, which saves multiplications.
     """
     (m_o, p_o, H_o), (m_i, p_i, H_i) = (
@@ -435,10 +425,7 @@ def base_under_varnish(
 def varnish_albedo(
     mu: Array, curves: Curves, ior: float | Array, means: Means, rho: Array, r: Array
 ) -> Array:
-    """Directional albedo of EON under a varnish: equation (2).
-
-    E = E_r + T [E_b(mu') - R k (1 - <E_b>_R) / (1 - R <k>)],  T = 1 - E_r,  E_r = E_single + D
-    """
+    """Directional albedo of EON under a varnish: equation (2)."""
     E_single, D, b = curves
     _, p, H = mean_parts(mu, b, ior, r)
     A, W = formulas.fon_af(r), formulas.eon_multiple_ratio(rho, r)

@@ -134,10 +134,7 @@ def eon_multiple_ratio(rho: Array, roughness: Array) -> Array:
 
 
 def oren_nayar_quotient(value: Array, divisor: Array) -> Array:
-    """`value / divisor`; 0 if the divisor, which must not be negative, is 0.
-
-    Divisors below the smallest normal number count as 0, because the quotient might overflow.
-    """
+    """`value / divisor`; 0 if the divisor is below the smallest normal number: no overflow."""
     xp = array_namespace(value, divisor)
     return value / xp.where(divisor < arrays.least_normal(divisor), np.inf, divisor)
 

@@ -141,10 +141,7 @@ def stack_xyz(x: Array, y: Array, z: Array) -> Array:
 
 
 def azimuth_frame(wo: Array) -> tuple[Array, Array, Array]:
-    """Cosine and sine of the azimuth of `wo`, and the sine of its polar angle.
-
-    For `wo` along the normal, the azimuth is set to 0.
-    """
+    """Cosine and sine of wo's azimuth, which is 0 along the normal; sine of wo's polar angle."""
     xp, sine = array_namespace(wo), arrays.hypot(wo[..., 0], wo[..., 1])
     tilted = sine > 0.0
     length = xp.where(tilted, sine, 1.0)
@@ -278,10 +275,7 @@ def eon_segment(mu: Array, S: Array) -> Array:
 
 
 def stretched(u: Array, start: Array, end: Array) -> Array:
-    """`u` mapped from [start, end) to [0, 1), clamped to the nearer end.
-
-    Clamping before the division avoids an overflow for the shortest intervals.
-    """
+    """`u` mapped from [start, end) to [0, 1); clamped first, so that no quotient overflows."""
     xp = array_namespace(u, start, end)
     length = xp.where(end > start, end - start, 1.0)
     clamped = xp.minimum(xp.maximum(u, start), end)

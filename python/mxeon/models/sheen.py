@@ -286,10 +286,7 @@ def _azimuths_closed(
 
 @lru_cache(maxsize=1)
 def _rule() -> tuple[Array, Array]:
-    """Nodes and weights of a symmetric double-exponential rule on [0, 1].
-
-    1 - x is x reversed; the reversed nodes keep all digits of 1 - x near the end.
-    """
+    """Nodes and weights of a double-exponential rule on [0, 1]; reversed nodes are exact 1 - x."""
     t = np.arange(-60, 61) * 0.055
     x = 1.0 / (1.0 + np.exp(-np.pi * np.sinh(t)))
     weight = 0.055 * np.pi * np.cosh(t) * x * x[::-1]

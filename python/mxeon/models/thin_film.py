@@ -156,10 +156,7 @@ def first_amplitudes(mu: Array, film_ior: Array) -> tuple[Array, Array]:
 
 
 def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> Array:
-    """Reflected intensity of one polarization in CIE XYZ, shape (3, ...): section Airy Summation.
-
-    `orders` is M; None sums all orders.
-    """
+    """CIE XYZ of one polarization, (3, ...), from M `orders` or all: section Airy Summation."""
     (first, (real, imaginary), R23), xp = interface, array_namespace(*interface[::2], opd)
     R12 = first * first
     passed, lost = 1.0 - R12, 1.0 - R12 * R23  # if `lost` is 0, `passed` is 0 too
@@ -306,10 +303,7 @@ MATERIALX = Form(CIE_RGB, 2, True, 0.5, 0.01)
 
 
 def film_curve(category: str, form: Form = TEXT) -> Curve:
-    """Fresnel curve of a microfacet node with `thinfilm_thickness` and `thinfilm_ior` as inputs.
-
-    With thickness 0 it is the node's own curve.
-    """
+    """Fresnel curve of a node with the inputs of a film; with thickness 0, the node's own curve."""
     bare = CATEGORIES[category][0]
 
     def at(
@@ -510,10 +504,7 @@ def _material(
 
 
 def _short(values: arrays.Numbers, channels: int, wo: ArrayLike) -> arrays.Numbers:
-    """Values reduced to one row if they have a row for each `wo` and all rows are equal.
-
-    This avoids computing the film's integral F_ss for every point of a picture.
-    """
+    """Values reduced to one row if all rows are equal: a film's F_ss is then computed once."""
     if array_namespace(values) is not NUMPY:
         return values
     many = np.ndim(wo) == 2 and values.ndim == channels + 1 and len(values) == len(np.asarray(wo))
@@ -521,10 +512,7 @@ def _short(values: arrays.Numbers, channels: int, wo: ArrayLike) -> arrays.Numbe
 
 
 def polynomial_curve(category: str, form: Form) -> Callable[..., Array]:
-    """F of a film, approximated for each material by a polynomial in the cosine.
-
-    Cosines have the shape (nodes, nodes, ...), F has (3, nodes, nodes, ...).
-    """
+    """F of a film as a polynomial in the cosine: (3, n, n, ...) for cosines (n, n, ...)."""
     bare_at = CATEGORIES[category][0].at
     curve = film_curve(category, replace(form, clamped=False))
 

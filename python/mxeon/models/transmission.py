@@ -135,10 +135,7 @@ def evaluate_btdf(
     vectors: dict[str, Numbers],
     numbers: dict[str, Numbers],
 ) -> Array:
-    """Values of a BTDF, shape (..., C); `vectors` and `numbers` are checked inputs of the curve.
-
-    - `at`: `at(cosine, ior=ior, **material)`, shape (C, ...): F at the cosine on the side of wo.
-    """
+    """Values of a BTDF, (..., C); `at(cosine, ior=ior, **material)`, (C, ...), is F at wo . wh."""
     directions = {"wo": checked_directions("wo", wo), "wi": arguments.checked_transmitted("wi", wi)}
     pairs = {"roughness": checked_roughness(roughness)}
 

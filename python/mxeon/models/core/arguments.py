@@ -106,11 +106,7 @@ def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:
 
 
 def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> tuple[int, ...]:
-    """Shape to which all arguments broadcast, without the last axis of `vectors`.
-
-    - `vectors`: Directions, random numbers or colors by name, shapes (..., C).
-    - `numbers`: Arguments without components, shapes (...).
-    """
+    """Shape to which all arguments broadcast, without the last axis of `vectors`, (..., C)."""
     leads = {name: tuple(array.shape[:-1]) for name, array in vectors.items()}
     leads |= {name: tuple(array.shape) for name, array in numbers.items()}
     try:
@@ -159,10 +155,7 @@ def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, .
 
 
 def tile(array: Numbers, block: tuple[slice, ...]) -> Array:
-    """The part of `array` selected by a block of its leading axes, with the last axis first.
-
-    `block` has one slice per axis except the last. Axes of length 1, which broadcast, stay whole.
-    """
+    """A block of the leading axes, with the last axis first; axes of length 1 stay whole."""
     axes = zip(block, array.shape[:-1], strict=True)
     part = array[tuple(index if length > 1 else slice(None) for index, length in axes)]
     return channels_first(part)
@@ -174,10 +167,7 @@ def channels_first(array: Numbers) -> Array:
 
 
 def with_axes(array: Numbers, ndim: int) -> Numbers:
-    """Array with `ndim` axes; missing leading axes get length 1.
-
-    Axes that were broadcast, except the last, are reduced to length 1.
-    """
+    """Array with `ndim` axes; missing axes, and broadcast axes except the last, get length 1."""
     *strides, _ = array.strides
     narrow = array[tuple(slice(None if stride else 1) for stride in strides)]
     return narrow.reshape((1,) * (ndim - array.ndim) + narrow.shape)
@@ -251,12 +241,6 @@ def checked_switch(name: str, value: bool) -> bool:
     if not isinstance(value, bool | np.bool_):
         raise ValueError(f"{name} must be True or False; got {value!r}")
     return bool(value)
-
-
-def checked_count(name: str, value: int) -> int:
-    if not isinstance(value, int | np.integer) or isinstance(value, bool) or not 0 < value < 2**31:
-        raise ValueError(f"{name} must be a positive integer; got {value!r}")
-    return int(value)
 
 
 def checked_choice(

@@ -105,7 +105,6 @@ def evaluate_number(
     size: int = arguments.BLOCK,
 ) -> Array:
     """`evaluate_material` for a formula without channels; result (...)."""
-
     values = evaluate_material(
         lambda **given: formula(**given)[np.newaxis], vectors, numbers, 1, size
     )

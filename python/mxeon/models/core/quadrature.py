@@ -37,7 +37,8 @@ def albedo_dir_quadrature(
         >>> albedo_dir_quadrature(eon_brdf, 0.3, [0.5, 1.0], 1.0).round(12)
         array([0.47804055, 1.        ])
     """
-    arguments.checked_count("nodes", nodes)
+    if not isinstance(nodes, int | np.integer) or isinstance(nodes, bool) or not 0 < nodes < 2**31:
+        raise ValueError(f"nodes must be a positive integer; got {nodes!r}")
     mu, rho = arguments.checked("mu", mu), arguments.with_axis(arguments.checked("rho", rho))
     named = {f"parameter {k}": value for k, value in enumerate(parameter)}
     numbers = {"mu": mu} | {name: arguments.checked_real(name, v) for name, v in named.items()}

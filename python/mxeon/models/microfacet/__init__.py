@@ -49,14 +49,11 @@ from mxeon.models.microfacet.slopes import slope_nodes, transmitting_nodes
 
 @dataclass(frozen=True)
 class Curve:
-    """Fresnel curve of a node.
-
-    - `critical`: `critical(**material)`, shape (...): squared cosine below which F is 1; no such
-      cosine exists if it is 0 or negative.
-    """
+    """Fresnel curve of a node."""
 
     at: Callable[..., Array]  # `at(cosine, **material)`, shape (C, ...): F without the tint
     average: Callable[..., Array]  # `average(**material)`, shape (C, ...): F_ss
+    # `critical(**material)`, (...): square of the critical angle's cosine; at most 0 if none exists
     critical: Callable[..., Array] = lambda **material: np.zeros(1)
 
 
@@ -193,14 +190,11 @@ def missing_of(wo: Array, roughness: Array) -> Array:
 
 @dataclass(frozen=True)
 class Lobe:
-    """Terms of a microfacet BRDF; the defaults are those of [MaterialX2026].
-
-    - `alpha`: Function that turns the input `roughness` into the lobe's alpha.
-    """
+    """Terms of a microfacet BRDF; the defaults are those of [MaterialX2026]."""
 
     factor: Callable[[Pair], Array | float] = compensation
     visibility: Callable[[Pair], Array] = visibility  # G2 / (4 mu_o mu_i)
-    alpha: Callable[[Array], Array] = lambda roughness: roughness
+    alpha: Callable[[Array], Array] = lambda roughness: roughness  # alpha of the input roughness
     scale: float = 1.0
 
     def value(self, pair: Pair, wh: Array) -> Array:

@@ -67,10 +67,7 @@ def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float
 
 
 def schlick_average(normal: Array, grazing: Array | float) -> Array:
-    """Average of F over the hemisphere for a Schlick curve of exponent 5, from its end values.
-
-    MaterialX has used it for every curve since pull request 2958 (June 2026).
-    """
+    """F_ss of a Schlick curve of exponent 5; MaterialX uses it for all curves since June 2026."""
     return normal + (grazing - normal) / 21.0
 
 

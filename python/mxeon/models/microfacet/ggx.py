@@ -60,10 +60,7 @@ def mean_alpha(roughness: Array) -> Array:
 
 
 def visibility(mu_o: Array, mu_i: Array, alpha: Array) -> Array:
-    """G2 / (4 mu_o mu_i) = 1 / (2 (lambda_o mu_i + lambda_i mu_o)).
-
-    It has no limit if both directions graze, and is set to 0 there.
-    """
+    """G2 / (4 mu_o mu_i) = 1 / (2 (lambda_o mu_i + lambda_i mu_o)); 0 if both directions graze."""
     return reciprocal(2.0 * (smith_lambda(mu_o, alpha) * mu_i + smith_lambda(mu_i, alpha) * mu_o))
 
 
@@ -247,10 +244,7 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
 
 def albedo(mu: Array, alpha: Array) -> Array:
-    """E_ss for valid float64 arrays; nearly equal cosines are evaluated once.
-
-    Symmetric points of a picture differ only in the last bits of the cosine, and E_ss is smooth.
-    """
+    """E_ss for valid float64 arrays; cosines that differ only in their last bits share one E_ss."""
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 < mu.size:
         mantissa, exponent = np.frexp(mu)
         rounded = np.ldexp(np.round(mantissa * MANTISSA_STEPS), exponent) / MANTISSA_STEPS
@@ -266,10 +260,7 @@ def _in_blocks(mu: Array, alpha: Array) -> Array:
 
 
 def _extrapolated(mu: Array, alpha: Array) -> Array:
-    """`quadrature`; next to the normal it is extrapolated linearly from two smaller cosines.
-
-    E_ss is smooth in the cosine, but the elevation has no derivative by the cosine at the normal.
-    """
+    """`quadrature`, extrapolated next to the normal, where the elevation has no derivative."""
     xp = array_namespace(mu, alpha)
     step = xp.where(mu > 1.0 - ALONG, ALONG, 0.0)
     near, far = quadrature(xp.stack([mu - step, mu - 2.0 * step]), alpha)

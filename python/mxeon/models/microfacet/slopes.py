@@ -302,10 +302,7 @@ def _crowded(panels: int, nodes: int, array: Array) -> tuple[Array, Array]:
 
 
 def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
-    """Nodes and weights of omega, denser towards right angles, shape (1, n, ...).
-
-    An isotropic surface needs only one half.
-    """
+    """Nodes and weights of omega, (1, n, ...), denser towards right angles; half if isotropic."""
     xp = array_namespace(scale)
     x, weight = (like(v.reshape(-1, *(1,) * scale.ndim), scale) for v in unit_rule(QUADRANT))
     extent = xp.asinh(0.5 * np.pi / scale)

@@ -26,10 +26,7 @@ Value = Callable[[Array, Inputs], Array]
 
 @dataclass(frozen=True)
 class Emission(Node[Value]):
-    """An EDF node, or a node that combines EDFs.
-
-    - `value`: Radiance towards `wo`, normal +z; below the horizon, the radiance of the back.
-    """
+    """An EDF node; `value` is the radiance towards `wo`, below the horizon that of the back."""
 
 
 def front_only(value: Value) -> Value:

@@ -209,8 +209,7 @@ LEAST_RADIUS = 0.1  # smallest radius of the diffusion profile
 def circle_blur(mu: Array, radius: Array, body: float = FLATTEST) -> Array:
     """Cosine of a light, blurred along a circle in the plane of the light as in MaterialX.
 
-    `mu` (N,): Cosine. `radius` (N, 3): Mean free path. `body`: Radius of the circle, the reciprocal
-    of the surface's curvature.
+    `mu` (N,): Cosine. `radius` (N, 3): Mean free path. `body`: Radius of the circle.
     """
     theta = np.arccos(np.clip(mu, -1.0, 1.0))[:, np.newaxis]
     shape = 1.0 / np.maximum(radius, LEAST_RADIUS)
