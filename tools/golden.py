@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes all verdicts of the suite to a file, and compares two such files, to refactor safely.
 
-    python tools/golden.py write out/before.jsonl [--host gl ...]  # by default, all hosts here
+    python tools/golden.py write out/before.jsonl [--host gl ...]  # default: all hosts here
     python tools/golden.py compare out/before.jsonl out/after.jsonl
 
 A line is one check: host, library, subject and key; verdict, tolerance, whether the check noticed

@@ -16,7 +16,7 @@ class Sampler(NamedTuple):
     name: str  # prefix of the functions, such as `ltc` of `ltc_sample` and `ltc_pdf`
     sample: Callable[..., tuple[Array, Array]]  # sample(wo, u, roughness) -> wi, pdf
     pdf: Callable[..., Array]  # pdf(wo, wi, roughness)
-    title: str  # in plots and tables
+    title: str  # name in plots and tables
 
 
 SAMPLERS = (

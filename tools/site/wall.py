@@ -169,10 +169,10 @@ class Wall:
 
     def __init__(self, folders: list[Path]) -> None:
         self.hosts: dict[str, str] = {}
-        self.references: dict[tuple[str, str, str], Path] = {}  # by document, element and scene
+        self.references: dict[tuple[str, str, str], Path] = {}  # keys: document, element and scene
         self.images: dict[Names, Path] = {}
         self.facets: dict[Names, Path] = {}  # polyhedral references
-        self.results: dict[tuple[str, str, str], Result] = {}  # by subject, host and library
+        self.results: dict[tuple[str, str, str], Result] = {}  # keys: subject, host and library
         for folder in folders:
             report = read_results(folder)
             for host in report.hosts:

@@ -52,7 +52,7 @@ NO_REFERENCE = "no reference"
 # States of a document. If several apply, the first one counts.
 STATES = (FAILED, NOT_RUN, REFUSED, DIFFERS, NO_REFERENCE, PASSED)
 PICTURE_CHECKS = ("picture", "finite", DOCUMENT_KEY)
-WHITE_CHECKS = ("environment", "layering", "transmission", "integral")  # in a white environment
+WHITE_CHECKS = ("environment", "layering", "transmission", "integral")  # white environments
 
 
 def show_run(

@@ -16,7 +16,7 @@ from typing import TypeAlias
 from mxeon.errors import InputError
 
 AnyPath = str | os.PathLike[str]
-BINARY: int = getattr(os, "O_BINARY", 0)  # without this flag, Windows writes "\r\n" for "\n"
+BINARY: int = getattr(os, "O_BINARY", 0)  # otherwise, Windows writes "\r\n" for "\n"
 Names: TypeAlias = AnyPath | Iterable[AnyPath]  # a name or path, or several
 TEMPORARY = ".mxeon-"  # prefix of incomplete files and folders
 

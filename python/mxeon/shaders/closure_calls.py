@@ -71,7 +71,7 @@ def _functions(
     targets = {
         GENERATORS[target].create().getTarget(),
         "genglsl",
-    }  # whose code most targets inherit
+    }  # most targets inherit genglsl's code
     standard = set(standard_folders())
     folders = cache(lambda uri: Path(uri).parents)  # many implementations share few documents
     for each in document.getImplementations():

@@ -87,7 +87,7 @@ class Methods:
 
 UNCHOSEN = Methods()  # leaves all choices to the host
 GENERATED = Methods("fis", "refraction", "analytic", 2)  # the defaults of MaterialX's generators
-STORM = Methods("prefilter", "opacity", "analytic", 2)  # of USD, in hdSt/materialXFilter.cpp
+STORM = Methods("prefilter", "opacity", "analytic", 2)  # USD's methods, in hdSt/materialXFilter.cpp
 
 # MaterialX's declarations of the methods in a text.
 ALBEDO = re.compile(r"^#define DIRECTIONAL_ALBEDO_METHOD (\d+)$", re.MULTILINE)

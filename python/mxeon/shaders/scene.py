@@ -65,12 +65,12 @@ class Client:
     """Values that a client binds in addition to the scene; the defaults are the generator's."""
 
     lamps: tuple[Lamp, ...] = ()
-    turn: Matrix = TURN  # from the world to the environment map's frame
+    turn: Matrix = TURN  # maps the world to the environment map's frame
     intensity: float = 1.0  # scale of the environment
     radiance: NDArray[np.float32] | None = None  # environment map that replaces the scene's
     irradiance: NDArray[np.float32] | None = None
     two_sided: bool = False  # whether transmitted light is tinted both on entry and on exit
-    shadow: Matrix = ONE  # from the world to the shadow map, in [-1, 1]
+    shadow: Matrix = ONE  # maps the world to the shadow map, in [-1, 1]
     moments: tuple[float, float] = (
         1.0,
         1.0,
