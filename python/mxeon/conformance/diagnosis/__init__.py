@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Explains failures by a model, defect or fault that gives the values, or by the wrong region."""
+"""Explains failures by a function or a fault that gives the same values, or by a wrong region.
+
+A candidate is a function that may give a node's values, such as another model. A fault is a mistake
+between a node's inputs and its model. A region is a set of pairs or a range of an input.
+"""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import zip_longest
 from operator import attrgetter, methodcaller
 from typing import TypeAlias
 
@@ -13,7 +18,7 @@ from mxeon.conformance.cache import remembered
 from mxeon.conformance.case import LIGHT, Case, albedos, dead_inputs, frames, throughputs, values
 from mxeon.conformance.diagnosis import faults, regions
 from mxeon.conformance.diagnosis.faults import NO_FAULT, Fault, exchanges, scaled_by
-from mxeon.conformance.diagnosis.regions import EXACT, correct_except, place_of, smallest, span
+from mxeon.conformance.diagnosis.regions import EXACT, correct_except, region_of, smallest, span
 from mxeon.conformance.results import NO_DIAGNOSIS, Cause, Diagnosis, Kind
 from mxeon.conformance.samples import Array, Batch, Candidate, sky
 from mxeon.conformance.spec import COMPONENTS, Ability
@@ -32,23 +37,25 @@ from mxeon.models.shading_model import UP
 
 Measure: TypeAlias = Callable[[Case], Iterable[Compared]]
 
-EXCHANGES = (NO_FAULT,)  # tries no faults except exchanged inputs and a scale factor
+EXCHANGES = (NO_FAULT,)  # the only faults to try are exchanged inputs and a wrong factor
 PLACELESS = Ability.MEDIUM | Ability.OUTPUT  # nodes that depend on neither view nor light
-# If one of these causes is found, the check's own values are searched for a wrong input range.
+# Causes that are replaced by a region with all wrong values, if the check's values have one.
 SINGLY_RIGHT, UNKNOWN, OTHER_AVERAGE, UNMASKED = UNTOLD = tuple(
     Cause(Kind.UNKNOWN, key) for key in ("singly_right", "unknown", "other_average", "unmasked")
 )
-WORST = 32  # number of the worst pairs that a cure is tried on, all of which must be wrong
-CURES = 2  # maximum number of reported inputs
+UNEXPLAINED = Diagnosis((UNKNOWN,))
+# A cure is a value of an input for which a check's worst pairs are correct.
+WORST = 32  # number of the worst pairs for which cures are tried
+CURES = 2  # maximum number of reported cures
 DIMMING = ("weight", "occlusion")  # inputs that can reduce any error
-SHOWN = 0.1  # smallest fraction of light that must remain after a cure
-# An explanation is complete if its distance is below SAME times that of any other explanation,
-# and it is reported as the nearest below NEAR times.
+REMAINING = 0.1  # smallest share of the light that a cure may leave
+# An explanation is complete if its distance from the measured values is below SAME times the
+# distance of every other explanation, and near below NEAR times.
 SAME, NEAR = 0.03, 0.3
-FAR = 0.2  # another model's distance must be below this share of the claimed model's distance
+FAR = 0.2  # a near model must be closer than this share of the claimed model's distance
 NAMED = 0.5  # the closest model is named if its distance is below this share of the values
-INEXACT = 30.0  # up to this many tolerances, the expected model counts as inexact
-LEAST_LIGHT = 1e-3  # faults of the light's cosine are indistinguishable up to this cosine
+INEXACT = 30.0  # errors up to this many tolerances count as inaccuracy of the expected model
+LEAST_LIGHT = 1e-3  # up to this cosine of the light, wrong cosines cannot be distinguished
 
 
 def defect(key: str, *names: str) -> Diagnosis:
@@ -70,19 +77,19 @@ def explain(
     tolerance: Tolerance,
     measure: Measure | None = None,
 ) -> Diagnosis:
-    """Explain values by candidates, or by faults of the first candidate, the node's own model.
+    """Explain values by candidates, or by faults of the node's own model.
 
-    `candidates` are functions that may give the values, starting with the node's own model. A value
-    is correct if it is within the tolerance. `measure` compares the values of a case.
+    - `candidates`: Functions that may give the values, starting with the node's own model.
+    - `measure`: The check's measurement, to try other inputs; None to try none.
     """
     if infinite := not_finite(cases):  # NaN has no distance; explain only finite values
         finite = [each.where(np.isfinite(each.measured.sum(axis=1))) for each in cases]
-        rest = NO_DIAGNOSIS
+        others = NO_DIAGNOSIS
         if any(tolerance.wrong(each).any() for each in finite):
-            rest = explain(case, finite, candidates, faults, tolerance)
-        return Diagnosis((*infinite, *rest.causes), rest.distances)
-    few = case.backend.counts.diagnosed
-    short = [Compared(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
+            others = explain(case, finite, candidates, faults, tolerance)
+        return Diagnosis((*infinite, *others.causes), others.distances)
+    few = slice(case.backend.counts.diagnosed)
+    short = [Compared(batch.where(few), *(each[few] for each in rest)) for batch, *rest in cases]
     # Many faults leave the inputs of the node's own model unchanged, so its values are cached.
     own = replace(candidates[0], values=remembered(candidates[0].values))
     candidates = [own, *candidates[1:]]
@@ -93,18 +100,17 @@ def explain(
         names = [each.name for each in case.spec.inputs if each.name not in DIMMING]
         exchanged = exchanges(names) if faults else ()
         # The factor that brings the expected values closest to the measured values.
-        weighed = [(each, np.maximum(1.0, np.abs(each.expected)) ** 2) for each in short]
-        squares = sum(np.sum(each.expected**2 / scale) for each, scale in weighed)
-        products = sum(np.sum(each.expected * each.measured / scale) for each, scale in weighed)
+        scales = [each.over(np.maximum(1.0, np.abs(each.expected))) for each in short]
+        squares = sum(np.sum(each.expected**2) for each in scales)
+        products = sum(np.sum(each.expected * each.measured) for each in scales)
         factor = float(products / squares) if squares else 1.0
         faults = (*faults, *exchanged, scaled_by(factor))
         distances = [_distance(short, own, fault, tolerance) for fault in faults]
-        order = np.argsort(distances, kind="stable")
-        least, others = distances[order[0]], [distances[each] for each in order[1:]]
-        rival = min([*models.values(), *others])
-        enough = max(SAME * rival, tolerance.value)
-        if least <= SAME * models[own.title] and least <= enough:
-            return Diagnosis((faults[order[0]].cause(least),), models)
+        best = int(np.argsort(distances, kind="stable")[0])  # unlike argmin, ignores NaN
+        least = distances.pop(best)
+        rival = min([*models.values(), *distances])
+        if least <= min(SAME * models[own.title], max(SAME * rival, tolerance.value)):
+            return Diagnosis((faults[best].cause(least),), models)
     nearest = next(each for each in candidates if each.title == ranking[0][0])
     # The model that is nearest on average may still be far from the wrong values.
     near, far = (
@@ -112,7 +118,7 @@ def explain(
         for model in (nearest, own)
     )
     explains = nearest is not own and near <= max(tolerance.value, SAME * far)
-    causes = _model(case, cases, ranking, own.title, tolerance, measure, explains)
+    causes = _without_fault(case, cases, ranking, own.title, tolerance, measure, explains)
     permitted = nearest.permitted and not any(
         tolerance.wrong(each._replace(expected=nearest.values(each.batch))).any() for each in cases
     )
@@ -124,25 +130,26 @@ def _distance(
 ) -> float:
     """Root-mean-square distance between the measured values and a candidate with a fault.
 
-    Pairs with roughness above 1, which not every model supports, and with light up to LEAST_LIGHT
+    Roughnesses above 1, which not every model supports, and lights with a cosine up to LEAST_LIGHT
     are excluded. If the tolerance is for a mean, values are noisy and their means are compared.
     """
     errors = []
     for case in cases:
         try:
             values = fault.values(case.batch, candidate.values(fault.batch(case.batch)))
-        except ValueError:  # exchanged inputs may lie outside each other's domain
+        except ValueError:  # an exchanged input may be outside its new domain
             return float("inf")
-        kept = case.batch.rough <= 1.0
+        judged = case.batch.rough <= 1.0
         if not tolerance.quantity.of_views:
-            kept &= np.abs(case.batch.wi[:, 2]) > LEAST_LIGHT
-        error = ((case.measured - values) / tolerance.scale(case.expected))[kept]
-        mean = tolerance.metric is mean_error
-        errors.append(error.mean(axis=0, keepdims=True) if mean else error)
+            judged &= np.abs(case.batch.wi[:, 2]) > LEAST_LIGHT
+        error = ((case.measured - values) / tolerance.scale(case.expected))[judged]
+        if tolerance.metric is mean_error:
+            error = error.mean(axis=0, keepdims=True)
+        errors.append(error)
     return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
 
 
-def _model(
+def _without_fault(
     case: Case,
     cases: Sequence[Compared],
     ranking: Sequence[tuple[str, float]],
@@ -151,10 +158,14 @@ def _model(
     measure: Measure | None,
     explains: bool,
 ) -> tuple[Cause, ...]:
-    """Causes: the closest model if it explains the values, the wrong region, or no close model."""
+    """Causes if no fault explains the values: another model, a wrong region, cures, or unknown.
+
+    - `ranking`: Titles of candidates and their distances, closest first.
+    - `own`: Title of the node's own model.
+    - `explains`: Whether the closest candidate is another model and gives every value.
+    """
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     (first, least), (_, rival) = ranking[:2]
-    # Report another model if it explains all values.
     if explains and least <= max(tolerance.value, SAME * rival):
         flags = (
             (float(spec.flag),)
@@ -163,30 +174,30 @@ def _model(
             if spec.flag is not None and reference.diffuse_model(spec.model).title == first
         )
         return (Cause(Kind.MODEL, first, values=next(flags, ()), rms=least),)
-    # The values match the own model except in a region or range, or are not accurate enough.
+    # Find a region in which the values do not match the own model, or a lack of accuracy.
     if not wrong.any():
         return (SINGLY_RIGHT,)
-    if place := smallest(cases, tolerance):
-        return (correct_except(cases, tolerance, place),)
-    place, mostly = span(cases, tolerance), wrong.mean() < 0.5
+    if region := smallest(cases, tolerance):
+        return (correct_except(cases, tolerance, region),)
+    region, mostly_right = span(cases, tolerance), wrong.mean() < 0.5
     if first != own and least <= min(NEAR * rival, FAR * dict(ranking)[own]):
-        part = (correct_except(cases, tolerance, place),) if place and mostly else ()
+        part = (correct_except(cases, tolerance, region),) if region and mostly_right else ()
         return *part, Cause(Kind.MODEL, first, rms=least)
     cures: dict[str, float] = {}
-    if not place and measure and np.count_nonzero(wrong) >= WORST and mostly:
+    if not region and measure and np.count_nonzero(wrong) >= WORST and mostly_right:
         cures = _cures(case, cases, tolerance, measure)
         weak = span(cases, tolerance, regions.WEAK) if len(cures) == 1 else None
-        place = weak if weak and weak.name in cures else None
+        region = weak if weak and weak.name in cures else None
+    if region:
+        return (correct_except(cases, tolerance, region),)
     few = dict(list(cures.items())[:CURES])
-    right = (Cause(Kind.CURE, "inputs", tuple(few), tuple(few.values())),) if cures else ()
-    if place:
-        return (correct_except(cases, tolerance, place),)
+    cured = (Cause(Kind.CURE, "inputs", tuple(few), tuple(few.values())),) if cures else ()
     errors = [tolerance.metric(each.measured, each.expected) for each in cases]
     if first == own and max(map(np.max, errors)) <= INEXACT * tolerance.value:
-        return Cause(Kind.ACCURACY, own, rms=least), *right
+        return Cause(Kind.ACCURACY, own, rms=least), *cured
     share = correct_except(cases, tolerance)
-    if right:
-        return share, *right
+    if cured:
+        return share, *cured
     index = int(np.argmax(list(map(np.max, errors))))
     row, batch = int(errors[index].argmax()), cases[index].batch
     if measure and Ability.PAIRS in case.backend.abilities:
@@ -200,22 +211,21 @@ def _model(
         point = {"wo": point["wo"]}
     else:
         point = {name: point[name] for name in ("wo", "wi")}
-    if first == own and mostly:
+    if first == own and mostly_right:
         return (replace(share, point=point),)
     # Values that are as far from every model as from black resemble no model.
     black = Candidate("", lambda batch: np.zeros((len(batch.wo), 1)))
     far = _distance(cases, black, NO_FAULT, tolerance)
-    near = least < NAMED * (far if first == own else min(far, dict(ranking)[own]))
     unlike = Cause(Kind.UNKNOWN, "no_model")
-    if near:
+    if least < NAMED * (far if first == own else min(far, dict(ranking)[own])):
         unlike = replace(unlike, names=(first,), rms=least)
     return unlike, replace(share, key="wrong", point=point)
 
 
 def searched(cause: Cause, cases: Sequence[Compared], tolerance: Tolerance) -> Cause:
-    """The region or input range that contains all wrong values; without one, the given cause."""
-    if place := place_of(cases, tolerance):
-        return correct_except(cases, tolerance, place)
+    """The region that contains all wrong values; if there is no such region, the given cause."""
+    if region := region_of(cases, tolerance):
+        return correct_except(cases, tolerance, region)
     if cause == SINGLY_RIGHT and tolerance.metric in (absolute, relative, scaled):
         return replace(correct_except(cases, tolerance), key="wrong")
     return cause
@@ -227,11 +237,12 @@ def _cures(
     """Inputs that make the worst pairs correct if changed alone, each with its new value."""
     most = max(cases, key=lambda each: np.count_nonzero(tolerance.wrong(each)))
     worst = np.argsort(tolerance.metric(most.measured, most.expected))[-WORST:]
-    pairs = Ability.PAIRS in case.backend.abilities  # a picture cannot be restricted to some points
-    batch, found = most.batch.where(worst) if pairs else most.batch, {}
+    batch, cures = most.batch, {}
+    if Ability.PAIRS in case.backend.abilities:  # a picture cannot be restricted to some points
+        batch = batch.where(worst)
     # Making all values dark is not a cure.
     light = np.maximum(np.abs(most.expected), np.abs(most.measured))[worst]
-    least = SHOWN * min(float(light.mean()), 1.0)
+    least = REMAINING * min(float(light.mean()), 1.0)
     for port in case.spec.inputs:
         if port.name not in batch.inputs or port.type not in COMPONENTS or port.name in DIMMING:
             continue
@@ -241,9 +252,9 @@ def _cures(
             compared = list(measure(replace(case, chosen=(changed,))))
             wrong = any(tolerance.wrong(each).any() for each in compared)
             if not wrong and min(float(np.abs(each.expected).mean()) for each in compared) >= least:
-                found[port.name] = value
+                cures[port.name] = value
                 break
-    return found
+    return cures
 
 
 def not_finite(cases: Sequence[Compared]) -> tuple[Cause, ...]:
@@ -251,7 +262,7 @@ def not_finite(cases: Sequence[Compared]) -> tuple[Cause, ...]:
     zeros = list(map(regions.unbounded, cases))
     if not any(EXACT.wrong(each).any() for each in zeros):
         return ()
-    return (Cause(Kind.NOT_FINITE, region=place_of(zeros, EXACT)),)
+    return (Cause(Kind.NOT_FINITE, region=region_of(zeros, EXACT)),)
 
 
 # Comparisons, one per quantity.
@@ -261,24 +272,22 @@ def not_finite(cases: Sequence[Compared]) -> tuple[Cause, ...]:
 class Comparison:
     """Measured and expected values of a quantity, with candidates for their explanation."""
 
-    quantity: str  # quantity whose tolerance applies
-    compared: Callable[[Case], Iterable[Compared]]
-    candidates: Callable[[Case], Sequence[Candidate]]  # candidates, starting with the own model
-    faults: Sequence[Fault] = ()  # faults to try between inputs and own model
+    quantity: str  # name of the quantity in a spec's tolerances
+    compared: Measure
+    candidates: Callable[[Case], Sequence[Candidate]]  # start with the node's own model
+    faults: Sequence[Fault] = ()  # faults of the own model to try
 
     def __call__(self, case: Case) -> Iterable[Compared]:
         return self.compared(case)
 
     def diagnose(self, case: Case) -> Diagnosis:
         """The explanation of a case, cached because several checks of a node fail alike."""
-        known = case.explained
-        if self not in known:
-            tolerance = case.tolerance(self.quantity, "value")
-            compared = list(self.compared(case))
-            candidates = self.candidates(case)
-            known[self] = explain(case, compared, candidates, self.faults, tolerance, self.compared)
-        found: Diagnosis = known[self]
-        return found
+        if self not in case.explained:
+            tolerance, compared = case.tolerance(self.quantity, "value"), list(self(case))
+            candidates, faults = self.candidates(case), self.faults
+            explained = explain(case, compared, candidates, faults, tolerance, self.compared)
+            case.explained[self] = explained
+        return case.explained[self]
 
 
 def _backs(case: Case) -> Iterator[Compared]:
@@ -286,18 +295,21 @@ def _backs(case: Case) -> Iterator[Compared]:
     yield case.valued.rescaled(case.compared(batch))
 
 
-def _alike(case: Case) -> Sequence[Candidate]:
+def _rescaled_candidates(case: Case) -> Sequence[Candidate]:
     """Candidates for values, rescaled to the unit in which errors are uniform."""
 
-    def alike(candidate: Candidate, batch: Batch) -> Array:
+    def rescaled(candidate: Candidate, batch: Batch) -> Array:
         values = candidate.values(batch)
         return case.valued.rescaled(Compared(batch, values, values)).expected
 
-    return [replace(each, values=partial(alike, each)) for each in case.valued.value_candidates]
+    return [replace(each, values=partial(rescaled, each)) for each in case.valued.value_candidates]
 
 
 def _transmittances(case: Case) -> Iterator[Compared]:
-    """Light through a medium, and through a surface above it, against its transmittance."""
+    """Light through a medium, then through a surface over a medium, divided by unobstructed light.
+
+    The quotients are compared with the transmittance of the medium.
+    """
     spec, evaluate = case.of(emission.MediumSpec), case.evaluating.evaluate
     [batch] = case.batches
     yield case.compared(batch)
@@ -310,25 +322,29 @@ def _transmittances(case: Case) -> Iterator[Compared]:
 
 
 VALUES = attrgetter("valued.value_candidates")
-ALBEDOS, RESTS = (methodcaller("candidates", each) for each in ("albedo", "throughput"))
+ALBEDOS, PASSED = (methodcaller("candidates", each) for each in ("albedo", "throughput"))
 VALUE = Comparison("value", values, VALUES, faults.DIRECT_FAULTS)
 ALBEDO = Comparison("albedo", albedos, ALBEDOS, faults.ENVIRONMENT_FAULTS)
 # Comparisons of a layer's throughput, for light from above and for light through the base.
-THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), RESTS, EXCHANGES)
+THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), PASSED, EXCHANGES)
 TRANSMISSION = Comparison(
-    "throughput", lambda case: throughputs(case, "transmission"), RESTS, EXCHANGES
+    "throughput", lambda case: throughputs(case, "transmission"), PASSED, EXCHANGES
 )
-# Comparison of a utility node's output, or of emission from the front.
+# Comparisons of a utility node's output or of emission from the front, and of emission from the
+# back.
 OUTPUT = Comparison(
-    "value", lambda case: map(case.valued.rescaled, values(case)), _alike, faults.COLOR_FAULTS
+    "value",
+    lambda case: map(case.valued.rescaled, values(case)),
+    _rescaled_candidates,
+    faults.COLOR_FAULTS,
 )
-BACK = Comparison("value", _backs, _alike)
+BACK = Comparison("value", _backs, _rescaled_candidates)
 TRANSMITTANCE = Comparison("value", _transmittances, VALUES)
 
 
-# Diagnoses of what surrounds a model: throughput, frame and environment.
+# Diagnoses of throughput, frame and environment lookup, which do not depend on the model.
 
-# Irradiance that each kind of wrong lookup returns.
+# Irradiance by kind of wrong environment lookup.
 LOOKUPS: dict[str, Callable[[Batch], Array]] = {
     "opposite": lambda batch: sky(-batch.normal),
     "viewer": lambda batch: sky(batch.world(batch.wo)),
@@ -346,62 +362,61 @@ LOOKUPS: dict[str, Callable[[Batch], Array]] = {
 
 
 def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) -> Diagnosis:
-    """The diagnosis of throughputs that must be 0: each nonzero output, its region and branches."""
-    found: dict[Cause, list[str]] = {}
+    """The nonzero values and regions of outputs, by output and branch, that must be 0."""
+    branches: dict[Cause, list[str]] = {}
     for (output, branch), compared in passed.items():
         values = np.concatenate([each.measured[EXACT.wrong(each)] for each in compared])
         if len(values):
-            number = (float(values.flat[0]),) if np.ptp(values) == 0.0 else ()
-            place = smallest(compared, EXACT)
-            cause = Cause(Kind.DEFECT, "not_zero", (output,), number, region=place)
-            found.setdefault(cause, []).append(branch)
-    return Diagnosis(tuple(replace(each, names=(*each.names, *found[each])) for each in found))
+            constant = (float(values.flat[0]),) if np.ptp(values) == 0.0 else ()
+            region = smallest(compared, EXACT)
+            cause = Cause(Kind.DEFECT, "not_zero", (output,), constant, region=region)
+            branches.setdefault(cause, []).append(branch)
+    return Diagnosis(
+        tuple(replace(cause, names=(*cause.names, *names)) for cause, names in branches.items())
+    )
 
 
 def diagnose_frame(case: Case) -> Diagnosis:
     """The diagnosis of the first wrong branch: an ignored normal or axis, or a wrong region."""
     tolerance = case.tolerance("frame")
-    for compared, branch in zip(frames(case), ("direct", "environment", ""), strict=False):
-        if not tolerance.wrong(compared).any():
+    rows = (
+        ("direct", case.direct, case.expected),
+        ("environment", case.albedo, case.expected_albedo),
+    )
+    for compared, row in zip_longest(frames(case), rows):
+        if not compared or not tolerance.wrong(compared).any():
             continue
-        if not branch:
+        if not row:
             return defect("retroreflective_normal")
-        expected = case.expected if branch == "direct" else case.expected_albedo
-        dropped = compared._replace(expected=expected(faults.normal_ignored(compared.batch)))
-        if not tolerance.wrong(dropped).any():
-            causes = defect("normal_of_surface").causes
-        else:
-            # Report the wrong region, or an axis without effect.
-            causes = not_finite([compared]) or _region([compared], tolerance)
-            axes = ("normal", "tangent", "curve_direction")
-            dead = (found for name in axes for found in without_effect(case, name))
-            causes = causes or tuple(dead)[:1] or _beside_equal(case, compared, branch)
-            causes = causes or (UNKNOWN,)
+        branch, measure, expected = row
+        without_normal = expected(faults.normal_ignored(compared.batch))
+        if not tolerance.wrong(compared._replace(expected=without_normal)).any():
+            return Diagnosis((Cause(Kind.DEFECT, "normal_of_surface", branch=branch),))
+        causes = not_finite([compared]) or _region([compared], tolerance)
+        for name in ("normal", "tangent", "curve_direction"):
+            causes = causes or without_effect(case, name)
+        if not causes:  # the worst rotated pair may be correct if all pixels have the same inputs
+            errors = tolerance.metric(compared.measured, compared.expected)
+            same = compared.where(np.full(4, errors.argmax()))
+            same = same._replace(measured=measure(same.batch))
+            wrong = tolerance.wrong(same).any()
+            causes = (UNKNOWN if wrong else Cause(Kind.CURE, "beside_equal_pixels"),)
         return Diagnosis((replace(causes[0], branch=branch),))
-    return Diagnosis((UNKNOWN,))
-
-
-def _beside_equal(case: Case, compared: Compared, branch: str) -> tuple[Cause, ...]:
-    """A cause if the worst rotated pair becomes correct when all pixels share its inputs."""
-    tolerance, output = case.tolerance("frame"), case.direct if branch == "direct" else case.albedo
-    worst = np.full(4, tolerance.metric(compared.measured, compared.expected).argmax())
-    same = compared.where(worst)
-    same = same._replace(measured=output(same.batch))
-    return () if tolerance.wrong(same).any() else (Cause(Kind.CURE, "beside_equal_pixels"),)
+    return UNEXPLAINED
 
 
 def _region(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[Cause, ...]:
-    place = smallest(cases, tolerance)
-    return (correct_except(cases, tolerance, place),) if place else ()
+    region = smallest(cases, tolerance)
+    return (correct_except(cases, tolerance, region),) if region else ()
 
 
 def ignored(name: str) -> Callable[[Case], Diagnosis]:
-    """A diagnosis that the input has no effect; otherwise the explanation of the values."""
+    """A diagnosis that an input has no effect; otherwise, the explanation of the values."""
     return lambda case: Diagnosis(without_effect(case, name) or VALUE.diagnose(case).causes)
 
 
 def without_effect(case: Case, name: str) -> tuple[Cause, ...]:
-    """A cause if the case has this input and it has no effect; otherwise empty."""
+    """A cause if the case has an input of this name and the input has no effect."""
     dead = name in case.changes and name in dead_inputs(case)
     return defect("input_ignored", name).causes if dead else ()
 
@@ -409,9 +424,8 @@ def without_effect(case: Case, name: str) -> tuple[Cause, ...]:
 def diagnose_surroundings(compared: Compared, tolerance: Tolerance) -> Diagnosis:
     batch, measured, expected = compared
     irradiances = {
-        **{key: found(batch) for key, found in LOOKUPS.items()},
-        # Reversing a normal replaces the sky by 1 minus the sky.
-        "other_side": 1.0 - expected,
+        **{key: irradiance(batch) for key, irradiance in LOOKUPS.items()},
+        "other_side": 1.0 - expected,  # the sky in the opposite direction
         "viewer_side": sky(batch.normal),
     }
     for key, irradiance in irradiances.items():

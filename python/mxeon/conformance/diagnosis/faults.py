@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known faults between a node's inputs and its model, which do not depend on the model."""
+"""Faults: mistakes between a node's inputs and its model, which do not depend on the model."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -19,13 +19,13 @@ CONSTANTS = (0.1, 0.25, 0.3, 0.5, 0.75, 1.0)  # possible hard-coded roughnesses
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault that changes the batch that a model receives, or the values that it returns."""
+    """A mistake that changes the batch that a model receives, or the values that it returns."""
 
     key: str  # key of `mxeon.conformance.words.FAULTS`
     batch: Callable[[Batch], Batch] = lambda batch: batch
     values: Callable[[Batch, Array], Array] = lambda batch, values: values
-    names: tuple[str, ...] = ()  # affected inputs or channels, for the sentence
-    numbers: tuple[float, ...] = ()  # numbers for the sentence
+    names: tuple[str, ...] = ()  # affected inputs or channels
+    numbers: tuple[float, ...] = ()  # such as a hard-coded value, or a factor
 
     def cause(self, rms: float) -> Cause:
         return Cause(Kind.FAULT, self.key, self.names, self.numbers, rms=rms)
@@ -37,23 +37,23 @@ NO_FAULT = Fault("")
 def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Batch]:
     """A function that changes one input of a batch; batches without the input stay unchanged."""
 
-    def batch(batch: Batch) -> Batch:
+    def changed(batch: Batch) -> Batch:
         if name not in batch.inputs:
             return batch
         return batch.altered(**{name: change(np.asarray(batch.inputs[name], np.float64))})
 
-    return batch
+    return changed
 
 
 def _scaled(scale: Callable[[Batch], Array]) -> Callable[[Batch, Array], Array]:
     """A function that scales values by a factor per pair; factors that are not finite become 0."""
 
-    def values(batch: Batch, values: Array) -> Array:
+    def scaled(batch: Batch, values: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):
             factor = np.reshape(scale(batch), (-1, 1))
         return values * np.where(np.isfinite(factor), factor, 0.0)
 
-    return values
+    return scaled
 
 
 def _column(name: str) -> Callable[[Batch], Array]:
@@ -118,7 +118,7 @@ ENVIRONMENT_FAULTS = (
 
 
 def exchanges(names: Iterable[str]) -> Iterator[Fault]:
-    """Faults that exchange two inputs, or all inputs of two nodes, named before a slash."""
+    """Faults that exchange two inputs, or all inputs of two nodes, such as `top/weight`."""
     for pair in combinations(dict.fromkeys(name.split("/")[0] for name in names), 2):
         yield Fault("inputs_exchanged", partial(_exchanged, *pair), names=pair)
 
@@ -127,15 +127,16 @@ def _exchanged(one: str, other: str, batch: Batch) -> Batch:
     """A batch in which two inputs are exchanged and clamped to their ranges."""
     changes, inputs = {}, batch.inputs
     for name in inputs:
-        node, *port = name.split("/")
-        there = "/".join([{one: other, other: one}.get(node, node), *port])
-        if there in inputs and np.shape(inputs[there]) == np.shape(inputs[name]):
+        first, *port = name.split("/")
+        source = "/".join([{one: other, other: one}.get(first, first), *port])
+        if source in inputs and np.shape(inputs[source]) == np.shape(inputs[name]):
             low, high, _ = RANGES.get(name.split("/")[-1], (-np.inf, np.inf, ""))
-            changes[name] = np.clip(inputs[there], low, high)
+            changes[name] = np.clip(inputs[source], low, high)
     return batch.altered(**changes)
 
 
 def scaled_by(factor: float) -> Fault:
+    """A wrong factor of every value, with a key of its own if the factor is pi or 1 / pi."""
     for key, known in (("pi_missing", np.pi), ("pi_twice", 1.0 / np.pi)):
         if np.isclose(factor, known, rtol=1e-5):
             return Fault(key, values=lambda batch, values: factor * values)
@@ -143,7 +144,7 @@ def scaled_by(factor: float) -> Fault:
 
 
 def normal_ignored(batch: Batch) -> Batch:
-    """A batch in rotated frames, converted to the frame of the surface's normal, +z."""
+    """A batch with individual frames, converted to the frame of a surface with normal +z."""
     wo, wi = batch.world(batch.wo), batch.world(batch.wi)
     side = np.where(wo[:, 2:] < 0.0, -1.0, 1.0)
     return replace(batch, wo=wo * side, wi=wi * side, frame=None)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Named sets of pairs and inputs, which describe where a shader is wrong."""
+"""Regions, which describe where a shader is wrong: named sets of pairs, and ranges of inputs."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import chain
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain, compress
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,35 +14,40 @@ from mxeon.conformance.tolerance import Compared, Tolerance, checksum, count_of,
 COLORS = ("color", "tint", "color0")  # possible names of a node's color input
 INDICES = {"index": "ior", "extinction": "extinction"}
 # Inputs that named regions depend on, by the first word of the region's name.
-INPUT_OF = {"weight": "weight", "roughness": "roughness", "cuticle": "cuticle_angle", **INDICES}
-ABOUT = {"color": COLORS, **{name: (port,) for name, port in INPUT_OF.items()}}
+INPUTS = {
+    "color": COLORS,
+    "weight": ("weight",),
+    "roughness": ("roughness",),
+    "cuticle": ("cuticle_angle",),
+    **{name: (port,) for name, port in INDICES.items()},
+}
 # Inputs whose ranges are never reported.
 UNREPORTED = ("normal", "tangent", "curve_direction", "position", "surface_normal")
-USUAL = {"weight": np.ones(1), "occlusion": np.ones(1)}  # defaults of inputs a batch lacks
+USUAL = {"weight": np.ones(1), "occlusion": np.ones(1)}  # defaults of inputs that a batch lacks
 CHANNELS = "red", "green", "blue"
 EXACT = count_of(Quantity.VALUES)
-# Largest share of all correct values that a range with all wrong values may contain: usually
-# RIGHT, or WEAK if the input is known to be the cause.
+# A range of an input that contains all wrong values may contain at most this share of all correct
+# values: usually RIGHT, or WEAK if the input is known to be the cause.
 RIGHT, WEAK = 0.4, 0.7
-CLEARER = 0.5  # a two-sided range must reduce that share by this factor over a one-sided range
+CLEARER = 0.5  # a range with two ends must halve this share, compared with a range with one end
 CHANCE = 12.0  # smallest log odds against finding a range by chance
 LARGEST = 0.6  # largest share of all pairs or values that a reported region may contain
 DENSITY = 0.1  # smallest share of wrong pairs in a region
-UPRIGHT = 1e-3  # a half vector counts as upright up to this tangent; its cosine rounds to about 1
+UPRIGHT = 1e-3  # largest tangent of half vectors along the normal; their cosines round to about 1
 COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
 
 
-def place_of(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
-    """The region or input range that contains all wrong pairs, or None."""
+def region_of(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
+    """The region that contains all wrong pairs, or None."""
     return smallest(cases, tolerance) or span(cases, tolerance)
 
 
 def correct_except(
-    cases: Sequence[Compared], tolerance: Tolerance, place: Region | None = None
+    cases: Sequence[Compared], tolerance: Tolerance, region: Region | None = None
 ) -> Cause:
     """A cause with the number of wrong pairs, and the region that contains them if given."""
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
-    return Cause(Kind.REGION, region=place, wrong=int(np.count_nonzero(wrong)), of=len(wrong))
+    return Cause(Kind.REGION, region=region, wrong=int(np.count_nonzero(wrong)), of=len(wrong))
 
 
 def unbounded(compared: Compared) -> Compared:
@@ -52,64 +57,69 @@ def unbounded(compared: Compared) -> Compared:
 
 
 def smallest(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
-    """The smallest reportable region that contains all wrong pairs, or None."""
-    bad = np.concatenate(list(map(tolerance.wrong, cases)))
+    """The smallest reportable named region that contains all wrong pairs, or None."""
+    wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     sizes: dict[Region, int] = {}
-    found = (chain(_directions(case.batch), _inputs(case.batch)) for case in cases)
-    for regions in zip(*found, strict=True):
-        mask = np.concatenate([mask for _, mask in regions])
-        if not mask[bad].all() or not mask.any():
+    named = (chain(_directions(case.batch), _inputs(case.batch)) for case in cases)
+    for parts in zip(*named, strict=True):
+        mask = np.concatenate([mask for _, mask in parts])
+        if not mask[wrong].all() or not mask.any():
             continue
-        if bad[mask].mean() >= DENSITY and mask.mean() <= LARGEST:
-            sizes[regions[0][0]] = int(mask.sum())
+        if wrong[mask].mean() >= DENSITY and mask.mean() <= LARGEST:
+            sizes[parts[0][0]] = int(mask.sum())
     return min(sizes, key=sizes.__getitem__, default=None)
 
 
 def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -> Region | None:
-    """The input range with all wrong and the fewest correct values; None if there is no clear one.
+    """The range of an input that contains all wrong and the fewest correct values.
 
-    Color channels are judged separately, each with the same channel of color inputs.
+    None if no range is clear. Color channels are judged separately, each with the same channel of
+    color inputs.
+
+    - `most`: Largest share of all correct values that the range may contain.
     """
-    found = []
-    for _, measured, right in cases:
-        expected = np.broadcast_to(right, measured.shape)
+    rows = []
+    for case in cases:
+        expected = np.broadcast_to(case.expected, case.measured.shape)
         with np.errstate(divide="ignore", invalid="ignore"):
             scale = expected if tolerance.metric is relative else tolerance.scale(expected)
-            found.append(~np.asarray(np.abs((measured - expected) / scale) <= tolerance.value))
-    bad = np.concatenate(found)
-    wrong = np.asarray(bad.any(axis=0))
-    bad = bad[:, wrong]
+            errors = np.abs((case.measured - expected) / scale)
+        rows.append(~np.asarray(errors <= tolerance.value))
+    wrong = np.concatenate(rows)
+    columns = np.asarray(wrong.any(axis=0))  # channels with wrong values
+    wrong = wrong[:, columns]
     best: Region | None = None
-    if bad.all():  # also true if there are no values
+    if wrong.all():  # also true if there are no values
         return best
-    channels = tuple(each for each, is_wrong in zip(CHANNELS, wrong, strict=False) if is_wrong)
-    if wrong.all():
-        channels = ()
-    for name, columns in _columns([case.batch for case in cases]):
-        for part, numbers in _parts(name, np.concatenate(columns), wrong):
-            values = np.broadcast_to(numbers, bad.shape)
-            low, high = float(values[bad].min()), float(values[bad].max())
+    channels = () if columns.all() else tuple(compress(CHANNELS, columns))
+    for name, values in _columns([case.batch for case in cases]):
+        for part, numbers in _parts(np.concatenate(values), columns):
+            numbers = np.broadcast_to(numbers, wrong.shape)
+            low, high = float(numbers[wrong].min()), float(numbers[wrong].max())
             ranges: list[tuple[float | None, float | None, Mask]] = [
-                (None, high, values <= high),
-                (low, None, values >= low),
-                (low, high, (low <= values) & (values <= high)),
+                (None, high, numbers <= high),
+                (low, None, numbers >= low),
+                (low, high, (low <= numbers) & (numbers <= high)),
             ]
             for first, last, mask in ranges[2:] if low == high else ranges:
                 if mask.mean() > LARGEST:
                     continue
-                share, least = float(mask[~bad].mean()), most
+                share, limit = float(mask[~wrong].mean()), most
                 if low < high and first == low and last == high:
-                    least *= CLEARER
+                    limit *= CLEARER
                 # Log odds against all wrong values being in the range by chance.
-                odds = -np.log(max(mask.mean(), 1.0 / mask.size)) * (bad.any(axis=1).sum() - 1)
-                dense = odds * min(bad[mask].mean() / DENSITY, 1.0) >= CHANCE
-                if share < least and dense:
+                odds = -np.log(max(mask.mean(), 1.0 / mask.size)) * (wrong.any(axis=1).sum() - 1)
+                dense = odds * min(wrong[mask].mean() / DENSITY, 1.0) >= CHANCE
+                if share < limit and dense:
                     most, best = share, Region(name, part, first, last, channels)
     return best
 
 
-def _parts(name: str, columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]]:
-    """Parts of an input that may have a range: keys of `words.PARTS`, each with its numbers."""
+def _parts(columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]]:
+    """Parts of an input that may have a range: keys of `words.PARTS`, each with its numbers.
+
+    - `wrong`: Mask of the color channels with wrong values.
+    """
     if columns.shape[1] == len(wrong) == len(CHANNELS):
         yield "value", columns[:, wrong]
     elif columns.shape[1] == 1:
@@ -123,12 +133,14 @@ def _parts(name: str, columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]
 
 
 def unreached(values: Mapping[str, Sequence[float]]) -> tuple[Region, ...]:
-    """The regions that a node never reaches because of its constant inputs, `values`."""
-    one = np.array([[0.0, 0.0, 1.0]])
+    """The regions that a node never reaches because some of its inputs have constant values."""
+    normal = np.array([[0.0, 0.0, 1.0]])
     inputs = {name: np.array([each if len(each) > 1 else each[0]]) for name, each in values.items()}
-    batch = Batch(one, one, inputs)
-    out = (region for region, mask in _inputs(batch) if not mask.any())
-    return tuple(x for x in out if {*values} & {*ABOUT.get(x.name.split("_")[0], ())})
+    return tuple(
+        region
+        for region, mask in _inputs(Batch(normal, normal, inputs))
+        if not mask.any() and {*values} & {*INPUTS.get(region.name.split("_")[0], ())}
+    )
 
 
 def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
@@ -170,10 +182,8 @@ def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
 
 
 def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
-    count = len(batch.wo)
-    roughness = batch.rough
-    given = {**USUAL, **batch.inputs}
-    weight, occlusion = (np.broadcast_to(given[name], count) for name in USUAL)
+    count, roughness, inputs = len(batch.wo), batch.rough, {**USUAL, **batch.inputs}
+    weight, occlusion = (np.broadcast_to(inputs[name], count) for name in USUAL)
     colors = [batch.inputs[name] for name in COLORS if name in batch.inputs]
     color = np.broadcast_to(colors[0] if colors else 0.5, (count, 3))
     # Regions by weight, occlusion and roughness.
@@ -210,7 +220,7 @@ def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     yield Region("normal_away"), (normal * batch.normal).sum(axis=1) < 0.0
 
 
-HALF = 0.5  # cosine that splits views and lights into two regions
+HALF = 0.5  # cosine that divides views, and lights, into two regions
 
 
 def errors(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[tuple[Errors, ...], str]:
@@ -220,27 +230,31 @@ def errors(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[tuple[Error
     """
     batches = [each.batch for each in cases]
     rows = np.concatenate([tolerance.metric(*each[1:]) for each in cases])
-    found = [errors_of(rows, tolerance.value)]
-
-    def divide(columns: Iterable[Array], middle: float, *ends: Region) -> None:
-        above = np.concatenate(list(columns)) > middle
-        for mask, region in zip((~above, above), ends, strict=True):
-            if above.any() and not above.all():
-                found.append(errors_of(rows[mask], tolerance.value, region))
-
+    halves: list[tuple[Array, float, Region, Region]] = []  # numbers, their middle, and two regions
     for name, field in (("viewer", "wo"), ("light", "wi")):
-        ends = Region(f"{name}_cosine_below", high=HALF), Region(f"{name}_cosine_above", low=HALF)
-        divide((getattr(each, field)[:, 2] for each in batches), HALF, *ends)
+        low, high = (
+            Region(f"{name}_cosine_below", high=HALF),
+            Region(f"{name}_cosine_above", low=HALF),
+        )
+        cosines = np.concatenate([getattr(each, field)[:, 2] for each in batches])
+        halves.append((cosines, HALF, low, high))
     for name, columns in _columns(batches):
         part = "larger" if columns[0].shape[1] > 1 else "value"
-        numbers = [each.max(axis=1) for each in columns]
-        middle = float(f"{np.median(np.concatenate(numbers)):.2g}")
-        divide(numbers, middle, Region(name, part, high=middle), Region(name, part, low=middle))
+        numbers = np.concatenate([each.max(axis=1) for each in columns])
+        middle = float(f"{np.median(numbers):.2g}")
+        low, high = Region(name, part, high=middle), Region(name, part, low=middle)
+        halves.append((numbers, middle, low, high))
+    found = [errors_of(rows, tolerance.value)]
+    for numbers, middle, low, high in halves:
+        above = numbers > middle
+        if above.any() and not above.all():
+            found.append(errors_of(rows[~above], tolerance.value, low))
+            found.append(errors_of(rows[above], tolerance.value, high))
     return tuple(found), checksum(batches)
 
 
 def _columns(batches: Sequence[Batch]) -> Iterator[tuple[str, list[Array]]]:
-    """Reportable inputs that all batches have, with a row for each pair of each batch."""
+    """Reportable inputs that all batches have, with one table of numbers per batch."""
     rows = [({**USUAL, **batch.inputs}, len(batch.wo)) for batch in batches]
     for name in batches[0].inputs:
         if name not in UNREPORTED and all(name in inputs for inputs, _ in rows):
