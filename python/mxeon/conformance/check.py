@@ -16,7 +16,7 @@ import numpy as np
 
 from mxeon.conformance import backends, controls, results
 from mxeon.conformance.case import Case
-from mxeon.conformance.diagnosis import UNTOLD, Comparison, regions, searched
+from mxeon.conformance.diagnosis import UNEXPLAINED, UNTOLD, Comparison, regions, searched
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Result
 from mxeon.conformance.spec import NO_ABILITY, Ability, LobeSpec, Spec, ValueSpec
 from mxeon.conformance.tolerance import Compared, Measurement, Tolerance, worst_of
@@ -68,9 +68,10 @@ class Check:
     claim: str  # a full sentence
     applies: Specs
     measure: Measure  # returns comparisons, judged by the worst row, or a single number
-    tolerance: str | Tolerance  # a key of `Spec.errors`, or a tolerance for all specs
+    # A key of `Spec.errors`, by default the check's key, or a tolerance for all specs.
+    tolerance: str | Tolerance = ""
     control: controls.Control
-    explain: Explain | Diagnosis
+    explain: Explain | Diagnosis = UNEXPLAINED
     requires: Ability = NO_ABILITY  # abilities that a backend needs
     # Profile of the generated text, for checks that only run for nodes that the user names; "" for
     # the rasterizer's text.
@@ -118,7 +119,7 @@ class Check:
     ) -> bool:
         """Whether the check applies to a node on a host, for a backend and a client's methods."""
         methods = backend.methods.over(methods)
-        key = self.tolerance
+        key = self.tolerance or self.key
         return (
             self.applies(spec)
             and self.hosts(spec, host)
@@ -129,7 +130,7 @@ class Check:
 
     def allowed(self, case: Case) -> Tolerance:
         """The tolerance for a case, with the errors of the engine's functions."""
-        key = self.tolerance
+        key = self.tolerance or self.key
         return key if isinstance(key, Tolerance) else case.tolerance(key)
 
     def judge(self, case: Case) -> Result:

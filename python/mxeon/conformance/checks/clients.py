@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A client's bindings other than the material: lights, an environment, shadows, and blending.
 
-Frames run the whole generated main, with point and spot lights, a shadow map, ambient occlusion
-and transparency. AXES lists the states; any two states of different axes meet in some frame.
+A frame is a picture drawn by the whole generated main(), with point and spot lights, a shadow map,
+ambient occlusion and transparency. A frame is in one state per axis of AXES; any two states of
+different axes occur together in some frame.
 
-Expected lights, shadows and alpha follow MaterialX's text, since no specification describes them: at distance d a
-light is divided by (1 + d)^decay, a spot light falls off smoothly between two cosines, and shadows use Chebyshev's
-bound.
+Expected lights, shadows and alpha follow MaterialX's text, since no specification describes them:
+at distance d a light is divided by (1 + d)^decay, a spot light falls off smoothly between two
+cosines, and shadows use Chebyshev's bound.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -29,9 +30,9 @@ from mxeon.shaders.scene import VIEW, Client, Lamp, Matrix, Scene, sphere
 if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
-SIZE = 16  # pixels on a side of a frame
-EVERY = 6  # a control draws every sixth frame
+SIZE = 16  # width and height of a frame in pixels
 WHITE_MAP, WARM_MAP = (np.full((1, 1, 3), each, np.float32) for each in (1.0, (0.75, 0.5, 0.25)))
+# Paths of the document's inputs, with the names that `material` uses.
 NAMES = {"shading/mix": "mix", "front/opacity": "front", "back/opacity": "back"}
 LEAST_VARIANCE = 1e-5  # least variance of depths in a shadow map
 TRANSPARENT = 0.3333  # weight of each channel of the transparency in alpha
@@ -40,7 +41,7 @@ SHADOW: Matrix = (1.2, 0.1, 0.3, 0.0, 0.2, 1.1, 0.2, 0.0, 0.1, 0.3, -0.6, 0.0, 0
 
 
 class Frame(NamedTuple):
-    """A frame: a client's bindings, the generator's methods, and inputs of the material."""
+    """A client's bindings, the generator's methods, and inputs of the material."""
 
     client: Client = Client()
     methods: Methods = UNCHOSEN
@@ -54,8 +55,8 @@ def same(frame: Frame) -> Frame:
     return frame
 
 
-def folded(frame: Frame) -> Frame:
-    """A frame with premultiplied mixes, which MaterialX supports since 1.39.5."""
+def premultiplied(frame: Frame) -> Frame:
+    """A frame without environment, with premultiplied mixes, new in MaterialX 1.39.5."""
     from mxeon.shaders.options import offers
 
     methods = Methods("none", "opacity", premultiplied=offers("premultiplied") or None)
@@ -70,7 +71,7 @@ def lit(*lamps: Lamp) -> Build:
     return bound(partial(replace, lamps=lamps))
 
 
-def given(**inputs: float) -> Build:
+def material(**inputs: float) -> Build:
     """A state that sets inputs of the material: `mix`, and the opacities `front` and `back`."""
     return lambda frame: frame._replace(inputs={**frame.inputs, **inputs})
 
@@ -80,10 +81,10 @@ BULB = Lamp(type=2, position=(1.0, 2.0, 1.5), color=(0.5, 1.0, 0.2), intensity=2
 # fmt: off
 SPOT = Lamp(type=3, position=(0.0, 1.0, 2.5), direction=(0.0, -0.6, -0.8), color=(0.2, 0.5, 1.0),
             intensity=30.0, inner_angle=0.95, outer_angle=0.8, decay_rate=1.5)
-# Other checks use the first state of each axis. States with the same words before a colon are also
-# diagnosed as a group.
+# States by axis. Other checks use the first state of each axis. States with the same words before a
+# colon are also diagnosed as a group.
 AXES: dict[str, dict[str, Build]] = {
-    "methods": {"the default methods": same, "premultiplied mixes without an environment": folded},
+    "methods": {"the default methods": same, "premultiplied mixes without an environment": premultiplied},
     "lights": {
         "no light": same,
         "a directional light": lit(SUN),
@@ -106,13 +107,13 @@ AXES: dict[str, dict[str, Build]] = {
     },
     "opacity": {
         "opaque surfaces": same,
-        "an opacity below 1": given(front=0.6, back=0.75),
-        "an opacity below 1: 0": given(front=0.0, back=0.75),
+        "an opacity below 1": material(front=0.6, back=0.75),
+        "an opacity below 1: 0": material(front=0.0, back=0.75),
     },
     "surfaces": {
         "one surface": same,
-        "the other of two surfaces": given(mix=0.0),
-        "a mix of surfaces": given(mix=0.3),
+        "the other of two surfaces": material(mix=0.0),
+        "a mix of surfaces": material(mix=0.3),
     },
 }
 # fmt: on
@@ -121,13 +122,13 @@ AXES: dict[str, dict[str, Build]] = {
 @lru_cache(maxsize=1)
 def frames() -> tuple[tuple[set[str], Frame], ...]:
     """All frames, each with the names of its states, sorted by program."""
-    found = []
+    rows = []
     for states in covering(tuple(map(tuple, AXES.values()))):
         frame = Frame()
-        for axis, words in zip(AXES.values(), states, strict=True):
-            frame = axis[words](frame)
-        found.append((named(states, AXES), frame))
-    return tuple(sorted(found, key=lambda each: str(each[1].methods)))
+        for axis, state in zip(AXES.values(), states, strict=True):
+            frame = axis[state](frame)
+        rows.append((named(states, AXES), frame))
+    return tuple(sorted(rows, key=lambda row: str(row[1].methods)))
 
 
 def lamp_light(lamp: Lamp, position: Array) -> tuple[Array, Array]:
@@ -136,20 +137,20 @@ def lamp_light(lamp: Lamp, position: Array) -> tuple[Array, Array]:
     irradiance = np.broadcast_to(np.multiply(lamp.color, lamp.intensity), position.shape)
     if lamp.type == 1:
         return direction, irradiance
-    away = lamp.position - position
-    distance = np.linalg.norm(away, axis=1, keepdims=True)
-    to, irradiance = away / distance, irradiance / (distance + 1.0) ** lamp.decay_rate
+    direction = lamp.position - position
+    distance = np.linalg.norm(direction, axis=1, keepdims=True)
+    direction, irradiance = direction / distance, irradiance / (distance + 1.0) ** lamp.decay_rate
     if lamp.type == 2:
-        return to, irradiance
+        return direction, irradiance
     low, high = min(lamp.inner_angle, lamp.outer_angle), lamp.inner_angle
-    t = np.clip((to @ np.negative(lamp.direction) - low) / (high - low), 0.0, 1.0)[:, np.newaxis]
-    return to, irradiance * t * t * (3.0 - 2.0 * t)
+    cosine = direction @ np.negative(lamp.direction)[:, np.newaxis]
+    t = np.clip((cosine - low) / (high - low), 0.0, 1.0)
+    return direction, irradiance * t * t * (3.0 - 2.0 * t)
 
 
 def shadow(client: Client, position: Array) -> Array:
     """Share of the first light that reaches positions, (N, 1)."""
-    matrix = np.reshape(client.shadow, (4, 4)).T
-    x = np.concatenate([position, np.ones((len(position), 1))], axis=1) @ matrix.T
+    x = np.insert(position, 3, 1.0, axis=1) @ np.reshape(client.shadow, (4, 4))
     mean, square = client.moments
     behind = np.maximum(0.5 + 0.5 * x[:, 2:3] / x[:, 3:] - mean, 0.0)
     variance = max(square - mean * mean, LEAST_VARIANCE)
@@ -157,10 +158,11 @@ def shadow(client: Client, position: Array) -> Array:
 
 
 def light(client: Client, methods: Methods, normal: Array) -> Array:
+    """Light of a white, matte sphere of radius 1, whose positions equal its normals, (N, 3)."""
     total = np.zeros_like(normal)
     for number, lamp in enumerate(client.lamps):
-        to, irradiance = lamp_light(lamp, normal)
-        cosine = np.maximum(np.sum(to * normal, axis=1, keepdims=True), 0.0)
+        direction, irradiance = lamp_light(lamp, normal)
+        cosine = np.maximum(np.sum(direction * normal, axis=1, keepdims=True), 0.0)
         total += irradiance / np.pi * cosine * (shadow(client, normal) if number == 0 else 1.0)
     if methods.environment != "none" and client.irradiance is not None:
         ambient = 1.0 + client.gain * (client.ambient - 1.0)
@@ -169,7 +171,7 @@ def light(client: Client, methods: Methods, normal: Array) -> Array:
 
 
 def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
-    """Measured and expected colors and alphas of each frame, with the names of its states."""
+    """Names of each frame's states, with measured and expected colors, then alphas."""
     from mxeon.hosts.raster import ALPHA_THRESHOLD  # loads MaterialX
     from mxeon.shaders.generators import CLIENT_OPTIONS
 
@@ -178,7 +180,7 @@ def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
     view = np.broadcast_to(VIEW, normal.shape)
     batch = Batch(view, view, {"normal": normal})
     shaders: dict[Methods, Shader] = {}
-    for words, (client, methods, inputs) in frames()[:: EVERY if case.control else 1]:
+    for states, (client, methods, inputs) in frames()[:: 6 if case.control else 1]:
         if methods not in shaders:
             make = partial(case.host.compile, library=case.library, client=CLIENT_OPTIONS)
             [shaders[methods]] = make(case.spec.document(), methods=methods)
@@ -195,25 +197,24 @@ def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
         for alpha, expected in ((False, color), (True, np.full_like(color, opacity))):
             scene = Scene("client", size=SIZE, client=replace(client, alpha=alpha))
             measured = case.host.picture(shader, scene)[points.mask].astype(np.float64)
-            found = Compared(batch, case.outputs(batch, measured), expected)
-            yield words | {"alpha"} if alpha else words, found.where(normal[:, 2] >= RIM)
+            compared = Compared(batch, case.outputs(batch, measured), expected)
+            yield states | {"alpha"} if alpha else states, compared.where(normal[:, 2] >= RIM)
 
 
 def diagnose(case: Case) -> results.Diagnosis:
     """Find the states that all wrong frames share."""
     tolerance, rows = case.tolerance("frame"), list(drawn(case))
-    bad = np.array([tolerance.wrong(each).any() for _, each in rows])
-    compared = [each for _, each in rows]
-    common = shared(bad, [words for words, _ in rows])
+    wrong = np.array([tolerance.wrong(compared).any() for _, compared in rows])
+    common = shared(wrong, [states for states, _ in rows])
     common = replace(common, key=f"{common.key}_of_frames")
-    return results.Diagnosis((common, *diagnosis.not_finite(compared)))
+    return results.Diagnosis((common, *diagnosis.not_finite([compared for _, compared in rows])))
 
 
 # fmt: off
 ROWS = (
     check.Check(key="client",
           claim="A whole frame shows every light, the environment, shadow and occlusion that a client binds, and alpha.",
-          applies=check.family(FrameSpec), measure=lambda case: (each for _, each in drawn(case)),
+          applies=check.family(FrameSpec), measure=lambda case: (compared for _, compared in drawn(case)),
           tolerance="frame", control=controls.scale("values are 1 % too large", 1.01),
           explain=diagnose, hosts=lambda spec, host: bool(host_row(host).scenes),
           methods=lambda spec, methods: methods == GENERATED),

@@ -36,10 +36,10 @@ from mxeon.models.nodes.combinations import FACTOR
 from mxeon.models.nodes.lobes import FORMS, TILTED
 from mxeon.shaders.methods import Methods
 
-LEAST_LIGHT = 0.01  # skip the uneven environment where a uniform one gives less light
-# Texels are pi / 128 on a side and read at their middles; engines filter with 8-bit weights.
+LEAST_LIGHT = 0.01  # pairs with less light in a uniform environment skip the uneven environment
+# Texels have sides of pi / 128 and are read at their centers; engines filter with 8-bit weights.
 TEXEL = math.sqrt(2.0) * math.pi / samples.SKY_ROWS * 2.0**-8
-# Largest error of an engine's arc sine (llvmpipe). Other engines are ten times as accurate.
+# Largest error of an engine's arc sine: llvmpipe's. Other engines are ten times as accurate.
 ARC_SINE = 4e-4
 SURROUNDINGS = sum_in(
     Quantity.IRRADIANCE,
@@ -52,20 +52,20 @@ OPAQUE = sum_in(Quantity.THROUGHPUT, roundings(1, "of 1 - weight"))
 
 
 def of_model(*names: str) -> Specs:
-    """Specs with one of these diffuse models, including diffuse lobes below other lobes."""
+    """Specs with one of these diffuse models, even if the lobe is below other lobes."""
     return family(DiffuseModelSpec, lambda spec: spec.model in names)
 
 
 # Sets of nodes, for the checks in the table below.
 FILMS, TRANSMITTING = family(FilmSpec), family(TransmissionSpec)
-CLEAR = family(TransmissionSpec, lambda spec: spec.reflects)  # these also reflect
-DARK = TRANSMITTING - CLEAR  # these reflect nothing
-# With transmission as opacity, these pass all light.
+CLEAR = family(TransmissionSpec, lambda spec: spec.reflects)  # nodes that transmit and reflect
+DARK = TRANSMITTING - CLEAR  # nodes that transmit but do not reflect
+# Nodes that pass all light if transmission is rendered as opacity.
 UNTINTED = DARK - family(LobeSpec, lambda spec: "tint" in colored(spec))
 COMBINED, SUBSURFACE = family(CombinedSpec), family(SubsurfaceSpec)
 FACETS, BELOW = family(FacetSpec), family(SurfaceLobe)
 PLAIN = family(PbrSpec) - COMBINED - FILMS - TRANSMITTING  # single lobes of pbrlib
-LAYERS = PLAIN & family(PbrSpec, lambda spec: spec.row.layerable)  # these pass 1 - E to a base
+LAYERS = PLAIN & family(PbrSpec, lambda spec: spec.row.layerable)  # lobes that pass 1 - E to a base
 RECIPROCAL = PLAIN & family(PbrSpec, lambda spec: spec.row.reciprocal)
 LAMBERT, BURLEY = of_model("lambert"), of_model("burley")
 LOBES = PLAIN | BURLEY | of_model("burley_lambert")
@@ -77,19 +77,22 @@ VALUED = LOBES | FILMS | ROUGH  # single lobes of nodes and renderers
 
 def shows_exactly(spec: Spec, host: str) -> bool:
     """Whether a host evaluates exact directions, even grazing; closures lack films of index 0."""
-    others = ("rendered", "pictures", *["closures"] * (Ability.FILM in spec.requires))
-    return all(row.way not in others for row in HOSTS if row.name == host)
+    inexact = {"rendered", "pictures"}
+    if Ability.FILM in spec.requires:
+        inexact.add("closures")
+    return all(row.way not in inexact for row in HOSTS if row.name == host)
 
 
 def finds_albedo(spec: Spec, methods: Methods) -> bool:
     """Whether the environment branch returns a known albedo.
 
-    In a prefiltered environment, films and surface shaders have the errors of MaterialX's fit.
-    Microfacets with 64 samples or eonlib's fits of their curves have errors, too.
+    In a prefiltered environment, MaterialX's fit is inaccurate for films and surface shaders, and
+    so are sums of 64 samples and eonlib's own lookup for microfacets.
     """
+    if methods.environment != "prefilter":
+        return methods.environment == "fis"
     sampled = methods.albedo != "analytic" or bool(methods.searched)
-    fitted = (sampled and FACETS(spec)) or isinstance(spec, (FilmSpec, SurfaceShaderSpec))
-    return methods.environment == "fis" or (methods.environment == "prefilter" and not fitted)
+    return not (sampled and FACETS(spec)) and not isinstance(spec, (FilmSpec, SurfaceShaderSpec))
 
 
 def has_environment(spec: Spec, host: str) -> bool:
@@ -113,14 +116,13 @@ def surroundings(case: Case) -> Compared:
     batch = case.backend.turned
     if "color" in batch.inputs:
         batch = batch.altered(color=samples.WHITE)
-    level = case.albedo(batch)
-    bright = level.min(axis=1) > LEAST_LIGHT
-    if bright.any():  # if all pairs are dark, the uniform light is wrong
-        batch, level = batch.where(bright), level[bright]
+    uniform = case.albedo(batch)
+    bright = uniform.min(axis=1) > LEAST_LIGHT
+    if bright.any():  # if all pairs are dark, the uniform environment is wrong
+        batch, uniform = batch.where(bright), uniform[bright]
     with np.errstate(divide="ignore", invalid="ignore"):
-        measured = case.albedo(batch, samples.sky_map()) / level
-    spec = case.of(ScatteringSpec)
-    return Compared(batch, measured, spec.sky(batch))
+        measured = case.albedo(batch, samples.sky_map()) / uniform
+    return Compared(batch, measured, case.of(ScatteringSpec).sky(batch))
 
 
 def sphere(case: Case) -> Iterator[Compared]:
@@ -135,25 +137,25 @@ def sphere(case: Case) -> Iterator[Compared]:
 
 def in_srgb(case: Case) -> Iterator[Compared]:
     batch, evaluating = case.few[0].first(case.backend.counts.albedos), case.evaluating
-    ask = partial(evaluating.evaluate, branch="direct", shader=evaluating.decoded)
-    yield Compared(batch, np.pi * case.measured(ask, batch), of_decoded(case, batch))
+    evaluate = partial(evaluating.evaluate, branch="direct", shader=evaluating.decoded)
+    yield Compared(batch, np.pi * case.measured(evaluate, batch), decoded_values(case, batch))
 
 
-def of_decoded(case: Case, batch: Batch) -> Array:
+def decoded_values(case: Case, batch: Batch) -> Array:
     linear = samples.float32(srgb_decoded(batch.inputs["color"]))
     return case.backend.direct(batch.altered(color=linear))
 
 
 def color_candidates(case: Case) -> tuple[Candidate, ...]:
-    own = Candidate("the color, decoded from sRGB", partial(of_decoded, case))
-    return own, Candidate("the color, not decoded from sRGB", case.backend.direct)
+    decoded = Candidate("the color, decoded from sRGB", partial(decoded_values, case))
+    return decoded, Candidate("the color, not decoded from sRGB", case.backend.direct)
 
 
 COLOR_SPACE = Comparison("color_space", in_srgb, color_candidates)
 
 
-# Outputs that are 0 for an opaque node of weight 1, and their branches.
-NOTHING = (*product(["throughput"], BRANCHES), *product(["response"], ["transmission", "emission"]))
+# Pairs of output and branch that are 0 for an opaque node of weight 1.
+ZEROS = (*product(["throughput"], BRANCHES), *product(["response"], ["transmission", "emission"]))
 
 
 def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
@@ -164,15 +166,15 @@ def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
             weight[0] = 2.0  # weights above 1 count as opaque
             batch = batch.altered(weight=weight)
         values = case.evaluating.evaluate(case.inputs(batch), branch, output)
-        left = 1.0 - np.clip(weight, 0.0, 1.0) if output == "throughput" else 0.0 * weight
-        expected = np.repeat(left[:, np.newaxis], 3, axis=1)
+        passed = 1.0 - np.clip(weight, 0.0, 1.0) if output == "throughput" else 0.0 * weight
+        expected = np.repeat(passed[:, np.newaxis], 3, axis=1)
         yield Compared(batch, case.throughputs(batch, values), expected)
 
 
 def reciprocity(case: Case) -> Iterator[Compared]:
     """f(wo, wi) compared with f(wi, wo), each multiplied by both cosines."""
     for batch in case.few:
-        side = -1.0 if np.all(batch.wi[:, 2] <= 0.0) else 1.0  # light from below
+        side = -1.0 if np.all(batch.wi[:, 2] <= 0.0) else 1.0  # -1 if all light is from below
         swapped = replace(batch, wo=side * batch.wi, wi=side * batch.wo)
         with np.errstate(invalid="ignore"):  # inf x 0 is NaN, which `absolute` detects
             forward = case.direct(batch) * batch.wo[:, 2:]
@@ -182,26 +184,25 @@ def reciprocity(case: Case) -> Iterator[Compared]:
 
 # --- energy: albedo and throughput of a lobe, and their sum when a lobe covers another ------------
 
-ROUNDED = 1e-9  # largest rounding difference of equal albedos
 
-
-def reads(name: str) -> Specs:
+def layers_with(name: str) -> Specs:
+    """Layers whose model has an input of this name."""
     return LAYERS & family(PbrSpec, lambda spec: name in spec.row.inputs)
 
 
 def dip(case: Case) -> Iterator[Compared]:
     white: Values = dict.fromkeys(("color0", "color90"), samples.WHITE)
     white = {**white, "color82": (samples.LEAST_COLOR82,) * 3, "exponent": 5.0}
-    return (_passed(case, batch.altered(**white)) for batch in case.views)
+    return (throughput(case, batch.altered(**white)) for batch in case.views)
 
 
 def denser(case: Case) -> Iterator[Compared]:
     for batch in case.views:
         inverse = batch.altered(ior=1.0 / np.asarray(batch.inputs["ior"]), tint=samples.WHITE)
-        yield _passed(case, inverse)
+        yield throughput(case, inverse)
 
 
-def _passed(case: Case, batch: Batch) -> Compared:
+def throughput(case: Case, batch: Batch) -> Compared:
     """Throughput at full weight, compared with 1 - E."""
     full = batch.altered(weight=1.0)
     return Compared(full, case.throughput(full, "direct"), case.expected_throughput(full))
@@ -211,9 +212,9 @@ def layer(case: Case) -> Compared:
     batch, weights = case.backend.integrated
     views, albedo = summed(case, uncolored(batch), weights)
     total = albedo + case.throughput(views, "direct")
-    # If the equations themselves gain energy, no throughput can compensate for it.
-    own = case.lobe.albedo(batch.where(np.arange(len(weights)) * weights.shape[1]))
-    sound = np.asarray((case.backend.integrals <= own + ROUNDED).all(axis=1))
+    # No throughput can compensate for equations whose values integrate to more than the albedo.
+    most = case.lobe.albedo(batch.where(np.arange(len(weights)) * weights.shape[1])) + 1e-9
+    sound = np.asarray((case.backend.integrals <= most).all(axis=1))
     return Compared(views, total, np.ones_like(total)).where(sound)
 
 
@@ -224,8 +225,8 @@ def integral(case: Case) -> Compared:
 
 def energy(case: Case) -> Compared:
     views, albedo, expected = integral(case)
-    allowed = np.maximum(1.0, expected)
-    return Compared(views, np.maximum(albedo, allowed), allowed)
+    most = np.maximum(1.0, expected)
+    return Compared(views, np.maximum(albedo, most), most)
 
 
 def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
@@ -240,21 +241,22 @@ def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
 
 
 def factor(case: Case) -> Iterator[Compared]:
-    for batch, (factor, end) in product(case.few, ((2.0, 1.0), (-1.0, 0.0))):
+    for batch, (factor, clamped) in product(case.few, ((2.0, 1.0), (-1.0, 0.0))):
         beyond, nearest = (
             batch.altered(**{FACTOR: np.full_like(batch.inputs[FACTOR], number)})
-            for number in (factor, end)
+            for number in (factor, clamped)
         )
         yield Compared(beyond, case.direct(beyond), case.direct(nearest))
         passed = (case.throughput(each, "direct") for each in (beyond, nearest))
         yield Compared(beyond, *passed)
 
 
-# --- hair: separate lobes in regions where they are wide, narrow, or viewed straight on -----------
+# --- hair: lobes in regions where a lobe can be judged alone, such as narrow or tilted lobes ------
 
 
-TENTH = (0.0, 0.1, 0.995)
-TURN_FIBER = controls.with_inputs("the normal is turned about the fiber by a tenth", normal=TENTH)
+TURN_FIBER = controls.with_inputs(
+    "the normal is turned about the fiber by a tenth", normal=(0.0, 0.1, 0.995)
+)
 
 
 def region_values(key: str, case: Case) -> Compared:
@@ -266,8 +268,8 @@ def in_region(key: str, case: Case) -> Compared:
 
 
 def explain_region(key: str, case: Case) -> Diagnosis:
-    others = set(FORMS) - {REGIONS[key].form, TILTED}  # these forms equal the model in the region
-    candidates = [each for each in case.valued.value_candidates if each.title not in others]
+    equal = set(FORMS) - {REGIONS[key].form, TILTED}  # forms that equal the model in this region
+    candidates = [each for each in case.valued.value_candidates if each.title not in equal]
     compared = region_values(key, case)
     brightest = min(float(compared.expected.max()), 1.0)
     terms = (Term(brightest * REGION.value, "a region"),)
@@ -277,32 +279,31 @@ def explain_region(key: str, case: Case) -> Diagnosis:
 
 # --- inputs outside the ranges of the other checks, if hosts pass them on -------------------------
 
-PAIRS = 16  # pairs per value
-LEAST_WEIGHT = 0.3  # least weight and occlusion, so that effects stay visible
+LEAST_WEIGHT = 0.3  # smallest weight and occlusion, so that effects stay visible
 TOLERANCES = single(1.0, Quantity.TOLERANCES, "the tolerance of each quantity")
 
 
-def quantities(case: Case, batch: Batch, right: Batch) -> Iterator[tuple[str, Compared]]:
-    """Values, albedos and throughputs by name, compared with those expected for `right`."""
-    albedo = case.expected_albedo(right)
-    yield "value", Compared(batch, case.direct(batch), case.expected(right))
-    yield "albedo", Compared(batch, case.albedo(batch), albedo)
+def quantities(case: Case, batch: Batch, clamped: Batch) -> Iterator[tuple[str, Compared]]:
+    """Values, albedos and throughputs by name, compared with the model's for clamped inputs."""
+    yield "value", Compared(batch, case.direct(batch), case.expected(clamped))
+    yield "albedo", Compared(batch, case.albedo(batch), case.expected_albedo(clamped))
     if LAYERS(case.spec):
         passed = case.throughput(batch, "direct")
-        yield "throughput", Compared(batch, passed, case.expected_throughput(right))
+        yield "throughput", Compared(batch, passed, case.expected_throughput(clamped))
 
 
 def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
-    """Compare a few pairs for each input and value; skip quantities that fail inside the ranges.
+    """Quantity, input, value and comparison of a few pairs for each value outside a usual range.
 
-    Quantities are divided by their tolerances.
+    Quantities are divided by their tolerances. Quantities that fail for usual inputs are skipped.
     """
     spec, views = case.of(PbrSpec), case.backend.views[0]
-    row, names = np.arange(len(views.wo))[:, np.newaxis], {"weight", "occlusion"}
+    row, visible = np.arange(len(views.wo))[:, np.newaxis], {}
     wo = np.where(row == 1, NORMAL, views.wo)
     wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # peak of microfacets
-    seen = {name: np.maximum(views.inputs[name], LEAST_WEIGHT) for name in names & {*views.inputs}}
-    views = replace(views, wo=wo, wi=wi).altered(**seen)
+    for name in {"weight", "occlusion"} & views.inputs.keys():
+        visible[name] = np.maximum(views.inputs[name], LEAST_WEIGHT)
+    views = replace(views, wo=wo, wi=wi).altered(**visible)
     plain = replace(case, outputs=lambda batch, values: values)
     wrong = {
         name
@@ -312,21 +313,21 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
     if len(wrong) == 2 + LAYERS(spec):
         inside = f"{spec.title} already fails inside its inputs' usual ranges"
         raise Implied(f"{case.host.name}: not measured, since {inside}")
-    batch = views.first(PAIRS)
-    for each in spec.bounded:
-        for value in each.beyond:
-            lit, right = (
-                batch.altered(**{each.name: np.full_like(batch.inputs[each.name], number)})
-                for number in (value, float(np.clip(value, *each.ends)))
+    batch = views.first(16)
+    for port in spec.bounded:
+        for value in port.beyond:
+            beyond, clamped = (
+                batch.altered(**{port.name: np.full_like(batch.inputs[port.name], number)})
+                for number in (value, float(np.clip(value, *port.ends)))
             )
             # MaterialX's sum over an environment does not clamp a curve below 0.
-            known = ~np.broadcast_to(falls_below_0(right.inputs), len(batch.wo))
-            for name, compared in quantities(case, lit, right):
+            known = ~np.broadcast_to(falls_below_0(clamped.inputs), len(batch.wo))
+            for name, compared in quantities(case, beyond, clamped):
                 if name not in wrong:
-                    own = spec.outside_errors.get((name, each.name, value))
-                    error = own or case.tolerance(name)
+                    error = spec.outside_errors.get((name, port.name, value))
+                    error = error or case.tolerance(name)
                     scale = error.value * error.scale(compared.expected)
-                    yield name, each.name, value, compared.over(scale).where(known)
+                    yield name, port.name, value, compared.over(scale).where(known)
 
 
 def diagnose_domain(case: Case) -> Diagnosis:
@@ -343,16 +344,14 @@ def diagnose_domain(case: Case) -> Diagnosis:
 
 # --- negative colors, as MaterialX's own shaders treat them ---------------------------------------
 
-CLAMPED = FACETS | COMBINED | family(HairSpec)  # negative colors count as 0
-NEGATIVE = 64  # number of pairs
-LEAST_NEGATIVE = 0.1
+CLAMPED = FACETS | COMBINED | family(HairSpec)  # nodes for which negative colors count as 0
 
 
 def colored(spec: LobeSpec) -> list[str]:
-    """Names of inputs that are reflectances or factors; a combination only has its factor."""
-    words = (FACTOR,) if COMBINED(spec) else ("color", "tint")
+    """Names of color inputs that scale light: reflectances, tints, or a combination's factor."""
+    prefixes = (FACTOR,) if COMBINED(spec) else ("color", "tint")
     colors = (each.name for each in spec.inputs if each.type == "color3")
-    return [name for name in colors if name.startswith(words)]
+    return [name for name in colors if name.startswith(prefixes)]
 
 
 def unsigned(batch: Batch) -> Batch:
@@ -365,39 +364,38 @@ def negative(case: Case) -> Iterator[Compared]:
 
     EON's light is a rho + b rho^2 / (1 - rho (1 - <E>)); light for rho and rho / 2 gives a and b.
     """
-    asks = [(case.backend.direct, case.direct)]
+    quantities = [(case.backend.direct, case.direct)]
     if not family(HairSpec)(case.spec):  # MaterialX computes hair's albedo from unclamped tints
-        asks.append((case.backend.albedo, case.albedo))
+        quantities.append((case.backend.albedo, case.albedo))
     if TRANSMITTING(case.spec):
-        asks.append((case.evaluating.transmitted, case.transmitted))
-    batch, red = case.few[0].first(NEGATIVE).altered(weight=1.0), np.array([1.0, 0.0, 0.0])
+        quantities.append((case.evaluating.transmitted, case.transmitted))
+    batch, red = case.few[0].first(64).altered(weight=1.0), np.array([1.0, 0.0, 0.0])
     for name in colored(case.lobe):
-        rho = np.maximum(batch.inputs[name], LEAST_NEGATIVE) * red
+        rho = np.maximum(batch.inputs[name], 0.1) * red
         rest = batch.inputs[name] * (1.0 - red)
-        low, none, half, whole = (
+        negated, zero, half, whole = (
             batch.altered(**{name: rest + share * rho}) for share in (-1.0, 0.0, 0.5, 1.0)
         )
-        for known, ask in asks:
+        for light, measure in quantities:
             if CLAMPED(case.spec):
-                expected = known(none)
+                expected = light(zero)
             elif EON(case.spec):
-                rough = np.reshape(batch.inputs["roughness"], (-1, 1))
-                lost = rho * (1.0 - fon_albedo_avg(rough))
+                roughness = np.reshape(batch.inputs["roughness"], (-1, 1))
+                lost = rho * (1.0 - fon_albedo_avg(roughness))
                 least, middle, most = (1.0 / (1.0 - share * lost) for share in (-1.0, 0.5, 1.0))
-                second = (known(whole) - 2.0 * known(half)) / (most - 0.5 * middle)  # b rho^2
-                expected = known(whole) + red * (second * (least + most) - 2.0 * known(whole))
+                second = (light(whole) - 2.0 * light(half)) / (most - 0.5 * middle)  # b rho^2
+                expected = light(whole) + red * (second * (least + most) - 2.0 * light(whole))
             else:
-                expected = known(whole) * (1.0 - 2.0 * red)
+                expected = light(whole) * (1.0 - 2.0 * red)
             finite = np.asarray(np.isfinite(expected).all(axis=1))  # NaN fails other checks
-            yield Compared(low, ask(low), expected).where(finite)
+            yield Compared(negated, measure(negated), expected).where(finite)
 
 
 # fmt: off
 ROWS = (
     Check(key="value",
           claim="The value matches the model for every pair of directions, including back-lit and grazing ones.",
-          applies=VALUED - BELOW, measure=VALUE, tolerance="value", control=controls.gray,
-          explain=VALUE.diagnose, open=True),
+          applies=VALUED - BELOW, measure=VALUE, control=controls.gray, explain=VALUE.diagnose, open=True),
     Check(key="lobe", claim="The diffuse lobe of the surface shader matches the model.",
           applies=LAMBERT | BELOW, measure=VALUE, tolerance="value", control=controls.gray,
           explain=VALUE.diagnose),
@@ -414,8 +412,8 @@ ROWS = (
           measure=black, tolerance=ZERO, control=controls.offset, explain=VALUE.diagnose),
     Check(key="frame",
           claim="The value follows the surface's frame, with the normal turned toward the viewer.",
-          applies=LOBES | MODES, measure=frames, tolerance="frame",
-          control=controls.drop_normal, explain=diagnosis.diagnose_frame),
+          applies=LOBES | MODES, measure=frames, control=controls.drop_normal,
+          explain=diagnosis.diagnose_frame),
     Check(key="surroundings",
           claim="An uneven environment is looked up along the viewer-facing normal, or along its opposite for translucent nodes.",
           applies=(PLAIN - FACETS) | MODES | BURLEY, measure=surroundings, tolerance=SURROUNDINGS,
@@ -423,7 +421,7 @@ ROWS = (
           requires=Ability.PAIRS | Ability.LIGHT,
           methods=lambda spec, methods: methods.environment != "none"),
     *(
-        Check(key=key, claim=claim, applies=SUBSURFACE, measure=sphere, tolerance=key,
+        Check(key=key, claim=claim, applies=SUBSURFACE, measure=sphere,
               control=controls.with_inputs(
                   "the mean free path is 0.3 in every channel", radius=(0.3, 0.3, 0.3)),
               explain=lambda case: diagnosis.explain(case, list(sphere(case)), ON_SPHERES, (), RINGS),
@@ -435,23 +433,21 @@ ROWS = (
     Check(key="color_space",
           claim="A color in sRGB has the value of the linear color that it stands for.",
           applies=family(ScatteringSpec, lambda spec: spec.flat), measure=COLOR_SPACE,
-          tolerance="color_space", control=controls.gray, explain=COLOR_SPACE.diagnose,
-          requires=Ability.PAIRS),
+          control=controls.gray, explain=COLOR_SPACE.diagnose, requires=Ability.PAIRS),
     Check(key="throughput",
           claim="An opaque node passes 1 - weight of the light from below in every branch, and no other light.",
           applies=(PLAIN - LAYERS) | MODES,
-          measure=lambda case: (each for row in NOTHING for each in opaque_values(case, *row)),
+          measure=lambda case: (each for row in ZEROS for each in opaque_values(case, *row)),
           tolerance=OPAQUE, control=controls.take_response,
           explain=lambda case: diagnosis.diagnose_throughput(
-              {each: list(opaque_values(case, *each)) for each in NOTHING}),
+              {each: list(opaque_values(case, *each)) for each in ZEROS}),
           requires=Ability.PAIRS | Ability.LIGHT),
     Check(key="reciprocity", claim="Exchanging the two directions does not change the BRDF.",
           applies=(RECIPROCAL - SUBSURFACE) | ROUGH | LAMBERT | BURLEY, measure=reciprocity,
-          tolerance="reciprocity",
           control=controls.scale_cosine("the value has an extra factor cos(theta_o)", 1),
           explain=VALUE.diagnose),
     Check(key="lambert", claim="At roughness 0 the node is Lambert.",
-          applies=MODES, tolerance="lambert",
+          applies=MODES,
           measure=lambda case: (case.compared(each.altered(roughness=0.0)) for each in case.few),
           control=controls.with_inputs("roughness is 0.1", roughness=0.1), explain=VALUE.diagnose),
     Check(key="inputs", claim="Every input of the node changes the value.",
@@ -483,20 +479,19 @@ ROWS = (
           explain=TRANSMISSION.diagnose, open=True),
     Check(key="dip",
           claim="Where color82 lowers the reflectance, the layer passes on what it does not reflect.",
-          applies=reads("color82"), measure=dip, tolerance="dip", control=controls.pass_all,
+          applies=layers_with("color82"), measure=dip, control=controls.pass_all,
           explain=THROUGHPUT.diagnose, requires=Ability.PAIRS | Ability.LIGHT),
     Check(key="denser",
           claim="For indices below 1, where facets reflect totally, the throughput is 1 - E, too.",
-          applies=reads("tint"), measure=denser, tolerance="denser", control=controls.pass_all,
+          applies=layers_with("tint"), measure=denser, control=controls.pass_all,
           explain=THROUGHPUT.diagnose, requires=Ability.PAIRS | Ability.LIGHT),
     Check(key="layer", claim="A white layer over a white base returns all light.",
           applies=LAYERS, measure=layer, tolerance="light", control=controls.pass_all,
           explain=THROUGHPUT.diagnose),
     Check(key="integral",
           claim="Values integrate to the directional albedo that the equations give.",
-          applies=LOBES | MODES, measure=integral, tolerance="integral",
-          control=controls.scale("values are 2 % too large", 1.02), explain=VALUE.diagnose,
-          open=True),
+          applies=LOBES | MODES, measure=integral,
+          control=controls.scale("values are 2 % too large", 1.02), explain=VALUE.diagnose, open=True),
     Check(key="energy", claim="No albedo exceeds 1 or what the equations give.",
           applies=LOBES, measure=energy, tolerance="integral",
           control=controls.scale("values are 100 times as large", 100.0), explain=VALUE.diagnose),
@@ -517,17 +512,15 @@ ROWS = (
           tolerance="throughput",
           control=controls.pass_all, explain=THROUGHPUT.diagnose, open=True),
     Check(key="factor", claim="Factors are clamped to [0, 1].",
-          applies=Specs(lambda spec: spec.model in SINGLE), measure=factor, tolerance="factor",
+          applies=Specs(lambda spec: spec.model in SINGLE), measure=factor,
           control=controls.with_values(
               "values are multiplied twice",
               lambda batch, values: values * np.reshape(batch.inputs[FACTOR], (len(values), -1))),
           explain=replace(defect("factor_not_clamped"), permitted=True),
           requires=Ability.PAIRS, open=True),
     *(
-        Check(key=key, claim=row.claim, applies=family(HairSpec),
-              measure=partial(in_region, key),
-              tolerance=key, control=TURN_FIBER, explain=partial(explain_region, key),
-              requires=Ability.LIGHT, open=True)
+        Check(key=key, claim=row.claim, applies=family(HairSpec), measure=partial(in_region, key),
+              control=TURN_FIBER, explain=partial(explain_region, key), requires=Ability.LIGHT, open=True)
         for key, row in REGIONS.items()
     ),
     Check(key="domain",

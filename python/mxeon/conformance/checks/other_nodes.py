@@ -21,26 +21,26 @@ EMISSIONS, MEDIA = family(emission.EmissionSpec), family(emission.MediumSpec)
 
 
 def diagnose_opacity(case: Case) -> Diagnosis:
-    full = max(
-        emission.OPACITY.metric(each.measured, case.expected(each.batch.altered(opacity=1.0))).max()
+    opaque = [
+        each._replace(expected=case.expected(each.batch.altered(opacity=1.0)))
         for each in VALUE(case)
-    )
-    return defect("input_ignored", "opacity") if full <= emission.OPACITY.value else Diagnosis()
+    ]
+    wrong = any(emission.OPACITY.wrong(each).any() for each in opaque)
+    return Diagnosis() if wrong else defect("input_ignored", "opacity")
 
 
 def above(case: Case) -> Iterator[Compared]:
     for batch, branch in product(case.batches, LIGHT):
-        passed = case.throughput(batch, branch)
-        yield Compared(batch, passed, np.ones_like(passed))
+        yield Compared(batch, case.throughput(batch, branch), np.ones((1, 3)))
 
 
 def between(case: Case) -> Iterator[Compared]:
     """Transmitted light, compared with the light without a medium times the transmittance."""
+    clear = {each.name: np.zeros(3) for each in case.spec.inputs if each.type == "vector3"}
     for batch in case.batches:
         lit = batch.altered(**{"bottom/weight": 1.0})
-        clear = {each.name: np.zeros(3) for each in case.spec.inputs if each.type == "vector3"}
-        whole = case.evaluating.transmitted(lit.altered(**clear))
-        yield Compared(batch, case.transmitted(lit), whole * case.expected(batch))
+        without = case.evaluating.transmitted(lit.altered(**clear))
+        yield Compared(batch, case.transmitted(lit), without * case.expected(batch))
 
 
 # --- utility nodes; errors are in units that make their roundings uniform -------------------------
@@ -51,11 +51,11 @@ def outside(case: Case) -> Compared:
     return Compared(batch, case.direct(batch), np.zeros((1, 3)))
 
 
-def explained_finite(case: Case) -> Diagnosis:
+def diagnose_finite(case: Case) -> Diagnosis:
     """The number of non-finite outputs, and the input range that contains all of them."""
-    compared = unbounded(outside(case))
-    share = correct_except([compared], EXACT, span([compared], EXACT))
-    return Diagnosis((replace(share, kind=Kind.NOT_FINITE),))
+    compared = [unbounded(outside(case))]
+    cause = correct_except(compared, EXACT, span(compared, EXACT))
+    return Diagnosis((replace(cause, kind=Kind.NOT_FINITE),))
 
 
 # fmt: off
@@ -101,7 +101,7 @@ ROWS = (
           claim="Every output is finite, at the ends of the ranges and beyond.",
           applies=family(utilities.UtilitySpec, lambda spec: not spec.libraries),
           measure=lambda case: count_not_finite(outside(case)),
-          tolerance=count_of(Quantity.VALUES), control=controls.no_number, explain=explained_finite,
+          tolerance=count_of(Quantity.VALUES), control=controls.no_number, explain=diagnose_finite,
           requires=Ability.PAIRS),
 )
 # fmt: on

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pixels with several lights or lobes: their value must be the sum of the values of the parts.
 
-AXES lists the states, one line each. Any two states of different axes meet in some pixels. Expected
-values are the host's own values of the parts, so a wrong model passes and a failure has one reason.
+A pixel is in one state per axis of AXES, such as "two lights" on the axis "lights"; any two states
+of different axes occur together in some pixels. Expected values are the host's own values of the
+parts, so a wrong model passes and a failure has one reason.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -13,12 +14,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance import backends, check, controls, diagnosis, results, samples
 from mxeon.conformance.case import Case
 from mxeon.conformance.checks.lobes import DARK
-from mxeon.conformance.samples import Array, Batch, Mask, Values, aimed, float32, rounded
+from mxeon.conformance.samples import Array, Batch, Mask, aimed, float32, rounded
 from mxeon.conformance.spec import Ability, LobeSpec, broadcast_inputs
 from mxeon.conformance.tolerance import Compared
 from mxeon.hosts import base, calls
@@ -31,14 +32,13 @@ from mxeon.shaders.scene import CLIENT, Client
 if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
-EACH = 12  # pixels per combination of states: three 2 x 2 squares in a frame of two rows
-STEP = 0.05  # radian between pixels of a bent surface with radius 1
+EACH = 12  # pixels per combination of states: three 2 x 2 squares in a picture with two rows
+STEP = 0.05  # angle between neighboring pixels of a bent surface with radius 1, in radian
 VECTORS = ("normal", "tangent", "position", calls.SURFACE)
 FLAT = calls.NORMAL, calls.TANGENT, (0.0, 0.0, 0.0), calls.NORMAL
-WEIGHTS = (0.0, 0.3, 1.0, 1.0)
-FEW = 6  # combinations in a control
-CLEARER = 0.7  # report two states instead of one if they narrow its pixels to this share
-Inputs = Mapping[str, Array]
+CLEARER = (
+    0.7  # two states are reported if their pixels are at most this share of one state's pixels
+)
 Random = np.random.Generator
 Layout = tuple[tuple[int, ...], tuple[int, ...]]  # shape and axis order of a list of pixels
 
@@ -50,9 +50,9 @@ class Pixels:
     batch: Batch
     states: tuple[str, ...]
     light: Array  # direction of a second light, in the local frame
-    second: Inputs | None = None  # inputs of a second lobe
-    aside: Array | None = None  # frame of the second lobe, if it differs
-    differ: tuple[str, ...] = ()  # input that differs between the lobes of each pixel
+    second: Mapping[str, Array] | None = None  # inputs of a second lobe
+    second_frame: Array | None = None  # frame of the second lobe, None for the surface's frame
+    differing: tuple[str, ...] = ()  # for each pixel, the input that differs between two lobes
     lights: int = 1
     sky: str = ""  # "uniform" or "uneven"
     client: Client = CLIENT  # how the environment is turned and scaled
@@ -67,7 +67,7 @@ def same(pixels: Pixels, rng: Random) -> Pixels:
 
 
 def lit(pixels: Pixels, rng: Random, count: int, first: float = 1.0, second: float = 1.0) -> Pixels:
-    """Set the number of lights; -1 moves a light to the side where the lobe does not scatter."""
+    """Set the number of lights; `first` or `second` of -1 mirrors this light to the dark side."""
     wi = pixels.batch.wi
     batch = replace(pixels.batch, wi=wi * [1.0, 1.0, first])
     light = np.roll(wi, 1, axis=0) * [1.0, 1.0, second]
@@ -85,7 +85,7 @@ def framed(
     along: bool = False,
     scaled: bool = False,
 ) -> Pixels:
-    """Change random frames; options align views with the normal, or let tangents lean and scale."""
+    """Replace random frames; options move views to the normal, or lean and scale tangents."""
     batch = pixels.batch
     assert batch.frame is not None
     frame = make(batch.frame, rng)
@@ -123,71 +123,65 @@ def bent(pixels: Pixels, rng: Random, columns: float = 0.0, rows: float = 0.0) -
     frame = np.concatenate([batch.frame[first], *axes], axis=2)
     local = np.stack([np.sin(columns * column), np.sin(rows * row), 0.0 * row], axis=1)
     local[:, 2] = np.sqrt(1.0 - (local**2).sum(axis=1))
-    flat = STEP * np.stack([column * (not columns), row * (not rows), 0 * row], axis=1)
-    up, place = (
-        (frame[:, :, :3] @ each[:, :, np.newaxis])[:, :, 0] for each in (local, local + flat)
+    offset = STEP * np.stack([column * (not columns), row * (not rows), 0 * row], axis=1)
+    up, position = (
+        (frame[:, :, :3] @ each[:, :, np.newaxis])[:, :, 0] for each in (local, local + offset)
     )
     frame = aimed(frame, frame[:, :, 2], up)
-    inputs = dict(
-        zip(
-            VECTORS,
-            map(float32, (frame[:, :, 3], frame[:, :, 4], place, frame[:, :, 3])),
-            strict=True,
-        )
-    )
+    vectors = frame[:, :, 3], frame[:, :, 4], position, frame[:, :, 3]
+    inputs = dict(zip(VECTORS, map(float32, vectors), strict=True))
     return replace(pixels, batch=replace(batch.altered(**inputs), frame=frame[:, :, :3]))
 
 
 def doubled(pixels: Pixels, rng: Random, component: bool = False, swapped: bool = False) -> Pixels:
-    """Add a second lobe; in each pixel, one input of it differs, or one component of an input."""
+    """Add a second lobe; in each pixel, one of its inputs or one component of an input differs."""
     first = broadcast_inputs(pixels.batch)
-    second, words = dict(first), [""] * EACH
+    second, differing = dict(first), [""] * EACH
     names = [name for name in first if name not in VECTORS]
     for row in range(EACH):
-        name = words[row] = names[(row + rng.integers(2)) % len(names)]
+        name = differing[row] = names[(row + rng.integers(2)) % len(names)]
         values = second[name] = np.array(second[name])
-        parts = rng.integers(values.shape[-1]) if component and values.ndim == 2 else ...
-        values[row, parts] = first[name][row - 1, parts]
+        columns = rng.integers(values.shape[-1]) if component and values.ndim == 2 else ...
+        values[row, columns] = first[name][row - 1, columns]
     inputs, second = (second, first) if swapped else (first, second)
     batch = replace(pixels.batch, inputs=inputs)
-    return replace(pixels, batch=batch, second=second, differ=tuple(words))
+    return replace(pixels, batch=batch, second=second, differing=tuple(differing))
 
 
 def leaning(pixels: Pixels, rng: Random) -> Pixels:
-    """Add a lobe with equal inputs; after the first square, its normal is halfway to the viewer."""
+    """Add a second lobe with equal inputs but, after the first square, another normal.
+
+    The second normal is halfway between the surface's normal and the viewer.
+    """
     batch = pixels.batch
     assert batch.frame is not None
-    normal = batch.frame[:, :, 2]
-    middle = batch.world(batch.wo) * (np.arange(EACH) >= EACH // 3)[:, np.newaxis] + normal
-    aside = aimed(batch.frame, normal, middle / np.linalg.norm(middle, axis=1, keepdims=True))
-    axes = {"normal": float32(aside[:, :, 2]), "tangent": float32(aside[:, :, 0])}
+    normal, leans = batch.frame[:, :, 2], np.arange(EACH) >= EACH // 3
+    middle = batch.world(batch.wo) * leans[:, np.newaxis] + normal
+    frame = aimed(batch.frame, normal, middle / np.linalg.norm(middle, axis=1, keepdims=True))
+    axes = {"normal": float32(frame[:, :, 2]), "tangent": float32(frame[:, :, 0])}
     second = broadcast_inputs(batch) | axes
-    return replace(
-        pixels,
-        second=second,
-        aside=aside,
-        differ=("",) * (EACH // 3) + ("normal",) * (EACH - EACH // 3),
-    )
+    differing = tuple("normal" if each else "" for each in leans)
+    return replace(pixels, second=second, second_frame=frame, differing=differing)
 
 
 def changed(pixels: Pixels, change: Callable[[Array], Array]) -> Pixels:
     """Apply a change to all inputs of both lobes except the frame."""
     batch, second = pixels.batch, pixels.second
-    inputs, others = (
+    first, others = (
         {name: each if name in VECTORS else change(each) for name, each in values.items()}
         for values in (broadcast_inputs(batch), second or {})
     )
-    return replace(pixels, batch=replace(batch, inputs=inputs), second=second and others)
+    return replace(pixels, batch=replace(batch, inputs=first), second=second and others)
 
 
 def constant(pixels: Pixels, rng: Random) -> Pixels:
     row = rng.integers(EACH)
-    differ = pixels.differ and (pixels.differ[row],) * EACH
-    return replace(changed(pixels, lambda values: values[row]), differ=differ)
+    differing = pixels.differing and (pixels.differing[row],) * EACH
+    return replace(changed(pixels, lambda values: values[row]), differing=differing)
 
 
 def in_image(pixels: Pixels, rng: Random) -> Pixels:
-    """Round inputs to half floats, the precision of the image that they are read from."""
+    """Read inputs from an image, whose precision is that of half floats."""
     halves = changed(pixels, lambda values: values.astype(np.float16).astype(np.float64))
     return replace(halves, image=True)
 
@@ -198,8 +192,8 @@ ANGLE = 37.0 * np.pi / samples.SKY_ROWS
 COSINE, SINE = np.cos(ANGLE), np.sin(ANGLE)
 ROTATION = np.array([[COSINE, 0.0, SINE], [0.0, 1.0, 0.0], [-SINE, 0.0, COSINE]])
 TURNING = tuple((base.TURN @ np.pad(ROTATION, (0, 1))).T.ravel().tolist())
-# Other checks use the first state of each axis. States with the same words before a colon are also
-# diagnosed as a group.
+# States by axis. Other checks use the first state of each axis. States with the same words before a
+# colon are also diagnosed as a group.
 AXES: dict[str, dict[str, Build]] = {
     "lights": {
         "one light": partial(lit, count=1),
@@ -253,35 +247,38 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
     """
     sizes = [len(axis) for axis in axes]
     rows = np.array(list(product(*map(range, sizes))))
-    meet = [
+    # For each combination, a mask of the pairs of states that it contains.
+    masks = [
         np.eye(sizes[one] * sizes[other], dtype=bool)[rows[:, one] * sizes[other] + rows[:, other]]
         for one, other in combinations(range(len(axes)), 2)
     ]
-    pairs, found = np.concatenate(meet, axis=1), []
-    gain, waiting = pairs.sum(axis=1), np.ones(pairs.shape[1], bool)
-    while waiting.any():
+    pairs, chosen = np.concatenate(masks, axis=1), []
+    gain, missing = pairs.sum(axis=1), np.ones(pairs.shape[1], bool)
+    while missing.any():
         best = int(gain.argmax())
-        found.append(tuple(axis[state] for axis, state in zip(axes, rows[best], strict=True)))
-        gain -= pairs[:, pairs[best] & waiting].sum(axis=1)
-        waiting &= ~pairs[best]
-    return tuple(found)
+        chosen.append(tuple(axis[state] for axis, state in zip(axes, rows[best], strict=True)))
+        gain -= pairs[:, pairs[best] & missing].sum(axis=1)
+        missing &= ~pairs[best]
+    return tuple(chosen)
 
 
 @lru_cache(maxsize=1)  # shared by a check and its control
 def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
     """Pixels with combinations of the states that the node and the engine support."""
     lobe, rng = backend.lobe, samples.generator()
-    plain = {*lobe.plain, *backend.plain}
+    unsupported = {
+        *lobe.plain,
+        *backend.plain,
+    }  # states, or axes of which only the first is supported
     if not backend.host.reads_images:
-        plain.add("inputs from an image")
-    if "frame" in plain:
-        plain.add(TURNED_SKY)
-    if Ability.MATERIAL in lobe.requires:  # surface shaders do not expose tints
-        plain.add(TWO_SIDED)
-    if backend.host.active.transmission == "opacity":  # the environment does not scale opacity
-        plain.add(TWO_SIDED)
+        unsupported.add("inputs from an image")
+    if "frame" in unsupported:
+        unsupported.add(TURNED_SKY)
+    # Surface shaders do not expose tints, and the environment does not scale opacity.
+    if Ability.MATERIAL in lobe.requires or backend.host.active.transmission == "opacity":
+        unsupported.add(TWO_SIDED)
     axes = tuple(
-        tuple(state for n, state in enumerate(each) if not n or not {name, state} & plain)
+        tuple(state for n, state in enumerate(each) if not n or not {name, state} & unsupported)
         for name, each in AXES.items()
     )
     rows = covering(axes)
@@ -295,15 +292,16 @@ def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
         batch = batch.altered(roughness=alpha)
     if "weight" in lobe.names:
         # Keep weights equal in a square: derivatives are undefined where a lobe is skipped.
-        batch = batch.altered(weight=np.repeat(rng.choice(WEIGHTS, len(batch.wo) // 4), 4))
-    found = []
+        weights = rng.choice((0.0, 0.3, 1.0, 1.0), len(batch.wo) // 4)
+        batch = batch.altered(weight=np.repeat(weights, 4))
+    groups = []
     for number, states in enumerate(rows):
         part = batch.where(slice(EACH * number, EACH * (number + 1)))
         pixels = Pixels(part, states, part.wi)
-        for axis, words in zip(AXES.values(), states, strict=True):
-            pixels = axis[words](pixels, rng)
-        found.append(pixels)
-    return tuple(found)
+        for axis, state in zip(AXES.values(), states, strict=True):
+            pixels = axis[state](pixels, rng)
+        groups.append(pixels)
+    return tuple(groups)
 
 
 exchanged = controls.with_batch(
@@ -315,42 +313,45 @@ exchanged = controls.with_batch(
 def states(case: Case) -> Iterator[Compared]:
     groups: Sequence[Pixels] = pixels_of(case.backend)
     if case.control:
-        groups = [each for each in groups if not each.image][:FEW]
-    # Pixels with constant inputs need a frame per group.
-    frames: dict[tuple[bool, str, Client, bool, int], list[int]] = {}
+        groups = [each for each in groups if not each.image][:6]
+    # Each picture shows all groups with the same shader and environment. Groups with constant
+    # inputs need a picture each.
+    pictures: dict[tuple[bool, bool, Client, bool, int], list[int]] = {}
     for number, pixels in enumerate(groups):
         alone = number if "constant inputs" in pixels.states else -1
-        uneven, two = "uneven" * (pixels.sky == "uneven"), pixels.second is not None
+        two, uneven = pixels.second is not None, pixels.sky == "uneven"
         key = two, uneven, pixels.client, pixels.image, alone
-        frames.setdefault(key, []).append(number)
+        pictures.setdefault(key, []).append(number)
     measured: dict[int, Array] = {}
     with Temporary("mxeon-states-") as folder:
         file = Path(folder, "inputs.exr")
         from_image = partial(imaged, case, cache(partial(compile_imaged, case, file)), file)
-        for (two, uneven, client, image, _), numbers in frames.items():
+        for (two, uneven, client, image, _), numbers in pictures.items():
             batch = backends.joined([batch_of(groups[number]) for number in numbers])
-            ask = partial(
+            evaluate = partial(
                 from_image if image else case.evaluating.together,
                 irradiance=samples.sky_map() if uneven else None,
                 client=client,
                 two=two,
             )
-            values = case.outputs(batch, drawn(case.inputs(batch), ask, SQUARES))
+            values = case.outputs(batch, drawn(case.inputs(batch), evaluate, SQUARES))
             measured |= zip(numbers, np.split(values, len(numbers)), strict=True)
     for number, (pixels, expected) in enumerate(zip(groups, sums(case, groups), strict=True)):
         yield Compared(pixels.batch, measured[number], expected)
 
 
-# Layouts of pixels in a frame of two rows: 2 x 2 squares, transposed squares, or far apart.
-SQUARES, TURNED, APART = ((-1, 2, 2), (1, 0, 2)), ((-1, 2, 2), (2, 0, 1)), ((-1, EACH), (1, 0))
+# Layouts of pixels in a picture with two rows: 2 x 2 squares, transposed squares, or far apart.
+SQUARES, TRANSPOSED = ((-1, 2, 2), (1, 0, 2)), ((-1, 2, 2), (2, 0, 1))
+APART = (-1, EACH), (1, 0)
 
 
-def drawn(batch: Batch, ask: Callable[[Batch], Array], layout: Layout) -> Array:
+def drawn(batch: Batch, evaluate: Callable[[Batch], Array], layout: Layout) -> Array:
+    """Values of a batch whose pixels are drawn in a layout."""
     shape, axes = layout
     order = np.arange(len(batch.wo)).reshape(shape).transpose(axes).ravel()
-    found = np.empty_like(batch.wo)
-    found[order] = ask(batch.where(order))
-    return found
+    values = np.empty_like(batch.wo)
+    values[order] = evaluate(batch.where(order))
+    return values
 
 
 def imaged(
@@ -362,28 +363,29 @@ def imaged(
     client: Client,
     two: bool,
 ) -> Array:
-    """Light in pixels whose last lobe reads its inputs from an image with 2 x 2 equal texels."""
-    count, last = len(batch.wo), "second/" if two else "lobe/"
-    own = {name.removeprefix("second/"): name for name in batch.inputs if ("/" in name) == two}
-    names = [name for name in own if name in case.lobe.types and name not in VECTORS]
-    texels, places = [], {}
+    """Light in pixels whose last lobe reads its inputs from an image.
+
+    The image has a row for each input and a column for each pixel, of 2 x 2 equal texels each.
+    """
+    count, lobe = len(batch.wo), "second" if two else "lobe"
+    paths = {name.removeprefix("second/"): name for name in batch.inputs if ("/" in name) == two}
+    names = [name for name in paths if name in case.lobe.types and name not in VECTORS]
+    texels, inputs = [], dict(batch.inputs)
     for row, name in enumerate(names):
-        values = batch.inputs[own[name]].reshape(count, -1)
+        values = inputs.pop(paths[name]).reshape(count, -1)
         texels.append(np.concatenate([values, 1.0 - values, 1.0 - values], axis=1)[:, :3])
         middles = (np.arange(count) + 0.5) / count, np.full(count, 1.0 - (row + 0.5) / len(names))
-        places[f"{last[:-1]}_{name}_place/value"] = rounded(middles)
+        inputs[f"{lobe}_{name}_place/value"] = rounded(middles)
     write_image(file, np.asarray(texels, np.float32).repeat(2, axis=0).repeat(2, axis=1), FAST_EXR)
-    left = batch.inputs.keys() - {own[name] for name in names}
-    batch = replace(batch, inputs={name: batch.inputs[name] for name in left} | places)
-    shader = compiled(two, last, tuple(names))
-    shown = partial(case.evaluating.evaluate, shader=shader, client=client)
-    return shown(batch, calls.LIT, irradiance=irradiance)
+    shader, batch = compiled(two, lobe, tuple(names)), replace(batch, inputs=inputs)
+    evaluate = case.evaluating.evaluate
+    return evaluate(batch, calls.LIT, irradiance=irradiance, shader=shader, client=client)
 
 
 def compile_imaged(
-    case: Case, file: Path, two: bool, last: str, names: tuple[str, ...]
+    case: Case, file: Path, two: bool, lobe: str, names: tuple[str, ...]
 ) -> "Shader":
-    ports = {last + name: case.lobe.types[name] for name in names}
+    ports = {f"{lobe}/{name}": case.lobe.types[name] for name in names}
     text = case.lobe.two_lobes() if two else case.lobe.document()
     document, policy = with_images(text, ports, str(file)), Policy(outside=True)
     return case.host.compile(document, library=case.library, policy=policy)[0]
@@ -391,21 +393,16 @@ def compile_imaged(
 
 def batch_of(pixels: Pixels) -> Batch:
     batch, count = pixels.batch, len(pixels.batch.wo)
-    inputs: Values = {
+    inputs: dict[str, ArrayLike] = {
         calls.LIGHTS: np.full(count, float(pixels.lights)),
         calls.SECOND_LIGHT: batch.world(pixels.light),
         calls.SKY: np.full(count, bool(pixels.sky)),
-        **{
-            f"second/{name}": each
-            for name, each in (pixels.second or {}).items()
-            if name not in VECTORS
-        },
-        **{
-            f"second_{name}/value": pixels.second[name.replace("curve_direction", "tangent")]
-            for name in FRAME_INPUTS
-            if pixels.second
-        },
     }
+    if second := pixels.second:
+        inputs |= {f"second/{name}": second[name] for name in second if name not in VECTORS}
+        for name in FRAME_INPUTS:
+            vector = second[name.replace("curve_direction", "tangent")]
+            inputs[f"second_{name}/value"] = vector
     return batch.altered(**inputs)
 
 
@@ -413,30 +410,30 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
     """Expected light: sums of separately evaluated parts, next to pixels with other inputs.
 
     Parts are on a plane in the surface's frame, except under an uneven sky. Lobes that depend on
-    the shape keep it, with rows and columns of each square exchanged.
+    the shape of the surface keep this shape, with rows and columns of each square exchanged.
     """
     curved = case.lobe.curved
-    layout = TURNED if curved else APART
-    found = [np.zeros_like(pixels.batch.wo) for pixels in groups]
+    layout = TRANSPOSED if curved else APART
+    totals = [np.zeros_like(pixels.batch.wo) for pixels in groups]
     parts: dict[str, list[tuple[int, Batch]]] = {}
     for number, pixels in enumerate(groups):
         batch = pixels.batch
-        for inputs, aside in ((batch.inputs, None), (pixels.second, pixels.aside)):
+        for inputs, frame in ((batch.inputs, None), (pixels.second, pixels.second_frame)):
             if inputs is None:
                 continue
             wo, *lights = (
-                each if aside is None else np.einsum("nij,ni->nj", aside, batch.world(each))
+                each if frame is None else np.einsum("nij,ni->nj", frame, batch.world(each))
                 for each in (batch.wo, batch.wi, pixels.light)
             )
-            frame = batch.frame if aside is None else aside
-            own = flat = replace(batch, inputs=inputs, wo=wo, wi=lights[0], frame=frame)
+            frame = batch.frame if frame is None else frame
+            lobe = flat = replace(batch, inputs=inputs, wo=wo, wi=lights[0], frame=frame)
             if not curved:
                 axes = dict(zip(VECTORS, FLAT, strict=True))
-                flat = replace(own.altered(**axes), frame=None)
+                flat = replace(lobe.altered(**axes), frame=None)
             for light in lights[: pixels.lights]:
                 parts.setdefault("light", []).append((number, replace(flat, wi=light)))
             if pixels.sky:
-                part = in_turn(own if pixels.sky == "uneven" else flat, pixels.client)
+                part = in_turn(lobe if pixels.sky == "uneven" else flat, pixels.client)
                 parts.setdefault(pixels.sky, []).append((number, part))
     for kind, rows in parts.items():
         batch = backends.joined([each for _, each in rows])
@@ -445,77 +442,69 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
         else:
             sky = samples.sky_map() if kind == "uneven" else None
             values = drawn(batch, partial(case.backend.albedo, irradiance=sky), layout)
-            tinted = batch
-            if "tint" in batch.inputs and not case.opaque:
-                twice = np.concatenate([np.full(EACH, groups[n].client.two_sided) for n, _ in rows])
+            if "tint" in batch.inputs and not case.opaque:  # two-sided surfaces tint light twice
+                twice = np.repeat([groups[n].client.two_sided for n, _ in rows], EACH)
                 tint = batch.inputs["tint"]
-                tinted = batch.altered(tint=np.where(twice[:, np.newaxis], tint * tint, tint))
-            values += drawn(tinted, partial(case.evaluating.transmitted, radiance=sky), layout)
+                batch = batch.altered(tint=np.where(twice[:, np.newaxis], tint * tint, tint))
+            values += drawn(batch, partial(case.evaluating.transmitted, radiance=sky), layout)
         for (number, _), each in zip(rows, np.split(values, len(rows)), strict=True):
-            found[number] += each * (1.0 if kind == "light" else groups[number].client.intensity)
-    return found
+            totals[number] += each * (1.0 if kind == "light" else groups[number].client.intensity)
+    return totals
 
 
 def in_turn(batch: Batch, client: Client) -> Batch:
-    """Turn the surface of a batch instead of the environment."""
+    """A batch whose surface is turned if the client turns the environment."""
     if client.turn == CLIENT.turn:
         return batch
-    frame = (
-        np.broadcast_to(np.eye(3), (len(batch.wo), 3, 3)) if batch.frame is None else batch.frame
-    )
+    frame = np.eye(3) if batch.frame is None else batch.frame
+    frame = np.broadcast_to(ROTATION @ frame, (len(batch.wo), 3, 3))
     axes = {
         name: float32(np.broadcast_to(batch.inputs.get(name, first), batch.wo.shape) @ ROTATION.T)
         for name, first in zip(VECTORS, FLAT, strict=True)
     }
-    return replace(batch.altered(**axes), frame=ROTATION @ frame)
+    return replace(batch.altered(**axes), frame=frame)
 
 
 def diagnose(case: Case) -> results.Diagnosis:
     tolerance, compared = case.tolerance("states"), list(states(case))
-    bad = np.concatenate(list(map(tolerance.wrong, compared)))
-    pixels = [words for each in pixels_of(case.backend) for words in _words(each)]
-    return results.Diagnosis((shared(bad, pixels), *diagnosis.not_finite(compared)))
+    wrong = np.concatenate(list(map(tolerance.wrong, compared)))
+    names = []
+    for group in pixels_of(case.backend):
+        common = named(group.states, AXES)
+        for name in group.differing or ("",) * EACH:
+            names.append(common | {f"two lobes that differ in {name}"} if name else common)
+    return results.Diagnosis((shared(wrong, names), *diagnosis.not_finite(compared)))
 
 
-def shared(bad: Mask, pixels: Sequence[set[str]]) -> results.Cause:
-    """Find the states that all wrong pixels share: one state, two together, or either of two."""
-    names = sorted(set().union(*pixels))
-    found: dict[tuple[str, ...], Mask] = {
-        (name,): np.array([name in each for each in pixels]) for name in names
-    }
-    pairs: list[tuple[str, ...]] = list(combinations(names, 2))
-    sets = (
-        found,
-        {pair: found[pair[:1]] & found[pair[1:]] for pair in pairs},
-        {pair: found[pair[:1]] | found[pair[1:]] for pair in pairs},
-    )
+def shared(wrong: Mask, states: Sequence[set[str]]) -> results.Cause:
+    """Find the states that all wrong pixels share: one state, two together, or either of two.
+
+    - `states`: Names of each pixel's states.
+    """
+    names = sorted(set().union(*states))
+    masks = {name: np.array([name in each for each in states]) for name in names}
+    everywhere: dict[tuple[str, ...], Mask] = {(): np.ones(len(wrong), bool)}
+    pairs = list(combinations(names, 2))
     one, both, either = (
-        min(
-            (int(mask.sum()), names)
-            for names, mask in {**each, (): bad | True}.items()
-            if mask[bad].all()
+        min((int(mask.sum()), names) for names, mask in each.items() if mask[wrong].all())
+        for each in (
+            everywhere | {(name,): mask for name, mask in masks.items()},
+            everywhere | {(a, b): masks[a] & masks[b] for a, b in pairs},
+            everywhere | {(a, b): masks[a] | masks[b] for a, b in pairs},
         )
-        for each in sets
     )
     key, common = "state", one[1]
     if both[0] < CLEARER * one[0]:
         key, common = "both_states", both[1]
     elif either < one:
         key, common = "either_state", either[1]
-    return results.Cause(results.Kind.DEFECT, key, common, wrong=int(bad.sum()), of=len(bad))
-
-
-def _words(pixels: Pixels) -> Iterator[set[str]]:
-    """Names of each pixel's states for a diagnosis, without the first state of each axis."""
-    common = named(pixels.states, AXES)
-    for name in pixels.differ or ("",) * EACH:
-        yield common | ({f"two lobes that differ in {name}"} if name else set())
+    return results.Cause(results.Kind.DEFECT, key, common, wrong=int(wrong.sum()), of=len(wrong))
 
 
 def named(states: Iterable[str], axes: Mapping[str, Mapping[str, object]]) -> set[str]:
     """Names of all states but the first of each axis, and of their groups (before a colon)."""
     first = {next(iter(each)) for each in axes.values()}
-    parts = [words.split(":") for words in states if words not in first]
+    parts = [state.split(":") for state in states if state not in first]
     return {":".join(each[: count + 1]) for each in parts for count in range(len(each))}
 
 
@@ -523,7 +512,7 @@ def named(states: Iterable[str], axes: Mapping[str, Mapping[str, object]]) -> se
 ROWS = (
     check.Check(key="states",
           claim="Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not.",
-          applies=check.family(LobeSpec), measure=states, tolerance="states", control=exchanged,
+          applies=check.family(LobeSpec), measure=states, control=exchanged,
           explain=diagnose, requires=Ability.PAIRS,
           # With opacity, these lobes pass their tint in every view, so the control cannot fail.
           methods=lambda spec, methods: methods.transmission != "opacity" or not DARK(spec)),

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from mxeon.conformance import backends, controls, samples, specs
-from mxeon.conformance.case import SCATTERING, Case, unchanged
+from mxeon.conformance.case import BRANCHES, Case, unchanged
 from mxeon.conformance.check import Check, family
 from mxeon.conformance.checks.lobes import LAYERS, finds_albedo
 from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, defect
@@ -20,8 +20,8 @@ from mxeon.conformance.tolerance import Compared, count_named, count_of, scaled
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
 
-WORST = 32  # worst pairs to diagnose
-CHANGED = 8  # pairs that must react to a changed input
+WORST = 32  # number of the worst pairs, which a diagnosis tries to correct
+CHANGED = 8  # number of pairs for each changed input
 # Inputs that disable a lobe, keyed by the lobe's name.
 LOBE_INPUTS = {
     "coat": ("coat", "coat_weight", "clearcoat"),
@@ -33,13 +33,12 @@ LOBE_INPUTS = {
 
 def diagnose_lobes(case: Case) -> Diagnosis:
     """Find the lobe whose removal corrects the worst pairs."""
-    [batch] = case.batches
-    compared = values(case)
-    wrong = scaled(compared.measured, compared.expected)
-    two = stretched(batch)
-    if wrong[~two].max() > VALUE_ERROR.value:
-        wrong[two] = 0.0
-    pairs = batch.where(np.argsort(wrong)[-WORST:])
+    batch, measured, expected = values(case)
+    error = scaled(measured, expected)
+    anisotropic = stretched(batch)
+    if error[~anisotropic].max() > VALUE_ERROR.value:
+        error[anisotropic] = 0.0
+    pairs = batch.where(np.argsort(error)[-WORST:])
     errors = {}
     for lobe, inputs in LOBE_INPUTS.items():
         if names := [name for name in inputs if name in batch.inputs]:
@@ -57,13 +56,13 @@ def wrong_layers(case: Case) -> list[str]:
     """Titles of the material's lobes that have a wrong throughput when judged separately."""
     from mxeon.shaders.document.graphs import categories, inner_nodes
 
-    used, found = categories(inner_nodes(case.evaluating.shader.document)), []
-    for spec in filter(LAYERS, specs.PLAIN_LOBES):
-        if spec.node in used:
-            lobe = case.another(spec)
-            if any(lobe.tolerance("throughput").wrong(each).any() for each in THROUGHPUT(lobe)):
-                found.append(spec.title)
-    return found
+    used = categories(inner_nodes(case.evaluating.shader.document))
+    lobes = [case.another(each) for each in specs.PLAIN_LOBES if LAYERS(each) and each.node in used]
+    return [
+        lobe.spec.title
+        for lobe in lobes
+        if any(lobe.tolerance("throughput").wrong(each).any() for each in THROUGHPUT(lobe))
+    ]
 
 
 SURFACES, SUM = family(SurfaceShaderSpec), defect("sum_of_lobes")
@@ -72,16 +71,17 @@ SURFACES, SUM = family(SurfaceShaderSpec), defect("sum_of_lobes")
 def values(case: Case) -> Compared:
     """Values compared with the layer equation.
 
-    Fits for two alphas are coarser: each such error is scaled by VALUE_ERROR / STRETCHED_FIT, or
-    replaced by the mean error of these pairs if that is larger.
+    Fits for two alphas are coarser: the error of such a pair is scaled by VALUE_ERROR /
+    STRETCHED_FIT, or replaced by the mean error of all such pairs if the mean is larger.
     """
     [batch] = case.batches
     expected = case.expected(batch)
     scale = np.maximum(expected.max(axis=1, keepdims=True), 1.0)
-    errors, two = (case.direct(batch) - expected) / scale, stretched(batch)
-    if np.any(two):
-        own, mean = errors[two] * (VALUE_ERROR.value / STRETCHED_FIT), errors[two].mean(axis=0)
-        errors[two] = np.where(np.abs(own) > np.abs(mean), own, mean)
+    errors, anisotropic = (case.direct(batch) - expected) / scale, stretched(batch)
+    if np.any(anisotropic):
+        mean = errors[anisotropic].mean(axis=0)
+        reduced = errors[anisotropic] * (VALUE_ERROR.value / STRETCHED_FIT)
+        errors[anisotropic] = np.where(np.abs(reduced) > np.abs(mean), reduced, mean)
     return Compared(batch, expected + errors * scale, expected)
 
 
@@ -102,70 +102,69 @@ def lobes_energy(case: Case) -> Compared:
 
 
 def glass(case: Case) -> Iterator[Compared]:
-    spec, methods = case.of(SurfaceShaderSpec), case.host.active
+    spec = case.of(SurfaceShaderSpec)
     batch = spec.clear(case.backend.views[0])
-    through = spec.transmitted(batch, methods.transmission == "opacity")
+    passed = spec.transmitted(batch, case.opaque)
     measured = case.transmitted(batch)
-    yield Compared(batch, measured, through)
-    if methods.environment == "fis":  # other methods use a fit or reflect nothing
-        yield Compared(batch, measured + case.albedo(batch), through + case.expected_albedo(batch))
+    yield Compared(batch, measured, passed)
+    if case.host.active.environment == "fis":  # other methods use a fit or reflect nothing
+        yield Compared(batch, measured + case.albedo(batch), passed + case.expected_albedo(batch))
 
 
-def misplaced(case: Case) -> list[str]:
+def unexpected(case: Case) -> list[str]:
     """Inputs that have an effect although documented as having none, or the reverse."""
-    wrong = set(expected_dead(case)).symmetric_difference(without_effect(case))
+    wrong = expected_dead(case).symmetric_difference(without_effect(case))
     return sorted(wrong.difference(case.backend.unset))
 
 
-def expected_dead(case: Case) -> tuple[str, ...]:
-    """Inputs that may have no effect. Transmission as opacity is not blurred by a roughness."""
+def expected_dead(case: Case) -> set[str]:
+    """Inputs without effect. A roughness cannot blur transmission that is rendered as opacity."""
     spec = case.of(SurfaceShaderSpec)
-    blur = ("transmission_extra_roughness",)
-    return (*spec.without_effect, *(blur if case.opaque and blur[0] in spec.names else ()))
+    blur = {"transmission_extra_roughness"} & {*spec.names} if case.opaque else set()
+    return {*spec.without_effect} | blur
 
 
 def without_effect(case: Case) -> list[str]:
     """Inputs that change neither a value in any branch nor the emission."""
     spec, evaluating = case.of(SurfaceShaderSpec), case.evaluating
-    given = {port.path.rsplit("/", 1)[-1]: port.value for port in evaluating.shader.inputs}
+    defaults = {port.path.rsplit("/", 1)[-1]: port.value for port in evaluating.shader.inputs}
     for name in spec.names:  # frame inputs have no value in a document
         if name.endswith(("normal", "tangent")):
-            given.setdefault(name, TANGENT if "tangent" in name else NORMAL)
+            defaults.setdefault(name, TANGENT if "tangent" in name else NORMAL)
     rows = [row for changes in spec.changes.values() for row in changes]
     names = dict.fromkeys(name for row in rows for name in row)
-    if missing := [name for name in names if name not in given]:
-        names_lost = ", ".join(missing)
-        raise NotRun(f"{spec.node} of this MaterialX lacks an input that is varied: {names_lost}")
-    inputs = {name: np.asarray(given[name]) for name in names}
+    if missing := ", ".join(name for name in names if name not in defaults):
+        raise NotRun(f"{spec.node} of this MaterialX lacks an input that is varied: {missing}")
+    inputs = {name: np.asarray(defaults[name]) for name in names}
     few = replace(case.backend.batches[0].first(CHANGED), inputs=inputs)
     batch = backends.joined([few.altered(**row) for row in rows])
     effective = np.zeros(len(spec.names), bool)
-    for branch, output in (*((each, "response") for each in SCATTERING), ("emission", "radiance")):
-        ask = partial(evaluating.evaluate, branch=branch, output=output)
-        found = case.measured(ask, batch)
-        pairs = found.reshape(len(spec.names), 2, -1)
+    for branch in BRANCHES:
+        output = "radiance" if branch == "emission" else "response"
+        evaluate = partial(evaluating.evaluate, branch=branch, output=output)
+        pairs = case.measured(evaluate, batch).reshape(len(spec.names), 2, -1)
         effective |= ~unchanged(pairs[:, 0], pairs[:, 1]).all(axis=1)
     return [name for name, each in zip(spec.names, effective, strict=True) if not each]
 
 
-# The host evaluates only the first row, and its values count for all rows.
+# The host evaluates only the first row, whose values replace all others.
 ignore_changes = controls.Control(
     "every change is dropped",
     lambda case: replace(
         case,
         inputs=lambda batch: batch.first(1),
-        outputs=lambda batch, found: np.repeat(found, len(batch.wo), axis=0),
+        outputs=lambda batch, values: np.repeat(values, len(batch.wo), axis=0),
     ),
 )
 
 
 def diagnose_reach(case: Case) -> Diagnosis:
-    known, wrong = expected_dead(case), misplaced(case)
-    dead, effective = (
-        [x for x in wrong if (x in known) == known_dead] for known_dead in (False, True)
-    )
-    groups = {"changes_nothing": dead, "changes_something": effective}
-    causes = (Cause(Kind.DEFECT, key, tuple(names)) for key, names in groups.items() if names)
+    dead, wrong = expected_dead(case), unexpected(case)
+    groups = {
+        "changes_nothing": tuple(name for name in wrong if name not in dead),
+        "changes_something": tuple(name for name in wrong if name in dead),
+    }
+    causes = (Cause(Kind.DEFECT, key, names) for key, names in groups.items() if names)
     return Diagnosis(tuple(causes))
 
 
@@ -178,14 +177,14 @@ ROWS = (
     Check(key="lobes_film", claim="Under a thin film, too, the material is the sum of its lobes.",
           applies=family(SurfaceShaderSpec, lambda spec: bool(spec.film)),
           measure=lambda case: case.compared(case.backend.take(case.of(SurfaceShaderSpec).films)),
-          tolerance="lobes_film", control=controls.shifted, explain=SUM, requires=Ability.LIGHT),
+          control=controls.shifted, explain=SUM, requires=Ability.LIGHT),
     Check(key="lobes_albedo",
           claim="The environment branch returns the albedo of all lobes by the layer equation.",
           applies=SURFACES, measure=ALBEDO, tolerance="albedo", control=controls.shifted,
           explain=SUM, methods=finds_albedo),
     Check(key="lobes_mean",
           claim="Averaged over many materials and views, the shader returns as much light as its lobes.",
-          applies=SURFACES, measure=lobes_mean, tolerance="lobes_mean",
+          applies=SURFACES, measure=lobes_mean,
           control=controls.scale("every value is 1 % too low", 0.99), explain=SUM,
           requires=Ability.LIGHT, methods=finds_albedo),
     Check(key="lobes_furnace",
@@ -200,12 +199,11 @@ ROWS = (
           requires=Ability.LIGHT, methods=finds_albedo),
     Check(key="glass",
           claim="Clear glass reflects and transmits the shares of a white environment that its lobes have by the layer equation.",
-          applies=SURFACES, measure=glass, tolerance="glass",
-          control=controls.scale("values are 5 % too large", 1.05), explain=SUM,
-          requires=Ability.LIGHT),
+          applies=SURFACES, measure=glass, control=controls.scale("values are 5 % too large", 1.05),
+          explain=SUM, requires=Ability.LIGHT),
     Check(key="reach",
           claim="Every input changes a value, except those that are known to change nothing.",
-          applies=SURFACES, measure=lambda case: count_named(misplaced(case)),
+          applies=SURFACES, measure=lambda case: count_named(unexpected(case)),
           tolerance=count_of(Quantity.INPUTS), control=ignore_changes, explain=diagnose_reach),
 )
 # fmt: on

@@ -15,12 +15,12 @@ LOBES, LOBES_TOO = (Cause(Kind.DEFECT, key) for key in ("lobes_of_graph", "lobes
 
 
 def diagnose(case: Case) -> Diagnosis:
-    """Find the reading of the text that the shader follows, or that its graph follows."""
+    """Find which reading of the sentence the shader, or at least its graph of lobes, follows."""
     from mxeon.conformance.reference import Reference
 
-    spec, found = case.of(SentenceSpec), SENTENCE.diagnose(case)
-    if found.kind is Kind.MODEL or spec.evaluated == EMITTED:
-        return found
+    spec, explained = case.of(SentenceSpec), SENTENCE.diagnose(case)
+    if explained.kind is Kind.MODEL or spec.evaluated == EMITTED:
+        return explained
     [batch] = case.batches
     branch, _, factor = spec.evaluated
     inputs = broadcast_inputs(batch.altered(**{**spec.fixed, **batch.inputs}))
@@ -28,15 +28,15 @@ def diagnose(case: Case) -> Diagnosis:
         shader = case.evaluating.shader
         graph = factor * Reference().evaluate(shader, batch.wo, batch.wi, inputs, branch)
     except NotRun:
-        return found
-    own, *others = spec.value_candidates
-    far = {each.title: float(np.abs(each.values(batch) - graph).max()) for each in (own, *others)}
-    nearest = min(far, key=far.__getitem__)
-    if far[nearest] > case.tolerance("value").value:
-        return found
-    if found.distances[nearest] < found.distances[own.title]:
-        return Diagnosis((Cause(Kind.MODEL, nearest), LOBES_TOO), found.distances)
-    return Diagnosis((LOBES,), found.distances)
+        return explained
+    readings = spec.value_candidates
+    errors = {each.title: float(np.abs(each.values(batch) - graph).max()) for each in readings}
+    nearest = min(errors, key=errors.__getitem__)
+    if errors[nearest] > case.tolerance("value").value:
+        return explained
+    if explained.distances[nearest] < explained.distances[readings[0].title]:
+        return Diagnosis((Cause(Kind.MODEL, nearest), LOBES_TOO), explained.distances)
+    return Diagnosis((LOBES,), explained.distances)
 
 
 # fmt: off
