@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from itertools import compress, product
+from itertools import product
 from pathlib import Path
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import MaterialX as mx
 import numpy as np
@@ -58,7 +58,6 @@ from mxeon.shaders.scene import BACK, SIDE, STUDIO, Scene, sphere
 # Nodes whose shaders use a fitted albedo.
 FITTED_NODES = {row.category for row in PBR_NODES if row.fitted or row.mirror}
 HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
-COSINES = 256  # number of views tried to find a sheen's largest albedo
 
 # Errors are weighted by cos(theta_o), since the normal changes by 1 / cos(theta_o) per pixel.
 POINT_AND_VALUE = roundings(16, "of a pixel's point"), roundings(32, "in the value")
@@ -77,14 +76,14 @@ FITTED, SHADED = (
 
 
 def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host, scene: Scene) -> Tolerance:
-    """Tolerance of a material's picture: errors of fits or image filters, plus those of some lobes.
+    """Tolerance of a material's picture: errors of fits or image filters, and of special lobes.
 
     Hosts filter an image before they decode its colors.
     """
     nodes, lobes = list(inner_nodes(shader.document)), tuple(lobes)
     fitted = FITTED_NODES & {lobe.category for lobe in lobes}
     modes = {lobe.inputs.get("mode") for lobe in lobes if lobe.category == SHEEN}
-    zeltner = fitted == {SHEEN} and modes == {"zeltner"}  # the albedo has a closed form
+    zeltner = fitted == {SHEEN} and modes == {"zeltner"}  # this albedo has a closed form
     if not zeltner and categories(shader.document.traverseTree()) & FITTED_NODES:
         tolerance = FITTED
     elif not zeltner and categories(nodes) & FITTED_NODES:
@@ -95,52 +94,50 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host, scene: 
         tolerance = ENCODED if encoded else TEXTURED
     else:
         tolerance = PLAIN
-    rings = subsurface.RINGS.term("subsurface scattering in six circles")
-    others = [rings] * (SUBSURFACE in inner_lobes(shader))
-    others += utilities.BLACKBODY.terms * ("blackbody" in categories(nodes))
-    sheens = [ZELTNER_VALUE.term("Zeltner's sheens"), ZELTNER_ALBEDO.term("their albedos")]
-    others += sheens * zeltner
-    others += _others(lobes, scene.environment is None)
-    rounding = host_row(host.name).rounding
-    others += [Term(rounding, "the pixels' own rounding")] * bool(rounding)
-    if others:
-        added = tolerance.plus(*others)
-        return replace(added, quantity=Quantity.FITTED_PICTURE, metric=scaled)
-    return tolerance
+    terms: list[Term] = []
+    if SUBSURFACE in inner_lobes(shader):
+        terms.append(subsurface.RINGS.term("subsurface scattering in six circles"))
+    if "blackbody" in categories(nodes):
+        terms += utilities.BLACKBODY.terms
+    if zeltner:
+        terms.append(ZELTNER_VALUE.term("Zeltner's sheens"))
+        terms.append(ZELTNER_ALBEDO.term("their albedos"))
+    terms += _lobe_terms(lobes, scene.environment is None)
+    if rounding := host_row(host.name).rounding:
+        terms.append(Term(rounding, "the pixels' own rounding"))
+    if not terms:
+        return tolerance
+    return replace(tolerance.plus(*terms), quantity=Quantity.FITTED_PICTURE, metric=scaled)
 
 
-def _others(lobes: tuple[ShownLobe, ...], direct: bool) -> list[Term]:
+def _lobe_terms(lobes: tuple[ShownLobe, ...], direct: bool) -> list[Term]:
     """Additional errors due to a film, an index below 1, and narrow lobes of hair and sheen."""
-
-    def some(name: str, condition: Callable[[np.ndarray], np.ndarray], category: str = "") -> bool:
-        """Whether an input satisfies a condition at any point, in all lobes or in one category."""
-        own = (each.inputs for each in lobes if category in ("", each.category))
-        return any(bool(np.any(condition(each[name]))) for each in own if name in each)
-
-    trapped = microfacets.FILM_TRAPPED.term("a film of an index below 1.25")
-    inside = microfacets.ERRORS["denser"].term("the throughput of an index below 1")
-    others: list[Term] = []
-    films = [each for each in lobes if np.any(each.inputs.get("thinfilm_thickness", 0.0) > 0.0)]
-    # In direct light, a film's albedo only affects light that passes to other lobes or through it.
+    terms: list[Term] = []
+    inputs = [each.inputs for each in lobes]
+    films = [each for each in inputs if np.any(each.get("thinfilm_thickness", 0.0) > 0.0)]
+    # In direct light, a film's albedo only affects the light that the film passes to other lobes.
     if films and direct:
-        others += microfacets.film_terms(max(np.max(each.inputs["roughness"]) for each in films))
+        terms += microfacets.film_terms(max(np.max(each["roughness"]) for each in films))
     if films and not (direct and {each.category for each in lobes} == {"conductor_bsdf"}):
-        others.append(microfacets.FILM_SHOWN.term("a film's albedo, times the cosine of the view"))
-        others += [trapped] * some("thinfilm_ior", lambda value: value < microfacets.LEAST_FILM)
-    others += [inside] * some("ior", lambda value: value < 1.0, "dielectric_bsdf")
-    fibers = product((lobe.inputs for lobe in lobes if lobe.category == HAIR), ROUGHNESSES)
-    hairs = [np.reshape(inputs[name], (-1, 2)).min(axis=0) for inputs, name in fibers]
-    others += [microfacets.ANISOTROPIC] * _stretched(lobes)
+        terms.append(microfacets.FILM_SHOWN.term("a film's albedo, times the cosine of the view"))
+        if any(np.any(each.get("thinfilm_ior", 2.0) < microfacets.LEAST_FILM) for each in inputs):
+            terms.append(microfacets.FILM_TRAPPED.term("a film of an index below 1.25"))
+    dielectrics = (each.inputs for each in lobes if each.category == "dielectric_bsdf")
+    if any(np.any(each.get("ior", 1.0) < 1.0) for each in dielectrics):
+        terms.append(microfacets.ERRORS["denser"].term("the throughput of an index below 1"))
+    if _stretched(lobes):
+        terms.append(microfacets.ANISOTROPIC)
+    fibers = product((each.inputs for each in lobes if each.category == HAIR), ROUGHNESSES)
+    hairs = [np.reshape(fiber[name], (-1, 2)).min(axis=0) for fiber, name in fibers]
     if hairs:
-        others += hair.lobe_terms(*np.min(hairs, axis=0))
-    sheens = (lobe for lobe in lobes if lobe.inputs.get("mode") == "conty_kulla")
-    narrow = [np.ravel(lobe.inputs["roughness"]).min() for lobe in sheens]
-    if narrow:
-        mu = np.linspace(1e-3, 1.0, COSINES)
-        excess = float((mu * (conty_kulla_albedo_dir(mu, min(narrow)) - 1.0)).max())
+        terms += hair.lobe_terms(*np.min(hairs, axis=0))
+    sheens = (each for each in inputs if each.get("mode") == "conty_kulla")
+    if roughness := [np.min(each["roughness"]) for each in sheens]:
+        mu = np.linspace(1e-3, 1.0, 256)
+        excess = float((mu * (conty_kulla_albedo_dir(mu, min(roughness)) - 1.0)).max())
         if excess > 0.0:
-            others.append(Term(excess, "what a narrow sheen returns beyond all light"))
-    return others
+            terms.append(Term(excess, "what a narrow sheen returns beyond all light"))
+    return terms
 
 
 def _stretched(lobes: Iterable[ShownLobe]) -> bool:
@@ -150,16 +147,24 @@ def _stretched(lobes: Iterable[ShownLobe]) -> bool:
 
 
 Pixels: TypeAlias = NDArray[np.floating]
-# A scene, the host's picture, the reference and the tolerance.
-Shown: TypeAlias = tuple[Scene, Pixels, ExpectedPicture, Tolerance]
-Pixel: TypeAlias = tuple[float, dict[str, list[float]], Pixels]
 Note: TypeAlias = tuple[str, str]  # a warning, and its subject
 
+
+class Shown(NamedTuple):
+    """A host's picture of a scene, with its reference and tolerance."""
+
+    scene: Scene
+    image: Pixels
+    expected: ExpectedPicture
+    tolerance: Tolerance
+
+
 MATCH = "Every pixel matches the reference."
+ONLY_FINITE = "picture is shown and only has to be finite"
 
 
 def _read(
-    file: Path, make: Callable[[], tuple[Shader, ...]]
+    make: Callable[[], tuple[Shader, ...]],
 ) -> tuple[tuple[Shader, ...], dict[str, str], list[CodeWarning | notes.DocumentWarning]]:
     """Shaders of a document, their approximations by element, and other notes for readers."""
     with warnings.catch_warnings(record=True) as records:
@@ -181,7 +186,7 @@ def judge_document(
     Raise DocumentError if no shader can be made from the document.
     """
     make = partial(host.compile, file, library=library, policy=policy)
-    shaders, approximations, others = _read(file, make)
+    shaders, approximations, document_notes = _read(make)
     found: list[Result] = []
     pictures: list[Picture] = []
     for shader in shaders:
@@ -190,23 +195,24 @@ def judge_document(
         result, images = _judge_material(file, shader, host, judge, values, front_lit)
         found.append(result)
         pictures += images
-    told = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
+    reported = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
     # Reasons why pictures cannot be correct, without duplicates.
-    told += dict.fromkeys(
+    reported += dict.fromkeys(
         (text, f"{file.name}: {shader.element}")
         for shader in shaders
         for scene in _scenes(host)
         for text in host.approximations(shader, scene)
     )
     # Omit range warnings if results already name the inputs.
-    told_inputs = any(each.diagnosis.kind is Kind.INPUT for each in found)
-    untold = (each for each in others if not (told_inputs and isinstance(each, notes.RangeWarning)))
-    told += [(str(each), file.name) for each in untold]
-    return tuple(found), tuple(pictures), tuple(told)
+    named = any(each.diagnosis.kind is Kind.INPUT for each in found)
+    for note in document_notes:
+        if not (named and isinstance(note, notes.RangeWarning)):
+            reported.append((str(note), file.name))
+    return tuple(found), tuple(pictures), tuple(reported)
 
 
 def _scenes(host: Host) -> tuple[Scene, ...]:
-    """Scenes of a host; only those with a light if it has no environment."""
+    """Scenes of a host, without environments if the host's lighting methods have none."""
     scenes = host_row(host.name).scenes
     if host.active.environment == "none":
         scenes = tuple(each for each in scenes if each.environment is None)
@@ -216,7 +222,7 @@ def _scenes(host: Host) -> tuple[Scene, ...]:
 def _judge_material(
     file: Path, shader: Shader, host: Host, judge: Reference, values: HostValues, front_lit: bool
 ) -> tuple[Result, tuple[Picture, ...]]:
-    """Judge one material; if `front_lit`, the host has its model only for s >= 0."""
+    """Judge one material; if `front_lit`, the host supports its model only for s >= 0."""
     scenes, library = _scenes(host), values.library
     subject = f"{file.name}: {shader.element}"
     place = Result("picture", MATCH, subject, host.name, library, results.NOT_RUN)
@@ -226,9 +232,7 @@ def _judge_material(
         return not_measured(place, error), ()
     identity = host.identity()
 
-    def picture(
-        scene: Scene, image: Pixels, expected: ExpectedPicture | None = None, judged: bool = True
-    ) -> Picture:
+    def picture(scene: Scene, image: Pixels, expected: ExpectedPicture | None = None) -> Picture:
         metadata = {
             "version": mxeon.__version__,
             "host": f"{host.name} {identity.version}",
@@ -239,7 +243,7 @@ def _judge_material(
             "scene": scene.name,
         }
         names = (file.name, shader.element, host.name, library, scene.name)
-        if expected is None or not judged:
+        if expected is None:
             return Picture(*names, image, None, metadata)
         if expected.measured:
             metadata["from the host"] = ", ".join(expected.measured)
@@ -248,22 +252,31 @@ def _judge_material(
         where = mask[..., None].astype(np.float32) if partly else None
         return Picture(*names, image, reference, metadata, where)
 
-    # Compare with the reference; pictures without a model only have to be finite.
+    # Compare with the reference; pictures of materials without a model only have to be finite.
     try:
-        _assert_judged(shader, host)
+        if reason := host.unread(shader):
+            raise NotRun(f"{host.name}: {reason}: the {ONLY_FINITE}")
+        closures = sorted(categories(inner_nodes(shader.document)) & set(BSDF_NODES))
+        if closures and host.language == "osl":  # closures have separate checks
+            names = ", ".join(closures)
+            raise NotRun(f"{host.name} has its own closures for {names}: their {ONLY_FINITE}")
         expected = [judge.expected(shader, scene, values) for scene in scenes]
         if front_lit:
             expected = list(map(_front_lit, expected, scenes))
-    except OutsideModel as reason:
-        return not_measured(place, reason), ()
-    except NotRun as reason:
-        return _judge_finite(place, images, str(reason)), tuple(map(picture, scenes, images))
-    cases = list(zip(scenes, images, expected, strict=True))
+    except OutsideModel as error:
+        return not_measured(place, error), ()
+    except NotRun as error:
+        return _judge_finite(place, images, str(error)), tuple(map(picture, scenes, images))
     lobes = [lobe for each in expected for lobe in each.lobes]
     # A prefiltered environment supports only one alpha.
-    rough = host.active.environment == "prefilter" and _stretched(lobes)
-    judged = [not rough or scene.environment is None for scene in scenes]
-    pictures = tuple(picture(*case, each) for case, each in zip(cases, judged, strict=True))
+    one_alpha = host.active.environment == "prefilter" and _stretched(lobes)
+    pictures, cases = [], []
+    for scene, image, reference in zip(scenes, images, expected, strict=True):
+        judged = not one_alpha or scene.environment is None
+        pictures.append(picture(scene, image, reference if judged else None))
+        if judged:
+            tolerance = tolerance_of(shader, lobes, host, scene)
+            cases.append(Shown(scene, image, reference, tolerance))
 
     def diagnose() -> Diagnosis:
         if known := _known(shader):
@@ -275,37 +288,31 @@ def _judge_material(
         follows = tuple({lobe.category: None for lobe in lobes})
         return Diagnosis((Cause(Kind.FOLLOWS, names=follows),))
 
-    shown = [
-        (*case, tolerance_of(shader, lobes, host, case[0])) for case in compress(cases, judged)
-    ]
-    result = _judge_match(place, shown, diagnose)
-    apart = filter(None, (each.difference for each in pictures))
-    worst = max(apart, key=lambda each: abs(each.largest))
-    return replace(result, difference=worst), pictures
-
-
-SMALL = 64  # picture size in pixels, enough to find the input at fault
+    result = _judge_match(place, cases, diagnose)
+    differences = filter(None, (each.difference for each in pictures))
+    worst = max(differences, key=lambda each: abs(each.largest))
+    return replace(result, difference=worst), tuple(pictures)
 
 
 def _input_at_fault(
     shader: Shader, host: Host, judge: Reference, scenes: Sequence[Scene]
 ) -> Diagnosis:
     """The input whose removal brings a renderer's own material closest to the reference."""
-    small = [replace(scene, size=SMALL) for scene in scenes]
+    small = [replace(scene, size=64) for scene in scenes]
     names = [each.getName() for each in surface_shader(shader.document, shader.element).getInputs()]
-    left: dict[str, float] = {}
+    errors: dict[str, float] = {}  # the largest difference without each input; "" removes none
     for name in ("", *names):
         document = mx.createDocument()
         document.copyContentFrom(shader.document)
         surface_shader(document, shader.element).removeInput(name)
         with suppress(NotRun, DocumentError):
             [other] = host.compile(document, shader.element)
-            shown = ((host.picture(other, each), judge.picture(other, each)) for each in small)
-            left[name] = max(float(np.abs(difference(*each)).max()) for each in shown)
-    nearest = min(left, key=left.__getitem__, default="")
-    if not nearest or "" not in left or left[nearest] > 0.5 * left[""]:
+            pairs = ((host.picture(other, each), judge.picture(other, each)) for each in small)
+            errors[name] = max(float(np.abs(difference(*pair)).max()) for pair in pairs)
+    nearest = min(errors, key=errors.__getitem__, default="")
+    if not nearest or "" not in errors or errors[nearest] > 0.5 * errors[""]:
         return Diagnosis((Cause(Kind.UNKNOWN, "no_input"),))
-    sizes = left[nearest], left[""]
+    sizes = errors[nearest], errors[""]
     return Diagnosis((Cause(Kind.DEFECT, "input_at_fault", (nearest,), sizes),))
 
 
@@ -319,29 +326,17 @@ def _known(shader: Shader) -> Diagnosis | None:
     return diagnosis.defect("material_graph") if defined else None
 
 
-def _assert_judged(shader: Shader, host: Host) -> None:
-    """Raise NotRun if the host renders another material, or closures that have separate checks."""
-    if reason := host.unread(shader):
-        raise NotRun(f"{host.name}: {reason}: the picture is shown and only has to be finite")
-    own = sorted(categories(inner_nodes(shader.document)) & set(BSDF_NODES))
-    if own and host.language == "osl":
-        raise NotRun(
-            f"{host.name} has its own closures for {', '.join(own)}: their picture is shown and "
-            "only has to be finite"
-        )
-
-
 def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Result:
     """Result for a material that the models do not cover: its pixels must be finite."""
 
     def measure(wrong: bool) -> Measurement:
-        shown = [np.where(np.arange(3) == 0, np.nan, images[0])] if wrong else images
-        wrong_pixels = sum((~np.isfinite(each)).any(axis=-1).sum() for each in shown)
+        judged = [np.where(np.arange(3) == 0, np.nan, images[0])] if wrong else images
+        wrong_pixels = sum((~np.isfinite(each)).any(axis=-1).sum() for each in judged)
         return Measurement(float(wrong_pixels), {})
 
     place = replace(place, check="finite", claim="Every pixel is finite.")
-    none = count_of(Quantity.PIXELS)
-    result = judge(place, none, measure, "one channel is not a number", Diagnosis)
+    tolerance = count_of(Quantity.PIXELS)
+    result = judge(place, tolerance, measure, "one channel is not a number", Diagnosis)
     return replace(result, diagnosis=results.quoted(reason))
 
 
@@ -352,49 +347,50 @@ def _judge_match(
 
     Error and tolerance are from the picture with the largest error relative to its tolerance.
     """
-    pixels = [_worst_pixel(case) for case in cases]
-    allowed = [case[3].value for case in cases]
-    largest = int(np.argmax([each[0] / most for each, most in zip(pixels, allowed, strict=True)]))
-    error, worst, _ = pixels[largest]
-    scene, image, expected, tolerance = cases[largest]
-
-    def measure(wrong: bool) -> Measurement:
-        if not wrong:
-            scaled_errors = [
-                each[2] * (tolerance.value / most)
-                for each, most in zip(pixels, allowed, strict=True)
-            ]
-            parts = [
-                errors_of(each, tolerance.value, results.Region(case[0].name))
-                for case, each in zip(cases, scaled_errors, strict=True)
-            ]
-            whole = errors_of(np.concatenate(scaled_errors), tolerance.value)
-            errors = (whole, *parts) if error > tolerance.value else ()
-            return Measurement(error, worst, errors, "pixels")
-        brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
-        return Measurement(_worst_pixel((scene, brighter, expected, tolerance))[0], {})
-
-    words = "the picture is brighter by three tolerances"
-    result = judge(place, tolerance, measure, words, diagnose)
-    measured = dict.fromkeys(name for case in cases for name in case[2].measured)
-    return replace(result, measured=tuple(measured))
-
-
-def _worst_pixel(case: Shown) -> Pixel:
-    """Largest error times cos(theta_o), the pixel where it occurs, and all errors."""
-    scene, image, (reference, mask) = case[0], case[1], (case[2].image, case[2].judged)
-    wo, _ = _directions(scene, mask)
-    measured, expected = (each[mask].astype(np.float64) for each in (image, reference))
-    error = case[3].metric(measured, expected) * wo[:, 2]
-    worst = int(error.argmax())
-    row, column = np.argwhere(mask)[worst]
+    errors = [_errors(case) for case in cases]
+    allowed = [case.tolerance.value for case in cases]
+    worst = int(np.argmax([each.max() / most for each, most in zip(errors, allowed, strict=True)]))
+    case, error = cases[worst], float(errors[worst].max())
+    tolerance, reference, mask = case.tolerance, case.expected.image, case.expected.judged
+    row, column = np.argwhere(mask)[errors[worst].argmax()]
     point = {
         "row": [float(row)],
         "column": [float(column)],
-        "measured": image[row, column].astype(float).tolist(),
+        "measured": case.image[row, column].astype(float).tolist(),
         "expected": reference[row, column].tolist(),
     }
-    return float(error[worst]), point, error
+
+    def measure(wrong: bool) -> Measurement:
+        if wrong:
+            brighter = np.float32(3.0 * tolerance.value) * np.maximum(1.0, case.image)
+            control = _errors(case._replace(image=case.image + brighter))
+            return Measurement(float(control.max()), {})
+        if error <= tolerance.value:
+            return Measurement(error, point, (), "pixels")
+        relative = [
+            each * (tolerance.value / most) for each, most in zip(errors, allowed, strict=True)
+        ]
+        parts = (
+            errors_of(each, tolerance.value, results.Region(shown.scene.name))
+            for shown, each in zip(cases, relative, strict=True)
+        )
+        whole = errors_of(np.concatenate(relative), tolerance.value)
+        return Measurement(error, point, (whole, *parts), "pixels")
+
+    words = "the picture is brighter by three tolerances"
+    result = judge(place, tolerance, measure, words, diagnose)
+    measured = dict.fromkeys(name for each in cases for name in each.expected.measured)
+    return replace(result, measured=tuple(measured))
+
+
+def _errors(case: Shown) -> Pixels:
+    """Errors of a picture's judged pixels, times cos(theta_o)."""
+    mask = case.expected.judged
+    wo, _ = _directions(case.scene, mask)
+    measured, expected = (
+        each[mask].astype(np.float64) for each in (case.image, case.expected.image)
+    )
+    return case.tolerance.metric(measured, expected) * wo[:, 2]
 
 
 def _directions(scene: Scene, mask: NDArray[np.bool_]) -> tuple[Pixels, Pixels]:
@@ -411,14 +407,14 @@ def _front_lit(expected: ExpectedPicture, scene: Scene) -> ExpectedPicture:
 
 
 STUDIO_PICTURE = replace(STUDIO, size=320)
-STUDIED = 4  # maximum materials drawn per document
+STUDIED = 4  # maximum number of materials drawn per document
 
 
 def studio_pictures(
     file: Path, host: Host, library: str, policy: Policy = DEFAULT
 ) -> tuple[Picture, ...]:
     """Presentation pictures of a document's first materials: a shader ball in a studio."""
-    shaders, _, _ = _read(file, lambda: host.compile(file, library=library, policy=policy))
+    shaders, _, _ = _read(lambda: host.compile(file, library=library, policy=policy))
     metadata = {"version": mxeon.__version__, "document": str(file), "scene": STUDIO.name}
     pictures = []
     for shader in shaders[:STUDIED]:
@@ -446,7 +442,7 @@ def generate_document(
         raise NotRun(f"{host}: this renderer only has its own materials; it reads no documents")
     if target not in TARGETS:
         raise NotRun(f"{host}: this MaterialX has no generator for {target}")
-    shaders, _, told = _read(file, lambda: generate(file, target, library=library, policy=policy))
+    shaders, _, reported = _read(lambda: generate(file, target, library=library, policy=policy))
     data = file.read_bytes()
     half = data[: len(data) // 2].decode(errors="replace")
     try:
@@ -455,10 +451,13 @@ def generate_document(
     except DocumentError:
         caught = True
     place = Result(DOCUMENT_KEY, DOCUMENT_CLAIM, file.name, host, library, results.NOT_RUN)
-    none, words = count_of(Quantity.DOCUMENTS), "half of the document is cut off"
-    faults = {False: not shaders, True: caught}
-    result = judge(place, none, lambda x: Measurement(float(faults[x]), {}), words, Diagnosis)
-    return (result,), tuple((str(each), file.name) for each in told)
+    tolerance, words = count_of(Quantity.DOCUMENTS), "half of the document is cut off"
+
+    def measure(wrong: bool) -> Measurement:
+        return Measurement(float(caught if wrong else not shaders), {})
+
+    result = judge(place, tolerance, measure, words, Diagnosis)
+    return (result,), tuple((str(each), file.name) for each in reported)
 
 
 # --- one material of each node, for the page that compares hosts ----------------------------------
@@ -468,11 +467,10 @@ PORTRAIT_SCENES = tuple(replace(scene, size=96) for scene in (SIDE, BACK))
 
 
 def comparison_pictures(case: Case) -> tuple[Picture, ...]:
-    """Pictures of a rough node in light from the side and from behind, and the same pictures of
-    its model.
+    """Pictures of a rough diffuse node in light from the side and from behind, and of its model.
 
-    Empty for a surface shader's lobe, and for renderers in which each pixel shows one pair. Rim
-    and terminator are black in both pictures.
+    Empty for other nodes, for a surface shader's lobe, and for renderers in which each pixel shows
+    one pair of directions. Rim and terminator are black in the pictures of the node and the model.
     """
     rough = isinstance(case.spec, DiffuseModelSpec) and not isinstance(case.spec, SurfaceLobe)
     if not rough or isinstance(case.backend, backends.Rendered):
@@ -485,7 +483,7 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
         where = mask.copy()
         where[where] = judged
         batch = samples.Batch(wo[judged], wi[judged], samples.arrays(PORTRAYED), scene)
-        image, expected = (np.zeros((*where.shape, 3), np.float32) for _ in range(2))
+        image, expected = np.zeros((2, *where.shape, 3), np.float32)
         image[where], expected[where] = case.direct(batch), case.expected(batch)
         names = (results.PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)
         keys = ("document", "element", "host", "library", "scene")
