@@ -68,10 +68,11 @@ class Check:
     claim: str  # a full sentence
     applies: Specs
     measure: Measure  # returns comparisons, judged by the worst row, or a single number
-    # A key of `Spec.errors`, by default the check's key, or a tolerance for all specs.
+    # A tolerance for all specs, or a key of `Spec.errors`: by default the compared quantity, or the
+    # check's key.
     tolerance: str | Tolerance = ""
     control: controls.Control
-    explain: Explain | Diagnosis = UNEXPLAINED
+    explain: Explain | Diagnosis | None = None  # a comparison explains itself by default
     requires: Ability = NO_ABILITY  # abilities that a backend needs
     # Profile of the generated text, for checks that only run for nodes that the user names; "" for
     # the rasterizer's text.
@@ -114,12 +115,17 @@ class Check:
             for columns in zip(one[1:], other[1:], strict=True)
         )
 
+    @property
+    def judged(self) -> str | Tolerance:
+        compared = self.measure.quantity if isinstance(self.measure, Comparison) else self.key
+        return self.tolerance or compared
+
     def applies_to(
         self, spec: Spec, backend: type[backends.Backend], host: str, methods: Methods = GENERATED
     ) -> bool:
         """Whether the check applies to a node on a host, for a backend and a client's methods."""
         methods = backend.methods.over(methods)
-        key = self.tolerance or self.key
+        key = self.judged
         return (
             self.applies(spec)
             and self.hosts(spec, host)
@@ -130,7 +136,7 @@ class Check:
 
     def allowed(self, case: Case) -> Tolerance:
         """The tolerance for a case, with the errors of the engine's functions."""
-        key = self.tolerance or self.key
+        key = self.judged
         return key if isinstance(key, Tolerance) else case.tolerance(key)
 
     def judge(self, case: Case) -> Result:
@@ -142,7 +148,9 @@ class Check:
         tolerance = self.allowed(case)
 
         def explain() -> Diagnosis:
-            diagnosis = self.explain if isinstance(self.explain, Diagnosis) else self.explain(case)
+            own = self.measure.diagnose if isinstance(self.measure, Comparison) else UNEXPLAINED
+            explained = own if self.explain is None else self.explain
+            diagnosis = explained if isinstance(explained, Diagnosis) else explained(case)
             causes = diagnosis.causes
             if diagnosis.first in UNTOLD and (compared := compared_of(self.measure(case))):
                 causes = (searched(diagnosis.first, compared, tolerance),)

@@ -279,12 +279,16 @@ def _judge_material(
             cases.append(Shown(scene, image, reference, tolerance))
 
     def diagnose() -> Diagnosis:
-        if known := _known(shader):
-            return known
+        element = shader.document.getDescendant(shader.element)
+        if names := notes.same_names(element):
+            return diagnosis.defect("same_names", names[0])
+        graph = element.getImplementation() if element.isA(mx.Node) else None
+        if element.getType() == "material" and graph and graph.isA(mx.NodeGraph):
+            return diagnosis.defect("material_graph")
         if library == RENDERER_NODES:
             return _input_at_fault(shader, host, judge, scenes)
-        if names := judge.other_node(shader, values):
-            return Diagnosis((Cause(Kind.DEFECT, "other_node", names),))
+        if other := judge.other_node(shader, values):
+            return Diagnosis((Cause(Kind.DEFECT, "other_node", other),))
         follows = tuple({lobe.category: None for lobe in lobes})
         return Diagnosis((Cause(Kind.FOLLOWS, names=follows),))
 
@@ -314,16 +318,6 @@ def _input_at_fault(
         return Diagnosis((Cause(Kind.UNKNOWN, "no_input"),))
     sizes = errors[nearest], errors[""]
     return Diagnosis((Cause(Kind.DEFECT, "input_at_fault", (nearest,), sizes),))
-
-
-def _known(shader: Shader) -> Diagnosis | None:
-    """A known error of MaterialX that the shader's document triggers, or None."""
-    element = shader.document.getDescendant(shader.element)
-    if names := notes.same_names(element):
-        return diagnosis.defect("same_names", names[0])
-    graph = element.getImplementation() if element.isA(mx.Node) else None
-    defined = element.getType() == "material" and graph and graph.isA(mx.NodeGraph)
-    return diagnosis.defect("material_graph") if defined else None
 
 
 def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Result:
@@ -384,7 +378,6 @@ def _judge_match(
 
 
 def _errors(case: Shown) -> Pixels:
-    """Errors of a picture's judged pixels, times cos(theta_o)."""
     mask = case.expected.judged
     wo, _ = _directions(case.scene, mask)
     measured, expected = (

@@ -13,7 +13,7 @@ cosines, and shadows use Chebyshev's bound.
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -63,12 +63,8 @@ def premultiplied(frame: Frame) -> Frame:
     return frame._replace(methods=methods)
 
 
-def bound(change: Callable[[Client], Client]) -> Build:
-    return lambda frame: frame._replace(client=change(frame.client))
-
-
-def lit(*lamps: Lamp) -> Build:
-    return bound(partial(replace, lamps=lamps))
+def bound(**bindings: Any) -> Build:
+    return lambda frame: frame._replace(client=replace(frame.client, **bindings))
 
 
 def material(**inputs: float) -> Build:
@@ -87,23 +83,23 @@ AXES: dict[str, dict[str, Build]] = {
     "methods": {"the default methods": same, "premultiplied mixes without an environment": premultiplied},
     "lights": {
         "no light": same,
-        "a directional light": lit(SUN),
-        "a point light": lit(BULB),
-        "a point light: without decay": lit(replace(BULB, decay_rate=0.0)),
-        "a spot light": lit(SPOT),
-        "three lights": lit(BULB, SPOT, SUN),
-        "three lights: in another order": lit(SUN, BULB, SPOT),
+        "a directional light": bound(lamps=(SUN,)),
+        "a point light": bound(lamps=(BULB,)),
+        "a point light: without decay": bound(lamps=(replace(BULB, decay_rate=0.0),)),
+        "a spot light": bound(lamps=(SPOT,)),
+        "three lights": bound(lamps=(BULB, SPOT, SUN)),
+        "three lights: in another order": bound(lamps=(SUN, BULB, SPOT)),
     },
     "environment": {
         "no environment": same,
-        "an environment": bound(partial(replace, radiance=WHITE_MAP, irradiance=WHITE_MAP)),
-        "an environment: colored": bound(partial(replace, radiance=WARM_MAP, irradiance=WARM_MAP)),
+        "an environment": bound(radiance=WHITE_MAP, irradiance=WHITE_MAP),
+        "an environment: colored": bound(radiance=WARM_MAP, irradiance=WARM_MAP),
     },
     "bound": {
         "what the generator sets": same,
-        "another intensity of the environment": bound(partial(replace, intensity=1.75)),
-        "a shadow map": bound(partial(replace, shadow=SHADOW, moments=(0.4, 0.18))),
-        "ambient occlusion": bound(partial(replace, ambient=0.4, gain=0.75)),
+        "another intensity of the environment": bound(intensity=1.75),
+        "a shadow map": bound(shadow=SHADOW, moments=(0.4, 0.18)),
+        "ambient occlusion": bound(ambient=0.4, gain=0.75),
     },
     "opacity": {
         "opaque surfaces": same,
@@ -202,7 +198,6 @@ def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
 
 
 def diagnose(case: Case) -> results.Diagnosis:
-    """Find the states that all wrong frames share."""
     tolerance, rows = case.tolerance("frame"), list(drawn(case))
     wrong = np.array([tolerance.wrong(compared).any() for _, compared in rows])
     common = shared(wrong, [states for states, _ in rows])

@@ -16,16 +16,24 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance import backends, controls, diagnosis, samples
-from mxeon.conformance.case import LIGHT, SCATTERING, Case, dead_inputs, model_values
+from mxeon.conformance.case import LIGHT, SCATTERING, Case, dead_inputs, model_values, throughputs
 from mxeon.conformance.check import Check, family
 from mxeon.conformance.checks import lobes, states
 from mxeon.conformance.checks.lobes import CLEAR, FILMS, TRANSMITTING
-from mxeon.conformance.diagnosis import ALBEDO, NEAR, UNKNOWN, UNMASKED, VALUE, defect, not_finite
+from mxeon.conformance.diagnosis import (
+    ALBEDO,
+    NEAR,
+    UNEXPLAINED,
+    UNKNOWN,
+    UNMASKED,
+    VALUE,
+    defect,
+    not_finite,
+)
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
 from mxeon.conformance.samples import Array, Batch, Mask, Values, directions_at, float32, rounded
 from mxeon.conformance.spec import NO_ABILITY, Ability, Spec
 from mxeon.conformance.specs import microfacets
-from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec, film_views
 from mxeon.conformance.tolerance import Compared, count_named, count_not_finite, count_of, roundings
 from mxeon.errors import Implied
@@ -54,7 +62,7 @@ isotropic = controls.with_batch(
 
 def lossless(case: Case) -> Compared:
     batch, weights = case.backend.integrated
-    mirror = batch.altered(**case.of(PbrSpec).row.mirror)
+    mirror = batch.altered(**case.of(FacetSpec).row.mirror)
     views, albedo = lobes.summed(case, mirror, weights)
     return Compared(views, albedo, np.ones_like(albedo))
 
@@ -200,8 +208,7 @@ STRETCHED = diagnosis.Comparison(
 
 def anisotropic_throughput(case: Case) -> Iterator[Compared]:
     batch = case.backend.take(case.of(FacetSpec).stretched)[0]
-    for branch in SCATTERING:
-        yield Compared(batch, case.throughput(batch, branch), case.expected_throughput(batch))
+    return throughputs(replace(case, chosen=(batch,)), *SCATTERING)
 
 
 # --- light that is transmitted, in the branch that looks up an environment ------------------------
@@ -356,7 +363,7 @@ def diagnose_methods(case: Case) -> Diagnosis:
     wrong = dict.fromkeys(
         str(methods) for methods, compared in with_methods(case) if tolerance.wrong(compared).any()
     )
-    return defect("wrong_with_methods", *wrong) if wrong else Diagnosis((UNKNOWN,))
+    return defect("wrong_with_methods", *wrong) if wrong else UNEXPLAINED
 
 
 def modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
@@ -576,7 +583,6 @@ def diagnose_average(case: Case) -> Diagnosis:
 
 
 def film_average(case: Case) -> Compared:
-    """F_ss of films, for pairs with F above LEAST_F."""
     batch = film_views(case.of(FilmSpec), microfacets.FRINGED)
     _, measured = averages(case, case.direct, batch)
     F, expected = averages(case, case.expected, batch)
@@ -704,7 +710,7 @@ ROWS = (
           methods=lambda spec, methods: with_directions(spec, methods) or bool(methods.searched)),
     Check(key="anisotropic_value", claim="The value of a lobe with two alphas matches the model.",
           applies=FACETS | FILMS, measure=STRETCHED, control=isotropic,
-          explain=STRETCHED.diagnose, requires=Ability.PAIRS, open=True),
+          requires=Ability.PAIRS, open=True),
     Check(key="anisotropic_throughput",
           claim="A lobe with two alphas passes to its base what it does not reflect.",
           applies=family(FacetSpec, lambda spec: spec.row.layerable),
@@ -782,7 +788,7 @@ ROWS = (
          measure=partial(visible, microfacets.STEEP), explain=diagnose_visible, methods=with_directions),
     FILM(key="film_brushed",
          claim="In an environment, a lobe of two alphas under a film reflects the film's share of what a mirror does.",
-         measure=film_brushed, tolerance="anisotropic_throughput", explain=diagnosis.UNEXPLAINED,
+         measure=film_brushed, tolerance="anisotropic_throughput", explain=UNEXPLAINED,
          requires=Ability.PAIRS | Ability.LIGHT, open=False, methods=with_directions),
     FILM(key="film_glossy",
          claim="On glossy lobes, too, the albedo averages the film's reflectance over the visible facets.",

@@ -8,7 +8,7 @@ parts, so a wrong model passes and a failure has one reason.
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache, partial
+from functools import lru_cache, partial
 from itertools import combinations, product
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -266,10 +266,8 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
 def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
     """Pixels with combinations of the states that the node and the engine support."""
     lobe, rng = backend.lobe, samples.generator()
-    unsupported = {
-        *lobe.plain,
-        *backend.plain,
-    }  # states, or axes of which only the first is supported
+    # Unsupported states, and axes of which only the first state is supported.
+    unsupported = {*lobe.plain, *backend.plain}
     if not backend.host.reads_images:
         unsupported.add("inputs from an image")
     if "frame" in unsupported:
@@ -325,7 +323,7 @@ def states(case: Case) -> Iterator[Compared]:
     measured: dict[int, Array] = {}
     with Temporary("mxeon-states-") as folder:
         file = Path(folder, "inputs.exr")
-        from_image = partial(imaged, case, cache(partial(compile_imaged, case, file)), file)
+        from_image = partial(imaged, case, file, {})
         for (two, uneven, client, image, _), numbers in pictures.items():
             batch = backends.joined([batch_of(groups[number]) for number in numbers])
             evaluate = partial(
@@ -346,7 +344,6 @@ APART = (-1, EACH), (1, 0)
 
 
 def drawn(batch: Batch, evaluate: Callable[[Batch], Array], layout: Layout) -> Array:
-    """Values of a batch whose pixels are drawn in a layout."""
     shape, axes = layout
     order = np.arange(len(batch.wo)).reshape(shape).transpose(axes).ravel()
     values = np.empty_like(batch.wo)
@@ -356,8 +353,8 @@ def drawn(batch: Batch, evaluate: Callable[[Batch], Array], layout: Layout) -> A
 
 def imaged(
     case: Case,
-    compiled: "Callable[[bool, str, tuple[str, ...]], Shader]",
     file: Path,
+    shaders: "dict[bool, Shader]",
     batch: Batch,
     irradiance: NDArray[np.float32] | None,
     client: Client,
@@ -366,6 +363,7 @@ def imaged(
     """Light in pixels whose last lobe reads its inputs from an image.
 
     The image has a row for each input and a column for each pixel, of 2 x 2 equal texels each.
+    `shaders` caches the shaders with one and with two lobes.
     """
     count, lobe = len(batch.wo), "second" if two else "lobe"
     paths = {name.removeprefix("second/"): name for name in batch.inputs if ("/" in name) == two}
@@ -377,18 +375,13 @@ def imaged(
         middles = (np.arange(count) + 0.5) / count, np.full(count, 1.0 - (row + 0.5) / len(names))
         inputs[f"{lobe}_{name}_place/value"] = rounded(middles)
     write_image(file, np.asarray(texels, np.float32).repeat(2, axis=0).repeat(2, axis=1), FAST_EXR)
-    shader, batch = compiled(two, lobe, tuple(names)), replace(batch, inputs=inputs)
-    evaluate = case.evaluating.evaluate
-    return evaluate(batch, calls.LIT, irradiance=irradiance, shader=shader, client=client)
-
-
-def compile_imaged(
-    case: Case, file: Path, two: bool, lobe: str, names: tuple[str, ...]
-) -> "Shader":
-    ports = {f"{lobe}/{name}": case.lobe.types[name] for name in names}
-    text = case.lobe.two_lobes() if two else case.lobe.document()
-    document, policy = with_images(text, ports, str(file)), Policy(outside=True)
-    return case.host.compile(document, library=case.library, policy=policy)[0]
+    if two not in shaders:
+        ports = {f"{lobe}/{name}": case.lobe.types[name] for name in names}
+        text = case.lobe.two_lobes() if two else case.lobe.document()
+        document, policy = with_images(text, ports, str(file)), Policy(outside=True)
+        [shaders[two]] = case.host.compile(document, library=case.library, policy=policy)
+    evaluate, batch = case.evaluating.evaluate, replace(batch, inputs=inputs)
+    return evaluate(batch, calls.LIT, irradiance=irradiance, shader=shaders[two], client=client)
 
 
 def batch_of(pixels: Pixels) -> Batch:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of whole surface shaders; a failure names the lobe that causes it."""
+"""Checks of whole surface shaders, and of sentences in their specifications."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -9,13 +9,15 @@ import numpy as np
 
 from mxeon.conformance import backends, controls, samples, specs
 from mxeon.conformance.case import BRANCHES, Case, unchanged
+from mxeon.conformance.case import values as direct_values
 from mxeon.conformance.check import Check, family
 from mxeon.conformance.checks.lobes import LAYERS, finds_albedo
-from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, defect
+from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, Comparison, defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Quantity
-from mxeon.conformance.spec import Ability
+from mxeon.conformance.spec import Ability, broadcast_inputs
 from mxeon.conformance.specs.surface_shaders import STRETCHED_FIT, SurfaceShaderSpec, stretched
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
+from mxeon.conformance.specs.surface_texts import EMITTED, SentenceSpec
 from mxeon.conformance.tolerance import Compared, count_named, count_of, scaled
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
@@ -168,6 +170,36 @@ def diagnose_reach(case: Case) -> Diagnosis:
     return Diagnosis(tuple(causes))
 
 
+SENTENCE = Comparison("value", direct_values, lambda case: case.valued.value_candidates)
+
+
+def diagnose_sentence(case: Case) -> Diagnosis:
+    """Find which reading of the sentence the shader, or at least its graph of lobes, follows."""
+    from mxeon.conformance.reference import Reference
+
+    spec, explained = case.of(SentenceSpec), SENTENCE.diagnose(case)
+    if explained.kind is Kind.MODEL or spec.evaluated == EMITTED:
+        return explained
+    [batch] = case.batches
+    branch, _, factor = spec.evaluated
+    inputs = broadcast_inputs(batch.altered(**{**spec.fixed, **batch.inputs}))
+    try:
+        shader = case.evaluating.shader
+        graph = factor * Reference().evaluate(shader, batch.wo, batch.wi, inputs, branch)
+    except NotRun:
+        return explained
+    readings = spec.value_candidates
+    errors = {each.title: float(np.abs(each.values(batch) - graph).max()) for each in readings}
+    nearest = min(errors, key=errors.__getitem__)
+    if errors[nearest] > case.tolerance("value").value:
+        return explained
+    if explained.distances[nearest] < explained.distances[readings[0].title]:
+        return Diagnosis(
+            (Cause(Kind.MODEL, nearest), *defect("lobes_too").causes), explained.distances
+        )
+    return replace(defect("lobes_of_graph"), distances=explained.distances)
+
+
 # fmt: off
 ROWS = (
     Check(key="lobes",
@@ -180,8 +212,7 @@ ROWS = (
           control=controls.shifted, explain=SUM, requires=Ability.LIGHT),
     Check(key="lobes_albedo",
           claim="The environment branch returns the albedo of all lobes by the layer equation.",
-          applies=SURFACES, measure=ALBEDO, tolerance="albedo", control=controls.shifted,
-          explain=SUM, methods=finds_albedo),
+          applies=SURFACES, measure=ALBEDO, control=controls.shifted, explain=SUM, methods=finds_albedo),
     Check(key="lobes_mean",
           claim="Averaged over many materials and views, the shader returns as much light as its lobes.",
           applies=SURFACES, measure=lobes_mean,
@@ -205,5 +236,9 @@ ROWS = (
           claim="Every input changes a value, except those that are known to change nothing.",
           applies=SURFACES, measure=lambda case: count_named(unexpected(case)),
           tolerance=count_of(Quantity.INPUTS), control=ignore_changes, explain=diagnose_reach),
+    Check(key="specification",
+          claim="The surface shader does what this sentence of its specification says.",
+          applies=family(SentenceSpec), measure=SENTENCE, control=controls.shifted,
+          explain=diagnose_sentence, open=True),
 )
 # fmt: on

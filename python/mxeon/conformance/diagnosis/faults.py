@@ -124,7 +124,6 @@ def exchanges(names: Iterable[str]) -> Iterator[Fault]:
 
 
 def _exchanged(one: str, other: str, batch: Batch) -> Batch:
-    """A batch in which two inputs are exchanged and clamped to their ranges."""
     changes, inputs = {}, batch.inputs
     for name in inputs:
         first, *port = name.split("/")
@@ -136,7 +135,6 @@ def _exchanged(one: str, other: str, batch: Batch) -> Batch:
 
 
 def scaled_by(factor: float) -> Fault:
-    """A wrong factor of every value, with a key of its own if the factor is pi or 1 / pi."""
     for key, known in (("pi_missing", np.pi), ("pi_twice", 1.0 / np.pi)):
         if np.isclose(factor, known, rtol=1e-5):
             return Fault(key, values=lambda batch, values: factor * values)

@@ -38,7 +38,6 @@ COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
 
 
 def region_of(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
-    """The region that contains all wrong pairs, or None."""
     return smallest(cases, tolerance) or span(cases, tolerance)
 
 
