@@ -76,7 +76,7 @@ VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9
 VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
 # Smallest value that must be sampled: a sheen's fitted albedo may be 0 where the exact one is 3e-6.
 LEAST_LIGHT = 1e-5
-LEAST_DRAWN = 1e-5  # with a smaller ratio of density to value, light is hardly ever sampled
+LEAST_DRAWN = 1e-5  # ratio of density to value, below which light is hardly ever sampled
 # Below this sample weight (an albedo), shares of lobes have few digits: a sheen's fit crosses 0.
 LEAST_ALBEDO = 1e-3
 LEAST_COUNTED = 0.2  # minimum roughness of lobes with counted samples: the cells are coarse

@@ -52,7 +52,7 @@ class Pixels:
     light: Array  # direction of a second light, in the local frame
     second: Mapping[str, Array] | None = None  # inputs of a second lobe
     second_frame: Array | None = None  # frame of the second lobe, None for the surface's frame
-    differing: tuple[str, ...] = ()  # for each pixel, the input that differs between two lobes
+    differing: tuple[str, ...] = ()  # the input of each pixel that differs between two lobes
     lights: int = 1
     sky: str = ""  # "uniform" or "uneven"
     client: Client = CLIENT  # how the environment is turned and scaled
