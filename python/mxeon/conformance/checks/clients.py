@@ -34,7 +34,7 @@ SIZE = 16  # width and height of a frame in pixels
 WHITE_MAP, WARM_MAP = (np.full((1, 1, 3), each, np.float32) for each in (1.0, (0.75, 0.5, 0.25)))
 # Paths of the document's inputs, with the names that `material` uses.
 NAMES = {"shading/mix": "mix", "front/opacity": "front", "back/opacity": "back"}
-LEAST_VARIANCE = 1e-5  # least variance of depths in a shadow map
+LEAST_VARIANCE = 1e-5  # smallest variance of depths in a shadow map
 TRANSPARENT = 0.3333  # weight of each channel of the transparency in alpha
 # A shadow matrix that maps the sphere's depths into [0.2, 0.7]; w is deliberately not 1.
 SHADOW: Matrix = (1.2, 0.1, 0.3, 0.0, 0.2, 1.1, 0.2, 0.0, 0.1, 0.3, -0.6, 0.0, 0.0, 0.0, 0.0, 1.5)

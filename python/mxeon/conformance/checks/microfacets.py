@@ -152,14 +152,7 @@ def diagnose_sky(case: Case) -> Diagnosis:
 
 
 def anisotropic_albedo(case: Case) -> Iterator[Compared]:
-    """Albedos with the host's methods, and with the library's own environment lookups, if any."""
-    yield from albedos(case, case.host.active)
-    for methods in own_lookups(case):
-        yield from albedos(case, methods, generated(case, methods))
-
-
-def albedos(case: Case, methods: Methods, shader: "Shader | None" = None) -> Iterator[Compared]:
-    """Albedos in an environment with a client's methods.
+    """Albedos with the host's methods, and with the library's own environment lookups, if any.
 
     For prefiltered environments, eonlib fits Fresnel curves: only mirrors are exact, and the fit is
     too coarse for metals. An environment sampled by eonlib's own text must clamp Schlick curves
@@ -167,20 +160,22 @@ def albedos(case: Case, methods: Methods, shader: "Shader | None" = None) -> Ite
     """
     spec = case.of(FacetSpec)
     batch, albedo = case.backend.take(spec.stretched)
-    if methods.environment == "prefilter":
-        rows = [(batch.altered(**spec.row.mirror), batch.strength * ONE)]
-        if spec.row.layerable:
-            rows.append((case.views[0], case.expected_albedo(case.views[0])))
-    elif methods.searched:
-        rows = [(batch, albedo)]
-        if "color82" in batch.inputs:
-            dip = replace(batch.first(1), wo=directions_at([0.05], 0.5)).altered(**DIP)
-            rows.append((dip, spec.integral(dip)))
-    else:
-        rows = [case.backend.take(spec.stretched_sums)]
-    for batch, albedo in rows:
-        measured = case.evaluating.evaluate(case.inputs(batch), "environment", shader=shader)
-        yield Compared(batch, case.outputs(batch, measured), albedo)
+    for methods in (case.host.active, *own_lookups(case)):
+        shader = None if methods == case.host.active else generated(case, methods)
+        if methods.environment == "prefilter":
+            rows = [(batch.altered(**spec.row.mirror), batch.strength * ONE)]
+            if spec.row.layerable:
+                rows.append((case.views[0], case.expected_albedo(case.views[0])))
+        elif methods.searched:
+            rows = [(batch, albedo)]
+            if "color82" in batch.inputs:
+                dip = replace(batch.first(1), wo=directions_at([0.05], 0.5)).altered(**DIP)
+                rows.append((dip, spec.integral(dip)))
+        else:
+            rows = [case.backend.take(spec.stretched_sums)]
+        for views, expected in rows:
+            light = case.evaluating.evaluate(case.inputs(views), "environment", shader=shader)
+            yield Compared(views, case.outputs(views, light), expected)
 
 
 def own_lookups(case: Case) -> list[Methods]:

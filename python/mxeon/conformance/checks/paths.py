@@ -61,7 +61,7 @@ SCATTERED = """if (what < 0.5)
 # Separate from SCATTERED: drivers inline the material into each call.
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
 RANDOM = "return path_random(uvec4(uvec3(u), 7u)).xyz;"
-# Code that returns each value; the value's position here is its number `what`.
+# GLSL that returns each value. In CALL, `what` is the position of a value in this table.
 FUNCTIONS = {
     **dict.fromkeys(("evaluate", "pdf", "wi", "weight", "density"), SCATTERED),
     **dict.fromkeys(("opacity", "emission"), PASSED),
@@ -85,7 +85,7 @@ CONVERTED = {"boolean": "{} > 0.5", "integer": "int({})", "vector2": "{}.xy"}
 VECTORS = ("vector2", "vector3", "color3")
 MEAN_WEIGHT = 0.3333  # MaterialX's weight of a channel when it turns a transparency into alpha
 OPACITY, EMISSION = 0.6, 0.3
-# Inputs that make a surface shader emit light and transparent: its alpha is below 1.
+# Inputs with which a surface shader emits light and has an alpha below 1.
 TRANSPARENT: dict[str, float | str] = {
     **dict.fromkeys(("opacity", "geometry_opacity", "alpha"), OPACITY),
     **dict.fromkeys(("emission", "emission_luminance", "emissive", "emissiveColor"), EMISSION),
@@ -119,8 +119,7 @@ SOLIDS: dict[str, tuple[Values, dict[str, Array]]] = {
         {"color0": (1.0 / 9.0,) * 3, "roughness": (0.4, 0.4)},
         {
             "color0": np.full((1, 3), 1.0 / 9.0),
-            "color82": np.ones((1, 3)),
-            "color90": np.ones((1, 3)),
+            **dict.fromkeys(("color82", "color90"), np.ones((1, 3))),
             "exponent": np.array([5.0]),
         },
     ),
@@ -260,10 +259,8 @@ def random(count: int, rng: np.random.Generator) -> Array:
 
 
 def lattice(count: int) -> Array:
-    """Numbers (count, 3) that evenly fill the unit cube.
-
-    They are multiples of powers of 1 / x, modulo 1, with x the root of x^4 = x + 1.
-    """
+    """Numbers (count, 3) that evenly fill the unit cube [0, 1)^3."""
+    # Columns are multiples of the powers of 1 / x, modulo 1, with x^4 = x + 1.
     steps = 1.2207440846057596 ** -np.arange(1.0, 4.0)
     return float32((0.5 + np.arange(count)[:, np.newaxis] * steps) % 1.0 * (1.0 - 2.0**-24))
 

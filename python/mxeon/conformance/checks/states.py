@@ -36,9 +36,7 @@ EACH = 12  # pixels per combination of states: three 2 x 2 squares in a picture 
 STEP = 0.05  # angle between neighboring pixels of a bent surface with radius 1, in radian
 VECTORS = ("normal", "tangent", "position", calls.SURFACE)
 FLAT = calls.NORMAL, calls.TANGENT, (0.0, 0.0, 0.0), calls.NORMAL
-CLEARER = (
-    0.7  # two states are reported if their pixels are at most this share of one state's pixels
-)
+CLEARER = 0.7  # report two states if both occur in less than this share of one state's pixels
 Random = np.random.Generator
 Layout = tuple[tuple[int, ...], tuple[int, ...]]  # shape and axis order of a list of pixels
 
@@ -52,7 +50,7 @@ class Pixels:
     light: Array  # direction of a second light, in the local frame
     second: Mapping[str, Array] | None = None  # inputs of a second lobe
     second_frame: Array | None = None  # frame of the second lobe, None for the surface's frame
-    differing: tuple[str, ...] = ()  # the input of each pixel that differs between two lobes
+    differing: tuple[str, ...] = ()  # input that differs between the two lobes of each pixel
     lights: int = 1
     sky: str = ""  # "uniform" or "uneven"
     client: Client = CLIENT  # how the environment is turned and scaled
