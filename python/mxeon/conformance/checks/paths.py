@@ -156,7 +156,8 @@ class Paths:
         if self.host.target == "slang":
             answer = answer.replace("uvec", "uint")
         frame = inputs.get("normal", NORMAL), inputs.get("tangent", TANGENT)
-        arguments = [float(list(FUNCTIONS).index(what)), wo, wi, u, inside, *frame]
+        number = float(list(FUNCTIONS).index(what))
+        arguments: list[ArrayLike] = [number, wo, wi, u, inside, *frame]
         parameters, assignments = "", []
         for port in self.ports:
             value = inputs.get(port.path, inputs.get(port.path.rpartition("/")[2], port.value))
