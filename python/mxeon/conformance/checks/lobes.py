@@ -262,6 +262,10 @@ def region_values(key: str, case: Case) -> Compared:
     return case.compared(case.of(HairSpec).region(key, case.backend.counts.few))
 
 
+def in_region(key: str, case: Case) -> Compared:
+    return case.valued.rescaled(region_values(key, case))
+
+
 def explain_region(key: str, case: Case) -> Diagnosis:
     equal = set(FORMS) - {REGIONS[key].form, TILTED}  # forms that equal the model in this region
     candidates = [each for each in case.valued.value_candidates if each.title not in equal]
@@ -511,7 +515,7 @@ ROWS = (
           explain=replace(defect("factor_not_clamped"), permitted=True),
           requires=Ability.PAIRS, open=True),
     *(
-        Check(key=key, claim=row.claim, applies=family(HairSpec), measure=lambda case, key=key: case.valued.rescaled(region_values(key, case)),
+        Check(key=key, claim=row.claim, applies=family(HairSpec), measure=partial(in_region, key),
               control=TURN_FIBER, explain=partial(explain_region, key), requires=Ability.LIGHT, open=True)
         for key, row in REGIONS.items()
     ),

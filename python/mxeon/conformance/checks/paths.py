@@ -161,8 +161,9 @@ class Paths:
         parameters, assignments = "", []
         for port in self.ports:
             value = inputs.get(port.path, inputs.get(port.path.rpartition("/")[2], port.value))
+            value = np.asarray(value, np.float64)
             if port.type == "vector2":
-                value = np.insert(np.asarray(value, np.float64), 2, 0.0, axis=-1)
+                value = np.insert(value, 2, 0.0, axis=-1)
             arguments.append(value)
             parameter = f"given_{port.name}"
             parameters += f", {'vec3' if port.type in VECTORS else 'float'} {parameter}"
