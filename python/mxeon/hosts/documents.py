@@ -105,7 +105,11 @@ class DocumentHost(base.Host):
             self._folders = folders
             self.worker = self._worker()
         text, element = self._document(shader)
-        request = {"element": element, "light": scene.light, "environment": scene.environment}
+        request: dict[str, object] = {
+            "element": element,
+            "light": scene.light,
+            "environment": scene.environment,
+        }
         if shader.methods != UNCHOSEN:
             request["methods"] = shader.methods.settings
         if card:

@@ -155,9 +155,9 @@ def blocked(points: Floats, towards: Floats) -> Mask:
     start = points[:, ::2]
     reach = towards[:, ::2] * 2.0 * FOOT_HEIGHT / np.maximum(towards[:, 1:2], 1e-6)
     squared, product = (reach**2).sum(axis=-1), start @ reach.T
-    nearest = np.clip(
-        -product / np.maximum(squared, 1e-12), 0.0, 1.0
-    )  # nearest point of the foot's axis
+    # Nearest point of the foot's axis.
+    nearest = np.clip(-product / np.maximum(squared, 1e-12), 0.0, 1.0)
     distance = (start**2).sum(axis=-1)[:, None] + 2.0 * nearest * product + nearest**2 * squared
-    foot: Mask = (distance < FOOT_RADIUS**2) & (towards[:, 1] > 0.0)
-    return ball | foot
+    foot = (distance < FOOT_RADIUS**2) & (towards[:, 1] > 0.0)
+    blocks: Mask = ball | foot
+    return blocks

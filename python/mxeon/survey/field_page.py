@@ -53,8 +53,8 @@ def frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
         image, model = read_image(portrait.image), read_image(portrait.reference)
         differences = np.abs(difference(image, model))
         scale = max(difference_scale(differences), entry.cells["direct"].tolerance or 0.0)
-        pictures = srgb_encoded(image), difference_pixels(differences, scale)
-        yield row, entry, *map(picture_uri, pictures), scale, portrait.difference
+        picture, errors = srgb_encoded(image), difference_pixels(differences, scale)
+        yield row, entry, picture_uri(picture), picture_uri(errors), scale, portrait.difference
 
 
 def render(
