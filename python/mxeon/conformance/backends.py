@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Backends, the ways to evaluate a node on an engine: supported nodes, samples and added errors.
+"""Backends: classes that evaluate a MaterialX node on a rendering engine.
 
-An engine evaluates arbitrary pairs of directions, returns closures, renders one pair of directions
-per pixel, or renders pictures of a sphere. All backends return values in the same form, so that
-each check is written once.
+Some engines evaluate arbitrary pairs of directions. Other engines return closures, render one pair
+of directions per pixel, or render pictures of a sphere. A backend draws the samples and adds the
+engine's errors to the tolerances. All backends return values in the same form, so that each check
+is written once.
 """
 
 from __future__ import annotations
@@ -47,13 +48,13 @@ if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
 POWERS = 1 << 12  # number of colors for which pow() is measured
-Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and a mask of the judged pairs
-Errors: TypeAlias = Mapping[str, Tolerance | None]  # quantity -> tolerance; None: not measured
+Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and a mask of the pairs to judge
+Errors: TypeAlias = Mapping[str, Tolerance | None]  # tolerances by quantity, None if not measured
 T = TypeVar("T")
 
 
 def implementation(host: Host, text: str, library: str) -> Shader | None:
-    """Shader of a document; None if the target lacks an implementation of one of its nodes."""
+    """The shader of a document, or None if the target lacks an implementation of a node."""
     try:
         return host.compile(text, library=library)[0]
     except DocumentError as error:
@@ -63,14 +64,15 @@ def implementation(host: Host, text: str, library: str) -> Shader | None:
 
 
 class Backend(ABC):
-    """A way of evaluating one node on an engine: its samples, shader and values."""
+    """A base class for evaluating one node on an engine."""
 
     abilities: ClassVar[Ability]  # supported kinds of nodes and checks
-    # Axes of `checks.states` on which the backend supports only the first state.
+    # State axes of the check `states`, such as "lights", on which a backend only supports the first
+    # state.
     plain: ClassVar[tuple[str, ...]] = ()
     all_samples: ClassVar[bool] = False  # whether controls and expensive checks use all samples
-    fewer: ClassVar[Counts | None] = None  # counts that replace those of specs with more pairs
-    engine_errors: ClassVar[Errors | None] = None  # errors that replace those of the spec
+    fewer: ClassVar[Counts | None] = None  # replaces the counts of specs with more pairs
+    engine_errors: ClassVar[Errors | None] = None  # replaces the errors of the spec
     methods: ClassVar[Methods] = UNCHOSEN  # lighting methods fixed by the engine
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
@@ -86,21 +88,21 @@ class Backend(ABC):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        """The tolerance of each quantity, before the errors of engine functions are added."""
+        """The tolerance of each quantity, without the errors of the engine's built-in functions."""
         return spec.errors if cls.engine_errors is None else cls.engine_errors
 
     @property
     def prefiltered(self) -> bool:
-        """Whether microfacets in an environment use MaterialX's fit of their albedo."""
+        """Whether environment light on microfacets uses MaterialX's fitted albedo."""
         return self.host.active.environment == "prefilter" and not self.searched
 
     @property
     def searched(self) -> bool:
-        """Whether the library's own environment lookups replace MaterialX's."""
+        """Whether the library has its own functions for environment lookups."""
         return bool(self.host.active.searched)
 
     def implemented(self, text: str) -> Shader:
-        """Shader of a document; NotRun if the target has no implementation of an optional node."""
+        """The shader of a document. Raise NotRun if the target lacks an optional node."""
         if not self.spec.optional:
             return self.host.compile(text, library=self.library)[0]
         shader = implementation(self.host, text, self.library)
@@ -119,15 +121,19 @@ class Backend(ABC):
 
     @property
     def claims(self) -> tuple[str, str]:
-        """Values of `Result.claimed` and `Result.model`, for a node that a renderer defines."""
+        """The values of `Result.claimed` and `Result.model`, "" except for a renderer's own node."""
         return "", ""
 
     def judged(self) -> Spec:
-        """The spec to judge, with a renderer's variants or in the form nearest to the values."""
+        """The spec to judge.
+
+        Subclasses add a renderer's variants of the model, or choose the form of the model that is
+        nearest to the measured values.
+        """
         return self.spec
 
     def take(self, draw: Callable[[Counts], T]) -> T:
-        """Samples that a method of the spec draws; each method is called once per backend."""
+        """The samples that a method of the spec draws. Each method is called once per backend."""
         if draw.__qualname__ not in self._drawn:
             self._drawn[draw.__qualname__] = draw(self.counts)
         return cast(T, self._drawn[draw.__qualname__])
@@ -142,7 +148,7 @@ class Backend(ABC):
         return tuple(batch for batch in batches if len(batch.wo))
 
     def adapted(self, batch: Batch) -> Batch:
-        """The pairs of a batch that the backend supports, with inputs that it supports."""
+        """The pairs of a batch that the backend supports, with supported inputs."""
         return batch
 
     @cached_property
@@ -174,41 +180,41 @@ class Backend(ABC):
 
     @cached_property
     def integrals(self) -> Array:
-        """The model's integrals over the light for the materials in `integrated`, (N, 3)."""
+        """The model's integrals over light directions for materials in `integrated`, (N, 3)."""
         batch, weights = self.integrated
         views = batch.where(np.arange(len(weights)) * weights.shape[1])
         return cast(ScatteringSpec, self.spec).integral(views)
 
     def supported(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
-        """Inputs, limited to values that the backend supports."""
+        """The inputs, limited to values that the backend supports."""
         return dict(inputs)
 
     def points(self, scene: Scene) -> Pairs:
-        """Directions at the points of a picture, and the mask of the points to judge."""
+        """Directions at the points of a picture's sphere, and a mask of the points to judge."""
         wo, wi, judged = picture_pairs(scene)
         return samples.float32(wo), samples.float32(wi), judged
 
     def pixels(self, scene: Scene) -> Mask:
-        """Mask of the pixels of a picture that show the points."""
+        """A mask of the pixels that show the sphere's points."""
         return sphere(scene.size).mask
 
     def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
-        """`points` and `pixels` of a picture that compares a node with its model."""
+        """The results of `points` and `pixels` for a picture that compares a node with a model."""
         return *self.points(scene), self.pixels(scene)
 
     @abstractmethod
     def direct(self, batch: Batch) -> Array:
-        """Values in direct light, (N, 3): pi f cos(theta_i), a radiance, or an output."""
+        """Values in direct light, (N, 3): pi f cos(theta_i), a radiance, or a node's output."""
 
     @abstractmethod
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        """Values in an environment, (N, 3), which is uniform unless `irradiance` is given."""
+        """Values in an environment, (N, 3), by default in a uniform environment."""
 
 
 def isotropic(batch: Batch) -> Batch:
-    """A batch without anisotropy, for prefiltered light, which only has a single roughness.
+    """A batch without anisotropy, because prefiltered light has a single roughness.
 
-    Both alphas become their geometric mean.
+    The geometric mean of both alphas replaces each alpha.
     """
     inputs: dict[str, Array] = {}
     for name, value in batch.inputs.items():
@@ -269,11 +275,11 @@ class Evaluating(Backend):
         return self.evaluate(batch, "environment", irradiance=irradiance)
 
     def throughput(self, batch: Batch, branch: str) -> Array:
-        """Share of the light from below that passes the node, in a branch of the light, (N, 3)."""
+        """Fraction of the light from below the node that passes through the node, (N, 3)."""
         return self.evaluate(batch, branch, "throughput")
 
     def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
-        """Environment light through the surface, (N, 3); by default from a uniform environment."""
+        """Environment light through the surface, (N, 3), by default from a uniform environment."""
         return self.evaluate(batch, "transmission", irradiance=radiance)
 
     @cached_property
@@ -292,9 +298,9 @@ class Evaluating(Backend):
     def together(
         self, batch: Batch, irradiance: NDArray[np.float32] | None, client: Client, two: bool
     ) -> Array:
-        """Values of one or two lobes under the client's lights and environment.
+        """Values of one or two lobes under a client's lights and environment.
 
-        Backends without these states use a single light.
+        Backends that do not support several lights use a single light.
         """
         shader = self.two if two else self.shader
         if "lights" in self.plain:
@@ -327,19 +333,21 @@ class Evaluating(Backend):
 
 
 class Media(Evaluating):
-    """A renderer that evaluates media, and nodes judged only by having an implementation."""
+    """A renderer of media, and of nodes whose only check is that an implementation exists."""
 
     abilities = Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.PAIRS | Ability.LIGHT
 
 
-# OSL: closures are trees of arguments and weights, which the models evaluate in float64.
+# OSL returns closures as trees of arguments and weights. The models evaluate the trees in float64.
 
-# The models compute the values of closures, so that more pairs would only test the models.
+# More pairs would only test the models, which compute the values of closures.
 FEW_CLOSURES = Counts(1 << 11, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
-SOME = 1 << 8  # maximum number of pairs of each kind except random pairs
-# The models round in float64, 2^-53; the sharpest lobe, with alpha 1e-4, amplifies errors by 1e8.
+SOME = 1 << 8  # maximum number of pairs of each kind, except random pairs
+# The models round to float64, by at most 2^-53. The sharpest lobe, with alpha 1e-4, amplifies this
+# error by 1e8, to less than one float32 rounding.
 ARGUMENTS = sum_of(roundings(1, "of arguments with nine digits, evaluated in float64"), exact=True)
-# The slope of a distribution's logarithm is at most 4.
+# An input passes through up to 16 roundings before it is an argument of a closure. The logarithm of
+# a microfacet distribution has a slope of at most 4.
 GRAPH = sum_of(roundings(4 * 16, "16 from an input to an argument, times the slope 4"))
 
 
@@ -355,7 +363,7 @@ def joined(batches: Sequence[Batch]) -> Batch:
 
 
 class Closures(Evaluating):
-    """A host that returns the arguments of closures, which are exact, and computes no lighting."""
+    """A host that returns closures with exact arguments and computes no lighting."""
 
     abilities = Evaluating.abilities & ~Ability.LIGHT
     plain = ("lights", "environment", "shape", "inputs")
@@ -385,7 +393,7 @@ class Closures(Evaluating):
         return (random, *(batch.first(SOME) for batch in others))
 
     def adapted(self, batch: Batch) -> Batch:
-        """Weights become nonnegative, as OSL closures need, and some dielectrics get index 0."""
+        """Clamp weights to 0, as OSL closures have no negative weights, and set some IORs to 0."""
         changes: dict[str, Array] = {}
         if "weight" in batch.inputs:
             changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
@@ -396,7 +404,7 @@ class Closures(Evaluating):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """A subset of each kind of samples, joined if possible, because a run has a fixed cost."""
+        """A subset of each kind of samples, in few batches because each run has a fixed cost."""
         few = (batch.first(self.counts.few) for batch in self.batches)
         groups = grouped(few, lambda batch: (*sorted(batch.inputs), batch.frame is None))
         return tuple(map(joined, groups.values()))
@@ -415,7 +423,7 @@ class Closures(Evaluating):
 
         assert query.irradiance is None, "closures look no environment up"
         if query.shader is self.shader and self.spec.requires & (Ability.DIFFUSE | Ability.LOBE):
-            # Constant normals and tangents that differ from the surface's become node inputs.
+            # Constant normals and tangents become node inputs, unless equal to the surface's axes.
             frame = {
                 name: query.inputs[name]
                 for name, axis in (("normal", UP), ("tangent", ALONG))
@@ -431,13 +439,13 @@ class Closures(Evaluating):
 
     @property
     def unset(self) -> tuple[str, ...]:
-        """Frame inputs of a surface shader's lobes, which read the surface's frame instead."""
+        """Normals and tangents of a surface shader's lobes, which use the surface's frame."""
         names = self.spec.names if Ability.MATERIAL in self.spec.requires else ()
         return tuple(each for each in names if each.endswith(("normal", "tangent")))
 
 
 class Functions(Evaluating):
-    """A compiler of functions for values and MaterialX's fitted albedos, without transmission."""
+    """A host that compiles functions for values and for fitted albedos, without transmission."""
 
     abilities = Evaluating.abilities & ~(
         Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.TRANSMISSION
@@ -458,27 +466,28 @@ class Functions(Evaluating):
         return tuple(name for name in self.spec.names if name.startswith("transmission"))
 
     def adapted(self, batch: Batch) -> Batch:
-        """Occlusion becomes 1, because the renderer, not the function, applies occlusion."""
+        """Set occlusion to 1, because the renderer, not the function, applies occlusion."""
         return batch.altered(occlusion=1.0) if "occlusion" in batch.inputs else batch
 
 
 # Renderers in which each pixel shows one pair of directions.
 
 SMOOTH = ("eon", "qon", "burley")  # models without a sharp lobe at any roughness
-# Smallest product of a view's sine and cosine, for views far from the mirror direction and from
-# the opposite direction.
+# Smallest product of the sine and the cosine of the angle between a view and the normal.
 OBLIQUE = 0.25
 FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=32, mirrored=1 << 10)
 FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # stated in OpenImageIO's source
-POINT = 3.0 * EYE / NEAREST  # roundings of a point 40 from the eye and 1/2 from the light
-FLAT_SLOPE = 8.0  # largest slope of the diffuse models
-# Largest slope of microfacets: 2 / smallest alpha, plus 3 for Fresnel and shadowing.
+POINT = 3.0 * EYE / NEAREST  # roundings of a point, 40 from the eye and 1/2 from the light
+FLAT_SLOPE = 8.0  # largest slope of the diffuse models, per radian
+# Largest slope of microfacets, per radian. The distribution has a slope of 2 divided by the
+# smallest alpha. Fresnel and shadowing add 3.
 SHARP_SLOPE = 2.0 / samples.LEAST_TURNED + 3.0
 FLAT, SHARP = (
     sum_of(roundings(each * POINT, f"of a point, times the slope {each:g}"), FAST_ARC_COSINE)
     for each in (FLAT_SLOPE, SHARP_SLOPE)
 )
-# Error of the light's direction in radian, for a displaced point on a triangle at a grazing angle.
+# Error of the light's direction in radians. A point is up to JITTER pixels beside the middle of its
+# pixel, and a grazing triangle divides this distance by the cosine RIM.
 TURN = JITTER * PIXEL / (RIM * DISTANCE)
 DISPLACED = "a point up to 0.007 pixels beside the middle, at cosine 0.05"
 TRACED_FLAT, TRACED_SHARP = (
@@ -488,7 +497,7 @@ BELOW = sum_of(
     roundings(4.0 * 16.0 * POINT, "of a point, times 16 by the lobes above, in four values"),
     FAST_ARC_COSINE,
 )
-VIEWS, PIXELS = 8, 1 << 12  # number of views per case, and of pixels in their common picture
+VIEWS, PIXELS = 8, 1 << 12  # numbers of views per case, and of pixels that the views share
 MEAN_OF_PATHS = "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms"
 NOISE = sum_in(Quantity.ALBEDO, Term(5.0 * 0.01 / math.sqrt(PIXELS / VIEWS), MEAN_OF_PATHS))
 PASSED = single(2e-3, Quantity.ALBEDO, "testrender's tables, off by 1e-3 for a white dielectric")
@@ -503,11 +512,11 @@ def _is_renderable(batch: Batch, rim: float = RIM) -> Mask:
 
 
 class RenderablePairs(Evaluating):
-    """A renderer, or a host restricted to the pairs and inputs that renderers support.
+    """A backend that is limited to the pairs and inputs that renderers support.
 
     Both cosines are at least RIM, and no lobe is so sharp that the pixel position matters.
-    Roughness is at most 1, as in OSL's stdosl.h. Weights are not negative, and there is no
-    occlusion.
+    Roughness is at most 1, as in OSL's stdosl.h. Weights are not negative, and occlusion is not
+    applied.
     """
 
     fewer = FEW_RENDERED
@@ -518,7 +527,7 @@ class RenderablePairs(Evaluating):
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """A few views of the random pairs, which share a fixed number of paths."""
+        """The views of a few random pairs, as all views share a fixed number of light paths."""
         return (super().views[0].first(self.counts.albedos),)
 
     @cached_property
@@ -552,7 +561,7 @@ class RenderablePairs(Evaluating):
 
 
 class Rendered(RenderablePairs):
-    """OSL's testrender, which lights a point with its own closures."""
+    """OSL's testrender, which computes lighting with the renderer's own closures."""
 
     abilities = (
         Ability.DIFFUSE | Ability.LOBE | Ability.SUBSURFACE | Ability.COMBINATION | Ability.PAIRS
@@ -584,12 +593,12 @@ class Rendered(RenderablePairs):
         }
 
     def direct(self, batch: Batch) -> Array:
-        """Values in direct light; pairs that cannot be rendered are moved slightly."""
+        """Values in direct light. Pairs that cannot be rendered are moved slightly."""
         return super().direct(replace(batch, wi=apart(batch.wo, batch.wi)))
 
 
 class Traced(Rendered):
-    """Cycles, which lights a point with its own closures; CyclesPictures judges diffuse nodes."""
+    """Cycles, which computes lighting with its own closures, except for rough diffuse nodes."""
 
     abilities = Ability.LOBE | Ability.COMBINATION | Ability.PAIRS
     variants = CYCLES_VARIANTS
@@ -597,14 +606,14 @@ class Traced(Rendered):
 
 
 class LobesBelow(RenderablePairs):
-    """The diffuse lobe of a surface shader, isolated from the lobes above; see SurfaceLobe."""
+    """The diffuse lobe of a surface shader, without the lobes above; see SurfaceLobe."""
 
     abilities = Ability.BELOW | Ability.LIGHT
     all_samples = True
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """Random pairs far from the rim, with random colors and roughnesses of the lobe."""
+        """Random pairs far from the horizon, with random colors and roughnesses of the lobe."""
         rng, count = samples.generator(), self.counts.few
         inputs = self.supported(self.lobe.random_inputs(rng, count))
         wo, wi = samples.directions(rng, count), samples.directions(rng, count)
@@ -637,22 +646,22 @@ def diffuse_alone(evaluate: Callable[[Batch], Array], batch: Batch) -> Array:
 
 @lru_cache(maxsize=16)
 def _with_variants(backend: type[Rendered], spec: Spec) -> Spec:
-    """A spec whose candidates include the functions of a renderer."""
+    """The spec, with a renderer's functions added to the functions that may explain values."""
     if not isinstance(spec, PbrSpec) or spec.row.name not in backend.variants:
         return spec
     variants = (*backend.variants[spec.row.name], *spec.row.variants)
     return replace(spec, row=replace(spec.row, variants=variants))
 
 
-# Hosts that render pictures of a sphere, whose lit points serve as pairs.
+# Hosts that render pictures of a sphere. Each lit point of the sphere is a pair of directions.
 
 PICTURE_SIZE = 128
 HALF_CUT = Term(2.0**-10, "half floats, cut off")  # llvmpipe truncates instead of rounding
-# Relative error of a lobe per radian by which the point of a ray is off: 2 / alpha for a
-# distribution with alpha at least 0.4, plus 3 for Fresnel, shadowing and the cosine.
+# Relative error of a lobe per radian of error in a direction. The distribution has a slope of 2 /
+# alpha, with an alpha of at least 0.4. Fresnel, shadowing and the cosine add 3.
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
-# Each of two cosines has five roundings. The errors count 20 times in s / t, because cosines are at
-# least 0.05, once in s, and once in the cosine factor.
+# Each of two cosines has five roundings. The error counts 22 times: 20 times in s / t, because
+# cosines are at least 0.05, once in s, and once in the cosine factor.
 TWO_COSINES = roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)")
 EXACT = sum_in(Quantity.DIFFERENCE, roundings(28, "(14, of numbers up to 2)"), TWO_COSINES)
 EXACT_ALBEDO = sum_in(Quantity.ALBEDO, roundings(21 * 1.02, "of numbers up to 1.02"))
@@ -667,17 +676,18 @@ FOUR_PICTURES = Term(
 )
 HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR_PICTURES, *DRAWN_LOBE.terms, exact=True)
 
-# A pixel's point is a ray's origin plus the ray, both of a length up to 2, with three roundings of
-# 2^-23. Grazing views divide the error by cos(theta_o), and relative errors also by cos(theta_i).
+# A pixel's point is the sum of a ray's origin and the ray. Both have lengths up to 2, so that each
+# of three roundings is at most 2^-23. Grazing views divide the error by cos(theta_o). A relative
+# error is also divided by cos(theta_i).
 CYCLES_RAY = sum_of(
     roundings(3.0 * 2.0 / RIM**2, "of a pixel's point, over the least cosine squared"),
     Term(1e-5, "a roughness that counts as 0"),
     quantity=Quantity.RELATIVE,
     metric=relative,
 )
-# Measured at 256 samples per pixel, seeds 0 to 15, roughness 1 and reflectance 1: a pixel is off by
-# 1.3e-3 rms, and the mean of 3212 pixels by 3.1e-5 rms, 1.34 times as much as if pixels were
-# independent.
+# The noise was measured at 256 samples per pixel, with seeds 0 to 15, roughness 1 and reflectance
+# 1. The rms error of a pixel is 1.3e-3. The rms error of the mean of 3212 pixels is 3.1e-5, which
+# is 1.34 times the error of the mean of independent pixels.
 CYCLES_MEAN = "four standard errors of the mean of 12836 pixels, each off by 1.3e-3, times 1.4"
 CYCLES_NOISE = sum_of(
     Term(4.0 * 1.4 * 1.3e-3 / math.sqrt(12_836), CYCLES_MEAN),
@@ -694,7 +704,7 @@ class Pictures(Backend):
         return PICTURE_SIZE // self.spec.coarse
 
     def points(self, scene: Scene) -> Pairs:
-        """Directions at the points of a picture, and the mask of the points to judge."""
+        """Directions at the points of a picture's sphere, and a mask of the points to judge."""
         wo, wi, _ = picture_pairs(scene)
         mu_i = wi[:, 2] * (1.0 if scene.light is None else self.spec.side)
         return wo, wi, np.minimum(wo[:, 2], mu_i) >= self.spec.rim
@@ -705,7 +715,7 @@ class Pictures(Backend):
         return self.picture(batch)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        return self.picture(batch)  # the scene of the batch has the environment
+        return self.picture(batch)  # the batch's scene contains the environment
 
     def picture(self, batch: Batch) -> Array:
         scene = scene_of(batch)
@@ -720,7 +730,7 @@ class Pictures(Backend):
 
 
 class Spheres(Pictures):
-    """One picture per light and material; lit points far from the rim are the samples."""
+    """One picture per light and material, whose lit points far from the rim are the samples."""
 
     scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
     all_samples = True
@@ -763,20 +773,20 @@ def scene_of(batch: Batch) -> Scene:
 
 @lru_cache(maxsize=8)
 def picture_pairs(scene: Scene) -> Pairs:
-    """Directions at the points of the sphere, and the mask of the points to judge."""
+    """Directions at the points of a picture's sphere, and a mask of the points to judge."""
     points = sphere(scene.size)
     return lit_pairs(points.normal[points.mask], scene)
 
 
 def lit_pairs(normal: Array, scene: Scene) -> Pairs:
-    """Directions at the points with these normals in a picture, and the mask of judged points."""
+    """Directions at points with these normals in a picture, and a mask of the points to judge."""
     wo = scenes.local_directions(normal, scenes.VIEW)
     wi = wo if scene.light is None else scenes.local_directions(normal, scene.light)
     return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)
 
 
 class CyclesPictures(Spheres):
-    """Pictures of a rough diffuse node by Cycles, which uses a closure of its own for the node."""
+    """Pictures by Cycles of a rough diffuse node, for which Cycles has its own closure."""
 
     abilities = Ability.DIFFUSE | Ability.LIGHT
     engine_errors: ClassVar[Errors] = {
@@ -786,7 +796,10 @@ class CyclesPictures(Spheres):
     }
 
     def points(self, scene: Scene) -> Pairs:
-        """Points where the host's closure matches the model; for some models only s >= 0."""
+        """Points where the host's closure matches the model.
+
+        For some models, the azimuths of light and view must differ by at most 90 degrees.
+        """
         wo, wi, mask = super().points(scene)
         if front_lit_only(self.host.name, self.spec.model):
             mask = mask & (np.sum(wo[:, :2] * wi[:, :2], axis=1) >= 0.0)
@@ -811,7 +824,7 @@ class Drawn(Spheres):
 
     @classmethod
     def drawn(cls, error: Tolerance) -> Tolerance:
-        """The error of a value or an albedo in pictures, whose points have rounded cosines."""
+        """The tolerance of a value or an albedo in pictures, including rounding of two cosines."""
         points = roundings(LOBE_SLOPE * 2 * 5 / RIM, "of two cosines of at least 0.05, times 8")
         return sum_of(error.term("a number"), points, quantity=error.quantity)
 
@@ -828,7 +841,7 @@ class Half(Drawn):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        """Errors of pictures; albedos of pbrlib are not judged, as Storm sums other directions."""
+        """Tolerances of pictures, without pbrlib's albedos, as Storm sums other directions."""
         errors = super().errors(spec)
         return {**errors, "albedo": None} if Ability.LOBE in spec.requires else errors
 
@@ -840,7 +853,7 @@ class Half(Drawn):
     unset = ("retroreflective",)  # Storm uses MaterialX 1.39.3, which lacks this input
 
 
-# A pixel's point is off by three roundings of 2^-23, divided by a cosine of at least 0.05.
+# The error of a pixel's point is three roundings of 2^-23, divided by a cosine of at least 0.05.
 PICTURE_RADIANCE = sum_of(
     roundings(5 * 6 / RIM, "of a pixel's point, over the least cosine, times the slope 5"),
     roundings(8),
@@ -849,13 +862,13 @@ PICTURE_RADIANCE = sum_of(
 
 
 class DarkPictures(Pictures):
-    """Pictures of an emitting surface without other light, one per material."""
+    """One picture per material of an emitting surface without other light."""
 
     abilities = Ability.SURFACE | Ability.LIGHT
 
 
 class Frames(Pictures):
-    """Pictures that the complete main() of a shader draws with the bindings of a client."""
+    """Pictures that a shader's complete main() function draws with a client's bindings."""
 
     abilities = Ability.CLIENT | Ability.LIGHT
 
@@ -872,14 +885,14 @@ class EmissionPictures(Spheres):
 
 
 class UtilityOsl(Evaluating):
-    """Outputs of a utility node on an OSL renderer, which has its own math functions."""
+    """Outputs of a utility node on an OSL renderer, with the renderer's own math functions."""
 
     abilities = Ability.OUTPUT | Ability.LIGHT
     all_samples = True
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """All samples in one batch, for a single run of the renderer."""
+        """All samples, joined in one batch so that the renderer runs only once."""
         return (joined(super().batches),)
 
     @classmethod
@@ -887,8 +900,8 @@ class UtilityOsl(Evaluating):
         return {**spec.errors, "value": spec.errors.get("osl_value", spec.errors["value"])}
 
 
-# Backends by the `way` in a host's row; the first backend that supports a spec evaluates the spec.
-# `mxeon.survey` adds backends for renderers with their own materials.
+# Backends by a host's way of evaluating nodes. The first backend that supports a spec evaluates the
+# spec. `mxeon.survey` adds backends for renderers with their own materials.
 BACKENDS: dict[str, tuple[type[Backend], ...]] = {
     "pairs": (Evaluating, LobesBelow, DarkPictures, Frames),
     "closures": (Closures,),
@@ -901,17 +914,17 @@ BACKENDS: dict[str, tuple[type[Backend], ...]] = {
 
 
 def ways_of(host: str) -> tuple[type[Backend], ...]:
-    """The backends of a host; () if only the text of its target is checked."""
+    """The backends of a host, or () if only the text of the host's shaders is checked."""
     own_nodes(host)  # imports the backends of a renderer
     return BACKENDS.get(host_row(host).way, ())
 
 
 def own_nodes(host: str) -> tuple[Spec, ...]:
-    """The judged nodes that a renderer defines; also imports the renderer's backends and checks."""
+    """The judged nodes that a renderer defines, after importing the renderer's backends."""
     nodes = host_row(host).nodes
     return tuple(nodes(host)) if nodes else ()
 
 
 def backend_of(host: str, spec: Spec) -> type[Backend] | None:
-    """The backend that evaluates a node on a host; None if no backend supports the node."""
+    """The backend that evaluates a node on a host, or None if no backend supports the node."""
     return next((way for way in ways_of(host) if way.supports(spec)), None)

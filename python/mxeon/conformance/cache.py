@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small LRU caches of values, keyed by the numbers that the values depend on.
+"""Small LRU caches of values. The numbers that a value depends on are the key of the value.
 
-Checks, controls and libraries share many values. Batches are compared by hashing their numbers,
-which takes less time than evaluating a model or a shader.
+Checks, controls and libraries share many values. Batches are compared by a hash of their numbers,
+because hashing takes less time than evaluating a model or a shader.
 """
 
 from collections import OrderedDict
@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 class Recent(Generic[T]):
-    """An LRU cache of up to `size` values; cached arrays are read-only."""
+    """An LRU cache of up to `size` values. Cached arrays are read-only."""
 
     def __init__(self, size: int) -> None:
         self._size = size
@@ -46,7 +46,7 @@ def contents(value: object) -> Hashable:
 
 
 def remembered(function: Callable[[Batch], Array]) -> Callable[[Batch], Array]:
-    """The same function of batches, with a cache of its values for small batches."""
+    """The function, with a cache of its values for small batches."""
     cache = Recent[Array](KEPT)
 
     def cached(batch: Batch) -> Array:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A case: a node on an engine with a library, with samples and with measured and expected values.
+"""A case: a node on an engine with a library, and its measured and expected values.
 
 A negative control is the same case with wrong inputs or outputs.
 """
@@ -23,12 +23,12 @@ from mxeon.conformance.tolerance import ROUNDING, Compared, Tolerance
 from mxeon.hosts.base import Engine, Host
 
 F = TypeVar("F", bound=Spec)
-Change = Callable[[Batch, Array], Array]  # batch, values -> changed values
-# Engines may compile two documents differently, so even unchanged values may differ by roundings.
+Change = Callable[[Batch, Array], Array]  # changes the values of a batch
+# Engines may compile two documents differently, so equal values may differ by roundings.
 ROUNDED = 64 * ROUNDING
 
 
-@lru_cache(maxsize=6)  # three quantities of two specs: a case's spec, and a related one
+@lru_cache(maxsize=6)  # three quantities of two specs: a case's spec and a related spec
 def model_values(spec: Spec, quantity: str) -> Callable[[Batch], Array]:
     """The model's function for a quantity, with a cache of its values."""
     return cache.remembered(getattr(spec, quantity))
@@ -43,15 +43,15 @@ def candidates(spec: Spec, quantity: str) -> tuple[Candidate, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A node on a backend; controls and diagnoses change some of the fields."""
+    """A node on a backend. Controls and diagnoses change some of the fields."""
 
     spec: Spec
     backend: backends.Backend
-    # Mistakes of a control in the inputs, in the values, and in the throughput of layers.
+    # Mistakes that a control makes in inputs, in values, and in the throughput of layers.
     inputs: Callable[[Batch], Batch] = lambda batch: batch
     outputs: Change = lambda batch, values: values
     throughputs: Change = lambda batch, values: values
-    control: bool = False  # controls use a subset of the samples: one failing sample is enough
+    control: bool = False  # a control uses few samples, because one failing sample is enough
     chosen: tuple[Batch, ...] = ()  # batches that replace the samples in a diagnosis
     explained: dict[object, results.Diagnosis] = field(default_factory=dict, init=False)  # cache
 
@@ -64,13 +64,13 @@ class Case:
         return self.backend.library
 
     def of(self, family: type[F]) -> F:
-        """The spec, cast to the only family of specs that the check applies to."""
+        """The spec, cast to the family of specs that a check applies to."""
         assert isinstance(self.spec, family), f"{self.spec.title} is no {family.__name__}"
         return self.spec
 
     @property
     def opaque(self) -> bool:
-        """Whether the engine draws transmission as opacity, without an environment lookup."""
+        """Whether the engine uses opacity for transmission, without an environment lookup."""
         return self.host.active.transmission == "opacity"
 
     @property
@@ -131,7 +131,7 @@ class Case:
 
     @property
     def changes(self) -> Mapping[str, Changes]:
-        """For each input that the engine can set, all inputs before and after a change of it."""
+        """All inputs before and after a change of each input that the engine can set."""
         changes, unset = self.spec.changes, self.backend.unset
         return {name: changes[name] for name in changes if name not in unset}
 
@@ -139,7 +139,7 @@ class Case:
         return candidates(self.spec, quantity)
 
     def tolerance(self, *quantities: str) -> Tolerance:
-        """The error of the first quantity that has one, plus errors of the engine's functions."""
+        """The tolerance of the first known quantity, plus errors of the engine's functions."""
         errors = self.backend.errors(self.spec)
         for quantity in quantities:
             if error := errors.get(quantity):
@@ -155,9 +155,9 @@ def make_case(backend: type[backends.Backend], host: Engine, spec: Spec, library
     return Case(made.spec, made)
 
 
-SCATTERING = ("direct", "environment", "transmission")  # branches of scattered light
+SCATTERING = ("direct", "environment", "transmission")  # kinds of scattered light
 BRANCHES = (*SCATTERING, "emission")
-LIGHT = ("direct", "environment")  # branches with light from above
+LIGHT = ("direct", "environment")  # kinds of light from above
 
 
 def values(case: Case) -> Iterator[Compared]:
@@ -165,7 +165,7 @@ def values(case: Case) -> Iterator[Compared]:
 
 
 def albedos(case: Case) -> Iterator[Compared]:
-    """Values in an environment, compared with the directional albedo or MaterialX's fit of it."""
+    """Values in an environment, and the expected albedo or MaterialX's fit of the albedo."""
     spec, fitted = case.spec, case.backend.prefiltered
     for batch in case.views:
         if fitted and isinstance(spec, microfacets.FacetSpec):
@@ -176,15 +176,15 @@ def albedos(case: Case) -> Iterator[Compared]:
 
 
 def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
-    """Throughput of a layer in branches of the light, compared with 1 minus the albedo."""
+    """The throughput of a layer in some kinds of light, and the expected 1 minus the albedo."""
     for branch, batch in product(branches, case.views):
         yield Compared(batch, case.throughput(batch, branch), case.expected_throughput(batch))
 
 
 def frames(case: Case) -> Iterator[Compared]:
-    """Values in rotated frames, compared with unrotated frames; half of the normals face away."""
+    """Values in rotated and unrotated frames, which must agree. Half of the normals face away."""
     turned = case.backend.turned
-    # Summing an albedo over the environment is slow; every fifth pair still covers both sides.
+    # A sum over the environment is slow. Every fifth pair still covers both sides of the surface.
     subset = turned.where(slice(None, None, 5))
     outputs = [(case.direct, turned), (case.albedo, subset)]
     for each in case.spec.inputs:
@@ -198,7 +198,7 @@ def frames(case: Case) -> Iterator[Compared]:
 def dead_inputs(
     case: Case, batch: Batch | None = None, evaluate: Callable[[Batch], Array] | None = None
 ) -> list[str]:
-    """Names of inputs that do not affect the values in direct light, or those of `evaluate`."""
+    """Names of inputs that do not affect the values of `evaluate`, by default in direct light."""
     batch, evaluate = batch or case.few[0], evaluate or case.direct
     original = evaluate(batch)  # most changes start from the unmodified batch
     dead = []
@@ -210,12 +210,12 @@ def dead_inputs(
 
 
 def unchanged(before: Array, after: Array) -> NDArray[np.bool_]:
-    """Whether values differ by no more than roundings."""
+    """Whether values differ by rounding errors at most."""
     return np.isclose(before, after, rtol=ROUNDED, atol=ROUNDED, equal_nan=True)
 
 
 def edge_values(case: Case) -> Compared:
-    """Values and albedos at the edges of the domain, compared with 0."""
+    """Values and albedos at the edges of the domain, which must be 0."""
     batch = case.backend.edges
     values = np.concatenate([case.direct(batch), case.albedo(batch)], axis=1)
     return Compared(batch, values, np.zeros_like(values))

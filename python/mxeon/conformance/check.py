@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A check: a claim, a measurement of a case, its tolerance, and a control that it must catch.
+"""A check: a claim, a measurement of a case, a tolerance, and a control that must fail.
 
-A check passes if the error is at most the tolerance, and if it fails on its control: the same case
-on the same engine, with wrong inputs or outputs.
+A check passes if the error is at most the tolerance, and if the check fails on its control, which
+is the same case on the same engine with wrong inputs or outputs.
 """
 
 import math
@@ -31,7 +31,7 @@ S = TypeVar("S", bound=Spec)
 
 @dataclass(frozen=True)
 class Specs:
-    """A set of specs, given by a condition; `|`, `&` and `-` combine sets."""
+    """A set of specs, defined by a condition. The operators `|`, `&` and `-` combine sets."""
 
     contains: Callable[[Spec], bool]
 
@@ -54,7 +54,7 @@ def family(kind: type[S], condition: Callable[[S], bool] = lambda spec: True) ->
 
 
 def compared_of(measured: Compared | Iterable[Compared] | Measurement) -> list[Compared]:
-    """The comparisons that a check's function returns; empty for a single number."""
+    """The comparisons that a check's function returns, or none if the function returns a number."""
     if isinstance(measured, Measurement):
         return []
     return [measured] if isinstance(measured, Compared) else list(measured)
@@ -62,29 +62,30 @@ def compared_of(measured: Compared | Iterable[Compared] | Measurement) -> list[C
 
 @dataclass(frozen=True, kw_only=True)
 class Check:
-    """A claim about nodes, with its measurement, tolerance and control."""
+    """A claim about nodes, with a measurement, a tolerance and a control."""
 
     key: str  # a single word
     claim: str  # a full sentence
     applies: Specs
-    measure: Measure  # returns comparisons, judged by the worst row, or a single number
-    # A tolerance for all specs, or a key of `Spec.errors`: by default the compared quantity, or the
-    # check's key.
+    measure: Measure  # returns comparisons, of which the worst row is judged, or a single number
+    # A tolerance for all specs, or a key of `Spec.errors`. The default is the key of the compared
+    # quantity or, without a comparison, the check's key.
     tolerance: str | Tolerance = ""
     control: controls.Control
-    explain: Explain | Diagnosis | None = None  # a comparison explains itself by default
-    requires: Ability = NO_ABILITY  # abilities that a backend needs
-    # Profile of the generated text, for checks that only run for nodes that the user names; "" for
-    # the rasterizer's text.
+    explain: Explain | Diagnosis | None = None  # comparisons have a default explanation
+    requires: Ability = NO_ABILITY  # abilities that the check requires of a backend
+    # Profile of shader text that the check needs, such as "path" for path tracers. Checks with a
+    # profile only run for nodes that the user names. The rasterizer's text has the profile "".
     profile: str = ""
-    # Whether the verdict is "differs" instead of "failed" if a permitted function has the values.
+    # Whether the verdict is "differs" instead of "failed" if a permitted function explains the
+    # values.
     open: bool = False
-    # Whether a spec can be measured on a host with this name, and with a client's methods.
+    # Whether a spec can be measured on a host with the given name, and with a client's methods.
     hosts: Callable[[Spec, str], bool] = lambda spec, host: True
     methods: Callable[[Spec, Methods], bool] = lambda spec, methods: True
 
     def measured(self, case: Case, tolerance: Tolerance) -> Measurement:
-        """The worst error of a case; above the tolerance, also the errors of all samples."""
+        """The worst error of a case, and the errors of all samples if the check fails."""
         measured = self.measure(case)
         if isinstance(measured, Measurement):
             return measured
@@ -123,7 +124,7 @@ class Check:
     def applies_to(
         self, spec: Spec, backend: type[backends.Backend], host: str, methods: Methods = GENERATED
     ) -> bool:
-        """Whether the check applies to a node on a host, for a backend and a client's methods."""
+        """Whether the check applies to a node on a host, with a backend and a client's methods."""
         methods = backend.methods.over(methods)
         key = self.judged
         return (
@@ -135,12 +136,12 @@ class Check:
         )
 
     def allowed(self, case: Case) -> Tolerance:
-        """The tolerance for a case, with the errors of the engine's functions."""
+        """The tolerance for a case, including errors of the engine's functions."""
         key = self.judged
         return key if isinstance(key, Tolerance) else case.tolerance(key)
 
     def judge(self, case: Case) -> Result:
-        """The result for a case, with that of its control and, on failure, a diagnosis."""
+        """The result for a case, including the control and, on failure, a diagnosis."""
         spec, claim = case.spec, case.spec.claim or self.claim
         names = self.key, claim, spec.title, case.host.name, case.library
         claimed, model = case.backend.claims
@@ -173,10 +174,11 @@ def judge(
     variant: str,
     diagnose: Callable[[], Diagnosis],
 ) -> Result:
-    """The result of a check: `measure(False)` measures the subject, `measure(True)` the control.
+    """The result of a check.
 
-    `place` is the result without a measurement, as returned if the check does not run. `variant`
-    describes the control. The diagnosis quotes warnings of a renderer; Python shows the others.
+    `measure(False)` measures the subject, and `measure(True)` measures the control, which `variant`
+    describes. `place` is the result without a measurement, which is returned if the check does not
+    run. The diagnosis quotes the renderer's warnings. Python shows other warnings.
     """
     try:
         with warnings.catch_warnings(record=True) as records:
@@ -213,7 +215,7 @@ def judge(
 
 
 def not_measured(place: Result, error: NotRun | ShaderError) -> Result:
-    """The result of a check without a measurement: not run, or failed due to a shader error."""
+    """The result of a check without a measurement: "not run", or "failed" for a shader error."""
     if isinstance(error, ShaderError):
         return replace(place, verdict=results.FAILED, diagnosis=results.quoted(str(error)))
     causes: tuple[Cause, ...] = ()

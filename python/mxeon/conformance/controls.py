@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Negative controls: mistakes that checks must catch, as cases with wrong inputs or outputs."""
+"""Negative controls: cases with wrong inputs or outputs, on which checks must fail."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from mxeon.conformance.samples import Array, Batch
 
 @dataclass(frozen=True)
 class Control:
-    """A mistake that a check must catch: a description, and a function that adds it to a case."""
+    """A mistake that a check must catch, as a description and a function that adds it to a case."""
 
     words: str
     make: Callable[[Case], Case]
