@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reflection models in NumPy: values, albedos, inversion and sampling.
+"""Reflection models in NumPy, with functions for values, albedos, inversion and sampling.
 
-The models only import NumPy. A call uses the caller's thread.
+The models import no package but NumPy. A call runs in the caller's thread.
 """
 
 from mxeon.models.catalog import model as model

@@ -1,25 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """BRDFs of the microfacet nodes of pbrlib, in 1/sr and without the cosine, and their albedos.
 
-All functions broadcast, work on the closed domain and evaluate in blocks. alpha 0 is a mirror: its value, a delta
-function, counts as 0; its albedo is F(mu_o). If both directions graze the surface, the value is unbounded and counts
-as 0; value times cosine is 0 there for any finite choice. The compensation takes (1 - E_ss) / E_ss, accurate to 1e-10,
-from a table that the first call computes; `mxeon.models.ggx_albedo_dir` is the exact quadrature. Albedos are
-quadratures over slopes, as accurate as `ggx_albedo_dir_anisotropic`. In retroreflective mode, wo is replaced by its
-mirror image about the normal; the albedo stays the same, since a half turn maps the surface onto itself.
+All functions broadcast and accept the ends of every range. A surface with alpha 0 is a mirror. The
+value of a mirror, a delta function, counts as 0, and the albedo of a mirror is F(mu_o). If both
+directions graze the surface, the value is unbounded and counts as 0; any finite value would do,
+because the cosine is 0. The energy compensation takes (1 - E_ss) / E_ss, accurate to 1e-10, from a
+table that the first call computes; `mxeon.models.ggx_albedo_dir` computes E_ss by quadrature.
+Albedos are integrals over the slopes of microfacets, as accurate as `ggx_albedo_dir_anisotropic`.
+In retroreflective mode, wo is mirrored about the normal. The albedo stays the same, since half a
+turn about the normal maps the surface onto itself.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
 - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
 - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
 - `ior`, `extinction` (..., C): Complex index of refraction relative to the exterior medium, per channel, in [0, 1e50].
-  A dielectric has one `ior` for all channels, (...); 0 disables its Fresnel curve.
-- `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at acos(1/7), and reflectance at
-  grazing, per channel, in [0, 1]; a number is one channel.
+  A dielectric has one `ior` for all channels, (...); with `ior` 0, its F is 1.
+- `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at the angle
+  acos(1/7), and reflectance at grazing, per channel, in [0, 1]; a number is one channel.
 - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
 - `retroreflective`: Whether light is reflected back toward its source.
-- `compensate`: Whether to apply the energy compensation; without it the BRDF is reciprocal.
+- `compensate`: Whether to apply the energy compensation. The BRDF without compensation is
+  reciprocal.
 
-Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing and as alpha vanishes; or an albedo.
+Result (..., C): An albedo, or the BRDF in 1/sr, which is at least 0 and has no upper bound at
+grazing angles and for small alpha.
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 """
@@ -53,11 +57,12 @@ class Curve:
 
     at: Callable[..., Array]  # `at(cosine, **material)`, shape (C, ...): F without the tint
     average: Callable[..., Array]  # `average(**material)`, shape (C, ...): F_ss
-    # `critical(**material)`, (...): square of the critical angle's cosine; at most 0 if none exists
+    # `critical(**material)`, shape (...): square of the cosine of the critical angle. The result is
+    # 0 or negative if there is no critical angle.
     critical: Callable[..., Array] = lambda **material: np.zeros(1)
 
 
-# The inputs of a curve may include a tint, which F ignores.
+# Some curves receive a tint among their inputs, which does not change F.
 DIELECTRIC_CURVE = Curve(
     lambda c, ior, tint: fresnel.dielectric(c, ior)[np.newaxis],
     lambda ior, tint: fresnel.dielectric_avg(ior)[np.newaxis],
@@ -73,7 +78,7 @@ WHITE_CURVE = Curve(lambda c, tint: 1.0 + 0.0 * c[np.newaxis], lambda tint: np.o
 
 @dataclass(frozen=True)
 class Pair:
-    """Directions and roughness of a block, components first; Fresnel curve and its inputs."""
+    """A block of directions and roughnesses, components on the first axis, and a Fresnel curve."""
 
     wo: Array
     wi: Array
@@ -102,15 +107,16 @@ def missing(pair: Pair) -> Array:
     return missing_of(pair.wo, pair.roughness)
 
 
-# For at least MANY views of one roughness, a polynomial of these degrees in the two variables of
-# `_series_variables` replaces the quadrature, unless its last coefficients exceed TAIL.
+# If one roughness is seen from at least MANY views, a polynomial in the two variables of
+# `_series_variables`, of degrees DEGREES, replaces the quadrature. A polynomial whose last
+# coefficients exceed TAIL is not used.
 DEGREES, TAIL = (32, 16), 5e-6
 MANY = (DEGREES[0] + 1) * (DEGREES[1] + 1)
 
 
 @lru_cache(maxsize=8)
 def _anisotropic_missing(rows: bytes) -> Array:
-    """(1 - E_ss) / E_ss, (N,); `rows` are float64, (5, N): x, y, z of the views, both alphas."""
+    """(1 - E_ss) / E_ss, shape (N,); `rows` holds x, y, z of the views and both alphas, (5, N)."""
     columns = np.frombuffer(rows).reshape(5, -1)
     E = evaluate_number(
         lambda wo, roughness: slope_nodes(wo, roughness)[1].sum(axis=(0, 1)),
@@ -123,7 +129,7 @@ def _anisotropic_missing(rows: bytes) -> Array:
 
 @lru_cache(maxsize=8)
 def _series(roughness: tuple[float, float]) -> Array | None:
-    """Chebyshev coefficients of (1 - E_ss) / E_ss; None if they decay too slowly."""
+    """Chebyshev coefficients of (1 - E_ss) / E_ss; None if the coefficients decay too slowly."""
     s, turn = np.meshgrid(*(chebyshev_nodes(degree + 1) for degree in DEGREES), indexing="ij")
     squares = turn / roughness[0], (1.0 - turn) / roughness[1]
     cos_phi, sin_phi = (np.sqrt(each / sum(squares)) for each in squares)
@@ -139,8 +145,8 @@ def _series(roughness: tuple[float, float]) -> Array | None:
 def _series_variables(wo: Array, roughness: Array) -> tuple[Array, Array]:
     """Two variables in [0, 1], of which (1 - E_ss) / E_ss is a smooth function.
 
-    The first is the cube root of mu (1 + a) / (mu + a), with the alpha a at wo's azimuth; the
-    second grows with the square of the azimuth's cosine.
+    The first variable is the cube root of mu (1 + a) / (mu + a), where a is alpha along the azimuth
+    of wo. The second variable grows with the square of the cosine of this azimuth.
     """
     x, y = (np.square(wo[k]) * roughness[k] for k in (0, 1))
     sine = np.maximum(np.hypot(wo[0], wo[1]), 1e-150)
@@ -150,7 +156,7 @@ def _series_variables(wo: Array, roughness: Array) -> tuple[Array, Array]:
 
 
 def _missing_by_views(rows: Array) -> Array:
-    """`_anisotropic_missing` that evaluates equal views once, or many views by a polynomial."""
+    """`_anisotropic_missing`, but equal views are evaluated once and many views by a polynomial."""
     wo, alphas = rows[:3], rows[3:]
     uniform = rows.shape[1] >= MANY and not np.ptp(alphas, axis=1).any() and alphas.all()
     if uniform and (series := _series((float(alphas[0, 0]), float(alphas[1, 0])))) is not None:
@@ -173,12 +179,12 @@ def missing_of(wo: Array, roughness: Array) -> Array:
             np.broadcast_to(isotropic, shape).copy(),
             np.broadcast_to(anisotropic, shape),
         )
-        # Mirrored views have the same E_ss.
+        # Views that are mirror images of each other have the same E_ss.
         views = (abs(wo[0]), abs(wo[1]), wo[2])
         rows = [np.broadcast_to(each, shape)[selected] for each in (*views, *roughness)]
         total[selected] = _missing_by_views(np.stack(rows))
         return total
-    # If both alphas are equal, the difference is 0 but still has a gradient by each alpha.
+    # If both alphas are equal, `at_both - at_mean` is 0, but its derivatives by the alphas are not.
     mean = ggx.mean_alpha(roughness)
     xp = array_namespace(wo, roughness)
     at_both, at_mean = (
@@ -215,7 +221,10 @@ def evaluate_lobe(
     numbers: Mapping[str, Numbers],
     retroreflective: bool = False,
 ) -> Array:
-    """Values of a lobe, shape (..., C); `vectors` and `numbers` are checked inputs of the curve."""
+    """BRDF of a lobe, shape (..., C).
+
+    - `vectors`, `numbers`: Validated inputs of the Fresnel curve, with and without channels.
+    """
     directions = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
     pairs = {"roughness": checked_roughness(roughness)}
     arguments.checked_switch("retroreflective", retroreflective)
@@ -237,7 +246,8 @@ def evaluate_lobe(
 Color = tuple[float, float, float]
 ONE: Color = (1.0, 1.0, 1.0)
 GOLD: dict[str, Color] = {"ior": (0.183, 0.421, 1.373), "extinction": (3.424, 2.346, 1.770)}
-# By node: Fresnel curve; defaults of the inputs with channels; defaults of the inputs without.
+# For each node: the Fresnel curve, the defaults of inputs with channels, and the defaults of inputs
+# without channels.
 CATEGORIES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
     "dielectric_bsdf": (DIELECTRIC_CURVE, {"tint": ONE}, {"ior": 1.5}),
     "conductor_bsdf": (CONDUCTOR_CURVE, GOLD, {}),
@@ -252,7 +262,7 @@ CATEGORIES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
 def _material(
     category: str, inputs: Mapping[str, ArrayLike]
 ) -> tuple[Curve, dict[str, Numbers], dict[str, Numbers]]:
-    """Fresnel curve of a node, checked inputs with channels, checked inputs without channels."""
+    """Fresnel curve of a node, and its validated inputs with channels and without channels."""
     curve, colors, numbers = CATEGORIES[category]
     vectors = arguments.checked_vectors({name: inputs[name] for name in colors})
     return curve, vectors, arguments.checked_all({name: inputs[name] for name in numbers})
@@ -267,7 +277,7 @@ def node_brdf(
     lobe: Lobe | None = None,
     retroreflective: bool = False,
 ) -> Array:
-    """BRDF of the node `category`, a key of CATEGORIES; unknown inputs are ignored."""
+    """BRDF of the node `category`, a key of CATEGORIES; inputs that the node lacks are ignored."""
     material = _material(category, inputs)
     return evaluate_lobe(
         lobe or Lobe(), material[0], wo, wi, inputs["roughness"], *material[1:], retroreflective
@@ -282,7 +292,10 @@ def node_albedo(
     compensate: bool = True,
     summed: bool = False,
 ) -> Array:
-    """Directional albedo of `node_brdf`; `slope_nodes` explains `summed`."""
+    """Directional albedo of `node_brdf`.
+
+    - `summed`: Whether to sum like MaterialX's environment lookup; see `slope_nodes`.
+    """
     curve, vectors, numbers = _material(category, inputs)
     return lobe_albedo(curve, wo, inputs["roughness"], vectors, numbers, compensate, summed)
 
@@ -301,9 +314,10 @@ def dielectric_brdf(
 
         f = tint D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    If `ior` < 1, light comes from the denser side, and F is 1 beyond the critical angle. Stock MaterialX squares a
-    negative `ior`; here it is rejected. Accuracy: relative error below 1e-10 for the compensation factor, and below
-    2e-14 for the rest at alpha >= 0.05. [MaterialX2026], Microfacet BRDF; Energy Compensation; dielectric_bsdf.
+    If `ior` < 1, light comes from the denser medium, and F is 1 beyond the critical angle. A
+    negative `ior`, which stock MaterialX squares, is rejected. Accuracy: the relative error of the
+    compensation factor is below 1e-10; that of the other factors is below 2e-14 at alpha >= 0.05.
+    [MaterialX2026], sections Microfacet BRDF, Energy Compensation and dielectric_bsdf.
 
         >>> dielectric_brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
         array([0.060074])
@@ -326,7 +340,7 @@ def conductor_brdf(
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    [MaterialX2026], Microfacet BRDF; Energy Compensation; conductor_bsdf.
+    [MaterialX2026], sections Microfacet BRDF, Energy Compensation and conductor_bsdf.
 
         >>> wo, wi, gold = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], ([0.183, 1.373], [3.424, 1.770])
         >>> conductor_brdf(wo, wi, [0.3, 0.3], *gold).round(6)
@@ -352,8 +366,9 @@ def generalized_schlick_brdf(
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    F is 0 where the printed curve is negative (see `mxeon.models.fresnel_schlick`), as in OpenPBR; F_ss is 0 where its
-    closed form is negative. [MaterialX2026], Microfacet BRDF; generalized_schlick_bsdf.
+    As in OpenPBR, F is 0 where the published curve is negative; `mxeon.models.fresnel_schlick` has
+    an example. F_ss is 0 where the closed form of F_ss is negative. [MaterialX2026], sections
+    Microfacet BRDF and generalized_schlick_bsdf.
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> generalized_schlick_brdf(wo, wi, [0.9, 0.2], 0.5, 1.0, [0.3, 0.3], 5.0).round(6)
@@ -378,9 +393,9 @@ def dielectric_albedo_dir(
 ) -> Array:
     """Directional albedo of `dielectric_brdf`, by quadrature.
 
-    For `ior` < 1, F has an infinite slope at the critical angle. The quadrature is split there; the
-    error of isotropic lobes is below 1e-10. At alpha 0 the albedo is the mirror's, tint F(mu_o).
-    [MaterialX2026], Directional Albedo and Energy Conservation.
+    For `ior` < 1, the slope of F is infinite at the critical angle, so the quadrature is split at
+    this angle. The error of isotropic lobes is below 1e-10. At alpha 0, the albedo is that of a
+    mirror, tint F(mu_o). [MaterialX2026], section Directional Albedo and Energy Conservation.
 
         >>> dielectric_albedo_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
         array([0.040169])
@@ -399,7 +414,7 @@ def conductor_albedo_dir(
 ) -> Array:
     """Directional albedo of `conductor_brdf`, by quadrature.
 
-    [MaterialX2026], Directional Albedo and Energy Conservation.
+    [MaterialX2026], section Directional Albedo and Energy Conservation.
 
         >>> gold = [0.183, 1.373], [3.424, 1.770]
         >>> conductor_albedo_dir([0.6, 0.0, 0.8], [0.3, 0.3], *gold).round(6)
@@ -421,7 +436,7 @@ def generalized_schlick_albedo_dir(
 ) -> Array:
     """Directional albedo of `generalized_schlick_brdf`, by quadrature.
 
-    [MaterialX2026], Directional Albedo and Energy Conservation.
+    [MaterialX2026], section Directional Albedo and Energy Conservation.
 
         >>> wo, roughness = [0.6, 0.0, 0.8], [0.3, 0.3]
         >>> generalized_schlick_albedo_dir(wo, [1.0, 0.2], 1.0, 1.0, roughness, 5.0).round(6)
@@ -436,8 +451,9 @@ def generalized_schlick_albedo_dir(
 def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of anisotropic GGX at unit Fresnel reflectance, by quadrature.
 
-    Accuracy: error below 5e-6 for mu_o >= 1e-4 and roughness >= 1e-4. Cosines below 1e-12 are raised to it.
-    [MaterialX2026], Energy Compensation; Height-Correlated Smith Masking-Shadowing.
+    Accuracy: the error is below 5e-6 for mu_o >= 1e-4 and roughness >= 1e-4. Cosines below 1e-12
+    are raised to 1e-12. [MaterialX2026], sections Energy Compensation and Height-Correlated Smith
+    Masking-Shadowing.
 
         >>> ggx_albedo_dir_anisotropic([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]], [0.1, 0.5]).round(6)
         array([0.815356, 0.804722])
@@ -455,7 +471,10 @@ def lobe_albedo(
     compensate: bool,
     summed: bool = False,
 ) -> Array:
-    """Albedo of a lobe; `vectors` and `numbers` are checked inputs of the Fresnel curve."""
+    """Directional albedo of a lobe, shape (..., C).
+
+    - `vectors`, `numbers`: Validated inputs of the Fresnel curve, with and without channels.
+    """
     wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
     arguments.checked_switch("compensate", compensate)
 
@@ -468,7 +487,8 @@ def lobe_albedo(
         E = xp.sum(curve.at(c, **spread) * weight, axis=(1, 2))
         squared = curve.critical(**material)
         if not summed and (arrays.library(squared) or np.any(squared > 0.0)):
-            # The albedo without losses, minus the light transmitted above the critical cosine.
+            # The albedo is that of lossless facets minus the light transmitted by facets whose
+            # cosine exceeds the critical cosine.
             alpha, isotropic = 0.5 * (roughness[0] + roughness[1]), roughness[0] == roughness[1]
             lossless = xp.where(isotropic, albedo(wo[2], alpha), xp.sum(weight, axis=(0, 1)))
             c, weight = transmitting_nodes(wo, roughness, arrays.at_least_0(squared))
@@ -478,8 +498,8 @@ def lobe_albedo(
         return E * material["tint"] if "tint" in material else E
 
     views = {"wo": wo, "roughness": roughness}
-    lead_shape(views | dict(vectors), numbers)  # its message names the arguments
-    # Compute multiple scattering per element, before the slope nodes add axes.
+    lead_shape(views | dict(vectors), numbers)  # raises an error that names the arguments
+    # The compensation is the same for all slopes, so it is computed before slopes add axes.
     channels, unseen, average = channel_count(vectors), np.zeros(()), np.zeros(1)
     if compensate:
         unseen = evaluate_number(missing_of, views, {})

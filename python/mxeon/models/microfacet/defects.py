@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong variants of the microfacet nodes that renderers implement, and MaterialX's fitted albedos."""
+"""Errors that renderers are known to make in microfacet nodes, and MaterialX's fitted albedos."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from mxeon.models.core.arrays import Array
 from mxeon.models.microfacet import Lobe, Pair, ggx
 from mxeon.models.microfacet.ggx import missing_light
 
-# Rational fit of the GGX albedo A F0 + B F90 in MaterialX 1.39.5, with x = mu, y = alpha; the error
-# is up to 0.14 on [1e-3, 1]^2. Rows: coefficients of 1, x, y, x y, x^2, y^2, x^2 y, x y^2, x^2 y^2.
-# Columns: numerators of A and B, denominators of A and B.
+# MaterialX 1.39.5 approximates the GGX albedo by A F0 + B F90, where A and B are quotients of
+# polynomials in x = mu and y = alpha. The error is up to 0.14 for mu and alpha in [1e-3, 1].
+# The rows hold the coefficients of 1, x, y, x y, x^2, y^2, x^2 y, x y^2 and x^2 y^2. The columns
+# are the numerators of A and B, followed by the denominators of A and B.
 ALBEDO_FIT = np.array(
     [
         [0.1003, 0.9345, 1.0, 1.0],
@@ -32,8 +33,9 @@ ALBEDO_FIT = np.array(
 )
 
 
-# Smallest cosine and alpha passed to ALBEDO_FIT. The shaders of 1.39.5 clamp both to M_FLOAT_EPS, 1e-8; between the
-# two limits the fit changes by less than 2e-5.
+# Smallest cosine and alpha for which ALBEDO_FIT is evaluated. The shaders of MaterialX 1.39.5 clamp
+# the cosine and alpha to M_FLOAT_EPS, 1e-8. Between 1e-8 and 1e-6, the fit changes by less than
+# 2e-5.
 CLAMP = 1e-6
 
 
@@ -42,7 +44,7 @@ Factor: TypeAlias = Callable[[Pair], Array]
 
 @dataclass(frozen=True)
 class MicrofacetDefect:
-    """A wrong variant of the three microfacet nodes that renderers are known to implement."""
+    """A known error of renderers in the three microfacet nodes."""
 
     name: str
     title: str
@@ -50,12 +52,12 @@ class MicrofacetDefect:
 
 
 def averaged_channels(albedo: Array) -> Array:
-    """The albedo with every channel replaced by the mean."""
+    """The albedo with every channel replaced by the mean of all channels."""
     return np.broadcast_to(np.mean(albedo, axis=-1, keepdims=True), albedo.shape).copy()
 
 
 def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float) -> Array:
-    """Directional albedo of GGX with a Schlick curve, by ALBEDO_FIT of MaterialX 1.39.5."""
+    """Directional albedo of GGX with a Schlick curve, by the fit ALBEDO_FIT in MaterialX 1.39.5."""
     x, y = np.broadcast_arrays(mu, alpha)
     powers = np.stack(
         [x**0, x, y, x * y, x * x, y * y, x * x * y, x * y * y, x * x * y * y], axis=-1
@@ -67,7 +69,7 @@ def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float
 
 
 def schlick_average(normal: Array, grazing: Array | float) -> Array:
-    """F_ss of a Schlick curve of exponent 5; MaterialX uses it for all curves since June 2026."""
+    """F_ss of a Schlick curve of exponent 5; since June 2026, MaterialX's F_ss of every curve."""
     return normal + (grazing - normal) / 21.0
 
 
@@ -99,8 +101,9 @@ def _compensated(F: Factor, lost: Factor) -> Factor:
     return lambda pair: 1.0 + F(pair) * lost(pair)
 
 
-fitted_half = _compensated(_F_half, _missing_by_fit)  # compensation in MaterialX 1.39.5
-averaged_fitted = _compensated(_F_average, _missing_by_fit)  # compensation in later MaterialX
+# Energy compensation in MaterialX 1.39.5, and in later versions of MaterialX.
+fitted_half = _compensated(_F_half, _missing_by_fit)
+averaged_fitted = _compensated(_F_average, _missing_by_fit)
 
 
 def _separable(pair: Pair) -> Array:
@@ -125,7 +128,8 @@ def _june(pair: Pair) -> Array:
 UNCOMPENSATED = "no energy compensation"
 AND_FIT, AVERAGE_BY_ENDS = "and MaterialX's fit of E_ss", "the average F0 + (F90 - F0) / 21"
 MEAN_ALPHA = "Smith at the geometric mean"
-# Name after "compensation_", title after "compensation with", F_ss and (1 - E_ss) / E_ss.
+# Wrong compensations: the end of the defect's name, the end of the defect's title, the function
+# that replaces F_ss, and the function that computes (1 - E_ss) / E_ss.
 COMPENSATIONS = (
     ("half", "F at the half vector", _F_half, microfacet.missing),
     ("f0", "F along the normal", _F_normal, microfacet.missing),
@@ -151,11 +155,12 @@ MICROFACET_DEFECTS = (
     MicrofacetDefect("alpha_root", "square root of the roughness as alpha", Lobe(alpha=np.sqrt)),
     MicrofacetDefect("no_factor_4", "no factor 4 in the denominator", Lobe(scale=4.0)),
 )
-# MaterialX's lobes in version 1.39.5 and in later versions.
+# Microfacet lobes in MaterialX 1.39.5, and in later versions of MaterialX.
 FITTED = Lobe(fitted_half, _at_the_mean)
 AVERAGED = Lobe(averaged_fitted, _at_the_mean)
 MEAN_TITLE = f"{MEAN_ALPHA}, and MaterialX's compensation"
-# MaterialX's lobes, and variants of them with one more error, which copies of its shaders may have.
+# MaterialX's lobes, and MaterialX's lobe with one more error. Renderers that copied MaterialX's
+# shaders may contain such an error.
 FITTED_DEFECTS = (
     MicrofacetDefect("smith_mean_fitted", MEAN_TITLE, FITTED),
     MicrofacetDefect("smith_mean_average", f"{MEAN_TITLE} by F0 and F90", AVERAGED),
@@ -175,7 +180,8 @@ FITTED_DEFECTS = (
         if each.lobe.factor is microfacet.compensation
     ),
 )
-# Lobe of OSL's BSDL: E_ss at the arithmetic mean of both alphas. Only OSL's closures may match it.
+# Microfacet lobe of BSDL, the library of OSL's closures. BSDL evaluates E_ss at the arithmetic mean
+# of both alphas. Only a renderer that uses OSL's closures may match this lobe.
 BSDL = MicrofacetDefect(
     "bsdl",
     "BSDL's lobe: compensation with F at the half vector",
@@ -183,12 +189,12 @@ BSDL = MicrofacetDefect(
         _compensated(_F_half, lambda pair: missing_light(pair.wo[2], pair.roughness.mean(axis=0)))
     ),
 )
-# Lobe of Blender's Cycles, whose closures have no energy compensation.
+# Microfacet lobe of Blender's Cycles, whose OSL closures have no energy compensation.
 SINGLE = MicrofacetDefect("single", "single scattering alone", Lobe(microfacet.uncompensated))
 
 
 def burley_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
-    """Burley's albedo by mx_burley_diffuse_dir_albedo, (N, 3), with an error up to 0.0174."""
+    """Albedo of Burley's diffuse model as in mx_burley_diffuse_dir_albedo; error up to 0.0174."""
     x, r = np.minimum(wo[:, 2], 1.0), inputs["roughness"]
     smooth = 0.97619 - 0.488095 * (1.0 - x) ** 5
     rough = 1.55754 + (-2.02221 + (2.56283 - 1.06244 * x) * x) * x
@@ -196,7 +202,7 @@ def burley_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
 
 
 def conty_kulla_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
-    """Conty-Kulla albedo without the color, (N, 3): mx_imageworks_sheen_dir_albedo_analytic.
+    """Conty-Kulla albedo as in mx_imageworks_sheen_dir_albedo_analytic, without the color, (N, 3).
 
     The error is up to 0.0705 for mu and roughness in [0.01, 1], and 0.74 at roughness 0.001.
     """
@@ -211,19 +217,22 @@ def conty_kulla_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
 def layer_albedo(
     wo: Array, inputs: Mapping[str, Array], F0: Array, F90: Array | float, F: Array
 ) -> Array:
-    """Fitted albedo for the throughput of a microfacet lobe, with F in the compensation, (N, 3)."""
+    """MaterialX's approximate albedo of a microfacet lobe that covers another lobe, (N, 3).
+
+    - `F`: Reflectance in the compensation factor.
+    """
     mu, alpha = _arguments(wo, inputs)
     A, B = (fitted_albedo(mu, alpha, *ends)[:, np.newaxis] for ends in ((1.0, 0.0), (0.0, 1.0)))
     return np.broadcast_to((F0 * A + F90 * B) * fitted_compensation(wo, inputs, F), wo.shape)
 
 
 def fitted_compensation(wo: Array, inputs: Mapping[str, Array], F: Array) -> Array:
-    """Energy compensation with F and the fitted E_ss, (N, 1 or 3)."""
+    """Compensation factor with F as the average reflectance and the fitted E_ss, (N, 1 or 3)."""
     E_ss = fitted_albedo(*_arguments(wo, inputs), 1.0, 1.0)[:, np.newaxis]
     return 1.0 + F * (1.0 - E_ss) / E_ss
 
 
 def _arguments(wo: Array, inputs: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Cosine of wo and geometric mean of the alphas, both at least CLAMP."""
+    """Cosine of wo's polar angle and geometric mean of the alphas, both at least CLAMP."""
     alpha = np.sqrt(np.maximum(inputs["roughness"], CLAMP).prod(axis=-1))
     return np.clip(wo[:, 2], CLAMP, 1.0), alpha

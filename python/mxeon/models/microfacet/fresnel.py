@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fresnel reflectances of pbrlib's microfacet nodes, averages, and an index from artistic colors.
+"""Fresnel reflectances of pbrlib's microfacet nodes, their averages, and the node artistic_ior.
 
-F_ss, the cosine-weighted average over the hemisphere, is 2 times the integral of F(mu) mu. Section names refer to
-[MaterialX2026].
+F_ss, the cosine-weighted average of F over the hemisphere, is twice the integral of F(mu) mu from
+mu = 0 to 1. Section names refer to [MaterialX2026].
 
-- `mu` (...): Cosine between direction and microfacet normal, in [0, 1].
+- `mu` (...): Cosine of the angle between a direction and a microfacet normal, in [0, 1].
 - `ior`, `extinction` (..., C): Complex index of refraction per channel, in [0, 1e50]; a number is one channel.
-- `color0`, `color82`, `color90` (..., C): Reflectance r0 along the normal, multiplier at acos(1/7), and reflectance r90
-  at grazing, per channel, in [0, 1]; a number is one channel.
-- `exponent` (...): q, in [0, 1e50].
+- `color0`, `color82`, `color90` (..., C): Reflectance r0 along the normal, multiplier at the angle
+  acos(1/7), and reflectance r90 at grazing, per channel, in [0, 1]; a number is one channel.
+- `exponent` (...): Exponent q of the Schlick curve, in [0, 1e50].
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
@@ -29,28 +29,32 @@ from mxeon.models.core.quadrature import unit_rule
 # Cosine at which Hoffman's correction is largest: [MaterialX2026], Generalized Schlick Equations.
 COS_THETA_MAX = 1.0 / 7.0
 
-# Smallest index n used in 1 / n: F_ss is 1 to rounding there, and 1 / n^3 stays finite.
+# Index of refraction below which LEAST_IOR replaces n in 1 / n. F_ss is 1 up to rounding for such
+# an n, and 1 / LEAST_IOR^3 is finite.
 LEAST_IOR = 1e-50
 
-# Double-exponential rule: c = X^2 / (X^2 + 1/X^2), X = exp(pi/4 sinh(t)), |t| < 3.2.
-# Weights at larger |t| are below 1e-15.
+# Double-exponential quadrature substitutes c = X^2 / (X^2 + 1/X^2), where X = exp(pi/4 sinh(t)).
+# The nodes have |t| < 3.2, because weights at larger |t| are below 1e-15.
 STEP, STEPS = 0.0625, 51
 GROUP = 2**6  # materials per block
 
-# Gauss-Legendre nodes for curves without singularities in the ellipse that has the foci 0 and 1 and
-# half axes whose sum is ELLIPSE / 2. The error is ELLIPSE to the power -56, 1e-13.
+# Number of Gauss-Legendre nodes for a curve without singularities in an ellipse of the complex
+# plane. The foci of the ellipse are 0 and 1, and the sum of its half axes is ELLIPSE / 2. The error
+# is about ELLIPSE to the power -56, which is 1e-13.
 AVERAGE_NODES, ELLIPSE = 28, 1.7
 
 
 def dielectric(mu: Array, ior: Array) -> Array:
     """F of [MaterialX2026], Dielectric Fresnel Equations, rearranged so that nothing cancels.
 
-    The printed form, with c = mu and g^2 = ior^2 + c^2 - 1, is
+    The published form, where c = mu and g^2 = ior^2 + c^2 - 1, is
 
         F = 1/2 ((g - c) / (g + c))^2 (1 + ((c (g + c) - 1) / (c (g - c) + 1))^2)
 
-    As (g - c) (g + c) = ior^2 - 1, g - c is (ior^2 - 1) / (g + c); c (g +- c) -+ 1 is c g -+ (1 - c^2).
-    Without an interface (ior 1), F is 0 even at grazing, where the printed form is 0 / 0.
+    Because (g - c) (g + c) = ior^2 - 1, g - c is computed as (ior^2 - 1) / (g + c). The terms
+    c (g + c) - 1 and c (g - c) + 1 are computed as c g - (1 - c^2) and c g + (1 - c^2).
+    If `ior` is 1, there is no interface, and F is 0 even at grazing, where the published form is
+    0 / 0.
     """
     xp = array_namespace(mu, ior)
     gap = (ior - 1.0) * (ior + 1.0)
@@ -68,16 +72,17 @@ def dielectric(mu: Array, ior: Array) -> Array:
 def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
     """F of [MaterialX2026], Conductor Fresnel Equations, rearranged so that nothing cancels.
 
-    The printed form, with c = mu, S2 = sin^2, n = ior + i extinction, w = a + i b = sqrt(n^2 - S2), is
+    The published form, where c = mu, S2 = 1 - mu^2, n = ior + i extinction and
+    w = a + i b = sqrt(n^2 - S2), is
 
         R_s = (a^2 + b^2 - 2 a c + c^2) / (a^2 + b^2 + 2 a c + c^2)  = |w - c|^2 / |w + c|^2
         R_p / R_s = (c^2 (a^2 + b^2) - 2 a c S2 + S2^2) / (... + 2 a c S2 + ...)
                   = |c w - S2|^2 / |c w + S2|^2
 
-    As (w - c) (w + c) = n^2 - S2 - c^2 = n^2 - 1, R_s is |n^2 - 1|^2 / |w + c|^4. To compute w, let
-    Re = ior^2 - extinction^2 - S2 = a^2 - b^2. The larger of a and b is sqrt((|w^2| + |Re|) / 2);
-    a b = ior extinction gives the smaller. F is 0 for n = 1 even at grazing, and 1 for n = 0 even
-    along the normal.
+    Because (w - c) (w + c) = n^2 - S2 - c^2 = n^2 - 1, R_s is |n^2 - 1|^2 / |w + c|^4. To compute
+    w, let Re = ior^2 - extinction^2 - S2 = a^2 - b^2. The larger of a and b is
+    sqrt((|w^2| + |Re|) / 2). The smaller of a and b follows from a b = ior extinction. F is 0 for
+    n = 1 even at grazing, and 1 for n = 0 even along the normal.
     """
     xp = array_namespace(mu, ior, extinction)
     S2 = (1.0 - mu) * (1.0 + mu)
@@ -95,7 +100,10 @@ def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
 
 
 def modulus(real: Array, imaginary: Array) -> Array:
-    """Absolute value of complex numbers; uses `hypot`, ten times slower, if a square overflows."""
+    """Absolute value of complex numbers.
+
+    If a square overflows, the result comes from `hypot`, which is ten times slower.
+    """
     if array_namespace(real, imaginary) is not arrays.NUMPY:
         return hypot(real, imaginary)
     with np.errstate(over="ignore"):
@@ -104,7 +112,7 @@ def modulus(real: Array, imaginary: Array) -> Array:
 
 
 def schlick(mu: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
-    """F_theta of [MaterialX2026], Generalized Schlick Equations; 0^0 counts as 1."""
+    """F_theta of [MaterialX2026], section Generalized Schlick Equations; 0^0 counts as 1."""
     a = _schlick_a(color0, color82, color90, exponent)
     m = 1.0 - mu
     return color0 + (color90 - color0) * arrays.power(m, exponent) - a * mu * m**6
@@ -119,12 +127,12 @@ def dielectric_avg(ior: Array) -> Array:
 
 
 def conductor_avg(ior: Array, extinction: Array) -> Array:
-    """F_ss of a conductor: Gauss-Legendre where F is smooth in the cosine c, else `_split_avg`.
+    """F_ss of a conductor, by `_smooth_avg` if F is smooth in the cosine c, else by `_split_avg`.
 
-    The square root in F is singular at c^2 = 1 - n^2, which is close to the real axis for weakly
-    absorbing media. Strongly absorbing media have a pole at a distance of 1 / |n| from grazing.
+    The square root in F is singular at c^2 = 1 - n^2. For weakly absorbing media, this c is close
+    to the real axis. For strongly absorbing media, F has a pole at a c of size 1 / |n|.
     """
-    # Arrays of other libraries do not support assignment.
+    # Elements of arrays other than NumPy's cannot be assigned.
     if array_namespace(ior, extinction) is not arrays.NUMPY:
         return _split_avg(ior, extinction)
     ior, extinction = np.broadcast_arrays(ior, extinction)
@@ -139,7 +147,8 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
 
 def _is_smooth(n2: Array) -> Array:
     """Whether F's singularities in c, sqrt(1 - n^2) and -1 / sqrt(1 + n^2), are far from [0, 1]."""
-    with np.errstate(divide="ignore", invalid="ignore"):  # n^2 = -1 has its pole at infinity
+    # For n^2 = -1, the second singularity is at infinity.
+    with np.errstate(divide="ignore", invalid="ignore"):
         points = np.stack([np.sqrt(1.0 - n2), -1.0 / np.sqrt(1.0 + n2)])
     far = np.abs(points) + np.abs(points - 1.0) > 0.5 * (ELLIPSE + 1.0 / ELLIPSE)
     return np.asarray(far.all(axis=0))
@@ -152,10 +161,10 @@ def _smooth_avg(ior: Array, extinction: Array) -> Array:
 
 
 def _split_avg(ior: Array, extinction: Array) -> Array:
-    """F_ss by a double-exponential rule on either side of the critical angle, all nodes at once.
+    """F_ss by a double-exponential rule on either side of the critical angle.
 
-    Nodes crowd at the ends of both parts, where the singularities are. The integral does not depend
-    on the place of the split, so the critical angle is treated as constant.
+    The nodes of this rule are densest at the ends of both intervals, where F is singular. The
+    integral does not depend on where it is split, so the split is a constant in derivatives.
     """
     # The cosine of the critical angle is the real part of sqrt(1 - n^2).
     xp = array_namespace(ior, extinction)
@@ -184,28 +193,30 @@ def schlick_avg(color0: Array, color82: Array, color90: Array, exponent: Array) 
 
 
 def _schlick_a(color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
-    """Coefficient a of [MaterialX2026], Generalized Schlick Equations."""
+    """Coefficient a of [MaterialX2026], section Generalized Schlick Equations."""
     m = 1.0 - COS_THETA_MAX
     return (color0 + (color90 - color0) * m**exponent) * (1.0 - color82) / (COS_THETA_MAX * m**6)
 
 
 def _external_avg(gap: Array) -> Array:
-    """F_ss for n = 1 + gap >= 1.
+    """F_ss of a dielectric for n = 1 + gap >= 1.
 
-    The printed form of [Walsh1926] is
+    The form of F_ss in [Walsh1926] is
 
         F_ss = 1/2 + (n - 1) (3 n + 1) / (6 (n + 1)^2) + n^2 (n^2 - 1)^2 / (n^2 + 1)^3 log((n - 1) / (n + 1))
                - 2 n^3 (n^2 + 2 n - 1) / ((n^2 + 1) (n^4 - 1)) + 8 n^4 (n^4 + 1) / ((n^2 + 1) (n^4 - 1)^2) log(n)
 
-    With n = e^t: n^2 + 1 = 2 n cosh t, n^2 - 1 = 2 n sinh t, n^4 - 1 = 2 n^2 sinh 2t, n^4 + 1 = 2 n^2 cosh 2t,
-    (n - 1) / (n + 1) = tanh(t/2), so that the terms, in the same order, are
+    If n = e^t, then n^2 + 1 = 2 n cosh t, n^2 - 1 = 2 n sinh t, n^4 - 1 = 2 n^2 sinh 2t,
+    n^4 + 1 = 2 n^2 cosh 2t and (n - 1) / (n + 1) = tanh(t/2). So the same terms, in the same order,
+    are
 
         1/2 + tanh(t/2) (3 n + 1) / (6 (n + 1)) + n sinh^2 t log(tanh(t/2)) / (2 cosh^3 t)
         - (n^2 + 2 n - 1) / (2 cosh t sinh 2t) + 2 n t cosh 2t / (cosh t sinh^2 2t)
 
-    The fourth and fifth terms are infinite at t = 0. As n^2 + 2 n - 1 = 2 n + 2 n sinh t, the fourth has two parts. The
-    part with 2 n and the fifth term sum to n (2 t coth 2t - 1) / (cosh t sinh 2t). The part with 2 n sinh t is
-    -n / (2 cosh^2 t); it and 1/2 = cosh^2 t / (2 cosh^2 t) sum to (sinh^2 t - (n - 1)) / (2 cosh^2 t).
+    The fourth and fifth terms are infinite at t = 0. Because n^2 + 2 n - 1 = 2 n + 2 n sinh t, the
+    fourth term is a sum of two parts. The sum of the part with 2 n and the fifth term is
+    n (2 t coth 2t - 1) / (cosh t sinh 2t). The part with 2 n sinh t is -n / (2 cosh^2 t). The sum of
+    this second part and 1/2 = cosh^2 t / (2 cosh^2 t) is (sinh^2 t - (n - 1)) / (2 cosh^2 t).
     """
     xp = array_namespace(gap)
     n = 1.0 + gap
@@ -224,7 +235,7 @@ def _external_avg(gap: Array) -> Array:
 
 
 def _x_coth_x_minus_1(x: Array, sinh: Array, cosh: Array) -> Array:
-    """x coth(x) - 1; for x < 1 by a continued fraction of positive terms, which does not cancel."""
+    """x coth(x) - 1. For x < 1, a continued fraction of positive terms avoids cancellation."""
     xp = array_namespace(x)
     fraction: Array | float = 19.0
     y = xp.minimum(x, 1.0) ** 2
@@ -239,11 +250,12 @@ def fresnel_dielectric(mu: ArrayLike, ior: ArrayLike) -> Array:
 
     - `ior`: Index of refraction relative to the exterior medium, in [0, 1e50].
 
-    `ior` 0 disables the Fresnel curve: the equations give F = 1. For `ior` < 1, light comes from
-    the denser side, and F is 1 beyond the critical angle. For `ior` 1, there is no interface, and F
-    is 0 even at grazing. Accuracy: relative error below 2.2e-14 for `ior` >= 1. For `ior` < 1, the
-    slope at the critical angle is infinite, so rounding of an argument can change F by more.
-    [MaterialX2026], Dielectric Fresnel Equations; dielectric_bsdf.
+    With `ior` 0, which disables the Fresnel curve of the node, the result is 1. For `ior` < 1,
+    light comes from the denser medium, and F is 1 beyond the critical angle. For `ior` 1, there is
+    no interface, and F is 0 even at grazing. Accuracy: the relative error is below 2.2e-14 for
+    `ior` >= 1. For `ior` < 1, the slope of F is infinite at the critical angle, so rounding of an
+    argument can change F by more. [MaterialX2026], sections Dielectric Fresnel Equations and
+    dielectric_bsdf.
 
         >>> fresnel_dielectric([1.0, 0.5, 0.0], 1.5).round(6)
         array([0.04    , 0.089187, 1.      ])
@@ -255,9 +267,10 @@ def fresnel_dielectric(mu: ArrayLike, ior: ArrayLike) -> Array:
 def fresnel_dielectric_avg(ior: ArrayLike) -> Array:
     """Average Fresnel reflectance F_ss of a dielectric, in closed form, for `ior` in [0, 1e50].
 
-    Accuracy: relative error below 2.2e-14. Walsh's result is written in log(ior), so that nothing
-    cancels near 1. For `ior` < 1, F_ss follows from the other side of the interface:
-    ior^2 (1 - F_ss(1 / ior)) = 1 - F_ss(ior). [Walsh1926]; [MaterialX2026], Energy Compensation.
+    Accuracy: the relative error is below 2.2e-14. Walsh's result is rewritten as a function of
+    log(ior), so that nothing cancels near `ior` 1. For `ior` < 1, F_ss follows from F_ss on the
+    other side of the interface, since ior^2 (1 - F_ss(1 / ior)) = 1 - F_ss(ior). [Walsh1926];
+    [MaterialX2026], section Energy Compensation.
 
         >>> fresnel_dielectric_avg([0.0, 1.0, 1.5]).round(6)
         array([1.      , 0.      , 0.091778])
@@ -269,9 +282,9 @@ def fresnel_dielectric_avg(ior: ArrayLike) -> Array:
 def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> Array:
     """Fresnel reflectance of a conductor for unpolarized light.
 
-    Result (..., C): in [0, 1]; without extinction it equals `fresnel_dielectric`. Accuracy: absolute
-    error below 1e-12, except at the critical angle of an almost non-absorbing dielectric.
-    [MaterialX2026], Conductor Fresnel Equations.
+    Result (..., C): in [0, 1]. Without extinction, the result is that of `fresnel_dielectric`.
+    Accuracy: the absolute error is below 1e-12, except at the critical angle of a dielectric that
+    absorbs almost nothing. [MaterialX2026], section Conductor Fresnel Equations.
 
         >>> fresnel_conductor(0.5, [0.183, 1.373], [3.424, 1.770]).round(6)
         array([0.93869 , 0.412954])
@@ -283,7 +296,7 @@ def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> A
 def fresnel_conductor_avg(ior: ArrayLike, extinction: ArrayLike) -> Array:
     """Average Fresnel reflectance F_ss of a conductor, by quadrature, with an error below 1e-12.
 
-    [MaterialX2026], Energy Compensation; Conductor Fresnel Equations.
+    [MaterialX2026], sections Energy Compensation and Conductor Fresnel Equations.
 
         >>> fresnel_conductor_avg([0.183, 1.373], [3.424, 1.770]).round(6)
         array([0.942313, 0.411657])
@@ -303,9 +316,10 @@ def fresnel_schlick(
 
         F = r0 + (r90 - r0) (1 - mu)^q - a mu (1 - mu)^6
 
-    F is not clamped, as in the specification: for dark `color0`, small `color82` and bright `color90` it falls below
-    0, for example to -0.127 at mu = 0.26 for the colors 0, 0, 1 and exponent 5. At exponent 0 the curve is r90 even
-    along the normal. [MaterialX2026], Generalized Schlick Equations.
+    As in the specification, F is not clamped. F is negative if `color0` is dark, `color82` is small
+    and `color90` is bright; for example, F is -0.127 at mu = 0.26 for the colors 0, 0, 1 and
+    exponent 5. With exponent 0, F is r90 even along the normal. [MaterialX2026], section
+    Generalized Schlick Equations.
 
         >>> fresnel_schlick(0.5, [0.9, 0.2], [0.5, 1.0], 1.0, 5.0).round(6)
         array([0.837879, 0.225   ])
@@ -318,11 +332,12 @@ def fresnel_schlick(
 def fresnel_schlick_avg(
     color0: ArrayLike, color82: ArrayLike, color90: ArrayLike, exponent: ArrayLike
 ) -> Array:
-    """Average Fresnel reflectance F_ss of the generalized Schlick curve, not clamped, in closed form.
+    """Average F_ss of the generalized Schlick curve in closed form, not clamped.
 
         F_ss = r0 + 2 (r90 - r0) / ((q + 1) (q + 2)) - a / 126
 
-    Accuracy: absolute error below 2.2e-14. [MaterialX2026], Energy Compensation; Generalized Schlick Equations.
+    Accuracy: the absolute error is below 2.2e-14. [MaterialX2026], sections Energy Compensation and
+    Generalized Schlick Equations.
 
         >>> fresnel_schlick_avg([0.9, 0.2], [0.5, 1.0], 1.0, 5.0).round(6)
         array([0.838481, 0.238095])
@@ -347,11 +362,13 @@ def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array,
         k^2 = (n_max - n) (n - 1 / n_max)
 
     - `reflectivity` (...): Reflectance r at normal incidence, per channel, in [0, 1).
-    - `edge_color` (...): Per channel, in [0, 1]: 0 gives the largest n and no extinction, 1 the smallest n.
+    - `edge_color` (...): Weight of n_min, per channel, in [0, 1]. With weight 0, n is largest and
+      there is no extinction; with weight 1, n is smallest.
 
-    The paper's k^2 is (r (n + 1)^2 - (n - 1)^2) / (1 - r), a difference of large numbers. Its roots in n are n_max and
-    1 / n_max, so k^2 is computed as the product above, and 1 - sqrt(r) as (1 - r) / (1 + sqrt(r)). [Gulbrandsen2014];
-    [MaterialX2026], artistic_ior.
+    In the paper, k^2 is (r (n + 1)^2 - (n - 1)^2) / (1 - r), a difference of large numbers. Because
+    this difference is 0 for n = n_max and n = 1 / n_max, k^2 is computed as the product above.
+    1 - sqrt(r) is computed as (1 - r) / (1 + sqrt(r)). [Gulbrandsen2014]; [MaterialX2026], section
+    artistic_ior.
 
         >>> ior, extinction = artistic_ior(0.944, 0.998)
         >>> round(float(ior), 4), round(float(extinction), 4)

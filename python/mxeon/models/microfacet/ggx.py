@@ -1,21 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""GGX microfacets: distribution, masking and shadowing, roughness, and the albedo E_ss of lossless facets.
+"""Distribution, masking, shadowing and roughness of GGX microfacets, and their albedo E_ss.
 
-Section names refer to [MaterialX2026], Microfacet Model. Formulas take components on the first axis.
+E_ss is the albedo of facets that absorb nothing, without multiple scattering. Section names refer
+to the chapter Microfacet Model of [MaterialX2026]. Functions that validate no arguments expect the
+components of a vector on the first axis.
 
-- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0; `wh` is
-  the normal of a microfacet.
-- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic. Functions that
-  compute alpha take the artist's inputs `roughness`, `anisotropy`, `glossiness` (...), in [0, 1].
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent
+  +x, z >= 0; `wh` is the normal of a microfacet.
+- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
+  Functions that compute alpha take the artist's inputs `roughness`, `anisotropy` and `glossiness`
+  (...), in [0, 1].
 
-Accuracy: relative error below 2e-14.
+Accuracy: the relative error is below 2e-14, except for E_ss.
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
-(1 - E_ss) / E_ss, the relative energy missing from single scattering, comes from a table that is computed once. E_ss
-varies on the scale mu = alpha. It is smooth in sqrt(alpha), and in s = mu (1 + alpha) / (mu + alpha), which is in
-[0, 1], except for terms like s log(s). Chebyshev polynomials in the cube root of s resolve these terms.
+(1 - E_ss) / E_ss, the energy that single scattering loses divided by the energy that it reflects,
+comes from a table that is computed once. The table has Chebyshev polynomials in sqrt(alpha) and in
+the cube root of s = mu (1 + alpha) / (mu + alpha), which lies in [0, 1]. E_ss is a smooth function
+of sqrt(alpha) and s, except for terms like s log(s). The cube root makes these terms smooth enough.
 """
 
 from __future__ import annotations
@@ -29,21 +33,23 @@ from mxeon.models.core.arguments import checked_directions, checked_roughness
 from mxeon.models.core.arrays import NUMPY, Array, ArrayLike, any_array, array_namespace, like, root
 from mxeon.models.core.evaluation import evaluate_number
 
-# The reciprocal of a smaller sum of cosines counts as 0: its product with D, up to 1e162, could overflow.
+# The reciprocal of a sum of cosines below this limit counts as 0. A product of the reciprocal with
+# D, which is up to 1e162, could overflow.
 LEAST_DIVISOR = 1e-140
 
 
 def ndf(wh: Array, roughness: Array) -> Array:
-    """D of section GGX Normal Distribution Function, not divided by alpha; 0 if an alpha is 0.
+    """D of section GGX Normal Distribution Function, without a division by alpha; 0 at alpha 0.
 
-    The printed form is D = 1 / (pi a B^2), a = alpha_x alpha_y, B = (h_x / alpha_x)^2 + (h_y / alpha_y)^2 + h_z^2.
-    a^2 B = (alpha_y h_x)^2 + (alpha_x h_y)^2 + (a h_z)^2 has no quotient; D is a^3 / (pi (a^2 B)^2).
+    The published form is D = 1 / (pi a B^2), where a = alpha_x alpha_y and
+    B = (h_x / alpha_x)^2 + (h_y / alpha_y)^2 + h_z^2. To avoid a division by alpha, D is computed
+    as a^3 / (pi (a^2 B)^2), where a^2 B = (alpha_y h_x)^2 + (alpha_x h_y)^2 + (a h_z)^2.
     """
     xp = array_namespace(wh, roughness)
     (alpha_x, alpha_y), (x, y, z) = roughness, wh
     area = alpha_x * alpha_y
     squared = (alpha_y * x) ** 2 + (alpha_x * y) ** 2 + (area * z) ** 2
-    # Squares of alpha below 1e-100 underflow: such a surface is a mirror.
+    # For alpha below about 1e-100, the squares underflow to 0, and the surface counts as a mirror.
     positive = squared > 0.0
     scale = area / xp.where(positive, squared, 1.0)
     return xp.where(positive, area * scale * scale / np.pi, 0.0)
@@ -70,13 +76,13 @@ def stretched_length(w: Array, roughness: Array) -> Array:
 
 
 def visibility_anisotropic(wo: Array, wi: Array, roughness: Array) -> Array:
-    """G2 / (4 mu_o mu_i) by stretched lengths: [Heitz2014], Eqs. (86) and (99)."""
+    """G2 / (4 mu_o mu_i) of anisotropic GGX: [Heitz2014], Eqs. (86) and (99)."""
     length_o, length_i = stretched_length(wo, roughness), stretched_length(wi, roughness)
     return reciprocal(2.0 * (length_o * wi[2] + length_i * wo[2]))
 
 
 def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
-    """Unit half vector, (0, 0, 1) for opposite directions, and the cosine wo . wh = wi . wh."""
+    """Unit half vector wh and the cosine wo . wh = wi . wh; wh is +z if wo and wi are opposite."""
     xp = array_namespace(wo, wi)
     total = wo + wi
     size = root(xp.sum(total * total, axis=0))
@@ -89,17 +95,19 @@ def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
 def reciprocal(x: Array) -> Array:
     """1 / x, or 0 if x is so small that a product with D could overflow."""
     xp = array_namespace(x)
-    large = x > max(LEAST_DIVISOR, arrays.least_normal(x))  # least_normal is larger in float32
+    # In float32, the smallest normal number is larger than LEAST_DIVISOR.
+    large = x > max(LEAST_DIVISOR, arrays.least_normal(x))
     return xp.where(large, 1.0 / xp.where(large, x, 1.0), 0.0)
 
 
 @any_array
 def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
-    """Masking G1 of anisotropic GGX: the visible share of the microfacets.
+    """Masking function G1 of anisotropic GGX: the fraction of the microfacets that is visible.
 
         G1 = 2 mu_o / (mu_o + |(alpha_x x, alpha_y y, z)|)
 
-    Result (...): in [0, 1]; 0 at grazing, but 1 at alpha 0. [Heitz2014], Eqs. (43), (86).
+    Result (...): in [0, 1]. G1 is 0 if wo grazes the surface, but 1 for any wo if alpha is 0.
+    [Heitz2014], Eqs. (43), (86).
 
         >>> smith_g1([0.6, 0.0, 0.8], [[0.5, 0.25], [0.0, 0.0]]).round(6)
         array([0.967118, 1.      ])
@@ -116,15 +124,17 @@ def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
 
 @any_array
 def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
-    """Masking and shadowing G2 of isotropic GGX, height-correlated Smith; 0 where a direction grazes.
+    """Height-correlated Smith masking-shadowing function G2 of isotropic GGX.
 
         G2 = 2 mu_o mu_i / (lambda_o mu_i + lambda_i mu_o),
         lambda = sqrt(alpha^2 + (1 - alpha^2) mu^2)
 
     - `mu_o`, `mu_i`: Cosines of the polar angles, in [0, 1].
-    - `alpha`: In [0, 1]; sqrt(alpha_x alpha_y) for anisotropic roughness in the June 2026 specification.
+    - `alpha`: GGX roughness, in [0, 1]. The specification of June 2026 uses sqrt(alpha_x alpha_y)
+      for anisotropic surfaces.
 
-    [MaterialX2026], Height-Correlated Smith Masking-Shadowing.
+    G2 is 0 if mu_o or mu_i is 0. [MaterialX2026], section Height-Correlated Smith
+    Masking-Shadowing.
 
         >>> smith_g2(0.8, [0.6, 0.0], 0.5).round(6)
         array([0.881115, 0.      ])
@@ -137,12 +147,13 @@ def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
 
 @any_array
 def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Masking and shadowing G2 for anisotropic GGX, height-correlated Smith.
+    """Height-correlated Smith masking-shadowing function G2 of anisotropic GGX.
 
         G2 = 2 mu_o mu_i / (l_o mu_i + l_i mu_o),  l = |(alpha_x x, alpha_y y, z)|
 
-    Result (...): in [0, 1]; 0 where a direction grazes. The specification has used this form since July 2026 (pull
-    request 3015 of MaterialX). For alpha_x = alpha_y it is `smith_g2`. [Heitz2014], Eqs. (86), (99).
+    Result (...): in [0, 1]; 0 if wo or wi grazes the surface. The specification has used this
+    equation since July 2026 (pull request 3015 of MaterialX). For alpha_x = alpha_y, the result is
+    that of `smith_g2`. [Heitz2014], Eqs. (86), (99).
 
         >>> smith_g2_anisotropic([0.6, 0.0, 0.8], [[0.0, 0.8, 0.6], [1.0, 0.0, 0.0]], [0.5, 0.25]).round(6)
         array([0.942466, 0.      ])
@@ -155,7 +166,8 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
     )
 
 
-LARGEST_ANISOTROPY = 0.98  # clamp that avoids a division by 0 in alpha_x at anisotropy 1
+# Larger anisotropies are clamped to this value, since anisotropy 1 would divide alpha_x by 0.
+LARGEST_ANISOTROPY = 0.98
 
 
 @any_array
@@ -165,8 +177,9 @@ def roughness_anisotropy(roughness: ArrayLike, anisotropy: ArrayLike) -> Array:
         alpha_x = min(roughness^2 / aspect, 1),  alpha_y = roughness^2 aspect,
         aspect = sqrt(1 - min(anisotropy, 0.98))
 
-    The specification has no equation. This aspect is from MaterialX's implementations; it is Burley's with the
-    factor 1 instead of 0.9. [MaterialX2026], roughness_anisotropy; [Burley2012], Section 5.4.
+    The specification has no equation for this node. The aspect is from MaterialX's implementations.
+    Burley's aspect multiplies the anisotropy by 0.9. [MaterialX2026], section roughness_anisotropy;
+    [Burley2012], Section 5.4.
 
         >>> roughness_anisotropy(0.5, [0.0, 0.75])
         array([[0.25 , 0.25 ],
@@ -184,7 +197,7 @@ def roughness_dual(roughness: ArrayLike) -> Array:
 
     - `roughness` (..., 2): Roughness along the tangent and along the bitangent, in [0, 1].
 
-    [MaterialX2026], roughness_dual.
+    [MaterialX2026], section roughness_dual.
 
         >>> roughness_dual([0.5, 1.0])
         array([0.25, 1.  ])
@@ -195,9 +208,9 @@ def roughness_dual(roughness: ArrayLike) -> Array:
 
 @any_array
 def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array:
-    """Pair of alphas for roughness 1 - glossiness; see `roughness_anisotropy`.
+    """Pair of alphas of `roughness_anisotropy` for the roughness 1 - glossiness.
 
-    [MaterialX2026], glossiness_anisotropy.
+    [MaterialX2026], section glossiness_anisotropy.
 
         >>> glossiness_anisotropy(0.5, 0.75)
         array([0.5  , 0.125])
@@ -210,16 +223,23 @@ def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array
 RULE_NODES, PANELS, ALBEDO_BLOCK = 28, 3, 2**10
 RULE = np.polynomial.legendre.leggauss(RULE_NODES)
 
-# Smallest scale of the nodes and smallest elevation of wo, in radian; they change E_ss by less than 1e-10.
+# Smallest scale of the nodes near wo, and smallest elevation of wo, in radians. Both limits change
+# E_ss by less than 1e-10.
 LEAST_SCALE, LEAST_ELEVATION = 1e-8, 1e-200
-LEAST_SQUARED = 1e-15  # both limits for other libraries, whose derivatives square them in float32
+# Smallest alpha divisor and elevation for arrays other than NumPy's. Derivatives square these
+# numbers, possibly in float32.
+LEAST_SQUARED = 1e-15
 
-MANTISSA_STEPS = 2.0**44  # mantissas of cosines are rounded to these steps, so that many are equal
+# Mantissas of cosines are rounded to multiples of 1 / MANTISSA_STEPS, so that more of them are
+# equal.
+MANTISSA_STEPS = 2.0**44
 
-# Within this distance of cosine 1, E_ss is extrapolated linearly; the error is below its square.
+# Where the cosine differs from 1 by less than ALONG, E_ss is extrapolated linearly. The error is
+# below ALONG^2.
 ALONG = 1e-8
 
-# For smaller alpha, E_ss(mu, alpha) is computed as E_ss(mu LEAST_ALPHA / alpha, LEAST_ALPHA).
+# For alpha below LEAST_ALPHA, E_ss(mu, alpha) is computed as
+# E_ss(mu LEAST_ALPHA / alpha, LEAST_ALPHA).
 LEAST_ALPHA = 1e-9
 
 
@@ -231,11 +251,15 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
     - `mu`, `alpha`: Cosine of the polar angle and GGX roughness, in [0, 1].
 
-    Accuracy: absolute error below 1e-10 for alpha >= 1e-4, below 2e-8 for smaller alpha. At alpha 0, a mirror, E_ss
-    is 1, the limit for mu > 0. With u = |wo + wi|^2 = a + b cos(phi) and h_z^2 = (mu + mu_i)^2 / u, the integral of
-    (u / (u - k))^2 over azimuth, k = (1 - alpha^2) (mu + mu_i)^2, is elementary. Written in half sums and half
-    differences of the elevations, it consists of products of sums of positive numbers. The integral over the
-    elevation of wi is split at wo; hyperbolic sines grade its nodes. [MaterialX2026], Energy Compensation.
+    Accuracy: the absolute error is below 1e-10 for alpha >= 1e-4, and below 2e-8 for smaller alpha.
+    A surface with alpha 0 is a mirror, for which E_ss is 1, the limit for mu > 0.
+
+    Let u = |wo + wi|^2 = a + b cos(phi) and k = (1 - alpha^2) (mu + mu_i)^2. Then
+    h_z^2 = (mu + mu_i)^2 / u, and the integral of (u / (u - k))^2 over the azimuth phi is
+    elementary. Half sums and half differences of the elevations of wo and wi make it a product of
+    sums of positive numbers. The integral over the elevation of wi is computed by quadrature. It is
+    split at the elevation of wo, and its nodes are denser there. [MaterialX2026], section Energy
+    Compensation.
 
         >>> ggx_albedo_dir([1.0, 0.1], [1.0, 0.01]).round(9)
         array([0.30685282, 0.99412395])
@@ -244,7 +268,7 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
 
 def albedo(mu: Array, alpha: Array) -> Array:
-    """E_ss for valid float64 arrays; cosines that differ only in their last bits share one E_ss."""
+    """E_ss for valid float64 arrays; cosines with the same leading 44 bits share one E_ss."""
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 < mu.size:
         mantissa, exponent = np.frexp(mu)
         rounded = np.ldexp(np.round(mantissa * MANTISSA_STEPS), exponent) / MANTISSA_STEPS
@@ -260,7 +284,7 @@ def _in_blocks(mu: Array, alpha: Array) -> Array:
 
 
 def _extrapolated(mu: Array, alpha: Array) -> Array:
-    """`quadrature`, extrapolated next to the normal, where the elevation has no derivative."""
+    """`quadrature`, but extrapolated for cosines near 1, where the arcsine has no derivative."""
     xp = array_namespace(mu, alpha)
     step = xp.where(mu > 1.0 - ALONG, ALONG, 0.0)
     near, far = quadrature(xp.stack([mu - step, mu - 2.0 * step]), alpha)
@@ -269,7 +293,10 @@ def _extrapolated(mu: Array, alpha: Array) -> Array:
 
 
 def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
-    """E_ss by quadrature, with every panel divided into `refined` panels."""
+    """E_ss by quadrature.
+
+    - `refined`: Number of panels into which each panel is divided.
+    """
     xp = array_namespace(mu, alpha)
     rough = xp.maximum(alpha, LEAST_ALPHA)
     least, lowest = (1e-300, LEAST_ELEVATION) if xp is NUMPY else (LEAST_SQUARED, LEAST_SQUARED)
@@ -277,7 +304,8 @@ def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
     elevation = xp.maximum(arrays.arcsine(scaled), lowest)
     graded = 2.0 * xp.minimum(rough, xp.maximum(elevation, LEAST_SCALE))
     total = like(np.zeros(np.broadcast_shapes(tuple(mu.shape), tuple(rough.shape))), rough)
-    # Three ranges of wi's elevation e: e_o to the normal, e_o to e_o / 2, e_o / 2 to the horizon.
+    # The elevation of wi has three ranges, where e_o is the elevation of wo: from e_o up to the
+    # normal, from e_o down to e_o / 2, and from the horizon up to e_o / 2.
     for d, weight in _graded(graded, 0.5 * np.pi - elevation, refined * PANELS):
         total = total + xp.sum(weight * _density(elevation, elevation + d, -d, rough), axis=0)
     for d, weight in _graded(2.0 * rough, 0.5 * elevation, refined):
@@ -288,7 +316,10 @@ def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
 
 
 def _graded(scale: Array, length: Array, panels: int) -> list[tuple[Array, Array]]:
-    """Nodes and weights on [0, length], first axis, graded towards 0 down to the size `scale`."""
+    """Nodes and weights for [0, length] on the first axis.
+
+    The nodes are denser towards 0, and equally dense below `scale`.
+    """
     xp, ratio = array_namespace(scale, length), length / scale
     x, weight = (like(v.reshape(-1, *(1,) * ratio.ndim), ratio) for v in RULE)
     extent = xp.asinh(ratio)
@@ -298,12 +329,15 @@ def _graded(scale: Array, length: Array, panels: int) -> list[tuple[Array, Array
 
 
 def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
-    """Integrand of E_ss over the elevation e_i of wi, with d = e_o - e_i.
+    """Integrand of E_ss over the elevation e_i of wi; e_o is the elevation of wo, d = e_o - e_i.
 
-    alpha^2 mu_i cos(e_i) (1 + 2 k/q + k^2 p/q^3) / (lambda_o mu_i + lambda_i mu_o),
-    k/q = (1 - alpha^2) sqrt(c C / (X Y)),  p/q = (r + 1/r) / 2,  r = sqrt(c X / (C Y)),
-    X = S_d + alpha^2 C,  Y = S + alpha^2 c;  C, S_d, c, S: squared cosines and sines of half
-    the difference and half the sum of the polar angles;  p = a - k,  q^2 = p^2 - b^2
+    C and S_d are the squared cosine and sine of half the difference of the polar angles. c and S
+    are the squared cosine and sine of half the sum of the polar angles. With k, a and b as in
+    `ggx_albedo_dir`, p = a - k and q^2 = p^2 - b^2, the integrand is
+
+        alpha^2 mu_i cos(e_i) (1 + 2 k/q + k^2 p/q^3) / (lambda_o mu_i + lambda_i mu_o)
+        k/q = (1 - alpha^2) sqrt(c C / (X Y)),  p/q = (r + 1/r) / 2,  r = sqrt(c X / (C Y)),
+        X = S_d + alpha^2 C,  Y = S + alpha^2 c
     """
     xp, alpha2 = array_namespace(e_o, alpha), alpha * alpha
     sin_d, cos_d = xp.sin(0.5 * d), xp.cos(0.5 * d)
@@ -319,21 +353,21 @@ def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
     return alpha2 * mu_i * xp.cos(e_i) * azimuth / smith
 
 
-# Chebyshev nodes in the cube root of s and in the square root of alpha; `refined` of the quadrature
-# that fills the table; elements per block.
+# Number of Chebyshev nodes in the cube root of s and in the square root of alpha. REFINED is the
+# argument `refined` of the quadrature that fills the table, TABLE_BLOCK the elements per block.
 NODES_S, NODES_ALPHA, REFINED, TABLE_BLOCK = 80, 28, 2, 2**12
 
-# For at least MANY cosines with one alpha, cubics in CELLS cells replace the polynomials; they differ
-# by less than 3e-14. CACHED is the number of alphas in the cache.
+# For at least MANY cosines and a single alpha, cubics in CELLS cells replace the polynomials. The
+# cubics differ from the polynomials by less than 3e-14. The cubics of CACHED alphas are cached.
 MANY, CELLS, CACHED = 2**14, 2**12, 8
 
 
 def missing_light(mu: Array, alpha: Array) -> Array:
     """(1 - E_ss) / E_ss for valid float64 arrays, which broadcast.
 
-    Accuracy: absolute error below 1e-10 for all mu and alpha in [0, 1], compared with the quadrature
-    of `mxeon.models.ggx_albedo_dir` with twice its panels. A single alpha for all cosines is
-    fastest: many cosines then share cubics.
+    Accuracy: for all mu and alpha in [0, 1], the absolute error is below 1e-10, compared with the
+    quadrature of `mxeon.models.ggx_albedo_dir` with twice as many panels. Many cosines are fastest
+    with a single alpha, because they share one set of cubics.
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 and mu.size >= MANY:
         return _by_cubics(mu, float(alpha.item()))
@@ -341,7 +375,7 @@ def missing_light(mu: Array, alpha: Array) -> Array:
 
 
 def _interpolated(mu: Array, alpha: Array) -> Array:
-    """`missing_light` by the table: sums the polynomials in alpha, then those in s."""
+    """`missing_light` from the table: the polynomials in alpha, then the polynomials in s."""
     xp = array_namespace(mu, alpha)
     table = _table()
     powers = chebyshev.chebyshev_polynomials(root(alpha), table.shape[1])
@@ -356,13 +390,14 @@ def _interpolated(mu: Array, alpha: Array) -> Array:
 
 
 def _by_cubics(mu: Array, alpha: float) -> Array:
-    """`missing_light` for a single alpha, by a cubic in each cell of the cube root of s."""
+    """`missing_light` for a single alpha; each cell of the cube root of s has its own cubic."""
     if alpha <= 0.0:
         return np.zeros(mu.shape)  # a mirror loses no light
     s = np.minimum(mu * (1.0 + alpha) / (mu + alpha), 1.0)
     place = np.cbrt(s)
     place *= CELLS
-    cell = np.fmin(place, CELLS).astype(np.int32)  # NaN may use any cell: `place` keeps it
+    # A NaN may use any cell, since `place` stays NaN.
+    cell = np.fmin(place, CELLS).astype(np.int32)
     place -= cell
     *lower, highest = _cubics(alpha)
     value: Array = highest.take(cell, mode="clip")
@@ -380,7 +415,7 @@ def _cubics(alpha: float) -> Array:
     x = np.sort(chebyshev.chebyshev_nodes(4))
     values = chebyshev.chebyshev_sum(rows, (np.arange(CELLS)[:, np.newaxis] + x) / CELLS)
     cubics = np.linalg.inv(np.vander(x, increasing=True)) @ values.T
-    # The end of the last cell is stored as an extra cell that is evaluated only at its start.
+    # The end of the last cell is the start of an extra cell, which is never evaluated elsewhere.
     end = [chebyshev.chebyshev_sum(rows, np.ones(1))[0], 0.0, 0.0, 0.0]
     return np.concatenate([cubics, np.reshape(end, (4, 1))], axis=1)
 

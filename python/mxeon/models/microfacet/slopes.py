@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes and weights of quadratures over the slopes of the microfacets visible from one direction.
+"""Quadratures over the slopes of the microfacets that are visible from one direction.
 
-If the half vector is along (alpha_x r cos(phi), alpha_y r sin(phi), 1), an albedo is
+If the half vector is parallel to (alpha_x r cos(phi), alpha_y r sin(phi), 1), an albedo is
 
     integral of F G2 (wo . wh) / (h_z mu_o) r / (pi (1 + r^2)^2) dr dphi,
 
-which has no peak at any alpha. wi lies above the horizon from r = 0 up to one limit, so the only
-kink that remains is F's at a critical angle.
+whose integrand has no sharp peak at any alpha. wi lies above the horizon from r = 0 up to a
+limit that depends on phi, so the only kink within the range is the kink of F at a critical angle.
 """
 
 from __future__ import annotations
@@ -21,30 +21,32 @@ from mxeon.models.core.arrays import Array, array_namespace, at_least_0, at_most
 from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
-# Gauss-Legendre nodes in r per panel; panels; nodes per quadrant of phi.
+# Number of Gauss-Legendre nodes per panel of r, of panels, and of nodes per quadrant of phi.
 SLOPE_NODES, PANELS, QUADRANT = 20, 3, 20
-# The same if there is a critical angle: nodes per panel; nodes per part of a half plane.
+# If there is a critical angle: number of nodes per panel of r, and per interval of azimuths.
 SPLIT_NODES, SPLIT_PART = 28, 32
 
-# Smallest cosine of wo and largest r; less than 1e-12 of the light lies beyond them.
+# Smallest cosine of wo and largest r. Less than 1e-12 of the light has a larger r.
 LEAST_MU, LARGEST_R = 1e-12, 1e8
-# Smallest scale of the nodes in `slope_nodes`; less than 1e-7 of the light is closer to 0.
+# Smallest scale of the nodes in `slope_nodes`. Less than 1e-7 of the light has a smaller r.
 LEAST_SCALE = 3e-4
-# Largest r of refracting facets; up to 1 / r of the light may lie beyond it.
+# Largest r of refracting facets. At most the fraction 1 / r of the light has a larger r.
 FARTHEST_R = 1e12
 
 
 @dataclass(frozen=True)
 class Slopes:
-    """Slopes visible from a direction, in polar coordinates r and omega; its azimuth is omega = 0.
+    """Slopes visible from a direction, in polar coordinates r and omega.
 
-    - `mu_o`: Cosine of the direction.
-    - `stretched`: (alpha_x x, alpha_y y) of the direction.
+    At omega = 0, the cosine between the direction and the slope's normal grows fastest with r.
+
+    - `mu_o`: Cosine of the direction's polar angle.
+    - `stretched`: (alpha_x x, alpha_y y), where x and y are components of the direction.
     """
 
     mu_o: Array
     stretched: tuple[Array, Array]
-    steepness: Array  # A: wo . h / h_z = mu_o + r A cos(omega)
+    steepness: Array  # the factor A in wo . h / h_z = mu_o + r A cos(omega)
     axis: tuple[Array, Array]  # cosine and sine of phi at omega 0
     roughness: Array
 
@@ -63,27 +65,30 @@ class Slopes:
 
     @property
     def scale(self) -> Array:
-        """Distance of omega from a right angle, and size of r, over which the integrand changes."""
+        """Step in r, and in omega near a right angle, over which the integrand changes much."""
         maximum = array_namespace(self.mu_o, self.steepness).maximum
         return self.mu_o / maximum(self.steepness, self.mu_o)
 
     @property
     def isotropic(self) -> bool:
-        """Whether all surfaces are isotropic; False for arrays of other libraries."""
+        """Whether all surfaces are isotropic; always False for arrays other than NumPy's."""
         known = array_namespace(self.roughness) is arrays.NUMPY
         return known and bool(np.all(self.roughness[0] == self.roughness[1]))
 
     def rays(self, omega: Array) -> tuple[Array, Array, tuple[Array, Array]]:
-        """For each omega: B, the largest r, and the slope (alpha_x cos(phi), alpha_y sin(phi)) at r = 1.
+        """B, the largest r, and the slope (alpha_x cos(phi), alpha_y sin(phi)) at r = 1.
 
-        The azimuth of the slope is phi = omega + phi_0 with tan(phi_0) = alpha_y y / (alpha_x x):
+        The azimuth of the slope is phi = omega + phi_0, where tan(phi_0) = alpha_y y / (alpha_x x).
+        Then
 
-            wo . h / h_z = mu_o + r (alpha_x x cos(phi) + alpha_y y sin(phi)) = mu_o + B r,  B = A cos(omega)
+            wo . h / h_z = mu_o + r (alpha_x x cos(phi) + alpha_y y sin(phi)) = mu_o + B r
+            B = A cos(omega)
             |h / h_z|^2 = 1 + g r^2,  g = (alpha_x cos(phi))^2 + (alpha_y sin(phi))^2
 
-        The reflected mu_i = 2 (wo . h) h_z / |h|^2 - mu_o = 2 (mu_o + B r) / (1 + g r^2) - mu_o is at least 0 if
-        mu_o g r^2 <= 2 B r + mu_o. The largest r is (B + q) / (mu_o g) = mu_o / (q - B), q = sqrt(B^2 + mu_o^2 g).
-        The first form does not cancel for B >= 0, the second does not cancel for B < 0.
+        The cosine of the reflected direction, mu_i = 2 (wo . h) h_z / |h|^2 - mu_o
+        = 2 (mu_o + B r) / (1 + g r^2) - mu_o, is at least 0 if mu_o g r^2 <= 2 B r + mu_o. So the
+        largest r is (B + q) / (mu_o g) = mu_o / (q - B), where q = sqrt(B^2 + mu_o^2 g). The first
+        form has no cancellation for B >= 0, the second form has none for B < 0.
         """
         (cos_0, sin_0), (alpha_x, alpha_y) = self.axis, self.roughness
         xp = array_namespace(omega)
@@ -102,7 +107,10 @@ class Slopes:
     def facets(
         self, r: Array, B: Array, slope: tuple[Array, Array], alpha: Array | None = None
     ) -> tuple[Array, Array]:
-        """Cosine wo . h, and the integrand without F; `alpha` replaces the roughness in G_2 / G_1."""
+        """Cosine wo . h and the integrand without F.
+
+        - `alpha`: If given, an isotropic alpha for G_2 / G_1 instead of the roughness.
+        """
         xp = array_namespace(r, B)
         lean = at_least_0(B * r + self.mu_o)
         stretch = 1.0 + _squared(slope) * r * r
@@ -114,7 +122,7 @@ class Slopes:
             masking = mu_i * (self.mu_o + length_o) / (length_o * mu_i + length_i * self.mu_o)
             seen = 2.0 * lean / (self.mu_o + hypot(self.mu_o, self.steepness))
             return cosine, _density(r) * seen * masking
-        # wi = 2 (wo . h) h - wo, stretched along tangent and bitangent as in `ggx.stretched_length`.
+        # Tangent and bitangent components of wi = 2 (wo . h) h - wo, each multiplied by its alpha.
         along, across = (
             alpha * double * r * each - of_wo
             for alpha, each, of_wo in zip(self.roughness, slope, self.stretched, strict=True)
@@ -125,12 +133,12 @@ class Slopes:
 
 
 def _squared(slope: tuple[Array, Array]) -> Array:
-    """Squared length of a slope: the g of `Slopes.rays` for the slope at r = 1."""
+    """Squared length of a slope; for the slope at r = 1, this is g in `Slopes.rays`."""
     return slope[0] ** 2 + slope[1] ** 2
 
 
 def _density(r: Array) -> Array:
-    """Probability density of slopes in r and omega."""
+    """Probability density of a slope with the polar coordinates r and omega."""
     return r / (np.pi * (1.0 + r * r) ** 2)
 
 
@@ -139,9 +147,9 @@ def slope_nodes(
 ) -> tuple[Array, Array]:
     """Cosine wo . h and weight of every node, shape (nodes of r, nodes of phi, ...).
 
-    - `isotropic`: True if all surfaces are isotropic; symmetry then halves the nodes.
-    - `summed`: True for MaterialX's sum of an environment over visible normals. Its weights have G_2 / G_1 at the
-      geometric mean of both alphas.
+    - `isotropic`: True if all surfaces are isotropic; symmetry then halves the number of nodes.
+    - `summed`: True to sum as MaterialX sums an environment over visible normals, with G_2 / G_1 at
+      the geometric mean of both alphas.
     """
     slopes = Slopes.seen(wo, roughness)
     scale = array_namespace(slopes.scale).maximum(slopes.scale, LEAST_SCALE)
@@ -155,12 +163,13 @@ def slope_nodes(
 def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array, Array]:
     """Cosine wo . h and weight of nodes whose cosine is larger than the critical cosine.
 
-    1 - F begins there as a square root, so nodes crowd at both ends of r, and at the azimuths where r ends.
+    Near the critical cosine, 1 - F behaves like a square root. Nodes are therefore denser at both
+    ends of the range of r, and at the azimuths where this range becomes empty.
 
     - `squared` (...): Square of the cosine of the critical angle, at least 0.
     """
     slopes = Slopes.seen(wo, roughness)
-    # Azimuth from wo at which h on the critical cone about wo reflects wi to the horizon.
+    # Azimuth, relative to wo, of the facet at the critical angle that reflects wo to the horizon.
     mu_o, xp = slopes.mu_o, array_namespace(slopes.mu_o, squared)
     steep = root(at_least_0(4.0 * squared / mu_o**2 - 1.0))
     length = root((1.0 - mu_o) * (1.0 + mu_o)) * steep
@@ -180,16 +189,18 @@ def refracting_nodes(
 ) -> tuple[Array, Array, Array, Array]:
     """Cosine wo . h, cosine and stretched length of the refracted wi, and weight of visible facets.
 
-    wi = (L h - wo) / n points below the horizon; n^2 = 1 - squared, L = |wo + n wi|. If r is smaller
-    than the root of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2, wi would point above the horizon.
+    The refracted wi = (L h - wo) / n must point below the horizon, where n^2 = 1 - squared and
+    L = |wo + n wi|. This requires an r that is larger than the smaller root of
+    mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2.
     """
     slopes = Slopes.seen(wo, roughness)
     mu_o = slopes.mu_o
-    # Split the azimuths where h on the critical cone is at the horizon.
+    # Split the azimuths where a facet at the critical angle is vertical.
     omega, weight_omega = _split_azimuths(slopes, wo, squared, _cone_azimuth(mu_o, squared))
     B, _, slope = slopes.rays(omega)
     g = _squared(slope)
-    # r ranges from the facet that refracts wi to the horizon up to total reflection.
+    # The smallest r belongs to a facet that refracts wo to the horizon, the largest r to total
+    # reflection.
     low, high = _transmitting(mu_o, B, g, squared)
     xp = array_namespace(mu_o, high)
     high = xp.minimum(high, FARTHEST_R)
@@ -215,14 +226,15 @@ def refracting_nodes(
 
 
 def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Array, Array]:
-    """Ends of the range of r with (mu_o + B r)^2 > squared (1 + g r^2); equal if it is empty."""
+    """Ends of the range of r with (mu_o + B r)^2 > squared (1 + g r^2); 0 and 0 if no r has it."""
     a, b, d = B * B - squared * g, mu_o * B, mu_o * mu_o - squared
     xp, size = array_namespace(a, b, d), root(at_least_0(b * b - a * d))
     ahead, inside = b > 0.0, d > 0.0
     none = ~inside & (~ahead | (b * b < a * d))
     low = xp.where(inside, 0.0, -d / xp.where(ahead, b + size, 1.0))
     falling = xp.where(a < 0.0, (b + size) / xp.where(a < 0.0, -a, 1.0), np.inf)
-    behind = xp.where(size > b, d / xp.where(size > b, size - b, 1.0), np.inf)  # alpha is 0
+    # If `size` equals `b`, alpha is 0.
+    behind = xp.where(size > b, d / xp.where(size > b, size - b, 1.0), np.inf)
     high = xp.where(ahead, falling, behind)
     return xp.where(none, 0.0, low), xp.where(none, 0.0, high)
 
@@ -230,12 +242,16 @@ def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Arra
 def _split_azimuths(
     slopes: Slopes, wo: Array, squared: Array, meeting: Array
 ) -> tuple[Array, Array]:
-    """Nodes and weights of omega, split at azimuth `meeting` and at the end of the critical cone."""
+    """Nodes and weights of omega, in intervals that end at two azimuths on either side of wo.
+
+    The azimuths are `meeting` and the azimuth where facets at the critical angle are vertical.
+    """
     xp = array_namespace(slopes.mu_o, wo, squared, meeting)
     last = _cone_azimuth(slopes.mu_o, squared - slopes.mu_o**2)
     inside, right = slopes.mu_o * slopes.mu_o >= squared, 0.5 * np.pi
     nodes = []
-    for center in (0.0, np.pi):  # the front half, where wo . h grows with r, then the back half
+    # wo . h grows with r in the half plane around omega 0, and falls in the other half plane.
+    for center in (0.0, np.pi):
         low, high = (
             xp.where(
                 inside,
@@ -259,13 +275,13 @@ def _split_azimuths(
 
 
 def _cone_azimuth(mu_o: Array, squared: Array) -> Array:
-    """Azimuth from wo whose cosine is sqrt(squared) divided by the sine of wo's polar angle."""
+    """Azimuth relative to wo, with cosine sqrt(squared) divided by the sine of wo's polar angle."""
     xp, sine = array_namespace(mu_o, squared), root((1.0 - mu_o) * (1.0 + mu_o))
     return arrays.arccosine(root(at_least_0(squared)) / xp.where(sine > 0.0, sine, 1.0))
 
 
 def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:
-    """omega of the slopes at an azimuth relative to wo; both are in [-pi, pi]."""
+    """The coordinate omega of slopes with this azimuth relative to wo, both in [-pi, pi]."""
     xp, upright = array_namespace(wo, azimuth), hypot(wo[0], wo[1]) == 0.0
     x, y = xp.where(upright, 1.0, wo[0]), wo[1]
     cosine, sine = xp.cos(azimuth), xp.sin(azimuth)
@@ -277,7 +293,10 @@ def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:
 
 
 def _piece(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
-    """Nodes and weights of omega in [low, high], one side of 0; denser at ends and right angles."""
+    """Nodes and weights in omega for [low, high], an interval on one side of 0.
+
+    The nodes are denser towards both ends, and towards right angles.
+    """
     xp, (t, weight) = array_namespace(scale, low, high), _crowded(1, SPLIT_PART, low)
     side = xp.where(low + high < 0.0, -1.0, 1.0)
     near, far = xp.minimum(side * low, side * high), xp.maximum(side * low, side * high)
@@ -287,7 +306,10 @@ def _piece(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
 
 
 def _between(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
-    """Nodes and weights of r in [low, high]; denser at the ends and, down to `scale`, towards 0."""
+    """Nodes and weights in r for [low, high].
+
+    The nodes are denser towards both ends, and equally dense where r is smaller than `scale`.
+    """
     xp, (t, weight) = array_namespace(scale, low, high), _crowded(PANELS, SPLIT_NODES, low[0])
     first, last = xp.asinh(low / scale), xp.asinh(high / scale)
     x = first + (last - first) * t
@@ -295,14 +317,17 @@ def _between(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
 
 
 def _crowded(panels: int, nodes: int, array: Array) -> tuple[Array, Array]:
-    """Nodes and weights of [0, 1], quadratically dense at both ends, on a new first axis."""
+    """Nodes and weights for [0, 1] on a new first axis, quadratically denser towards both ends."""
     (u, weight), shape = unit_rule(nodes, panels), (-1, *(1,) * array.ndim)
     x, weight = u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u) * weight
     return like(x.reshape(shape), array), like(weight.reshape(shape), array)
 
 
 def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
-    """Nodes and weights of omega, (1, n, ...), denser towards right angles; half if isotropic."""
+    """Nodes and weights in omega, shape (1, n, ...), which are denser towards right angles.
+
+    Isotropic surfaces need only half the nodes.
+    """
     xp = array_namespace(scale)
     x, weight = (like(v.reshape(-1, *(1,) * scale.ndim), scale) for v in unit_rule(QUADRANT))
     extent = xp.asinh(0.5 * np.pi / scale)
@@ -317,12 +342,15 @@ def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
 
 
 def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
-    """Nodes and weights of [0, length] on the first axis; denser, down to `scale`, towards 0."""
+    """Nodes and weights for [0, length] on the first axis.
+
+    The nodes are denser towards 0, and equally dense below `scale`.
+    """
     xp, shape = array_namespace(length), (-1, *(1,) * (length.ndim - 1))
     x, weight = (like(each.reshape(shape), length) for each in unit_rule(SLOPE_NODES, PANELS))
     extent = xp.asinh(length / scale)
     rise = xp.exp(extent * x)
     fall = 1.0 / rise
     half = 0.5 * scale
-    # Computing sinh and cosh from one exponential takes a third of the time.
+    # sinh and cosh are computed from one exponential, in a third of the time of two calls.
     return half * (rise - fall), weight * extent * half * (rise + fall)
