@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of hosts: engines that execute shaders, one module and one row each."""
+"""The table of hosts, which are engines that execute shaders. Each host has one row."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
 
 def start(name: str) -> Engine:
-    """Start the engine of a row of `HOSTS`. Its module is imported only where it runs."""
+    """Start the engine of a row of `HOSTS`. The engine's module is imported only here."""
     match name:
         case "gl":
             from mxeon.hosts.gl import GlHost
@@ -64,24 +64,27 @@ def start(name: str) -> Engine:
 
 @dataclass(frozen=True)
 class Row:
-    """A host, and what is judged on the host.
+    """A host and the checks that run on the host.
 
-    - `nodes`: Returns the specs of a renderer's own nodes, and registers its backends and checks.
+    - `nodes`: Function that returns the specs of a renderer's own nodes, and registers the backends
+      and checks of the renderer.
     """
 
     name: str
     target: str  # shading language; "" for a renderer that only has its own materials
     way: str = ""  # key of `mxeon.conformance.backends.BACKENDS`, or ""
-    needs: str = ""  # requirement of a target that mxeon cannot run; its text is still checked
-    scenes: tuple[Scene, ...] = ()  # lights in pictures of a document's materials
+    needs: str = ""  # missing requirement, if mxeon can check the text of shaders but not run it
+    scenes: tuple[Scene, ...] = ()  # scenes in which a document's materials are rendered
     surfaces: bool = False  # whether surface shaders are checked on the host
-    rounding: float = 0.0  # relative rounding of its pixels, in addition to float32's
-    front_lit: tuple[str, ...] = ()  # models that the host computes correctly only for s >= 0
+    rounding: float = 0.0  # relative rounding error of pixels, beyond the error of float32
+    # Models that the host computes correctly only for s = dot(wo, wi) - mu_o mu_i >= 0.
+    front_lit: tuple[str, ...] = ()
     start: Callable[[str], Engine] = start
     nodes: Callable[[str], Sequence[Any]] | None = None
 
 
-# Every pixel sums over the environment, and the picture is smooth: half the usual width is enough.
+# Pictures of a white environment are smooth, and each pixel is a sum over many directions, so these
+# pictures have half the usual width.
 WHITE_LIGHT = replace(FURNACE, size=128)
 
 HOSTS = (
@@ -101,17 +104,18 @@ HOSTS = (
         scenes=(SIDE, BACK, WHITE_LIGHT),
         surfaces=True,
     ),
-    # No WHITE_LIGHT: Storm sums an environment over different directions than the other hosts.
+    # The row has no WHITE_LIGHT, because Storm sums over other directions than the other hosts do.
     Row(
         "storm",
         "glsl",
         "half pictures",
         scenes=(SIDE, BACK),
         surfaces=True,
-        rounding=2.0**-10,  # half floats, truncated
+        rounding=2.0**-10,  # pixels are truncated to half floats
     ),
     Row("shadewire", "glsl", "functions", scenes=(SIDE, BACK)),
-    # Cycles samples an environment with noise. None of its closures is QON for s < 0.
+    # The row has no WHITE_LIGHT, because Cycles samples an environment with noise. No closure of
+    # Cycles agrees with the model QON for s < 0.
     Row("cycles", "osl", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
     Row("testrender", "osl", "rendered", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
@@ -123,17 +127,17 @@ _REGISTERED: dict[str, Row] = {}
 
 
 def register(*rows: Row) -> None:
-    """Add rows of renderers with their own materials, as `mxeon.survey` does."""
+    """Add rows for renderers that have their own materials, as `mxeon.survey` does."""
     _REGISTERED.update({row.name: row for row in rows})
 
 
 def registered() -> tuple[Row, ...]:
-    """The added rows, which workers need, too."""
+    """The rows that `register` has added, which worker processes need, too."""
     return tuple(_REGISTERED.values())
 
 
 def host_rows() -> tuple[Row, ...]:
-    """The table and the added rows."""
+    """The rows of `HOSTS`, followed by the rows that `register` has added."""
     return HOSTS + registered()
 
 
@@ -142,19 +146,19 @@ def host_names() -> tuple[str, ...]:
 
 
 def host_row(name: str, *additional: Row) -> Row:
-    """The row of a host in `host_rows` or `additional`; InputError for an unknown name."""
+    """The row of a host in `host_rows` or `additional`. Raises InputError for an unknown name."""
     rows = {row.name: row for row in (*host_rows(), *additional)}
     assert_known("host", name, rows)
     return rows[name]
 
 
 def front_lit_only(host: str, model: str) -> bool:
-    """Whether a host supports a model only for s >= 0; False for hosts outside the table."""
+    """Whether the row of a host in `HOSTS` lists a model in `front_lit`. False without a row."""
     return any(row.name == host and model in row.front_lit for row in HOSTS)
 
 
 def open_host(name: str, *additional: Row) -> Host:
-    """Start the host with this name; Unsupported for a renderer with only its own materials."""
+    """Start the host with this name, or raise Unsupported if the renderer runs no shaders."""
     engine = open_engine(name, *additional)
     if isinstance(engine, Host):
         return engine
@@ -162,7 +166,8 @@ def open_host(name: str, *additional: Row) -> Host:
     raise Unsupported(f"{name}: this renderer only has its own materials; gl renders MaterialX's")
 
 
-_OPENED: set[int] = set()  # ids of this process and its ancestors that opened an engine
+# Ids of the processes that opened an engine: this process, or ancestors of this process.
+_OPENED: set[int] = set()
 
 
 def open_engine(name: str, *additional: Row) -> Engine:

@@ -26,21 +26,21 @@ if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
 Array: TypeAlias = NDArray[Any]  # float32 or float64, whichever the caller or engine uses
-Inputs: TypeAlias = Mapping[str, ArrayLike]  # a node's inputs: constants, or one value per pair
+Inputs: TypeAlias = Mapping[str, ArrayLike]  # values of a node's inputs: constant, or one per pair
 
 TABLE = "u_albedoTable"
 
-# Generated shaders turn a direction by this matrix before they look up the environment, so the
-# middle of a latitude-longitude map faces the viewer.
+# Generated shaders rotate a direction by this matrix before looking up the environment. The matrix
+# makes the middle of a latitude-longitude map face the viewer.
 TURN = np.reshape(scene.TURN, (4, 4))
 
 
 class RendererWarning(UserWarning):
-    """A warning that a renderer prints, which may explain its picture."""
+    """A warning that a renderer prints and that may explain a wrong picture."""
 
 
 class LobeWarning(UserWarning):
-    """The host cannot render the material's lobes below the surface correctly."""
+    """Warns that a host cannot correctly render a material's lobes below the surface."""
 
     def __init__(self, element: str, reason: str) -> None:
         super().__init__(f"{element}: {reason}")
@@ -54,21 +54,21 @@ class Identity:
 
 
 class Engine(ABC):
-    """A program that executes shaders, or renders its own materials; a context manager."""
+    """A program that executes shaders or renders built-in materials; a context manager."""
 
     name: str
-    draws_images: ClassVar[bool] = False  # whether pictures may have an image as their environment
-    # Methods of a shader for which no others are chosen; UNCHOSEN if methods do not apply.
+    draws_images: ClassVar[bool] = False  # whether an environment may be an image
+    # Methods of shader generation unless other methods are chosen; UNCHOSEN if there are none.
     default: ClassVar[Methods] = UNCHOSEN
-    methods: Methods = UNCHOSEN  # methods chosen for all shaders
+    methods: Methods = UNCHOSEN  # methods that are chosen for all shaders
 
     @property
     def active(self) -> Methods:
-        """The chosen methods, completed by the default ones."""
+        """The chosen methods, completed by the default methods."""
         return self.methods.over(self.default)
 
     def choose(self, methods: Methods) -> None:
-        """Use these methods, or raise NotRun."""
+        """Use these methods for all shaders, or raise NotRun."""
         if methods != UNCHOSEN:
             raise NotRun(f"{self.name}: its methods cannot be chosen; got {methods}")
 
@@ -111,17 +111,17 @@ class Query(NamedTuple):
 
 
 class Host(Engine):
-    """An engine that executes generated shaders; hosts override the methods that they support.
+    """An engine that executes generated shaders. A subclass overrides the functions it supports.
 
-    Unsupported methods raise `Unsupported`; shaders that the compiler refuses raise `ShaderError`.
-    Results are in the order of the request, as linear radiance or 1/sr.
+    Other functions raise `Unsupported`, and a shader that the compiler refuses raises
+    `ShaderError`. Results are in the order of the request, and are linear radiance or in 1/sr.
     """
 
     target: ClassVar[str]
     profile: ClassVar[str | None] = None
     language: ClassVar[str] = "glsl"
     reads_images: ClassVar[bool] = False  # whether evaluations read a document's images
-    fixed: ClassVar[bool] = False  # whether its methods cannot be changed
+    fixed: ClassVar[bool] = False  # whether the methods of shader generation cannot be chosen
 
     def compile(
         self,
@@ -133,10 +133,10 @@ class Host(Engine):
         policy: Policy = DEFAULT,
         client: Collection[str] = (),
     ) -> tuple[Shader, ...]:
-        """Shaders of a document for this host; arguments and errors as for `mxeon.generate`.
+        """Shaders of a document for this host. Arguments and errors are as for `mxeon.generate`.
 
-        `methods` override those chosen for the host. Images that are too large in total are
-        refused; see `mxeon.hosts.textures.check_images`.
+        `methods` override the methods that are chosen for the host. A document whose images are too
+        large in total is refused; see `mxeon.hosts.textures.check_images`.
         """
         from mxeon.shaders.generation import generate
 
@@ -165,7 +165,7 @@ class Host(Engine):
         self.methods = UNCHOSEN if self.fixed else methods
 
     def table(self, shader: Shader) -> dict[str, Array]:
-        """Texels of a shader's albedo table, by sampler; the sampler clamps and interpolates."""
+        """Texels of a shader's albedo table by sampler, which has to clamp and interpolate."""
         return {TABLE: self._tables(shader.table)} if shader.table else {}
 
     @cached_property
@@ -173,13 +173,14 @@ class Host(Engine):
         return lru_cache(maxsize=2)(self._drawn_table)
 
     def _drawn_table(self, text: str) -> Array:
-        """Texels of a table of albedos, row 0 at an alpha of 0."""
+        """Texels of a table of albedos. Row 0 has the smallest alpha."""
         raise NotRun(f"{self.name}: albedo table: this host binds none")
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
-        """Picture of the unit sphere with a shader on it: linear, row 0 at the top, 0 off the sphere.
+        """Linear picture of the unit sphere with a shader, row 0 at the top.
 
-        Raises NotRun if the host fails or cannot render a scene; InputError for unsupported paths.
+        Pixels off the sphere are 0. Raises NotRun if the host fails or cannot render the scene, and
+        InputError if the host cannot set the scene's samples and bounces.
         """
         raise self._unsupported("pictures of a sphere", "gl")
 
@@ -188,7 +189,7 @@ class Host(Engine):
         return ()
 
     def unread(self, shader: Shader) -> str:
-        """Description of parts of a shader's document that the host ignores, or ""."""
+        """Description of the parts of a shader's document that the host ignores; "" without any."""
         return ""
 
     def evaluate(
@@ -205,21 +206,23 @@ class Host(Engine):
     ) -> Array:
         """Values of a shader's BSDF for pairs of directions, shape (N, 3).
 
-        - `wo`, `wi`: (N, 3). Unit vectors in world space. The surface has the normal +z.
-        - `inputs`: Node inputs by name, (N, ...) or constant, and "occlusion", 1 by default. The
-          default normal is that of the surface.
-        - `branch`: "direct", "environment", "transmission" or "emission"; or "graph": the color of
-          the uniform EDF, independent of the directions; or "lit": pi times the sum over up to two
-          lights plus an environment in one pixel, given by the inputs of `mxeon.hosts.calls.LIT`.
-        - `output`: "response", f cos(theta_i) in 1/sr or the directional albedo times the
-          irradiance; "throughput", the share of the light from below that passes the BSDF; or
-          "radiance", emitted by the EDF towards `wo`, in any branch.
-        - `irradiance`: (rows, columns, 3). Irradiance over pi of the environment for every normal,
-          as a latitude-longitude map with row 0 upwards (+y) and its middle towards +z, also used
-          for lookups of radiance. None for a uniform environment of radiance 1.
-        - `client`: How the environment is turned and scaled, and whether refraction is two-sided.
+        - `wo`, `wi`: Unit vectors in world space, (N, 3). The surface has the normal +z.
+        - `inputs`: Values of node inputs by name, (N, ...) or constant. The input "occlusion" is 1
+          by default, and "normal" is the surface's normal by default.
+        - `branch`: "direct", "environment", "transmission", "emission", "graph" or "lit". The value
+          of "graph" is the color of the uniform EDF, which does not depend on the directions. The
+          value of "lit" is pi times the sum over up to two lights, plus the value of an
+          environment, in one pixel; see `mxeon.hosts.calls.LIT` for the inputs of this branch.
+        - `output`: The "response" is f cos(theta_i) in 1/sr, or for an environment the directional
+          albedo times the irradiance divided by pi. The "throughput" is the share of light from
+          below that passes the BSDF. The "radiance" is what the EDF emits towards `wo`, in any
+          branch.
+        - `irradiance`: Irradiance of the environment divided by pi for every normal, (rows,
+          columns, 3). This latitude-longitude map has row 0 at +y and its middle at +z, and is also
+          used for lookups of radiance. None means a uniform environment of radiance 1.
+        - `client`: Rotation and scale of the environment, and whether refraction is two-sided.
 
-        Raises ValueError if the shader calls no BSDF, or branch or output is unknown.
+        Raises ValueError if the shader calls no BSDF, or if the branch or the output is unknown.
         """
         return self._values(Query(shader, wo, wi, inputs, branch, output, irradiance, client))
 
@@ -227,13 +230,13 @@ class Host(Engine):
         raise self._unsupported("values for pairs of directions", "gl")
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Values of a function defined in a text, shape (N, 3); a float fills all three columns.
+        """Values of a function that a text defines, (N, 3). A float is repeated in all columns.
 
-        - `source`: Functions in the host's language, without includes.
-        - `*arguments`: (N, 3) for a vector or color, (N,) for a float, rounded to float32; a
-          constant may have one row.
+        - `source`: Text of functions in the host's language, without includes.
+        - `*arguments`: Arrays (N, 3) for vectors or colors, and (N,) for floats, which are rounded
+          to float32. A constant may have one row.
 
-        Raises ValueError if there is no such function.
+        Raises ValueError if the text has no such function.
         """
         raise self._unsupported("calls of a shader function", "gl")
 

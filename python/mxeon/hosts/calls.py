@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Statements of a generated shader's main that evaluate its BSDFs, EDFs or graph.
+"""Statements, in the `main` of a generated shader, that evaluate BSDFs, EDFs or a node graph.
 
 A host repeats these statements with other arguments, in local variables that hide the uniforms.
 """
@@ -28,7 +28,7 @@ FUNCTION = re.compile(
     r"^void \w+\(([^)]*)out surfaceshader \w+\)\n\{\n(.*?)^ *surfaceshader \w+ = ",
     re.MULTILINE | re.DOTALL,
 )
-# Matches a geometric property in world space, which an evaluation sets.
+# Matches the declaration of a geometric property, which a host replaces by an argument.
 GEOMETRY = re.compile(r"^ *\w+ (geomprop_\w+) = [^;]*;\n", re.MULTILINE)
 KINDS = {
     "float": "float",
@@ -49,7 +49,10 @@ class Prelude:
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader
 def prelude(text: str, end: int) -> Prelude | None:
-    """The statements before the first BSDF, at `end`; None outside a surface shader's function."""
+    """The statements before the first BSDF, whose position in the text is `end`.
+
+    None if the BSDF is not in the function of a surface shader.
+    """
     functions = list(FUNCTION.finditer(text, 0, end))
     if not functions or "\n}\n" in text[functions[-1].end() : end]:
         return None
@@ -60,8 +63,8 @@ def prelude(text: str, end: int) -> Prelude | None:
     return Prelude(GEOMETRY.sub("", function[2]), inputs | properties)
 
 
-# Closure type of the repeated call and first step of its evaluation, by branch. Only in the first
-# two branches do shaders call BSDFs that do not transmit.
+# Closure type of the call that a host repeats, and first step of the evaluation, by branch. Shaders
+# call BSDFs without transmission only in the first two branches.
 CLOSURES = {
     "direct": ("CLOSURE_TYPE_REFLECTION", 1),
     "environment": ("CLOSURE_TYPE_INDIRECT", 2),
@@ -69,14 +72,15 @@ CLOSURES = {
     "emission": ("CLOSURE_TYPE_REFLECTION", 4),
 }
 EMISSION = "CLOSURE_TYPE_EMISSION"  # closure type that evaluates EDFs, in every branch
-GRAPH = "graph"  # branch: the color of the uniform EDF
-LIT = "lit"  # branch: several lights, then an environment on both sides, in one pixel
+GRAPH = "graph"  # branch whose value is the color of the uniform EDF
+LIT = "lit"  # branch that sums several lights and an environment on both sides in one pixel
 # Inputs of the branch LIT: number of lights (up to 2), direction of the second light in world
 # space, and whether there is an environment.
 LIGHTS, SECOND_LIGHT, SKY = "mxeon_lights", "mxeon_second", "mxeon_sky"
-# Steps 0 and 1 are lights, 2 is the reflected and 3 the transmitted environment. All branches share
-# one program, which compiles as fast as a program for one branch. STEPS holds the first step, the
-# end, and the irradiance of a light, or -1 for throughput.
+# An evaluation is a loop. Steps 0 and 1 are lights, step 2 is the reflected environment, and step 3
+# is the transmitted environment. All branches share one program, which compiles as fast as a
+# program for one branch. STEPS is the name of a vector, which consists of the first step, the end
+# of the loop, and the factor of a light. The factor is -1 if the output is the throughput.
 STEPS = "mxeon_steps"
 LOOP = """{type} mxeon_sum = {type}(0.0);
 for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxeon_step)
@@ -92,15 +96,15 @@ for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxe
     }}
 }}
 """
-OUTPUTS = ("response", "throughput", "radiance")  # EDFs have radiance
+OUTPUTS = ("response", "throughput", "radiance")  # only EDFs have the radiance
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
-SURFACE = "surface_normal"  # the geometric normal, not a node's normal input
-NO_POSITION = (0.0, 0.0, 1e31)  # the host replaces this position by POSITION's default
+SURFACE = "surface_normal"  # key of the geometric normal; a node's input is "normal"
+NO_POSITION = (0.0, 0.0, 1e31)  # the statement POSITION replaces this placeholder
 POSITION = "P = P.z < 1e30 ? P : {};"
 FILES = ("filename", "string")  # types of inputs that an evaluation does not set
-# Values with which an image fills its whole texture, by the end of the variable's name.
+# Scale and offset of an image that fills its whole texture, by suffix of the variable's name.
 PLACED = {"_uv_scale": (1.0, 1.0), "_uv_offset": (0.0, 0.0)}
-# MaterialX's text for WGSL converts integers, since WGSL has no booleans in memory.
+# Matches a macro that converts an integer to a boolean, because WGSL has no boolean uniforms.
 BOOLEAN = re.compile(r"^#define (\w+) bool\(\1\)$", re.MULTILINE)
 
 Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by name
@@ -108,16 +112,16 @@ Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by na
 
 @dataclass(frozen=True)
 class BsdfCall:
-    statements: str  # the shader's main up to the call
-    value: str  # expression of a color
-    arguments: Arguments  # variables that statements and value read
+    statements: str  # part of the shader's `main` that computes the value
+    value: str  # expression of the value, which is a color
+    arguments: Arguments  # variables that `statements` and `value` read
 
 
 def bsdf_call(query: Query) -> BsdfCall:
-    """Call of a rasterized shader's BSDF.
+    """Statements that call the BSDF of a generated shader for rasterization.
 
-    InputError if the shader calls no BSDF (for GRAPH, no uniform EDF), or the branch or the output
-    is unknown.
+    Raises InputError if the branch or the output is unknown, or if the shader calls no BSDF. The
+    branch GRAPH needs a uniform EDF instead of a BSDF.
     """
     shader, wo, wi, inputs, branch, output, *_ = query
     branches = (GRAPH, LIT, *CLOSURES)
@@ -149,12 +153,12 @@ def bsdf_call(query: Query) -> BsdfCall:
         statements = before.statements + statements
         ports = {port.path.rsplit("/", 1)[-1]: port for port in shader.inputs}
         for name, kind in before.inputs.items():
-            # The document's value is a number, a color or a vector.
+            # A value in the document is a number, a color or a vector.
             default = ports[name].value if name in ports else _argument(name, {}, {})[1]
             arguments.setdefault(name, (kind, inputs.get(name, cast(ArrayLike, default))))
     else:
         ports = _ports(shader)
-        # Values that nodes compute for a closure, without geometric properties.
+        # Statements by which nodes compute a closure's inputs, without geometric properties.
         computed = GEOMETRY.sub("", _main(text) + "\n")
         if any(f" {name} = " in computed for name in names):
             names = [name for name in names if f" {name} = " not in computed]
@@ -168,10 +172,10 @@ def bsdf_call(query: Query) -> BsdfCall:
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader
 def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, list[str]]:
-    """Position and text of the statements that evaluate BSDFs of a closure type.
+    """Position and text of the statements that call BSDFs or EDFs with a closure type.
 
-    Also returns the variable of the result, and the names of the arguments. The last call combines
-    the results of the others, or is the only call.
+    Also returns the variable of the last result and the names of the arguments. If there are
+    several calls, the last call combines the results of the earlier calls.
     """
     # MaterialX before 1.39.5 has no makeClosureData.
     constructor = r"(?:makeClosureData|ClosureData)"
@@ -191,7 +195,7 @@ def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, l
 
 
 def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
-    """The statements before a shader's surface, and the color of its uniform EDF."""
+    """The statements before a shader's surface, and the color of the shader's uniform EDF."""
     text = shader.stages["pixel"]
     color = re.search(r"\bmx_uniform_edf\(closureData, (\w+), \w+\);", text)
     if not color:
@@ -201,7 +205,7 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
     statements, ports = _main(text), _ports(shader)
     words = _words(statements + color[1])
     arguments: Arguments = {"V": ("vector3", wo), "P": ("vector3", NO_POSITION)}
-    # Inputs of these types keep the values of their uniforms.
+    # Inputs of these types stay uniforms.
     unset = (*FILES, "color4", "vector4", "matrix33", "matrix44")
     names = [name for name in words if name in ports and ports[name].type not in unset]
     arguments |= {name: _argument(name, ports, inputs) for name in names} | _placed(words)
@@ -209,7 +213,7 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
 
 
 def _placed(words: Iterable[str]) -> Arguments:
-    """Values of the variables among `words` that place images in their textures."""
+    """Values of the variables, among `words`, that scale and shift an image in a texture."""
     return {
         each: ("vector2", value)
         for each in words
@@ -220,9 +224,9 @@ def _placed(words: Iterable[str]) -> Arguments:
 
 @lru_cache(maxsize=16)
 def _main(text: str) -> str:
-    """Statements of a main before it declares its surface shader."""
+    """Statements of a `main` function before the declaration of the surface shader."""
     before = re.split(r"\n *surfaceshader \w+ = ", text)[0]
-    # In Slang, main begins with the stage's inputs and outputs.
+    # In Slang, `main` begins with the inputs and outputs of the stage.
     return re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
 
 
@@ -231,7 +235,7 @@ def _words(text: str) -> list[str]:
 
 
 def _ports(shader: Shader) -> dict[str, Input]:
-    """Inputs of a shader by name, with integers that its text turns into booleans."""
+    """Inputs of a shader by name. Integers that the text converts to booleans are booleans."""
     ports = {port.name: port for port in shader.inputs}
     for name in booleans(shader.stages["pixel"]):
         if name in ports:
@@ -246,7 +250,7 @@ def booleans(text: str) -> list[str]:
 
 
 def _argument(name: str, ports: Mapping[str, Input], inputs: Inputs) -> tuple[str, ArrayLike]:
-    """Type and value of a BSDF's argument: an input of the shader, or a vector of the surface."""
+    """Type and value of a BSDF's argument, an input of the shader or an axis of the surface."""
     port = ports.get(name)
     if port is None:
         normal, tangent = inputs.get("normal", NORMAL), inputs.get("tangent", TANGENT)

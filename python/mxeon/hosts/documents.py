@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shared code of hosts that read documents and libraries themselves, each in its own process.
+"""Base class of hosts whose renderers read MaterialX documents in a separate process.
 
-Such a host generates the shader again, and draws quads with its own lights and uniforms.
+Such a renderer generates the shader again, sets lights and uniforms, and draws quads.
 """
 
 from __future__ import annotations
@@ -26,27 +26,29 @@ from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
 from mxeon.shaders.methods import UNCHOSEN
 from mxeon.shaders.scene import Scene, sphere
 
-SPREAD = 1.0 / 64.0  # scales the change of texture coordinates within a quad
+SPREAD = 1.0 / 64.0  # factor that reduces the change of texture coordinates in a quad
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-# Least cosine between normal and view: closer to the rim, tangent planes would leave the frame.
+# Least cosine between normal and view in the slope of a quad. Nearer to the rim, a tangent plane
+# would leave the frame.
 STEEPEST = 0.05
 
 
 def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArray[np.float32]]:
-    """The quads of a picture of `size` x `size` pixels, four vertices each, counterclockwise.
+    """Vertices of a quad for each pixel of a picture of `size` x `size` pixels.
 
-    Each quad has one normal and shows an exact point, `place` half widths from the pixel's center.
-    The quad lies in the tangent plane and covers the pixel, so derivatives of positions equal the
-    sphere's. Derivatives of "texcoord" have the same directions but are smaller, so textures are
-    read at full size. Row 0, at the top, comes first.
+    Four vertices in counterclockwise order form a quad, which has one normal. The quad is exact at
+    a point of the sphere, `place` half widths from the quad's center. The quad lies in the tangent
+    plane and is as wide as a pixel, so derivatives of positions are equal to the derivatives on the
+    sphere. Derivatives of "texcoord" have the same directions but are smaller, so textures are read
+    at full size. Row 0, at the top, comes first.
     """
     points = sphere(size)
     normal = points.normal[points.mask][:, np.newaxis]
-    # Corners of the pixel, raised into the tangent plane.
+    # Corners of the quad relative to the exact point, raised into the tangent plane.
     offset = np.broadcast_to((CORNERS - place) / size, (len(normal), 4, 2))
     rise = -(normal[..., :2] * offset).sum(axis=-1) / np.maximum(normal[..., 2], STEEPEST)
     position = normal + np.concatenate([offset, rise[..., np.newaxis]], axis=-1)
-    # Longitude and latitude of the point, and their changes towards the corners.
+    # Texture coordinates: longitude and latitude of the point, plus linear terms in the offset.
     x, y, z = np.moveaxis(normal, -1, 0)
     dx, dy, dz = SPREAD * np.moveaxis(position - normal, -1, 0)
     squared = x * x + z * z
@@ -63,17 +65,18 @@ def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArr
     }
 
 
-# Side of a quad in pixels if 2 x 2 blocks must lie in one of its two triangles, and the offset of
-# the pixel that is read: right of the diagonal and below the center.
+# Two values for materials that need 2 x 2 blocks of pixels in the same triangle. A quad is then
+# PIXEL_BLOCK pixels wide, and the pixel that is read lies right of the diagonal, below the center.
 PIXEL_BLOCK, PLACE = 4, (0.25, -0.25)
-PICTURES = 64  # cached pictures, which the checks of a node share
+PICTURES = 64  # maximum number of cached pictures, which the checks of a node share
 
 
 class DocumentHost(base.Host):
-    """A renderer that reads documents, with one process at a time, for one library.
+    """A renderer that reads documents. One process runs at a time, with one library of nodes.
 
-    The script `worker.py` lies next to the module of a host. The arguments of the script are the
-    folder whose `libraries` replace MaterialX's, or "", and the libraries to load before.
+    The script `worker.py` is in the same folder as the host's module. The first argument of the
+    script is a folder whose `libraries` replace the libraries of MaterialX, or "". The other
+    arguments are folders of libraries to load first.
     """
 
     target: ClassVar[str] = "glsl"
@@ -91,7 +94,7 @@ class DocumentHost(base.Host):
         return base.Identity(self.name, str(self.worker.version), self.worker.device)
 
     def picture(self, shader: Shader, scene: Scene) -> base.Array:
-        """Picture of the sphere; the worker generates the shader again."""
+        """Picture of the sphere, for which the worker process generates the shader again."""
         self.refuse_paths(scene)
         self.refuse_shape(scene)
         if isinstance(scene.environment, (str, Path)):
@@ -121,7 +124,7 @@ class DocumentHost(base.Host):
         return (*raster.approximations(shader), *filter(None, [self.unread(shader)]))
 
     def unread(self, shader: Shader) -> str:
-        """Report subsurface lobes: they need a curvature, but each quad has a single normal."""
+        """Report a subsurface lobe, which needs a curvature, because each quad is flat."""
         if SUBSURFACE in inner_lobes(shader):
             return (
                 f"subsurface scattering depends on the curvature, and {self.name} draws flat quads"
@@ -141,7 +144,7 @@ class DocumentHost(base.Host):
         return mx.writeToXmlString(shader.document), shader.element
 
     def _needs_blocks(self, shader: Shader) -> bool:
-        """Whether one triangle must cover a block around each pixel, which takes longer."""
+        """Whether one triangle must cover a 2 x 2 block with each pixel, which takes longer."""
         return False
 
     def _worker(self) -> process.Worker:
@@ -151,14 +154,14 @@ class DocumentHost(base.Host):
     def _drawn(
         self, folders: tuple[str, ...], text: str, request: str, size: int, blocks: bool
     ) -> base.Array:
-        # Each document needs its own name: OpenUSD caches files.
+        # Each document needs its own file name, because OpenUSD caches files.
         folder = self.worker.folder
         document = folder / f"{sha256(text.encode()).hexdigest()}.mtlx"
         document.write_text(text, encoding="utf-8")
         output, place = folder / "output.npy", PLACE if blocks else (0.0, 0.0)
         mesh = folder / f"quads{size}{place}.npz"
         if not mesh.exists():
-            np.savez(mesh, **quads(size, place))  # type: ignore[arg-type]  # NumPy takes it for an option
+            np.savez(mesh, **quads(size, place))  # type: ignore[arg-type]  # not an option of savez
         reply = self.worker.ask(
             output=str(output),
             mesh=str(mesh),
@@ -171,5 +174,5 @@ class DocumentHost(base.Host):
         if blocks:
             pixels = pixels[PIXEL_BLOCK // 2 :: PIXEL_BLOCK, PIXEL_BLOCK // 2 :: PIXEL_BLOCK]
         image = np.where(sphere(size).mask[..., None], pixels, np.float32(0.0))
-        image.flags.writeable = False  # shared by all callers
+        image.flags.writeable = False  # all callers share the cached image
         return image

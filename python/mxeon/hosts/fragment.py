@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fragment shaders that evaluate a function once per pixel, around source text left unchanged.
+"""Fragment shaders that evaluate a function once per pixel, without changes to generated text.
 
-Arguments arrive in float textures, one texel per pixel. The generated text is unchanged: a macro
-renames its `main`, and a second `main` repeats the statements that call the BSDF, with local
-variables that hide the uniforms.
+Arguments are read from float textures, one texel per pixel. A macro renames the `main` of the
+generated text. A second `main` repeats the statements that call the BSDF, with local variables that
+hide the uniforms.
 """
 
 from __future__ import annotations
@@ -31,37 +31,37 @@ FETCH = {
 FETCH["vector3"] = FETCH["vec3"] = FETCH["color3"]
 FETCH["vector2"] = "vec2 {0} = {1}.xy;"
 FETCH["integer"] = "int {0} = int({1}.x);"
-# Name of the texture that stacks the arguments in layers if they exceed MOST.
+# Name of the texture that holds all arguments, in layers, if there are more than MOST arguments.
 STACK = "mxeon_stack"
-MOST = 12  # maximum textures for arguments; devices have at least 16, also for the environment
+MOST = 12  # maximum number of textures for arguments, out of the 16 or more of a device
 LAYER = (
     f"texelFetch({STACK}, mxeon_pixel + ivec2(0, {{0}} * (textureSize({STACK}, 0).y / {{1}})), 0)"
 )
-COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # all other types have 3
-WIDTH = 1024  # maximum pixels in a row of a frame
-PART = 1 << 15  # elements evaluated in one frame
-# Columns and rows that make the sides of argument textures odd: Mesa compiles a program again when
-# sides change between powers of two and other numbers.
+COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # 3 in all other types
+WIDTH = 1024  # maximum number of pixels in a row of a frame
+PART = 1 << 15  # maximum number of elements that one frame evaluates
+# Number of columns and rows that make the sizes of argument textures odd. Mesa would compile a
+# program again whenever a size changed from a power of two to another number, or back.
 ODD = 1
 
-Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values, or layers, by name
+Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values, or layers of rows
 
 
 @dataclass(frozen=True)
 class Dialect:
-    """Text around a function in a language of the GLSL family."""
+    """Parts of the text around a function, in a language of the GLSL family."""
 
     version: str  # first line of a stage
     prelude: str  # code between the version and a generated text
     output: str  # declaration of a pixel stage's output
-    sampler: str  # declaration of an argument's sampler, with its name and number
+    sampler: str  # declaration of an argument's sampler, with placeholders for name and number
     vertex: str  # vertex stage without outputs
 
 
 VERTEX = "in vec3 i_position;\nvoid main() { gl_Position = vec4(i_position, 1.0); }\n"
 
-# WebGPU has separate textures and samplers, but the generated text combines the two: sampler2D
-# becomes a texture that is always read through the same sampler.
+# WebGPU separates textures and samplers, but generated text combines a texture and a sampler.
+# Macros turn sampler2D into a texture that is always read through the same sampler.
 SEPARATE = """#extension GL_EXT_samplerless_texture_functions : require
 layout (set = 1, binding = 0) uniform sampler mxeon_sampler;
 vec4 mxeon_lookup(texture2D t, vec2 uv) { return texture(sampler2D(t, mxeon_sampler), uv); }
@@ -97,15 +97,15 @@ DIALECTS = {
         vertex="#version 450\nlayout (location = 0) " + VERTEX,
     ),
 }
-DIALECTS["wgsl"] = replace(DIALECTS["vulkan"], prelude="")  # WGSL's textures are separate
+DIALECTS["wgsl"] = replace(DIALECTS["vulkan"], prelude="")  # textures are already separate
 
 
 def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
-    """A pixel stage that evaluates a shader's BSDF, and its texels (N, 1 to 3) by sampler."""
+    """A pixel stage that evaluates a shader's BSDF, and the texels of the arguments, by sampler."""
     shader = query.shader
     dialect, call = DIALECTS[shader.target], bsdf_call(query)
     before, output = _before_main(shader.stages["pixel"], dialect)
-    # Subsurface scattering divides by the derivatives of P.
+    # The default of P varies, because subsurface scattering divides by the derivatives of P.
     body = [
         POSITION.format("vec3(gl_FragCoord.xy, 0.0)"),
         call.statements,
@@ -118,7 +118,7 @@ def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
 
 @lru_cache(maxsize=16)
 def _before_main(pixel: str, dialect: Dialect) -> tuple[str, str]:
-    """Text before the main of an evaluation, and the name of the generated text's output."""
+    """Text before the `main` of an evaluation, and the name of the generated text's output."""
     version, text = pixel.split("\n", 1)
     macros = "".join(f"#undef {name}\n" for name in ["main", *booleans(text)])
     before = f"{version}\n{dialect.prelude}{renamed(text)}{macros}"
@@ -126,7 +126,7 @@ def _before_main(pixel: str, dialect: Dialect) -> tuple[str, str]:
 
 
 def renamed(text: str) -> str:
-    """A generated text whose main is renamed by a macro that follows all of its functions."""
+    """A generated text with a macro that renames `main`. The macro follows all other functions."""
     functions, main = text.rsplit("void main", 1)
     return f"{functions}#define main mxeon_generated_main\nvoid main{main}"
 
@@ -134,7 +134,7 @@ def renamed(text: str) -> str:
 def function_evaluation(
     source: str, function: str, arguments: Sequence[ArrayLike], target: str
 ) -> tuple[str, Columns]:
-    """A pixel stage that evaluates a function of `source`, and texels as in `bsdf_evaluation`."""
+    """A pixel stage that evaluates a function of `source`, and the texels of the arguments."""
     values, call = functions.call(source, function, arguments)
     return evaluation(source, values, [f"mxeon_out = vec4(vec3({call}), 1.0);"], target)
 
@@ -142,18 +142,18 @@ def function_evaluation(
 def evaluation(
     source: str, arguments: Mapping[str, tuple[str, ArrayLike]], body: Sequence[str], target: str
 ) -> tuple[str, Columns]:
-    """A pixel stage that executes `body` with arguments, and texels as in `bsdf_evaluation`."""
+    """A pixel stage that executes the statements of `body`, and the texels of the arguments."""
     dialect = DIALECTS[target]
     main, texels = _main(dialect, arguments, body)
     return dialect.version + dialect.prelude + dialect.output + source + main, texels
 
 
 def frame(arguments: Mapping[str, Array]) -> tuple[int, tuple[int, int]]:
-    """Length of the longest argument, and the size of a frame for it.
+    """Length of the longest argument, and the size of a frame with at least as many pixels.
 
-    Width and height are even: GPU derivatives are computed per 2 x 2 square.
+    Width and height are even, because GPUs compute derivatives in blocks of 2 x 2 pixels.
     """
-    if not arguments:  # the text draws the table of albedos
+    if not arguments:  # the frame shows the table of albedos
         return TABLE_SIZE**2, (TABLE_SIZE, TABLE_SIZE)
     count = max(each.shape[-2] for each in arguments.values())
     height = 2 * -(-count // (2 * WIDTH))
@@ -161,7 +161,7 @@ def frame(arguments: Mapping[str, Array]) -> tuple[int, tuple[int, int]]:
 
 
 def parts(arguments: Mapping[str, Array]) -> Iterator[dict[str, Array]]:
-    """Arguments in parts of PART elements, to save memory."""
+    """Yield the arguments in parts of at most PART elements, to save memory."""
     count, _ = frame(arguments)
     for start in range(0, count, PART):
         yield {
@@ -171,9 +171,10 @@ def parts(arguments: Mapping[str, Array]) -> Iterator[dict[str, Array]]:
 
 
 def texels(values: Array, size: tuple[int, int], margin: int = 0) -> NDArray[np.float32]:
-    """Values (a row per element or a constant row), or layers of values, laid out over a frame of `size`.
+    """Texels of a frame of `size` that holds values, or of several frames that hold layers.
 
-    A margin adds columns and rows to each layer.
+    There is a row of values per element, or one constant row. A margin adds columns and rows to
+    each layer.
     """
     width, height = size
     layers = values[np.newaxis] if values.ndim == 2 else values
@@ -191,7 +192,7 @@ def texels(values: Array, size: tuple[int, int], margin: int = 0) -> NDArray[np.
 
 
 def columns(arguments: Mapping[str, tuple[str, ArrayLike]]) -> Columns:
-    """Values of (type, values) as float32 rows of 1 to 3, by name."""
+    """Values of arguments, given as (type, values) by name, in float32 rows of 1 to 3 numbers."""
     return {
         name: np.asarray(value, dtype=np.float32).reshape(-1, COMPONENTS.get(kind, 3))
         for name, (kind, value) in arguments.items()
@@ -204,7 +205,7 @@ def _main(
     body: Sequence[str],
     most: int = MOST,
 ) -> tuple[str, Columns]:
-    """A main that reads the arguments and executes `body`, and the arguments' texels."""
+    """A `main` function that reads arguments and executes `body`, and the arguments' texels."""
     rows = columns(arguments)
     if len(rows) <= most:
         values = {f"mxeon_{name}": each for name, each in rows.items()}

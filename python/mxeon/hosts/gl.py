@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OpenGL without a window: generated GLSL on Mesa's software driver or a GPU, in float32."""
+"""OpenGL without a window, which runs generated GLSL in float32 on Mesa's driver or a GPU."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from mxeon.hosts.raster import FragmentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import VisiblePoints
 
-PROGRAMS = 4  # cached programs, 10 MB each: a document's scenes and a node's checks share them
-COPIED = 256  # rows of a texture to copy at a time
-CONSTANTS = 64  # cached textures of one value: most inputs are constant
-POINTS = 4  # cached textures of points: most materials have the same vertex stage
+PROGRAMS = 4  # cached programs of 10 MB, which a document's scenes or a node's checks share
+COPIED = 256  # rows of a texture that are copied at a time
+CONSTANTS = 64  # cached textures of one value, because most inputs are constant
+POINTS = 4  # cached textures of points; most materials share a texture
 REMEDIES = {
     "linux": "on Debian: apt-get install libegl1 libgl1-mesa-dri",
     "darwin": "macOS ends at OpenGL 4.1: use --host wgsl or --host webgl",
@@ -34,10 +34,10 @@ T = TypeVar("T")
 
 
 def _current(verb: Callable[Concatenate[GlHost, P], T]) -> Callable[Concatenate[GlHost, P], T]:
-    """Make the host's context current for a method; every host of the process has another context.
+    """Make the host's context current during a method, because every host has its own context.
 
-    The same number names a different object in each context, so objects that Python has dropped are
-    deleted here, while the context that has created the objects is current.
+    The same number names different objects in different contexts. Objects that Python has dropped
+    are therefore deleted here, while the context that has created the objects is current.
     """
 
     @wraps(verb)
@@ -99,9 +99,10 @@ class GlHost(FragmentHost):
         passes: Iterable[int],
         textures: Mapping[str, Array],
     ) -> NDArray[np.float32]:
-        """Sum of a fragment shader's frames over the values `passes` of its uniform `tracer_pass`.
+        """Sum of the frames of a fragment shader, one frame for each value of `tracer_pass`.
 
-        Shape (height, width, 4), row 0 at the bottom. Unused uniforms are ignored.
+        The sum has the shape (height, width, 4), with row 0 at the bottom. The values of the
+        uniform `tracer_pass` are `passes`. Unused uniforms are ignored.
         """
         context = self._context
         program = self._program(fragment.DIALECTS["glsl"].vertex, pixel)
@@ -123,7 +124,7 @@ class GlHost(FragmentHost):
         textures: Mapping[str, moderngl.Texture | moderngl.TextureArray],
         size: tuple[int, int],
     ) -> tuple[moderngl.Framebuffer, moderngl.VertexArray]:
-        """Bind textures and a black frame; return the frame and a triangle that covers it."""
+        """Bind textures and a black frame, and return the frame with a triangle over all pixels."""
         context = self._context
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
         frame.use()
@@ -160,10 +161,10 @@ class GlHost(FragmentHost):
         size: tuple[int, int],
         parts: Sequence[raster.Rectangle] = (),
     ) -> Array:
-        """One frame, or parts of it, as float32 (height, width, 3), row 0 at the bottom."""
+        """Float32 pixels (height, width, 3) of a frame or its parts, row 0 at the bottom."""
         frame, triangle = self._begin(program, textures, size)
-        # Unless a component is masked, Mesa compiles a program twice, for whole and for partial
-        # tiles.
+        # Unless a component is masked, Mesa compiles a program twice: for tiles that are covered
+        # entirely and for other tiles.
         frame.color_mask = True, True, True, False
         for part in parts or [(0, 0, *size)]:
             frame.scissor = part
@@ -174,10 +175,10 @@ class GlHost(FragmentHost):
     def _textures(
         self, program: moderngl.Program, texels: Mapping[str, Array]
     ) -> dict[str, moderngl.Texture | moderngl.TextureArray]:
-        """Textures for the samplers of a program; samplers of one array share a texture.
+        """Textures for the samplers of a program. Samplers with the same array share a texture.
 
-        An environment map is clamped at its poles. A check's uniform map repeats: clamping would
-        turn a NaN coordinate into a number and hide it from the check.
+        An environment map is clamped at the poles. The uniform map of a check repeats, because
+        clamping would turn a NaN coordinate into a number and hide the NaN from the check.
         """
         created: dict[tuple[int, bool], moderngl.Texture] = {}
         textures: dict[str, moderngl.Texture | moderngl.TextureArray] = {}
@@ -201,7 +202,7 @@ class GlHost(FragmentHost):
         return self._texture(fragment.texels(row, size, fragment.ODD), mipmaps=False)
 
     def _texture(self, texels: Array, mipmaps: bool) -> moderngl.Texture:
-        if gray := not texels.strides[-1]:  # one repeated channel; see read_texture
+        if gray := not texels.strides[-1]:  # the array repeats one channel; see read_texture
             texels = texels[..., :1]
         height, width, components = texels.shape
         texture = self._context.texture((width, height), components, dtype="f4")
