@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fixtures and hooks for all tests; each host is opened once, when a test first needs it."""
+"""Fixtures and hooks for all tests. A host is opened once, when a test first needs the host."""
 
 import atexit
 import gc
@@ -25,8 +25,9 @@ from tests.support.verdicts import Verdicts
 def pytest_configure():
     """Set up signals and Mesa for the tests, and refuse unknown names in MXEON_REQUIRE.
 
-    Commands would inherit signals that nohup or a background job ignores, so defaults are restored.
-    Mesa's software driver skips optimization, which is faster and changes no value of a shader.
+    Signals that nohup or a background job ignores get their default handlers, because commands
+    started by tests would inherit the ignored signals. Mesa's software driver skips optimizations,
+    so shaders compile faster and return the same values.
     """
     os.environ.setdefault("GALLIVM_PERF", "nopt")
     for number in ENDING:
@@ -43,7 +44,8 @@ def pytest_configure():
 def pytest_collection():
     """Import the models with line tracing on, and collect the tests with tracing off.
 
-    Garbage collection is off meanwhile, and later ignores the objects that exist by then.
+    Garbage collection is off during the import and the collection. Later collections ignore the
+    objects that exist by then.
     """
     for module in walk_packages(models.__path__, f"{models.__name__}."):
         import_module(module.name)
@@ -57,21 +59,21 @@ def pytest_collection():
 
 
 def pytest_make_parametrize_id(val):
-    """Use the name of a function, a row or a file as its id; pytest's default is its position."""
+    """Name test parameters by functions, rows or files; pytest would only number them."""
     names = (getattr(val, each, None) for each in ("__name__", "name", "title", "page", "key"))
     return next((name for name in names if isinstance(name, str)), None)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item):
-    """Trace lines only in tests of the models, which must cover all lines of the models."""
+    """Trace lines only in tests of the models, because these must cover all lines of the models."""
     with nullcontext() if "models" in item.path.parts else untraced():
         return (yield)
 
 
 @pytest.fixture(scope="session", autouse=True)
 def one_worker():
-    """Limit commands in this process to one worker; other tests use the other processors."""
+    """Limit commands in this process to one worker, because other tests use the other cores."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("os.cpu_count", lambda: 1)
         yield
@@ -79,8 +81,9 @@ def one_worker():
 
 @pytest.fixture(scope="session", autouse=True)
 def temporary(tmp_path_factory):
-    """Put temporary files below pytest's folder, which deletes what killed processes leave."""
-    folder = tmp_path_factory.getbasetemp() / "t"  # short: paths of a browser's sockets are limited
+    """Put temporary files into pytest's folder; pytest deletes what killed processes leave."""
+    # The path is short, because a browser's socket paths have a limited length.
+    folder = tmp_path_factory.getbasetemp() / "t"
     folder.mkdir()
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TMPDIR", str(folder))
@@ -90,7 +93,7 @@ def temporary(tmp_path_factory):
 
 @pytest.fixture(scope="session", autouse=True)
 def optimized_pictures():
-    """Let the driver optimize for Storm, which takes much longer to render than to compile."""
+    """Let Mesa optimize shaders for Storm, which takes much longer to render than to compile."""
     start = Worker.start
 
     def optimized(worker):
@@ -106,7 +109,7 @@ def optimized_pictures():
 
 @pytest.fixture(scope="session")
 def hosts():
-    """Function that returns a host by name and opens it once per session."""
+    """Function that returns the host with a given name. Each host is opened once per session."""
     opened = {}
 
     def host(name):
@@ -125,7 +128,7 @@ def hosts():
 
 @pytest.fixture(scope="session")
 def judged(hosts):
-    """Function that judges one check of one node; see `Verdicts`."""
+    """Function that judges one check of one node, see `Verdicts`."""
     return Verdicts(hosts)
 
 

@@ -35,7 +35,7 @@ def stock(verdict=FAILED, **fields):
 
 
 def wrong(largest, scene="back"):
-    """Fields of a failed picture that differs visibly on a quarter of its pixels."""
+    """Fields of a failed picture in which a quarter of the pixels differ visibly."""
     difference = Difference(scene, largest, False, 0.25)
     return {"verdict": FAILED, "error": 0.1, "difference": difference}
 
@@ -51,7 +51,8 @@ IDLE, OWN = {"verdict": NOT_RUN, "error": None}, caused("input", "", "a/roughnes
 BENT = stock(diagnosis=caused("not finite", region=ZERO))
 LAYER = stock(key="layering", diagnosis=quoted("X"))
 FIRST = f"0.37 (value)\ncause: gl with stock: {EON} "
-# Failures of stock's node, fields of the picture's result, and words and last line of the summary.
+# Each row: results of checks that failed with stock MaterialX, fields of the picture's result, an
+# expected text in the summary, and the summary's expected last line.
 ANSWERS = (
     ((stock(),), {}, f"{RIGHT}.", NOTHING),
     ((BENT,), {}, f"{RIGHT} for inputs that this material does not use.", NOTHING),
@@ -109,7 +110,7 @@ def test_what_fails_for_other_inputs_than_the_documents_comes_last():
         {"a.mtlx": {GLASS: (ZERO,)}},
     )
     run = Run("1", {}, (), results, contents=contents, unreached=unreached)
-    # Only document a is known not to reach the index 0.
+    # The inputs of document `a` are known never to reach an index of refraction of 0.
     assert run.is_elsewhere(results[1], "a.mtlx") and not run.is_elsewhere(results[1])
     [entry] = json.loads(to_json(run))["elsewhere"]
     place = {"check": "finite", "subject": GLASS, "host": "gl", "library": "eonlib"}
@@ -130,7 +131,7 @@ def test_a_lobe_that_a_document_lacks_makes_no_combination_wrong_for_it():
         assert run.is_elsewhere(layer) == elsewhere
     named = replace(layer, pages=(), diagnosis=caused("defect", "throughput_of_lobes", sheen))
     assert replace(run, contents={"a.mtlx": ("layer", metal)}).is_elsewhere(named)
-    # A defect without a page, or without a named lobe, counts for every document.
+    # If a defect has no page, or its cause names no lobe, the defect counts for every document.
     for counts in (replace(layer, pages=("genglsl_add_throughput",)), replace(layer, pages=())):
         assert not replace(run, contents={"a.mtlx": ("layer", metal)}).is_elsewhere(counts)
 
@@ -198,7 +199,7 @@ def test_nothing_says_of_a_refused_document_that_it_passed(tmp_path, monkeypatch
     keep_checks(monkeypatch, "value", "picture")
     shutil.copy(PLASTER, tmp_path / "good.mtlx")
     (tmp_path / "bad.mtlx").write_text(textured(["no.png"]))
-    # The texture is inside a definition, so only rendering the picture finds that it is missing.
+    # The missing texture is named in a node definition, so only rendering reports the texture.
     inner = image("no.png") + '<output name="out" type="color3" nodename="image"/>'
     graph = '<nodedef name="ND_t" node="t"><output name="out" type="color3"/></nodedef>'
     graph += f'<nodegraph name="NG_t" nodedef="ND_t">{inner}</nodegraph><t name="t" type="color3"/>'
@@ -235,7 +236,7 @@ def test_a_document_that_one_library_lacks_is_refused_in_its_column(tmp_path, mo
     assert printed.out.startswith(f"{file} with stock was not checked: 1 error. ")
     assert "with stock MaterialX" in printed.out and "refused" in printed.out
     assert printed.err.endswith("(with stock)\n")
-    # If stock is only a comparison, the result of the document is eonlib's.
+    # When stock MaterialX is only compared, the document's result is the result with eonlib.
     assert main(["check", str(file), "--workers", "0"]) == 0
     printed = capsys.readouterr()
     assert printed.err == "" and "not judged" in printed.out and "(with stock)" in printed.out
@@ -310,7 +311,7 @@ def test_a_folder_stands_for_the_documents_in_it_and_below_it(tmp_path):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("")
     single = str(tmp_path / "b.mtlx")
-    run = check([tmp_path, single], ["msl"])  # no file is a MaterialX document
+    run = check([tmp_path, single], ["msl"])  # the folder contains no MaterialX document
     assert {*run.refused} == {single, str(tmp_path / "sub" / "a.mtlx")}
 
 

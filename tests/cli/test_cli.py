@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Commands of mxeon: output, written files, and exit status."""
+"""The commands of mxeon print the documented output, write their files, and set the exit status."""
 
 import json
 import re
@@ -29,7 +29,7 @@ MIRROR = material(lobe("generalized_schlick_bsdf", roughness=(0.0, 0.0)))
 
 
 def pattern(line):
-    """Pattern for a printed line that ignores files, errors, counts of checks and ellipses."""
+    """Regular expression for a printed line; files, errors and numbers of checks may vary."""
     rest = r"\.\.\.|(?<=load )\w+|(?<=: )docs|(?<=EON, )[\d.e-]+|(?= To fix)|\s{2,}|\d+(?= checks| of )|(?<= of )\d+"
     return ".*".join(map(re.escape, re.split(rest, line)))
 
@@ -48,7 +48,7 @@ def test_check_passes_writes_a_report_and_answers_as_the_pages_show(tmp_path, ca
     files = {"report.html", "results.json", "junit.xml", ".journal.lock"}
     names = {path.name for path in (tmp_path / "report").iterdir()}
     assert names == files | {"pictures", "journal", "upstream"}
-    # Stock MaterialX fails, but it is only a comparison, so the verdict is eonlib's.
+    # Stock MaterialX fails but is only compared, so the verdict is the verdict on eonlib.
     found = json.loads((tmp_path / "report" / "results.json").read_text())
     assert (found["verdict"], found["compared"]) == ("passed", ["stock"])
     failed = [each["library"] for each in found["results"] if each["verdict"] == "failed"]
@@ -135,11 +135,11 @@ def test_an_environment_image_ends_at_its_poles(host, hosts, tmp_path):
     hosts(host)  # skips the test if the host cannot run
     document, sky, output = (str(tmp_path / name) for name in ("a.mtlx", "sky.exr", "a.exr"))
     Path(document).write_text(MIRROR)
-    rows = np.linspace(1.0, 0.0, 8, dtype=np.float32)  # white above, black below
+    rows = np.linspace(1.0, 0.0, 8, dtype=np.float32)  # white at the top, black at the bottom
     oiio.ImageBuf(np.broadcast_to(rows[:, None, None], (8, 16, 3)).copy()).write(sky)
     options = ["--host", host, "--environment", sky, "--size", "128", "--output", output]
     assert main(["render", document, *options]) == PASSED
-    # A mirror reflects a pole of the sky where its normal is tilted by 45 degrees.
+    # Where the mirror's normal is tilted by 45 degrees, the mirror reflects a pole of the sky.
     pixels = oiio.ImageBuf(output).get_pixels(oiio.FLOAT)
     above, below = pixels[16:22, 61:67], pixels[106:112, 61:67]
     np.testing.assert_allclose(above, 1.0, atol=2.0**-7)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Misuse and failures print one line, return the documented exit status, and write no file."""
+"""After misuse or a failure, a command prints one line, exits as documented, and writes no file."""
 
 import json
 

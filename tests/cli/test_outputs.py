@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Commands refuse outputs that would overwrite inputs, or files that no argument names."""
+"""Commands refuse an output that would overwrite an input or a file that no argument names."""
 
 import os
 import re
@@ -20,7 +20,7 @@ from tests.support.command import CLAY, PLASTER, one_line
 from tests.support.documents import textured
 from tests.support.results import PREVIOUS, Run
 
-# Files in the folder `inputs`, by role in a command.
+# Input files in the fixture's folder, by their role in a command.
 FILES = {
     "document": "look.mtlx",
     "include": "part.mtlx",
@@ -43,7 +43,8 @@ TRUSTED = ("library", "library's source", "definitions")
 MATERIAL = ("document", "include", "texture", "set of textures", "source", "included source")
 MATERIAL += TRUSTED
 OPTIONS = "--library lib --definitions defs --workers 0"
-# Commands that write, without the output at their end: name of an output, and roles of the inputs.
+# Commands that write files, each without the final argument, which is the output's path. Each value
+# holds that path and the roles of the files that the command reads.
 WRITING = {
     f"render look.mtlx --environment sky.exr {OPTIONS} --output": (
         "out.png",
@@ -61,7 +62,7 @@ EMPTY = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude"></
 
 @pytest.fixture
 def inputs(tmp_path, monkeypatch):
-    """Working folder with a file for each role, in which no engine can start."""
+    """Working folder that contains a file for each role. No rendering engine can start there."""
     for name in FILES.values():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(name)
@@ -89,7 +90,7 @@ def content(folder):
 
 
 def refused(arguments, folder, capsys):
-    """Assert that arguments are refused in one line and no file changes; returns the line."""
+    """Assert that a command is refused with one line and changes no file; return the line."""
     before = content(folder)
     assert main(arguments) == MISUSE
     assert content(folder) == before
@@ -137,7 +138,8 @@ def test_a_report_goes_to_no_folder_that_holds_what_is_read(folder, command, inp
 
 LOOK = f"{FILES['document']} --workers 0"
 RENDER, OSL = f"render {LOOK} --output a.exr", "generate --target osl --outputPath out --workers 0"
-# Commands with invalid options or outputs, which are refused before any engine starts.
+# Commands with invalid options or outputs, and words of the error message. mxeon must refuse each
+# command before any engine starts.
 WRONG = {
     f"{OSL} {CLAY} --element loam": "element must be one of",
     f"{OSL} nowhere.mtlx": "must be a readable file",
@@ -199,7 +201,7 @@ def test_what_is_wrong_is_said_first(command, words, inputs, capsys):
     assert words in refused(shlex.split(command), inputs, capsys)
 
 
-# Message of a host.
+# Invalid options of `mxeon render`, and the error message that a host prints.
 UNDRAWN = {
     "--environment sky.hdr": "sky.hdr",
     "--size 0": "size must lie in [1, 8192]",
@@ -249,7 +251,7 @@ def test_a_refused_run_leaves_no_results_of_an_older_one(command, inputs, capsys
 )
 def test_names_of_outputs_steer_no_terminal_and_no_runner(command, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    name = "::error::a\x1b[31m\nb"  # would control a runner and a terminal
+    name = "::error::a\x1b[31m\nb"  # control characters for a CI runner and a terminal
     assert main([*command.split(), name]) == PASSED
     printed = capsys.readouterr().out
     assert os.path.isdir(name) and "error::a\ufffd[31m\ufffdb" in printed
@@ -275,7 +277,7 @@ def test_functions_that_write_refuse_likewise(inputs):
 
 
 def test_a_second_run_replaces_its_own_outputs(tmp_path, monkeypatch):
-    """Outputs may also lie below the folder of a library that the command reads."""
+    """The outputs may also lie in the folder of a library that the command reads."""
     monkeypatch.chdir(tmp_path)
     os.mkdir("lib")
     (tmp_path / "lib" / "own.mtlx").write_text('<materialx version="1.39"></materialx>')
@@ -285,7 +287,7 @@ def test_a_second_run_replaces_its_own_outputs(tmp_path, monkeypatch):
 
 
 GENERATE = f"generate {PLASTER} --target osl --workers 0 --outputPath out"
-# Commands that write a folder, and names in it where an attacker may plant a link.
+# Commands that write a folder, and names of output files that an attacker may create as links.
 OUTPUT = "plaster.ochre_plaster.osl"
 FOLDERS = {
     GENERATE: (OUTPUT,),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A signal ends a command with one line, the usual exit status, and no files left behind."""
+"""A signal ends a command with one line and the usual exit status, and leaves no files behind."""
 
 import os
 import signal
@@ -17,7 +17,7 @@ CHECK = ["check", PLASTER, "--workers", "1", "--report", "report"]
 
 
 def start(folder, *arguments, code="from mxeon.__main__ import main; sys.exit(main())"):
-    """Start a command in its own process group, with `folder`/tmp for temporary files."""
+    """Start a command in its own process group, with its temporary files in `folder`/tmp."""
     (folder / "tmp").mkdir()
     return subprocess.Popen(
         [sys.executable, "-c", f"import sys\n{code}", *arguments],
@@ -54,11 +54,12 @@ def test_a_killed_command_leaves_its_folder_to_the_next_one(tmp_path):
     process = start(tmp_path, *CHECK)
     folder = tmp_path / "tmp"
     wait_for_results(tmp_path, process)
-    process.send_signal(signal.SIGSTOP)  # a running command would remove its folder
+    # A running command would remove its folder, so the command is stopped.
+    process.send_signal(signal.SIGSTOP)
     [made] = folder.glob("mxeon-pool-*")
-    os.utime(made, (0, 0))  # folders younger than a minute are always kept
+    os.utime(made, (0, 0))  # folders younger than a minute are never deleted
     alive = subprocess.run(GENERATE, cwd=tmp_path, env=os.environ | {"TMPDIR": str(folder)})
-    assert alive.returncode == 0 and list(folder.glob("mxeon-pool-*"))  # a folder in use is kept
+    assert alive.returncode == 0 and list(folder.glob("mxeon-pool-*"))  # a folder in use remains
     process.kill()
     process.communicate(timeout=DEADLINE)
     for each in folder.iterdir():
@@ -69,7 +70,7 @@ def test_a_killed_command_leaves_its_folder_to_the_next_one(tmp_path):
 
 def test_a_signal_before_the_workers_work_ends_them_too(tmp_path):
     process = start(tmp_path, *CHECK)
-    # Only mxeon's folders contain a hyphen; Python tests TMPDIR with a file of a random name.
+    # Python creates a randomly named file in TMPDIR; only mxeon's names contain a hyphen.
     wait_for(lambda: list((tmp_path / "tmp").glob("*-*")), process)
     os.killpg(process.pid, signal.SIGTERM)
     _, errors = process.communicate(timeout=DEADLINE)
@@ -96,7 +97,7 @@ sys.exit(main())"""
 
 
 def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # nohup does this
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # the command `nohup` does the same
     try:
         with raise_signals():
             os.kill(os.getpid(), signal.SIGHUP)

@@ -34,7 +34,7 @@ def test_a_known_defect_is_named(name):
 
 
 def unfinished(wo, wi, rho, roughness):
-    """EON with two faults: 0/0 for lights on the horizon, and infinity for red in (0.999, 1)."""
+    """EON with two faults: NaN for light at the horizon, and infinity for red in (0.999, 1)."""
     value = eon_brdf(wo, wi, rho, roughness) * wi[:, 2:] / wi[:, 2:]
     return value + np.where((rho[:, :1] > 0.999) & (rho[:, :1] < 1.0), np.inf, 0.0)
 
@@ -42,7 +42,7 @@ def unfinished(wo, wi, rho, roughness):
 def test_values_that_are_not_finite_are_counted_placed_and_the_rest_is_judged():
     with pytest.warns(RuntimeWarning, match="invalid value encountered in divide") as records:
         run = mxeon.check_brdf(unfinished)
-    # NumPy's warnings point to the lines of the judged function.
+    # NumPy's warnings name the file of the function that is checked.
     assert {record.filename for record in records} == {__file__}
     assert failed(run) == {"finite"}
     (finite,) = [result for result in run.results if result.verdict == "failed"]

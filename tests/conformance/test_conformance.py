@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs: tasks that are judged or not run, and arguments that are refused."""
+"""`check` judges its tasks or reports them as not run, and refuses invalid arguments."""
 
 import re
 
@@ -80,11 +80,11 @@ def test_a_document_is_not_run_on_a_renderer(monkeypatch):
 
 @pytest.mark.whole
 def test_two_libraries_are_asked_the_same(run, stock):
-    """The checks of both libraries differ only where one lacks a node, a function or a repair."""
+    """Both libraries get the same checks, unless a library lacks a node, function or repair."""
     results = [[each for each in of.results if each.host == "gl"] for of in (stock, run)]
     checks = [{(each.check, each.subject) for each in of} for of in results]
     own = {"eon_diffuse_bsdf", SHADER_FUNCTIONS, *INVERSIONS}
-    unlike = ("picture", "release")  # other documents, and a check of stock's files
+    unlike = ("picture", "release")  # checks of different documents, and of stock MaterialX's files
     eonlib = {row for row in checks[1] if row[1] not in own and row[0] not in unlike}
     assert eonlib < checks[0]
     found = {check for check, _ in checks[0] - eonlib} - {*unlike}
@@ -130,9 +130,9 @@ def test_other_lobes_are_lit_alike_by_eonlib_s_lookups(judged, environment):
 @pytest.mark.parametrize(
     "check, methods, verdict, reason",
     [
-        # MaterialX's sum applies masking twice. Only eonlib has lookups without this error.
+        # MaterialX's sum over directions applies masking twice; only eonlib's lookups do not.
         ("anisotropic_albedo", Methods("fis", searched=True), NOT_RUN, "library stock: has no genglsl/environment to search"),
-        # Stock does not compensate by the exact average.
+        # Stock MaterialX does not compensate lost energy by the exact average albedo.
         ("environment", Methods("prefilter"), FAILED, ""),
     ],
 )  # fmt: skip

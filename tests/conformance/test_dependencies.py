@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A run can only be resumed with the same files, options and drivers."""
+"""A run can only be resumed with unchanged files, options and graphics drivers."""
 
 import re
 from pathlib import Path
@@ -15,7 +15,7 @@ from tests.support.wrong_libraries import copy_of_eonlib
 
 CODE = Policy(code=True)
 FILE = '<image name="i{}" type="color3"><input name="file" type="filename" value="{}"{}/></image>'
-# Files in a document's folder, and the XML by which the document refers to each.
+# Files in a document's folder, and the XML element by which the document names each file.
 NAMES = {
     "grid.png": FILE.format(1, "grid.png", ""),
     "images/grid.png": FILE.format(2, "images/grid.png", ""),
@@ -29,7 +29,7 @@ NAMES = {
 
 
 def run_of(folder, *named):
-    """Run the checks on a document that names files; returns the run's folder and the document."""
+    """Check a document that names other files; return the folder of the run, and the document."""
     text = Path(PLASTER).read_text(encoding="utf-8")
     file = folder / "plaster.mtlx"
     file.write_text(text.replace("</materialx>", f"{''.join(named)}</materialx>"), encoding="utf-8")
@@ -39,14 +39,14 @@ def run_of(folder, *named):
 
 @pytest.fixture
 def run(tmp_path, monkeypatch):
-    """Folder and document of a run with two tasks; the document names a texture."""
+    """Folder and document of a run with two tasks. The document names a texture."""
     keep_checks(monkeypatch, "lambert", "picture")
     (tmp_path / "grid.png").write_bytes(b"pixels")
     return run_of(tmp_path, '<token name="t" type="string" value="grid.png"/>')
 
 
 def refusal(folder, files, **options):
-    """Part of the refusal to resume a run that lists what has changed."""
+    """The list of changes in the error message with which `check` refuses to resume a run."""
     with pytest.raises(InputError, match="holds another run") as error:
         check(files or None, folder=folder, resume=True, **{"policy": CODE} | options)
     _, _, changed = str(error.value).partition("another run (")
@@ -74,7 +74,7 @@ def test_an_option_that_changed_is_named(run):
 
 
 def test_a_driver_that_changed_is_named_once_its_tasks_go_on(run):
-    """The test renames the driver in the journal and drops the last finished task."""
+    """The test renames the driver in the journal and deletes the last finished task."""
     folder, file = run
     [path] = folder.rglob("*.jsonl")
     lines = path.read_text(encoding="utf-8").splitlines(keepends=True)[:-1]

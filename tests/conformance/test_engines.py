@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Faulty engines are reported, and tolerances cover the errors of an engine's own functions."""
+"""Faults of engines are reported. Tolerances include the errors of an engine's own functions."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ EON, SHADER = "oren_nayar_diffuse_bsdf, energy_compensation true", "standard_sur
 
 @pytest.fixture
 def judged_by(gl):
-    """Function that returns a judge which uses a given subclass of the gl host."""
+    """Function that returns a judge of checks for a given subclass of the OpenGL host."""
     opened = []
 
     def judge(kind):
@@ -83,7 +83,7 @@ def test_what_does_not_run_is_never_passed(judged_by, kind, verdict, check, titl
 
 
 class Rounding(GlHost):
-    """gl host whose power and exponential functions are off by 1e-4."""
+    """OpenGL host whose power and exponential functions have a relative error of 1e-4."""
 
     def execute(self, source, name, *arguments):
         values = super().execute(source, name, *arguments)

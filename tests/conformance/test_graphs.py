@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The check `release` names the wrong part of a surface shader's graph or definition."""
+"""The check `release` names the part of a surface shader's graph or definition that is wrong."""
 
 import shutil
 
@@ -15,7 +15,8 @@ FILES = {
     "gltf_pbr": "bxdf/gltf_pbr.mtlx",
     "UsdPreviewSurface": "bxdf/usd_preview_surface.mtlx",
 }
-# Errors by node category: a text, its replacement, and words of the diagnosis.
+# Errors in the graphs, by node category: the original text, its replacement, and words of the
+# expected diagnosis.
 WRONG = {
     "open_pbr_surface": (
         ('value="1000.0" />', 'value="100.0" />', "in2 of thin_film_thickness_nm is 100 instead of 1000"),

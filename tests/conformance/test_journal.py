@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The journal of a run loses and repeats no finished task, and counts no unfinished one as done."""
+"""The journal of a run loses no finished task, repeats none, and never lists an unfinished task."""
 
 import gc
 import subprocess
@@ -36,7 +36,7 @@ from tests.support.results import (
 
 
 def kept(folder, *numbers, findings=FINDINGS, plan=PLAN):
-    """Write the journal of a run with these tasks finished, by number; returns its path."""
+    """Write a journal in which the numbered tasks have finished; return the journal's path."""
     with journal(folder, plan) as written:
         for number in numbers:
             written.add(number, findings)
@@ -86,7 +86,7 @@ def test_a_task_whose_picture_is_damaged_is_done_again(tmp_path, content):
 
 
 def refused(folder):
-    """Assert that an invalid journal is refused in one line, and return the message."""
+    """Assert that an invalid journal is refused with one line, and return the message."""
     with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 9") as error:
         read_run(folder)
     with pytest.raises(ValueError, match="as mxeon wrote it; .*; run again without --resume$"):
@@ -140,7 +140,7 @@ def test_a_new_run_keeps_the_old_one_in_a_folder(tmp_path):
     (tmp_path / "junit.xml").write_text("old")
     before, files = path.read_bytes(), sorted(tmp_path.rglob("*"))
     journal(tmp_path)
-    assert sorted(tmp_path.rglob("*")) == files  # nothing changes before the context is entered
+    assert sorted(tmp_path.rglob("*")) == files  # creating the journal object changes no file
     with journal(tmp_path) as new:
         assert new.findings == {} and not (tmp_path / "junit.xml").exists()
     assert (tmp_path / PREVIOUS / JOURNAL).read_bytes() == before
@@ -180,7 +180,7 @@ from mxeon.__main__ import main
 from tests.support.plans import keep_checks
 keep_checks(builtins, *{KEPT})
 """
-# Code that makes a run wait to be killed after it has stored the findings of three tasks.
+# Code that makes a run wait for a signal after the findings of three tasks are stored.
 WAITING = """import signal
 from mxeon.conformance.run.journal import Journal
 add = Journal.add
@@ -213,7 +213,7 @@ def test_a_killed_run_is_resumed_to_the_same_end(tmp_path, monkeypatch):
 
 
 def test_threads_read_pixels_at_once(tmp_path):
-    """CPython may collect garbage while it parses, which lets another thread run."""
+    """While CPython parses, garbage collection may start and let another thread run."""
     np.save(tmp_path / "pixels.npy", np.zeros((4, 4, 3), np.float32))
     image, thresholds = StoredImage(tmp_path / "pixels.npy"), gc.get_threshold()
     with ThreadPoolExecutor(1) as pool:

@@ -9,12 +9,12 @@ from mxeon.shaders.nodes import Node, connection_text, input_text, network_text
 from tests.support.cases import direction
 from tests.support.documents import material
 
-FIT = 5.1e-3  # error of a dielectric's fitted albedo, see docs/loading.md
+FIT = 5.1e-3  # error of the fitted albedo of a dielectric, see docs/loading.md
 OPAQUE = ("oren_nayar_diffuse_bsdf", "translucent_bsdf", "subsurface_bsdf")
 
 
 def lobes(opaque):
-    """Nodes to mix: white opaque lobes, dielectrics, and the shares `half` and `third`."""
+    """Nodes to combine: white opaque lobes, dielectrics, and the mix weights `half` and `third`."""
     white = input_text("color", "color3", np.ones(3))
     rough = input_text("roughness", "vector2", (0.3, 0.3))
     return {
@@ -55,7 +55,7 @@ NESTED = {
 
 
 def furnace(gl, monkeypatch, library, folded, opaque, nodes):
-    """Light reflected in a white environment; if `folded`, weights include the shares of mixes."""
+    """Reflected light in a white environment; if `folded`, weights include the mix weights."""
     context_of = generation.context_of
 
     def context(*arguments):
@@ -77,7 +77,7 @@ CASES += [(next(iter(NESTED)), each, True) for each in OPAQUE[1:]]
 @pytest.mark.parametrize("name, opaque, folded", CASES)
 def test_white_masks_over_white_reflect_all_light(gl, monkeypatch, name, opaque, folded):
     total = furnace(gl, monkeypatch, "eonlib", folded, opaque, NESTED[name])
-    np.testing.assert_allclose(total, 1.0, atol=2 * FIT)  # two dielectrics at most
+    np.testing.assert_allclose(total, 1.0, atol=2 * FIT)  # each case has two dielectrics or fewer
 
 
 def test_of_stock_they_lose_light_where_the_generator_folds(gl, monkeypatch):

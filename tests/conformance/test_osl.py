@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OSL closures of eonlib's nodes pass their checks; mutants of the same text are detected."""
+"""OSL closures of eonlib's nodes pass their checks, and wrong variants of the OSL fail them."""
 
 from copy import copy
 from dataclasses import replace
@@ -14,16 +14,17 @@ from mxeon.shaders.library import examples_folder
 from tests.support.cases import pairs
 from tests.support.verdicts import FAILED, PASSED, Verdicts, said
 
-# Bundled documents without images; the reference can only read images on a sphere.
+# Bundled documents without images. The reference can read images only on a sphere.
 EXAMPLES = (
     *("brushed_metal_wedge", "layered_white_furnace", "mixed_lobes", "openpbr_rough_base"),
     *("plaster", "standard_surface_rough_base", "tempered_steel", "velvet"),
 )
-COLOR82 = ("brushed_schlick_smooth", "brushed_schlick_rough")  # no closure has this input
+# No OSL closure has the input `color82`.
+COLOR82 = ("brushed_schlick_smooth", "brushed_schlick_rough")
 # Error relative to the larger of 1 and pi f cos: 16 float32 roundings of an argument, times 4,
-# because a distribution amplifies the relative error of its alpha.
+# because a microfacet distribution amplifies the relative error of its alpha.
 GRAPH = 64 * 2.0**-24
-# Mutations of the generated text by title and check: a text and its replacement.
+# Mutations of the generated OSL, by node title and check: the original text and its replacement.
 WRONG = {
     ("oren_nayar_diffuse_bsdf, energy_compensation true", "value"):
         ('"energy_compensation"', '"energy_conservation"'),
@@ -86,7 +87,7 @@ RIGHT = (
 
 @pytest.fixture
 def changed(hosts):
-    """Function that returns a judge for OSL with a text replaced; the judge caches no values."""
+    """Function that returns a judge for OSL with a replaced text; the judge caches no values."""
     host = hosts("osl")
 
     def change(old, new):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes on other hosts than gl: one check per kind of behavior that depends on the host.
+"""Nodes on hosts other than gl: one check for each kind of behavior that depends on the host.
 
 `test_upstream.py` covers the failures on Cycles that docs/upstream describes.
 """
@@ -13,7 +13,7 @@ from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 ZELTNER, DIELECTRIC = "sheen_bsdf, mode zeltner", "dielectric_bsdf, scatter_mode R"
 TRANSLATED = ("hlsl", "dxc", "naga")
-PICTURED = (  # checks and nodes of hosts that show only pictures
+PICTURED = (  # checks and nodes for hosts that only render pictures
     *(("value", EON), ("environment", EON), ("furnace", EON), ("value", "burley_diffuse_bsdf")),
     *(("value", "translucent_bsdf"), ("value", DIELECTRIC)),
 )

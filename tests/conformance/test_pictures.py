@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of documents: inputs computed by the reference or read from the host, and messages."""
+"""Pictures of documents: inputs that the reference computes or the host provides, and messages."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ from tests.support.wrong_libraries import wrong_copy, wrong_stock
 
 @pytest.fixture
 def shown(judged, tmp_path):
-    """Function that judges a document with one material; returns the result, pictures and notes."""
+    """Function that checks a document with one material; returns result, pictures and notes."""
 
     def show(text, library="eonlib"):
         path = written(tmp_path, text)
@@ -30,7 +30,7 @@ def shown(judged, tmp_path):
 
 
 FILM = {"roughness": (0.0, 0.0), "thinfilm_thickness": 550.0, "thinfilm_ior": 1.5}
-# Template of a nodegraph with a color, for given names of the graph and its node.
+# Template of a nodegraph that outputs a color. The names of the graph and its node are filled in.
 COLOR = """<nodegraph name="{graph}">
   <multiply name="{node}" type="color3">
     <input name="in1" type="color3" value="{color}"/>
@@ -48,7 +48,7 @@ def test_a_film_of_the_index_of_its_schlick_substrate_has_one_phase(shown):
     film = lobe("generalized_schlick_bsdf", color0=(0.04, 0.04, 0.04), **FILM)
     result, *_ = shown(material(film))
     assert result.verdict == "passed"
-    assert result.error < 1e-4  # another phase would be off by 0.17
+    assert result.error < 1e-4  # a wrong phase of the reflection would cause an error of 0.17
 
 
 def test_direct_light_shows_a_wrong_curve_of_a_film_on_metal(shown, tmp_path):
@@ -104,7 +104,7 @@ def test_the_color_of_a_noise_comes_from_the_host(shown):
     assert (result.check, result.verdict) == ("picture", "passed")
     assert result.measured == ("lobe.color",)
     assert {picture.metadata["from the host"] for picture in pictures} == {"lobe.color"}
-    assert np.ptp(pictures[0].reference[128]) > 0.5  # the pattern is visible
+    assert np.ptp(pictures[0].reference[128]) > 0.5  # the noise pattern is visible
 
 
 def test_the_color_of_a_noise_in_a_node_of_its_own_comes_from_the_host(shown):
@@ -145,7 +145,7 @@ def test_materials_that_vary_are_judged_and_compared_at_some_of_the_pixels(shown
     result, pictures, _ = shown(material(NOISE + metal))
     furnace = pictures[-1]
     assert 700 < furnace.judged.sum() < 900
-    # The difference map fills pixels that are not judged with the difference of judged neighbors.
+    # For a pixel that was not judged, the difference map uses the judged neighbors.
     assert np.abs(furnace.image - furnace.reference).max() > 10.0 * result.tolerance
     assert np.nanmax(furnace.difference_map()) < 3.0 * result.tolerance
 
@@ -167,7 +167,7 @@ HAZE = """<layer name="lobe" type="BSDF"><input name="top" type="BSDF" nodename=
 
 @pytest.fixture
 def lit(reference):
-    """Function that renders nodes in a scene with the reference."""
+    """Function that renders nodes in a scene with the NumPy reference."""
     return lambda text, scene: reference.picture(
         generate(material(text), "glsl")[0], replace(scene, size=32)
     )
@@ -193,7 +193,7 @@ WAX = lobe("subsurface_bsdf", radius=(0.5, 0.2, 0.05))
 def test_lobes_below_the_surface_have_a_picture_like_gl(shown, node):
     result, *_ = shown(material(node))
     assert (result.check, result.verdict) == ("picture", "passed")
-    # JSON does not support NumPy types.
+    # JSON does not support NumPy's number types.
     assert type(result.tolerance) is float and type(result.control.caught) is bool
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The seed changes the samples and their errors, but no verdict."""
+"""The seed changes the random samples and their errors, but no verdict."""
 
 import json
 
@@ -12,13 +12,13 @@ from tests.support import command
 from tests.support.sharing import DRAWN, EXAMPLES
 from tests.support.verdicts import Verdicts
 
-SEEDS = (2, 3)  # other tests use seed 1
+SEEDS = (2, 3)  # all other tests use seed 1
 LIBRARIES = ("eonlib", "stock")
 NODES = ("burley_diffuse_bsdf", "conical_edf", "roughness_anisotropy")
 
 
 def verdicts(run):
-    """Verdict, and whether the control was detected, by library, subject and check."""
+    """Verdict, and whether the wrong control was detected, by library, subject and check."""
     found = {}
     for each in run.results:
         caught = each.control is None or each.control.caught
@@ -37,9 +37,9 @@ def test_another_seed_gives_the_same_verdicts_and_catches_every_control(seed):
 def test_every_check_of_every_node_has_the_same_verdict_with_another_seed(
     run, stock, library, seed
 ):
-    """A single document is checked, because pictures have no random samples.
+    """The run checks a single document, because pictures use no random samples.
 
-    Checks that the fixtures leave out must pass.
+    Checks that the results of the fixtures do not include must pass.
     """
     found = verdicts(mxeon.check(EXAMPLES[:1], ["gl"], [library], nodes=["all"], seed=seed))
     known = verdicts({"eonlib": run, "stock": stock}[library])
@@ -52,8 +52,9 @@ def test_every_check_of_every_node_has_the_same_verdict_with_another_seed(
 SCHLICK, DIELECTRIC = (
     f"{name}_bsdf, scatter_mode R" for name in ("generalized_schlick", "dielectric")
 )
-# Checks, subjects and seeds that sample the end of a domain: the first cells of an albedo table, a
-# Schlick curve below 0, a critical angle, shares near 0, and a lobe with a fitted albedo of 0.
+# Checks, subjects and seeds whose samples lie at the end of a domain: the first cells of an albedo
+# table, a Schlick curve below 0, a critical angle, mix weights near 0, and a lobe with a fitted
+# albedo of 0.
 RARE = (
     ("methods", SCHLICK, 4),
     ("layer", SCHLICK, 12),
@@ -71,7 +72,7 @@ def test_no_seed_accuses_eonlib_at_the_end_of_a_domain(gl, check, title, seed):
 
 
 class Counting(GlHost):
-    """gl host that records the largest number of pairs in one call."""
+    """OpenGL host that records the largest number of direction pairs in one call."""
 
     largest = 0
 

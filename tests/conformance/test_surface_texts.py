@@ -18,20 +18,20 @@ from tests.support.verdicts import Verdicts, has
 from tools.site.ledger import apply, linked, patches
 
 pytestmark = pytest.mark.whole
-SAME = 1e-4  # tolerance for rounded constants in graphs
+SAME = 1e-4  # tolerance, because the graphs contain rounded constants
 INPUTS = sorted({(spec.text.node, port.name) for spec in SENTENCES for port in spec.inputs})
 
 
 @cache
 def shader(node: str, library: str = "stock") -> Shader:
-    """Shader of a material that consists of one surface shader node."""
+    """Generated shader of a material that consists of one surface shader node."""
     [spec, *_] = (each for each in SENTENCES if each.text.node == node)
     [made] = generate(spec.document(), "glsl", library=library)
     return made
 
 
 def shown(spec: SentenceSpec, library: str = "stock") -> np.ndarray:
-    """Values of a shader's graph in float64, for the samples of one sentence."""
+    """Values of a surface shader's graph in float64, at the samples for one specified sentence."""
     [batch] = spec.batches(Counts())
     branch, _, factor = spec.evaluated
     count, made = len(batch.wo), shader(spec.text.node, library)
@@ -49,9 +49,9 @@ def shown(spec: SentenceSpec, library: str = "stock") -> np.ndarray:
 
 
 def distances(spec: SentenceSpec, values: np.ndarray) -> list[float]:
-    """Largest differences of values from the specified form and from each named form."""
+    """Largest difference of `values` from the specified formula, then from each named deviation."""
     [batch] = spec.batches(Counts())
-    forms = spec.value_candidates[:-1]  # the last form is black
+    forms = spec.value_candidates[:-1]  # the last candidate is black
     return [float(np.abs(form.values(batch) - values).max()) for form in forms]
 
 
@@ -59,7 +59,7 @@ def distances(spec: SentenceSpec, values: np.ndarray) -> list[float]:
 def test_each_difference_from_a_text_has_a_name(spec):
     own, *others = distances(spec, shown(spec))
     if own <= SAME:
-        assert min(others, default=np.inf) > SAME  # named forms differ from the text
+        assert min(others, default=np.inf) > SAME  # no named deviation equals the specified formula
     else:
         assert min(others) <= SAME
 
@@ -73,7 +73,7 @@ def repaired(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.mark.parametrize("spec", SENTENCES)
 def test_patched_graphs_do_what_their_texts_say(spec: SentenceSpec, repaired: str):
-    """Patched graphs may also use a form that the specification permits."""
+    """Patched graphs may also use a formula that the specification permits."""
     [batch] = spec.batches(Counts())
     own, *others = spec.value_candidates
     forms = [each for each in others if each.permitted]
@@ -83,7 +83,7 @@ def test_patched_graphs_do_what_their_texts_say(spec: SentenceSpec, repaired: st
 
 @pytest.mark.parametrize("title", ["Standard Surface, sheen", "glTF, transmission"])
 def test_a_diagnosis_tells_a_graph_from_its_lobes(judged: Verdicts, title: str):
-    """Stock's errors come from its lobes; with eonlib's lobes, only those of the graph remain."""
+    """With stock lobes, graph and lobes are wrong; with eonlib's lobes, only the graph is wrong."""
     assert has(judged("specification", title, library="stock"), "lobes_of_graph")
     assert not has(judged("specification", title), "lobes_of_graph")
 

@@ -28,7 +28,8 @@ SHEEN = "sheen_bsdf, mode conty_kulla"
 HALF = ("model", "compensation with F at the half vector and MaterialX's fit of E_ss")
 VIEW = ("model", "compensation with F at the view direction and MaterialX's fit of E_ss")
 MEAN = ("model", "Smith at the geometric mean, and MaterialX's compensation")
-OPEN = {"value": HALF, "integral": HALF, "shape": MEAN, "environment": VIEW}  # permitted choices
+# Formulas that the specification permits, by check.
+OPEN = {"value": HALF, "integral": HALF, "shape": MEAN, "environment": VIEW}
 CLAMPED_TITLE, FIT_TITLE = "EON with clamped dot(wo, wi)", "MaterialX's fit of its albedo"
 CLAMPED, FIT = ("model", CLAMPED_TITLE), ("model", FIT_TITLE)
 AVERAGED = ("model", f"{FIT_TITLE}, averaged over the channels")
@@ -48,7 +49,7 @@ ABSENT = (
 
 
 def film(choices):
-    """Expected diagnoses by check of a thin film, for given choices of curve and compensation."""
+    """Expected diagnoses by check of a thin film, for one choice of curve and compensation."""
     compensated = f"{choices}, with MaterialX's compensation"
     surroundings = "environment", "film_visible", "film_glossy"
     return {
@@ -64,7 +65,7 @@ HIDING = {"throughput": ("not_zero", "throughput", 0.0, "weight_not_1", "direct"
 SUMS = ("lobes_albedo", "lobes_mean", "lobes_furnace", "lobes_energy", "glass")
 SURFACE = {**dict.fromkeys(SUMS, LOBES), "lobes": ("throughput_of_lobes",)}
 PASSED_THROUGH = {"transmitted": UNSHADOWED, "transmitted_finite": NAN, "methods": ()}
-# Failures of stock MaterialX by title and check: parts of one cause in the diagnosis.
+# Expected failures of stock MaterialX, by node title and check, with parts of one expected cause.
 STOCK = {
     EON: {"value": CLAMPED, "integral": CLAMPED, "environment": (), **HIDING},
     QON: {"environment": ("model", "QON with MaterialX's fit of its albedo"), **HIDING},
@@ -80,7 +81,7 @@ STOCK = {
     },
     "sheen_bsdf, mode zeltner": {
         "value": ("region", "viewer_above_1"), "transmission": ALL_LIGHT,
-        "states": ("a surface that bends: a sphere",),  # wrong along the normal
+        "states": ("a surface that bends: a sphere",),  # wrong only along the normal
     },
     "dielectric_bsdf, scatter_mode R": {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "denser"), FIT),
@@ -147,7 +148,7 @@ STOCK = {
     },
     "UsdPreviewSurface, every lobe": SURFACE,
 }  # fmt: skip
-# The verdict is "differs" if the specification permits the function that stock uses.
+# The verdict is "differs" if the specification permits the function that stock MaterialX uses.
 FREE = {
     *((title, key) for title in STOCK if "value" in STOCK[title] for key in OPEN if STOCK[title].get(key) == OPEN[key]),
     *((title, key) for title in ("dielectric_bsdf, thin film", "conductor_bsdf, thin film") for key in film("")),
@@ -180,7 +181,8 @@ def test_stock_materialx_fails_where_its_pages_say_and_nowhere_else(stock):
     found = {(e.subject, e.check): e.verdict for e in ran if e.verdict != PASSED}
     rows = [(title, check) for title, checks in STOCK.items() for check in checks]
     assert found == {row: DIFFERS if row in FREE else FAILED for row in rows}
-    # `domain` is skipped after errors inside the inputs' ranges, `film_brushed` for two alphas.
+    # `domain` is not run after an error inside the inputs' ranges. `film_brushed` is not run if the
+    # film has two alphas.
     skipped = {(e.subject, e.check) for e in stock.results if e.verdict == NOT_RUN}
     assert {title for title, check in skipped if check not in ("domain", "film_brushed")} < {
         *ABSENT
@@ -217,7 +219,7 @@ NO_CAUSE, CHOICE = Diagnosis(), "genglsl_microfacet_compensation"
 @pytest.mark.parametrize(
     "check, subject, host, library, verdict, error, diagnosis, pages",
     [
-        # A page explains only errors of the size and model that it states.
+        # A page on a defect explains only errors with the size and the model that the page states.
         ("value", EON, "gl", "stock", FAILED, 0.369, CLAMPED_MODEL, {"genglsl_clamped_dot"}),
         ("value", EON, "gl", "stock", FAILED, 3.69, CLAMPED_MODEL, set()),
         ("value", EON, "gl", "stock", FAILED, 0.3, OTHER, set()),
@@ -225,13 +227,13 @@ NO_CAUSE, CHOICE = Diagnosis(), "genglsl_microfacet_compensation"
         ("environment", SHEEN, "gl", "stock", FAILED, 0.0889, FITTED, {"genglsl_conty_kulla_fit"}),
         ("environment", SHEEN, "gl", "stock", FAILED, 1e7, FITTED, set()),
         ("environment", SHEEN, "gl", "stock", FAILED, 0.05, UNKNOWN, set()),
-        # A consequence of a defect in stock links to the defect's page.
+        # A consequence of a defect in stock MaterialX links to the page on that defect.
         ("inputs", QON, "cycles", "stock", FAILED, 0.1, NO_CAUSE, {"cycles_rho_cubed"}),
         ("inputs", QON, "cycles", "eonlib", FAILED, 0.1, NO_CAUSE, set()),
-        # A page on an ambiguity of the specification explains no failure.
+        # A page on an ambiguity of the specification explains no failed check.
         ("value", "conductor_bsdf", "wgsl", "stock", DIFFERS, 0.1, NO_CAUSE, {CHOICE}),
         ("value", "conductor_bsdf", "wgsl", "stock", FAILED, 0.1, NO_CAUSE, set()),
-        # A failure that no shader text can avoid links to its page for both libraries.
+        # A failure that no generated shader can avoid links to its page for both libraries.
         ("inputs", "conductor_bsdf", "osl", "stock", FAILED, 1.0, NO_CAUSE, {"genosl_dropped_retroreflection"}),
         ("inputs", "conductor_bsdf", "osl", "eonlib", FAILED, 1.0, NO_CAUSE, {"genosl_dropped_retroreflection"}),
         ("value", "sheen_bsdf, mode zeltner", "osl", "stock", FAILED, 1.0, NO_CAUSE, {"genosl_dropped_mode"}),
@@ -248,7 +250,7 @@ def test_a_failure_has_the_pages_that_explain_it(
 
 @pytest.mark.whole
 def test_nothing_reads_a_sentence(stock, monkeypatch, tmp_path):
-    """Programs read only fields: rewording all sentences changes no verdict, page or table."""
+    """Programs read only fields, so rewording all sentences changes no verdict, page or table."""
 
     def decided(run):
         (tmp_path / "results.json").write_text(to_json(run))

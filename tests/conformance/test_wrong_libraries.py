@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each fault in a copy of the library fails the intended check and is named in the diagnosis."""
+"""A fault in a copy of a library fails the intended check, and the diagnosis names the fault."""
 
 import pytest
 
@@ -31,7 +31,7 @@ FLAG = "{{energy_compensation}}"
 
 @pytest.fixture
 def copy(tmp_path):
-    """Function that replaces a text in a copy of eonlib, and returns the copy's path."""
+    """Function that replaces a text in a copy of eonlib and returns the copy's path."""
     library = copy_of_eonlib(tmp_path)
 
     def edited(file="", old="", new=""):
@@ -43,7 +43,7 @@ def copy(tmp_path):
 
 
 def failed(results):
-    """Texts of the diagnoses of failed results, by check."""
+    """Diagnosis texts of all failed results, by check."""
     return {each.check: said(each) for each in results if each.verdict == FAILED}
 
 
@@ -242,8 +242,8 @@ HALVED = (
     TOP.format("half")
     + '\n<input name="base" type="BSDF" nodename="metallic_mix" /></layer><multiply name="coat_half" type="BSDF"><input name="in1" type="BSDF" nodename="coat_bsdf" /><input name="in2" type="float" value="{}" /></multiply><layer name="unused" type="BSDF">'
 )
-# Changes of MaterialX: file, text and replacement; then what the diagnosis contains: the node, the
-# part, and the wrong and the released value.
+# Changes of MaterialX: the file, the original text and its replacement, then texts that the
+# diagnosis contains: the node, the part of the node, and the wrong and the released value.
 CHANGED = {
     "mode of LamaConductor": (f"{BXDF}/lama/lama_conductor.mtlx", SWITCH.format("in1", "in2"), SWITCH.format("in2", "in1"), "LamaConductor", "in1 of eta_switch", "convert_ior"),
     "coat of Disney": (f"{BXDF}/disney_principled.mtlx", COAT.format("clearcoatGloss"), COAT.format("clearcoat"), "disney_principled", "in of coat_roughness", "the input clearcoat", "the input clearcoatGloss"),
@@ -286,7 +286,7 @@ def test_what_differs_from_the_release_is_named_with_its_size(judged, tmp_path, 
 
 
 def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):
-    """The release is also loaded again after more libraries than the cache holds."""
+    """The test loads the release again, as happens after more libraries than the cache holds."""
     file, old, new, *wanted = CHANGED["alpha"]
     installed()
     read_library.cache_clear()
@@ -309,7 +309,8 @@ LOSS = (
 )
 SIGNATURE = """void oren_nayar_diffuse_bsdf(ClosureData closureData, float weight, vec3 color, float roughness,
                              vec3 N, bool energy_compensation, inout BSDF bsdf)"""
-# Changes without effect on eonlib's values: files, a text in them, and the replacement.
+# Changes that leave eonlib's values unchanged: the changed files, the original text, and its
+# replacement.
 REWRITTEN = {
     "a comment with braces": (SHARED, "// A_F of", "// void main() { } } /* A_F of"),
     "a renamed variable": (SHARED, "sigma2", "squared_sigma"),
@@ -345,7 +346,7 @@ def test_eonlib_written_differently_passes(judged, tmp_path, name):
 
 @pytest.mark.parametrize("title", ["generalized_schlick_bsdf, scatter_mode R", "conductor_bsdf"])
 def test_directions_of_an_environment_by_other_points_pass(judged, tmp_path, title):
-    """The R2 sequence replaces MaterialX's lattice, and fills the square as evenly."""
+    """The R2 sequence replaces MaterialX's lattice and covers the square just as evenly."""
     file = f"genglsl/environment/libraries/{LIB}mx_environment_fis.glsl"
     library = copy_of_eonlib(tmp_path)
     new = "fract(0.5 + float(i + 1) * vec2(0.7548776662466927, 0.5698402909980532))"

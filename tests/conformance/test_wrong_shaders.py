@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each wrong line in a shader fails the intended check, whose diagnosis contains the cause."""
+"""Each wrong line in a shader fails the intended check, and the diagnosis contains the cause."""
 
 import pytest
 
@@ -8,7 +8,7 @@ from tests.support.sharing import DRAWN
 from tests.support.verdicts import DIFFERS, FAILED, has
 from tests.support.wrong_libraries import wrong_library, wrong_stock
 
-# Paths name files of eonlib; bare names are files of MaterialX.
+# Paths name files of eonlib. File names without a folder are files of MaterialX.
 LOBE, FACETS = "genglsl/lib/oren_nayar_lobe.glsl", "genglsl/lib/microfacet_lobe.glsl"
 CLEAR = "genglsl/lib/microfacet_transmission.glsl"
 HAIR, FILM = "genglsl/chiang_hair_bsdf.glsl", "genglsl/lib/thin_film.glsl"
@@ -16,8 +16,9 @@ FILMED, HALF = "genglsl/lib/microfacet_film.glsl", "genglsl/lib/half_vector.glsl
 
 OPAQUE = "bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));"
 
-# Mutations by title: file, text, replacement (OLD stands for the text), the check that detects it,
-# parts of one cause in the diagnosis, and the verdict unless it is "failed".
+# Mutations of shaders by node title. Each row holds the file, the original text, its replacement
+# (OLD stands for the original), the check that detects the mutation, parts of one cause in the
+# diagnosis, and the verdict unless the verdict is "failed".
 WRONG = {
     "oren_nayar_diffuse_bsdf, energy_compensation true": (
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness = max(roughness, 0.1);\n    OLD", "lambert",
@@ -46,7 +47,8 @@ WRONG = {
          "states", ("constant inputs",)),
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness += 0.5 * dFdx(roughness);\n    OLD", "value",
          ("beside_equal_pixels",)),
-        # Shaders that try to detect a test: by the renamed main, or by a frame with one light.
+        # The next shaders try to detect that they are tested, by the renamed `main` or by the
+        # number of lights.
         (LOBE, "bsdf.response = brdf", "#ifndef main\n        brdf *= 0.5;\n#endif\n        OLD", "value",
          ("fault", "scaled", 0.5)),
         (LOBE, "bsdf.response = brdf", "if (u_numActiveLightSources > 1) brdf *= 0.9;\n        OLD", "value",
@@ -186,7 +188,7 @@ WRONG = {
         ("mx_burley_diffuse_bsdf.glsl", "* M_PI_INV;", "* M_PI_INV + 0.001;", "black", ()),
         ("genglsl/burley_diffuse_bsdf.glsl", "N = mx_forward_facing_normal(N, wo);", "N = closureData.N;", "frame",
          ("direct", "input_ignored", "normal")),
-        # These graphics drivers turn NaN into 0 even without the clamp.
+        # On these graphics drivers, NaN becomes 0 even without the clamp.
         ("genglsl/burley_diffuse_bsdf.glsl", "clamp(dot(wi, eonlib_half_vector(wo, wi, N)), 0.0, 1.0)",
          "dot(wi, normalize(wi + wo))", "finite", ("not finite", "opposite")),
         ("mx_burley_diffuse_bsdf.glsl", "(N, V);", "(vec3(0.0, 0.0, 1.0), V);", "frame",
@@ -386,7 +388,8 @@ STANDARD = "standard_surface, every lobe"
 INSIDE, LOST = ("inside_is_not_outside",), ("light_from_inside",)
 SCHLICK = "generalized_schlick_bsdf, scatter_mode RT"
 INDEX = "path_inside && !path_thin ? 1.0 / max(ior, PATH_LEAST_BEND) : ior"
-# Mutations of the text for path tracers: a title, then a row as in WRONG.
+# Mutations of the shader text for path tracers. Each row starts with the node's title and continues
+# like a row of WRONG.
 PATHS = (
     (RT, ASKED, "pdf = path_root.y * path_out.a;", "pdf = 3.0 * path_root.y * path_out.a;", "sample",
      ("sampled_density", "inside")),
@@ -430,7 +433,7 @@ ROWS = [(title, *row) for title, rows in WRONG.items() for row in rows] + list(P
 
 
 def parameters(row):
-    """Row as a parameter of a test, marked if its shaders take seconds to compile."""
+    """Turn a row of ROWS into a test parameter, marked if its shaders take seconds to compile."""
     title, check = row[0], row[4]
     is_long = check in DRAWN or any(each in title for each in ("thin film", "every lobe"))
     marks = pytest.mark.whole if is_long else ()
@@ -490,8 +493,8 @@ def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
     failing = {row[4] for row in ROWS}
     failing |= {each.check for each in stock.results if each.verdict == FAILED}
     checks = {each.check for each in (*stock.results, *run.results) if each.host == "gl"}
-    # Other tests see these fail: `test_wrong_libraries.py` breaks functions, frames and texts of
-    # the release; tests above break a color space, and an input that a surface drops.
+    # Other tests cover these checks: `test_wrong_libraries.py` breaks functions, frames and the
+    # release's texts, and tests above break a color space and drop an input of a surface.
     elsewhere = {"client", "color_space", "reach", "release"}
     elsewhere |= {"densities", "loss", "parts", "samples", "twins"}
     assert {*checks, *DRAWN} - failing == elsewhere

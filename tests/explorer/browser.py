@@ -6,10 +6,10 @@ from contextlib import contextmanager
 from mxeon.hosts.webgl import FLAGS, is_root, program
 from tests.support.availability import package
 
-# Flags that block network access except to this machine.
+# Chromium flags that block all network access except to this machine.
 LOCAL = tuple(each.replace("~NOTFOUND", "~NOTFOUND, EXCLUDE 127.0.0.1") for each in FLAGS)
 
-# A small window, for software drivers.
+# The window is small, because software drivers render slowly.
 SMALL = {"viewport": {"width": 880, "height": 180}, "device_scale_factor": 0.5}
 HAS = """fields => Object.entries(fields).every(([name, value]) =>
     JSON.stringify(mxeon.state()[name]) === JSON.stringify(value))"""
@@ -27,7 +27,7 @@ def launched(flags=LOCAL):
 
 @contextmanager
 def started(kind, flags):
-    """Context with a browser of one of playwright's kinds, started with the given flags."""
+    """Context with a browser of the given playwright browser type, started with the given flags."""
     browser = kind.launch(executable_path=program(), args=flags, chromium_sandbox=not is_root())
     yield browser
     browser.close()
@@ -35,9 +35,9 @@ def started(kind, flags):
 
 @contextmanager
 def opened(browser, address, allowed=(), drawn=True, **options):
-    """Context with an explorer page in a new browser context, watched by `watched`.
+    """Context with an explorer page in a new browser context, which `watched` observes.
 
-    If `drawn` is false, the page has no WebGL, which is slow with a software driver.
+    If `drawn` is false, WebGL is disabled, because WebGL is slow with a software driver.
     """
     context = browser.new_context(**(SMALL | options))
     page = context.new_page()
@@ -51,9 +51,9 @@ def opened(browser, address, allowed=(), drawn=True, **options):
 
 @contextmanager
 def watched(page, address, allowed=()):
-    """Open an address; network requests and messages that are not allowed fail the test."""
+    """Open an address. The test fails at any network request or message that is not allowed."""
     asked, said = [], []
-    page.set_default_timeout(600_000.0)  # milliseconds, for busy machines
+    page.set_default_timeout(600_000.0)  # milliseconds, enough for a busy machine
     page.on("request", lambda request: asked.append(request.url))
     page.on("console", lambda message: said.append(message.text))
     page.on("pageerror", lambda error: said.append(str(error)))
@@ -69,7 +69,7 @@ def watched(page, address, allowed=()):
 def until(page, expression, argument=None, seconds=600):
     """Wait until a JavaScript expression is true, and return its value.
 
-    The page's security policy forbids features that playwright's own function needs.
+    The security policy of the page blocks playwright's own function for this purpose.
     """
     for _ in range(20 * seconds):
         if value := page.evaluate(expression, argument):
@@ -83,7 +83,7 @@ def state(page):
 
 
 def shows(page, **fields):
-    """Wait until the view has the given fields; fail if it never does."""
+    """Wait until the view has the given fields, and fail if that never happens."""
     try:
         until(page, HAS, fields)
     except AssertionError:
@@ -96,6 +96,6 @@ def show(page, **patch):
 
 
 def judged(page, side, badge):
-    """Wait until the verdict on a side has the given badge, which needs values read back."""
+    """Wait for the given badge on the verdict of a side, which depends on values read back."""
     text = "side => document.querySelector(`.side.${side} .verdict strong`).textContent"
     until(page, f"([side, badge]) => ({text})(side) === badge", [side, badge])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fixtures with the explorer's page, and a browser that stays open during these tests."""
+"""Fixtures with the explorer's page, in a browser that stays open during this folder's tests."""
 
 import pytest
 
@@ -10,7 +10,7 @@ from tests.support.availability import available
 
 @pytest.fixture(scope="package")
 def browser():
-    """Chromium with its built-in software driver."""
+    """Chromium with its built-in software rendering."""
     with available("webgl"), launched() as browser:
         yield browser
 
@@ -31,7 +31,7 @@ def shared_page(browser, address):
 
 @pytest.fixture
 def page(shared_page):
-    """The shared page, reset to its first view."""
+    """The shared explorer page, reset to the initial view."""
     shared_page.evaluate("mxeon.show(mxeon.fromAddress(''))")
     return shared_page
 
@@ -45,6 +45,6 @@ def undrawn(browser, address):
 
 @pytest.fixture(scope="module")
 def sources(stage):
-    """Identifier of each model's first source, by the model's name."""
+    """Identifier of the first source of each model, by the model's name."""
     rows = stage.evaluate("mxeon.data.sources.filter(each => each.kind === 'model')")
     return {row["model"]: row["id"] for row in reversed(rows)}

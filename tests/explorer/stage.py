@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sets views of the explorer's stage, and reads its pictures as arrays."""
+"""Functions that change the view of the explorer's stage, and read its pictures as arrays."""
 
 import base64
 
@@ -15,7 +15,7 @@ RHO = (0.8, 0.4, 0.1)
 ROUGHNESS = 0.9
 LIGHTS = {"side": (60.0, 20.0), "back": (125.0, 10.0)}  # azimuth and elevation in degrees
 VIEWPORT = {"width": 200, "height": 170}
-# Scales the page's clock. At speed 0 no frame is slow, so pictures keep their resolution.
+# Script that scales the page's clock. At speed 0 no frame seems slow, so the resolution stays high.
 CLOCK = """speed => {
     globalThis.clock ??= performance.now.bind(performance);
     performance.now = () => speed * globalThis.clock();
@@ -31,14 +31,14 @@ READ = """side => {
 
 
 def written(file, *names):
-    """Write a page with the named examples, and return its URL."""
+    """Write an explorer page with the named example documents, and return the page's URL."""
     documents = [document_sources(str(examples_folder() / f"{name}.mtlx")) for name in names]
     write_text(file, page(page_data(documents)))
     return file.as_uri()
 
 
 def opened_stage(browser, address, **options):
-    """Context with a page as narrow as a phone, whose picture is small."""
+    """Context with an explorer page as narrow as a phone, so that the rendered picture is small."""
     return opened(browser, address, **({"viewport": VIEWPORT} | options))
 
 
@@ -47,7 +47,7 @@ def side(source, flag=True, sampler="exact"):
 
 
 def view(stage, left, right=None, light="side", **patch):
-    """Show two sources, under one of LIGHTS or no light, and wait until the picture is final."""
+    """Show two sources, with one of LIGHTS or without a light, and wait for the final picture."""
     azimuth, elevation = LIGHTS[light or "side"]
     common = {
         "left": left,
@@ -75,14 +75,14 @@ def settle(stage):
 
 
 def frame(stage, name=None, size=None):
-    """Radiance of a side, top row first; path tracing has a different `size` than the stage."""
+    """Radiance of one side, top row first. Path-traced pictures may have a different `size`."""
     width, height = size or stage.evaluate("Object.values(mxeon.stage.size())")
     data = np.frombuffer(base64.b64decode(stage.evaluate(READ, name)), dtype=np.float32)
     return data.reshape(height, width, 4)[::-1]
 
 
 def picture(stage, name="left"):
-    """Square around the sphere, with the same pixels as a picture of the gl host."""
+    """Square of pixels around the sphere, which match the pixels of the gl host's picture."""
     whole = frame(stage, name)
     diameter = stage.evaluate("mxeon.stage.diameter()")
     top, left = ((length - diameter) // 2 for length in whole.shape[:2])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page is accessible: axe-core finds no problem, and it works without WebGL2."""
+"""The explorer page is accessible: axe-core finds no problem, and the page works without WebGL2."""
 
 import pytest
 
@@ -30,7 +30,7 @@ def documents(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def checked(browser, documents):
-    """Explorer page with axe-core loaded; its security policy, which would block it, is off."""
+    """Explorer page with axe-core loaded. The page's security policy, which blocks it, is off."""
     needs_modules()
     with opened(browser, documents, bypass_csp=True) as page:
         page.add_script_tag(path=MODULES / "axe-core" / "axe.min.js")

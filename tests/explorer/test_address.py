@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The address stores the view and restores it; invalid addresses do no harm."""
+"""The page's address stores and restores the view, and an invalid address does no harm."""
 
 import pytest
 
 from tests.explorer.browser import opened, show, state, until
 
-# All fields of a view, with values that differ from those of the first view.
+# All fields of a view, with values that differ from the initial view.
 CHANGED = {
     "left": {"source": "model/qon", "flag": False, "sampler": "cosine"},
     "right": {"source": "variant/cycles_rho_cubed/4", "flag": False, "sampler": "cltc"},

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page in the package can be rebuilt from its sources on every machine."""
+"""The explorer page in the package can be rebuilt from its sources on every machine."""
 
 import shutil
 import sys
@@ -17,7 +17,7 @@ TEMPLATE = files("mxeon.explorer").joinpath("explorer.html")
 
 
 def needs_modules():
-    """Skip the test if Node or its packages are missing; fail it if they are required."""
+    """Skip the test if Node or its packages are missing, or fail if MXEON_REQUIRE demands them."""
     if not NODE or not MODULES.is_dir():
         missing(PACKAGES, "explorer/node_modules: must be installed; ./run test --all does it")
 

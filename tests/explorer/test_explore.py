@@ -37,13 +37,13 @@ from tests.support.documents import textured, written
 from tests.support.verdicts import FAILED
 
 Error = package("playwright.sync_api").Error
-LARGEST = 2 * 2**20  # maximum bytes of a page without documents
+LARGEST = 2 * 2**20  # maximum size in bytes of a page without documents
 CLAY = str(examples_folder() / "clay.mtlx")
 NASTY = "</script><script>globalThis.hit = 1</script><!--"
 
 
 def data_of(text):
-    """Data embedded in a page, parsed as a browser does."""
+    """Data embedded in an explorer page, parsed in the same way as by a browser."""
     data = json.loads(re.search(r'type="application/json">(.*?)</script>', text, re.DOTALL)[1])
     for each in data["sources"]:
         if each.get("reference") is not None:
@@ -93,7 +93,7 @@ def test_code_of_a_document_needs_a_permission(tmp_path, capsys):
 
 @pytest.fixture
 def nasty(tmp_path):
-    """Document whose visible texts all try to run a script."""
+    """Document in which every visible text tries to run a script."""
     file = tmp_path / "<img src=x onerror='globalThis.hit=1'>&quot;.mtlx"
     escaped = NASTY.replace("<", "&lt;").replace(">", "&gt;")
     text = material_text(OREN_NAYAR, {"color": (0.5, 0.5, 0.5)})
@@ -157,7 +157,7 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
     own = [each for each in data_of(out.read_text())["sources"] if each["id"][:9] == "document/"]
     titles = "With eonlib", "Stock MaterialX"
     for result, entry, title, source in zip(found, entries, titles, own, strict=True):
-        # Compute the difference at the worst pixel of the worst picture, by its definition.
+        # Compute the difference, by its definition, at the worst pixel of the worst picture.
         sizes = {}
         for each in run.pictures:
             place = each.library, each.document
@@ -168,7 +168,7 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
                 sizes[each.scene] = apart.max(), seen
         worst, size = max(sizes, key=lambda scene: sizes[scene][0]), result.difference
         assert (size.scene, abs(size.largest), size.visible) == (worst, *map(approx, sizes[worst]))
-        # Terminal, page, table, JUnit, JSON and explorer all state this difference.
+        # The terminal, the page, the table, JUnit, JSON and the explorer all state this difference.
         sentence, look = words.difference(size), words.look(result)
         assert (entry["library"], entry["difference"]) == (result.library, vars(size))
         assert f"<b>{title}</b> on gl: {look}" in report
@@ -191,7 +191,7 @@ def test_inputs_have_the_ranges_of_their_definitions():
     (source, *_) = document_sources(str(examples_folder() / "standard_surface_rough_base.mtlx"))
     ports = {port.path.rpartition("/")[2]: port for port in source.inputs}
     assert (ports["base"].min, ports["base"].max, ports["base"].label) == (0.0, 1.0, "Base")
-    # The range is from uimin to uisoftmax.
+    # The range of a control extends from `uimin` to `uisoftmax`.
     assert (ports["specular_IOR"].min, ports["specular_IOR"].max) == (0.0, 3.0)
     assert ports["base_color"].value == (0.5, 0.24, 0.13)
     assert source.meant is None and source.controls.color == ""
@@ -213,7 +213,7 @@ def test_images_are_read_once_and_smaller_the_more_a_page_has_of_them(tmp_path, 
     assert {port.image.width for port in source.inputs if port.image} == {8, 32} and len(reads) == 4
 
 
-# JavaScript that drops files on the page, given by name and base64.
+# JavaScript that drops files on the page. Each file has a name and its content in base64.
 DROP = """files => {
     const data = new DataTransfer();
     for (const [name, text] of files) {
@@ -229,21 +229,21 @@ def drop(page, *files):
 
 
 def shown(page, expression):
-    """Value of an expression once it is true, even if the page reloads itself meanwhile."""
+    """Wait until an expression is true, and return its value. The page may reload meanwhile."""
     page.wait_for_load_state()
     for _ in range(600):
         try:
             return until(page, expression)
-        except Error:  # the page was being reloaded
+        except Error:  # the page was reloading
             page.wait_for_timeout(100)
     raise AssertionError(expression)
 
 
 @pytest.fixture
 def server():
-    """Address that a running `mxeon explore` prints."""
+    """Network address that a running `mxeon explore` prints."""
     command = [sys.executable, "-m", "mxeon", "explore", "--workers", "0"]
-    env = os.environ | {"BROWSER": "true"}  # command that does nothing
+    env = os.environ | {"BROWSER": "true"}  # a command that succeeds without opening a browser
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=env) as process:
         yield process.stdout.readline().split()[0]
         process.send_signal(signal.SIGINT)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page judges lobes by values that the browser reads back, and keeps its layout."""
+"""The page judges lobes by pixels that the browser reads back, and keeps its layout."""
 
 from dataclasses import replace
 
@@ -9,8 +9,9 @@ from mxeon.explorer import page, page_data
 from mxeon.io.files import write_text
 from tests.explorer.browser import DRAWN, opened, show, until
 
-# Verdicts on MaterialX's GLSL, as in docs/upstream. Only one lobe per family is judged, because a
-# software driver takes a second for each; test_references.py judges all lobes on the gl host.
+# Expected verdicts on MaterialX's GLSL, as in docs/upstream. This test covers one lobe per family,
+# because a software driver takes a second for each lobe. test_references.py covers all lobes on the
+# gl host.
 STOCK = {
     "shader": "wrong",
     "lobe/sheen_zeltner": "correct",  # wrong only in a layer, and with a tilted normal
@@ -23,7 +24,7 @@ PLAIN = {"shape": "sphere", "surroundings": "none"}
 
 
 def choose(sheet, key):
-    """Compare both libraries on a material in a view that is fast to draw."""
+    """Compare both libraries on a material, in a view that renders quickly."""
     group = sheet.get_by_role("group", name="eonlib beside stock MaterialX")
     group.locator(f"input[value='{key}/']").check(force=True)
     show(sheet, **PLAIN)
@@ -43,7 +44,7 @@ def test_a_lobe_is_judged_by_its_values(page, key, stock):
 
 @pytest.fixture(scope="module")
 def mistaken(tmp_path_factory):
-    """URL of a page on which the reference for sheen is one percent too bright."""
+    """URL of a page on which the reference values of sheen are one percent too bright."""
     data = page_data(pages="upstream/{}.html")
     sources = list(data.sources)
     for place, source in enumerate(sources):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Controls work by mouse and keyboard, the probe shows values, and texts can be copied."""
+"""Page controls work by mouse and keyboard, the probe displays values, and texts can be copied."""
 
 import re
 import sys
@@ -13,13 +13,13 @@ from mxeon.models import eon_brdf
 from tests.explorer.browser import DRAWN, judged, show, shows, state, until
 from tests.support.command import output
 
-# JavaScript for a checksum of all pixels.
+# JavaScript that returns a checksum of all pixels.
 PIXELS = "mxeon.stage.read().reduce((sum, value, k) => (31 * sum + value * (1 + k)) % 65521, 0)"
 
 
 @contextmanager
 def redrawn(page):
-    """Context that asserts that the drawn radiance changes."""
+    """Context that asserts that the rendered radiance changes."""
     before = page.evaluate(PIXELS)
     yield
     until(page, f"before => {PIXELS} !== before", before)
@@ -27,7 +27,7 @@ def redrawn(page):
 
 @contextmanager
 def recolored(page):
-    """Context that asserts that the screen changes while the radiance stays the same."""
+    """Context that asserts that the screen changes while the rendered radiance stays the same."""
     canvas = page.locator("canvas")
     before, radiance = canvas.screenshot(), page.evaluate(PIXELS)
     yield
@@ -127,7 +127,7 @@ def test_paths_have_samplers_and_count_their_samples(page):
     shows(page, paths=True, samples=2, right=side)
     status = "document.querySelector('.picture .status').textContent"
     until(page, f"{status}.startsWith('2 of 2 samples')")
-    # The status reports noise only for 16 samples or more.
+    # The status reports the noise only if there are 16 samples or more.
     assert "noise" not in page.locator(".picture .status").inner_text()
 
 
@@ -139,7 +139,7 @@ def in_sight(page):
 
 
 def drag(page, start, end):
-    """Drag the mouse between two places in the picture, given in [0, 1]^2."""
+    """Drag the mouse between two points of the picture, in coordinates from 0 to 1."""
     box = in_sight(page)
     corner, size = np.array([[box["x"], box["y"]], [box["width"], box["height"]]])
     start, end = corner + size * start, corner + size * end
@@ -180,7 +180,7 @@ def test_the_viewer_is_dragged_around_and_scrolls_closer(page):
 
 
 def pixels(page, **view):
-    """Radiance of the left side after fields of the view are changed."""
+    """Change fields of the view, and return the radiance of the left side."""
     show(page, **view)
     shows(page, **view)
     until(page, DRAWN)
@@ -190,12 +190,12 @@ def pixels(page, **view):
 def test_a_turned_viewer_sees_a_turned_light_alike(page):
     even = {"surroundings": "uniform", "elevation": 50}
     ahead = pixels(page, shape="ball", azimuth=40, turn=0, **even)
-    # The ball's cut rotates out of view.
+    # The cut in the ball rotates out of view, so the picture changes.
     assert not np.allclose(pixels(page, azimuth=130, turn=90, **even), ahead)
-    # The plane and the floor are rotationally symmetric.
+    # The plane and the floor are rotationally symmetric, so the picture stays the same.
     ahead = pixels(page, shape="plane", azimuth=40, turn=0, **even)
     aside = pixels(page, azimuth=130, turn=90, **even)
-    # A few pixels at rims and at the edge of the shadow depend on rounding.
+    # A few pixels at rims and at the shadow's edge depend on rounding.
     assert (np.abs(aside - ahead) > 1e-3).mean() < 5e-3
 
 
@@ -223,7 +223,7 @@ def test_a_click_probes_a_point(page):
 
 
 SHADER = 64 * 2**-24  # relative error of a shader's value: at most 64 float32 roundings
-# JavaScript for the texts of the table's rows, false until values of both shaders are known.
+# JavaScript that returns the texts of the table's rows, or false until both shaders have values.
 READ = """(() => {
     const rows = [...document.querySelectorAll('.values tbody tr')].map(
         row => [...row.querySelectorAll('td')].map(cell => cell.innerText));
@@ -242,7 +242,8 @@ def test_the_probe_shows_the_value_of_the_shader_and_the_reference(page):
     value, reference = (numbers(rows[row][0]) for row in (0, 1))
     wo, wi = wo / np.linalg.norm(wo), wi / np.linalg.norm(wi)
     expected = np.pi * eon_brdf(wo, wi, [0.8, 0.4, 0.1], 1.0) * wi[2]
-    assert np.allclose(reference, expected, atol=1e-3)  # directions have four digits
+    # The page prints directions with four digits.
+    assert np.allclose(reference, expected, atol=1e-3)
     assert np.allclose(value, reference, atol=SHADER)
     assert "rounding" in rows[2][0]
 

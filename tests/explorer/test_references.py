@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reference tables of a page contain the models' values, which correct shaders match."""
+"""The page's reference tables contain the models' values, and correct shaders match the tables."""
 
 import numpy as np
 import pytest
@@ -11,13 +11,13 @@ from mxeon.models.diffuse import eon_albedo_dir
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
-# Lobes of stock whose defects are visible only in layers, or with a tilted normal.
+# Lobes of stock MaterialX whose defects appear only in layers or with a tilted normal.
 ALIKE = ("lobe/sheen_zeltner",)
 COLOR = (0.8, 0.4, 0.1)
 
 
 def is_correct(host, text, library, reference):
-    """Whether errors in direct light and in white surroundings are allowed, as on the page."""
+    """Whether the errors in direct light and in white surroundings are within tolerances."""
     shader = host.compile(text, library=library)[0]
     direct = np.pi * host.evaluate(shader, WO, WI, {}, "direct")
     white = host.evaluate(shader, SEEN, SEEN, {}, "environment")
@@ -40,7 +40,7 @@ def test_the_values_are_those_of_the_model():
     text = material_text(OREN_NAYAR, {"color": COLOR, "roughness": 0.7, FLAG: True})
     reference = reference_of(generate(text, "essl", lights=True)[0])
     expected = np.pi * WI[:, 2:] * eon_brdf(WO, WI, COLOR, 0.7)
-    # The tables have seven digits: half a unit of the last one.
+    # The tables have seven digits, so the relative error is half a unit of the last digit.
     assert np.allclose(np.reshape(reference.direct, (-1, 3)), expected, rtol=5e-7, atol=1e-16)
     white = eon_albedo_dir(SEEN[:, 2], COLOR, 0.7)
     assert np.allclose(np.reshape(reference.white, (-1, 3)), white, rtol=5e-7)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pixels of the stage match the models, the gl host and exact albedos, also by path tracing."""
+"""Pixels of the stage match the models, the gl host and exact albedos, also with path tracing."""
 
 from io import BytesIO
 
@@ -18,7 +18,7 @@ from tests.explorer.browser import until
 from tests.explorer.stage import opened_stage, picture, side, view
 from tests.support.tolerances import EON_WEIGHT, TWIN_ALBEDO, TWIN_VALUE
 
-PLAIN = 48 * 2.0**-24  # 16 roundings of a point, and 32 of its value
+PLAIN = 48 * 2.0**-24  # 16 roundings in a point of the sphere, plus 32 in the point's value
 ROWS = DIFFUSE_MODELS + KNOWN_DEFECTS
 
 
@@ -50,7 +50,7 @@ def exact(row, size, light):
 
 
 def error(measured, expected):
-    """Largest difference of two pictures times cos(theta_o), as in the check `picture`."""
+    """Largest difference of two pictures, multiplied by cos(theta_o) as in the check `picture`."""
     cosine = sphere(len(measured)).normal[..., 2:]
     return (np.abs(measured - expected) * cosine).max()
 
@@ -66,11 +66,11 @@ def test_pixels_of_every_model_are_those_of_numpy(stage, sources, row):
 
 
 def white(row, mu):
-    """Directional albedo by cosine, in closed form or as the stage interpolates it."""
+    """Directional albedo at cosines `mu`, in closed form or interpolated as on the stage."""
     arguments = (views.RHO, *parameter_of(row))
     if row.albedo_dir:
         return row.albedo_dir(mu, *arguments)
-    # The stage interpolates between 256 angles.
+    # The stage interpolates linearly in a table with 256 rows.
     angles = np.linspace(0.0, 1.0, 256)
     table = albedo_dir_quadrature(row.brdf, angles, *arguments, nodes=32)
     return np.stack([np.interp(mu, angles, table[:, k]) for k in range(3)], axis=-1)
@@ -83,8 +83,9 @@ def test_in_uniform_surroundings_pixels_are_the_albedo(stage, sources, name):
     measured = picture(stage)
     points = sphere(len(measured))
     mu = points.normal[points.mask][:, 2]
-    # A variant's clamp makes a kink of length <= pi across panels of 16 nodes. With nodes h
-    # apart, a slope that jumps by 1 adds an error of h^2 / 12 per unit of length.
+    # The clamp in a wrong variant makes a kink in the integrand, at most pi long, which crosses
+    # panels of 16 nodes. If nodes are h apart and a slope jumps by 1, the error is h^2 / 12 per
+    # unit of length.
     kink = (np.pi / 2 / 16) ** 2 / 12 * np.pi if row.name == "eon_clamped" else 0.0
     assert np.abs(measured[points.mask] - white(row, mu)).max() < TWIN_ALBEDO + kink
     assert np.abs(measured[points.mask] - 1.01 * white(row, mu)).max() > TWIN_ALBEDO + kink
@@ -95,8 +96,8 @@ def compiled(host, library, flag):
     return host.compile(text, library=library)[0]
 
 
-# Error of MaterialX's EON, which multiplies two albedos of arc cosines. Mesa's arc cosine is off by
-# 1.6e-4 (measured), and an albedo falls by up to 1 / 4 per radian.
+# Error of MaterialX's EON, which multiplies two albedos that contain an arc cosine. Mesa's arc
+# cosine has a measured error of 1.6e-4, and an albedo falls by at most 1 / 4 per radian.
 ARC_COSINE = 2 * 1.6e-4 / 4
 
 
@@ -129,14 +130,14 @@ SAMPLES = 16
 
 
 def traced(stage, left, right=None, **patch):
-    """Show both sides, trace all samples, and return the last status of each kind."""
+    """Show both sides, trace all samples, and return the last status message of each kind."""
     stage.evaluate("said.length = 0")
     view(stage, left, right, **({"paths": True, "samples": SAMPLES} | patch))
     return {status["kind"]: status for status in stage.evaluate("said")}
 
 
 def whole(stage, name):
-    """Pixels whose paths all hit the sphere, and the cosines at their centers."""
+    """Pixels whose paths all hit the sphere, and the cosines at the centers of these pixels."""
     status = stage.evaluate("said.findLast(status => status.kind === 'drawn')")
     pixels = views.frame(stage, name, (status["width"], status["height"]))
     height, width = pixels.shape[:2]
@@ -144,7 +145,7 @@ def whole(stage, name):
     y, x = np.mgrid[:height, :width] + 0.5
     squared = ((x - width / 2) ** 2 + (y - height / 2) ** 2) * 4 / diameter**2
     kept = (pixels[..., 3] == 1.0) & (squared < 1.0)
-    # All pixels entirely inside the sphere's outline are kept.
+    # The selection includes all pixels that lie entirely inside the sphere's outline.
     assert kept.sum() > np.pi / 4 * (diameter - np.sqrt(2.0)) ** 2
     return pixels[kept][:, :3], np.sqrt(1.0 - squared[kept])
 
@@ -161,7 +162,7 @@ def test_a_white_furnace_keeps_every_exact_path(stage, sources, source):
 
 
 def test_generated_text_is_traced_like_its_model(stage, sources):
-    """Generated text takes color and roughness from the view, like the model."""
+    """A document's generated shader takes color and roughness from the view, like the model."""
     traced(stage, side("shader/eonlib"), side(sources["eon"]), samples=256)
     text, model = (whole(stage, name)[0].mean(axis=0) for name in ("left", "right"))
     np.testing.assert_allclose(text, model, 0.01)

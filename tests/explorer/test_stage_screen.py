@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The screen shows the stage's radiance with its exposure, also after a lost context."""
+"""The screen shows the stage's radiance with the chosen exposure, also after a lost GL context."""
 
 import numpy as np
 import OpenImageIO as oiio
@@ -9,9 +9,9 @@ from mxeon.io.srgb import srgb_encoded
 from tests.explorer.browser import until
 from tests.explorer.stage import LISTEN, frame, opened_stage, picture, settle, side, view
 
-# Tolerance in 8-bit steps: half for dithering, half for rounding, one for the average of frames.
+# Tolerance in 8-bit steps: half for dithering, half for rounding, and one for averaged frames.
 STEPS = 2
-# Style that hides the handles above the canvas and aligns it to whole pixels.
+# CSS that hides the handles above the canvas and aligns the canvas to whole pixels.
 ALONE = """.picture > :not(canvas) { display: none !important }
 canvas { position: fixed !important; inset: 0 auto auto 0; z-index: 9;
          width: 140px !important; height: 100px !important }"""
@@ -31,14 +31,14 @@ def stage(browser, address):
 
 
 def screen(stage, tmp_path):
-    """Screenshot of the canvas, 8 bits per channel."""
+    """Screenshot of the canvas, with 8 bits per channel."""
     file = tmp_path / "screen.png"
     stage.locator("canvas").screenshot(path=file)
     return oiio.ImageBuf(str(file)).get_pixels(oiio.UINT8)[..., :3].astype(int)
 
 
 def inner(stage, shape, reach=0.75):
-    """Mask of the sphere's pixels away from its rim."""
+    """Mask of the sphere's pixels that are not near the rim."""
     diameter = stage.evaluate("mxeon.stage.diameter()")
     y, x = np.mgrid[: shape[0], : shape[1]] + 0.5
     return np.hypot(x - shape[1] / 2, y - shape[0] / 2) < reach * diameter / 2

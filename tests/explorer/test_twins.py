@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JavaScript functions that are translated from the page's GLSL match NumPy's."""
+"""The page's JavaScript functions, translated from its GLSL, return the same values as NumPy."""
 
 import numpy as np
 import pytest
@@ -12,8 +12,9 @@ from tests.support.hemispheres import uniforms
 from tests.support.tolerances import FIT_ANGLE, FIT_LOSS
 
 ROWS = DIFFUSE_MODELS + KNOWN_DEFECTS
-# Relative error from the GLSL's fits. A value has two factors with the loss; full Oren-Nayar
-# squares two angles, and the slopes of its other terms add 3 and 2.
+# Relative error of the fits in the GLSL. A BRDF value has two factors that contain the fitted loss.
+# Full Oren-Nayar squares two fitted angles (a factor of 4), and the slopes of its other terms add 3
+# and 2.
 VALUE = max(2 * FIT_LOSS, (4 + 3 + 2) * FIT_ANGLE)
 RHO = (0.0, 0.3, 0.8, 1.0)
 PARAMETERS = (0.0, 0.2, 0.7, 1.0)
@@ -68,7 +69,7 @@ def test_albedos_are_numpys(undrawn, row):
         else:
             expected = albedo_dir_quadrature(row.brdf, COSINES, RHO, *arguments, nodes=16)
         assert np.abs(np.array(dirs[k]) - expected).max() < VALUE
-        if row.albedo_avg:  # computed without fits
+        if row.albedo_avg:  # computed in closed form, without fits
             assert np.abs(np.array(avgs[k]) - row.albedo_avg(RHO, *arguments)).max() < 1e-12
 
 
