@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Random and special pairs of directions with a node's inputs, rotated frames, and a sky map.
 
-All samples are float32 values stored in float64, so that engines and models see equal numbers.
+All samples are float32 values stored in float64, so that engines and models use equal numbers.
 """
 
 import math
@@ -20,13 +20,13 @@ from mxeon.models.nodes.node import BLACK as BLACK
 from mxeon.models.nodes.node import WHITE as WHITE
 from mxeon.shaders.scene import Scene
 
-# Seed of all samples, which shaders cannot predict; verdicts must not depend on the seed.
+# Seed of all samples. Shaders cannot predict the seed, and verdicts must not depend on the seed.
 SEED: ContextVar[int] = ContextVar("seed", default=1)
-GOLDEN_RATIO = 0.618  # the multiples of this number, modulo 1, are evenly spread
+GOLDEN_RATIO = 0.618  # multiples of this number modulo 1 are evenly spread
 PAIRS = 1 << 16
 FEW = 1 << 14  # default number of pairs for expensive checks
 GRAZING = 1e-6  # smallest cosine of the random pairs
-RIM = 0.05  # smallest cosine judged in pictures; pixel positions matter closer to the rim
+RIM = 0.05  # smallest cosine judged in pictures, because pixel positions matter closer to the rim
 LOBE_RIM = 0.25  # smallest cosine judged in pictures of a diffuse lobe below other lobes
 
 Array: TypeAlias = NDArray[np.float64]
@@ -38,7 +38,7 @@ Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change o
 
 @dataclass(frozen=True)
 class Counts:
-    """Numbers of samples of a spec."""
+    """Numbers of samples that a spec draws."""
 
     pairs: int = PAIRS  # random pairs
     few: int = FEW  # random pairs in controls and in expensive checks
@@ -49,7 +49,10 @@ class Counts:
     mirrored: int = 1 << 11  # views with lights near the mirror direction
 
     def varied(self) -> "Counts":
-        """Equal counts for seed 1, else up to 1/8 fewer, so that shaders cannot expect a count."""
+        """The counts for seed 1, or up to 1/8 fewer for other seeds.
+
+        The variation prevents shaders from recognizing a check by the number of samples.
+        """
         share = 1.0 - (SEED.get() - 1) * GOLDEN_RATIO % 1.0 / 8.0
         names = "pairs", "few", "albedos", "mirrored"
         return replace(self, **{name: math.ceil(share * getattr(self, name)) for name in names})
@@ -65,16 +68,16 @@ class Batch:
 
     wo: Array  # directions to the viewer in local frames, (N, 3), on or above the horizon
     wi: Array  # directions to the light in local frames, (N, 3)
-    # Node inputs and "occlusion", (N, ...) or constant; normals and tangents are in world space.
+    # Node inputs and "occlusion", (N, ...) or constant. Normals and tangents are in world space.
     inputs: Mapping[str, Array]
-    scene: Scene | None = None  # scene of a picture whose points give the directions
-    frame: Array | None = None  # axes of the local frames as columns, (N, 3, 3); None: world axes
+    scene: Scene | None = None  # scene of a picture whose points have these directions
+    frame: Array | None = None  # axes of local frames as columns, (N, 3, 3); world axes if None
 
     def altered(self, **inputs: ArrayLike) -> "Batch":
         return replace(self, inputs={**self.inputs, **arrays(inputs)})
 
     def with_row(self, row: int, wo: ArrayLike, **inputs: ArrayLike) -> "Batch":
-        """A copy of the batch, with another view and other inputs in a single row."""
+        """A copy of the batch with another view and other inputs in a single row."""
         changed = {name: self.inputs[name].copy() for name in inputs}
         copy = replace(self.altered(**changed), wo=self.wo.copy())
         copy.wo[row] = wo
@@ -113,7 +116,10 @@ class Batch:
 
     @property
     def rough(self) -> Array:
-        """Roughness of each pair, (N,): the larger of two alphas, or 0 without such an input."""
+        """The roughness of each pair, (N,), or 0 if the node has none.
+
+        The larger of two alphas is the roughness.
+        """
         roughness = np.asarray(self.inputs.get("roughness", 0.0), np.float64)
         if roughness.shape[-1:] == (2,):
             roughness = roughness.max(axis=-1)
@@ -130,12 +136,15 @@ class Candidate:
 
 
 def generator() -> Rng:
-    """A new random generator with the run's seed; each kind of samples has a separate one."""
+    """A new random generator with the run's seed. Each kind of samples has its own generator."""
     return np.random.default_rng(SEED.get())
 
 
 def directions(rng: Rng, count: int) -> Array:
-    """Random directions with uniform cosines, a quarter of them log-uniform down to 1e-6."""
+    """Random directions, of which a quarter has log-uniform cosines down to 1e-6.
+
+    The cosines of the other directions are uniform in [0, 1].
+    """
     mu = rng.random(count)
     mu[: count // 4] = GRAZING ** rng.random(count // 4)
     rng.shuffle(mu)
@@ -155,12 +164,12 @@ EACH = 256  # number of pairs of each special kind
 GRID = (1.0, 0.999, 0.6, 0.25, 0.05, 1e-3, 1e-5, 1e-6, 3e-7, 1e-7)  # cosines of special pairs
 AZIMUTHS = (0.0, 0.5 * np.pi, np.pi)
 ABOVE_ONE = 1.0 + 2.0**-23  # cosine of equal unit vectors after one upward float32 rounding
-HORIZON = 0.1  # least cosine of a direction whose partner is at or below the horizon
-POLE = 0.99  # largest |y| of normals in turned frames, away from the poles of the sky map
-TURNED = (0.25, 0.95)  # range of cosines in turned frames, whose rotation rounds cosines
-LEAST_SHEEN = 0.01  # smallest sheen roughness, to which the Zeltner model clamps
-LEAST_COLOR82 = 0.5  # least color82 of lobes with measured albedos; see docs/loading.md
-LEAST_TURNED = 0.1  # smallest roughness of microfacets in turned frames
+HORIZON = 0.1  # smallest cosine if the other direction is at or below the horizon
+POLE = 0.99  # largest |y| of normals in rotated frames, which excludes the poles of the sky map
+TURNED = (0.25, 0.95)  # range of cosines in rotated frames, because a rotation rounds cosines
+LEAST_SHEEN = 0.01  # smallest sheen roughness, because the Zeltner model clamps smaller values
+LEAST_COLOR82 = 0.5  # smallest color82 of lobes with measured albedos; see docs/loading.md
+LEAST_TURNED = 0.1  # smallest roughness of microfacets in rotated frames
 WEIGHTS = (-0.5, 0.0, 1e-4, 0.01, 0.5)
 OCCLUSIONS = (0.0, 1e-3, 0.5)
 
@@ -168,9 +177,9 @@ OCCLUSIONS = (0.0, 1e-3, 0.5)
 def special_directions(rng: Rng) -> tuple[Array, Array]:
     """Exact directions `wo` and `wi`, on or above the horizon.
 
-    The pairs are a grid of cosines down to 1e-7 with equal, perpendicular and opposite azimuths;
-    exact retro-reflection and mirror directions; and a random direction with a second direction
-    along the normal or on the horizon.
+    The pairs contain a grid of cosines down to 1e-7 with equal, perpendicular and opposite
+    azimuths. Other pairs are exact retroreflections and mirror reflections. In the remaining pairs,
+    one direction is random and the other direction is the normal or on the horizon.
     """
     mu_o, mu_i, azimuth = np.array(list(product(GRID, GRID, AZIMUTHS))).T
     free, other = directions(rng, EACH), directions(rng, EACH)
@@ -185,7 +194,7 @@ def special_directions(rng: Rng) -> tuple[Array, Array]:
 
 
 def outside_directions(rng: Rng) -> tuple[Array, Array]:
-    """Pairs outside the models' domain: light from below the horizon, or a cosine above 1."""
+    """Pairs outside the models' domain, with light from below the horizon or a cosine above 1."""
     below = directions(rng, EACH) * [1.0, 1.0, -1.0]
     high = _between(rng, EACH, HORIZON, 1.0)
     straight = np.broadcast_to([0.0, 0.0, ABOVE_ONE], below.shape)
@@ -195,16 +204,17 @@ def outside_directions(rng: Rng) -> tuple[Array, Array]:
 
 
 def turned_frames(rng: Rng, count: int) -> Array:
-    """Up to `count` random frames, with axes as columns; normals point to middles of sky texels."""
+    """Up to `count` random frames with axes as columns. Normals point to middles of sky texels."""
     axes, _ = np.linalg.qr(rng.standard_normal((count, 3, 3)))
     axes = axes[np.abs(axes[:, 1, 2]) <= POLE]
     return aimed(axes, axes[:, :, 2], texel_middles(axes[:, :, 2]))
 
 
 def aimed(axes: Array, of: Array, to: Array) -> Array:
-    """Frames (N, 3, 3), turned by the smallest rotation from unit vectors `of` to `to`, (N, 3).
+    """Frames (N, 3, 3), rotated so that the unit vectors `of` become the unit vectors `to`, (N, 3).
 
-    That rotation is half a turn about the bisector, followed by half a turn about `to`.
+    The smallest rotation from `of` to `to` is half a turn about the bisector, followed by half a
+    turn about `to`.
     """
     for vectors in (of + to, to):
         about = vectors[:, :, np.newaxis]
@@ -223,13 +233,13 @@ def _between(rng: Rng, count: int, low: float, high: float) -> Array:
 
 
 def with_edges(rng: Rng, values: Array, edges: ArrayLike) -> Array:
-    """Values rounded to float32, about half of them replaced by random elements of `edges`."""
+    """Values rounded to float32, of which about half are replaced by random elements of `edges`."""
     picked = rng.choice(np.asarray(edges, np.float64), np.shape(values))
     return float32(np.where(rng.random(np.shape(values)) < 0.5, picked, values))
 
 
 def directions_at(mu: ArrayLike, azimuth: ArrayLike) -> Array:
-    """Directions (..., 3) from azimuths and from cosines, which are first rounded to float32."""
+    """Directions (..., 3) from cosines and azimuths. The cosines are first rounded to float32."""
     mu = float32(mu)
     radius = np.sqrt(1.0 - mu * mu)
     columns = radius * np.cos(azimuth), radius * np.sin(azimuth), mu
@@ -237,27 +247,28 @@ def directions_at(mu: ArrayLike, azimuth: ArrayLike) -> Array:
 
 
 FRAMES = 1 << 12  # maximum number of pairs with individual frames
-LEAN = 0.3  # largest slope of a tangent out of the surface
-SKY_ROWS = 128  # rows of the sky map, which has twice as many columns
-SLOPE = 0.5  # derivative of a channel of the sky's irradiance with respect to its axis
+LEAN = 0.3  # largest slope of a tangent relative to the surface
+SKY_ROWS = 128  # rows of the sky map; the map has twice as many columns
+SLOPE = 0.5  # derivative of a channel of the sky's irradiance along the channel's axis
 
 
 def sky(normal: Array) -> Array:
-    """Irradiance over pi of the sky at normals (N, 3): each channel grows along another axis."""
+    """Irradiance of the sky divided by pi at normals (N, 3). Each channel grows along one axis."""
     return 0.5 + SLOPE * normal
 
 
 @lru_cache(maxsize=1)
 def sky_map() -> NDArray[np.float32]:
-    """Irradiance over pi of the sky as a latitude-longitude map, (SKY_ROWS, 2 SKY_ROWS, 3)."""
+    """Irradiance of the sky divided by pi, a latitude-longitude map, (SKY_ROWS, 2 SKY_ROWS, 3)."""
     directions, _ = textures.latlong_directions(SKY_ROWS, 2 * SKY_ROWS)
     return sky(directions @ base.TURN[:3, :3]).reshape(SKY_ROWS, 2 * SKY_ROWS, 3).astype(np.float32)
 
 
 def texel_middles(near: Array) -> Array:
-    """Directions to the middles of the sky texels that unit vectors point to; both are (N, 3).
+    """Directions to the middles of sky texels that contain the unit vectors `near`, both (N, 3).
 
-    There every filter reads a single texel. The opposite direction is also the middle of a texel.
+    In the middle of a texel, every filter reads a single texel. The opposite direction is also the
+    middle of a texel.
     """
     polar = np.arccos(np.clip(near[:, 1], -1.0, 1.0)) / np.pi
     azimuth = np.arctan2(near[:, 0], -near[:, 2]) / (2.0 * np.pi) + 0.5

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a library's shader functions against the NumPy versions, on a host.
+"""Compare a library's shader functions with the NumPy versions of the functions, on a host.
 
-The host compiles a program with all functions, and with a function that calls any of them by index.
-The names of the parameters in eonlib's GLSL select random arguments, for shaders and for NumPy.
+The host compiles a program with all functions, and with a function that calls any of the others by
+a number. The parameter names in eonlib's GLSL select random arguments for the shader and for NumPy.
 """
 
 import re
@@ -25,8 +25,8 @@ from mxeon.hosts.base import Host
 from mxeon.models import diffuse, sampling
 from mxeon.shaders import functions
 
-KINDS = ("pairs", "pictures", "rendered")  # ways of hosts that can evaluate functions
-STEP = 2.0**-22  # step of arguments that measures a function's condition number
+KINDS = ("pairs", "pictures", "rendered")  # host types that can call shader functions
+STEP = 2.0**-22  # step of an argument for measuring a function's condition number
 PART = tolerance.sum_in(Quantity.CONDITIONED, tolerance.roundings(16))
 
 
@@ -35,9 +35,9 @@ class FunctionCheck(NamedTuple):
 
     key: str  # a single word
     claim: str  # a full sentence
-    names: str  # pattern of function names; the first matching row judges a function
+    names: str  # pattern of function names; the first row that matches applies
     error: tolerance.Tolerance
-    turns: bool = False  # whether the functions rotate by the engine's sine and cosine
+    turns: bool = False  # whether the functions rotate vectors with the engine's sine and cosine
 
 
 # fmt: off
@@ -54,7 +54,8 @@ FUNCTION_CHECKS = (
     FunctionCheck("densities",
                   "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
                   r"\w+_pdf|ltc_(density|m[abcd])",
-                  # An inverse fourth power multiplies an entry's 8 roundings by 4 and adds 16.
+                  # A matrix entry has 8 roundings. An inverse fourth power multiplies the 8
+                  # roundings by 4 and adds 16.
                   tolerance.sum_in(Quantity.CONDITIONED, tolerance.roundings(48, "four times the 8 of a matrix entry, and 16"))),
     FunctionCheck("parts", "The functions that models and sampling are built from match NumPy's.",
                   r"\w+", PART),
@@ -75,10 +76,10 @@ def _error(function: str, values: Array) -> float:
 
 @cache
 def exact(function: str) -> tuple[Array, Array]:
-    """Values of a shader function in NumPy, and the factor that scales errors of the function.
+    """Values of a shader function in NumPy, and a factor for the errors of the shader function.
 
-    The factor is pi cos(theta_i) for a BRDF and 1 for an albedo. For functions judged by their
-    condition number, the factor is the inverse of a sum: the larger of the value and 1, plus the
+    The factor is pi cos(theta_i) for a BRDF and 1 for an albedo. For other functions, the factor is
+    the inverse of the condition number, which is the larger of 1 and the value, plus the absolute
     derivative of the value by each argument.
     """
     columns = random_columns()
@@ -88,10 +89,10 @@ def exact(function: str) -> tuple[Array, Array]:
         return values, np.pi * columns["mu_i"][:, np.newaxis] if brdf else np.ones((1, 1))
     total: Array = np.maximum(1.0, np.abs(values).max(axis=1))
     for name in arguments(function):
-        # Skip divisors: a quotient has a relative error, and its slope is huge near a divisor of 0.
+        # Skip divisors. A quotient has a relative error, and a huge slope near a divisor of 0.
         if name == "divisor" or (columns[name].ndim > 1 and name != "wo"):
             continue
-        # Step toward the middle of the range; of a direction, only step the cosine.
+        # Step toward the middle of the range. The step of a direction only changes the cosine.
         steps = np.where(columns[name] > 0.5, -STEP, STEP)
         if name == "wo":
             steps[:, :2] = 0.0
@@ -101,21 +102,21 @@ def exact(function: str) -> tuple[Array, Array]:
 
 
 def arguments(function: str) -> list[str]:
-    """Names of the random columns that are a shader function's arguments, in order."""
+    """Names of the columns of random numbers that are a function's arguments, in order."""
     parameters = functions.signature("glsl", function)
     return ["gray" if each == ("float", "rho") else each[1] for each in parameters]
 
 
 POINTS = 4096  # points per function
-CORNERS = 64  # number of points where the arguments are at the ends of each argument's range
+CORNERS = 64  # number of points with arguments at the ends of their ranges
 
-# Directions along the normal, with a cosine rounded above 1, on the horizon, and in between.
+# Directions along the normal, with a cosine rounded up above 1, on the horizon, and between.
 AXES = tuple((x, 0.0, z) for x, z in ((0, 1), (0, 1 + 2.0**-23), (1, 0), (-1, 0), (0.6, 0.8)))
 
 Columns = Mapping[str, Array]
 
 
-# NumPy versions that have another name or another order of arguments than the shader function.
+# NumPy functions whose names or orders of arguments differ from those of the shader functions.
 NAMED: Mapping[str, Callable[..., Array | tuple[Array, ...]]] = {
     "eon_around": sampling.around,
     "eon_azimuth_frame": lambda wo: sampling.stack_xyz(*sampling.azimuth_frame(wo)),
@@ -123,7 +124,7 @@ NAMED: Mapping[str, Callable[..., Array | tuple[Array, ...]]] = {
     "eon_pdf": lambda wo, wi, rho, roughness: sampling.eon_pdf(wo, wi, roughness, rho=rho),
     "eon_rotate_z": sampling.rotate_z,
     "eon_sample": lambda wo, u, rho, roughness: sampling.eon_sample(wo, u, roughness, rho=rho),
-    # The shader function is a fit; NumPy evaluates the integral for the angle with cosine 1 - m.
+    # The shader function is a fit. NumPy evaluates the integral for the angle with cosine 1 - m.
     "eon_upper_root": lambda m: sampling.eon_upper_limit(1.0 - m, np.sqrt(m * (2.0 - m))),
     "oren_nayar_s": lambda wo, wi: diffuse.cosines(wo, wi)[2],
 }
@@ -147,7 +148,7 @@ def _expected(function: str, columns: Columns) -> Array:
 
 @cache
 def random_columns() -> Columns:
-    """Random arguments by parameter name, shared by all functions."""
+    """Random arguments by parameter name. All functions share these arguments."""
     rng = generator()
     wo, wi = directions(rng, POINTS), directions(rng, POINTS)
     pairs = np.array(list(product(AXES, AXES)))
@@ -157,7 +158,7 @@ def random_columns() -> Columns:
     azimuth, elevation = 2.0 * np.pi * rng.random(POINTS), 0.5 * np.pi * _unit(rng)
     mu, roughness = np.clip(wo[:, 2], GRAZING, 1.0), unit["roughness"]
     rho, value = np.stack([_unit(rng) for _ in range(3)], axis=-1), 2.0 * _unit(rng) - 1.0
-    divisors = _unit(rng)  # a quarter is log-uniform down to 1e-36; shaders treat 1e-37 as 0
+    divisors = _unit(rng)  # 1/4 is log-uniform down to 1e-36; shaders treat 1e-37 as 0
     divisors[CORNERS : POINTS // 4] = 10.0 ** (-36.0 * divisors[CORNERS : POINTS // 4])
     u1, u2 = unit["u1"], unit["u2"]
     # fmt: off
@@ -175,7 +176,10 @@ def random_columns() -> Columns:
 
 
 def _unit(rng: np.random.Generator) -> Array:
-    """Random multiples of 2^-24 in [0, 1), as in shaders; the first CORNERS are at the ends."""
+    """Random multiples of 2^-24 in [0, 1), as in shaders.
+
+    The first CORNERS are the smallest or the largest of these numbers.
+    """
     numbers = rng.integers(0, 1 << 24, POINTS).astype(np.float64)
     numbers[:CORNERS] = (numbers[:CORNERS] % 2.0) * (2.0**24 - 1.0)
     return numbers * 2.0**-24
@@ -194,19 +198,19 @@ class FunctionProbe:
 
     @cached_property
     def missing_functions(self) -> tuple[str, ...]:
-        """Functions of eonlib that the library lacks or declares with other parameters."""
+        """Functions of eonlib that the library lacks or declares with different parameters."""
         library = functions.signatures(self.text)
         eonlib = functions.signatures(functions.source(self.host.language))
         return tuple(name for name in eonlib if library.get(name) != eonlib[name])
 
     @cached_property
     def values(self) -> Mapping[bool, Mapping[str, Array]]:
-        """Values of all functions of the library; the key True has the control's values."""
+        """Values of all functions of the library, with right (False) and wrong (True) arguments."""
         return {False: self._values(1.0), True: self._values(0.95)}
 
     @cached_property
     def turn(self) -> tolerance.Term:
-        """The error of the engine's cosine and sine over a full turn."""
+        """The error of the engine's cosine and sine for angles up to a full turn."""
         error = float(spec.TURN.errors(self.host, random_columns()["u2"]).max())
         words = "the engine's sine and cosine, which turn a direction twice"
         return tolerance.Term(4.0 * error, words)
@@ -215,9 +219,9 @@ class FunctionProbe:
         return row.error.plus(self.turn) if row.turns else row.error
 
     def _values(self, scale: float) -> Mapping[str, Array]:
-        """Values of the library's functions that eonlib has, with a scaled last argument.
+        """Values of the functions that a library shares with eonlib, with a scaled last argument.
 
-        A single call of the host evaluates all of the functions.
+        A single call of the host evaluates all functions.
         """
         language, columns = self.host.language, random_columns()
         names = [name for name in functions.names(language) if name not in self.missing_functions]
@@ -264,7 +268,7 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
 
 
 def _causes(check: FunctionCheck, probe: FunctionProbe) -> tuple[Cause, ...]:
-    """Wrong functions that use no wrong function, and the check's functions that use those."""
+    """Wrong functions without wrong callees, and functions of the check with wrong callees."""
     values = probe.values[False]
     errors = {name: _error(name, each) for name, each in values.items()}
     wrong = [name for name in errors if errors[name] > probe.tolerance(row_of(name)).value]

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Specs of nodes: inputs with their ranges, models, errors and samples.
+"""A spec describes a node for the checks, with ranges of inputs, models, errors and samples.
 
-Each family of nodes is one file under `specs`. Backends define how an engine evaluates a spec.
+Each file in the folder `specs` has a family of nodes. Backends define how an engine evaluates a
+spec.
 """
 
 from abc import ABC, abstractmethod
@@ -30,23 +31,23 @@ F = TypeVar("F")  # type of the functions in a row of the models' table
 class Input:
     """An input of a node."""
 
-    name: str  # name or path
+    name: str  # name, or path in a graph
     type: str = "float"  # MaterialX type
-    low: ArrayLike = 0.0  # lower end of the range of random values, also per component
-    high: ArrayLike = 1.0  # upper end of the range of random values
-    edges: tuple[float, ...] = ()  # values that half of the special samples use; () for none
-    # Value that must have an effect, unlike the default; None for inputs without a visible effect.
+    low: ArrayLike = 0.0  # lower end of the range of random values; may differ by component
+    high: ArrayLike = 1.0  # upper end of the range of random values; may differ by component
+    edges: tuple[float, ...] = ()  # half of the special samples use these values
+    # Value that must change the result, or None for inputs without a visible effect.
     change: ArrayLike | None = None
     needs: Values = field(default_factory=dict, hash=False)  # inputs that make the change visible
-    # Whether random values are log-uniform; otherwise a tenth of the values is at each end.
+    # Whether random values are log-uniform. Otherwise, a tenth is at each end of the range.
     logarithmic: bool = False
-    often: float | None = None  # value in every other sample, for rarely set inputs
-    equal: bool = False  # whether both components are equal in every other sample
-    # Values in the two materials that represent a node in pictures; () for the default.
+    often: float | None = None  # value of every other sample, for inputs that are rarely set
+    equal: bool = False  # whether both components of every other sample are equal
+    # Values of the input in two materials that represent a node in pictures; () for the default.
     materials: tuple[ArrayLike, ...] = ()
-    variable: str = ""  # shader variable that supplies the default, which hosts set instead
+    variable: str = ""  # shader variable that has the default and that hosts set
     default: ArrayLike = 1.0  # value in documents that must set the input
-    beyond: tuple[float, ...] = ()  # values outside the range that checks also pass to the node
+    beyond: tuple[float, ...] = ()  # values outside the range that checks also use
     ends: tuple[float, float] = (-np.inf, np.inf)  # range to which the node clamps the input
 
 
@@ -55,7 +56,7 @@ def color(name: str, *materials: ArrayLike, edges: tuple[float, ...] = (0.0, 1e-
 
 
 def materials(*inputs: Input) -> tuple[Values, ...]:
-    """Two materials that represent a node in pictures."""
+    """The inputs of two materials that represent a node in pictures."""
     return tuple(
         {each.name: each.materials[which] for each in inputs if len(each.materials) > which}
         for which in (0, 1)
@@ -65,7 +66,7 @@ def materials(*inputs: Input) -> tuple[Values, ...]:
 def draw(
     rng: samples.Rng, count: int, inputs: Sequence[Input], edged: bool = False
 ) -> dict[str, Array]:
-    """Random values of inputs in each input's range, by name; half are edges if `edged`."""
+    """Random values of inputs, by name. If `edged`, half of the values are the input's edges."""
     drawn = {}
     for each in inputs:
         low, high = np.asarray(each.low, np.float64), np.asarray(each.high, np.float64)
@@ -86,7 +87,7 @@ def draw(
 
 
 def broadcast_inputs(batch: Batch) -> dict[str, Array]:
-    """The inputs of a batch, with a row for each pair."""
+    """The inputs of a batch, repeated so that each pair has a row."""
     count, inputs = len(batch.wo), dict(batch.inputs)
     for name, values in inputs.items():
         if np.shape(values)[:1] != (count,):
@@ -95,11 +96,11 @@ def broadcast_inputs(batch: Batch) -> dict[str, Array]:
 
 
 class Ability(Flag):
-    """Abilities of a backend, as required by nodes and checks."""
+    """Abilities of a backend that nodes and checks may require."""
 
-    # Kinds of supported nodes.
+    # Abilities that nodes require.
     DIFFUSE = auto()  # rough diffuse nodes
-    BELOW = auto()  # diffuse lobes below other lobes of a surface shader
+    BELOW = auto()  # diffuse lobes below the other lobes of a surface shader
     OWN = auto()  # nodes that a renderer defines
     LOBE = auto()  # BSDF nodes of MaterialX's pbrlib
     HAIR = auto()
@@ -112,19 +113,19 @@ class Ability(Flag):
     EMISSION = auto()
     SURFACE = auto()  # emitting surfaces
     MEDIUM = auto()
-    IMPLEMENTATION = auto()  # nodes without values, judged only by having an implementation
+    IMPLEMENTATION = auto()  # nodes without values, which only need an implementation
     OUTPUT = auto()  # nodes whose outputs are numbers or colors
     # Abilities that checks require.
-    CLIENT = auto()  # running the shader's complete main() with a client's bindings
-    PAIRS = auto()  # evaluating pairs at the edges of the domain
-    LIGHT = auto()  # evaluating the branches of lighting
+    CLIENT = auto()  # run the shader's complete main() function with a client's bindings
+    PAIRS = auto()  # evaluate pairs at the edges of the domain
+    LIGHT = auto()  # evaluate kinds of lighting
 
 
 NO_ABILITY = Ability(0)
 
 
 class EngineError(NamedTuple):
-    """An error of an engine's built-in function, measured on each engine."""
+    """An error of an engine's built-in function. The error is measured on each engine."""
 
     words: str  # description of the error
     measure: Callable[[base.Host], float]
@@ -142,7 +143,7 @@ ZERO = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Spec(ABC):
-    """A node in one mode, with everything that a check needs to know about the node."""
+    """A node in one mode, with the data that checks need."""
 
     requires: ClassVar[Ability]
     coarse: ClassVar[int] = 1  # factor by which pictures are smaller
@@ -151,29 +152,29 @@ class Spec(ABC):
     title: str  # unique title for reports
     node: str  # category of the node
     model: str = ""  # name of the expected model; "" for none
-    inputs: tuple[Input, ...] = ()  # inputs, except those that select the mode
+    inputs: tuple[Input, ...] = ()  # inputs, except inputs that select the mode
     errors: Mapping[str, Tolerance] = field(default_factory=dict)  # tolerances by quantity
-    # Tolerances outside the usual range of an input: by quantity, input and value.
+    # Tolerances for values outside the usual range of an input, by quantity, input and value.
     outside_errors: Mapping[tuple[str, str, float], Tolerance] = field(default_factory=dict)
-    libraries: tuple[str, ...] = ()  # libraries that the spec applies to; () for all
-    claim: str = ""  # claim of all checks of the node; "" for each check's own claim
+    libraries: tuple[str, ...] = ()  # libraries that the spec applies to, or () for all libraries
+    claim: str = ""  # claim of all checks of the node, or "" for each check's own claim
     closure: bool = True  # whether eonlib's OSL uses a renderer's closure for the node
     counts: Counts = DEFAULT_COUNTS
     fixed: Values = field(default_factory=dict)  # values of inputs that a batch does not set
-    # The evaluated branch and output, and a factor for the host's values.
+    # The kind of light, the output, and the factor that scales the host's values.
     evaluated: tuple[str, str, float] = ("direct", "response", np.pi)
     flat: bool = False  # whether values have no sharp peak
-    # Slope of values or albedos over the angle to the normal; cosines near 1 do not resolve angles.
+    # Slope of the values over the angle to the normal, which cosines near 1 do not resolve.
     along: float = 0.0
-    optional: bool = False  # whether targets may lack the node, which is then reported as not run
-    # Errors due to an engine's built-in functions, measured on the engine, by quantity.
+    optional: bool = False  # whether a target may lack the node, so that checks are not run
+    # Errors of an engine's built-in functions, by quantity. The errors are measured on the engine.
     engines: Mapping[str, tuple[EngineError, ...]] = field(default_factory=dict)
-    # Additional errors due to MaterialX's fit of prefiltered light, by quantity.
+    # Additional errors of MaterialX's fit for prefiltered light, by quantity.
     prefiltered_fits: Mapping[str, tuple[Term, ...]] = field(default_factory=dict)
 
     @abstractmethod
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of a material that only has this node, with these inputs."""
+        """MaterialX text of a material that consists of this node with the given inputs."""
 
     @property
     def side(self) -> float:
@@ -191,7 +192,7 @@ class Spec(ABC):
 
     @property
     def changes(self) -> Mapping[str, samples.Changes]:
-        """All inputs before and after a change of each input, by the name of that input."""
+        """All inputs before and after each input is changed, by the name of the changed input."""
         return {
             each.name: (each.needs, {**each.needs, each.variable or each.name: each.change})
             for each in self.inputs
@@ -199,42 +200,42 @@ class Spec(ABC):
         }
 
     def within(self, library: str) -> "Spec":
-        """This spec adapted to a library; usually unchanged."""
+        """The spec adapted to a library. By default, nothing changes."""
         return self
 
     def engine(self, quantity: str, host: base.Host) -> tuple[Term, ...]:
-        """Error terms of a quantity due to an engine's built-in functions."""
+        """Error terms of a quantity that are due to an engine's built-in functions."""
         terms = (Term(_measured(each, host), each.words) for each in self.engines.get(quantity, ()))
         return tuple(term for term in terms if term.value)
 
 
 class ValueSpec(Spec):
-    """A node with reference values: scattered or emitted light, or an output."""
+    """A node with reference values, which are scattered light, emitted light or an output."""
 
     @abstractmethod
     def value(self, batch: Batch) -> Array:
-        """Values of a correct shader, (N, 3): pi f |cos(theta_i)|, a radiance, or an output."""
+        """Values of a correct shader, (N, 3): pi f |cos(theta_i)|, radiance, or a node's output."""
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
-        """Functions that may explain the values, starting with the node's own model."""
+        """Functions that may explain the values. The first function is the node's own model."""
         return ()
 
     @property
     def all_candidates(self) -> tuple[Candidate, ...]:
-        """`value_candidates`, and functions that only explain samples outside `batches`."""
+        """`value_candidates` and functions that may only explain samples outside of `batches`."""
         return self.value_candidates
 
     @abstractmethod
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """All samples, in one batch per kind of samples."""
+        """All samples. Each kind of samples has a batch."""
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         """A subset of the samples, for controls and expensive checks."""
         return tuple(batch.first(counts.few) for batch in batches)
 
     def rescaled(self, compared: Compared) -> Compared:
-        """The same comparison, rescaled to a unit in which errors are uniform."""
+        """The comparison in a unit in which errors are uniform."""
         return compared
 
 
@@ -242,7 +243,7 @@ class LobeSpec(ValueSpec):
     """A node that scatters light."""
 
     curved: ClassVar[bool] = False  # whether values depend on the surface's curvature
-    # Unsupported states of `checks.states`, and axes with only the first state.
+    # States that the check `states` skips, and axes of which this check uses only the first state.
     plain: ClassVar[tuple[str, ...]] = ()
 
     @property
@@ -254,7 +255,7 @@ class LobeSpec(ValueSpec):
         return {**nodes.input_types(self.node), **{each.name: each.type for each in self.inputs}}
 
     def two_lobes(self) -> str:
-        """MaterialX text of the sum of two such lobes, of which the second sets its frame."""
+        """MaterialX text of the sum of two lobes of the node. The second lobe has its own frame."""
         axes = dict.fromkeys(nodes.FRAME_INPUTS, calls.TANGENT) | {"normal": calls.NORMAL}
         frame = {name: axes[name] for name in axes if name in nodes.input_types(self.node)}
         modes = {"first": self.mode, "second": {**self.mode, **frame}}
@@ -268,12 +269,12 @@ class LobeSpec(ValueSpec):
 
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
-        """Functions that may explain the albedo, starting with the node's own model."""
+        """Functions that may explain the albedo. The first function is the node's own model."""
         return ()
 
     @abstractmethod
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
-        """Random values of the inputs, half of them on an edge if `edged`."""
+        """Random values of the inputs. If `edged`, half of the values are the input's edges."""
 
     @abstractmethod
     def edges(self, counts: Counts) -> Batch:
@@ -290,18 +291,18 @@ class LobeSpec(ValueSpec):
         )
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """A subset of the random pairs, and all special pairs; no outside pairs."""
+        """A subset of the random pairs, and all special pairs."""
         return batches[0].first(counts.few), batches[1]
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views for the environment branch, which does not depend on `wi`."""
+        """Views for environment light, which does not depend on `wi`."""
         return (*self.few(batches, counts), batches[-1])
 
     def turned(self, counts: Counts) -> Batch:
-        """Pairs with individual frames; half of the normals face away from the viewer.
+        """Pairs with individual frames, in which half of the normals face away from the viewer.
 
-        Tangents lean out of the surface by a slope of up to LEAN, like a geometry's tangents under
-        a normal map.
+        A tangent leans out of the surface by a slope of up to LEAN, as the tangents of a mesh do
+        under a normal map.
         """
         rng = generator()
         frames = samples.turned_frames(rng, samples.FRAMES)
@@ -316,7 +317,7 @@ class LobeSpec(ValueSpec):
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs, frame=frames)
 
     def _batch(self, rng: samples.Rng, pairs: tuple[Array, Array], edged: bool = False) -> Batch:
-        """Pairs with random inputs, weights and occlusions, with light from the node's side."""
+        """Pairs with random inputs, weights and occlusions, and with light from the node's side."""
         wo, wi = pairs
         inputs, count = self.random_inputs(rng, len(wo), edged), len(wo)
         for name, edges in (("weight", samples.WEIGHTS), ("occlusion", samples.OCCLUSIONS)):
@@ -326,7 +327,7 @@ class LobeSpec(ValueSpec):
 
 
 class Names(TypedDict):
-    """Fields of a spec that come from a row of the models' table."""
+    """Fields of a spec that are copied from a row of the models' table."""
 
     title: str
     node: str
@@ -339,19 +340,19 @@ def named(row: NodeRow[object], title: str = "") -> Names:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RowSpec(ValueSpec, Generic[F]):
-    """A node whose values are functions in a row of the models' table."""
+    """A node whose values are computed by functions in a row of the models' table."""
 
     row: NodeRow[F]
 
     @property
     def drawn(self) -> tuple[Input, ...]:
-        """The inputs that the row's functions use."""
+        """The inputs that the functions of the row use."""
         inputs = {each.name: each for each in self.inputs}
         return tuple(inputs[name] for name in self.row.inputs)
 
     @abstractmethod
     def values(self, function: F, batch: Batch) -> Array:
-        """Values of a function of the row, (N, 3)."""
+        """Values of a function in the row, (N, 3)."""
 
     def value(self, batch: Batch) -> Array:
         return self.values(self.row.value, batch)
@@ -361,12 +362,12 @@ class RowSpec(ValueSpec, Generic[F]):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """Functions that may explain the values and are not variants in the row."""
+        """Functions that may explain the values and that the row lacks."""
         return ()
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
-        """The row's function and its variants, followed by `others`."""
+        """Functions that may explain the values: the row's function, its variants, and `others`."""
         variants = (
             Candidate(each.title, partial(self.values, each.value), each.permitted)
             for each in self.row.variants
@@ -376,7 +377,7 @@ class RowSpec(ValueSpec, Generic[F]):
 
 
 def ports(inputs: Sequence[Input], values: Values | None) -> list[tuple[str, str, Array]]:
-    """Path, type and value of each input, with the input's default if `values` lacks the input."""
+    """Path, type and value of each input. Inputs that `values` lacks have the default value."""
     values = {each.name: each.default for each in inputs} | dict(values or {})
     return [
         (each.name, each.type, np.broadcast_to(values[each.name], COMPONENTS[each.type]))
@@ -384,14 +385,14 @@ def ports(inputs: Sequence[Input], values: Values | None) -> list[tuple[str, str
     ]
 
 
-ARGUMENTS = 1 << 14  # number of arguments for which an engine's function is measured
+ARGUMENTS = 1 << 14  # number of arguments for measuring an engine's function
 
 
 @dataclass(frozen=True)
 class EngineFunction:
-    """A built-in shader function, whose error is measured on each engine."""
+    """A built-in shader function. Each engine's error is measured."""
 
-    name: str  # ending of the name of the GLSL function that wraps the expression
+    name: str  # last part of the name of a GLSL function that returns the expression
     expression: str  # GLSL expression in x, or in x and y
     exact: Callable[..., Array]  # NumPy equivalent
 
@@ -406,7 +407,7 @@ class EngineFunction:
     def error(
         self, arguments: Callable[[], Sequence[Array]], allowed: float = 1.0
     ) -> Callable[[base.Host], float]:
-        """A measurement of a host's largest error on arguments, minus `allowed` roundings of 1."""
+        """A function that measures a host's largest error, minus `allowed` roundings of 1."""
         least = allowed * ROUNDING
         return lambda host: max(float(self.errors(host, *arguments()).max()) - least, 0.0)
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of texts that no host runs: function twins, sources of nodes, and generated sources.
+"""Check texts that no host runs: shader functions, sources of nodes, and generated shaders.
 
-Each check counts faults, which must be 0, and its control is a text with an additional fault. The
-meaning of closure arguments comes from the renderers' documentation.
+Each check counts faults, and no fault is allowed. The control of a check is a text with an
+additional fault. The meaning of closure arguments comes from the documentation of renderers.
 """
 
 import re
@@ -33,7 +33,7 @@ from mxeon.shaders.library import load_library
 
 Faults: TypeAlias = tuple[list[Cause], int]  # faults, and number of faults in the control
 Inputs = Mapping[str, expressions.Array]
-# Key of a check -> claim, counted quantity, and mistake of the control.
+# Claim of each check, counted quantity, and mistake of the control.
 # fmt: off
 CLAIMS = {
     "languages": ("The shader functions are identical in OSL and GLSL, apart from type names.",
@@ -51,7 +51,10 @@ CLAIMS = {
 
 
 def check_texts(subjects: Iterable[diffuse.DiffuseSpec], library: str) -> tuple[Result, ...]:
-    """Results of all checks of generated text and of functions, for the nodes of a library."""
+    """Results of all checks of texts for a library.
+
+    Checks of generated shaders cover the given rough diffuse nodes and simple lobes.
+    """
     subjects = tuple(subjects)
     results = [
         _judged("closure", f"{each.title}, mdl", library, partial(_closure_faults, each, library))
@@ -65,7 +68,7 @@ def check_texts(subjects: Iterable[diffuse.DiffuseSpec], library: str) -> tuple[
             faults = partial(_arguments, library, release)
             results.append(_judged("arguments", "every node, mdl", library, faults))
     for each, target in product((*subjects, *PLAIN_LOBES), generation.TARGETS):
-        # The check "closure" already compares every argument of MDL's rough diffuse nodes.
+        # The check "closure" already compares all arguments of MDL's rough diffuse nodes.
         if target in TEXT_ONLY and (target != "mdl" or isinstance(each, lobes.PbrSpec)):
             faults = partial(_dropped_inputs, each, target, library)
             results.append(_judged("source", f"{each.title}, {target}", library, faults))
@@ -92,7 +95,7 @@ def _judged(check: str, subject: str, library: str, faults: Callable[[], Faults]
 
 
 def _twins(library: str) -> Faults:
-    """Functions whose texts differ between GLSL and OSL; the control changes a number."""
+    """Functions whose texts differ between GLSL and OSL. The control changes a number."""
     glsl, osl = (COMMENT.sub(" ", twins(language, library)) for language in LANGUAGES)
     expected, *others = map(parts, (glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)))
     differing, control = (
@@ -103,13 +106,13 @@ def _twins(library: str) -> Faults:
 
 
 def _clashes(library: str) -> Faults:
-    """Names that two nodes of a library both define, except clashes in MaterialX itself."""
+    """Names that two nodes of a library define, except clashes in MaterialX itself."""
 
     def clashes(name: str, target: str, twice: bool = False) -> dict[texts.Clash, str]:
         search = library_tree.search_path(name)
         return dict.fromkeys(texts.clashes(load_library(name), target, search, twice), target)
 
-    targets: dict[texts.Clash, str] = {}  # the first target with each clash
+    targets: dict[texts.Clash, str] = {}  # the first target that has the clash
     for target in SOURCES:
         known = clashes("stock", target)
         new = {each: target for each in clashes(library, target) if each not in known}
@@ -120,7 +123,7 @@ def _clashes(library: str) -> Faults:
 
 
 def _arguments(library: str, release: mx.Document) -> Faults:
-    """Arguments of MDL calls that differ from the release; the control exchanges two arguments."""
+    """Arguments of MDL calls that differ from the release. The control exchanges two arguments."""
 
     def faults(exchange: bool) -> Iterator[Cause]:
         for definition in release.getNodeDefs():
@@ -146,20 +149,23 @@ def _arguments(library: str, release: mx.Document) -> Faults:
 
 SOURCES = ("genglsl", "genslang", "genmsl", "genosl")  # targets with source files
 TEXT_ONLY = tuple(row.target for row in hosts.HOSTS if row.needs)  # targets without a host
-# A call that fills the variable `lobe_out`, or an expression that the variable is set to.
+# The variable `lobe_out` is either filled by a call or set to an expression.
 FILLED = re.compile(r"\b(\w+\([^;]*), lobe_out\);")
 ASSIGNED = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
 CALLEE = re.compile(r"(?:\w+::)*\w+(?=\()")
 
 
 def _lobe_expression(subject: lobes.ScatteringSpec, target: str, library: str) -> str:
-    """The expression of a node in a generated shader; `lobe_` and a name is an input's variable."""
+    """The expression of a node in a generated shader.
+
+    The variable of an input in the expression is `lobe_`, followed by the input's name.
+    """
     frame = {"normal": (0.0, 0.6, 0.8), "tangent": (1.0, 0.0, 0.0)}
     document = subject.document({name: frame[name] for name in frame if name in subject.names})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", generation.ApproximationWarning)
         text = generation.generate(document, target, library=library)[0].stages["pixel"]
-    if filled := FILLED.search(text):  # `lobe_out` is declared as an empty lobe before
+    if filled := FILLED.search(text):  # `lobe_out` is first declared as an empty lobe
         return f"{filled[1]})"
     if assigned := ASSIGNED.search(text):
         return assigned[1]
@@ -172,7 +178,7 @@ def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object])
 
 
 def _dropped_inputs(subject: lobes.ScatteringSpec, target: str, library: str) -> Faults:
-    """Inputs that are never passed: no argument of a call has the unique value of the input."""
+    """Inputs whose unique values are no argument of any call, so that the input is never passed."""
     expression = _lobe_expression(subject, target, library)
     names = tuple(subject.types) if isinstance(subject, lobes.PbrSpec) else subject.names
     inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}
@@ -196,15 +202,15 @@ def _dropped_inputs(subject: lobes.ScatteringSpec, target: str, library: str) ->
 # --- closures: arguments of MDL's closures for random materials -----------------------------------
 
 DRAWS = 256  # number of random materials
-ROUNDED = 1e-12  # 4500 float64 roundings, more than any text performs
+ROUNDED = 1e-12  # 4500 float64 roundings, which is more than any text performs
 TINT = "multiscatter_tint"
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
-UP = np.array([[0.0, 0.0, 1.0]])  # normal of the surface, which differs from that of the node
-# Arguments of a closure, and its weight, by the names of the node's inputs.
+UP = np.array([[0.0, 0.0, 1.0]])  # normal of the surface; the node has another normal
+# Weight and arguments of a closure, by the names of the node's inputs.
 Closure: TypeAlias = dict[str, ArrayLike]
 
 
-# Functions of MDL, with the parameters of MDL's documentation.
+# Functions of MDL. The parameters are those of MDL's documentation.
 def diffuse_reflection_bsdf(
     tint: ArrayLike = 1.0, roughness: ArrayLike = 0.0, multiscatter_tint: ArrayLike = 0.0
 ) -> Closure:
@@ -226,7 +232,7 @@ FUNCTIONS: Mapping[str, object] = {
     "material_surface": lambda *, scattering: scattering,
     "df::weighted_layer": weighted_layer,
     "df::diffuse_reflection_bsdf": diffuse_reflection_bsdf,
-    # FON, plus a white lobe if the flag `energy_compensation` is set.
+    # The closure is FON. If the flag `energy_compensation` is set, a white lobe is added.
     PBRLIB: lambda mxp_weight, mxp_color, mxp_roughness, mxp_normal, mxp_energy_compensation: weighted_layer(
         mxp_weight, diffuse_reflection_bsdf(mxp_color, mxp_roughness, mxp_energy_compensation), (), mxp_normal),
 }
@@ -234,14 +240,14 @@ FUNCTIONS: Mapping[str, object] = {
 
 
 def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
-    """Closure arguments that differ from the node's inputs; the control drops the weight."""
+    """Closure arguments that differ from the node's inputs. The control drops the weight."""
     expression = _lobe_expression(subject, "mdl", library)
     rng = generator()
     drawn = subject.random_inputs(rng, DRAWS)
     rows = {name: each.reshape(DRAWS, -1) for name, each in drawn.items()}
     rows["weight"], normal = rng.random((DRAWS, 1)), rng.standard_normal((DRAWS, 3))
     rows["normal"] = normal / np.linalg.norm(normal, axis=1, keepdims=True)
-    # [Portsmouth2025], Eq. (19); MDL's closure without the flag is FON.
+    # [Portsmouth2025], Eq. (19), is the tint of EON. Without the flag, MDL's closure is FON.
     rho, r = rows["color"], rows["roughness"]
     average = (1.0 + formulas.C2 * r) / (1.0 + formulas.C1 * r)
     tint = rho**2 * average / (1.0 - rho * (1.0 - average))

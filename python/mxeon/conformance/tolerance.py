@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.conformance.results import Errors, Quantity, Region
 from mxeon.conformance.samples import Array, Batch, Mask, Values
 
-Metric = Callable[[Array, Array], Array]  # measured and expected values -> error of each row
+Metric = Callable[[Array, Array], Array]  # measured, expected values -> error of each row
 
 ROUNDING = 2.0**-24  # unit roundoff of float32
 
@@ -36,7 +36,7 @@ class Compared(NamedTuple):
 
 @dataclass(frozen=True)
 class Measurement:
-    """The worst error of a check, its sample, and the errors of all samples."""
+    """The worst error of a check, with the worst sample and the errors of all samples."""
 
     error: float
     worst: dict[str, list[float]]  # inputs and values of the worst sample, by name
@@ -45,12 +45,15 @@ class Measurement:
 
 
 def _largest(values: Array) -> Array:
-    """Maximum over the last axis, channel by channel: five times as fast as `numpy.max`."""
+    """The maximum over the last axis.
+
+    The loop over channels is five times as fast as `numpy.max`.
+    """
     return reduce(np.maximum, np.moveaxis(values, -1, 0))
 
 
 def absolute(measured: ArrayLike, expected: ArrayLike) -> Array:
-    """Largest difference of each row; infinity for rows with a difference that is not finite."""
+    """Largest difference of each row, or infinity for a row whose difference is not finite."""
     error = _largest(np.abs(np.subtract(measured, expected)))
     return np.where(np.isfinite(error), error, np.inf)
 
@@ -60,34 +63,34 @@ def _scale(expected: Array) -> Array:
 
 
 def scaled(measured: Array, expected: Array) -> Array:
-    """Largest difference of each row, divided by the row's largest expected value if above 1."""
+    """Largest difference of each row, divided by the larger of 1 and the largest expected value."""
     scale = _scale(expected)
     return absolute(measured / scale, expected / scale)
 
 
 def relative(measured: Array, expected: Array) -> Array:
-    """Largest difference of each row, where each value is divided by its expected value."""
+    """Largest relative difference of each row. Each value is divided by its expected value."""
     return absolute(measured / expected, 1.0)
 
 
 def mean_error(measured: Array, expected: Array) -> Array:
-    """Largest difference of the mean values of all rows, repeated for every row.
+    """Largest difference between mean values over all rows, repeated for every row.
 
-    Averaging removes the noise of random paths.
+    The mean removes the noise of random paths.
     """
     return np.broadcast_to(absolute(np.mean(measured - expected, axis=0), 0.0), len(measured))
 
 
 def mean_scaled(measured: Array, expected: Array) -> Array:
-    """`mean_error` of rows, each divided by the row's largest expected value if above 1."""
+    """`mean_error` of rows divided by the larger of 1 and the row's largest expected value."""
     scale = _scale(expected)
     return mean_error(measured / scale, expected / scale)
 
 
 def root_mean_square(measured: Array, expected: Array) -> Array:
-    """Root mean square of the rows' largest differences, repeated for every row.
+    """Root mean square of the largest differences of all rows, repeated for every row.
 
-    This metric detects small errors in many rows, which a tolerance for the largest error hides.
+    A tolerance for the largest error misses small errors in many rows, which this metric detects.
     """
     errors = absolute(measured, expected)
     return np.broadcast_to(np.sqrt(np.mean(errors * errors)), len(errors))
@@ -106,7 +109,7 @@ def worst_of(metric: Metric, compared: Iterable[Compared]) -> Measurement:
 
 
 def errors_of(rows: NDArray[np.floating], tolerance: float, region: Region | None = None) -> Errors:
-    """Statistics of the errors of rows, of which those above the tolerance or NaN are wrong."""
+    """Statistics of the errors of rows. A row is wrong if the error is NaN or too large."""
     finite = rows[np.isfinite(rows)]
     rms = float(np.sqrt(np.mean(finite**2))) if len(finite) else 0.0
     wrong = int(np.count_nonzero(~(rows <= tolerance)))
@@ -115,7 +118,7 @@ def errors_of(rows: NDArray[np.floating], tolerance: float, region: Region | Non
 
 
 def checksum(batches: Iterable[Batch]) -> str:
-    """CRC-32 of the directions and inputs of batches, rounded to float32, in hexadecimal."""
+    """CRC-32 of directions and inputs, which are rounded to float32, as hexadecimal digits."""
     crc = 0
     for batch in batches:
         for column in (batch.wo, batch.wi, *batch.inputs.values()):
@@ -124,7 +127,7 @@ def checksum(batches: Iterable[Batch]) -> str:
 
 
 def count_not_finite(compared: Compared) -> Measurement:
-    """Number of rows with a measured value that is not finite, and the first of these rows."""
+    """The number of rows with a measured value that is not finite, and the first such row."""
     wrong = ~np.isfinite(compared.measured).all(axis=1)
     if not wrong.any():
         return Measurement(0, {})
@@ -152,18 +155,21 @@ class Term(NamedTuple):
 
 
 def roundings(count: float, words: str = "") -> Term:
-    """The error of `count` float32 roundings of numbers near 1, each at most 2^-24."""
+    """The error of `count` float32 roundings of numbers near 1. Each rounding is at most 2^-24."""
     return Term(count * ROUNDING, f"{count:.3g} float32 roundings{words and ' '}{words}")
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """The largest error that passes: a sum of terms, rounded up to one digit unless exact."""
+    """The largest error that passes, as a sum of terms.
+
+    The sum is rounded up to one significant digit, unless `exact` is set.
+    """
 
     terms: tuple[Term, ...]
     quantity: Quantity = Quantity.VALUE
     metric: Metric = scaled
-    exact: bool = False  # whether the sum is not rounded up
+    exact: bool = False  # whether the sum is used without rounding up
 
     @property
     def value(self) -> float:
@@ -187,7 +193,10 @@ class Tolerance:
         return Term(factor * self.value, words)
 
     def scale(self, expected: Array) -> Array:
-        """Divisor of each row's error, (N, 1); not 1 only for large values and `scaled`."""
+        """The divisor of each row's error, (N, 1).
+
+        Only the metric `scaled` has divisors other than 1, for rows with large expected values.
+        """
         return _scale(expected) if self.metric is scaled else np.ones((len(expected), 1))
 
 

@@ -10,15 +10,15 @@ from mxeon.conformance import results
 from mxeon.conformance.results import Cause, Diagnosis, Difference, Kind, Region, Result, Run
 from mxeon.shaders.nodes import FLAG
 
-NAMED = 3  # maximum names in a list; the rest are only counted
-DIFFERENCES_SHOWN = 3  # maximum reported differences between two node graphs
+NAMED = 3  # maximum number of names in a list; other names are counted
+DIFFERENCES_SHOWN = 3  # maximum number of reported differences between two node graphs
 AS_SPECIFIED = "looks as specified"
 
 # --- numbers and lists ---------------------------------------------------------------------------
 
 
 def in_words(number: float) -> str:
-    """A number with two significant digits, without an exponent.
+    """A number with two significant digits and without an exponent.
 
     >>> in_words(1.234), in_words(1234.5)
     ('1.2', '1,200')
@@ -27,7 +27,7 @@ def in_words(number: float) -> str:
 
 
 def of_white(share: float) -> str:
-    """A radiance in words; `share` is relative to a white, matte surface that faces the light.
+    """A radiance in words. `share` is relative to a white, matte surface that faces the light.
 
     >>> of_white(0.2035), of_white(1e-7), of_white(48.2)
     ('20 % of white', 'less than 0.1 % of white', '48 times white')
@@ -76,7 +76,7 @@ def _short(number: float, digits: int = 2) -> str:
 
 LIGHTS = {"side": "light from the side", "front": "light from the front"}
 LIGHTS |= {"back": "light from behind", "furnace": "a white environment"}
-# Sets of direction pairs and inputs; `mxeon.conformance.diagnosis.regions` finds them.
+# Phrases for regions of pairs and inputs that `mxeon.conformance.diagnosis.regions` finds.
 REGIONS = {
     "viewer_above_1": "with dot(N, V) rounded above 1",
     "light_above_1": "with dot(N, L) rounded above 1",
@@ -129,15 +129,15 @@ REGIONS = {
     "normal_away": "where the normal faces away from the viewer",
     **{scene: f"in {light}" for scene, light in LIGHTS.items()},
 }
-# A region may be a range of an input, or of one of the input's components.
+# A region may be a range of an input or of a component of an input.
 PARTS = {
     "value": "{}",
     **{each: f"the {each} component of {{}}" for each in ("first", "second", "smaller", "larger")},
     "difference": "a difference between the components of {} of",
 }
 # fmt: off
-# Mistakes in how a shader uses a correct model. {0} and {1} are names of the cause, {x} its first
-# number.
+# Mistakes of a shader that uses a correct model. {0} and {1} are names in the cause, and {x} is the
+# cause's first number.
 FAULTS = {
     "channels_exchanged": "the color channels are exchanged: they arrive as {0}, {1}, {2}",
     "one_channel": "every channel takes the {0} of the color",
@@ -170,10 +170,10 @@ FAULTS = {
     "pi_missing": "the factor 1/pi is missing",
     "pi_twice": "the factor 1/pi is applied twice",
 }
-# Words between the states (combinations of lobes and lights) that all wrong values share.
+# Words between the states that all wrong values share. A state combines lobes and lights.
 STATES = {"state": "", "both_states": " and ", "either_state": " or "}
 SUMS = "each part is right by itself, but {share} combinations of lobes and lights are wrong{states}"
-# Other defects, and facts about them; `_filled` replaces the braces.
+# Other defects, and facts about defects. `_filled` replaces the braces by names and numbers.
 DEFECTS = {
     "average_at_half_vector": "the compensation uses F at the half vector instead of its average",
     "average_by_ends": "the compensation uses the average F0 + (F90 - F0) / 21",
@@ -311,7 +311,7 @@ def diagnosis(found: Diagnosis) -> str:
 
 def _cause(cause: Cause, distances: Mapping[str, float]) -> str:
     text = _model(cause, distances) if cause.kind is Kind.MODEL else SENTENCES[cause.kind](cause)
-    named = cause.branch and cause.key != "passes_other_light"  # the sentence names the branch
+    named = cause.branch and cause.key != "passes_other_light"  # the text already names the branch
     return f"branch {cause.branch}: {text}" if named else text
 
 
@@ -320,7 +320,7 @@ def _rms(cause: Cause) -> str:
 
 
 def _model(cause: Cause, distances: Mapping[str, float]) -> str:
-    """The nearest model and the second nearest, in words.
+    """The nearest and the second nearest model, in words.
 
     >>> _model(Cause(Kind.MODEL, "Lambert", rms=0.001), {"EON": 0.25, "Lambert": 0.001})
     'best match: Lambert (rms 0.001), then EON (0.25)'
@@ -375,7 +375,7 @@ def _cure(cause: Cause) -> str:
 
 
 def _filled(text: str, cause: Cause) -> str:
-    """A text whose braces are replaced by a cause's names and numbers."""
+    """The text, in which a cause's names and numbers replace the braces."""
     names, values = cause.names, cause.values
     first = values[0] if values else math.nan
     known = (name for name, x in FACTORS.items() if abs(first / x - 1.0) <= SAME_FACTOR)
@@ -404,9 +404,9 @@ def _filled(text: str, cause: Cause) -> str:
 
 
 def _release(cause: Cause) -> str:
-    """The differences of a node from its released version.
+    """The differences between a node and the released version of the node.
 
-    The cause names the node and, for each difference, a part, its value, and the released value.
+    For each difference, the cause lists the name of a part, the value, and the released value.
     """
     node, *rows = cause.names or ("",)
     parts = [
@@ -433,7 +433,7 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
     Kind.UNKNOWN: lambda cause: DEFECTS[cause.key],
     Kind.TEXT: lambda cause: cause.text,
     Kind.CONTROL: lambda cause: "inconclusive: the values are right, but the control passed too",
-    # The reason of a result already states these causes.
+    # The reason of a result already states these causes, so the sentence is empty.
     **dict.fromkeys((Kind.NONE, Kind.FOLLOWS, Kind.INPUT), lambda cause: ""),
 }
 
@@ -475,7 +475,7 @@ def appearance(found: Difference) -> str:
 
 
 def excess(result: Result) -> str:
-    """An error above the tolerance, or a control that passed, in words; "" if neither occurred."""
+    """An error above the tolerance in words, or the fact that a control passed, otherwise ""."""
     control = result.control
     if result.error is not None and not result.within:
         if result.difference:
@@ -505,7 +505,7 @@ def look(result: Result) -> str:
 
 
 def unchecked(names: Iterable[str]) -> str:
-    """A note on inputs that are not checked, because no model computes their values.
+    """A note on inputs that are not checked because no model computes their values.
 
     >>> unchecked(["SR_tiles.base_color"])
     'not checked: base_color, which comes from a pattern or texture'
@@ -516,14 +516,14 @@ def unchecked(names: Iterable[str]) -> str:
 
 
 def explanation(result: Result) -> str:
-    """The reason for a failure: the error's size, the diagnosis, and pages about the defects."""
+    """The reason for a failure: the size of the error, the diagnosis, and pages on defects."""
     pages = (f"see docs/upstream/{page}.md" for page in result.pages)
     return "; ".join(filter(None, (excess(result), diagnosis(result.diagnosis), *pages)))
 
 
 # --- changes -------------------------------------------------------------------------------------
 
-# Changes of a number between two runs of a check: {0} is its old value, {1} its new one.
+# Changes of a number between two runs of a check, from the old value {0} to the new value {1}.
 GROWTHS = {
     "largest": "the largest error is {0} -> {1}",
     "rms": "the rms error is {0} -> {1}",
@@ -537,7 +537,9 @@ ROUNDED = "with another driver, few samples leave the tolerance"
 
 
 def growth(key: str, before: float, after: float, place: Region | None) -> str:
-    """A change of a number between two runs, in words, with the region of the counted samples.
+    """A change of a number between two runs, in words.
+
+    `place` is the region of the counted samples.
 
     >>> growth("wrong", 0.125, 0.25, Region("roughness", "value", low=0.5))
     '12.5 % -> 25 % of the samples are wrong with roughness 0.5 or above'
@@ -552,7 +554,7 @@ def growth(key: str, before: float, after: float, place: Region | None) -> str:
 
 
 def annotation(level: str, title: str, message: str) -> str:
-    """A line that makes GitHub Actions show a message as an annotation.
+    """A line that GitHub Actions shows as an annotation.
 
     >>> annotation("error", "worse: sheen", "50 % darker")
     '::error title=worse%3A sheen::50 %25 darker'
@@ -565,7 +567,7 @@ def annotation(level: str, title: str, message: str) -> str:
 
 
 def sentence(run: Run) -> str:
-    """The verdict on all libraries, except those judged for comparison."""
+    """The verdict on all libraries that are not judged for comparison, in words."""
     judged, total = run.judged, counted(len(run.judged), "check")
     passed, differing, failed, not_run = (run.counts[each] for each in results.VERDICTS)
     allowed = ""
@@ -576,7 +578,7 @@ def sentence(run: Run) -> str:
         places = Counter(each.location for each in judged if each.verdict == results.FAILED)
         counts = ", ".join(f"{count} on {location}" for location, count in places.items())
         where = f": {counts}" if len(places) > 1 else f" on {next(iter(places))}"
-        # A check that another failure prevented is not counted separately.
+        # A check that could not run because another check failed is not counted.
         idle = sum(each.verdict == results.NOT_RUN and not each.follows for each in judged)
         text = (
             f"{failed} of {total} failed{where}{f'; {idle} did not run' if idle else ''}{allowed}."
@@ -618,7 +620,7 @@ def sentence(run: Run) -> str:
 
 
 def summary(run: Run) -> str:
-    """The verdict, MaterialX's version (and folder, unless it is installed), and the time."""
+    """The verdict, MaterialX's version, the folder if not installed, and the time, in words."""
     text = sentence(run)
     if version := run.software.get("MaterialX"):
         folder = run.software.get("MaterialX folder")
@@ -627,7 +629,7 @@ def summary(run: Run) -> str:
 
 
 def origins(run: Run) -> tuple[str, ...]:
-    """Number of files from each folder judged as a library, and from MaterialX."""
+    """The number of files from each folder that is judged as a library, and from MaterialX."""
     return tuple(
         f"library {folder}: {counted(len(files['folder']), 'file')} from the folder, "
         + (f"{len(files['MaterialX']) or 'none'} from" if "MaterialX" in files else "loaded before")
@@ -637,7 +639,7 @@ def origins(run: Run) -> tuple[str, ...]:
 
 
 def not_judged(run: Run) -> tuple[str, ...]:
-    """One line that lists the subjects that no check judges, with reasons; empty without any."""
+    """One line with the subjects that no check judges and with the reasons, if there are any."""
     reasons: dict[str, list[str]] = {}
     for what, reason in run.unjudged:
         reasons.setdefault(reason, []).append(what)
