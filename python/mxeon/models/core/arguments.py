@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Argument checks: ranges by name, broadcasting, directions, switches, choices; array blocks.
+"""Checks of arguments (ranges, shapes, directions, choices), and division of arrays into blocks.
 
 Directions point away from the surface, in a local frame whose normal is +z.
 """
@@ -23,23 +23,23 @@ from mxeon.names import NONE, unknown
 
 _LARGEST = float(np.finfo(np.float64).max)
 
-# Ranges as minimum, maximum and the text that messages print; both ends are valid.
+# Each range has a minimum, a maximum and its text in messages. Both ends are valid values.
 _BELOW_ONE, _ABOVE_ZERO = float(np.nextafter(1.0, 0.0)), float(np.nextafter(0.0, 1.0))
 _SHARE = (0.0, 1.0, "[0, 1]")
 _POSITIVE = (0.0, 1e50, "[0, 1e50]")  # fourth powers fit into float64
 _WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # exponents and squares fit into float64
 _LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # products and quotients fit into float64
 
-# Closed ranges: a value beyond an end by less than one rounding of float32 is clamped to that end.
+# In these closed ranges, a value beyond an end by less than a rounding of float32 is clamped.
 CLOSED = ("[0, 1]", "[0.01, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]")
 ROUNDING = 2.0**-23
-# Tolerance of a direction's squared length; directions rounded to float32 pass.
+# Tolerance of the squared length of a direction. Directions rounded to float32 are accepted.
 UNIT_TOLERANCE = 1e-6
-BLOCK = 2**15  # pairs per block: an array of 256 KiB stays in the L2 cache
+BLOCK = 2**15  # direction pairs per block, since an array of 256 KiB fits into the L2 cache
 
 
 class Ranges(dict[str, tuple[float, float, str]]):
-    """Ranges of quantities by name."""
+    """Valid ranges of quantities, by the name of the quantity."""
 
     def __missing__(self, name: str) -> tuple[float, float, str]:
         raise LookupError(f"{name!r} must have a range in {__name__}: add its row to RANGES")
@@ -106,7 +106,7 @@ def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:
 
 
 def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> tuple[int, ...]:
-    """Shape to which all arguments broadcast, without the last axis of `vectors`, (..., C)."""
+    """Shape to which all arguments broadcast, without the last axis (C) of `vectors`."""
     leads = {name: tuple(array.shape[:-1]) for name, array in vectors.items()}
     leads |= {name: tuple(array.shape) for name, array in numbers.items()}
     try:
@@ -121,7 +121,7 @@ def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -
 
 
 def broadcastable(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> list[Array]:
-    """The vectors, then the numbers; raises ValueError unless their shapes broadcast."""
+    """All vectors, followed by all numbers. Raises ValueError if their shapes do not broadcast."""
     lead_shape(vectors, numbers)
     return [*vectors.values(), *numbers.values()]
 
@@ -138,8 +138,8 @@ def channel_count(colors: Mapping[str, Numbers]) -> int:
 
 
 def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, ...]]:
-    """Indices that tile an array, each selecting at most about `size` elements."""
-    # Axes from `axis` on fit into a block as a whole.
+    """Indices that divide an array into blocks of at most about `size` elements."""
+    # The elements of all axes from `axis` to the last fit into one block.
     axis, inner = len(shape), 1
     while axis > 0 and inner * shape[axis - 1] <= size:
         axis -= 1
@@ -155,7 +155,7 @@ def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, .
 
 
 def tile(array: Numbers, block: tuple[slice, ...]) -> Array:
-    """A block of the leading axes, with the last axis first; axes of length 1 stay whole."""
+    """A block of an array, whose last axis is moved to the front. Axes of length 1 are kept."""
     axes = zip(block, array.shape[:-1], strict=True)
     part = array[tuple(index if length > 1 else slice(None) for index, length in axes)]
     return channels_first(part)
@@ -167,18 +167,18 @@ def channels_first(array: Numbers) -> Array:
 
 
 def with_axes(array: Numbers, ndim: int) -> Numbers:
-    """Array with `ndim` axes; missing axes, and broadcast axes except the last, get length 1."""
+    """Array with `ndim` axes. Missing axes, and broadcast axes except the last, have length 1."""
     *strides, _ = array.strides
     narrow = array[tuple(slice(None if stride else 1) for stride in strides)]
     return narrow.reshape((1,) * (ndim - array.ndim) + narrow.shape)
 
 
 def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
-    """Argument as an array of real numbers inside its range: RANGES[quantity or name]."""
+    """Argument as an array of real numbers, checked against the range of its quantity."""
 
     def in_range(array: Numbers) -> Numbers:
         low, high, interval = RANGES[quantity or name]
-        # Compare in float64: half floats would round the ends of the range to infinity.
+        # The comparison uses float64, because the ends of a range may be infinite as half floats.
         if not array.size or (float(array.min()) >= low and float(array.max()) <= high):
             return array
         beyond = ROUNDING if interval in CLOSED else 0.0
@@ -197,22 +197,22 @@ def checked_real(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_all(values: Mapping[str, ArrayLike]) -> dict[str, Numbers]:
-    """Arguments by name as arrays, each inside the range for its name."""
+    """Arguments as arrays, each checked against the range of its name."""
     return {name: checked(name, value) for name, value in values.items()}
 
 
 def checked_vectors(values: Mapping[str, ArrayLike]) -> dict[str, Numbers]:
-    """Arguments by name as arrays with at least one axis, each inside the range for its name."""
+    """Arguments as arrays with at least one axis, each checked against the range of its name."""
     return {name: with_axis(value) for name, value in checked_all(values).items()}
 
 
 def checked_numbers(**values: ArrayLike) -> list[Array]:
-    """Arguments as float64 arrays that broadcast, each inside the range for its name."""
+    """Arguments as float64 arrays that broadcast, each checked against the range of its name."""
     return broadcastable({}, checked_all(values))
 
 
 def checked_color(name: str, value: ArrayLike) -> Numbers:
-    """Argument as a color inside the range for its name; the last axis has at least one channel."""
+    """Argument as a color of at least one channel, checked against the range of its name."""
     color = with_axis(checked(name, value))
     if not color.shape[-1]:
         raise ValueError(f"{name} must have at least one channel; got shape {tuple(color.shape)}")
@@ -220,7 +220,7 @@ def checked_color(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_rgb(name: str, value: ArrayLike) -> Numbers:
-    """Argument as red, green and blue inside the range for its name; one channel is repeated."""
+    """Argument as an RGB color, checked against the range of its name. One channel is repeated."""
     color = checked_color(name, value)
     if color.shape[-1] not in (1, 3):
         raise ValueError(f"{name} must have 1 or 3 channels; got shape {tuple(color.shape)}")
@@ -250,7 +250,7 @@ def checked_choice(
     titles: Mapping[str, str] = NONE,
     listing: str = "",
 ) -> str:
-    """Argument that must be one of the known names; `mxeon.names.unknown` writes the message."""
+    """Argument that must be one of the names in `known`. Raises ValueError for any other name."""
     if message := unknown(name, value, known, titles, listing):
         raise ValueError(message)
     return value
@@ -298,7 +298,7 @@ def checked_triples(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_pairs(name: str, value: ArrayLike) -> Numbers:
-    """Argument of shape (..., 2) inside the range for its name in `RANGES`."""
+    """Argument of shape (..., 2), checked against the range of its name."""
     return _with_components(name, checked(name, value), 2)
 
 
@@ -309,7 +309,7 @@ def _with_components(name: str, array: Numbers, count: int) -> Numbers:
 
 
 def checked_roughness(value: ArrayLike) -> Numbers:
-    """alpha along tangent and bitangent in [0, 1], shape (..., 2); a number is used for both."""
+    """alpha along tangent and bitangent in [0, 1], shape (..., 2). A single number is repeated."""
     return spread_pair("roughness", checked("roughness", value))
 
 
@@ -325,7 +325,7 @@ def are_directions(components: Numbers) -> bool:
 
 
 def on_horizon(w: Numbers, axis: int = 0) -> Numbers:
-    """Directions, components on `axis`, with any z that is negative by a rounding set to 0."""
+    """Directions with components on `axis`. A z that is negative only by rounding is set to 0."""
     z = w.take(2, axis)
     if not z.size or z.min() >= 0.0:
         return w
@@ -335,7 +335,7 @@ def on_horizon(w: Numbers, axis: int = 0) -> Numbers:
 
 
 def refuse_direction(name: str, w: Numbers) -> NoReturn:
-    """Raise ValueError for the first direction below the horizon or, if none, of wrong length."""
+    """Raise ValueError for the first direction that is below the horizon or not a unit vector."""
     z = w[..., 2]
     if (z < -ROUNDING).any():
         _refuse(f"{name} must not point below the horizon (z >= 0)", z, ~(z < -ROUNDING), "z = ")
@@ -346,7 +346,7 @@ def refuse_direction(name: str, w: Numbers) -> NoReturn:
 
 
 def _array(name: str, value: ArrayLike, check: Callable[[Numbers], Numbers]) -> Numbers:
-    """Argument as a checked float64 array; arrays of other libraries are returned unchanged."""
+    """Argument as a checked float64 array. An array of another library is returned unchanged."""
     if not library(value):
         return np.asarray(check(_real(name, value)), np.float64)
     if (values := host_values(value)) is not None:
@@ -355,7 +355,7 @@ def _array(name: str, value: ArrayLike, check: Callable[[Numbers], Numbers]) -> 
 
 
 def _real(name: str, value: ArrayLike) -> Numbers:
-    """Argument as an array; raises ValueError for complex numbers, text, ragged lists and masks."""
+    """Argument as an array. Raises ValueError for complex numbers, text, ragged lists and masks."""
     if np.ma.isMaskedArray(value):
         raise ValueError(f"{name} must not be a masked array, whose mask would be lost; fill it")
     try:

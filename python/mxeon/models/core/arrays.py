@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays of any library that follows the array API standard, and operations with finite derivatives at edges.
+"""Arrays of all libraries that follow the array API standard, and differentiable functions.
 
 A formula calls the standard's functions in the library of its arguments. The decorator `any_array` wraps public
-functions: if one argument is an array of PyTorch or JAX, all are converted to that library, precision and device.
-Traced arguments have no values yet and are not checked.
+functions: if one argument is an array of PyTorch or JAX, all arguments are converted to that
+library, precision and device. Arguments are not checked while the library traces the function,
+because they have no values then.
 
-Automatic differentiation multiplies the derivatives of single steps, so a square root at 0 may give infinity times 0.
-The operations from `cosine` on avoid this. For NumPy, each is the plain operation to the last bit; for other arrays,
-a separate branch returns the value at the edge, with the derivative that the docstring states.
+Automatic differentiation multiplies the derivatives of all steps, so a square root at 0 may lead to
+infinity times 0. The function `cosine` and the functions after it avoid such products. For NumPy,
+they equal the plain operations to the last bit. For other libraries, a separate branch returns the
+value at the end of the domain, with the derivative that the docstring states.
 """
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ __all__ = ["Array", "ArrayLike", "Number", "Numbers"]
 # Results are float64. If all arguments are numbers, the result is a NumPy scalar, which acts like an array.
 Array: TypeAlias = NDArray[np.float64]
 
-# An array or a number; results have the same type.
+# An array or a number. The result of a function has the type of its argument.
 Number = TypeVar("Number", Array, float)
 
 # Validated arguments in their original precision.
@@ -47,13 +49,13 @@ class Namespace(Protocol):
 PLAIN = np.ndarray, np.generic, float, int, list, tuple  # types that NumPy handles
 # NumPy 1 lacks some names of the standard, such as `atan`.
 NUMPY = cast(Namespace, np if hasattr(np, "atan") else import_module("array_api_compat.numpy"))
-# Types of arrays outside the standard, and namespaces in use, both by library.
+# Array types that do not follow the standard, and namespaces in use, by the name of the library.
 OTHERS: dict[str, type] = {}
 FUNCTIONS: dict[str, Namespace] = {}
 
 
 def library(value: object) -> str:
-    """Name of an array's library; "" for NumPy and for values that are not arrays."""
+    """Name of an array's library, or "" for NumPy and for values that are not arrays."""
     if isinstance(value, PLAIN):
         return ""
     name = type(value).__module__.partition(".")[0]
@@ -63,7 +65,7 @@ def library(value: object) -> str:
 
 
 def array_namespace(*arrays: object) -> Namespace:
-    """Array functions for these arguments: NumPy, unless one of them is another library's array."""
+    """Array functions of the library to which the arguments belong, which is NumPy for numbers."""
     foreign = {name: each for each in arrays if (name := library(each))}
     if not foreign:
         return NUMPY
@@ -77,11 +79,11 @@ def array_namespace(*arrays: object) -> Namespace:
 
 
 def any_array(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorator: accept arrays of any library and return arrays of that library.
+    """Decorator that lets a function accept and return arrays of any library.
 
-    With NumPy the function is unchanged, to the last bit. Otherwise numbers, lists and NumPy arrays
-    are converted to the library, precision and device of the other arrays, except plain numbers
-    for parameters annotated as `float`.
+    Results for NumPy arrays are unchanged to the last bit. Otherwise numbers, lists and NumPy
+    arrays are converted to the library, precision and device of the other arrays. Plain numbers for
+    parameters annotated as `float` are not converted.
     """
     parameters = signature(function).parameters.values()
     names = [each.name for each in parameters]
@@ -112,7 +114,7 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def _converter(foreign: Sequence[object]) -> Callable[[object], object]:
-    """A function that converts arguments to the library, precision and device of these arrays."""
+    """A function that converts values to the library, precision and device of `foreign`."""
     xp, arrays = array_namespace(*foreign), cast("Sequence[Array]", foreign)
     for each in arrays:
         try:
@@ -133,7 +135,7 @@ def _converter(foreign: Sequence[object]) -> Callable[[object], object]:
             return array if xp.isdtype(array.dtype, "real floating") else xp.astype(array, dtype)
         if isinstance(value, bool) or not isinstance(value, PLAIN):
             return value
-        if isinstance(value, float | int):  # compilers see a constant, without np.asarray
+        if isinstance(value, float | int):  # a constant for compilers
             return xp.asarray(value, dtype=dtype, **place)
         array = np.asarray(value)
         return xp.asarray(array, dtype=dtype, **place) if array.dtype.kind in "iuf" else value
@@ -142,7 +144,7 @@ def _converter(foreign: Sequence[object]) -> Callable[[object], object]:
 
 
 def _device(array: object) -> dict[str, object]:
-    """Keyword argument `device` of an array of PyTorch; empty for other libraries."""
+    """Keyword argument `device` for an array of PyTorch; no arguments for other libraries."""
     return {"device": cast(Array, array).device} if library(array) == "torch" else {}
 
 
@@ -155,7 +157,7 @@ def like(values: Numbers, array: Array) -> Array:
 
 
 def host_values(value: object) -> Numbers | None:
-    """An array of another library as a NumPy array; None while it is traced."""
+    """NumPy array with the values of another library's array, or None while that library traces."""
     try:
         if library(value) != "torch":
             return np.asarray(value)
@@ -163,15 +165,15 @@ def host_values(value: object) -> Numbers | None:
 
         compiles = torch.compiler.is_compiling()
         return None if compiles else np.asarray(cast(torch.Tensor, value).detach().cpu())
-    except (TypeError, RuntimeError) as error:  # JAX and torch raise these while tracing
+    except (TypeError, RuntimeError) as error:  # errors of JAX and torch while tracing
         if "deleted" in str(error):
             raise ValueError("arrays must have values; got one that was deleted") from None
         return None
 
 
 def cosine(z: Array) -> Array:
-    """Cosine of a direction from its z, clamped to [0, 1] against rounding."""
-    # NumPy's directions are checked: z is not negative.
+    """Cosine of a direction's polar angle: z, clamped to [0, 1] because z may be rounded."""
+    # The z of a direction in a NumPy array was checked before and is not negative.
     return np.minimum(z, 1.0) if array_namespace(z) is NUMPY else within(z)
 
 
@@ -181,18 +183,18 @@ def least_normal(x: Array) -> float:
 
 
 def precision(x: Array) -> np.finfo[np.float64]:
-    """Floating-point limits of an array's dtype; limits of float32 if it has no dtype."""
+    """Floating-point limits of an array's dtype, or of float32 for a value without dtype."""
     return cast("np.finfo[np.float64]", array_namespace(x).finfo(getattr(x, "dtype", np.float32)))
 
 
 def at_most(x: Array, high: float) -> Array:
-    """The smaller of x and `high`; if they are equal, the derivative is 1."""
+    """The smaller of x and `high`. At x = `high` the derivative is 1."""
     xp = array_namespace(x)
     return xp.minimum(x, high) if xp is NUMPY else xp.where(x > high, high, x)
 
 
 def trimmed(x: Array, high: float) -> Array:
-    """x clamped to `high`, which only rounding can exceed; derivatives ignore the clamp."""
+    """x clamped to `high`, which x exceeds only by rounding. Derivatives ignore the clamp."""
     xp = array_namespace(x)
     return xp.minimum(x, high) if xp is NUMPY else x
 
@@ -222,7 +224,7 @@ def except_where(
     x: Array,
     interior: float,
 ) -> Array:
-    """formula(x); where `edge(x)`, `value` with derivative 0, and the formula gets `interior`."""
+    """formula(x), or `value` with derivative 0 where `edge(x)`; there, `formula` gets `interior`."""
     xp = array_namespace(x)
     if xp is NUMPY:
         return formula(x)
@@ -260,7 +262,7 @@ def arccosine(x: Array) -> Array:
 
 
 def angle(y: Array, x: Array) -> Array:
-    """Angle of the point (x, y); at the origin, value and derivatives are those at (1, 0)."""
+    """Polar angle of (x, y). At the origin, value and derivatives are those of the point (1, 0)."""
     xp = array_namespace(x, y)
     if xp is NUMPY:
         return xp.atan2(y, x)
@@ -269,7 +271,7 @@ def angle(y: Array, x: Array) -> Array:
 
 
 def power(base: Array, exponent: Array | float) -> Array:
-    """base^exponent; if the derivative at base 0 is infinite, it is set to 0."""
+    """base^exponent. An infinite derivative at base 0 is replaced by 0."""
     flat = 1.0 * (cast(Array, exponent) == 0.0)
     steep = exponent < 1.0
     return except_where(lambda x: (x == 0.0) & steep, flat, lambda x: x**exponent, base, 1.0)
@@ -281,6 +283,6 @@ def below_1(x: Array) -> float:
 
 
 def guarded(x: Array, valid: Numbers, placeholder: float) -> Array:
-    """x where `valid`, else the placeholder, whose results the caller discards; x for NumPy."""
+    """x, replaced by `placeholder` where `valid` is false. NumPy arrays are returned unchanged."""
     xp = array_namespace(x, valid)
     return x if xp is NUMPY else xp.where(valid, x, placeholder)

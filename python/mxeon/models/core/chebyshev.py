@@ -9,12 +9,12 @@ from mxeon.models.core.arrays import Array, array_namespace
 
 
 def chebyshev_nodes(count: int) -> Array:
-    """Nodes of the interpolant of degree `count` - 1, in (0, 1)."""
+    """Interpolation nodes in (0, 1) for the polynomial of degree `count` - 1."""
     return 0.5 + 0.5 * np.cos(_angles(count))
 
 
 def chebyshev_coefficients(values: Array) -> Array:
-    """Coefficients of the interpolant, from values at the nodes on the first axis; same shape."""
+    """Coefficients of the interpolant, in the shape of `values`, whose first axis is the nodes."""
     count = len(values)
     cosines = np.cos(np.outer(np.arange(count), _angles(count)))
     cosines[0] *= 0.5
@@ -22,7 +22,7 @@ def chebyshev_coefficients(values: Array) -> Array:
 
 
 def chebyshev_polynomials(x: Array, count: int) -> Array:
-    """The polynomials T_0 to T_(count - 1) of 2 x - 1, shape (count, ...)."""
+    """Chebyshev polynomials T_0 to T_(count - 1) at 2 x - 1, shape (count, ...)."""
     y = 2.0 * x - 1.0
     rows = [0.0 * y + 1.0, y]
     while len(rows) < count:
@@ -31,7 +31,7 @@ def chebyshev_polynomials(x: Array, count: int) -> Array:
 
 
 def chebyshev_sum(coefficients: Array, x: Array) -> Array:
-    """Chebyshev series at 2 x - 1, by Clenshaw's rule; coefficients have shape (count, ...)."""
+    """Chebyshev series at 2 x - 1, by Clenshaw's rule. `coefficients` has shape (count, ...)."""
     y = 2.0 * x - 1.0
     twice = 2.0 * y
     last = later = 0.0 * y

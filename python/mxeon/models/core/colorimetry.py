@@ -10,7 +10,7 @@ import numpy as np
 _OBSERVER = np.loadtxt(Path(__file__).with_name("cie_1931.csv"), delimiter=",")
 WAVELENGTHS = _OBSERVER[:, 0]  # unit: nm
 CIE_1931 = _OBSERVER[:, 1:]  # color-matching functions x, y, z at WAVELENGTHS
-# Matrix of the specification from CIE XYZ to linear Rec. 709 with white D65: IEC 61966-2-1.
+# The specification's matrix from CIE XYZ to linear Rec. 709, white point D65, by IEC 61966-2-1.
 XYZ_TO_REC709 = np.array(
     [
         [3.2404542, -1.5371385, -0.4985314],
@@ -18,7 +18,7 @@ XYZ_TO_REC709 = np.array(
         [0.0556434, -0.2040259, 1.0572252],
     ]
 )
-# XYZ_TO_REC709 after Bradford adaptation of equal-energy white to D65; each row sums to 1.
+# XYZ_TO_REC709 after a Bradford adaptation of equal-energy white to D65. Each row sums to 1.
 XYZ_TO_REC709_E = np.array(
     [
         [3.1462511, -1.6661240, -0.4801271],

@@ -20,14 +20,15 @@ def evaluate(
     /,
     **parameter: ArrayLike,
 ) -> Array:
-    """Values (..., C) of a reflection formula over broadcast arguments, block by block.
+    """Values (..., C) of a reflection formula for arguments that broadcast, computed in blocks.
 
-    - `formula`: `formula(wo, wi, rho, *parameter)` for one block: directions (..., 3) with contiguous
-      components, `rho` (C, ...), the parameter (...), all float64; returns (C, ...). Axes of length 1
-      are not expanded, so terms that depend only on the material stay small.
+    - `formula`: `formula(wo, wi, rho, *parameter)` computes one block, (C, ...). Its arguments are
+      float64: directions (..., 3) with contiguous components, `rho` (C, ...) and the parameter
+      (...). Axes of length 1 are not expanded, so terms that depend only on the material stay
+      small.
     - `rho` (..., C): N numbers with N directions are rejected as ambiguous, unless N is 1 or 3.
     - `name`: Name of `rho` in `RANGES` and in messages.
-    - `**parameter` (...): At most one, named as in `RANGES`.
+    - `**parameter` (...): At most one further argument, whose name is a key of `RANGES`.
     """
     pair = {"wo": arguments.checked_triples("wo", wo), "wi": arguments.checked_triples("wi", wi)}
     color, numbers = (
@@ -61,19 +62,19 @@ def evaluate_material(
     channels: int,
     size: int = arguments.BLOCK,
 ) -> Array:
-    """Values of a formula over checked arguments that broadcast, block by block.
+    """Values (..., channels) of a formula for checked arguments that broadcast, computed in blocks.
 
-    - `formula`: `formula(**given)` for one block. Vectors have their last axis first, (C, ...),
-      numbers are (...), all float64; returns (channels, ...). Axes of length 1 are not expanded.
-    - `vectors`, `numbers`: Directions, colors, pairs, (..., C); arguments without components, (...).
-    - `channels`: Number of channels of the result.
-    - `size`: Elements per block; choose less for formulas with many temporaries per element.
-
-    Result (..., channels).
+    - `formula`: `formula(**given)` computes one block, (channels, ...). Its arguments are float64:
+      vectors (C, ...), with components on the first axis, and numbers (...). Axes of length 1 are
+      not expanded.
+    - `vectors`: Arguments with components, (..., C): directions, colors and pairs.
+    - `numbers`: Arguments without components, (...).
+    - `size`: Elements per block; choose fewer for formulas with many temporaries per element.
     """
     shape = arguments.lead_shape(vectors, numbers)
     if array_namespace(*vectors.values(), *numbers.values()) is not NUMPY:
-        # Channels come first in the formula, last in the result. A constant may be a NumPy array.
+        # Channels are the first axis of the formula's value and the last axis of the result. A
+        # formula that is constant may return a NumPy array.
         axes, parts = len(shape), dict[str, Array]()
         for name, array in vectors.items():
             xp, wide = array_namespace(array), (1,) * (axes + 1 - array.ndim) + tuple(array.shape)
@@ -92,7 +93,7 @@ def evaluate_material(
         values = formula(
             **{name: parts[name][0] if name in numbers else parts[name] for name in parts}
         )
-        # Copying channel by channel takes a quarter of the time of one transposed copy.
+        # A copy of each channel takes a quarter of the time of one transposed copy of all channels.
         for channel, value in enumerate(np.broadcast_to(values, (channels, *values.shape[1:]))):
             out[block][..., channel] = value
     return out
@@ -104,7 +105,7 @@ def evaluate_number(
     numbers: Mapping[str, Numbers],
     size: int = arguments.BLOCK,
 ) -> Array:
-    """`evaluate_material` for a formula without channels; result (...)."""
+    """Values (...) of a formula without channels, computed like `evaluate_material`."""
     values = evaluate_material(
         lambda **given: formula(**given)[np.newaxis], vectors, numbers, 1, size
     )

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Algebra of `layer`, `mix`, `add` and `multiply` on values and throughputs of lobes.
 
-The throughput of a lobe is 1 - E; E is the directional albedo of the lobe without its color. It is
-negative if E exceeds 1, so a sum keeps its E when it is scaled or mixed afterwards. The
-specification does not cover E above 1; only `layer` clamps the throughput, to at least 0. Values may
-include the cosine or not: all four operations are linear. Lobes broadcast against each other.
+The throughput of a lobe is 1 - E, where E is the directional albedo of the lobe without its color.
+The throughput is negative if E exceeds 1. The clamp to at least 0 happens only in `layer`, so that
+a sum can be scaled or mixed first; the specification does not define E above 1. Values may include
+the cosine or not, because all four operations are linear. Lobes of different shapes broadcast.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ class Bsdf:
     """A lobe, or a combination of lobes, for one or many pairs of directions.
 
     - `value`: BSDF in 1/sr, with or without the cosine.
-    - `throughput`: 1 - E, per channel, dimensionless: the share of the light that reaches the layer
-      below; if negative, no light does. An opaque lobe of weight w has 1 - w, whatever it reflects.
+    - `throughput`: 1 - E per channel, the share of the light that reaches the layer below; a
+      negative throughput passes no light. An opaque lobe of weight w has throughput 1 - w for any
+      albedo.
     """
 
     value: Array
@@ -30,12 +31,13 @@ class Bsdf:
 
 @any_array
 def throughput(albedo: ArrayLike) -> Array:
-    """Throughput T = 1 - E of a lobe with the directional albedo E (..., C), weight included.
+    """Throughput T = 1 - E of a lobe whose directional albedo, weight included, is E (..., C).
 
-    T is negative if the albedo exceeds 1, and above 1 if the albedo is negative: Zeltner's fit falls to -2.2e-5. E
-    belongs to a white lobe: light that the `color` of `sheen_bsdf` or the `tint` of `dielectric_bsdf` removes is
-    absorbed. In specifications before August 2026, E includes the color. Raises `ValueError` if an albedo is
-    infinite or NaN. [MaterialX2026] of August 2026, Vertical-Layering Transmittance.
+    T is negative if the albedo exceeds 1, and above 1 if the albedo is negative; the least value of
+    Zeltner's fit is -2.2e-5. E is the albedo of a white lobe, because light that the `color` of
+    `sheen_bsdf` or the `tint` of `dielectric_bsdf` removes is absorbed. In specifications before
+    August 2026, E includes the color. Raises `ValueError` if an albedo is infinite or NaN.
+    [MaterialX2026] of August 2026, Vertical-Layering Transmittance.
 
         >>> throughput([0.25, 1.5])
         array([ 0.75, -0.5 ])
@@ -48,8 +50,8 @@ def layer(top: Bsdf, base: Bsdf) -> Bsdf:
 
         f = f_top + max(T_top, 0) f_base,  T = min(T_top, 0) + max(T_top, 0) T_base
 
-    Result: 1 - T is E_top + (1 - E_top) E_base, the albedo of f, or E_top if E_top exceeds 1.
-    [MaterialX2026], section `layer`.
+    In the result, 1 - T is the albedo of f: E_top + (1 - E_top) E_base, or E_top if E_top exceeds
+    1. [MaterialX2026], section `layer`.
 
         >>> both = layer(Bsdf(0.1, 0.75), Bsdf(0.2, 0.0))
         >>> float(both.value), float(both.throughput)
@@ -61,7 +63,7 @@ def layer(top: Bsdf, base: Bsdf) -> Bsdf:
 
 
 def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
-    """A linear blend of two lobes; `amount` is the weight w of `fg`, in [0, 1].
+    """A linear blend of two lobes, where `amount` is the weight w of `fg`, in [0, 1].
 
         f = (1 - w) f_bg + w f_fg,  T = (1 - w) T_bg + w T_fg
 
@@ -76,7 +78,7 @@ def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
 
 
 def add(in1: Bsdf, in2: Bsdf) -> Bsdf:
-    """Sum of two lobes, whose albedo may exceed 1.
+    """Sum of two lobes. The albedo of the sum may exceed 1.
 
         f = f_1 + f_2,  T = 1 - (E_1 + E_2) = T_1 + T_2 - 1
 
@@ -90,12 +92,13 @@ def add(in1: Bsdf, in2: Bsdf) -> Bsdf:
 
 
 def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
-    """A lobe scaled by `weight` s, at least 0; one number, or one per channel.
+    """A lobe scaled by `weight` s, which is at least 0: a number, or a number per channel.
 
         f = s f_1,  T = 1 - s E_1 = 1 - s (1 - T_1)
 
-    MaterialX's shaders keep T_1, so a lobe scaled to 0 still darkens the layer below, and they
-    clamp s to [0, 1]. The specification does neither. [MaterialX2026], section `multiply`.
+    MaterialX's shaders keep T_1, so a lobe scaled to 0 still darkens the layer below, and clamp s
+    to [0, 1]. The specification neither keeps T_1 nor clamps s. [MaterialX2026], section
+    `multiply`.
 
         >>> scaled = multiply(Bsdf(1.0, 0.5), 0.5)
         >>> float(scaled.value), float(scaled.throughput)
@@ -106,5 +109,5 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
 
 
 def _in_library(value: Array, number: Array) -> Array:
-    """A number as an array of the library of `value`."""
+    """A number, converted to an array of the library to which `value` belongs."""
     return number if library(number) else like(number, value)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Directional albedo of any model, by Gauss-Legendre rules between kinks of Oren-Nayar models."""
+"""Directional albedo by Gauss-Legendre rules, split at the kinks of Oren-Nayar models."""
 
 from __future__ import annotations
 
@@ -29,9 +29,10 @@ def albedo_dir_quadrature(
     - `mu` (...), `rho` (..., C): Cosine of the polar angle of wo, and reflectance per channel, in [0, 1].
     - `nodes`: Gauss-Legendre nodes per interval; each angle has two intervals. Time grows as `nodes` squared.
 
-    Accuracy: absolute error below 1e-12 for the models of this package. The intervals end at the models' kinks,
-    theta_i = theta_o and cos(phi) = 0. Nodes crowd just below theta_o, where the full Oren-Nayar model changes over
-    a width of only mu. Other kinks slow convergence: 2e-10 for `eon_brdf_approx`, clamped at mu = 0.0014.
+    The absolute error is below 1e-12 for the models of this package. The intervals end at the
+    models' kinks, theta_i = theta_o and cos(phi) = 0. Nodes are dense just below theta_o, where the
+    full Oren-Nayar model changes over a width of only mu. A kink inside an interval slows
+    convergence. The error is 2e-10 for `eon_brdf_approx`, which has a kink at mu = 0.0014.
 
         >>> from mxeon.models import eon_brdf
         >>> albedo_dir_quadrature(eon_brdf, 0.3, [0.5, 1.0], 1.0).round(12)
@@ -64,7 +65,7 @@ def _integral(
 
 
 def hemisphere_nodes(mu: Array | float, nodes: int) -> tuple[Array, Array, Array]:
-    """wo at azimuth 0, nodes wi in half the hemisphere (..., N, 3), and weights that sum to pi."""
+    """wo at azimuth 0, directions wi (..., N, 3) in half the hemisphere, and weights of sum pi."""
     mu = cast(Array, mu) if arrays.library(mu) else np.asarray(mu, np.float64)
     xp, (x, weight) = array_namespace(mu), (arrays.like(each, mu) for each in unit_rule(nodes))
     theta_o = arrays.arccosine(mu)[..., np.newaxis]
@@ -81,9 +82,9 @@ def hemisphere_nodes(mu: Array | float, nodes: int) -> tuple[Array, Array, Array
     return wo, xp.reshape(xp.stack(parts, axis=-1), (*flat, 3)), xp.reshape(weights, flat)
 
 
-@lru_cache(maxsize=8)  # computing a rule takes longer than using it
+@lru_cache(maxsize=8)  # a rule takes longer to compute than to use
 def unit_rule(nodes: int, panels: int = 1) -> tuple[Array, Array]:
-    """Gauss-Legendre nodes and weights on [0, 1], in panels of equal width."""
+    """Nodes and weights on [0, 1] of Gauss-Legendre rules in `panels` intervals of equal width."""
     x, weight = np.polynomial.legendre.leggauss(nodes)
     x = np.concatenate([k + 0.5 * (1.0 + x) for k in range(panels)]) / panels
     return x, np.tile(0.5 * weight / panels, panels)

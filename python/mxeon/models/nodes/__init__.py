@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""pbrlib's BSDF nodes: one row per mode, with functions of the values of its inputs."""
+"""Table of pbrlib's BSDF nodes. Each row is a mode of a node, with functions of the inputs."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's nodes that combine two lobes: `layer`, `mix`, `add` and `multiply`.
 
-Both lobes, `top` and `base`, are Zeltner sheens: their values and albedos have closed forms. Nested
-rows combine the sum of both, whose albedo may exceed 1. Inputs are named by their paths. Colors
-default to 1.
+The combined lobes, `top` and `base`, are Zeltner sheens, because values and albedos of this sheen
+have closed forms. Rows with nested nodes combine the sum of `top` and `base`, whose albedo may
+exceed 1. Names of inputs are paths in the graph. Colors are white unless they are inputs.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ COLORS = ("top/color", "base/color")
 AMOUNT = "lobe/mix"  # weight of `top` or of the sum
 AMOUNT_ABOVE = "mixed/mix"  # weight of the sum in a mix that is the top of a layer
 FACTOR = "lobe/in2"  # factor of `top` or of the sum
-# Weights in `_masked`: of a white opaque lobe mixed with `top`, and of that mix with another one.
+# Two weights: a white opaque lobe is mixed with `top` by the first weight, and the mix is combined
+# with another white opaque lobe by the second weight.
 MASKS = ("inner/in1", "outer/in1")
 Albedo = Callable[[Array, Inputs], Array]
 Sheen = tuple[Callable[..., Array], Callable[..., Array]]  # BRDF and directional albedo
@@ -44,9 +45,10 @@ CONTY_KULLA = conty_kulla_brdf, conty_kulla_albedo_dir
 def _values(
     combine: Combine, sheen: Sheen = ZELTNER, colored: bool = False
 ) -> tuple[Callable[[Array, Array, Inputs], Array], Albedo, Albedo]:
-    """Value of a combination of both lobes, its albedo, and the E in its throughput 1 - E.
+    """Functions for a combination of lobes: value, albedo, and the E of the throughput 1 - E.
 
-    Albedos of the lobes are clamped to 1. If `colored`, light that a color removes passes to the base.
+    Albedos of `top` and `base` are clamped to 1. If `colored`, light that a color removes passes to
+    the base.
     """
     brdf, albedo_dir = sheen
 
@@ -74,7 +76,7 @@ def _variant(
     layered: bool = True,
     permitted: bool = False,
 ) -> Variant[Scattering]:
-    """A variant of a combination; only its throughput differs unless `layered` is true."""
+    """A variant of a combination. If `layered` is false, only the throughput differs."""
     value, _, taken = _values(combine, sheen, colored)
     return Variant(title, value if layered else None, taken, permitted)
 
@@ -87,7 +89,7 @@ def _combined(
     inputs: tuple[str, ...] = (),
     variants: tuple[Variant[Scattering], ...] = (),
 ) -> PbrNode:
-    """Row of a node that combines both lobes."""
+    """Row of a node that combines `top` and `base`."""
     value, albedo, taken = _values(combine)
     other = _variant("Conty-Kulla sheens in the lobes' place", combine, CONTY_KULLA)
     if COLORS[0] not in inputs:
@@ -133,16 +135,17 @@ def _masked(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe:
 
 
 def _unscaled(combine: Combine) -> Variant[Scattering]:
-    """The variant in which a scaled lobe keeps its unscaled throughput, which the text permits."""
+    """The variant, permitted by the specification, in which scaling a lobe keeps the throughput."""
     title = "the throughput of the lobe before it is scaled"
     return _variant(title, combine, layered=False, permitted=True)
 
 
 def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant[Scattering], ...]:
-    """The variant in which the albedo of a sum is clamped to 1; `layered` if the sum lies over a base.
+    """The variant in which the albedo of a sum is clamped to 1.
 
-    MaterialX's `add` clamps the throughput to at least 0. The text leaves the throughput of a sum open, but defines
-    a layer that reflects more light than it receives, so the variant is wrong over a base.
+    MaterialX's `add` clamps the throughput to at least 0. The specification does not define the
+    throughput of a sum, but does define a layer that reflects more light than it receives. So the
+    variant is wrong if the sum lies over a base, that is, if `layered` is true.
     """
     clamped = partial(
         combine, finish=lambda lobe: replace(lobe, throughput=np.maximum(lobe.throughput, 0.0))
@@ -155,7 +158,7 @@ def _opaque(lobe: Bsdf) -> Bsdf:
     return replace(lobe, throughput=0.0 * lobe.throughput)
 
 
-# In MaterialX, an opaque lobe hides its base at any weight.
+# In MaterialX, an opaque lobe hides the layer below at any weight.
 HIDING = _variant(
     "opaque lobes that hide their base at any weight", partial(_masked, finish=_opaque)
 )
@@ -215,5 +218,5 @@ COMBINATIONS = (
     ),
     _combined("layer_masked", "a layer under masks", "layer", _masked, MASKS, (HIDING,)),
 )
-# Names of the rows that combine the sum of both lobes.
+# Names of the rows with nested nodes.
 NESTED = ("multiply_sum", "mix_sum", "layer_sum", "mix_layer", "layer_colored", "layer_masked")

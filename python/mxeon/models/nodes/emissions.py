@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's EDF nodes and of the nodes that combine EDFs.
 
-Inputs are named by the node's ports. Two kinds are named by their paths: inputs of nodes that combine
-emissions, and the color that `generalized_schlick_edf` scales. `base` in `inputs` is a radiance,
-(N, 3), if the graph's emissions are already evaluated.
+Inputs are named by the node's ports. Inputs of nodes that combine emissions, and the color that
+`generalized_schlick_edf` scales, are named by their paths in the graph. If the emission that a
+Schlick curve scales is already evaluated, the input `base` is its radiance, (N, 3).
 """
 
 from __future__ import annotations
@@ -26,16 +26,18 @@ Value = Callable[[Array, Inputs], Array]
 
 @dataclass(frozen=True)
 class Emission(Node[Value]):
-    """An EDF node; `value` is the radiance towards `wo`, below the horizon that of the back."""
+    """An EDF node. `value` is the radiance toward `wo`; a `wo` below the horizon sees the back."""
 
 
 def front_only(value: Value) -> Value:
-    """The same emission, but only from the front."""
+    """The emission `value`, limited to the front of the surface."""
     return lambda wo, inputs: np.where(wo[:, 2:] < 0.0, 0.0, value(wo, inputs))
 
 
 def _radiance(inputs: Inputs) -> Array:
-    """Radiance that a Schlick curve scales: the input `base`, else a uniform emission's color."""
+    """Radiance that a Schlick curve scales: the input `base` if present, or a uniform emission's
+    color.
+    """
     return inputs["base"] if "base" in inputs else inputs[BASE]
 
 
@@ -49,7 +51,7 @@ def _uniform(wo: Array, inputs: Inputs) -> Array:
 
 
 def _halves(wo: Array, inputs: Inputs) -> Array:
-    """Conical emission with inputs that are read as half angles, measured from the axis."""
+    """Conical emission if the angle inputs are taken as half angles, measured from the axis."""
     names = "inner_angle", "outer_angle"
     angles = (np.minimum(2.0 * np.asarray(inputs[name]), 360.0) for name in names)
     return media.conical_edf(wo, inputs["color"], *angles)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's sheens, diffuse nodes (except Oren-Nayar), hair and subsurface scattering.
 
-Inputs of hair have the names of `mxeon.models.hair.chiang_hair_bcsdf`. Subsurface scattering is evaluated on a plane
-under a distant light. All points receive the same light, so the profile, whose integral is 1, has no effect: for any
-radius and anisotropy, the node is Lambert with its color.
+Hair's inputs are named as in `mxeon.models.hair.chiang_hair_bcsdf`. Subsurface scattering is
+evaluated on a plane under a distant light. All points of the plane receive the same light, so the
+diffusion profile, whose integral is 1, has no effect. For any radius and anisotropy, the node is
+Lambertian with the color of the node.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ from mxeon.models.microfacet import defects, dielectric_albedo_dir
 from mxeon.models.nodes.node import Inputs, PbrNode, Variant
 from mxeon.models.sheen import conty_kulla_albedo_dir, zeltner_albedo_dir
 
-# Terms in the series of I_0; argument above which its logarithm is approximated; variance below which it is used.
+# The series of I_0 has TERMS terms. The logarithm of I_0 is approximated for arguments above LIMIT,
+# and is used for variances below NARROW.
 TERMS, LIMIT, NARROW = 10, 12.0, 0.1
 LIMITS = (0.001, 1.0)  # range to which MaterialX clamps every roughness
 
@@ -30,10 +32,11 @@ LIMITS = (0.001, 1.0)  # range to which MaterialX clamps every roughness
 def materialx_longitudinal(
     sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Array
 ) -> Array:
-    """M_p of MaterialX's GLSL, mx_chiang_hair_bsdf.glsl, after an older implementation.
+    """M_p as in MaterialX's mx_chiang_hair_bsdf.glsl, which follows an older implementation.
 
-    The series of I_0 stops after ten terms. Above 12, its logarithm contains only half of the term
-    1 / (8 x). A tilted cosine keeps its sign: below -12 the series is used. ln 2 is 0.6931.
+    The series of I_0 stops after ten terms. For x above 12, log I_0(x) contains only half of the
+    term 1 / (8 x). The cosine of a tilted direction keeps its sign, so x may be negative, where the
+    series is used even below -12. The logarithm of 2 is rounded to 0.6931.
     """
     a, b = cos_i * cos_o / v, sin_i * sin_o / v
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
@@ -47,7 +50,7 @@ def materialx_longitudinal(
 
 
 def _series(x: Array) -> Array:
-    """First TERMS terms of the power series of I_0."""
+    """Sum of the first TERMS terms of the power series of the Bessel function I_0."""
     value = term = np.ones_like(x)
     for k in range(1, TERMS):
         term = term * np.square(0.5 * x / k)
@@ -71,7 +74,7 @@ FORMS: dict[str, HairForm] = {
     ),
 }
 
-# Forms that the specification permits, or that its later versions use.
+# Hair models that the specification permits or that later versions of the specification use.
 READINGS: dict[str, HairForm] = {
     "F of the effective index": replace(TEXT, effective=True),
     "no factor 1/pi, as in later versions of the text": replace(TEXT, factor=1.0),
@@ -79,17 +82,17 @@ READINGS: dict[str, HairForm] = {
 
 
 def _conty_kulla(mu: Array, roughness: Array) -> Array:
-    """Albedo clamped to 1; the specification does not say what happens above 1."""
+    """Albedo clamped to 1, because the specification does not define an albedo above 1."""
     return at_most(conty_kulla_albedo_dir(mu, roughness), 1.0)
 
 
 def _tinted(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Inputs], Array]:
-    """Albedo, times the color, of a lobe with a color and a roughness."""
+    """A function for the albedo of a lobe with the inputs `color` and `roughness`."""
     return lambda wo, i: albedo(cosine(wo[:, 2]), i["roughness"])[..., np.newaxis] * i["color"]
 
 
 def _sheen(brdf: Callable[..., Array]) -> Callable[[Array, Array, Inputs], Array]:
-    """Values of a lobe with a color and a roughness."""
+    """A function for the BRDF of a lobe with the inputs `color` and `roughness`."""
     return lambda wo, wi, inputs: brdf(wo, wi, inputs["color"], inputs["roughness"])
 
 
@@ -162,14 +165,14 @@ def _hair(wo: Array, wi: Array, inputs: Inputs, form: HairForm = TEXT) -> Array:
 
 
 def _albedo(wo: Array, inputs: Inputs) -> Array:
-    """Integral of the BCSDF over all lights if the cuticle has no tilt: sum of t_p A_p / pi."""
+    """Integral of the BCSDF over all wi for an untilted cuticle: the sum of t_p A_p / pi."""
     factors = hair.chiang_hair_attenuation(wo, inputs["ior"], inputs["absorption_coefficient"])
     tints = array_namespace(factors).stack([inputs[n] for n in (*TINTS, TINTS[-1])], axis=-1)
     return array_namespace(factors).sum(factors * tints, axis=-1) / np.pi
 
 
 def _ggx(wo: Array, inputs: Inputs) -> Array:
-    """Albedo of a GGX lobe with mean roughness and tint, as in MaterialX's GLSL environments."""
+    """Albedo of a GGX lobe with the mean roughness and tint, as in MaterialX's GLSL environments."""
     alpha = np.mean([inputs[name] for name in hair.ROUGHNESSES], axis=0)
     alpha = np.sqrt(np.clip(alpha, 1e-6, 1.0).prod(axis=-1, keepdims=True))
     tint = np.mean([inputs[name] for name in TINTS], axis=0)
@@ -207,9 +210,11 @@ LEAST_RADIUS = 0.1  # smallest radius of the diffusion profile
 
 
 def circle_blur(mu: Array, radius: Array, body: float = FLATTEST) -> Array:
-    """Cosine of a light, blurred along a circle in the plane of the light as in MaterialX.
+    """The cosine of a light, blurred along a circle in the plane of light and normal as in
+    MaterialX.
 
-    `mu` (N,): Cosine. `radius` (N, 3): Mean free path. `body`: Radius of the circle.
+    `mu` (N,) is the cosine, `radius` (N, 3) the mean free path, and `body` the radius of the
+    circle.
     """
     theta = np.arccos(np.clip(mu, -1.0, 1.0))[:, np.newaxis]
     shape = 1.0 / np.maximum(radius, LEAST_RADIUS)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of pbrlib's VDF nodes below a surface, over one meter of the medium.
+"""Rows of pbrlib's VDF nodes, for one meter of a medium below a surface.
 
-Inputs are named by the node's ports, or by their paths for nodes that combine two media. The
-specification has no equation for combined media. Here their coefficients are combined, since a sum
-of transmittances would exceed 1.
+Inputs are named by the node's ports, or by paths in the graph if a node combines two media. The
+specification has no equation for combined media. Here the coefficients of the media are combined,
+because a sum of transmittances would exceed 1.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from mxeon.models.nodes.node import Inputs, Node, Variant, column, linear_nodes
 
 FIRST, SECOND = "first/absorption", "second/absorption"  # the two absorbing media
 AMOUNT, FACTOR = "medium/mix", "medium/in2"  # weight and factor of the first medium
-METER = 1.0  # assumed thickness, since surface shaders have none
+METER = 1.0  # assumed thickness, since surface shaders define no thickness
 Value = Callable[[Inputs], Array]
 
 
@@ -27,8 +27,8 @@ Value = Callable[[Inputs], Array]
 class Medium(Node[Value]):
     """A VDF node, represented by its transmittance.
 
-    - `inputs`: Inputs that affect the transmittance. The anisotropy is not among them: it only
-      affects the light scattered into a ray.
+    - `inputs`: Inputs that affect the transmittance. Anisotropy is left out, because anisotropy
+      only affects the light scattered into a ray.
     - `value`: Transmittance over one meter.
     """
 
@@ -62,7 +62,7 @@ MEDIA = (
 def _combined(
     name: str, title: str, category: str, inputs: tuple[str, ...], coefficient: Value
 ) -> Medium:
-    """Row of a node that combines media by combining their coefficients."""
+    """Row of a node that combines two media. The coefficients of the media are combined."""
 
     def first(i: Inputs) -> Array:
         return transmittance(i[FIRST], 0.0, METER)

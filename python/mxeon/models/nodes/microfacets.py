@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of pbrlib's microfacet nodes: reflection (R), also under a thin film, and transmission (T, RT).
+"""Rows of pbrlib's microfacet nodes, with and without a thin film, for each scatter mode.
 
-A rasterizer has no light behind the surface and looks up an environment instead. For a transmitting node, only the
-share and the direction of the transmitted light can be compared.
+A rasterizer has no light behind the surface and looks up an environment map instead. So for a
+transmitting node, only the share and the direction of the transmitted light can be compared.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectri
 from mxeon.models.nodes.node import BLACK, WHITE, Inputs, PbrNode, Scattering, Variant, white
 from mxeon.models.thin_film import FILM, Form, film_albedo_dir
 
-# Names of permitted defects: the specification leaves the form of the energy compensation open. Since July 2026, an
-# implementation note mentions MaterialX's masking of anisotropic facets.
+# Names of deviations that are permitted, because the specification does not define the form of the
+# energy compensation and, since July 2026, notes MaterialX's masking of anisotropic facets.
 OPEN = [
     f"compensation_{each}" for each in ["half", "f0", "view", "fitted", "average", "average_fitted"]
 ] + ["smith_mean", "smith_mean_fitted", "smith_mean_average"]
@@ -33,14 +33,14 @@ REFLECTION, NONE = {"scatter_mode": "R"}, dict[str, str]()
 
 @dataclass(frozen=True)
 class MicrofacetLobe:
-    """A microfacet node: its values and albedos from its inputs, under a thin film if the inputs include one."""
+    """Values and albedos of a microfacet node, under a thin film if the inputs include a film."""
 
     category: str
-    fresnel: Callable[[Array, Inputs], Array]  # Fresnel curve F of cosine and inputs
-    edge: str = ""  # name of the input for F at grazing; "" if F is always 1 there
+    fresnel: Callable[[Array, Inputs], Array]  # Fresnel reflectance F(mu, inputs)
+    edge: str = ""  # name of the input for F at grazing incidence; "" if this F is always 1
 
     def value(self, wo: Array, wi: Array, inputs: Inputs, terms: Lobe | None = None) -> Array:
-        """BRDF; if `terms` replaces the specification's lobe, a film is ignored."""
+        """BRDF of the node. If `terms` replaces the specification's lobe, a film is ignored."""
         if terms is None and _has_film(inputs):
             return thin_film.film_brdf(self.category, wo, wi, inputs)
         return node_brdf(self.category, wo, wi, inputs, terms)
@@ -50,27 +50,27 @@ class MicrofacetLobe:
         return function(self.category, wo, inputs, compensate=compensate)
 
     def ends(self, wo: Array, inputs: Inputs) -> tuple[Array, Array | float]:
-        """Fresnel reflectance along the normal, and at grazing."""
+        """Fresnel reflectance at normal incidence and at grazing incidence."""
         return self.fresnel(np.ones(len(wo)), inputs), inputs[self.edge] if self.edge else 1.0
 
     def fitted(self, wo: Array, inputs: Inputs) -> Array:
-        """Albedo by the fit that MaterialX's throughput uses, per channel."""
+        """Albedo per channel, by the fit that MaterialX uses for the throughput."""
         fit = layer_albedo(wo, inputs, *self.ends(wo, inputs), self._at_view(wo, inputs))
         return np.asarray(fit * inputs.get("tint", np.ones(3)))
 
     def prefiltered(self, wo: Array, inputs: Inputs) -> Array:
-        """Albedo by the fit of MaterialX's prefiltered environment, with the exact compensation."""
+        """Albedo by MaterialX's fit for prefiltered environments, with exact compensation."""
         whole, single = (self.albedo(wo, isotropic(inputs), each) for each in (True, False))
         ratio = np.divide(whole, single, out=np.ones(single.shape), where=single > 0.0)
         fit = layer_albedo(wo, inputs, *self.ends(wo, inputs), np.zeros(3))
         return np.asarray(fit * ratio * inputs.get("tint", np.ones(3)))
 
     def indirect(self, wo: Array, inputs: Inputs) -> Array:
-        """Albedo with F at the view direction in the compensation, as for MaterialX's indirect light."""
+        """Albedo whose compensation uses F at the view direction, as in MaterialX's indirect light."""
         return self._compensated(wo, inputs, self._at_view(wo, inputs))
 
     def averaged(self, wo: Array, inputs: Inputs) -> Array:
-        """Like `indirect`, but with F averaged from both ends, as in MaterialX after 1.39.5."""
+        """Albedo whose compensation uses the average F of F0 and F90, as in MaterialX after 1.39.5."""
         return self._compensated(wo, inputs, defects.schlick_average(*self.ends(wo, inputs)))
 
     def _compensated(self, wo: Array, inputs: Inputs, F: Array) -> Array:
@@ -82,13 +82,13 @@ class MicrofacetLobe:
 
 
 def isotropic(inputs: Inputs) -> dict[str, Array]:
-    """Inputs with both roughnesses replaced by their geometric mean."""
+    """Inputs in which the geometric mean of the two roughnesses replaces each roughness."""
     mean = np.sqrt(inputs["roughness"].prod(axis=-1, keepdims=True))
     return {**inputs, "roughness": np.repeat(mean, 2, axis=-1)}
 
 
 def undipped(inputs: Inputs) -> dict[str, Array]:
-    """Inputs with color82 = 1, which removes the dip at 82 degrees."""
+    """Inputs with color82 = 1, which removes the dip of the Fresnel curve at 82 degrees."""
     return {**inputs, "color82": np.ones((1, 3))}
 
 
@@ -124,7 +124,7 @@ def _row(
     fixed: Mapping[str, str] = NONE,
     mirror: dict[str, ArrayLike],
 ) -> PbrNode:
-    """Row of a node; a node with scatter modes, which `fixed` selects, can be layered over others."""
+    """Row of a node. A node can be layered over other nodes if `fixed` selects a scatter mode."""
     _, colors, numbers = CATEGORIES[lobe.category]
     known = (
         Variant(
@@ -202,7 +202,7 @@ STOCK = Form(
     thin_film.CIE_RGB, 2, True, 1.0, 0.01
 )  # MaterialX's choices, but with the full reflectance of a Schlick substrate
 MIXED = Form(mixed=True)
-# Rows: title, form, and whether the specification permits the form.
+# Each row has a title, a form of the thin-film model, and whether the specification permits it.
 FORMS = (
     ("MaterialX's matrix, orders and mixed channels", STOCK, True),
     ("half of the substrate's reflectance, and MaterialX's choices", thin_film.MATERIALX, False),
@@ -214,12 +214,12 @@ FORMS = (
 
 
 def _bare(inputs: Inputs) -> dict[str, Array]:
-    """Inputs without a film: its thickness is 0."""
+    """Inputs with a film thickness of 0, which removes the film."""
     return {**inputs, FILM[0]: np.zeros_like(inputs[FILM[0]])}
 
 
 def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: Inputs) -> Array:
-    """Albedo of MaterialX's environment: the compensation has the film's F, at the view or averaged."""
+    """Albedo under MaterialX's environment. The compensation uses F of the film, averaged or at wo."""
     mu = np.ones(len(wo)) if averaged else np.minimum(wo[:, 2], 1.0)
     F = thin_film.film_reflectance(category, mu, inputs, form)
     F = defects.schlick_average(F, 1.0) if averaged else F
@@ -228,14 +228,14 @@ def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: I
 
 
 def _fitted(lobe: MicrofacetLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
-    """Albedo in MaterialX's throughput: the fit without a film, compensated with the film's F."""
+    """Albedo of MaterialX's throughput, a fit without film whose compensation uses F of the film."""
     F = thin_film.film_reflectance(lobe.category, np.minimum(wo[:, 2], 1.0), inputs, form)
     albedo = layer_albedo(wo, inputs, *lobe.ends(wo, inputs), F)
     return averaged_channels(albedo) if lobe.edge else albedo
 
 
 def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
-    """Film models that shaders use, with either compensation, and MaterialX's also with its masking."""
+    """Thin-film models of shaders, with each energy compensation and with MaterialX's masking."""
     variants: list[Variant[Scattering]] = [
         Variant("no film", lambda wo, wi, inputs: row.value(wo, wi, _bare(inputs))),
         Variant(
@@ -263,7 +263,7 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         words = "the bare lobe's fit, and the film in the compensation"
         variants.append(Variant(f"{title}: {words}", albedo=fitted))
     for title, form, permitted in FORMS:
-        one = form == MIXED and row.category == "dielectric_bsdf"  # all channels share one index
+        one = form == MIXED and row.category == "dielectric_bsdf"  # all channels have the same IOR
         if one or (form.share != 1.0 and not schlick):
             continue
         lobes: list[tuple[str, Lobe | None]] = [(title, None)]
@@ -299,10 +299,10 @@ MODES = ("T", "RT")
 
 @dataclass(frozen=True)
 class Transmission:
-    """Functions of a transmitting node, by its inputs.
+    """Functions that evaluate a transmitting node for given inputs.
 
-    - `passed`: Share of the light from wo that the BTDF transmits, tint included. If its third
-      argument, `shadow`, is false: the mean of 1 - F over the visible facets.
+    - `passed`: Share of the light from wo that the BTDF transmits, tint included. If the third
+      argument, `shadow`, is false, the share is the mean of 1 - F over the visible facets.
     - `reflected`: Directional albedo of the reflection, with compensation and without tint.
     """
 
@@ -311,7 +311,7 @@ class Transmission:
     reflected: Callable[[Array, Inputs], Array]
     tint: Callable[[Inputs], Array]
     fresnel: Callable[[Array, Inputs], Array]
-    ior: Callable[[Inputs], Array]  # index of refraction for the view direction
+    ior: Callable[[Inputs], Array]  # IOR of the surface
 
 
 TRANSMISSIONS = {

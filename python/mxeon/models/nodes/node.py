@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of pbrlib's nodes: their inputs, with defaults, ranges and units, and their functions.
+"""Types for tables of pbrlib's nodes: inputs with defaults, ranges and units, and functions.
 
-Inputs are a mapping by port name, in MaterialX's order; values are (N,) or (N, components). The
-caller applies `weight`, which every node has.
+Inputs are a mapping from port names, in MaterialX's order, to values of shape (N,) or (N,
+components). Every node has an input `weight`, which the caller applies.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ FACETS: dict[str, Value] = {
     "thinfilm_thickness": 0.0,
     "thinfilm_ior": 1.5,
 }
-# Defaults of the nodes' inputs in the order of the definition, without modes, weight and frame. A test compares them
-# with MaterialX's definitions.
+# Defaults of each node's inputs in the order of MaterialX's definition. The modes, the weight, the
+# normal and the tangent are left out. A test compares the defaults with MaterialX's definitions.
 DEFAULTS: dict[str, dict[str, Value]] = {
     "oren_nayar_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
     "burley_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
@@ -50,9 +50,8 @@ class Parameter:
     """An input of a model.
 
     - `name`: MaterialX's name.
-    - `default`: MaterialX's default; a tuple of three for a color, of two for a pair.
-    - `quantity`: Name in the functions of `mxeon.models`; models also accept it as the input's
-      name.
+    - `default`: MaterialX's default, a tuple of three numbers for a color and of two for a pair.
+    - `quantity`: Name of the input in the functions of `mxeon.models`, which models also accept.
     """
 
     name: str
@@ -61,7 +60,7 @@ class Parameter:
 
     @property
     def channels(self) -> int:
-        """3 for a color, 2 for a pair, 0 for a number."""
+        """Number of components: 3 for a color, 2 for a pair, 0 for a number."""
         return len(self.default) if isinstance(self.default, tuple) else 0
 
     @property
@@ -91,14 +90,14 @@ Function = TypeVar("Function", covariant=True)  # type of a node's function
 
 @dataclass(frozen=True)
 class Variant(Generic[Function]):
-    """Another function that a shader may use instead of the node's own."""
+    """An alternative function that a shader may use instead of the function of the node."""
 
     title: str
-    value: Function | None = None  # None: the node's own function
+    value: Function | None = None  # None if the function of the node is used
     albedo: Callable[[Array, Inputs], Array] | None = None
     permitted: bool = False  # whether the specification permits the variant
     above: bool = (
-        False  # whether `albedo` is only the share taken from a layer's base, colors included
+        False  # whether `albedo` is only the light withheld from a layer's base, colors included
     )
 
 
@@ -110,7 +109,7 @@ class Node(Generic[Function]):
     title: str
     category: str
     inputs: Collection[str]  # names or paths of the inputs that the functions read
-    value: Function  # computes the node's values from these inputs
+    value: Function  # computes the node's values from `inputs`
     variants: tuple[Variant[Function], ...] = field(default=(), kw_only=True)
 
 
@@ -120,14 +119,15 @@ class PbrNode(Node[Scattering]):
 
     - `value`: BSDF in 1/sr without the cosine, for weight 1.
     - `albedo`: Directional albedo E for weight 1, tints included; clamped to 1.
-    - `integral`: Integral of `value`, if it differs from `albedo` for some inputs.
+    - `integral`: Integral of `value`, if this integral differs from `albedo` for some inputs.
     - `fixed`: Inputs that select the mode.
-    - `layerable`: Whether the share 1 - E passes to the layer below, with E at `white` inputs; an
-      opaque node of weight 1 passes nothing.
-    - `taken`: E in 1 - E, if it is not `albedo` at `white` inputs.
+    - `layerable`: Whether the share 1 - E of the light passes to the layer below, where E is the
+      albedo at `white` inputs. An opaque node of weight 1 passes no light.
+    - `taken`: E in the share 1 - E, if this E is not `albedo` at `white` inputs.
     - `transmits`: Whether the node scatters light from below the horizon instead of from above.
-    - `mirror`: Inputs with which the node reflects all light; empty if there are none.
-    - `parameters`: Inputs of the mode, if they or their quantities differ from the category's.
+    - `mirror`: Inputs for which the node reflects all light, or empty if there are no such inputs.
+    - `parameters`: Inputs of the mode, if the names or quantities differ from those of the
+      category.
     - `average`: Average albedo, if a closed form is known.
     """
 
@@ -144,19 +144,19 @@ class PbrNode(Node[Scattering]):
     average: Callable[[Inputs], Array] | None = None
 
 
-# Colors of a layer that absorb light: [MaterialX2026] of August 2026, Vertical-Layering Transmittance. In earlier
-# texts, light that they remove reaches the base.
+# Inputs for colors of a layer that absorb light, by "Vertical-Layering Transmittance" in
+# [MaterialX2026] of August 2026. In earlier specifications, the removed light reaches the base.
 ABSORBING = ("color", "tint")
 COLORED = "the color in the light that passes, as in texts before August 2026"
 
 
 def white(inputs: Inputs) -> dict[str, Array]:
-    """Inputs in which all ABSORBING colors are white."""
+    """Inputs in which the colors that absorb light, `color` and `tint`, are white."""
     return {**inputs, **{name: np.ones((1, 3)) for name in ABSORBING if name in inputs}}
 
 
 def column(inputs: Inputs, name: str) -> Array:
-    """The input `name` as a matrix: a number or a color per row, (N, 1 or 3)."""
+    """The input `name` as a matrix with a number or a color in each row, (N, 1 or 3)."""
     return np.reshape(inputs[name], (len(inputs[name]), -1))
 
 
@@ -166,9 +166,10 @@ Combined: TypeAlias = tuple[str, str, str, tuple[str, ...], Callable[[Inputs], A
 def linear_nodes(
     kind: str, one: str, several: str, total: str, paths: tuple[str, str, str, str]
 ) -> tuple[Combined, ...]:
-    """Name, title, category, inputs and combined color of nodes that mix, add or scale.
+    """Names, titles, categories, inputs and functions of nodes that mix, add or scale colors.
 
-    - `paths`: Paths of four inputs: first color, second color, weight and factor of the first.
+    - `paths`: Paths of four inputs: first color, second color, weight and factor of the first
+      color.
     """
     first, second, share, factor = paths
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Variants of nodes as implemented by OSL's library BSDL and by Blender's Cycles."""
+"""Variants of nodes as implemented in OSL's library BSDL and in Blender's Cycles."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from mxeon.models.nodes.microfacets import CONDUCTOR_LOBE, DIELECTRIC_LOBE, SCHL
 from mxeon.models.nodes.node import Inputs, Scattering, Variant, white
 from mxeon.models.transmission import index_of
 
-INDEX = (1.001, 5.0)  # range to which BSDL clamps the index of a dielectric
+INDEX = (1.001, 5.0)  # range to which BSDL clamps the IOR of a dielectric
 
 
 def _indexed(inputs: Inputs) -> dict[str, Array]:
@@ -24,19 +24,19 @@ def _indexed(inputs: Inputs) -> dict[str, Array]:
 
 
 def _dielectric_albedo(wo: Array, inputs: Inputs) -> Array:
-    """Albedo of a dielectric without tint, at the arithmetic mean of both alphas."""
+    """Albedo of an untinted dielectric whose alphas are replaced by their arithmetic mean."""
     mean = inputs["roughness"].mean(axis=-1, keepdims=True)
     alphas = np.repeat(mean, 2, axis=-1)
     return DIELECTRIC_LOBE.albedo(wo, {**_indexed(inputs), "tint": np.ones(3), "roughness": alphas})
 
 
 def _schlick_albedo(wo: Array, inputs: Inputs) -> Array:
-    """Albedo of a dielectric whose normal reflectance is the mean of `color0`, the same per channel."""
+    """Albedo of a dielectric with the mean channel of `color0` as reflectance at normal incidence."""
     return _dielectric_albedo(wo, {**inputs, "ior": index_of(inputs["color0"].mean(axis=-1), 0.0)})
 
 
 def gray(albedo: Callable[[Array, Inputs], Array], wo: Array, inputs: Inputs) -> Array:
-    """An albedo multiplied by the largest channel of the color, and clamped to 1."""
+    """An albedo that is multiplied by the largest channel of the color and clamped to 1."""
     largest = np.max(np.broadcast_to(inputs["color"], wo.shape), axis=-1, keepdims=True)
     return np.asarray(np.minimum(albedo(wo, inputs) * largest, 1.0))
 
@@ -46,7 +46,7 @@ def _white_zeltner(wo: Array, inputs: Inputs) -> Array:
 
 
 CONTY_KULLA = partial(gray, conty_kulla_albedo)
-# Variants by the name of the node's row.
+# Variants of each node, by the name of the node's row in the table.
 BSDL_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
     "dielectric": (
         Variant(
@@ -91,7 +91,7 @@ LOSSLESS = "the largest channel of the albedo of facets that lose no light"
 
 
 def _single(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Array:
-    """Single-scattering albedo at the geometric mean of both alphas."""
+    """Single-scattering albedo of a lobe whose alphas are replaced by their geometric mean."""
     return np.asarray(lobe.albedo(wo, microfacets.isotropic(inputs), compensate=False))
 
 
@@ -100,14 +100,14 @@ def _largest(albedo: Array) -> Array:
 
 
 def _lossless(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Array:
-    """Largest channel of the single-scattering albedo, divided by that of lossless facets."""
+    """Largest channel of the single-scattering albedo divided by the albedo of lossless facets."""
     alpha = microfacets.isotropic(inputs)["roughness"][:, 0]
     missing = missing_light(wo[:, 2], alpha)[:, np.newaxis]
     return _largest(_single(lobe, wo, inputs) * (1.0 + missing))
 
 
 def _lossless_dielectric(wo: Array, inputs: Inputs) -> Array:
-    """`_lossless` for a dielectric; up to index 1, the albedo of a smooth surface."""
+    """`_lossless` for a dielectric of IOR above 1, otherwise the albedo of a smooth surface."""
     smooth = DIELECTRIC_LOBE.fresnel(np.minimum(wo[:, 2], 1.0), inputs) * inputs["tint"]
     rough = _lossless(DIELECTRIC_LOBE, wo, inputs)
     return np.where(np.reshape(inputs["ior"], (-1, 1)) > 1.0, rough, _largest(smooth))
@@ -118,7 +118,7 @@ SHEEN: Variant[Scattering] = Variant(
     albedo=lambda wo, i: gray(_white_zeltner, wo, {**i, "color": np.square(i["color"])}),
     above=True,
 )
-# Variants by the name of the node's row.
+# Variants of each node, by the name of the node's row in the table.
 CYCLES_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
     "dielectric": (
         Variant(

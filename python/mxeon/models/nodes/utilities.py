@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""pbrlib's utility nodes, which compute inputs of lobes, as functions of the values of their inputs.
+"""pbrlib's utility nodes, which compute the inputs of lobes, as functions of input values.
 
-Inputs are a mapping by port name; values are (N,) or (N, components). Values outside the range of a
-model are clamped, as in implementations: the specification accepts [0, 1] for most inputs and does
-not define values outside. The constants `LEAST` and `LARGEST` are limits inside that range.
+Inputs are a mapping from port names to values of shape (N,) or (N, components). Values outside the
+range of a model are clamped, as implementations do, because the specification accepts [0, 1] for
+most inputs and does not define the result for other values. The constants named `LEAST_...` and
+`LARGEST_...` are limits inside that range.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ LARGEST_REFLECTIVITY = 0.99  # limit that keeps the n of artistic_ior finite
 LEAST_HAIR = 1e-3  # smallest roughness and color of hair; at 0, lobes would have no width
 LARGEST_MELANIN = 1.0 - 1e-4  # limit that keeps the absorption finite
 LEAST_PIGMENT = 1e-30  # smallest color of a pigment; the logarithm of 0 would be infinite
-TEMPERATURES = (800.0, 25000.0)  # kelvin: where bodies start to glow; where common fits end
+TEMPERATURES = (800.0, 25000.0)  # unit: K; bodies glow above 800 K, and common fits end at 25000 K
 
 Outputs = Callable[[Inputs], dict[str, Array]]
 
@@ -35,8 +36,8 @@ Outputs = Callable[[Inputs], dict[str, Array]]
 class UtilityNode(Node[Outputs]):
     """A utility node of [MaterialX2026].
 
-    - `inputs`: Defaults by input name, a number or a tuple each.
-    - `value`: Function from all inputs to all outputs by name.
+    - `inputs`: The default of each input, a number or a tuple, by the name of the input.
+    - `value`: Function that computes all outputs, by name, from all inputs.
     """
 
     inputs: Mapping[str, float | tuple[float, ...]] = field(hash=False)
@@ -69,28 +70,28 @@ def _anisotropy(inputs: Inputs) -> dict[str, Array]:
 
 
 def _without_square(inputs: Inputs) -> dict[str, Array]:
-    """alpha from a roughness that is not squared."""
+    """Roughnesses alpha, computed as if the input roughness were not squared."""
     function = _anisotropy if "anisotropy" in inputs else _dual
     root = {**inputs, "roughness": np.sqrt(_roughness(inputs))}
     return function({name: value for name, value in root.items() if name != "glossiness"})
 
 
 def _burley_aspect(inputs: Inputs) -> dict[str, Array]:
-    """alpha of [Burley2012] with the aspect sqrt(1 - 0.9 anisotropy)."""
+    """Roughnesses alpha of [Burley2012] with the aspect ratio sqrt(1 - 0.9 anisotropy)."""
     alpha = np.square(_roughness(inputs))
     aspect = np.sqrt(1.0 - 0.9 * _clamped(inputs, "anisotropy"))
     return {"out": np.stack([np.minimum(alpha / aspect, 1.0), alpha * aspect], axis=-1)}
 
 
 def _openpbr_aspect(inputs: Inputs) -> dict[str, Array]:
-    """alpha as in OpenPBR, where the mean of both squared alphas does not depend on anisotropy."""
+    """Roughnesses alpha of OpenPBR, whose mean square does not depend on the anisotropy."""
     rest = 1.0 - _clamped(inputs, "anisotropy")
     along = np.square(_roughness(inputs)) * np.sqrt(2.0 / (1.0 + rest * rest))
     return {"out": np.stack([along, rest * along], axis=-1)}
 
 
 def _dual(inputs: Inputs) -> dict[str, Array]:
-    """Squared roughnesses; the first replaces a negative second one, as in implementations."""
+    """Squares of two roughnesses. The first replaces a negative second, as implementations do."""
     pair = np.asarray(inputs["roughness"], np.float64)
     second = np.where(pair[..., 1] < 0.0, pair[..., 0], pair[..., 1])
     return {"out": roughness_dual(np.clip(np.stack([pair[..., 0], second], axis=-1), 0.0, 1.0))}

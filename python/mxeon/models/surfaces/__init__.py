@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Surface shaders by their own specifications: OpenPBR, Standard Surface, glTF and UsdPreviewSurface.
+"""Surface shaders by their specifications: OpenPBR, Standard Surface, glTF and UsdPreviewSurface.
 
 Each module has the specification's `DEFAULTS`, a function `parameters` that fills in defaults, and the functions
 `surface` and `emission`, in float64:
@@ -13,7 +13,8 @@ Each module has the specification's `DEFAULTS`, a function `parameters` that fil
     >>> open_pbr.surface(Light(view), p).round(4)  # response to a white environment
     array([[0.8084, 0.4251, 0.1376]])
 
-Parameters are not checked against their ranges, but functions of the models raise `ValueError` outside their own.
+Surface shaders do not check the ranges of parameters, but the models that they call raise
+`ValueError` for arguments out of range.
 """
 
 from mxeon.models.surfaces.lobes import Frame as Frame

@@ -5,9 +5,10 @@
     dielectric = f_specular + (1 - E[f_specular]) mix(f_diffuse, baseColor f_btdf, transmission)
     f = clearcoat f_coat + (1 - clearcoat E[f_coat]) (f_sheen + (1 - max(sheenColor) E_sheen) material)
 
-Specular lobes have a Schlick curve and alpha = roughness^2. The specification permits any layering operator; here it
-is albedo scaling. Parameters have the names of MaterialX's node instead of the specification's, such as
-`baseColorFactor`. Each name in `but` replaces a formula. [glTF2021], sections 3.9 and B, and the extensions.
+Specular lobes have a Schlick curve and alpha = roughness^2. The specification permits any layering
+operator. Here the operator is albedo scaling. Parameters have the names of MaterialX's node, such
+as `base_color` for the specification's `baseColorFactor`. Each name in `but` replaces a formula.
+[glTF2021], sections 3.9 and B, and the extensions.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ CLEARCOAT_F0 = 0.04
 
 
 def alphas(p: Parameters) -> Array:
-    """alpha along tangent and bitangent, (N, 2); `anisotropy_strength` increases the first."""
+    """alpha along tangent and bitangent, (N, 2). `anisotropy_strength` increases only the first."""
     across = np.square(p["roughness"])
     along = lerp(across, 1.0, np.square(p["anisotropy_strength"]))
     return np.concatenate(np.broadcast_arrays(along, across), axis=1)
@@ -73,7 +74,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     covered = p["iridescence"]
 
     def reflected(f0: Array, f90: Array) -> tuple[Array, Array]:
-        """A specular lobe and its albedo; the share `covered` is under a thin film."""
+        """A specular lobe and its albedo. The share `covered` of the lobe is under a thin film."""
         inputs = lobes.schlick_inputs(f0, f90, alpha)
         f, E = light.both(lobes.SCHLICK, frame, **inputs)
         if not np.any(covered):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lobes under one light, from which the specifications of surface shaders are built.
+"""Lobes under one light, from which surface shaders are built.
 
-Parameters are a mapping by the specification's names; numbers are (N, 1) and colors (N, 3), or one
-row for all points. Directions are unit vectors in the frame of the geometric normal, (N, 3), above
-the horizon.
+Parameters are a mapping by the specification's names. Numbers have shape (N, 1) and colors (N, 3),
+or (1, 1) and (1, 3) for all points. Directions (N, 3) are unit vectors in the frame of the
+geometric normal, above the horizon.
 """
 
 from __future__ import annotations
@@ -26,9 +26,10 @@ Values: TypeAlias = Mapping[str, ArrayLike]
 
 
 def filled(defaults: Values, **inputs: ArrayLike) -> dict[str, Array]:
-    """Parameters as columns: `inputs`, and defaults for the others.
+    """Parameters as columns. Parameters that are not in `inputs` have the defaults.
 
-    An array has a row for each point; a number or a tuple is valid for all points. Raises TypeError for unknown names.
+    An array has a row for each point. A number or a tuple is valid for all points. Raises TypeError
+    for unknown names.
     """
     if unknown := sorted(inputs.keys() - defaults.keys()):
         raise TypeError(f"parameters are {', '.join(defaults)}; got {', '.join(unknown)}")
@@ -49,7 +50,7 @@ class Frame:
     tangent: Array
 
     def local(self, wo: Array, directions: Array) -> Array:
-        """Directions (N, 3) in this frame, after its normal is flipped toward the viewer."""
+        """Directions (N, 3) in this frame, after the normal is flipped toward the viewer."""
         facing = np.where((wo * self.normal).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
         z = np.broadcast_to(facing * self.normal, wo.shape)
         x = self.tangent - (self.tangent * z).sum(axis=1, keepdims=True) * z
@@ -58,7 +59,7 @@ class Frame:
         return np.asarray((axes @ directions[:, :, np.newaxis])[:, :, 0])
 
     def turned(self, angle: Array) -> Frame:
-        """The frame with its tangent rotated counterclockwise about the normal by `angle`, (N, 1)."""
+        """The frame, rotated counterclockwise about the normal by `angle`, (N, 1)."""
         tangent = np.cos(angle) * self.tangent
         tangent = tangent + np.sin(angle) * np.cross(self.normal, self.tangent)
         return Frame(self.normal, tangent)
@@ -69,11 +70,11 @@ PLAIN = Frame(np.array([UP]), np.array([ALONG]))
 
 @dataclass(frozen=True, eq=False)
 class Light:
-    """Illumination: a distant light of irradiance 1 at normal incidence, or a white environment.
+    """A distant light of irradiance 1 at normal incidence, or a white environment of radiance 1.
 
     - `wo`: directions to the viewer.
-    - `wi`: directions to the light; None in an environment of radiance 1.
-    - `behind`: if true, only refracted light of the environment counts, as in rasterizers.
+    - `wi`: directions to the distant light; None for an environment.
+    - `behind`: if true, the environment contributes only refracted light, as in rasterizers.
     """
 
     wo: Array
@@ -100,24 +101,24 @@ class Light:
     def layered(
         self, lobe: PbrNode, frame: Frame, weight: Array | float, base: Array, **inputs: ArrayLike
     ) -> Array:
-        """Light of a lobe over `base` by albedo scaling: weight f + (1 - weight E) base."""
+        """Light of a lobe layered over `base` by albedo scaling: weight f + (1 - weight E) base."""
         if not np.any(weight):
             return base
         f, E = self.both(lobe, frame, **inputs)
         return weight * f + (1.0 - weight * E) * base
 
     def through(self, share: ArrayLike) -> Array:
-        """Transmitted light, (N, 3): `share` of the environment behind the surface."""
+        """Refracted light, (N, 3): the fraction `share` of the environment behind the surface."""
         light = 1.0 if self.behind else 0.0
         return np.broadcast_to(light * np.asarray(share), self.wo.shape)
 
     def diffused(self, share: ArrayLike) -> Array:
-        """Light diffusely transmitted from the other side, (N, 3); 0 for a distant light above."""
+        """Light diffusely transmitted from the other side, (N, 3), which is 0 for a distant light."""
         light = 1.0 if self.wi is None and not self.behind else 0.0
         return np.broadcast_to(light * np.asarray(share), self.wo.shape)
 
     def _columns(self, inputs: Mapping[str, ArrayLike]) -> dict[str, Array]:
-        """Inputs of a lobe with a row for each point; numbers are (N,)."""
+        """Inputs of a lobe, broadcast to a row for each point. Numbers have shape (N,)."""
         count = len(self.wo)
         columns = {}
         for name, value in inputs.items():
@@ -128,7 +129,7 @@ class Light:
         return columns
 
 
-EON, QON = diffuse_model("eon"), diffuse_model("qon")  # both are Lambertian with roughness 0
+EON, QON = diffuse_model("eon"), diffuse_model("qon")  # EON and QON are Lambertian at roughness 0
 DIELECTRIC, SCHLICK = node("dielectric"), node("schlick")
 CONDUCTOR, ZELTNER, CONTY_KULLA = node("conductor"), node("zeltner"), node("conty_kulla")
 ONES = np.ones((1, 3))
@@ -141,7 +142,7 @@ def lerp(first: ArrayLike, second: ArrayLike, share: ArrayLike) -> Array:
 
 
 def f0_from_ior(eta: ArrayLike) -> Array:
-    """Reflectance of a dielectric with relative index `eta` at normal incidence."""
+    """Reflectance at normal incidence of a dielectric with the relative IOR `eta`."""
     eta = np.asarray(eta, np.float64)
     return np.asarray(np.square((eta - 1.0) / (eta + 1.0)))
 

@@ -6,11 +6,11 @@
     f_base           = lerp(f_dielectric-base, f_conductor, M)
     f_dielectric-base = f_specular + (1 - E[f_specular]) lerp(lerp(f_diffuse, f_SSS, S), f_T, T)
 
-The coat absorbs along the refracted path, T_coat = coat_color^((1/mu_i + 1/mu_o) / 2). It darkens the base by
-Delta = (1 - K) / (1 - E_base K), K = lerp(F(mu_o), 1 - (1 - <F>) / eta^2, r_base), and widens the base's
-lobes to r'^4 = r^4 + 2 r_coat^4. On a plane, f_SSS is the Lambertian lobe with the specified color. In a
-rasterizer's environment, f_T is the share `transmission_color` of the light, and T_coat is the coat's color at
-normal incidence.
+The coat absorbs along the refracted path, T_coat = coat_color^((1/mu_i + 1/mu_o) / 2). The coat
+also darkens the base by Delta = (1 - K) / (1 - E_base K), K = lerp(F(mu_o), 1 - (1 - <F>) / eta^2,
+r_base), and increases the roughness of the base's lobes to r'^4 = r^4 + 2 r_coat^4. On a plane,
+f_SSS is the Lambertian lobe with the specified color. In a rasterizer's environment, f_T is the
+share `transmission_color` of the light, and T_coat is the coat's color at normal incidence.
 
 Each name in `but` replaces a formula; `mxeon.conformance.specs.surface_texts` states which of these
 replacements the specification permits. [OpenPBR2026].
@@ -75,32 +75,34 @@ DEFAULTS: Values = {
     "geometry_opacity": 1.0,
     "geometry_thin_walled": False,
 }
-MOST_REFLECTIVE = 1.0 - 1e-5  # the limit in MaterialX's graph; at 1 the index is infinite
+MOST_REFLECTIVE = 1.0 - 1e-5  # MaterialX's limit; a reflectance of 1 needs an infinite IOR
 parameters = partial(lobes.filled, {**DEFAULTS, **FRAME})
 
 
 def alphas(roughness: Array, anisotropy: Array) -> Array:
-    """alpha along tangent and bitangent, (N, 2); unless clamped to 1, their mean square is r^4."""
+    """alpha along tangent and bitangent, (N, 2). The mean square is r^4 if no alpha is clamped to
+    1.
+    """
     along = np.square(roughness) * np.sqrt(2.0 / (1.0 + np.square(1.0 - anisotropy)))
     both = np.concatenate([along, (1.0 - anisotropy) * along], axis=-1)
     return np.asarray(np.minimum(both, 1.0))
 
 
 def base_alphas(p: Parameters) -> Array:
-    """alphas of the base below a rough coat: slope variances add up, the coat's counts twice."""
+    """alphas of the base below a rough coat. Slope variances are added; the coat's counts twice."""
     r, coat = p["specular_roughness"], p["coat_roughness"]
     rough = np.minimum(1.0, r**4 + 2.0 * coat**4) ** 0.25
     return alphas(lerp(r, rough, p["coat_weight"]), p["specular_roughness_anisotropy"])
 
 
 def specular_eta(p: Parameters) -> Array:
-    """Relative index of the base without `specular_weight`; inverted if the coat's index is larger."""
+    """Relative IOR of the base without `specular_weight`, inverted if the coat's IOR is larger."""
     below = p["specular_ior"] / p["coat_ior"]
     return lerp(p["specular_ior"], np.maximum(below, 1.0 / below), p["coat_weight"])
 
 
 def modulated_eta(p: Parameters) -> Array:
-    """Relative index of the base whose reflectance is scaled by `specular_weight`."""
+    """Relative IOR for which `specular_weight` scales the reflectance of the base."""
     eta = specular_eta(p)
     scaled = np.minimum(p["specular_weight"] * lobes.f0_from_ior(eta), MOST_REFLECTIVE)
     epsilon = np.sign(eta - 1.0) * np.sqrt(scaled)
@@ -129,7 +131,7 @@ def darkening(light: Light, p: Parameters, but: Collection[str]) -> Array:
 
 
 def coat_transmittance(light: Light, p: Parameters, but: Collection[str]) -> Array:
-    """T_coat, the share of the light that passes through the coat's medium, in and out."""
+    """T_coat, the share of the light that passes twice through the coat's medium."""
 
     def path(mu: Array) -> Array:
         return 1.0 / np.sqrt(1.0 - (1.0 - np.square(mu)) / np.square(p["coat_ior"]))

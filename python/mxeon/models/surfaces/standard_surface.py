@@ -7,8 +7,9 @@
     f_transmission = transmission transmission_color f_btdf + (1 - transmission) f_sheen_layer
     f_sheen_layer = sheen sheen_color f_sheen + (1 - sheen E[f_sheen]) f_base
 
-The specification does not say how roughness and anisotropy give two roughnesses; here MaterialX's
-node `roughness_anisotropy` does. Each name in `but` replaces a formula. [StandardSurface2020].
+The specification does not define how two roughnesses follow from roughness and anisotropy. Here
+MaterialX's node `roughness_anisotropy` computes the two roughnesses. Each name in `but` replaces a
+formula. [StandardSurface2020].
 """
 
 from __future__ import annotations

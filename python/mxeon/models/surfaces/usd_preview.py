@@ -4,9 +4,10 @@
     f = clearcoat f_coat + (1 - clearcoat E[f_coat]) (f_specular + (1 - E[f_specular]) f_below)
     f_below = lerp(transparent, diffuse_weight f_diffuse, opacity)
 
-The specular workflow reflects `specularColor` along the normal and white at grazing. The metalness workflow
-interpolates from ((1 - ior) / (1 + ior))^2 along the normal, and white at grazing, to `diffuseColor`. The specification
-leaves layering open; here it is albedo scaling. Each name in `but` replaces a formula. [UsdPreviewSurface2019].
+The reflectance of the specular workflow is `specularColor` at normal incidence and white at grazing
+incidence. The metalness workflow interpolates from ((1 - ior) / (1 + ior))^2 at normal incidence,
+and white at grazing incidence, to `diffuseColor`. The specification does not define layering. Here
+layering is albedo scaling. Each name in `but` replaces a formula. [UsdPreviewSurface2019].
 """
 
 from __future__ import annotations
