@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fuzzer for effects that `mxeon` must never have, with any document, command line or file."""
+"""Fuzzer for forbidden effects of `mxeon`, whatever the document, the command line or the files."""

@@ -15,7 +15,7 @@ from mxeon.jobs import pool
 from tests.fuzz.cases import COUNTS, cases
 from tests.fuzz.trial import judged
 
-LIMIT = 300.0  # time limit of a case in seconds, for busy machines
+LIMIT = 300.0  # time limit of a case in seconds, long enough for a busy machine
 STATUSES = {0: "accepted", 1: "failed", 2: "refused", 3: "not_run"}
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Calls every public function of the models with bad values.
 
-Functions that accept arrays are found by introspection. A bad value must give finite results, or
-be refused by a ValueError whose first words are arguments of the function.
+Introspection finds the functions that accept arrays. For a bad value, a function must return finite
+results or raise a ValueError whose message starts with names of the function's arguments.
 """
 
 import importlib
@@ -33,8 +33,8 @@ FILM = {"tint": np.ones(3), "ior": 1.5, "roughness": (0.5, 0.4), "thinfilm_thick
 PAIR, FIVE = (0.5, 0.4), np.array(5.0)
 LOBE = Bsdf(np.array(0.5), np.array(0.5))
 
-# Valid values by argument name, of which the first that the function accepts is used. Other
-# arguments have their defaults, or 0.5.
+# Valid values by argument name; a function gets the first value that it accepts. Arguments that are
+# not listed keep their defaults, or get 0.5.
 COLOR, BSDF = ((0.5, 0.4, 0.3),), (LOBE,)
 VALID = {
     **dict.fromkeys(("wo", "wh", "normal"), ((0.6, 0.0, 0.8),)),
@@ -49,7 +49,7 @@ VALID = {
     "category": ("dielectric_bsdf",),
     "inputs": (FILM | {"thinfilm_ior": 1.4}, {"tint_R": 0.5}),
     "lobe": (Lobe(factor=uncompensated),),
-    "compensate": (False,),  # compensation is slow
+    "compensate": (False,),  # True would be slow
     "curve": (SCHLICK_CURVE,),
     "at": (lambda cosine, ior, **colors: schlick(cosine, **colors),),
     "brdf": (lambda wo, wi, rho, *parameter: rho * wi[..., :1],),
@@ -58,7 +58,8 @@ VALID = {
     "vectors": (COLORS,),
     "numbers": ({"exponent": FIVE}, {"exponent": FIVE, "ior": np.array(1.5)}, {}),
 }
-CHECKS = ("_", "checked", "unpack")  # name prefixes of private functions and of checks
+# Prefixes of the names of private functions and of functions that check arguments.
+CHECKS = ("_", "checked", "unpack")
 PLUMBING = (
     "mxeon.models.core.arguments",
     "mxeon.models.catalog",
@@ -73,7 +74,7 @@ TAKEN = (bool, str, float, int)  # argument types that get bad values, in additi
 
 ACCEPTED, REFUSED = 0, 2
 SMALLEST, LEAST = math.ulp(0.0), np.finfo(np.float64).tiny
-# Bad values. Most arguments accept few of them, and none accepts all.
+# Bad values for arguments. Most arguments accept only a few of these values.
 BAD = (
     None, True, False, "x", "", "0.5", b"x", {}, [], (), {0.5}, print, Decimal("0.5"),
     Fraction(1, 2), 1j, math.nan, math.inf, -math.inf, SMALLEST, 1e-320, LEAST, -SMALLEST, -0.0, 0.0,
@@ -103,7 +104,7 @@ def modules():
 
 
 def rows():
-    """Test cases: function, argument, index in BAD, and whether it replaces only one element."""
+    """Test cases: function, argument, index in BAD, and whether to replace only one element."""
     for name, function in functions().items():
         for argument in tried(function):
             first = _part(base(function), argument)
@@ -117,7 +118,7 @@ def rows():
 def tried(function, arrays=False):
     """Names of the arguments that get bad values: arrays, numbers, switches and choices.
 
-    A key of a mapping is appended after a dot.
+    For a mapping, each name ends with a dot and a key.
     """
     for name, each in _parameters(function).items():
         if _is_array(each) or (not arrays and each.annotation in TAKEN):
@@ -127,7 +128,7 @@ def tried(function, arrays=False):
 
 
 def judged(row):
-    """ACCEPTED or REFUSED, and the fault or "", for a row of `rows`."""
+    """Call the function of a test case; return ACCEPTED or REFUSED, and the fault or ""."""
     name, argument, place, inside = row
     function = functions()[name]
     values = dict(base(function))
@@ -143,13 +144,13 @@ def judged(row):
 
 
 def _part(values, argument):
-    """Value of an argument; for `name.key`, the value under that key of a mapping."""
+    """Value of an argument, or the value of a mapping's key if `argument` is `name.key`."""
     name, _, key = argument.partition(".")
     return values[name][key] if key else values[name]
 
 
 def answer(function, values):
-    """Call a function; returns ACCEPTED or REFUSED, and its fault or ""."""
+    """Call a function, and return ACCEPTED or REFUSED, and the fault or ""."""
     parameters = _parameters(function)
     more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
     try:
@@ -168,7 +169,7 @@ def answer(function, values):
 
 
 def call(function, values):
-    """Call a function with arguments by name, positional ones included."""
+    """Call a function with arguments given by name, including positional-only arguments."""
     parameters = _parameters(function)
     more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
     named = {name: value for name, value in values.items() if name not in more}
@@ -205,7 +206,7 @@ def _is_array(parameter):
 
 
 def _inside(valid, value):
-    """Copy of a valid array in which the first element is replaced."""
+    """Copy of a valid array whose first element is replaced by `value`."""
     array = np.array(valid)
     array[0] = value
     return array

@@ -2,8 +2,8 @@
 """Cases of the fuzzer in four families.
 
 `mutated` has random documents and command lines, made from a seed and a number. `found` has small
-cases that reproduce faults found earlier. `includes` and `names` are samples of a product of tables:
-all ways to include a file, and kinds of file names.
+cases that reproduce faults found earlier. `includes` combines all ways in which a shader source may
+include a file. `names` combines kinds of file names, commands and encodings.
 """
 
 import random
@@ -46,7 +46,7 @@ COMMANDS = (
 
 @dataclass(frozen=True)
 class Case:
-    """One test of the fuzzer: files and links in a folder, and a command line."""
+    """One test case of the fuzzer: a command line, and files and links in the working folder."""
 
     name: str
     files: tuple[tuple[str, bytes], ...]
@@ -74,7 +74,7 @@ def _including(rng):
 
 
 def _document(rng, data):
-    """Random command line that generates shaders from a document or renders it."""
+    """Random command line that renders a document or generates its shaders."""
     kind = rng.random()
     names = re.findall(r'<surfacematerial name="(\w+)"', data.decode(errors="replace"))
     if kind < 0.2:
@@ -110,7 +110,7 @@ def _command(rng):
     return tuple(arguments)
 
 
-# Files next to the working folder, which no case may read.
+# Files beside the working folder, which no case may read.
 SECRET = f'<materialx version="1.39"><constant name="{CANARY}" type="float"/></materialx>'
 AROUND = (
     ("secret.mtlx", SECRET),
@@ -137,7 +137,7 @@ RENDER = ("render", "base.mtlx", "--host", "reference", "--size", "4", "--output
 
 
 def row(count, names):
-    """Lobe whose color comes from a chain of nodes; each uses the previous node in all `names`."""
+    """Lobe colored by a chain of nodes; the inputs `names` of each node use the previous node."""
     port = '<input name="{}" type="color3" nodename="a{}"/>'
     nodes = ADD.format(0, "")
     for number in range(1, count):
@@ -161,7 +161,7 @@ def _inherited(count):
     return "".join(rows) + f'<i{count - 1} name="lobe" type="BSDF"/>'
 
 
-# Title, nodes of the document, and command.
+# Titles of cases, the nodes of each document, and the command.
 ROWS = (
     ("a lobe in an input", f'<input name="i" type="float">{ROUGH}</input>', _generate("glsl")),
     ("a mix of one", f'<eon_diffuse_bsdf name="a" type="BSDF"/>{LEFT}', RENDER),
@@ -208,7 +208,7 @@ COUNTS = {"found": len(FOUND), "mutated": 20_000, "includes": 1000, "names": 400
 
 
 def cases(family, count=None):
-    """All cases of a family, or a random sample if there are more than `count`."""
+    """All cases of a family, or a random sample if the family has more than `count` cases."""
     rows, to_case = {
         "found": (FOUND, lambda _, found: found),
         "mutated": (range(20_000), lambda _, number: case(SEED, number)),
@@ -253,7 +253,7 @@ FILES = (
     "file:///etc/hostname", "link/documents/part1.glsl",
 )  # fmt: skip
 DEPTHS = (0, 1, 3, 15, 16, 400)
-BROUGHT = ("own.glsl", *FILES)  # files named by the implementation element
+BROUGHT = ("own.glsl", *FILES)  # files that an implementation element names
 
 LINKS = (("linked.glsl", "../secret.glsl"), ("zero.glsl", "/dev/zero"), ("pipe.glsl", ""))
 OTHERS = (
@@ -265,7 +265,7 @@ OTHERS = (
 
 
 def includes():
-    """Rows: implementation's file, form of the include, included file, depth, target, function."""
+    """Cases: implementation's file, form of include, included file, depth, target, function."""
     for row in product(WAYS, FILES, DEPTHS, FUNCTIONS):
         yield "own.glsl", *row, 'function="own" '
     for name, target in product(BROUGHT, FUNCTIONS):
@@ -274,7 +274,7 @@ def includes():
 
 
 def including(rng, row):
-    """Case with a document and a chain of shader sources that include each other."""
+    """Case with a document, and shader sources each of which includes the next source."""
     name, way, file, depth, target, function = row
     links = [WAYS[0].format(f"part{number}.glsl") for number in range(depth)]
     first, *parts = (f"{line}\n" for line in (*links, way.format(file)))
@@ -301,7 +301,7 @@ NAMES = (
 )  # fmt: skip
 CLAY = (examples_folder() / "clay.mtlx").read_bytes()
 ENCODINGS = ("utf-8", "ascii", "latin-1", "cp1252", "shift_jis", "utf-16")
-# Commands that read a document by its name.
+# Commands that read the document with a given name.
 READERS = (
     ("check", "{}", "--host", "msl", "--workers", "0"),
     ("check", "{}", "--host", "msl", "--workers", "0", "--full"),
@@ -315,7 +315,7 @@ READERS = (
 
 
 def named(_, row):
-    """Case with an oddly named document, for a command whose terminal has the given encoding."""
+    """Case with an oddly named document, and a command whose terminal uses the given encoding."""
     stem, command, encoding = row
     file = f"./{stem}.mtlx" if stem.startswith("-") else f"{stem}.mtlx"
     arguments = tuple(each.format(file) if "{}" in each else each for each in command)

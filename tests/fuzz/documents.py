@@ -7,8 +7,10 @@ from xml.etree import ElementTree
 
 from mxeon.shaders.library import examples_folder
 
-POISON = "poison()"  # forbidden in shaders, except in a document's own permitted source
-CANARY = "canary-5f1e"  # text in files outside the document's folder
+# Forbidden in generated shaders, unless the document's own permitted code calls this function.
+POISON = "poison()"
+# Content of files outside the document's folder, which no output may contain.
+CANARY = "canary-5f1e"
 
 VALUES = (
     "", " ", "0", "-1", "1", "2", "1.5707964", "nan", "inf", "-inf", "1e999", "1e-400", "0x10",
@@ -122,7 +124,7 @@ GRAPH = f"""<materialx version="1.39" {XI}>{NODEDEF}
 
 @cache
 def originals():
-    """Texts to mutate: the bundled documents, and a document with nodegraphs."""
+    """Documents to mutate, as text: bundled examples, and three copies of a nodegraph document."""
     files = sorted(examples_folder().glob("*.mtlx"))
     return tuple(file.read_text(encoding="utf-8") for file in files) + (GRAPH,) * 3
 
@@ -144,7 +146,7 @@ def document(rng):
 
 
 def _written(root):
-    """Text of a tree, which declares the prefix of XInclude if it is used."""
+    """XML text of a tree, which declares the prefix of XInclude if the tree uses the prefix."""
     text = ElementTree.tostring(root, encoding="unicode")
     if "xi:" in text and "xmlns:xi" not in text:
         text = text.replace("<materialx", f"<materialx {XI}", 1)
@@ -152,7 +154,7 @@ def _written(root):
 
 
 def word(rng, root=None):
-    """Random value: an odd word, a path, a type, or a value from the document."""
+    """Random value: an odd word, a path, a type name, or a value from the same document."""
     kind = rng.random()
     if kind < 0.45 or (root is None and kind < 0.8):
         return rng.choice(VALUES)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lists the files that MaterialX itself opens while it generates the fuzzer's cases.
+"""Lists the files that MaterialX itself opens while it generates shaders for the fuzzer's cases.
 
-strace reports all files that a process opens. Python's audit hook reports files opened by mxeon.
-MaterialX opened the rest, which must lie in the libraries or in the documents' folder. A bare run
-does not check sources; it is a control in which forbidden files must be detected.
+strace reports all files that a process opens, and Python's audit hook reports the files that mxeon
+opens. MaterialX opened all other files, which must lie in the libraries or in the documents'
+folder. In a bare run, mxeon does not check sources: this is the control, which must report
+forbidden files.
 """
 
 import codecs
@@ -25,13 +26,13 @@ from tests.fuzz.cases import case, cases
 from tests.fuzz.trial import trial
 
 ROOT = Path(__file__).resolve().parents[2]
-# Missing files that are opened to mark the start and the end of the cases in the log.
+# Names of missing files. Opening these files marks the start and the end of the cases in the log.
 START, END = "/the cases begin here", "/the cases end here"
-MACHINE = ("/sys/devices/system/cpu/online",)  # opened by the C library
-# Names of files at which MaterialX might wait forever.
+MACHINE = ("/sys/devices/system/cpu/online",)  # the C library opens this file
+# Names of files that could make MaterialX wait forever.
 ENDLESS = (b"pipe", b"zero", b"/dev/", b"/proc/")
 OPEN = re.compile(rb'open(?:at2?)?\((?:AT_FDCWD, |\d+(?:<[^>]*>)?, )?"((?:[^"\\]|\\.)*)"(.*)')
-# Paths of files in a case's folder, except through links that lead out of it.
+# Pattern for paths inside a case's folder, excluding links that lead out of the folder.
 OWN = re.compile(
     r"(?:/mxeon-fuzz-[^/]+/documents/|^)(?!/|\.\./|linked|zero|pipe|link/(?!documents/))"
 )
@@ -60,7 +61,7 @@ def opens(count, bare=False):
 
 
 def strangers(paths):
-    """Paths that lie neither in the libraries nor in a case's folder."""
+    """Paths outside the libraries and outside the folders of the cases."""
     others = (path for path in paths if not OWN.search(path) and path not in MACHINE)
     return sorted(path for path in others if not library_path(path))
 
@@ -77,15 +78,15 @@ def _line(path):
 
 
 def generate(count, bare, audit):
-    """Run the cases, and write a list of the files that Python opens meanwhile."""
+    """Run the cases, and write a list of the files that Python opens in the meantime."""
     paths = []
-    for target in generation.TARGETS:  # loads the files of each generator
+    for target in generation.TARGETS:  # Every generator loads its files before the cases start.
         with contextlib.redirect_stderr(None):
             generation.generate(examples_folder() / "clay.mtlx", target)
     if bare:
         generation.check_sources = lambda *_: None
     tried = selected(count, bare)
-    trial(tried[0])  # loads the files of the command
+    trial(tried[0])  # loads the command's files before the cases start
     sys.addaudithook(lambda event, seen: event == "open" and paths.append(seen[0]))
     with contextlib.suppress(OSError):
         os.open(START, os.O_RDONLY)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds the attributes of a document that reach generated source, by generating for every target.
+"""Finds the attributes of a document whose text reaches generated shader source.
 
-The document uses every kind of element. Each attribute gets a unique word, and reaches source if
-its word occurs in a shader. Attributes that refer to each other are changed together.
+The document contains every kind of element. Each attribute gets a unique word, and reaches the
+source if the word occurs in a shader of any target. Attributes that refer to each other are changed
+together.
 """
 
 import re
@@ -26,15 +27,16 @@ XI = "http://www.w3.org/2001/XInclude"
 ElementTree.register_namespace("xi", XI)
 EVERY = Path(__file__).with_name("every.mtlx")
 POISON = "poison"
-GAP = "gap00000gap"  # placeholder for hostile text
-# Hostile texts: some end a string or a line, the rest have a meaning outside strings.
+GAP = "gap00000gap"  # placeholder that is replaced by hostile text
+# Hostile texts. BREAKING texts end a string or a line; MEANING texts matter outside strings.
 BREAKING = tuple(each + POISON for each in ("\n#define ", "\r", '"', "\\", '\\"', "\x7f"))
 MEANING = tuple(each + POISON for each in (" ", "//", "/*", "*/", *";(),=#${-"))
 MARK = re.compile(r"mark\d{5}x|77\d{5}")
 QUOTED = re.compile(r'"[^"]*"')
 
 
-# Attributes by which elements refer to each other. Each is marked separately.
+# Names of attributes by which elements refer to each other, and of values. Each name is tested
+# separately.
 APART = NAMES | {"name", "value"}
 
 
@@ -47,7 +49,7 @@ class Place:
 
 
 def documents():
-    """Roots of two documents with every kind of element: one has materials, one only outputs."""
+    """Roots of two documents with every kind of element; one has materials, one only outputs."""
     whole, outputs = (ElementTree.parse(EVERY).getroot() for _ in range(2))
     for kind in ("surfacematerial", "surface", "backdrop", "look", "lookgroup"):
         outputs.remove(outputs.find(kind))
@@ -55,7 +57,7 @@ def documents():
 
 
 def furnish(folder):
-    """Write the files that the documents name to the working folder."""
+    """Create the files that the documents name, in the working folder."""
     for name in ("f/a.png", "f/c.png", "b.png"):
         path = Path(folder, name)
         path.parent.mkdir(exist_ok=True)
@@ -65,7 +67,7 @@ def furnish(folder):
 
 @cache
 def attributes(root):
-    """Attribute names in a document, MaterialX's Python module, its libraries, and the fuzzer."""
+    """Attribute names in a document, MaterialX's Python module and libraries, and the fuzzer."""
     kinds = [kind for kind in vars(mx).values() if isinstance(kind, type)]
     constants = {
         (each, name) for each in kinds for name in dir(each) if name.endswith("_ATTRIBUTE")
@@ -77,7 +79,7 @@ def attributes(root):
 
 
 def present(root):
-    """Attributes that a document has, in groups to be marked together."""
+    """Attributes that a document has, in groups of attributes that are tested together."""
     groups = defaultdict(list)
     for number, element in enumerate(root.iter()):
         for name in element.attrib:
@@ -86,7 +88,7 @@ def present(root):
 
 
 def absent(root):
-    """Attributes that a document lacks but could have, in groups to be marked together."""
+    """Attributes that a document lacks but could have, in groups that are tested together."""
     elements = list(root.iter())
     return tuple(
         [Place(number, name) for number, each in enumerate(elements) if name not in each.attrib]
@@ -96,7 +98,7 @@ def absent(root):
 
 
 def reached(root, groups, targets=TARGETS):
-    """Places whose words appear in source, each with contexts: bare, quoted or comment."""
+    """Places whose words occur in source, with the contexts of the word: bare, quoted, comment."""
     found = defaultdict(set)
     for places in groups:
         _search(root, places, targets, found)
@@ -104,7 +106,7 @@ def reached(root, groups, targets=TARGETS):
 
 
 def unjudged(root, found, targets=TARGETS):
-    """Hostile texts that reach a shader, or are refused without naming the place."""
+    """Hostile texts that reach a shader, or that are refused without naming the attribute."""
     elements = list(root.iter())
     ways, alike = defaultdict(set), {}
     for place, each in found.items():
@@ -124,7 +126,7 @@ def unjudged(root, found, targets=TARGETS):
 
 
 def _written(root, place):
-    """Text of a document in which GAP is appended to an attribute."""
+    """Text of a document in which the placeholder GAP is appended to an attribute."""
     root = deepcopy(root)
     element = list(root.iter())[place.number]
     element.set(place.attribute, element.get(place.attribute, "") + GAP)
@@ -138,18 +140,18 @@ def _escaped(text):
 
 
 def _judged(element, place, document, targets):
-    """Whether hostile text is refused in a line that names the place, or never reaches source."""
+    """Whether hostile text reaches no source, or is refused with a line that names the place."""
     for target in targets:
         try:
             sources = _sources(document, target)
         except DocumentError as error:
             said = str(error)
-            if "must give" in said:  # only this target refuses it
+            if "must give" in said:  # no other target refuses the text
                 continue
-            # For a bad prefix, the message names the file instead.
+            # If a file prefix is bad, the message names the file instead of the element.
             named = "file" if place.attribute == "fileprefix" else element.tag
             return named in said and "must" in said and all(map(str.isprintable, error.args))
-        except ValueError:  # the value is a malformed number
+        except ValueError:  # the hostile text made a malformed number
             continue
         except InterfaceError:  # `$` in source raises this error
             return False
@@ -159,7 +161,7 @@ def _judged(element, place, document, targets):
 
 
 def _search(root, places, targets, found):
-    """Mark all places at once; for targets that refuse the document, search both halves."""
+    """Mark all places at once. For targets that refuse the document, mark each half separately."""
     refused = []
     text, marks = _marked(root, places)
     for target in targets:
@@ -167,7 +169,7 @@ def _search(root, places, targets, found):
             sources = _sources(text, target)
         except DocumentError as error:
             refused.append(target)
-            if "must give" not in str(error):  # all targets refuse it
+            if "must give" not in str(error):  # every target refuses the document
                 refused = list(targets)
                 break
             continue
@@ -180,7 +182,7 @@ def _search(root, places, targets, found):
 
 
 def _sources(document, target):
-    """Texts of all stages of a document's shaders; warnings are ignored."""
+    """Texts of all shader stages of a document; warnings are ignored."""
     with warnings.catch_warnings(action="ignore"):
         shaders = generate(document, target)
     return [source for each in shaders for source in each.stages.values()]
@@ -188,7 +190,7 @@ def _sources(document, target):
 
 def _note(source, marks, found):
     for line in source.splitlines():
-        if "mark" not in line and "77" not in line:  # fast rejection
+        if "mark" not in line and "77" not in line:  # a fast test before the regular expression
             continue
         for mark in MARK.finditer(line):
             before = line[: mark.start()]
@@ -198,14 +200,14 @@ def _note(source, marks, found):
 
 
 def _context(before):
-    """Context of a mark, given the text before it in its line: quoted, comment or bare."""
+    """Context of a mark, given the preceding text of its line: quoted, comment or bare."""
     if "//" in QUOTED.sub("", before):
         return "comment"
     return "quoted" if before.count('"') % 2 else "bare"
 
 
 def _marked(root, places):
-    """Text of a document with marks in the given places, and the place of each mark."""
+    """Text of a document with a mark in each of the given places, and the place of each mark."""
     root, marks, aliases = deepcopy(root), {}, {}
     elements = list(root.iter())
     for place in places:
@@ -224,7 +226,7 @@ def _marked(root, places):
 
 
 def _word(old, number, place):
-    """New value of the same kind as the old value, and the mark that it contains."""
+    """New value of the same kind as the old value, and the mark inside the new value."""
     if old.strip().isdigit():
         return f"77{number:05}", f"77{number:05}"
     mark = f"mark{number:05}x"

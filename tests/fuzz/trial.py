@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the command of a case in a new folder, and looks for forbidden effects."""
+"""Runs the command of a case in a new folder, and reports forbidden effects of the command."""
 
 import contextlib
 import io
@@ -18,22 +18,22 @@ from tests.fuzz.documents import CANARY, POISON
 
 STATUSES = (0, 2, 3)
 OUTPUTS = ("--outputPath", "--output", "--report")
-# MAKING: commands that run documents in processes, which would hide crashes. JUDGING: commands that
-# may exit with 1 if a check fails.
+# MAKING: commands that render or generate in worker processes, which would hide crashes. JUDGING:
+# commands that may exit with status 1 if a check fails.
 MAKING = ("generate", "render")
 JUDGING = ("check", "kit", "report", "render", "library")
-LONGEST_LINE = 1200  # characters of a message (1000), its prefix, and a path
+LONGEST_LINE = 1200  # maximum characters of a message (1000), its prefix, and a path
 MEMORY = 6 * 2**30
 
 
 def judged(tried):
-    """Run a case in this process with limited memory; returns the result of `trial`."""
+    """Run a case in this process with limited memory, and return the result of `trial`."""
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     return trial(tried)
 
 
 def trial(tried):
-    """Exit status of a case, and its forbidden effects in one line, or "" if there are none."""
+    """Run a case; return its exit status, and its forbidden effects in one line, or "" if none."""
     with tempfile.TemporaryDirectory(prefix="mxeon-fuzz-") as folder:
         root = Path(folder).resolve()
         home = _prepared(root, tried)
@@ -48,14 +48,14 @@ def trial(tried):
 
 def _outputs(arguments):
     """Paths that a command line permits mxeon to write."""
-    if arguments[:2] == ("report", "make"):  # this command writes to the run's folder
+    if arguments[:2] == ("report", "make"):  # `report make` writes to the folder of the run
         return [path for path in arguments[2:3] if "\0" not in path]
     pairs = itertools.pairwise(arguments)
     return [path for option, path in pairs if option in OUTPUTS and "\0" not in path]
 
 
 def _prepared(root, tried):
-    """Create and return a case's working folder, with a link out of it, and files outside."""
+    """Create and return a case's working folder, with a link that leads out, and files outside."""
     home = root / "documents"
     shutil.copytree(examples_folder() / "textures", home / "textures")
     (home / "link").symlink_to(root)
@@ -63,7 +63,7 @@ def _prepared(root, tried):
     (home / "results.json").write_text('{"format": 5, "results": [{"host": "gl"}], "pictures": []}')
     for name, text in AROUND:
         (root / name).write_text(text)
-    if tried.arguments[:1] == ("render",):  # render does not create folders
+    if tried.arguments[:1] == ("render",):  # the command `render` does not create folders
         (home / OUT).mkdir()
     for name, data in tried.files:
         (home / name).parent.mkdir(parents=True, exist_ok=True)
@@ -75,7 +75,7 @@ def _prepared(root, tried):
 
 
 def _called(arguments, encoding):
-    """Exit status, or a traceback, then output and error output of a command."""
+    """Run a command; return its exit status or a traceback, its output and its error output."""
     from mxeon.cli import main
 
     out, err = (io.TextIOWrapper(io.BytesIO(), encoding, newline="") for _ in range(2))

@@ -16,7 +16,7 @@ from tools.site import ledger
 from tools.site.ledger import measure
 
 QUARTIC = "EON with the paper's quartic"
-DEFECTIVE = ("three", "babylon")  # hosts whose defects are measured here
+DEFECTIVE = ("three", "babylon")  # hosts whose known defects are measured in this file
 PAGE = """
 export async function draw({ task }) {
     if (task === "hang") await new Promise(() => {});
@@ -35,7 +35,7 @@ EON, FON, LOBE = "WebGPUPathTracer, eonBrdf", "WebGPUPathTracer, fonBrdf", patht
 
 @pytest.fixture
 def own(judged):
-    """Function that judges one check of a renderer's own node."""
+    """Function that judges one check of a renderer's own shading node."""
     return lambda host, check, title: judged(check, title, host, RENDERER_NODES)
 
 
@@ -55,7 +55,7 @@ def test_each_defect_is_as_its_page_says(own, issue):
 
 @pytest.fixture(scope="module")
 def repaired(tmp_path_factory):
-    """Judges by host, for renderers with all repairs applied."""
+    """Judge for each host, with all repairs of the renderer applied."""
     opened = {}
     pages = [each.page for each in measure.CHECKED if each.host == "babylon"]
     diffs = {
@@ -68,7 +68,7 @@ def repaired(tmp_path_factory):
             installed = browser.modules_folder(package, name) / package
             modules = tmp_path_factory.mktemp(name)
             ledger.apply(ledger.linked(installed, modules / package), *diffs[name])
-            # Link the packages that this package requires.
+            # Link the npm packages that the repaired package requires.
             for other in browser.modules_folder(package, name).iterdir():
                 if not (modules / other.name).exists():
                     (modules / other.name).symlink_to(other)
@@ -94,9 +94,9 @@ def test_a_page_that_throws_goes_on_and_one_that_hangs_is_ended(tmp_path):
     page._script = script
     with pytest.raises(NotRun, match="^three: no such material$"):
         page.ask({"task": "throw"})
-    # A failure would come from the browser, not from the network.
+    # The host itself answers every request of the page, so nothing reaches the network.
     assert page.ask({"task": "fetch"})["status"] in (0, 404)
-    page._limit = 1000.0  # milliseconds; the browser has started
+    page._limit = 1000.0  # milliseconds, enough because the browser has started
     with pytest.raises(NotRun, match="^three: the browser fails; .*1000ms"):
         page.ask({"task": "hang"})
     assert page._page is None

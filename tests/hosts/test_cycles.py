@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's Cycles as a host: exact values, pixels, EON and failures; and its own nodes."""
+"""Blender's Cycles as a host: exact values and pixels, EON, failures, and Cycles' own nodes."""
 
 import os
 import sys
@@ -42,7 +42,7 @@ def osl(text, **options):
 
 
 def emit(statement):
-    """Shader that executes a statement, in the form of a generated shader."""
+    """Object like a generated shader, whose OSL executes the given statement."""
     document = mx.createDocument()
     document.addNode("surface", "emit", "surfaceshader")
     stages = {"pixel": EMIT.format(statement)}
@@ -50,7 +50,7 @@ def emit(statement):
 
 
 def lit(scene):
-    """Masks of pixels away from rim and terminator, and of pixels with s < 0."""
+    """Mask of pixels away from the rim and the terminator, and mask of pixels with s < 0."""
     points = sphere(scene.size)
     light = np.asarray(scene.light)
     mu_o, mu_i = points.normal[..., 2], points.normal @ light
@@ -103,7 +103,7 @@ def test_tangents_point_eastward(host):
     picture = host.picture(emit("out = color(normalize(dPdu)) * emission();"), SMALL)
     expected = tangents(points.normal[points.mask])
     error = np.abs(picture[points.mask] - expected).max(axis=1)
-    across = np.linalg.norm(points.normal[points.mask][:, ::2], axis=1)  # vanishes at the poles
+    across = np.linalg.norm(points.normal[points.mask][:, ::2], axis=1)  # 0 at the poles
     assert (error * across * points.normal[points.mask][:, 2]).max() <= 2.0 * CYCLES_NORMAL
 
 
@@ -166,7 +166,7 @@ def test_subsurface_keeps_its_color(host):
         pixels = host.picture(osl(text, library=library, profile=profile), scene)
         means.append(pixels[sphere(16).mask].mean(axis=0))
     assert np.abs(means[0] - color).max() < CYCLES_SUBSURFACE
-    # Stock loses the color, so the sphere is white.
+    # Stock MaterialX loses the color, so the sphere is white.
     assert np.abs(means[1] - 1.0).max() < CYCLES_SUBSURFACE
 
 

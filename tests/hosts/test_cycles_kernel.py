@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The header of Cycles' kernel for Oren-Nayar is EON once our patch is applied."""
+"""The Oren-Nayar header of Cycles' kernel computes EON once our patch is applied."""
 
 from pathlib import Path
 
@@ -15,14 +15,15 @@ from tests.support.command import output
 from tools.site.ledger import ROOT, apply, patches_of
 
 PROGRAM = Path(support.__file__).with_name("oren_nayar.cpp")
-FLOAT32 = 2e-6  # error of values up to 1: arc cosine in G, ten roundings
+# Absolute error of values up to 1: an arc cosine in the albedo, and ten float32 roundings.
+FLOAT32 = 2e-6
 PAIRS = 500
 KERNEL = ".venv-cycles/lib/*/site-packages/bpy/*/scripts/addons_core/cycles/source/kernel"
 FILE = "closure/bsdf_oren_nayar.h"
 
 
 def kernel():
-    """Folder with the sources of Cycles' kernel in Blender's Python module."""
+    """Source folder of Cycles' kernel, which is part of Blender's Python module."""
     found = list(ROOT.glob(KERNEL))
     if not found:
         raise NotRun(f"no folder {ROOT / KERNEL}")
@@ -42,12 +43,14 @@ def values(tmp_path_factory):
 
     def run(*patches):
         target = tmp_path_factory.mktemp("kernel")
-        for name in ("types.h", "sample/mapping.h"):  # PROGRAM replaces these headers
+        # PROGRAM contains what these headers would define.
+        for name in ("types.h", "sample/mapping.h"):
             (target / "kernel" / name).parent.mkdir(parents=True, exist_ok=True)
             (target / "kernel" / name).touch()
         (target / FILE).parent.mkdir()
         (target / FILE).write_bytes((folder / FILE).read_bytes())
-        apply(target, *patches, strip=4)  # drop a/intern/cycles/kernel
+        # The option removes `a/intern/cycles/kernel` from the paths in the patch.
+        apply(target, *patches, strip=4)
         command = [program("g++"), "-std=c++17", f"-I{target}", PROGRAM, "-o", target / "program"]
         output(*command)
         found = output(target / "program", input=lines).split()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Storm and MaterialX's renderer: models from all sides, defects of stock, and failures."""
+"""Storm and MaterialX's renderer: models from all sides, defects of stock MaterialX, failures."""
 
 from dataclasses import replace
 
@@ -21,9 +21,10 @@ HOSTS = {"storm": storm.StormHost, "materialx": materialx.MaterialXHost}
 DOCUMENT = examples_folder() / "eon_node.mtlx"
 SMALL = replace(FRONT, size=16)
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
-# Errors of half floats: two roundings of 2^-11 in a value, and twice as many in an environment.
+# Errors of pixels stored as half floats: two roundings of 2^-11 in a value under direct light, and
+# twice as many under an environment.
 HALF, HALF_SURROUNDINGS = 2.0**-10 + 248 * 2.0**-24, 2.0**-9 + 2e-6
-TEXTURED = 2.0**-8  # precision that OpenGL requires for filter weights
+TEXTURED = 2.0**-8  # OpenGL guarantees this precision of filter weights
 
 
 @pytest.fixture(scope="module", params=HOSTS)
@@ -71,11 +72,11 @@ def test_materialx_binds_the_table_of_albedos_that_it_is_given(hosts, gl):
         [shader] = each.compile(text, library="stock", methods=Methods("prefilter", albedo="table"))
         pictures.append(each.picture(shader, replace(FURNACE, size=16)))
     assert np.abs(pictures[0] - pictures[1]).max() <= HALF_SURROUNDINGS - HALF
-    assert pictures[0][sphere(16).mask][:, 0].min() > 0.9  # red of gold
+    assert pictures[0][sphere(16).mask][:, 0].min() > 0.9  # the red channel of gold
 
 
 def test_the_dome_of_storm_is_given_what_its_sum_loses(on_storm):
-    """Without the brighter dome, Storm's picture would be too dark by eight tolerances."""
+    """If mxeon did not brighten Storm's dome, the picture would be too dark by eight tolerances."""
     white = material_text(OREN_NAYAR, {"color": (1.0, 1.0, 1.0), "roughness": 0.0})
     [shader] = on_storm.compile(white)
     picture = on_storm.picture(shader, replace(FURNACE, size=16))[sphere(16).mask]
@@ -111,8 +112,8 @@ def test_stock_is_wrong_from_behind(host, judged):
 
 
 GLASS = surface("open_pbr_surface", transmission_weight=1.0, specular_roughness=0.8)
-# With transmission as opacity, mode T passes all light, and the layer of R above it subtracts the
-# reflected light. This copy subtracts it twice.
+# In Storm, which renders transmission as opacity, mode T passes all light, and the layer of mode R
+# above subtracts the reflected light. The modified copy subtracts the reflected light twice.
 BELOW = "bool below = scatter_mode == 1;", "bool below = false;"
 
 
@@ -142,8 +143,8 @@ COAT += '<input name="base" type="BSDF" nodename="base"/></layer>'
 WHITE = dict.fromkeys(("color0", "color82"), (1.0, 1.0, 1.0))
 METAL = lobe("generalized_schlick_bsdf", **WHITE, roughness=(0.8, 0.8))
 CONDUCTOR = lobe("conductor_bsdf", roughness=(0.4, 0.4))
-# Mutations of lines that only compile with `genglsl/environment`, which checks on other hosts do
-# not use.
+# Mutations of lines that only compile with `genglsl/environment`, a folder that checks on other
+# hosts do not use.
 PREFILTER = "genglsl/environment/libraries/pbrlib/genglsl/lib/mx_environment_prefilter.glsl"
 DIM = ("Radiance) * $envLight", "Radiance) * 0.8 * $envLight", PREFILTER)
 WHOLE = ("mean * lobe.albedo * ", "mean * ", "genglsl/lib/microfacet_lobe.glsl")
@@ -158,7 +159,7 @@ FITTED = "mx_ggx_dir_albedo(lobe.mu_o, lobe.alpha, F0, vec3(1.0))", "vec3(1.0)"
 def test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo(
     on_storm, gl, text, change, tmp_path
 ):
-    """Storm's dome is brightened, by 1 / 0.984, for diffuse lobes only."""
+    """mxeon brightens Storm's dome by 1 / 0.984 for diffuse lobes only."""
     points = sphere(16)
     facing = points.mask & (points.normal[..., 2] > 0.05)
     view = direction(points.normal[facing][:, 2])
@@ -170,7 +171,8 @@ def test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo(
         found = on_storm.picture(shader, replace(FURNACE, size=16))[facing]
         return np.abs(found - np.clip(found, expected, expected / 0.984)).max()
 
-    assert error("eonlib") <= 8e-3  # error of a conductor's average from the ends of its curve
+    # Error of a conductor's average reflectance, computed from both ends of its Fresnel curve.
+    assert error("eonlib") <= 8e-3
     assert min(error("stock"), error(wrong_copy(tmp_path, *change))) >= 0.02
 
 

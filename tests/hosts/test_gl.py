@@ -49,14 +49,14 @@ def test_the_shader_ball_is_drawn_at_its_points(gl):
 
 def test_a_texture_stands_upright(gl, reference, tmp_path):
     texels = np.zeros((8, 16, 3), dtype=np.float32)
-    texels[:4, :, 0], texels[4:, :, 2] = 0.9, 0.6  # red above blue
+    texels[:4, :, 0], texels[4:, :, 2] = 0.9, 0.6  # red at the top, blue at the bottom
     oiio.ImageBuf(texels).write(str(tmp_path / "flag.exr"))
     nodes = image_node(tmp_path / "flag.exr", "flag") + connected(color='nodename="flag"')
     front = Scene("front", light=(0.0, 0.0, 1.0))
     image, expected = (picture(host, nodes, front) for host in (gl, reference))
     top, bottom = image[SIZE // 4, SIZE // 2], image[3 * SIZE // 4, SIZE // 2]
     assert top[0] > 0.5 > top[2] and bottom[2] > 0.4 > bottom[0]
-    # OpenGL requires this precision for filter weights.
+    # OpenGL guarantees this precision of filter weights.
     assert np.abs(image - expected)[sphere(SIZE).mask].max() <= 2.0**-8
 
 

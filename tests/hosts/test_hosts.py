@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hosts that evaluate pairs match the models, identify themselves, and run the text unchanged."""
+"""Hosts that evaluate direction pairs match the models, identify themselves, and change no text."""
 
 import os
 from dataclasses import replace
@@ -27,8 +27,8 @@ from tests.support.wrong_libraries import GLSL, wrong_stock
 HOSTS = ("gl", "webgl", "vulkan", "wgsl", "slang")
 COUNT = 20_000
 PAIR = np.array([[0.6, 0.0, 0.8]])
-# Weight of one of an albedo's 64 samples. Error of albedos between texels, in general and on slang,
-# which reads the nearest texel.
+# SAMPLES_64: weight of a single sample in an albedo from 64 samples. BETWEEN_TEXELS: errors of
+# interpolated albedos, in general and on slang, which reads the nearest texel.
 SAMPLES_64, BETWEEN_TEXELS = 1.0 / 64.0, (1e-3, 0.01)
 
 
@@ -41,7 +41,7 @@ LOBES = (("eon", OREN_NAYAR, {FLAG: True}), ("qon", OREN_NAYAR, {FLAG: False}), 
 
 
 def drawn(count=COUNT):
-    """Random pairs of directions with colors and roughnesses, rounded to float32."""
+    """Random direction pairs, colors and roughnesses, rounded to float32."""
     wo, wi, rho, roughness = (each.astype("f4") for each in pairs(count, 1))
     return wo, wi, {"color": rho, "roughness": roughness}
 
@@ -74,7 +74,7 @@ def test_the_generated_bsdf_is_the_model(host, model, node, fixed):
 
 
 def test_a_call_may_have_more_elements_than_a_texture_has_rows(host):
-    number, count = 13, 1_300_000  # the shared texture has 13 layers of 1,270 rows
+    number, count = 13, 1_300_000  # the arguments share a texture of 13 layers with 1,270 rows
     names = [f"a{index}" for index in range(number)]
     source = f"float total({', '.join(f'float {each}' for each in names)}) {{ return {' + '.join(names)}; }}"
     rows = np.arange(count, dtype=np.float64)[:, np.newaxis]
@@ -86,7 +86,7 @@ def test_what_the_compiler_refuses_is_a_shader_error_and_the_host_works_on(host)
     good = of_eon(host)
     wrong = good.stages["pixel"].replace("eon_brdf_mu", "no_such_function", 1)
     bad = replace(good, stages={**good.stages, "pixel": wrong})
-    # naga's message names no line
+    # the error message of naga contains no line number
     place = "(.|\n)*" if host.name == "wgsl" else ", in oren_nayar_lobe: '.*"
     for flag in (0.25, 0.5):
         words = f"^{host.name}: the shader does not compile{place}eon_brdf_mu"
@@ -108,7 +108,7 @@ def test_an_opaque_lobe_lets_no_light_through_in_any_branch(host, branch):
 def test_the_environment_is_looked_up_at_the_normal(host):
     shader = of_eon(host)
     rows = np.linspace(0.0, 1.0, 8)[:, np.newaxis, np.newaxis]
-    sky = np.broadcast_to(rows, (8, 16, 3)).astype(np.float32)  # brighter at the bottom
+    sky = np.broadcast_to(rows, (8, 16, 3)).astype(np.float32)  # brighter towards the bottom
     inputs = {"color": np.ones((1, 3)), "roughness": np.zeros(1)}
     for up, low, high in ((0.9, 0.0, 0.25), (-0.9, 0.75, 1.0)):
         normal = np.array([[np.sqrt(1.0 - up * up), up, 0.0]])
@@ -150,7 +150,7 @@ def test_an_integer_of_the_text_is_the_boolean_that_it_was(hosts):
 
 
 def tabled(host, library):
-    """Compile a metal that reads its albedo from a table; returns shader and table."""
+    """Compile a metal that looks up its albedo in a table; return the shader and the table."""
     text = material(lobe("conductor_bsdf", roughness=(0.6, 0.6)))
     [shader] = host.compile(text, library=library, methods=Methods("prefilter", albedo="table"))
     [texels] = host.table(shader).values()
@@ -187,7 +187,7 @@ def test_a_text_whose_table_does_not_compile_is_not_run(hosts, monkeypatch, name
 
 
 def kernels(_):
-    """Files of Slang's generated kernels that this process has mapped."""
+    """Generated kernel files that Slang has mapped into this process."""
     kept.append(open_host("slang"))
     kept[-1].call("fon_af", np.array([0.5]))
     maps = Path("/proc/self/maps").read_text().split()

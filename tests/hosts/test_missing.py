@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A host without a working engine is not run, and one line names what to install."""
+"""A host without a working engine is not run, and the message says in one line what to install."""
 
 import os
 import sys
@@ -14,12 +14,12 @@ from mxeon.survey import browser
 from tests.support.availability import package
 
 BLENDER, NOWHERE = "MXEON_CYCLES_PYTHON", "/nowhere/python"
-DISPLAY = (  # one of two messages: no display, or no renderer
+DISPLAY = (  # The first message appears without a display, the second without a renderer.
     "(no display: .* no Xvfb|MaterialX's renderer does not load .*); "
     "on Debian: apt-get install libgl1 libsm6 libx11-6 xvfb$"
 )
 NPM = f"npm ci --prefix {browser.packages_folder()}$"
-ENVIRONMENTS = [  # host, environment variables, and words of the message
+ENVIRONMENTS = [  # Host, environment variables that hide the engine, and words of the message.
     ("cycles", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; in a checkout: ./run"),
     ("cycles", {BLENDER: sys.executable}, ".*No module named 'bpy'"),
     ("storm", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; in a checkout: ./run"),
@@ -32,7 +32,7 @@ ENVIRONMENTS = [  # host, environment variables, and words of the message
     ("webgl", {"MXEON_CHROMIUM": "true"}, "the browser fails; "),
     ("materialx", {"DISPLAY": "", "PATH": ""}, DISPLAY),
 ]
-MODULES = [  # host, attribute that holds a package, and words of the message
+MODULES = [  # Host, attribute that refers to a Python package, and words of the message.
     ("webgl", "webgl.sync_api", r"Playwright is not installed; pip install '\.\[webgl\]'"),
     ("vulkan", "vulkan.wgpu", r"wgpu is not installed; pip install '\.\[vulkan\]'"),
     ("wgsl", "vulkan.wgpu", "wgpu is not installed"),
@@ -61,7 +61,7 @@ def test_what_is_missing_is_named_with_its_remedy(monkeypatch, name, environment
 
 @pytest.fixture
 def no_library(tmp_path):
-    """Folder with a MaterialX whose renderer lacks a library, as on a minimal system."""
+    """Folder with a MaterialX whose renderer lacks a system library, as on a minimal system."""
     folder = tmp_path / "MaterialX"
     folder.mkdir()
     (folder / "__init__.py").write_text("getDefaultDataSearchPath, Exception = str, ValueError\n")
@@ -96,7 +96,7 @@ def test_a_missing_compiler_is_named_with_its_remedy(monkeypatch):
     assert_not_run("vulkan", "no program 'glslangValidator'; .* install glslang-tools")
 
 
-@pytest.mark.parametrize("name", ["vulkan", "wgsl"])  # wgsl needs no glslangValidator
+@pytest.mark.parametrize("name", ["vulkan", "wgsl"])  # `wgsl` needs no glslangValidator
 def test_a_missing_vulkan_driver_is_named_with_its_remedy(monkeypatch, name):
     wgpu = package("wgpu")
     if name == "vulkan":
@@ -115,7 +115,7 @@ def test_a_missing_driver_is_named_with_its_remedy(hosts, monkeypatch):
 
 @pytest.mark.parametrize("workers", [0, 1])
 def test_checks_of_a_missing_renderer_are_not_run(monkeypatch, workers):
-    """Checks that only this renderer has are listed as not run, with and without workers."""
+    """Checks that need the missing renderer are reported as not run, with and without workers."""
     monkeypatch.setenv("MXEON_CHROMIUM", "none")
     run = mxeon.check(None, "three-gpu-pathtracer", "stock", nodes="common", workers=workers)
     own = [each for each in run.results if each.check in ("density", "samples")]

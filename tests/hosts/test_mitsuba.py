@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Mitsuba plugins match the models, and Mitsuba's own BSDFs are what it documents."""
+"""The Mitsuba plugins match the models, and Mitsuba's own BSDFs match their documentation."""
 
 import re
 from dataclasses import replace
@@ -25,10 +25,10 @@ from tests.support.verdicts import PASSED, RENDERER_NODES
 PAGE = Path(__file__).parents[2] / "docs" / "mitsuba.md"
 COAT, VARNISH = "dielectric_over_eon", "varnished"
 PARAMETERS = {"eon": "roughness", "fon": "roughness", "qon": "sigma"}
-COLOR = (0.25, 0.5, 1.0)  # exact in float32
-SAMPLES = 100_000  # samples per chi-square test
-DEVIATE = 4.5  # standard deviations; a mean exceeds this once in 150,000 tests
-STEP = 2.0**-13  # exact when added in float32
+COLOR = (0.25, 0.5, 1.0)  # each value is exact in float32
+SAMPLES = 100_000  # number of samples in a chi-square test
+DEVIATE = 4.5  # standard deviations; the mean exceeds this limit by chance once in 150,000 tests
+STEP = 2.0**-13  # sums of a few steps are exact in float32
 WO, WI = np.array([[0.6, 0.0, 0.8]]), np.array([[-0.48, 0.6, 0.64]])
 MODELS = {name: getattr(models, f"{name}_brdf") for name in ("eon", "fon", "qon", COAT, VARNISH)}
 INPUTS = {
@@ -40,7 +40,7 @@ TEXTURES = ("roughness", "sigma")
 
 @pytest.fixture
 def mi():
-    """The package mitsuba in an LLVM variant, with the plugins registered."""
+    """The Python module `mitsuba` in an LLVM variant, with the plugins registered."""
     mitsuba = package("mitsuba")
     mitsuba.set_variant("llvm_ad_rgb")
     with available("mitsuba"):
@@ -49,31 +49,31 @@ def mi():
 
 
 def bsdf(name, color=COLOR, **inputs):
-    """Properties of a plugin; inputs that are not given come from INPUTS."""
+    """Plugin properties; unless given as arguments, inputs come from INPUTS."""
     rgb = {"type": "rgb", "value": list(color)}
     return {"type": name, "reflectance": rgb} | INPUTS[name] | inputs
 
 
 def expected(name, wo, wi, **inputs):
-    """Model's value times cosine, for inputs rounded to float32."""
+    """BRDF value of the model times the cosine, with inputs rounded to float32."""
     values = {key: float(np.float32(each)) for key, each in (INPUTS[name] | inputs).items()}
     return MODELS[name](wo, wi, COLOR, **values) * np.asarray(wi, np.float64)[..., 2:]
 
 
 def allowed(name, value):
-    """Tolerance of a value: absolute, or relative for large values of coats."""
+    """Tolerance of a value: MITSUBA_EVAL, or a relative tolerance for large values of coats."""
     return np.maximum(MITSUBA_EVAL, MITSUBA_COAT * value if name in (COAT, VARNISH) else 0.0)
 
 
 def surface(mi, wo):
-    """Mitsuba's surface interaction for views from the directions `wo`."""
+    """Mitsuba's surface interaction, viewed from the directions `wo`."""
     point = mi.SurfaceInteraction3f()
     point.wi = mi.Vector3f(np.asarray(wo).T)
     return point
 
 
 def chi_square(mi, angle, functions):
-    """Mitsuba's chi-square test of a sample function and a pdf from its BSDF adapter."""
+    """Mitsuba's chi-square test of the sampling function and density made by `functions`."""
     from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
 
     wi = [float(0.8 * np.sin(angle)), float(0.6 * np.sin(angle)), float(np.cos(angle))]
@@ -85,7 +85,7 @@ def chi_square(mi, angle, functions):
         sample_dim=3,
         sample_count=SAMPLES,
         res=31,
-        ires=8,  # the default of 4 nodes per bin misses a grazing peak
+        ires=8,  # the default, 4 nodes per bin, misses a grazing peak
     )
 
 
@@ -115,7 +115,7 @@ def test_values_are_those_of_the_model(mi, name, inputs):
     rng = np.random.default_rng(7)
     wo, wi = np.float32(directions((2, 512), rng, least=1e-3))
     wo[:8] = wi[-8:] = 0.0, 0.0, 1.0
-    # Add lights near the mirror direction.
+    # Include lights near the mirror direction.
     wi[100:200] = wo[100:200] * [-1, -1, 1] + 0.03 * rng.normal(size=(100, 3))
     wi[:, 2] = np.abs(wi[:, 2])
     wi = (wi / np.linalg.norm(wi, axis=1, keepdims=True)).astype(np.float32)
@@ -184,7 +184,7 @@ def test_an_input_outside_its_range_is_refused(mi, name, inputs, message):
         mi.load_dict(bsdf(name, **inputs))
 
 
-SAMPLED = [  # plugin, inputs, polar angle of the viewer
+SAMPLED = [  # plugin, inputs, and polar angle of the viewer
     *(("eon", {"roughness": each}, angle) for each in (0.3, 1.0) for angle in (0.0, 0.8, 1.5)),
     *((name, {}, angle) for name in (COAT, VARNISH) for angle in (0.0, 1.4)),
 ]
@@ -218,7 +218,7 @@ def test_an_llvm_that_ends_the_process_is_refused_before(mi, monkeypatch):
 
 
 def brightest(picture):
-    """Largest mean of a block of 8 x 8 pixels."""
+    """Largest mean over blocks of 8 x 8 pixels."""
     return np.array(picture).reshape(16, 8, 16, 8, 3).mean(axis=(1, 3, 4)).max()
 
 
@@ -231,14 +231,15 @@ def test_the_example_of_the_page_runs_and_shows_gloss(mi, tmp_path, monkeypatch)
         if "coated.png" in block or "ball.png" in block:
             seen.append(brightest(names["picture"]))
     assert 0.1 < np.array(names["picture"]).mean() < 1.0
-    assert seen[1] > 1.25 * seen[0]  # measured: 1.5; without a lamp: 1
+    # The measured ratio is 1.5. Without a lamp, the ratio would be 1.
+    assert seen[1] > 1.25 * seen[0]
     for name in ("clay", "ball", "coated"):
         assert (tmp_path / f"{name}.png").stat().st_size > 1000
 
 
 # --- Mitsuba's own BSDFs, judged by pictures of faceted solids ---------------------------------
 
-FACETS = 7e-5  # relative error of a picture, times the light's cosine
+FACETS = 7e-5  # relative error of a picture, multiplied by the cosine of the light
 
 
 @pytest.fixture(scope="module")
@@ -260,7 +261,7 @@ def test_mitsuba_has_the_models_that_it_documents(monkeypatch):
 
 @pytest.mark.parametrize("scene", [FRONT, SIDE, BACK])
 def test_pictures_are_linear_and_have_float_precision(host, scene):
-    """One channel is very dark: 8-bit pixels or a tone curve would change it by far more."""
+    """One channel is very dark, so 8-bit pixels or a tone curve would cause large errors."""
     scene = replace(scene, size=64)
     material = mitsuba.NODES[0].made((1.0, 0.02, 1e-4), 0.0)
     picture = host.node(material, scene)[facet_points(64).mask]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OSL as a host: trees of closures, the profile for Cycles, and messages of compiler and engine."""
+"""OSL as a host: closure trees, the profile for Cycles, and messages of compiler and engine."""
 
 import re
 from dataclasses import replace
@@ -81,7 +81,7 @@ COUNT = 256
 
 
 def weighed(tree, factor=1.0):
-    """Closures of a tree that scatter or emit, each with the product of its factors."""
+    """Scattering and emitting closures of a tree, each with the product of its weights."""
     if tree is None or tree.name == "transparent":
         return []
     if not tree.parts:
@@ -111,7 +111,7 @@ def for_cycles(host, node, wo, inputs, old="", new=""):
     ],
 )
 def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag, model, largest):
-    """Cycles' EON has one factor of albedo too many; its QON matches only for s >= 0."""
+    """Cycles' EON has one factor of albedo too many, and Cycles' QON matches only for s >= 0."""
     rng = np.random.default_rng(1)
     wo, wi = directions((2, COUNT), rng)
     wi[:, :2] *= np.where((wo[:, :2] * wi[:, :2]).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
@@ -133,7 +133,7 @@ def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag
 
 @pytest.mark.parametrize("soft", [True, False])
 def test_the_cone_for_cycles_is_the_model_on_both_sides(host, soft):
-    """Unlike in OSL, I points to the viewer in Cycles, and the normal faces the viewer."""
+    """In Cycles, unlike in OSL, `I` points to the viewer and the normal faces the viewer."""
     rng = np.random.default_rng(1)
     wo, inner = directions(COUNT, rng), 170.0 * rng.random(COUNT)
     wo[::2, 2] *= -1.0
@@ -150,7 +150,7 @@ def test_the_cone_for_cycles_is_the_model_on_both_sides(host, soft):
 
 
 def test_the_walk_for_cycles_has_the_albedo_in_its_weight(host):
-    """The weight must include the albedo, because Cycles divides the walk's light by it."""
+    """The weight must contain the albedo, because Cycles divides the light by the albedo."""
     rng = np.random.default_rng(1)
     inputs = {"weight": rng.random(COUNT), "color": rng.random((COUNT, 3))}
     inputs |= {"radius": rng.random((COUNT, 3)), "anisotropy": 2.0 * rng.random(COUNT) - 1.0}

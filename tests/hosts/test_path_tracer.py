@@ -21,7 +21,7 @@ SIZE = 32
 
 @pytest.fixture(scope="module")
 def tracer(hosts):
-    hosts("gl")  # skips the test if gl cannot run
+    hosts("gl")  # skips the test if `gl` cannot run
     host = PathTracerHost()
     yield host
     host.close()
@@ -60,7 +60,7 @@ def test_a_picture_with_the_default_samples_has_no_noise(tracer):
     smooth, raw = (traced(tracer, CLAY, scene, Paths(n), "ball") for n in (None, 64))
 
     def contrast(image):
-        """Mean noise in blocks of 2 x 2 pixels of the ball's upper half; smooth shading cancels."""
+        """Mean noise in 2 x 2 blocks of the ball's upper half, without smooth shading."""
         part = image[6:14, 10:22].mean(axis=-1)
         blocks = part[:-1, :-1] - part[1:, :-1] - part[:-1, 1:] + part[1:, 1:]
         return np.abs(blocks).mean()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""shadewire's closures match stock GLSL; `test_upstream.py` covers its two own failures."""
+"""shadewire's closures match stock GLSL. `test_upstream.py` covers shadewire's two failures."""
 
 from dataclasses import replace
 
@@ -14,11 +14,11 @@ from tests.support.cases import pairs
 from tests.support.documents import lobe, material, surface
 from tests.support.verdicts import DIFFERS, FAILED, PASSED
 
-SAME = 1e-5  # difference of two float32 texts, for values up to 3
+SAME = 1e-5  # tolerance for two float32 shaders with values up to 3
 EON, FITTED = "oren_nayar_diffuse_bsdf, energy_compensation true", "MaterialX's fit of its albedo"
 WO, WI, COLOR, NUMBER = pairs(1000, 3)
 ALPHA = 0.1 + 0.9 * np.stack([NUMBER, COLOR[:, 0]], axis=1)
-CASES = {  # documents, and values of their inputs
+CASES = {  # documents, and values for the inputs of each document
     "diffuse": (
         material(lobe(energy_compensation="true")),
         {"color": COLOR, "roughness": NUMBER, "weight": COLOR[:, 0]},
@@ -47,7 +47,8 @@ def shadewire(hosts):
 @pytest.mark.parametrize("name", CASES)
 def test_values_and_throughputs_of_pairs_are_those_of_stock_glsl(shadewire, gl, name):
     text, inputs = CASES[name]
-    # In stock's surface shaders, weights include the shares of mixes, so throughputs differ.
+    # In stock's surface shaders, the generator multiplies mix weights into the lobes' weights, so
+    # the throughputs differ.
     for output in ("response", "throughput") if "_bsdf" in text else ("response",):
         values = []
         for host in (shadewire, gl):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Stills are antialiased and tone mapped, and show a floor with the ball's shadow."""
+"""Stills are antialiased and tone mapped, and show a floor with the shadow of the ball."""
 
 from dataclasses import replace
 
@@ -24,7 +24,7 @@ def test_a_pixel_at_the_edge_has_the_share_of_the_sphere_in_it(hosts):
     host = hosts("gl")
     [shader] = host.compile(WHITE)
     image = still(host, shader, replace(FURNACE, size=SIZE))
-    # About 4 SIZE pixels lie at the edge, with 16 samples each: the area of the disk is exact to
+    # About 4 SIZE pixels lie at the edge, and each has 16 samples, so the disk's area is exact to
     # 0.1 percent.
     np.testing.assert_allclose(image.mean(), np.pi / 4.0, rtol=1e-3)
     assert len(np.unique(image.round(4))) > 8
@@ -33,7 +33,8 @@ def test_a_pixel_at_the_edge_has_the_share_of_the_sphere_in_it(hosts):
 def test_the_floor_far_away_has_the_light_of_the_open_sky_and_less_beside_the_foot():
     size = 128
     image = floor(Scene("even", environment=1.0, size=size, shape="ball"))
-    np.testing.assert_allclose(image[0, [0, -1]], PAPER, rtol=0.05)  # error of 512 directions
+    # Error of an average over 512 directions.
+    np.testing.assert_allclose(image[0, [0, -1]], PAPER, rtol=0.05)
     assert (image <= PAPER * 1.01).all()
     below = image[int(0.93 * size), size // 2]
     assert (below < 0.7 * PAPER).all()
@@ -57,7 +58,7 @@ def test_the_tone_curve_keeps_dark_colors_but_for_the_reflectance_of_a_dielectri
 
 @pytest.fixture(params=[".obj", ".glb"])
 def wall(request, tmp_path):
-    """File with a mesh of a square that faces the viewer; u increases to the right, v upward."""
+    """Mesh file with a square that faces the viewer; u increases to the right, v upward."""
     trimesh, _ = package("trimesh"), package("embreex")
     corners = np.array([[0, 0], [3, 0], [3, 3], [0, 3]])
     square = trimesh.Trimesh(
@@ -79,7 +80,7 @@ def test_a_mesh_has_its_normals_texture_coordinates_and_tangents(wall):
     for tangent in seen.tangent[seen.mask]:
         np.testing.assert_allclose(OBJECT @ tangent, [1, 0, 0], atol=1e-6)
     u, v = seen.texcoord[seen.mask].T
-    # Texture coordinates are compared to the accuracy of one pixel.
+    # The pixel size limits the accuracy of the texture coordinates.
     np.testing.assert_allclose([u.min(), u.max()], [0, 1], atol=1.0 / np.ptp(columns))
     assert u[columns.argmin()] < u[columns.argmax()] and v[rows.argmin()] > v[rows.argmax()]
 

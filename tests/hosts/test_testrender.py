@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""testrender as a host, judged with real programs if variables name them, or with a recording.
+"""testrender as a host: real programs if environment variables name them, else a recording.
 
-`tests.support.osl` recorded the output of OSL's testrender.
+`tests.support.osl` contains recorded output of OSL's testrender.
 """
 
 import os
@@ -18,7 +18,7 @@ from tests.support.verdicts import FAILED, PASSED, has
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 # Error of pi f cos: 8 times 3 roundings of a point at distance 40, seen from a light at distance
-# 1/2; and OpenImageIO's arc cosine.
+# 1/2, plus the error of OpenImageIO's arc cosine.
 FLAT = 2e-4
 REAL = all(os.environ.get(variable) for variable in testrender.VARIABLES.values())
 real = pytest.mark.skipif(not REAL, reason="its variables name no build of OSL")
@@ -26,7 +26,7 @@ real = pytest.mark.skipif(not REAL, reason="its variables name no build of OSL")
 
 @pytest.fixture
 def replay(tmp_path, monkeypatch):
-    """Folder with stand-ins for OSL's programs, which replay the recording."""
+    """Folder with stand-ins for OSL's programs, which return the recorded output."""
     for variable, path in osl.write_replay(tmp_path).items():
         monkeypatch.setenv(variable, path)
     return tmp_path
@@ -77,7 +77,7 @@ def test_the_recorded_picture_is_the_model(host):
     color, roughness = osl.INPUTS["color"], osl.INPUTS["roughness"]
     expected = np.pi * eon_brdf(wo, wi, np.array(color), roughness) * wi[:, 2:]
     error = np.abs(values - expected).max()
-    assert 0.0 < error < FLAT  # half floats would be off by 2^-11
+    assert 0.0 < error < FLAT  # half floats would have an error of 2^-11
     swapped = np.pi * eon_brdf(wo, wi, np.array(color[::-1]), roughness) * wi[:, 2:]
     assert np.abs(values - swapped).max() > FLAT
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The WebGL host reports failures of the browser and restarts it."""
+"""The WebGL host reports failures of the browser and restarts the browser."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ def started():
 
 def test_a_browser_that_hangs_is_not_run_and_the_next_one_works():
     host = started()
-    host._limit = 1000.0  # milliseconds; the browser has started
+    host._limit = 1000.0  # milliseconds, enough because the browser has started
     with pytest.raises(NotRun, match="webgl: the browser fails; .*[Tt]imeout"):
         host._ask("() => { for (;;); }")
     host._limit *= 300.0
@@ -52,7 +52,7 @@ def test_no_name_resolves_in_the_browser(hosts):
 @pytest.mark.parametrize("name", ("plaster", "brick"))
 def test_a_picture_is_the_references(hosts, reference, name, scene):
     host = hosts("webgl")
-    host.call("fon_af", MU)  # must not leave its framebuffer bound
+    host.call("fon_af", MU)  # afterwards, no framebuffer may be bound
     document = examples_folder() / f"{name}.mtlx"
     shader = generate(document, host.target, lights=True)[0]
     image = host.picture(shader, replace(scene, size=64))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files are written completely or not at all; images are read upright or refused in one line."""
+"""Files are written completely or not at all. Images are read upright, or refused in one line."""
 
 import os
 
@@ -46,7 +46,7 @@ def test_a_file_that_is_not_regular_is_refused_and_blocks_nobody(tmp_path, make)
 def test_a_picture_that_is_cut_and_still_read_is_told(tmp_path):
     path = tmp_path / "a.jpg"
     codes = np.arange(64 * 64 * 3, dtype=np.uint32).astype(np.uint8).reshape(64, 64, 3)
-    assert oiio.ImageBuf(codes).write(str(path))  # JPEG is lossy, so pixels are not compared
+    assert oiio.ImageBuf(codes).write(str(path))  # pixels are not compared, because JPEG is lossy
     path.write_bytes(path.read_bytes()[:-100])
     with pytest.warns(ImageWarning, match="a.jpg: is damaged; JPEG error: Premature end"):
         assert read_image(path).shape == (64, 64, 3)
@@ -65,7 +65,8 @@ def test_an_environment_that_is_not_finite_is_refused_and_a_texture_is_told(tmp_
         read_texture(path)
 
 
-# Image files of a document, with 4 x 2 pixels each, and the number of pixels that count.
+# Image files that a document names, each with 4 x 2 pixels, and the number of pixels that count
+# towards the limit.
 TOGETHER = {"one": (["a.exr"], 8), "two": (["a.exr", "b.exr"], 16), "same": (["a.exr"] * 3, 8)}
 
 
@@ -91,8 +92,8 @@ def test_the_codes_of_srgb_are_decoded_to_what_was_encoded():
     assert np.array_equal(srgb_encoded(srgb_decoded(codes / 255.0)), codes)
 
 
-# Ten times the error of the midpoint rule for a cosine on 64 x 128 pixels, which is the squared
-# angle of a pixel, (pi / 64)^2, over 12.
+# Ten times the error of the midpoint rule for a cosine on 64 x 128 pixels, which is h^2 / 12 for
+# the angle h = pi / 64 of a pixel.
 SUM = 10.0 * (np.pi / 64.0) ** 2 / 12.0
 
 
@@ -111,7 +112,7 @@ def test_a_sky_over_a_black_ground_lights_what_faces_it(shape):
     found = irradiance(radiance)
     assert found.shape == (32, 64, 3) and np.isfinite(found).all()
     assert found[0].min() > found[-1].max()
-    if rows % 2 == 0 and rows < 640:  # exact: (1 + cos(theta)) / 2
+    if rows % 2 == 0 and rows < 640:  # the exact irradiance is (1 + cos(theta)) / 2
         polar = np.pi * (np.arange(32) + 0.5) / 32
         expected = 0.5 * (1.0 + np.cos(polar))
         np.testing.assert_allclose(found[:, 0, 0], expected, rtol=0.0, atol=SUM)
@@ -119,7 +120,7 @@ def test_a_sky_over_a_black_ground_lights_what_faces_it(shape):
 
 NOISE = np.random.default_rng(1).random((33, 33, 3))
 IMAGES = {".exr": np.float32(NOISE), ".png": np.uint8(255.0 * NOISE)}
-# Room on the disk in bytes: none, less than a header, half of the file, and all but one byte.
+# Free disk space in bytes, given the size of the file.
 ROOM = {
     "nothing": lambda size: 0,
     "little": lambda size: 100,

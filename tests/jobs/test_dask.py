@@ -22,7 +22,7 @@ from tests.support.plans import keep_checks
 
 ONE_THREAD = ["--nthreads", "1"]
 OTHER_VERSION = "import mxeon\nmxeon.__version__ = '0.0.9'\n"
-# Warnings are ignored because Dask leaves sockets open after it looks for a free port.
+# Dask leaves sockets open after it looks for a free port, so warnings about sockets are ignored.
 pytestmark = [
     pytest.mark.whole,
     pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning"),
@@ -38,8 +38,8 @@ def run(work, items, address, timeout=600.0):
 
 @contextmanager
 def farm(*workers):
-    """Address of a scheduler; each argument gives a worker's additional environment variables."""
-    from distributed import LocalCluster  # imported here because it is slow
+    """Address of a scheduler. Each argument holds a worker's additional environment variables."""
+    from distributed import LocalCluster  # slow to import
 
     with ExitStack() as stack:
         options = {"n_workers": 0, "dashboard_address": ":0", "protocol": "tcp"}
@@ -61,7 +61,7 @@ def farm(*workers):
 
 @pytest.fixture(scope="module")
 def pair():
-    """Address of a scheduler with two workers; only one has the variable LAMP."""
+    """Address of a scheduler with two workers. Only one of the workers has the variable LAMP."""
     with farm({}, {"LAMP": "on"}) as address:
         yield address
 
@@ -87,7 +87,7 @@ def test_a_worker_killed_at_work_costs_nothing(pair, tmp_path):
 
 def test_a_worker_killed_with_its_result_costs_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr(dask, "FETCH", 1.0)
-    with farm({}) as address:  # no other worker can take over
+    with farm({}) as address:  # no other worker can take over the task
         assert run(Lost, [str(tmp_path / "a")], address) == {0: Outcome("done")}
 
 
@@ -110,7 +110,7 @@ SOMEBODY, TWO_THREADS = ({"workers": {"tcp://a": {"nthreads": each}}} for each i
 
 
 class Client:
-    """Stand-in for a Dask client, which returns prepared lists of workers one after another."""
+    """Stand-in for a Dask client, which returns a sequence of prepared lists of workers."""
 
     def __init__(self, *answers):
         self._answers = list(answers)
@@ -156,7 +156,7 @@ def test_a_cluster_that_cannot_go_on_is_one_line(answers, wait, submitted, error
     ],
 )
 def test_an_address_without_an_answer_is_one_line(address, wait, words):
-    with socket.create_server(("127.0.0.1", 0)) as server:  # this server never answers
+    with socket.create_server(("127.0.0.1", 0)) as server:  # a server that never answers
         if address == "listener":
             address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
         with pytest.raises(InputError, match=words):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A failing worker of the pool loses only its own item, also in batches of documents."""
+"""If a worker of the pool fails, only its own item is lost, also in batches of documents."""
 
 import os
 import signal
@@ -44,7 +44,7 @@ def test_workers_never_hear_of_ctrl_c():
 
 
 def test_no_temporary_file_outlives_the_pool(tmp_path, monkeypatch):
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))  # no other test writes to it
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))  # a folder that no other test uses
     outcomes = run(square, range(4), 1, 60.0)
     next(outcomes)
     assert list(tmp_path.glob("mxeon-pool-*"))

@@ -14,8 +14,8 @@ from mxeon.shaders.library import examples_folder
 from tests.support.availability import available
 from tests.support.faults import square
 
-# Names of modules that a process might import: standard library, Blender's modules, and modules
-# that Python looks for at startup. Installed packages are added later.
+# Names of modules that a process might import: the standard library, Blender's modules, and the
+# modules that Python looks for at startup. Installed packages are added below.
 NAMES = {*sys.stdlib_module_names, "bpy", "_cycles", "mathutils"}
 NAMES |= {"sitecustomize", "usercustomize", "numpy", "mxeon"}
 PLANT = "import os\nos.write(os.open({!r}, os.O_CREAT | os.O_WRONLY), __file__.encode())\n"
@@ -34,11 +34,11 @@ COMMANDS = {
     "kit export": "kit export out/kit --size 64",
     "kit check": "kit check out/kit",
 }
-STATUS = {"check": 3, "kit check": 3}  # msl and an empty kit are not run
+STATUS = {"check": 3, "kit check": 3}  # no check runs with msl or with an empty kit
 
 
 def plant(folder, names, text):
-    """Write modules with the same text under several names; links are faster than copies."""
+    """Write one module under several names, as hard links, which are faster than copies."""
     folder.mkdir(exist_ok=True)
     first, *others = (folder / f"{name}.py" for name in names)
     first.write_text(text)
@@ -47,7 +47,7 @@ def plant(folder, names, text):
 
 
 def run(folder, command):
-    """Run a command by a script like pip's, in a folder with a document."""
+    """Run a command by a script like those that pip installs, in a folder with a document."""
     (folder / "in").mkdir(exist_ok=True)
     (folder / "bin").mkdir(exist_ok=True)
     (folder / "bin" / "command").write_text(SCRIPT)
@@ -59,7 +59,7 @@ def run(folder, command):
 
 @pytest.fixture(scope="module")
 def hostile(tmp_path_factory):
-    """Working folder in which the folders for documents and results are full of hostile modules."""
+    """Working folder in which the document folder and the output folder contain hostile modules."""
     report, hostile = (tmp_path_factory.mktemp(name) for name in ("report", "hostile"))
     assert run(report, COMMANDS["check"]).returncode == 3
     (hostile / "report").symlink_to(report / "out")
@@ -92,7 +92,7 @@ def test_workers_of_an_interactive_parent_do_not_import_from_its_folder(hostile,
 @pytest.mark.parametrize("way", [["-E", "bin/command"], ["-m", "mxeon"]], ids=" ".join)
 def test_the_working_folder_is_off_the_path_whatever_starts_the_command(tmp_path, way):
     plant(tmp_path, ["pebble", "MaterialX", "numpy"], PLANT.format(str(tmp_path / "RAN")))
-    run(tmp_path, "library")  # creates bin/command
+    run(tmp_path, "library")  # creates the script bin/command
     command = [sys.executable, *way, *COMMANDS["generate"].split()]
     subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
     assert not (tmp_path / "RAN").exists()

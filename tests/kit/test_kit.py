@@ -45,7 +45,7 @@ EON, CUBED = (reference.diffuse_model(name).title for name in ("eon", "eon_rho_c
 
 @pytest.fixture(scope="module", autouse=True)
 def remembered():
-    """Cache the expected values of models in views for all tests of a module."""
+    """Cache the models' expected values of each view for all tests of a module."""
     with pytest.MonkeyPatch.context() as patch:
         for function in (expected, pixel_means):
             once = cache(function)
@@ -57,13 +57,13 @@ def remembered():
 
 @cache
 def means(model, name):
-    """Mean values of a model over each judged pixel of a view."""
+    """Mean values of a model over each pixel of a view that is judged."""
     return pixel_means(reference.diffuse_model(model), VIEWS[name])
 
 
 @cache
 def exported():
-    """Folder of an exported kit, which tests must not change."""
+    """Folder of an exported kit. Tests must not change its files."""
     folder = Path(mkdtemp())
     export_kit(folder, SIZE)
     return folder
@@ -102,14 +102,14 @@ def read(path):
 
 
 def result_of(run, check, subject):
-    """The single result of a check whose subject starts with the given text."""
+    """The only result of the given check whose subject starts with the given text."""
     results = [each for each in run.results if each.check == check]
     [result] = [each for each in results if each.subject.startswith(subject)]
     return result
 
 
 def names(run):
-    """Best matching model in each note, by subject."""
+    """Name of the best matching model by subject, read from the notes of a run."""
     pattern = r"(.*): best match: (.*) \(rms .*?\), then (.*) \("
     return {match[1]: match[2] for match in map(re.compile(pattern).match, run.notes) if match}
 
@@ -262,7 +262,7 @@ def test_the_command_exports_and_judges(tmp_path, capsys):
 
 
 def write_osl(kit, library, profile):
-    """Write OSL for each material of a kit, generated from its documents; returns the folder."""
+    """Generate OSL for each material document of a kit; return the folder of the OSL files."""
     header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
     folder = kit / "osl"
     folder.mkdir()
@@ -276,7 +276,7 @@ def write_osl(kit, library, profile):
 
 
 def external_run(kit, library, profile=None):
-    """Export a kit, render it with Cycles, and return the run that judges the pictures."""
+    """Export a kit, render the kit with Cycles, and return the run that judges the pictures."""
     with available("cycles"):
         python = interpreter()
     export_kit(kit, SIZE)
@@ -334,7 +334,7 @@ def damage_header(path):
 
 
 def channels(*names, x=0, y=0):
-    """Function that rewrites a picture file with the given channels and origin."""
+    """Function that replaces a picture file by a picture with the given channels and origin."""
     spec = oiio.ImageSpec(SIZE, SIZE, len(names), oiio.FLOAT)
     spec.channelnames, spec.x, spec.y = list(names), x, y
     return lambda path: oiio.ImageBuf(spec).write(str(path))
@@ -347,7 +347,7 @@ def write_png(path):
 
 
 LAYERS = ("a.R", "a.G", "a.B", "b.R", "b.G", "b.B")
-SPOILED = {  # picture: function that damages it, and words of the diagnosis
+SPOILED = {  # pictures, a function that damages each picture, and words of the diagnosis
     "true_front": (plant_nan, "must be finite numbers; got .* row 32, column 32"),
     "true_side": (
         lambda path: write_exr(path, read(path)[:32], {}),
