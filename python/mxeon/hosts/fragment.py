@@ -37,7 +37,8 @@ MOST = 12  # maximum number of textures for arguments, out of the 16 or more of 
 LAYER = (
     f"texelFetch({STACK}, mxeon_pixel + ivec2(0, {{0}} * (textureSize({STACK}, 0).y / {{1}})), 0)"
 )
-COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # 3 in all other types
+# Number of values in a type; all other types have three.
+COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}
 WIDTH = 1024  # maximum number of pixels in a row of a frame
 PART = 1 << 15  # maximum number of elements that one frame evaluates
 # Number of columns and rows that make the sizes of argument textures odd. Mesa would compile a

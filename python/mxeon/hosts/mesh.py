@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A mesh of an .obj or .glb file as exact points. Needs the `render` extra.
+"""Exact visible points of a mesh from an .obj or .glb file. The `render` extra is required.
 
-Embree traces the rays of the picture. The mesh is y up, in the place of the shader ball and scaled
-to the ball's size.
+Embree traces the rays of the picture. The y axis of a file points up. The mesh stands in the place
+of the shader ball and is scaled to the ball's size.
 """
 
 import os
@@ -17,15 +17,15 @@ from mxeon.io.images import Floats
 from mxeon.shaders.scene import VisiblePoints
 from mxeon.shaders.shader_ball import GROUND, NEAR, OBJECT
 
-SIZE = 1.9  # diagonal of the box around a mesh; the frame is 2 wide
+SIZE = 1.9  # diagonal of the box around a mesh, in a frame of width 2
 OFFSET = 1e-4  # distance of a ray's origin from the surface that it leaves
 
 
 @lru_cache(maxsize=2)
 def mesh(file: str) -> Any:
-    """The triangles of a file in the picture's frame, a `trimesh.Trimesh`.
+    """The triangles of a file in the picture's frame, as a `trimesh.Trimesh`.
 
-    Raises InputError for a file without triangles, NotRun without the packages.
+    Raises InputError for a file without triangles, and NotRun if the packages are not installed.
     """
     if not os.path.isfile(file):
         raise InputError(f"geometry must be a readable file; got {file!r}")
@@ -36,7 +36,7 @@ def mesh(file: str) -> Any:
         raise NotRun(f"{file}: {error}; {install('render')}") from None
     try:
         loaded = trimesh.load_mesh(file, process=False)
-    except Exception as error:  # trimesh raises whatever its readers do
+    except Exception as error:  # trimesh passes on any exception of a reader
         raise InputError(f"{file}: must be a mesh; {type(error).__name__}: {error}") from None
     if not len(loaded.faces) or not np.isfinite(loaded.vertices).all():
         raise InputError(f"{file}: must have triangles at finite points")
@@ -55,7 +55,7 @@ def mesh(file: str) -> Any:
 
 
 def mesh_points_at(file: str, x: Floats, y: Floats) -> VisiblePoints:
-    """Points of a mesh at positions in the frame; normals are interpolated, and face the viewer."""
+    """Points of a mesh at positions in the frame. Normals are interpolated and face the viewer."""
     shape = mesh(file)  # raises NotRun without trimesh
     from trimesh.triangles import points_to_barycentric
 
@@ -83,7 +83,7 @@ def mesh_points_at(file: str, x: Floats, y: Floats) -> VisiblePoints:
     position.reshape(-1, 3)[ray] = hit
     normal.reshape(-1, 3)[ray] = _unit(unit)
     uv = getattr(shape.visual, "uv", None)
-    if uv is None:  # use longitude and latitude about the box's center
+    if uv is None:  # use longitude and latitude about the center of the box
         out = (hit - shape.bounds.mean(axis=0)) @ OBJECT.T
         u = 0.5 + np.arctan2(out[:, 0], out[:, 2]) / (2.0 * np.pi)
         v = 0.5 + np.arctan2(out[:, 1], np.hypot(out[:, 0], out[:, 2])) / np.pi
@@ -104,7 +104,10 @@ def _unit(vectors: Floats) -> Floats:
 
 
 def mesh_blocks(file: str, points: Floats, towards: Floats) -> NDArray[np.bool_]:
-    """Whether a mesh blocks directions from points in the foot's frame, (points, directions)."""
+    """Whether a mesh blocks each direction from each point, (points, directions).
+
+    Points and directions are in the frame of the shader ball's foot.
+    """
     starts = np.repeat((points + OFFSET * np.array([0.0, 1.0, 0.0])) @ OBJECT, len(towards), axis=0)
     blocked = mesh(file).ray.intersects_any(starts, np.tile(towards @ OBJECT, (len(points), 1)))
     return np.asarray(blocked).reshape(len(points), len(towards))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers that evaluate any pairs of directions: each pixel of their pictures shows one pair."""
+"""Renderers that evaluate any pair of directions. Each pixel of a picture shows one pair."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from mxeon.hosts.base import Array, Inputs, Query
 if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
-PATHS = 1 << 12  # pixels of a picture with a sky
+PATHS = 1 << 12  # number of pixels in a picture with a sky
 DIRECT, TRANSMITTED, EMITTED = "direct", "transmission", "emission"  # branches of `evaluate`
-LAMP, SKY, DARK = "lamp", "sky", ""  # lights of a scene
-# Last statement of a shader that adds white emission below the surface.
+LAMP, SKY, DARK = "lamp", "sky", ""  # kinds of light in a scene
+# Last statement of a shader, which adds white emission below the surface.
 BASE = "    {output} = layer({output}, uniform_edf(color(1)));\n"
 
 
@@ -33,9 +33,9 @@ class PairHost(base.Host):
     def _values(self, query: Query) -> Array:
         """Values of a shader in a renderer; see `mxeon.hosts.base.Host`.
 
-        The throughput is the visible part of white emission below the surface. The environment is
-        sampled with noise, and includes transmitted light. InputError if a pair under the lamp is
-        not `visible`.
+        The throughput is the visible part of white emission below the surface. The environment also
+        lights the surface from below, and is sampled with noise. Raises InputError if a pair under
+        the lamp is not `visible`.
         """
         shader, wo, wi, inputs, branch, output, irradiance, _ = query
         through = output == "throughput"
@@ -49,7 +49,8 @@ class PairHost(base.Host):
                     f"{self.name}: the sine of each pair must be at least {LEAST_SINE}"
                 )
             return self._pixels(shader, wo, wi, inputs, "", LAMP)
-        # Emission and sky ignore wi: use one perpendicular to wo. A sky needs several pixels.
+        # Emission and light of the sky do not depend on wi, so any wi perpendicular to wo is right.
+        # A mean over several pixels reduces the noise under a sky.
         sky = not through and branch != EMITTED
         repeats = max(1, PATHS // len(wo)) if sky else 1
         rows = np.repeat(np.arange(len(wo)), repeats)
@@ -65,29 +66,35 @@ class PairHost(base.Host):
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
-        """Radiance of pairs, (N, 3); `last` with {output} is the shader's last OSL statement.
+        """Radiance of pairs of directions, (N, 3).
 
-        `light` is LAMP with irradiance 1 on a facing surface, SKY with uniform radiance 1, or DARK.
+        `last` is the last OSL statement of the shader, with {output} for the output's name. `light`
+        is LAMP (irradiance 1 on a surface that faces the lamp), SKY (uniform radiance 1) or DARK.
         """
 
 
 Vectors = NDArray[np.float64]
 
-# Least sine between wo and wi; below it, the light is in view or points are behind the camera.
+# Least sine of the angle between wo and wi. If the sine is smaller, the light is in view or the
+# point is behind the camera.
 LEAST_SINE = 0.08
-FARTHER = 1.001 * LEAST_SINE  # allows for rounding
-NO_SINE = 1e-6  # sine of directions that are equal up to the rounding of float32
-CORNERS = ((1.0, 0.0), (-0.5, 0.75**0.5), (-0.5, -(0.75**0.5)))  # corners of a triangle
+FARTHER = 1.001 * LEAST_SINE  # a larger sine, to allow for rounding
+NO_SINE = 1e-6  # largest sine of directions that are equal up to the rounding of float32
+CORNERS = ((1.0, 0.0), (-0.5, 0.75**0.5), (-0.5, -(0.75**0.5)))  # an equilateral triangle
 
 
 def frames(first: Vectors, other: Vectors) -> Vectors:
-    """Axes as columns, (N, 3, 3): the first vectors, perpendiculars to both, and cross products."""
+    """Frames of pairs of vectors, as matrices (N, 3, 3) whose columns are the axes.
+
+    The first axis is the first vector, the second axis is perpendicular to both vectors, and the
+    third axis is the cross product of the other axes.
+    """
     across = unit(np.cross(first, other))
     return np.stack([first, across, np.cross(first, across)], axis=-1)
 
 
 def perpendicular(vectors: Array) -> Vectors:
-    """Perpendicular unit vectors, (N, 3)."""
+    """Unit vectors that are perpendicular to the given vectors, (N, 3)."""
     axes = np.where(np.abs(vectors[:, 1:2]) < 0.9, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]])
     return unit(np.cross(vectors, axes))
 
@@ -98,14 +105,15 @@ def visible(wo: Array, wi: Array) -> NDArray[np.bool_]:
 
 
 def apart(wo: Array, wi: Array) -> Array:
-    """Lights turned away from the view, or from its opposite, until the pairs are visible."""
-    # Component of the light perpendicular to the view; any perpendicular if it is 0.
+    """Directions of light, turned until the angle to the view or its opposite is large enough."""
+    # Component of the light's direction perpendicular to the view. If this component is 0, any
+    # perpendicular vector is used.
     cosine = (wo * wi).sum(axis=1, keepdims=True)
     across = wi - cosine * wo
     sine = np.linalg.norm(across, axis=1, keepdims=True)
     across = np.where(sine > NO_SINE, across, perpendicular(wo))
     along = np.sign(cosine) * np.sqrt(1.0 - FARTHER**2)
-    moved = unit(along * wo + FARTHER * unit(across))  # wo only has unit length up to rounding
+    moved = unit(along * wo + FARTHER * unit(across))  # the length of wo is 1 only up to rounding
     return np.where(visible(wo, wi)[:, np.newaxis], wi, moved)
 
 
@@ -114,9 +122,9 @@ def unit(vectors: Vectors) -> Vectors:
 
 
 PIXEL = 2.0**-5  # width of a pixel
-JITTER = 0.5 * 0.01 * 2.0**0.5  # distance of a sample from the middle of its pixel, in pixels
-DISTANCE = 256.0  # horizontal distance of the light from the middle of the picture
-TRIANGLE = 0.4 * PIXEL  # distance of a triangle's corners from the middle of the pixel
+JITTER = 0.5 * 0.01 * 2.0**0.5  # maximum distance of a sample from a pixel's center, in pixels
+DISTANCE = 256.0  # horizontal distance of the light from the center of the picture
+TRIANGLE = 0.4 * PIXEL  # distance of a triangle's corners from the center of the pixel
 HEIGHT = 16.0 * DISTANCE  # height of the camera; the highest point is at 12.5 DISTANCE
 VIEW = np.array([0.0, 0.0, 1.0])
 
@@ -126,7 +134,7 @@ class TurnedPairs:
     turn: Vectors  # rotations from the pairs' frames to the scene's, (N, 3, 3)
 
     def turned(self, vectors: Array) -> Vectors:
-        """Vectors (N or 1, 3) of the pairs' frames in the scene's frame."""
+        """Vectors (N or 1, 3), rotated from the frames of the pairs to the frame of the scene."""
         each = np.broadcast_to(np.asarray(vectors, np.float64), (len(self.turn), 3))
         return np.asarray((self.turn @ each[:, :, np.newaxis])[:, :, 0])
 
@@ -139,29 +147,29 @@ class TiltedTriangles(TurnedPairs):
 
     @property
     def place(self) -> str:
-        """OSL expressions of a point's coordinates in an image."""
+        """OSL expressions of the two image coordinates of a point."""
         return f"0.5 + P[0] / {self.width:.9g}, 0.5 - P[1] / {self.width:.9g}"
 
 
 def tilted_triangles(wo: Array, wi: Array, size: int) -> TiltedTriangles:
-    """Triangles that show pairs (N, 3), N <= size^2, with a sine of at least LEAST_SINE.
+    """Triangles that show N <= size^2 pairs of directions, with sines of at least LEAST_SINE.
 
-    The camera looks down from far away with parallel rays, and a point light is to the side of the
-    picture. The depth of a triangle along its pixel's ray sets the angle between view and light.
-    Geometric and shaded normal are equal.
+    The camera looks down from far away with parallel rays, and a point light is beside the picture.
+    The depth of a triangle along the ray of a pixel sets the angle between view and light. The
+    geometric normal and the shading normal are equal.
     """
-    # Points that see the light at the required angle.
+    # Points at which the angle between view and light is as required.
     wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
     axis = PIXEL * (np.arange(size) + 0.5 - size / 2.0)
     x, y = (each.ravel()[: len(wo)] for each in np.meshgrid(axis, -axis))
     cotangent = (wo * wi).sum(axis=1) / np.linalg.norm(np.cross(wo, wi), axis=1)
     z = -np.hypot(DISTANCE + x, y) * cotangent
     points = np.stack([x, y, z], axis=1).astype(np.float32).astype(np.float64)
-    # Frames of both pairs, with the view as their first axis.
+    # Frames of the given pairs, and frames of view and light in the scene. The view is first.
     light = np.array([-DISTANCE, 0.0, 0.0]) - points
     world = frames(np.broadcast_to(VIEW, points.shape), unit(light))
     turn = world @ np.swapaxes(frames(wo, wi), 1, 2)
-    # Corners in the plane perpendicular to the shaded normal.
+    # Corners in the plane perpendicular to the shading normal.
     normal = turn[:, :, 2]
     offsets = TRIANGLE * np.array(CORNERS)
     depth = -(normal[:, :2] @ offsets.T) / normal[:, 2:]

@@ -1,32 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// A path tracer for the generated code of a material: one path per pixel and pass, on the sphere or
-// the shader ball. World frame: x right, y up, z towards the viewer, who sees parallel rays.
+// A path tracer for a sphere or the shader ball with the generated code of a material. Each pass
+// traces one path per pixel. In the world frame, x points right, y points up, and z points towards
+// the viewer. The projection is orthographic.
 
-#define TRACER_OFFSET 2e-4  // Offset of a ray's origin, so it misses its own surface.
+#define TRACER_OFFSET 2e-4  // Offset of a ray's origin, so that the ray misses the same surface.
 #define TRACER_FAR 8.0
 #define TRACER_CLOSE 1e-5
 #define TRACER_STEPS 160
 
 uniform int tracer_pass;
-uniform int tracer_bounces; // maximum scatterings of a path
+uniform int tracer_bounces; // maximum number of scattering events in a path
 uniform int tracer_size;
 uniform bool tracer_ball;
 uniform vec3 tracer_light; // direction to a distant light of irradiance pi; zero for none
 uniform sampler2D tracer_environment;
-uniform bool tracer_mapped; // the environment is a map; texels are drawn by their light
+uniform bool tracer_mapped; // whether the environment is a map with texels to draw
 uniform sampler2D tracer_drawn; // 256 x 256 texel indices, each repeated in proportion to its light
 uniform sampler2D tracer_chance; // probability of drawing each texel
-uniform mat3 tracer_foot; // rotates the picture's frame to the shader ball's foot
-uniform mat3 tracer_belt; // rotates the foot's frame to the belt's
+uniform mat3 tracer_foot; // rotation from the picture's frame to the shader ball's foot
+uniform mat3 tracer_belt; // rotation from the foot's frame to the belt of the shader ball
 
-out vec4 tracer_radiance; // rgb: radiance; a: its squared channel mean
+out vec4 tracer_radiance; // rgb: radiance; a: squared mean of the three channels
 
 vec3 tracer_random(int bounce)
 {
     return path_random(uvec4(gl_FragCoord.xy, tracer_pass, bounce)).xyz;
 }
 
-// Signed distances as in mxeon.shaders.shader_ball.
+// Signed distance to the surface, computed as in mxeon.shaders.shader_ball.
 float tracer_distance(vec3 p)
 {
     if (!tracer_ball)
@@ -42,7 +43,7 @@ float tracer_distance(vec3 p)
     return min(max(length(q) - 0.72, -groove), foot);
 }
 
-// Distance to the next surface, from outside or from inside; TRACER_FAR if there is none.
+// Distance to the next surface, from outside or inside; TRACER_FAR if the ray hits nothing.
 float tracer_hit(vec3 origin, vec3 direction)
 {
     float t = 0.0;
@@ -58,7 +59,7 @@ float tracer_hit(vec3 origin, vec3 direction)
     return TRACER_FAR;
 }
 
-// Outward normal, by a tetrahedron of distances.
+// Outward normal, computed from the distances at the corners of a small tetrahedron.
 vec3 tracer_normal(vec3 p)
 {
     if (!tracer_ball)
@@ -92,7 +93,7 @@ vec3 tracer_sky(vec3 direction)
     return textureLod(tracer_environment, tracer_latlong(direction), 0.0).rgb;
 }
 
-// Density of tracer_towards at a direction, in 1/sr.
+// Probability density with which tracer_towards draws a direction, in 1/sr.
 float tracer_sky_pdf(vec3 direction)
 {
     vec2 size = vec2(textureSize(tracer_chance, 0));
@@ -101,7 +102,7 @@ float tracer_sky_pdf(vec3 direction)
     return tracer_mapped ? chance / area : 0.0;
 }
 
-// Draws a direction towards a texel.
+// Draws a texel of the environment, and a direction towards the texel.
 vec3 tracer_towards(vec3 u)
 {
     int k = int(u.x * 65536.0);
@@ -118,9 +119,9 @@ bool tracer_is_shadowed(vec3 position, vec3 normal, vec3 wi)
     return tracer_hit(position + TRACER_OFFSET * sign(dot(wi, normal)) * normal, wi) < TRACER_FAR;
 }
 
-// Light of the distant light and the environment that the point scatters along wo. Directions drawn
-// from the material also reach the environment, so the balance heuristic weights each technique:
-// [Veach1995].
+// Light that a point scatters towards wo, from the distant light and from the environment. Paths
+// also reach the environment in directions drawn from the material, so the balance heuristic
+// [Veach1995] weights the two techniques.
 vec3 tracer_lit(Point p, vec3 normal, vec3 wo, vec3 u)
 {
     vec3 lit = vec3(0.0);
@@ -139,7 +140,7 @@ vec3 tracer_lit(Point p, vec3 normal, vec3 wo, vec3 u)
 
 void main()
 {
-    // Pictures of the sphere are compared at the centers of pixels.
+    // Rays to the sphere go through the centers of pixels, where pictures are compared.
     vec2 within = tracer_ball ? tracer_random(-1 - tracer_bounces - 1).xy : vec2(0.5);
     vec2 at = (2.0 * (gl_FragCoord.xy - 0.5 + within) - float(tracer_size)) / float(tracer_size);
     vec3 origin = vec3(at, 2.0);
@@ -152,7 +153,7 @@ void main()
         float t = tracer_hit(origin, direction);
         if (t >= TRACER_FAR)
         {
-            // Camera rays that miss: the sky is added in compositing.
+            // A camera ray that hits nothing stays black, because compositing adds the sky.
             float drawn = bounce == 0 ? 0.0 : pdf > 0.0 ? pdf / (pdf + tracer_sky_pdf(direction)) : 1.0;
             radiance += throughput * tracer_sky(direction) * drawn;
             break;

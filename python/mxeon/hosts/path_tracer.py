@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Path-traced pictures on OpenGL: text of the profile "path" inside `path_tracer.glsl`."""
+"""Path tracing on OpenGL with `path_tracer.glsl` and generated text of the profile "path"."""
 
 import warnings
 from importlib.util import find_spec
@@ -17,14 +17,14 @@ from mxeon.shaders.methods import UNCHOSEN
 from mxeon.shaders.scene import SHAPES, Scene
 from mxeon.shaders.shader_ball import BELT, OBJECT
 
-SAMPLES, BOUNCES = 64, 8  # default paths per pixel and bounces per path
-NOISY = 0.02  # share of the light; larger noise is reported with a remedy
-# Paths have no derivatives, which `texture` would need.
+SAMPLES, BOUNCES = 64, 8  # default numbers of paths per pixel and bounces per path
+NOISY = 0.02  # relative noise above which a picture is denoised or a remedy is reported
+# Along a path, the derivatives that `texture` needs are unknown. Macros read level 0 instead.
 HEAD = "#version 430\n#define texture(map, at) textureLod(map, at, 0.0)\n"
 
 
 def by_light(sky: Array) -> tuple[Array, Array]:
-    """256 x 256 texel indices, repeated in proportion to light, and each texel's probability."""
+    """256 x 256 indices of texels, repeated in proportion to light, and all probabilities."""
     rows, columns, _ = sky.shape
     across = np.sin(np.pi * (np.arange(rows) + 0.5) / rows)[:, np.newaxis]
     share = np.cumsum(sky.mean(axis=-1) * across + 1e-6)
@@ -38,7 +38,7 @@ class NoiseNote(UserWarning):
 
 
 class PathTracerHost(gl.GlHost):
-    """A path tracer on OpenGL; a picture reports its noise as a NoiseNote."""
+    """A path tracer on OpenGL, which reports the noise of a picture as a NoiseNote."""
 
     name = "path"
     profile: ClassVar[str | None] = "path"
@@ -73,7 +73,7 @@ class PathTracerHost(gl.GlHost):
         note = f"{shader.element}: noise of {100.0 * noise:.2g} % of the light"
         image = np.ascontiguousarray(mean[..., :3])
         if noise > NOISY and scene.paths.samples is None and find_spec("pyoidn"):
-            import pyoidn  # the `render` extra; takes a while to load
+            import pyoidn  # part of the `render` extra; the import is slow
 
             image = pyoidn.denoise(image, hdr=True)
             note += ", removed by Open Image Denoise; --samples N keeps it"

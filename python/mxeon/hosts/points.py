@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures in which every pixel is an exact point: the vertex stage runs once for each point.
+"""Pictures in which every pixel is an exact point, because a vertex stage runs for each point.
 
 A mesh that is exact at each pixel needs two triangles per pixel, and drivers shade whole blocks of
 pixels for each triangle. Instead, a host runs a generated vertex stage for points and captures its
 outputs. The outputs reach the pixel stage in the layers of a texture, one texel per pixel, and one
 triangle covers the picture. Derivatives are differences between neighboring pixels, as usual.
 
-The text of each stage is unchanged: macros turn the inputs of the pixel stage into variables, and
-a second `main` fills these variables before it calls the generated `main`.
+The text of each stage is unchanged. Macros turn the inputs of the pixel stage into variables, and
+a second `main` sets these variables before calling the generated `main`.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import SHAPES, VisiblePoints, pixel_centers, sphere_at, tangents
 from mxeon.shaders.shader_ball import shader_ball_at
 
-MARGIN = 1  # points beyond each edge, for derivatives at the edges
+MARGIN = 1  # number of points beyond each edge, for derivatives at the edges
 SAMPLER = "mxeon_points"
-ALPHA = "mxeon_alpha"  # uniform: whether a pixel shows its alpha
+ALPHA = "mxeon_alpha"  # uniform that makes pixels show alpha instead of color
 
-# Macros that turn a text's inputs into variables. In GLSL, inputs are in a block.
+# Macros that turn the inputs of a pixel stage into variables. In GLSL, the inputs form a block.
 VARIABLES = {
     "glsl": "#define VertexData mxeon_Inputs { float mxeon_unused; } mxeon_inputs; struct VertexData\n",
     "essl": "#define in\n",
@@ -42,12 +42,12 @@ FORMATS = {"float": "f4", "vec2": "2f4", "vec3": "3f4", "vec4": "4f4", "int": "i
 @dataclass(frozen=True)
 class Output:
     kind: str  # GLSL type
-    name: str  # name in the vertex stage, for the capture
+    name: str  # name in the vertex stage, which identifies the output to capture
     variable: str  # name in the pixel stage
 
 
 def outputs(shader: Shader) -> tuple[Output, ...]:
-    """Outputs of a generated vertex stage, as its pixel stage declares them."""
+    """Outputs of a generated vertex stage, according to the declarations of the pixel stage."""
     text = shader.stages["pixel"]
     if shader.target == "essl":
         found = re.findall(r"^(?:flat )?in (\w+) (\w+);", text, re.MULTILINE)
@@ -61,7 +61,7 @@ def outputs(shader: Shader) -> tuple[Output, ...]:
 
 
 def pixel_stage(shader: Shader) -> str:
-    """Pixel stage that reads the outputs of the vertex stage from the texture."""
+    """Pixel stage that reads the outputs of the vertex stage from a texture."""
     version, text = shader.stages["pixel"].split("\n", 1)
     reads = [
         f"    {each.variable} = {each.kind}(texelFetch({SAMPLER}, ivec3(pixel, {layer}), 0));\n"
@@ -78,7 +78,7 @@ def pixel_stage(shader: Shader) -> str:
 
 @lru_cache(maxsize=4)
 def visible(size: int, shape: str, margin: int = 0) -> VisiblePoints:
-    """Visible points of a shape of `mxeon.shaders.scene.Scene` under the pixel centers."""
+    """Visible points of a shape at the pixels; see `mxeon.shaders.scene.Scene` for shapes."""
     return visible_at(*pixel_centers(size, margin), shape)
 
 
@@ -90,7 +90,7 @@ def visible_at(x: Floats, y: Floats, shape: str) -> VisiblePoints:
 
 
 def vertices(points: VisiblePoints) -> dict[str, NDArray[np.float32]]:
-    """Vertex attributes of a frame's points, row by row, row 0 at the top."""
+    """Vertex attributes of the points of a frame, row by row from the top."""
     flat = points.normal.reshape(-1, 3)
     attributes = {
         "i_position": points.position.reshape(-1, 3),
@@ -102,7 +102,7 @@ def vertices(points: VisiblePoints) -> dict[str, NDArray[np.float32]]:
 
 
 def frame(points: VisiblePoints) -> tuple[int, int]:
-    """Width and height of a frame of points, including its margin."""
+    """Width and height of a frame of points, not including the margin."""
     height, width = points.mask.shape
     return width - 2 * MARGIN, height - 2 * MARGIN
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A renderer's own process, which answers requests in sequence.
+"""A separate process for a renderer, which answers requests in sequence.
 
-The process runs `serve.py` with a script of the host: it writes a JSON object with its version to
-standard output, then reads requests from standard input and answers them, one JSON object per line.
-The process ends when standard input ends.
+The process runs `serve.py` with a script of the host. The process first writes a JSON object with
+the renderer's version to standard output. Then the process reads requests from standard input and
+writes replies, one JSON object per line, until standard input ends.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ SERVE = Path(__file__).with_name("serve.py")
 class Worker:
     """The process of a script, started by the first request and again after a crash.
 
-    Whatever the renderer prints goes to the file `log` in `folder`, which is deleted at the end. A
-    request that takes more than `limit` seconds kills the process. `version` and `device` come from
-    the first message of the process.
+    Output of the renderer is written to the file `log` in `folder`. The folder is deleted at the
+    end. The process is killed if a request takes more than `limit` seconds. `version` and `device`
+    come from the first message of the process.
     """
 
     limit = 300.0
@@ -51,7 +51,7 @@ class Worker:
         return self._process.pid if self._process and self._process.poll() is None else None
 
     def start(self) -> None:
-        """Start the process unless it runs, and wait for its version."""
+        """Start the process unless it is running already, and wait for the renderer's version."""
         if self.pid is not None:
             return
         self._end()
@@ -64,7 +64,7 @@ class Worker:
                 stderr=log,
                 text=True,
                 errors="replace",
-                env=os.environ | {"TMPDIR": str(self.folder)},  # Blender leaves files behind
+                env=os.environ | {"TMPDIR": str(self.folder)},  # Blender leaves temporary files
             )
         greeting = self._reply()
         if "error" in greeting:
@@ -73,7 +73,10 @@ class Worker:
         self.version, self.device = greeting["version"], greeting.get("device", "")
 
     def ask(self, **request: object) -> Reply:
-        """The reply to a request; NotRun, with the last printed lines, if the process ends or hangs."""
+        """The reply to a request.
+
+        Raises NotRun, with the last lines of output, if the process ends or hangs.
+        """
         self.start()
         self._read = self.log.stat().st_size
         assert self._process
@@ -91,7 +94,7 @@ class Worker:
         if line.endswith("}\n"):
             reply: Reply = json.loads(line)
             return reply
-        if line:  # an incomplete reply: the process is ending
+        if line:  # the reply is incomplete because the process is ending
             self._process.kill()
         status = self._process.wait()
         if time.monotonic() - begin >= self.limit:
@@ -109,7 +112,7 @@ class Worker:
         return [line for each in text.splitlines() if (line := each.strip())]
 
     def temporary(self) -> TemporaryDirectory[str]:
-        """A new folder below `folder`."""
+        """A new temporary folder inside `folder`."""
         return TemporaryDirectory(dir=self.folder)
 
     def close(self) -> None:

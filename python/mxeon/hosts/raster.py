@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames that a rasterizing host draws: uniforms, textures, and one triangle over all pixels."""
+"""Frames that a rasterizing host draws with uniforms, textures, and a triangle over all pixels."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ Uniforms: TypeAlias = dict[str, Plain]  # values by name
 
 Rectangle: TypeAlias = tuple[int, int, int, int]  # left, lowest row, width, height
 
-BAND = 4  # rows of a picture in a rectangle, as wide as the shape
-ALPHA_THRESHOLD = 1e-3  # MaterialX's text discards pixels with a smaller alpha
+BAND = 4  # number of rows in each of the rectangles that cover a shape
+ALPHA_THRESHOLD = 1e-3  # generated text discards pixels with a smaller alpha
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
-# A white environment. With a single texel, it would have no mipmaps, and Mesa would compile
+# Texels of a white environment. A single texel would have no mipmaps, and Mesa would compile
 # programs again for other environments.
 WHITE_TEXELS = np.ones((2, 2, 3), dtype=np.float32)
 
-# Directions over which microfacets sum their environment: docs/hosts.md has the error and cost of
-# each number. Only the first mipmap of the environment is read.
+# Number of directions in the sum of a microfacet lobe over the environment. The table in
+# docs/hosts.md shows errors and costs of such numbers. Only the environment's first mipmap is read.
 EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
 PICTURE_DIRECTIONS = 256
-DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # one direction: sums are 0
+DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # one direction, because the sums are 0
 TRIANGLE = {  # attributes of a triangle's three vertices
     "i_position": np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4"),
     "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
@@ -53,14 +53,14 @@ INNER_APPROXIMATIONS = {
 
 
 def approximations(shader: Shader) -> tuple[str, ...]:
-    """Approximations of a shader's lobes below the surface in generated GLSL."""
+    """Descriptions of how generated GLSL approximates a shader's lobes below the surface."""
     return tuple(INNER_APPROXIMATIONS[kind] for kind in inner_lobes(shader))
 
 
 def textures(shader: Shader, scene: Scene) -> dict[str, Array]:
-    """Texels by sampler: images of a shader's document and the environment, row 0 at v = 0.
+    """Texels by sampler for the images of a shader's document and for the environment.
 
-    Samplers of the same file share an array.
+    Row 0 of an array is at v = 0. Samplers of the same file share an array.
     """
     client, radiance = scene.client, read_latlong(scene.environment)
     return images(shader) | {
@@ -82,7 +82,7 @@ def images(shader: Shader) -> dict[str, Array]:
 
 
 def environment(irradiance: Array | None) -> dict[str, Array]:
-    """Texels of the environment of an evaluation; see `mxeon.hosts.base.Host.evaluate`."""
+    """Texels, by sampler, of the environment in `mxeon.hosts.base.Host.evaluate`."""
     return dict.fromkeys(
         ("u_envRadiance", "u_envIrradiance"), WHITE_TEXELS if irradiance is None else irradiance
     )
@@ -91,8 +91,8 @@ def environment(irradiance: Array | None) -> dict[str, Array]:
 def inputs(shader: Shader) -> Uniforms:
     """Values of the uniforms for a shader's inputs, except images.
 
-    A matrix is a flat tuple whose rows are the columns of the uniform. Members of structures are
-    separate uniforms.
+    A matrix is a flat tuple, in which a row of the input is a column of the uniform. Each member of
+    a structure is a separate uniform.
     """
     return {
         name: value
@@ -102,7 +102,7 @@ def inputs(shader: Shader) -> Uniforms:
 
 
 def light(scene: Scene, directions: int = PICTURE_DIRECTIONS) -> Uniforms:
-    """Values of the uniforms of the viewer, all lights and other bindings of a client."""
+    """Values of the uniforms for the viewer, all lights, and other settings of the client."""
     client = scene.client
     values: Uniforms = {
         **surroundings(client),
@@ -115,13 +115,13 @@ def light(scene: Scene, directions: int = PICTURE_DIRECTIONS) -> Uniforms:
     values |= DARK
     if scene.environment is not None or client.radiance is not None:
         values["u_envRadianceSamples"] = directions
-    if isinstance(scene.environment, Path):  # filtered, so that 256 samples leave no pattern
+    if isinstance(scene.environment, Path):  # mipmaps keep 256 samples from leaving a pattern
         values["u_envRadianceMips"] = int(np.log2(max(read_latlong(scene.environment).shape))) + 1
     lamps = client.lamps
     if scene.light is not None:
         x, y, z = scene.light
         lamps = (Lamp(direction=(-x, -y, -z)), *lamps)
-    values["u_numActiveLightSources"] = len(lamps)  # set even if 0: a program keeps the last value
+    values["u_numActiveLightSources"] = len(lamps)  # a program would keep the last value
     for number, lamp in enumerate(lamps):
         for name, value in vars(lamp).items():
             values[f"u_lightData[{number}].{name}"] = value
@@ -129,7 +129,7 @@ def light(scene: Scene, directions: int = PICTURE_DIRECTIONS) -> Uniforms:
 
 
 def surroundings(client: Client) -> Uniforms:
-    """Values of the uniforms of an environment."""
+    """Values of the uniforms for the client's use of an environment."""
     return {
         "u_envMatrix": client.turn,
         "u_envLightIntensity": client.intensity,
@@ -139,9 +139,9 @@ def surroundings(client: Client) -> Uniforms:
 
 @lru_cache(maxsize=8)
 def bands(size: int, shape: str) -> tuple[Rectangle, ...]:
-    """Rectangles that cover a shape in a frame whose row 0 is at the bottom; the rest stays empty.
+    """Rectangles that cover a shape in a frame whose row 0 is at the bottom.
 
-    Their edges are multiples of BAND, so that neighbors in a 2 x 2 square are drawn together.
+    The edges of rectangles are multiples of BAND, so that blocks of 2 x 2 pixels stay whole.
     """
     mask = visible(size, shape).mask[::-1]
     parts = []
@@ -153,7 +153,7 @@ def bands(size: int, shape: str) -> tuple[Rectangle, ...]:
     return tuple(parts)
 
 
-# Uniforms of an evaluation, as in a frame with two lights in the middle of an animation.
+# Uniforms of an evaluation, which describe a frame of an animation with two lights.
 FRAME_UNIFORMS = (
     light(SIDE)
     | {"u_numActiveLightSources": 2, "u_frame": 24.0, "u_time": 1.0, TABLE + "Size": TABLE_SIZE}
@@ -162,7 +162,7 @@ FRAME_UNIFORMS = (
 
 
 class Frame(NamedTuple):
-    """Both stages of a program and their data: rows of arguments, texels, and uniforms."""
+    """The two stages of a program, with rows of arguments, texels and uniforms."""
 
     vertex: str
     pixel: str
@@ -191,9 +191,9 @@ class FragmentHost(base.Host):
         parts: Sequence[Rectangle] = (),
         directions: int = PICTURE_DIRECTIONS,
     ) -> Array:
-        """Radiance at points with a margin, (height, width, 3), row 0 at the top.
+        """Radiance at visible points, (height, width, 3), row 0 at the top.
 
-        Pixels outside `parts` may be left black.
+        `seen` includes a margin, and the result does not. Pixels outside `parts` may stay black.
         """
         bound = textures(shader, scene) | self.table(shader)
         return self._shade(shader, seen, bound, inputs(shader) | light(scene, directions), parts)
@@ -227,15 +227,15 @@ class FragmentHost(base.Host):
         return self.drawn(*fragment.function_evaluation(source, function, arguments, self.target))
 
     def drawn(self, pixel: str, texels: Mapping[str, Array]) -> Array:
-        """Values of a pixel stage that reads no vertex outputs, one pixel per row of its texels."""
+        """Values of a pixel stage without vertex outputs, one value for each row of `texels`."""
         vertex = fragment.DIALECTS[self.target].vertex
         return self._in_parts(Frame(vertex, pixel, texels, environment(None)))
 
     def _in_parts(self, frame: Frame) -> Array:
-        """Values of a pixel stage for any number of elements; engines limit textures."""
+        """Values of a pixel stage for any number of elements, although engines limit textures."""
         frames = (frame._replace(arguments=part) for part in fragment.parts(frame.arguments))
         return np.concatenate(list(map(self._evaluate, frames)))
 
     @abstractmethod
     def _evaluate(self, frame: Frame) -> Array:
-        """Values of a pixel stage, one pixel per element, as many as the longest argument has."""
+        """Values of a pixel stage, one for each element of the longest argument."""

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The program that `mxeon.hosts.process` runs in a renderer's Python; imports nothing of mxeon.
+"""The program that `mxeon.hosts.process` runs in a renderer's Python, where mxeon may be absent.
 
-The first argument is a script with a function `start`, which takes the other arguments and returns
-the greeting, a function that answers a request, and the exceptions to report as `{"error": ...}`.
-The script may end with a reason: `sys.exit("no display")`. Whatever a renderer prints to standard
-output goes to standard error.
+The first argument is a script with a function `start`. This function takes the other arguments, and
+returns the greeting, a function that answers a request, and the exceptions to report as
+`{"error": ...}`. A script that cannot start exits with a reason, as in `sys.exit("no display")`.
+Standard output of a renderer is redirected to standard error.
 """
 
 import json
