@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compares pictures of documents' materials with the reference, and draws samples of nodes."""
+"""Compare pictures of documents' materials with reference pictures, and draw samples of nodes."""
 
 import warnings
 from collections.abc import Callable, Iterable, Sequence
@@ -59,10 +59,10 @@ from mxeon.shaders.scene import BACK, SIDE, STUDIO, Scene, sphere
 FITTED_NODES = {row.category for row in PBR_NODES if row.fitted or row.mirror}
 HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
 
-# Errors are weighted by cos(theta_o), since the normal changes by 1 / cos(theta_o) per pixel.
+# Errors are weighted by cos(theta_o), because the normal changes by 1 / cos(theta_o) per pixel.
 POINT_AND_VALUE = roundings(16, "of a pixel's point"), roundings(32, "in the value")
 PLAIN = sum_in(Quantity.PICTURE, *POINT_AND_VALUE, exact=True)
-# OpenGL requires this filtering precision; neighboring texels differ by at most 1.
+# OpenGL requires weights of 8 bits in image filters. Neighboring texels differ by 1 at most.
 TEXTURED = single(2.0**-8, Quantity.PICTURE, "a filter's weights of 8 bits")
 CODES = f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
 ENCODED = single(SLOPE * TEXTURED.value, Quantity.PICTURE, CODES)
@@ -76,14 +76,15 @@ FITTED, SHADED = (
 
 
 def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host, scene: Scene) -> Tolerance:
-    """Tolerance of a material's picture: errors of fits or image filters, and of special lobes.
+    """The tolerance of a material's picture.
 
-    Hosts filter an image before they decode its colors.
+    The terms are errors of fits, of image filters, and of some lobes. Hosts filter an image before
+    the colors of the image are decoded.
     """
     nodes, lobes = list(inner_nodes(shader.document)), tuple(lobes)
     fitted = FITTED_NODES & {lobe.category for lobe in lobes}
     modes = {lobe.inputs.get("mode") for lobe in lobes if lobe.category == SHEEN}
-    zeltner = fitted == {SHEEN} and modes == {"zeltner"}  # this albedo has a closed form
+    zeltner = fitted == {SHEEN} and modes == {"zeltner"}  # Zeltner's albedo has a closed form
     if not zeltner and categories(shader.document.traverseTree()) & FITTED_NODES:
         tolerance = FITTED
     elif not zeltner and categories(nodes) & FITTED_NODES:
@@ -111,11 +112,11 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host, scene: 
 
 
 def _lobe_terms(lobes: tuple[ShownLobe, ...], direct: bool) -> list[Term]:
-    """Additional errors due to a film, an index below 1, and narrow lobes of hair and sheen."""
+    """Additional errors due to a film, an IOR below 1, and narrow lobes of hair and sheen."""
     terms: list[Term] = []
     inputs = [each.inputs for each in lobes]
     films = [each for each in inputs if np.any(each.get("thinfilm_thickness", 0.0) > 0.0)]
-    # In direct light, a film's albedo only affects the light that the film passes to other lobes.
+    # In direct light, the albedo of a film only affects light that the film passes to other lobes.
     if films and direct:
         terms += microfacets.film_terms(max(np.max(each["roughness"]) for each in films))
     if films and not (direct and {each.category for each in lobes} == {"conductor_bsdf"}):
@@ -147,11 +148,11 @@ def _stretched(lobes: Iterable[ShownLobe]) -> bool:
 
 
 Pixels: TypeAlias = NDArray[np.floating]
-Note: TypeAlias = tuple[str, str]  # a warning, and its subject
+Note: TypeAlias = tuple[str, str]  # a warning and the subject of the warning
 
 
 class Shown(NamedTuple):
-    """A host's picture of a scene, with its reference and tolerance."""
+    """A host's picture of a scene, with a reference and a tolerance."""
 
     scene: Scene
     image: Pixels
@@ -166,7 +167,7 @@ ONLY_FINITE = "picture is shown and only has to be finite"
 def _read(
     make: Callable[[], tuple[Shader, ...]],
 ) -> tuple[tuple[Shader, ...], dict[str, str], list[CodeWarning | notes.DocumentWarning]]:
-    """Shaders of a document, their approximations by element, and other notes for readers."""
+    """Shaders of a document, approximations by element, and other notes for readers."""
     with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
         warnings.simplefilter("error", notes.MissingFileWarning)
@@ -181,9 +182,9 @@ def _read(
 def judge_document(
     file: Path, host: Host, judge: Reference, library: str, policy: Policy = DEFAULT
 ) -> tuple[tuple[Result, ...], tuple[Picture, ...], tuple[Note, ...]]:
-    """Compare a host's pictures of every material of a document with the reference.
+    """Compare a host's pictures of all materials of a document with reference pictures.
 
-    Raise DocumentError if no shader can be made from the document.
+    Raise DocumentError if no shader can be generated from the document.
     """
     make = partial(host.compile, file, library=library, policy=policy)
     shaders, approximations, document_notes = _read(make)
@@ -196,14 +197,14 @@ def judge_document(
         found.append(result)
         pictures += images
     reported = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
-    # Reasons why pictures cannot be correct, without duplicates.
+    # Add the reasons why pictures cannot be correct, without duplicates.
     reported += dict.fromkeys(
         (text, f"{file.name}: {shader.element}")
         for shader in shaders
         for scene in _scenes(host)
         for text in host.approximations(shader, scene)
     )
-    # Omit range warnings if results already name the inputs.
+    # Omit warnings about ranges if results already name the inputs.
     named = any(each.diagnosis.kind is Kind.INPUT for each in found)
     for note in document_notes:
         if not (named and isinstance(note, notes.RangeWarning)):
@@ -212,7 +213,7 @@ def judge_document(
 
 
 def _scenes(host: Host) -> tuple[Scene, ...]:
-    """Scenes of a host, without environments if the host's lighting methods have none."""
+    """The scenes of a host, without environments if the host's lighting methods have none."""
     scenes = host_row(host.name).scenes
     if host.active.environment == "none":
         scenes = tuple(each for each in scenes if each.environment is None)
@@ -222,7 +223,7 @@ def _scenes(host: Host) -> tuple[Scene, ...]:
 def _judge_material(
     file: Path, shader: Shader, host: Host, judge: Reference, values: HostValues, front_lit: bool
 ) -> tuple[Result, tuple[Picture, ...]]:
-    """Judge one material; if `front_lit`, the host supports its model only for s >= 0."""
+    """Judge one material. If `front_lit`, only points with s >= 0 are judged."""
     scenes, library = _scenes(host), values.library
     subject = f"{file.name}: {shader.element}"
     place = Result("picture", MATCH, subject, host.name, library, results.NOT_RUN)
@@ -252,12 +253,13 @@ def _judge_material(
         where = mask[..., None].astype(np.float32) if partly else None
         return Picture(*names, image, reference, metadata, where)
 
-    # Compare with the reference; pictures of materials without a model only have to be finite.
+    # Compare pictures with the reference. If the models do not cover a material, its pixels only
+    # have to be finite.
     try:
         if reason := host.unread(shader):
             raise NotRun(f"{host.name}: {reason}: the {ONLY_FINITE}")
         closures = sorted(categories(inner_nodes(shader.document)) & set(BSDF_NODES))
-        if closures and host.language == "osl":  # closures have separate checks
+        if closures and host.language == "osl":  # separate checks cover closures
             names = ", ".join(closures)
             raise NotRun(f"{host.name} has its own closures for {names}: their {ONLY_FINITE}")
         expected = [judge.expected(shader, scene, values) for scene in scenes]
@@ -268,7 +270,7 @@ def _judge_material(
     except NotRun as error:
         return _judge_finite(place, images, str(error)), tuple(map(picture, scenes, images))
     lobes = [lobe for each in expected for lobe in each.lobes]
-    # A prefiltered environment supports only one alpha.
+    # A prefiltered environment supports a single alpha only.
     one_alpha = host.active.environment == "prefilter" and _stretched(lobes)
     pictures, cases = [], []
     for scene, image, reference in zip(scenes, images, expected, strict=True):
@@ -301,10 +303,11 @@ def _judge_material(
 def _input_at_fault(
     shader: Shader, host: Host, judge: Reference, scenes: Sequence[Scene]
 ) -> Diagnosis:
-    """The input whose removal brings a renderer's own material closest to the reference."""
+    """The input without which a renderer's own material is nearest to the reference."""
     small = [replace(scene, size=64) for scene in scenes]
     names = [each.getName() for each in surface_shader(shader.document, shader.element).getInputs()]
-    errors: dict[str, float] = {}  # the largest difference without each input; "" removes none
+    # Largest difference for each removed input. The name "" removes no input.
+    errors: dict[str, float] = {}
     for name in ("", *names):
         document = mx.createDocument()
         document.copyContentFrom(shader.document)
@@ -321,7 +324,7 @@ def _input_at_fault(
 
 
 def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Result:
-    """Result for a material that the models do not cover: its pixels must be finite."""
+    """The result for a material that the models do not cover. All pixels must be finite."""
 
     def measure(wrong: bool) -> Measurement:
         judged = [np.where(np.arange(3) == 0, np.nan, images[0])] if wrong else images
@@ -337,9 +340,10 @@ def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Resul
 def _judge_match(
     place: Result, cases: Sequence[Shown], diagnose: Callable[[], Diagnosis]
 ) -> Result:
-    """Result for a material that the models cover: its pixels must match the reference.
+    """The result for a material that the models cover. All pixels must match the reference.
 
-    Error and tolerance are from the picture with the largest error relative to its tolerance.
+    The error and the tolerance are those of the picture whose ratio of error to tolerance is
+    largest.
     """
     errors = [_errors(case) for case in cases]
     allowed = [case.tolerance.value for case in cases]
@@ -400,13 +404,13 @@ def _front_lit(expected: ExpectedPicture, scene: Scene) -> ExpectedPicture:
 
 
 STUDIO_PICTURE = replace(STUDIO, size=320)
-STUDIED = 4  # maximum number of materials drawn per document
+STUDIED = 4  # maximum number of materials per document with a studio picture
 
 
 def studio_pictures(
     file: Path, host: Host, library: str, policy: Policy = DEFAULT
 ) -> tuple[Picture, ...]:
-    """Presentation pictures of a document's first materials: a shader ball in a studio."""
+    """Presentation pictures of the first materials of a document, on a shader ball in a studio."""
     shaders, _, _ = _read(lambda: host.compile(file, library=library, policy=policy))
     metadata = {"version": mxeon.__version__, "document": str(file), "scene": STUDIO.name}
     pictures = []
@@ -425,10 +429,10 @@ DOCUMENT_CLAIM = "Shaders are generated from every material of the document."
 def generate_document(
     file: Path, host: str, library: str, policy: Policy = DEFAULT
 ) -> tuple[tuple[Result, ...], tuple[Note, ...]]:
-    """Result of generating a document's shaders for a host's target, and notes with their location.
+    """The result of generating a document's shaders for a host's target, and notes about files.
 
-    Raise DocumentError if no shader can be made from the document; NotRun if the host reads no
-    documents, or this MaterialX has no generator for its target.
+    Raise DocumentError if no shader can be generated from the document. Raise NotRun if the host
+    reads no documents, or if this MaterialX has no generator for the target.
     """
     target = host_row(host).target
     if not target:
@@ -460,10 +464,11 @@ PORTRAIT_SCENES = tuple(replace(scene, size=96) for scene in (SIDE, BACK))
 
 
 def comparison_pictures(case: Case) -> tuple[Picture, ...]:
-    """Pictures of a rough diffuse node in light from the side and from behind, and of its model.
+    """Pictures of a rough diffuse node in light from the side and from behind, with references.
 
-    Empty for other nodes, for a surface shader's lobe, and for renderers in which each pixel shows
-    one pair of directions. Rim and terminator are black in the pictures of the node and the model.
+    There are no pictures of other nodes, of a surface shader's lobe, and on renderers in which each
+    pixel shows one pair of directions. Pixels near the rim and the terminator are black in all
+    pictures.
     """
     rough = isinstance(case.spec, DiffuseModelSpec) and not isinstance(case.spec, SurfaceLobe)
     if not rough or isinstance(case.backend, backends.Rendered):
@@ -481,6 +486,6 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
         names = (results.PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)
         keys = ("document", "element", "host", "library", "scene")
         metadata = dict(zip(keys, names, strict=True)) | {"version": mxeon.__version__}
-        metadata |= {"points": case.host.name}  # a host may implement only part of the model
+        metadata |= {"points": case.host.name}  # a host may implement only a part of the model
         pictures.append(Picture(*names, image, expected, metadata))
     return tuple(pictures)

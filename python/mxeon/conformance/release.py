@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compares definitions, units, graphs and texts of a library with the installed MaterialX release.
+"""Compare definitions, units, graphs and texts of a library with the installed MaterialX release.
 
-Other checks judge nodes that have a model. For everything else, the release is the reference: nodes
-written differently are evaluated for the same inputs and must have the same values. A library that
-lacks nodes of the release is an older version and is not compared. A library with additional nodes
-in MaterialX's own documents may be a newer version, so differences of that library are permitted.
+Other checks judge nodes with a model. For everything else, the release is the reference. A node
+that is written differently is evaluated for the same inputs and must have the same values.
+
+A library that lacks nodes of the release is an older version and is not compared. A library with
+additional nodes in MaterialX's own documents may be a newer version, so differences of that library
+are permitted.
 """
 
 from collections.abc import Hashable, Iterator, Sequence
@@ -42,20 +44,21 @@ SAMPLES = 64  # number of samples of a node's inputs
 MOST = 12  # maximum number of evaluated nodes
 SIZE = 24  # width of the pictures that compare lobes
 MATERIALS = 3  # number of random materials in pictures of lobes
-# Compared attributes of ports. Ranges, which only guide editors, are compared for eonlib's nodes.
+# Attributes of ports that are compared. Ranges only guide editors, so that ranges are only compared
+# for eonlib's nodes.
 ATTRIBUTES = ("type", "defaultgeomprop", "uniform", "unit", "unittype", "colorspace", "enum")
 RANGE = ("uimin", "uimax")
 COMPONENTS = {"float": 1, "integer": 1, "boolean": 1, "vector2": 2, "color3": 3, "vector3": 3}
 JOINED = {"color4": "color3", "vector4": "vector3"}  # four-component type -> three-component type
-NUMBERS = {*COMPONENTS, *JOINED}  # types that are compared by values
-SHADED = {"BSDF", "EDF", "surfaceshader"}  # types that are compared by pictures
-SHADERS = {"surfaceshader", "volumeshader", "displacementshader"}  # inputs left unconnected
-# Scenes with a light, with an uneven environment, and with alpha.
+NUMBERS = {*COMPONENTS, *JOINED}  # types for which values are compared
+SHADED = {"BSDF", "EDF", "surfaceshader"}  # types for which pictures are compared
+SHADERS = {"surfaceshader", "volumeshader", "displacementshader"}  # types of unconnected inputs
+# Scenes with a light, with an uneven environment, and with transparency.
 UNEVEN = Client(radiance=sky_map(), irradiance=sky_map())
 LIT_SCENES = (SIDE, CLIENT), (FURNACE, UNEVEN), (SIDE, Client(alpha=True))
 PICTURES = tuple(replace(scene, size=SIZE, client=client) for scene, client in LIT_SCENES)
 LOBES = {"BSDF": "burley_diffuse_bsdf", "EDF": "uniform_edf"}  # lobes connected to inputs, by type
-# Constant values of inputs by type; a tangent must not be along the normal.
+# Constant values of inputs, by type. A tangent must not be parallel to the normal.
 ZEROS = {"float": "0", "integer": "0", "boolean": "false"}
 ZEROS |= {"vector2": "0, 0", "color3": "0, 0, 0", "vector3": "0, 0, 1"}
 TANGENT = "1, 0, 0"
@@ -65,17 +68,17 @@ Place: TypeAlias = tuple[mx.GraphElement, mx.PortElement]  # a graph and a port 
 
 
 class Subject(NamedTuple):
-    """An output of a node in a library, or a port of the node's graph with the node's inputs."""
+    """An output of a node in a library, or a port in the node's graph with the node's inputs."""
 
     definition: mx.NodeDef
     library: str
     kind: str  # type of the output or the port
-    place: Place | None = None  # the port; None for an output
-    output: str = ""  # name of the output, if the node has several
+    place: Place | None = None  # the port, or None for an output of the node
+    output: str = ""  # name of the output if the node has several outputs
 
 
 def released(library: str) -> mx.Document | None:
-    """The installed release, or None if the library lacks some of its nodes."""
+    """The installed release, or None if the library lacks nodes of the release."""
     own = {each.getName() for each in load_library(library).getNodeDefs()}
     for release in (released_graphs.installed(), load_library("stock")):
         if own.issuperset(each.getName() for each in release.getNodeDefs()):
@@ -84,7 +87,7 @@ def released(library: str) -> mx.Document | None:
 
 
 def newer_nodes(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
-    """Nodes in MaterialX's own documents that the release lacks, or has in another version."""
+    """Nodes in MaterialX's own documents that the release lacks or has in another version."""
     files = {Path(each.getActiveSourceUri()).name for each in release.getNodeDefs()}
     versions = {each.getName(): each.getVersionString() for each in release.getNodeDefs()}
     return tuple(
@@ -98,7 +101,10 @@ def newer_nodes(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
 def definition_facts(
     definition: mx.NodeDef, reference: mx.NodeDef, attributes: Sequence[str] = ATTRIBUTES
 ) -> dict[str, str]:
-    """The compared facts of a definition, for the ports of the reference, by description."""
+    """The attributes of a node definition that are compared, by description.
+
+    The ports are those of the definition `reference`.
+    """
     name = reference.getName()
     facts = {
         f"category of {name}": definition.getNodeString(),
@@ -118,7 +124,10 @@ def definition_facts(
 
 
 def unit_facts(document: mx.Document, release: mx.Document) -> dict[str, str]:
-    """The attributes of the release's units and geometric properties in a document."""
+    """The attributes of units and geometric properties in a document, by description.
+
+    Only units and properties of the release are included.
+    """
     names = [each.getName() for each in (*release.getUnitDefs(), *release.getGeomPropDefs())]
     definitions = [own for own in map(document.getChild, names) if own]
     return {
@@ -131,7 +140,7 @@ def unit_facts(document: mx.Document, release: mx.Document) -> dict[str, str]:
 
 
 def normalized(text: str) -> str:
-    """Text with numbers in the shortest form, and without "false", the default of flags."""
+    """The text with numbers in the shortest form and without "false", the default of flags."""
     words = text.replace("false", "").replace(",", " ").split()
     with suppress(ValueError):
         words = [f"{float(word):g}" for word in words]
@@ -139,7 +148,7 @@ def normalized(text: str) -> str:
 
 
 class Terms:
-    """Numbers for the ports of graphs; ports with equal numbers have equal values."""
+    """Numbers for the ports of graphs. Ports with equal numbers have equal values."""
 
     def __init__(self) -> None:
         self._numbers: dict[object, int] = {}
@@ -156,7 +165,7 @@ class Terms:
     def _node(self, graph: mx.GraphElement, node: mx.Node) -> int:
         key = id(graph), node.getName()
         if key not in self._nodes:
-            self._nodes[key] = -1  # ends the recursion of nodes that depend on themselves
+            self._nodes[key] = -1  # ends the recursion for nodes that depend on themselves
             ports = {name: self.port((graph, port)) for name, port in ports_of(node).items()}
             kind = node.getCategory(), node.getType(), node.getNodeDefString()
             self._nodes[key] = self._number((*kind, *sorted(ports.items())))
@@ -167,7 +176,7 @@ class Terms:
 
 
 def differing_ports(terms: Terms, own: Place, released: Place) -> Iterator[tuple[Place, Place]]:
-    """Pairs of ports at which two graphs differ: inputs of equal lobes, or different lobes."""
+    """Pairs of ports at which two graphs differ: different lobes, or inputs of equal lobes."""
     if terms.port(own) == terms.port(released):
         return
     nodes = [graph.getNode(port.getNodeName()) for graph, port in (own, released)]
@@ -182,7 +191,7 @@ def differing_ports(terms: Terms, own: Place, released: Place) -> Iterator[tuple
 
 
 class Comparison:
-    """Compares a library with the release, on a host that evaluates the library's texts."""
+    """Comparison of a library with the release, on a host that evaluates the library's texts."""
 
     def __init__(self, host: Host, library: str, release: mx.Document, image: str) -> None:
         self._host, self._library, self._release, self._image = host, library, release, image
@@ -191,9 +200,10 @@ class Comparison:
         self.unjudged: list[tuple[str, str]] = []
 
     def definitions(self, changed: bool = False) -> list[Cause]:
-        """Differences of definitions, units and properties; `changed` adds one, as a control.
+        """Differences of definitions, units and properties.
 
-        Nodes that eonlib defines are also compared with eonlib's definitions.
+        Nodes that eonlib defines are also compared with eonlib's definitions. If `changed`, a
+        difference is added as a control.
         """
         release, eonlib = self._release, load_library("eonlib").getNodeDefs()
         additional = (each for each in eonlib if release.getNodeDef(each.getName()) != each)
@@ -208,7 +218,7 @@ class Comparison:
             expected = definition_facts(reference, reference, attributes)
             if changed and number == 0:
                 facts[f"version of {name}"] = "1234"
-            if released:  # an omitted range is no difference, because the release also omits some
+            if released:  # omitted ranges count as equal, because the release also omits ranges
                 for each in facts:
                     if each.startswith(RANGE) and not facts[each]:
                         facts[each] = expected[each]
@@ -219,9 +229,10 @@ class Comparison:
 
     @cached_property
     def nodes(self) -> list[Cause]:
-        """Causes for nodes whose values differ from those of the released graph or text.
+        """Causes for nodes whose values differ from the values of the release.
 
-        If several nodes differ in the same text, only the first with different values is reported.
+        If several nodes differ by the same change of text, only the first node with different
+        values is reported.
         """
         names = (definition.getName() for definition in self._release.getNodeDefs())
         groups = grouped(names, self._change)
@@ -254,7 +265,7 @@ class Comparison:
         return own, released, *(each.getImplementation(self._target) for each in (own, released))
 
     def _change(self, name: str) -> Hashable:
-        """A key for how a node differs from the release; None for equal nodes and for models."""
+        """A key for a node's change since the release, or None without a change or with a model."""
         own, released, code, released_code = self._pair(name)
         if released_code is None:
             return None
@@ -275,7 +286,7 @@ class Comparison:
         return frozenset(lines ^ expected_lines) or None
 
     def _evaluated(self, name: str) -> Cause | None:
-        """The cause to report if a node's values differ from the release's, otherwise None."""
+        """The cause to report if the values of a node differ from the release, otherwise None."""
         own, released, code, released_code = self._pair(name)
         node, place = released.getNodeString(), f"{self._target} of {name}"
         text = "the one that MaterialX released"
@@ -295,7 +306,7 @@ class Comparison:
     def _graph_error(
         self, definition: mx.NodeDef, graph: mx.NodeGraph, released: mx.NodeGraph
     ) -> float:
-        """The largest difference between two graphs' values, at ports whose terms differ."""
+        """The largest difference between two graphs' values, at ports where the graphs differ."""
         node, terms, error = Subject(definition, self._library, definition.getType()), Terms(), 0.0
         for released_output in released.getOutputs():
             output = graph.getOutput(released_output.getName())
@@ -303,7 +314,7 @@ class Comparison:
                 return np.inf
             for places in differing_ports(terms, (graph, output), (released, released_output)):
                 kind, expected = (port.getType() for _, port in places)
-                # The surface's own vectors are only known in a picture.
+                # Only a picture has the surface's own vectors.
                 vectors = any(port.getAttribute("defaultgeomprop") for _, port in places)
                 if expected in CLOSURES or vectors:
                     whole = node._replace(place=(released, released.getOutputs()[0]))
@@ -316,7 +327,7 @@ class Comparison:
         return error
 
     def _text_error(self, own: mx.NodeDef, released: mx.NodeDef) -> float:
-        """The largest difference between two texts' values; NotRun if nothing evaluates them."""
+        """The largest difference between two texts' values. Raise NotRun if there are no values."""
         outputs, inputs = released.getActiveOutputs(), released.getActiveInputs()
         kinds, input_kinds = ({port.getType() for port in ports} for ports in (outputs, inputs))
         sides = (own, self._library), (released, "stock")
@@ -333,7 +344,7 @@ class Comparison:
         raise NotRun("its text is not MaterialX's, and nothing evaluates it")
 
     def _value_error(self, own: Subject, released: Subject) -> float:
-        """The largest difference of values; NotRun if the released subject does not compile."""
+        """The largest difference of values. Raise NotRun if the released node does not compile."""
         try:
             expected = self._values(released)
         except (DocumentError, ShaderError) as error:
@@ -341,7 +352,7 @@ class Comparison:
         return largest_error(self._values(own), expected)
 
     def _values(self, subject: Subject) -> Array:
-        """Values of a subject, (SAMPLES, 3), or (SAMPLES, 6) with a fourth component."""
+        """Values of a subject, (SAMPLES, 3), or (SAMPLES, 6) if the type has a fourth component."""
         values = []
         for fourth in (False, True) if subject.kind in JOINED else (False,):
             document = mx.createDocument()
@@ -360,7 +371,7 @@ class Comparison:
         return np.concatenate(values, axis=1).astype(np.float64)
 
     def _picture_error(self, *subjects: Subject) -> float:
-        """The largest difference between pictures and alphas; infinity if no picture is drawn."""
+        """The largest difference between pictures and alphas, or infinity if a picture fails."""
         shaders: list[generation.Shader] = []
         try:
             for each in subjects:
@@ -391,7 +402,7 @@ class Comparison:
     def _compiled(
         self, document: mx.Document, node: mx.Node, library: str, client: tuple[str, ...] = ()
     ) -> generation.Shader:
-        """Shader of a material with a node."""
+        """The shader of a material with a node."""
         if (kind := node.getType()) != "surfaceshader":
             node = connected("surface", "shading", "surfaceshader", node, kind.lower(), kind)
         connected("surfacematerial", "look", "material", node, "surfaceshader", "surfaceshader")
@@ -401,7 +412,7 @@ class Comparison:
 
     @cached_property
     def tolerance(self) -> Tolerance:
-        """The tolerance for the values of one graph that is written in two ways."""
+        """The tolerance for the values of a graph that is written in two ways."""
         base, exponent = float32(np.linspace(0.01, 1.0, SAMPLES)), float32(np.full(SAMPLES, 2.0))
         power = float(spec.POWER.errors(self._host, base, exponent).max())
         engine = Term(8.0 * power, "the engine's pow(), eight times")
@@ -410,9 +421,10 @@ class Comparison:
 
 
 def samples(definition: mx.NodeDef) -> dict[str, Array]:
-    """Values of a definition's inputs, by path; the first half of the samples is in [0, 1].
+    """Random values of the inputs of a definition, by path.
 
-    In every third sample, all inputs are equal, because a graph may compare its inputs.
+    The first half of the samples is in [0, 1]. All inputs of every third sample are equal, because
+    a graph may compare inputs.
     """
     rng, inputs = generator(), {}
     equal = rng.random((SAMPLES, 1))
@@ -438,7 +450,7 @@ def connected(
     port_kind: str,
     output: str = "",
 ) -> mx.Node:
-    """A new node in the document of `source`, with an output of `source` as input `port`."""
+    """A new node in the document of `source`, whose input `port` is an output of `source`."""
     node = source.getDocument().addNode(category, name, kind)
     connection = node.addInput(port, port_kind)
     connection.setNodeName(source.getName())
@@ -448,7 +460,7 @@ def connected(
 
 
 def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
-    """A new node that computes a subject, with a separate node connected to each input."""
+    """A new node that computes a subject. A separate node is connected to each input."""
     definition, kind, place = subject.definition, subject.kind, subject.place
     category, name = definition.getNodeString(), definition.getName()
     omitted = ("VDF",) if kind in CLOSURES else CLOSURES
@@ -498,10 +510,11 @@ def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
 
 
 def largest_error(values: Array, expected: Array) -> float:
-    """The largest error: relative for values above 1, infinite if only one value is finite.
+    """The largest error, which is relative for values above 1.
 
-    In the last half of the rows, with inputs outside [0, 1], only finite values count: graphs that
-    agree in [0, 1] may differ for the root of a negative number.
+    The error is infinite if only one of two values is finite. In the last half of the rows, which
+    have inputs outside [0, 1], only finite values count, because equal graphs may differ for the
+    root of a negative number.
     """
     with np.errstate(invalid="ignore"):
         error = np.abs(values - expected) / np.maximum(1.0, np.abs(expected))
@@ -516,14 +529,14 @@ def largest_error(values: Array, expected: Array) -> float:
 def check_release(
     host: Host, library: str
 ) -> tuple[tuple[Result, ...], tuple[tuple[str, str], ...]]:
-    """The result of comparing a library with the installed release, and subjects not judged."""
+    """The result of comparing a library with the installed release, and the subjects not judged."""
     release = released(library)
     if release is None:
         why = f"the library lacks nodes of MaterialX {mx.getVersionString()}: it is an older one"
         return (), ((f"{SUBJECT} of {library}", why),)
     place = Result(RELEASE, CLAIM, SUBJECT, host.name, library, NOT_RUN)
     with TemporaryDirectory() as folder:
-        image = str(Path(folder, "image.exr"))  # image with four different channels
+        image = str(Path(folder, "image.exr"))  # an image with four different channels
         write_exr(image, generator().random((8, 8, 4), np.float32), {})
         comparison = Comparison(host, library, release, image)
 

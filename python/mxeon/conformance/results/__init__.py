@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The results of a conformance run as plain data: checks, pictures, and the overall verdict.
 
-`mxeon.conformance.words` turns results into sentences; no code parses these sentences.
+`mxeon.conformance.words` turns results into sentences, which no code parses.
 """
 
 from __future__ import annotations
@@ -33,23 +33,23 @@ DIFFERS: Final = "differs"
 FAILED: Final = "failed"
 NOT_RUN: Final = "not run"
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
-# Exit status of a run, by verdict.
+# Exit status of a run for each verdict.
 STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
-# Stands for the path of a document in pictures of one material of each node.
+# Replaces the path of a document in pictures of one material of each node.
 PORTRAIT = "portrait"
-SOURCE = "source"  # stands for the host in checks of text, which run no host
-SHADER_FUNCTIONS = "shader twins"  # stands for the node in checks of a library's functions
+SOURCE = "source"  # replaces the host in checks of text, which need no host
+SHADER_FUNCTIONS = "shader twins"  # replaces the node in checks of a library's functions
 RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
 REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # file patterns of a report
-DIRECT = ("value", "lobe")  # checks in direct light, of which every node has one
-VISIBLE = 0.01  # approximate smallest visible contrast, as a share of white or of a highlight
+DIRECT = ("value", "lobe")  # checks in direct light; every node has one of these checks
+VISIBLE = 0.01  # smallest visible contrast, as a fraction of white or of a highlight
 
 Item = TypeVar("Item")
 Key = TypeVar("Key", bound=Hashable)
 
 
 def grouped(items: Iterable[Item], key: Callable[[Item], Key]) -> dict[Key, list[Item]]:
-    """Items by their key. Keys and items keep their order.
+    """Items grouped by a key. The order of keys and items is kept.
 
     >>> grouped(["eon", "gl", "osl"], len)
     {3: ['eon', 'osl'], 2: ['gl']}
@@ -65,8 +65,8 @@ class Control:
     """A deliberately wrong variant of a check on the same host, which must fail.
 
     - `variant`: The deliberate mistake, in words.
-    - `error`: The error of the variant, as measured by the check.
-    - `caught`: Whether the check failed on the variant, as it must.
+    - `error`: The error that the check measures for the variant.
+    - `caught`: Whether the check failed on the variant, which is required.
     """
 
     variant: str
@@ -79,27 +79,28 @@ class Kind(Enum):
 
     NONE = ""
     MODEL = "model"  # the known model or defect nearest to the values
-    FAULT = "fault"  # a fault between inputs and the correct model that reproduces the values
-    ACCURACY = "accuracy"  # the correct model, but not accurate enough
+    FAULT = "fault"  # an error in how the correct model is used, which reproduces the values
+    ACCURACY = "accuracy"  # insufficient accuracy of the correct model
     REGION = "region"  # the region of pairs and inputs with wrong values
     NOT_FINITE = "not finite"  # the region of pairs and inputs without finite values
     CURE = "cure"  # input values that make the worst samples correct
     DEFECT = "defect"  # another known defect
     UNKNOWN = "unknown"
     TEXT = "text"  # the message of a compiler, a renderer or a document
-    FOLLOWS = "follows"  # a consequence of another failure, which has its own result
+    FOLLOWS = "follows"  # a consequence of another failure with its own result
     INPUT = "input"  # an input value in the document that the model does not cover
     CONTROL = "control"  # the negative control passed
 
 
 @dataclass(frozen=True)
 class Region:
-    """A set of pairs and inputs.
+    """A set of direction pairs and inputs.
 
-    - `name`: Name of a row of `mxeon.conformance.words.REGIONS`, or of an input.
-    - `part`: Part of the input that has the range, a row of `words.PARTS`; "" for named regions.
+    - `name`: Name of an input, or of a row of `mxeon.conformance.words.REGIONS`.
+    - `part`: Part of the input to which the range applies, a row of `words.PARTS`; "" for rows of
+      REGIONS.
     - `low`, `high`: Ends of the range; None for an open end.
-    - `channels`: Wrong channels of a color; () for all.
+    - `channels`: Wrong channels of a color; () for all channels.
     """
 
     name: str
@@ -110,7 +111,7 @@ class Region:
 
 
 class BriefRepr:
-    """A dataclass whose repr omits fields with default values."""
+    """A dataclass whose representation omits fields with default values."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
 
@@ -128,10 +129,11 @@ class Cause(BriefRepr):
     """One fact about wrong values.
 
     - `key`: Title of a model, or key of a row of the tables in `mxeon.conformance.words`.
-    - `names`, `values`: Inputs, functions or files that the fact concerns, and its numbers.
-    - `branch`: Branch of the light, if only one is wrong.
-    - `region`: Region in which the fact holds; None if it holds everywhere.
-    - `wrong`, `of`: Number of wrong pairs, and of all pairs.
+    - `names`, `values`: Inputs, functions or files that the fact concerns, and numbers that the
+      fact states.
+    - `branch`: Kind of light, if only one kind is wrong.
+    - `region`: Region in which the fact holds; None if the fact holds everywhere.
+    - `wrong`, `of`: Number of wrong pairs, and number of all pairs.
     - `rms`: Root-mean-square distance between measured values and values that the cause predicts.
     - `point`: Directions and inputs at the worst point, by name.
     - `text`: Message of another program.
@@ -163,8 +165,8 @@ NO_CAUSE = Cause(Kind.NONE)
 class Diagnosis(BriefRepr):
     """The explanation of a failure.
 
-    - `causes`: The known causes, starting with the one that explains most.
-    - `distances`: Root-mean-square distance to every known model and defect, by title.
+    - `causes`: The known causes. The first cause explains the most.
+    - `distances`: Root-mean-square distances of the values to all known models and defects, by title.
     - `permitted`: Whether a function that the specification permits reproduces all values.
     """
 
@@ -187,7 +189,7 @@ class Diagnosis(BriefRepr):
 
     @property
     def distance(self) -> float:
-        """Root-mean-square distance to the best match; infinite without any match."""
+        """Root-mean-square distance to the best match, or infinity if there is no match."""
         return min(self.distances.values(), default=np.inf)
 
 
@@ -196,12 +198,12 @@ NO_DIAGNOSIS = Diagnosis()
 
 @dataclass(frozen=True)
 class Errors:
-    """Errors of a check's samples, or only of samples in a region.
+    """Errors of all samples of a check, or of the samples in a region.
 
-    - `of`, `wrong`, `not_finite`: Number of samples, of samples beyond the tolerance, and of
-      samples without a finite error.
-    - `largest`, `rms`: Largest and root-mean-square finite error.
-    - `region`: Region of the samples; None for all samples.
+    - `of`, `wrong`, `not_finite`: Number of samples, number of samples whose error exceeds the
+      tolerance, and number of samples without a finite error.
+    - `largest`, `rms`: Largest finite error, and root mean square of the finite errors.
+    - `region`: Region that contains the samples; None for all samples.
     """
 
     of: int
@@ -214,13 +216,15 @@ class Errors:
 
 @dataclass(frozen=True)
 class Difference:
-    """Difference between a picture and the reference, relative to white, or to the reference where
-    that is brighter.
+    """The difference between a picture and the reference picture.
+
+    Differences are relative to white, or to reference pixels that are brighter than white.
 
     - `scene`: Name of the scene, which determines the light.
-    - `largest`: Difference at the worst pixel, positive if too bright; infinite for NaN.
+    - `largest`: Difference at the worst pixel, positive if the picture is too bright; infinite for
+      NaN.
     - `highlight`: Whether the reference is brighter than white at the worst pixel.
-    - `visible`: Share of the object's pixels whose difference exceeds VISIBLE.
+    - `visible`: Fraction of the object's pixels whose difference exceeds VISIBLE.
     """
 
     scene: str
@@ -234,7 +238,7 @@ class Difference:
 
 
 def quoted(text: str) -> Diagnosis:
-    """A diagnosis that quotes another program."""
+    """A diagnosis that quotes the message of another program."""
     return Diagnosis((Cause(Kind.TEXT, text=text),))
 
 
@@ -242,27 +246,30 @@ def quoted(text: str) -> Diagnosis:
 class Result(BriefRepr):
     """The outcome of one check of one subject on one host.
 
-    - `check`, `claim`: Key of the check and the sentence that it tests.
+    - `check`, `claim`: Key of the check, and the sentence that the check tests.
     - `subject`: A node and its flag, or a document and its element.
     - `verdict`: PASSED, FAILED or NOT_RUN; DIFFERS if the specification permits the error.
-    - `error`, `tolerance`: Measured and largest accepted error; passed means error <= tolerance.
+    - `error`, `tolerance`: Measured error and largest accepted error. A check passes if error <=
+      tolerance.
     - `quantity`: The measured quantity with its unit; None if nothing was measured.
     - `derivation`: Derivation of the tolerance from its terms.
     - `worst`: The inputs and values at the worst point, by name.
-    - `errors`: Errors of all samples, then of each region; () if passed or without samples.
-    - `samples`: Checksum of the samples; "" without `errors`.
+    - `errors`: Errors of all samples, then of each region; () if the check passed or has no
+      samples.
+    - `samples`: Checksum of the samples; "" if `errors` is empty.
     - `diagnosis`: The explanation of a failure.
     - `difference`: Unweighted difference of a material's worst picture; None for other checks.
-    - `control`: The control; None only if the check did not run.
+    - `control`: The negative control; None only if the check did not run.
     - `reason`: Reason that the check did not run.
-    - `claimed`, `model`: Title of the model that a renderer's own node claims, and of the published
-      form of that model that was judged.
-    - `measured`: Inputs of a document's nodes whose values come from the host, since patterns have
-      no model; see `mxeon.conformance.reference.HostValues`.
-    - `pages`: Names of the pages of `docs/upstream/` on the defects that the result shows.
+    - `claimed`, `model`: Title of the model that a renderer's own node claims to have, and title of
+      the published form of that model that was judged.
+    - `measured`: Inputs of a document's nodes whose values come from the host, because patterns
+      have no model; see `mxeon.conformance.reference.HostValues`.
+    - `pages`: Names of pages in `docs/upstream/` on the defects that the result shows.
     - `seconds`: Duration of the result's task, divided equally among the task's results.
 
-    Raises ValueError if the verdict is unknown, or an error is negative or has no tolerance.
+    Raises ValueError if the verdict is unknown, if the error is negative, or if an error has no
+    tolerance.
     """
 
     check: str
@@ -310,22 +317,22 @@ class Result(BriefRepr):
 
     @property
     def explanation(self) -> str:
-        """The reason for a failure in words: its size, the diagnosis, and the defect's page."""
+        """The reason for a failure: the size of the error, the diagnosis, and pages on defects."""
         return str(_words().explanation(self))
 
     @property
     def follows(self) -> bool:
-        """Whether the check could not run because of a failure that has its own result."""
+        """Whether another failure, which has its own result, prevented the check."""
         return self.diagnosis.kind is Kind.FOLLOWS
 
     @property
     def within(self) -> bool:
-        """Whether the error was measured and is within the tolerance."""
+        """Whether an error was measured and is at most the tolerance."""
         return self.error is not None and self.error <= (self.tolerance or 0.0)
 
 
 def assert_verdict(word: object) -> Verdict:
-    """Return a verdict; raise InputError for any other word."""
+    """Return a verdict. Raise InputError for a word that is no verdict."""
     if word not in VERDICTS:
         raise InputError(f"verdict must be one of {', '.join(VERDICTS)}; got {word!r}")
     return word
@@ -333,12 +340,13 @@ def assert_verdict(word: object) -> Verdict:
 
 @dataclass(frozen=True)
 class Picture:
-    """A host's picture of one element, and the reference picture if the models can compute it.
+    """A host's picture of one element, and the reference picture if the models can compute one.
 
-    - `image`: Linear radiance, (size, size, 3), float32; see `mxeon.shaders.scene` for its scale.
+    - `image`: Linear radiance, (size, size, 3), float32. `mxeon.shaders.scene` defines the scale.
     - `reference`: The NumPy models' picture; None if the material has unsupported lobes.
     - `metadata`: Origin of the picture: version, host, device, library, document, element, scene.
-    - `judged`: 1 for compared pixels, 0 for others, (size, size, 1); None if all were compared.
+    - `judged`: 1 for compared pixels, 0 for other pixels, (size, size, 1); None if all pixels were
+      compared.
     """
 
     document: str
@@ -353,7 +361,7 @@ class Picture:
 
     @cached_property
     def difference(self) -> Difference | None:
-        """Difference between the picture and the reference; None without a reference."""
+        """The difference between the picture and the reference, or None without a reference."""
         if self.reference is None:
             return None
         image, reference = np.asarray(self.image), np.asarray(self.reference)
@@ -370,8 +378,8 @@ class Picture:
     def difference_map(self) -> NDArray[np.float64]:
         """Absolute `mxeon.io.images.difference` of each pixel, (size, size).
 
-        In a judged lattice, pixels in between take the difference of the nearest lattice pixel;
-        other pixels that were not judged are NaN.
+        If only a lattice of pixels was judged, pixels between the lattice have the difference of
+        the nearest lattice pixel. Other pixels that were not judged are NaN.
         """
         if self.reference is None:
             raise ValueError(f"{self.element}: a difference needs a reference; there is none")
@@ -388,7 +396,7 @@ class Picture:
 
 
 def report_files(folder: AnyPath) -> Iterator[Path]:
-    """The files of the report and of the journal in a folder."""
+    """The files of a report and of a journal in a folder."""
     for pattern in (*REPORT, "journal/*"):
         yield from Path(folder).glob(pattern)
 
@@ -397,14 +405,16 @@ def report_files(folder: AnyPath) -> Iterator[Path]:
 class Scope:
     """The subjects of a run, and the software versions.
 
-    - `version`, `software`: Version of mxeon, and versions of Python, NumPy, MaterialX and others.
-    - `contents`: Titles of the nodes in each document that the user gave, by the document's path.
+    - `version`, `software`: Version of mxeon, and versions of other software such as Python and
+      MaterialX.
+    - `contents`: Titles of the nodes in each document that the user named, by the document's path.
     - `unreached`: Regions that a node's inputs never reach, by document and by the node's title.
-    - `refused`: The faults of each document that could not be judged, by its path. If other
-      libraries can read it, the key also names the library: "clay.mtlx with stock".
-    - `libraries`: Files of each folder that was judged as a library: its own files under "folder",
-      and under "MaterialX" files that complete the folder, unless it is loaded before MaterialX.
-    - `compared`: Libraries judged for comparison; the verdict ignores their failures.
+    - `refused`: The faults of each document that could not be judged, by the document's path. If
+      other libraries can read the document, the key also names the library: "clay.mtlx with stock".
+    - `libraries`: Files of each folder that was judged as a library. The key "folder" has the
+      folder's own files. The key "MaterialX" has the files that complete the folder, unless the
+      folder is loaded before MaterialX.
+    - `compared`: Libraries judged for comparison; the verdict ignores failures of these libraries.
     - `unjudged`: Subjects that no check judges, with reasons.
     """
 
@@ -422,15 +432,15 @@ class Scope:
 
 @dataclass(frozen=True)
 class Run(Scope):
-    """All measurements of one `mxeon check`, and whether it passed.
+    """All measurements of one `mxeon check`, and whether the run passed.
 
-    Use `passed` for the overall result. It cannot be derived from `results` alone, which lack
-    refused documents and include failures of libraries that are judged for comparison.
+    Use `passed` for the overall result, because `results` alone lack refused documents and include
+    failures of libraries that are judged for comparison.
 
     - `notes`: Warnings for readers, e.g. about features that a host cannot render.
     - `missing`: Unfinished tasks of an interrupted run.
     - `seconds`: Time from the first document to the last result; None for a run read from disk.
-    - `policy`: Policy for the documents, if a report still has to draw them in the studio.
+    - `policy`: Policy for the documents, if studio pictures of the documents are still missing.
     """
 
     hosts: tuple[Identity, ...]
@@ -446,16 +456,19 @@ class Run(Scope):
 
     @property
     def passed(self) -> bool:
-        """Whether every requested check ran, and nothing failed or was refused."""
+        """Whether every requested check ran, no check failed, and no document was refused."""
         return self.exit_status == errors.PASSED
 
     @property
     def exit_status(self) -> int:
-        """Exit status of `mxeon check`: 0 passed, 1 failed, 2 a document was refused, 3 not run."""
+        """The exit status of `mxeon check`.
+
+        The status is 0 for passed, 1 for failed, 2 for a refused document, and 3 for not run.
+        """
         return errors.MISUSE if self.refused else STATUSES[self.verdict]
 
     def raise_for_failure(self) -> None:
-        """Raise `mxeon.errors.CheckError` with verdict and causes unless the run passed."""
+        """Raise `mxeon.errors.CheckError` with the verdict and causes, unless the run passed."""
         if self.passed:
             return
         causes = [
@@ -469,19 +482,20 @@ class Run(Scope):
 
     @property
     def verdict(self) -> Verdict:
-        """FAILED if a check failed, NOT_RUN if one is missing or a document refused, or PASSED.
+        """The overall verdict, which ignores libraries that are judged for comparison.
 
-        Libraries that are judged for comparison do not count.
+        The verdict is FAILED if a check failed, NOT_RUN if a check did not run or a document was
+        refused, and otherwise PASSED.
         """
         if self.counts[FAILED]:
             return FAILED
-        # A run with missing checks has not passed.
+        # A run that lacks a check has not passed.
         missing = self.counts[NOT_RUN] or not self.judged or self.missing or self.refused
         return NOT_RUN if missing else PASSED
 
     @cached_property
     def counts(self) -> dict[Verdict, int]:
-        """Number of checks by verdict, without libraries judged for comparison."""
+        """The number of checks by verdict, without libraries that are judged for comparison."""
         tally = Counter(each.verdict for each in self.judged)
         return {verdict: tally[verdict] for verdict in VERDICTS}
 
@@ -492,7 +506,7 @@ class Run(Scope):
 
     @property
     def judged(self) -> tuple[Result, ...]:
-        """Results of all libraries that are not judged for comparison."""
+        """The results of all libraries that are not judged for comparison."""
         return tuple(each for each in self.results if each.library not in self.compared)
 
     @property
@@ -501,7 +515,7 @@ class Run(Scope):
         return tuple(line for lines in self.refused.values() for line in lines)
 
     def is_elsewhere(self, result: Result, *documents: str) -> bool:
-        """Whether a check only fails for inputs or lobes that no document with its node uses."""
+        """Whether a check fails only for inputs or lobes that no document with its node uses."""
         from mxeon.conformance.results.known_issues import blamed
 
         region, groups = result.diagnosis.region, blamed(result)
@@ -515,12 +529,15 @@ class Run(Scope):
 
     @property
     def summary(self) -> str:
-        """The verdict in words, the judged MaterialX version and folder, and the time."""
+        """The verdict, the version and folder of the judged MaterialX, and the time, in words."""
         return str(_words().summary(self))
 
 
 def _words() -> ModuleType:
-    """The module that makes sentences from results, imported late because it imports this one."""
+    """The module that makes sentences from results.
+
+    The import is late because the module imports this module.
+    """
     from mxeon.conformance import words
 
     return words

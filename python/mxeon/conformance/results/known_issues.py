@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known defects: data at the top of each page in docs/upstream, and the results they explain."""
+"""Known defects, which are described in the pages of docs/upstream, and the results they explain.
+
+Each page begins with the data of the defect.
+"""
 
 import json
 import math
@@ -19,47 +22,51 @@ from mxeon.io.records import UNREADABLE, strict_converter
 from mxeon.shaders.library import data_folder
 
 STOCK, EONLIB = "stock", "eonlib"
-RENDERER_NODES = "its own nodes"  # stands for the library in results of a renderer's own nodes
+RENDERER_NODES = "its own nodes"  # replaces the library in results of a renderer's own nodes
 Row = tuple[str, str]  # key of a check, and title of the subject
-Table = Mapping[str, Sequence[str]]  # subject -> keys of checks
-GENERATED_GLSL = ("webgl", "vulkan", "wgsl", "slang")  # hosts that draw the same GLSL as "gl"
-# A page begins with a row as TOML in a comment, which may be missing, and with a title.
+Table = Mapping[str, Sequence[str]]  # checks by subject
+GENERATED_GLSL = ("webgl", "vulkan", "wgsl", "slang")  # hosts that use the same GLSL as "gl"
+# A page begins with an optional comment that contains a row of TOML, followed by a title.
 PAGE = re.compile(r"(?:<!--\n(?P<row>.*?)\n-->\n)?(?P<text># (?P<title>[^\n]*)\n.*)", re.DOTALL)
 
 
 @dataclass(frozen=True)
 class Issue:
-    """A defect: the row of its page, whose keys are these fields, and numbers of `measured.json`.
+    """A known defect.
 
-    In a page, `rows`, `implied` and `repaired` are tables from subjects, separated by `; `, to
-    checks. The key of a cause in `remains` may also be several keys, separated by `; `.
+    The fields are read from the row of TOML at the beginning of the defect's page, and from
+    `measured.json`. In the row, `rows`, `implied` and `repaired` are tables of checks by subject,
+    with subjects separated by `; `. The key of a cause in `remains` may consist of several keys,
+    separated by `; `.
     """
 
     page: str  # file name without suffix
     title: str  # heading of the page, which states the defect
     text: str = field(repr=False)  # the page without the row
-    # Section of the index, by default the page name's first word; see tools/site/ledger/pages.py.
+    # Section of the index, by default the first word of the page's name; see
+    # tools/site/ledger/pages.py.
     group: str
-    # Host that shows the defect, by default "gl"; "source" for generated text, "" without a check.
+    # Host that shows the defect, by default "gl". Generated text has the host "source". Defects
+    # that no check shows have the host "".
     host: str = ""
-    also: tuple[str, ...] = ()  # additional hosts with the defect; "gl" implies GENERATED_GLSL
-    # Library whose results show the defect: EONLIB for graphs, which need correct lobes, or
-    # RENDERER_NODES.
+    also: tuple[str, ...] = ()  # other hosts with the defect, besides GENERATED_GLSL for "gl"
+    # Library whose results show the defect: EONLIB for a defect of graphs, because graphs need
+    # correct lobes, and RENDERER_NODES for a defect of a renderer's own nodes.
     library: str = STOCK
-    unavoidable: bool = False  # every library has the defect, because no library can repair it
+    unavoidable: bool = False  # no library can repair the defect, so that every library has it
     differs: bool = False  # the specification permits both behaviors
-    rows: tuple[Row, ...] = ()  # results that all fail, listed in the page's table
-    # Other results on hosts with the defect that fail or differ, or may do so, due to the defect.
+    rows: tuple[Row, ...] = ()  # results that all fail and that the page's table lists
+    # Other results that may fail or differ due to the defect, on hosts with the defect.
     implied: tuple[Row, ...] = ()
-    # Results that pass with the patch; by default `rows` without `remains`.
+    # Results that pass with the patch, by default all of `rows` that are not in `remains`.
     repaired: tuple[Row, ...] = ()
-    # Results that pass with the patch, or still fail for one of the causes.
+    # Results that, with the patch, either pass or still fail for one of these causes.
     remains: Mapping[Row, tuple[Cause, ...]] = field(default_factory=dict, hash=False)
-    needs: tuple[str, ...] = ()  # pages whose patches must also be applied
+    needs: tuple[str, ...] = ()  # other pages whose patches must also be applied
     kind: str = ""  # kind of the patch: "choice", "NaN" or "compiles"
     pull: int = 0  # number of the pull request that repairs the defect after the release
     cause: Cause | None = None  # first cause in the diagnosis of the first row
-    patch: tuple[str, ...] = ()  # a file of MaterialX, and a piece of its text before and after
+    patch: tuple[str, ...] = ()  # a MaterialX file, and part of its text before and after
     # The largest measured error of each result.
     sizes: Mapping[Row, float] = field(default_factory=dict, hash=False)
 
@@ -70,19 +77,19 @@ class Issue:
 
     @property
     def mended(self) -> set[Row]:
-        """Results that the defect no longer explains after its patch."""
+        """Results that the defect does not explain after the patch is applied."""
         return {*self.repaired, *self.remains}
 
 
 def folder() -> Path:
-    """The folder of the pages, in the installed package or in the checkout."""
+    """The folder of the pages, either in the installed package or in the checkout."""
     installed = data_folder() / "upstream"
     return installed if installed.is_dir() else data_folder() / "docs" / "upstream"
 
 
 @cache
 def issues() -> Mapping[str, Issue]:
-    """All defects by page, which are read when a check first fails."""
+    """All defects by page. The pages are read when a check first fails."""
     measured = json.loads((folder() / "measured.json").read_text("utf-8"))
     pages = sorted(path for path in folder().glob("*.md") if path.stem != "README")
     names = {path.stem: path.read_text("utf-8") for path in pages}
@@ -92,7 +99,8 @@ def issues() -> Mapping[str, Issue]:
 def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
     """The defect of a page, with the page's measurements.
 
-    Raises CheckError if the page does not begin with a row or title, or the row has an unknown key.
+    Raises CheckError if the page does not begin with a row or a title, or if the row has an unknown
+    key.
     """
     parts = PAGE.fullmatch(text)
     if not parts:
@@ -113,7 +121,7 @@ def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
 
 @cache
 def _converter() -> cattrs.Converter:
-    """A converter that reads rows and their tables of subjects and checks."""
+    """A converter for the rows of pages, including tables of checks by subject."""
     converter = strict_converter({})
 
     def remains(entries: Sequence[dict[str, Any]]) -> dict[Row, tuple[Cause, ...]]:
@@ -146,8 +154,8 @@ def _rows(table: Table) -> tuple[Row, ...]:
 
 # Hosts that use their own closures with every library.
 OWN_CLOSURES = tuple(row.name for row in hosts.HOSTS if row.way == "functions")
-REPAIRED = 30.0  # an error that is smaller than the issue's by this factor has another cause
-SPREAD = 1.5  # engines, drivers and MaterialX versions may exceed an issue's error by this factor
+REPAIRED = 30.0  # errors below an issue's error divided by this number have another cause
+SPREAD = 1.5  # allowed ratio of an error to the issue's error on another system
 
 
 def issues_of(result: Result) -> tuple[Issue, ...]:
@@ -156,7 +164,10 @@ def issues_of(result: Result) -> tuple[Issue, ...]:
 
 
 def blamed(result: Result) -> list[set[str]]:
-    """Lobes that make a combination fail, as a set per page or cause; [] for a single lobe."""
+    """The lobes that make a combination of lobes fail, in one set per page or cause.
+
+    Results of a single lobe have no sets.
+    """
     if _is_lobe(result.subject):
         return []
     if found := issues_of(result):
@@ -173,8 +184,9 @@ def _is_lobe(subject: str) -> bool:
 def with_pages(result: Result, materialx: str = "") -> Result:
     """A result with the pages of the issues that explain the result.
 
-    `materialx` is the folder whose `libraries` were judged instead of the installed ones. A copy of
-    MaterialX's libraries has the issues of stock, except those that the copy repairs.
+    `materialx` is the folder whose `libraries` were judged instead of the installed libraries. A
+    copy of MaterialX's libraries has the issues of the library "stock", except issues that the copy
+    repairs.
     """
     if result.verdict not in (FAILED, DIFFERS):
         return replace(result, pages=())
@@ -187,27 +199,26 @@ def with_pages(result: Result, materialx: str = "") -> Result:
         and (result.check, result.subject) in (*issue.rows, *issue.implied)
         and _explains(issue, result, materialx)
     ]
-    # Issues on points that the specification leaves open do not explain a failure by themselves.
+    # Issues on points that the specification leaves open cannot explain a failure on their own.
     if result.verdict == FAILED and all(issue.differs for issue in explaining):
         explaining = []
     return replace(result, pages=tuple(issue.page for issue in explaining))
 
 
 def _explains(issue: Issue, result: Result, materialx: str) -> bool:
-    """Whether an issue explains a result's error, diagnosis and shader text."""
+    """Whether an issue explains the error, the diagnosis and the shader text of a result."""
     row = result.check, result.subject
-    if (
-        result.error is None and issue.sizes
-    ):  # nothing was measured, e.g. the shader does not compile
+    # Nothing was measured, for example because the shader does not compile.
+    if result.error is None and issue.sizes:
         return False
-    # Hosts that only render pictures measure relative errors, which cannot be compared with sizes
-    # in other units.
+    # Hosts that only render pictures measure relative errors. Relative errors cannot be compared
+    # with the sizes of errors in other units.
     if result.host == issue.host or result.quantity is not Quantity.RELATIVE:
         error, size = result.error or 0.0, issue.sizes.get(row, math.inf)
         if error > SPREAD * size:
             return False
         # If the node's own model is nearest and the issue's error is many times larger, the issue
-        # is repaired, and the remaining error has another cause.
+        # is repaired and the remaining error has another cause.
         own, *others = result.diagnosis.distances.values() or (math.inf,)
         if own < min(others, default=own) and error < size / REPAIRED:
             return False
@@ -221,7 +232,7 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
 
 @cache
 def _is_repaired(issue: Issue, materialx: str) -> bool:
-    """Whether MaterialX in a folder, by default the installed one, has the patch of an issue."""
+    """Whether the MaterialX in a folder, by default the installed one, has an issue's patch."""
     if not issue.patch:
         return False
     import MaterialX as mx

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The quantities whose errors are measured, with units and notes for readers."""
+"""The quantities whose errors are measured, with units and explanations for readers."""
 
 from enum import Enum
 
@@ -11,7 +11,7 @@ _SCALED = "pi f cos, relative above 1"
 
 
 class Quantity(Enum):
-    """A quantity: its key in results.json, its unit, and the unit's meaning unless obvious."""
+    """A measured quantity, with a key in results.json, a unit, and a meaning unless obvious."""
 
     # Values in direct light.
     VALUE = "value", _SCALED, _LARGE
@@ -31,7 +31,7 @@ class Quantity(Enum):
     MATERIAL_MEAN = "material_mean", f"{_SCALED}, or albedo, mean", f"{_LARGE}; {_ALL}"
     REFLECTANCE = "reflectance", "reflectance"
     REFLECTANCE_RMS = "reflectance_rms", "reflectance, rms"
-    # Transmitted, arriving and emitted light.
+    # Light that is transmitted, arrives or is emitted.
     LIGHT = "light", "light", "1 is all of the light"
     THROUGHPUT = "throughput", "throughput", "a throughput of 1 passes all light"
     TRANSMITTANCE = "transmittance", "transmittance"
@@ -73,7 +73,7 @@ class Quantity(Enum):
 
     @property
     def of_views(self) -> bool:
-        """Whether the quantity only depends on the view, not on the light's direction."""
+        """Whether the quantity depends on the view and not on the light's direction."""
         return self.value in OF_VIEWS
 
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from mxeon.conformance.results import Picture, Verdict, assert_verdict
 from mxeon.io import files, records
 
-# NumPy parses file headers with `ast`, which can fail in Python 3.11 when two threads use it:
+# NumPy parses file headers with `ast`. In Python 3.11, `ast` can fail when two threads use it:
 # https://github.com/python/cpython/issues/106905.
 READING = Lock()
 IMAGES = ("image", "reference", "judged")  # fields of a picture
@@ -21,9 +21,9 @@ IMAGES = ("image", "reference", "judged")  # fields of a picture
 
 @dataclass(frozen=True)
 class StoredImage:
-    """Pixels in a file; each `np.asarray` reads them again, so that a run keeps none in memory."""
+    """Pixels in a file. Each `np.asarray` reads the file again, so that memory holds no pixels."""
 
-    path: Path  # a file named by the SHA-256 of its contents
+    path: Path  # a file whose name is the SHA-256 of its contents
 
     def __array__(
         self, dtype: DTypeLike | None = None, copy: bool | None = None
@@ -33,10 +33,10 @@ class StoredImage:
 
     @property
     def whole(self) -> bool:
-        """Whether the file exists, unchanged since it was written."""
+        """Whether the file exists and is unchanged since it was written."""
         if files.digest(self.path) != self.path.stem:
             return False
-        try:  # mapped instead of read: a header may declare any number of pixels
+        try:  # map the file, because a header may declare any number of pixels
             pixels = np.lib.format.open_memmap(self.path, mode="r")
         except (OSError, ValueError, OverflowError):
             return False
@@ -44,13 +44,13 @@ class StoredImage:
 
 
 def make_converter(folder: Path | None = None) -> cattrs.Converter:
-    """A converter between the dataclasses of `mxeon.conformance.results` and the types of JSON.
+    """A converter between the dataclasses of `mxeon.conformance.results` and JSON types.
 
-    If `folder` is given, pictures are written as the names of their files in it.
+    If `folder` is given, JSON contains the names of picture files in that folder.
     """
     own = {} if folder is None else {Picture: _in_files(folder)}
     converter = records.strict_converter(own)
-    # The message for an invalid verdict lists the valid verdicts.
+    # The message for an invalid verdict must list the valid verdicts.
     converter.register_structure_hook_func(
         lambda kind: kind == Verdict, lambda word, _: assert_verdict(word)
     )
@@ -73,6 +73,6 @@ def _in_files(folder: Path) -> records.Overrides:
 
 
 def images_of(picture: Picture) -> dict[str, ArrayLike]:
-    """The images of a picture by field name, without missing ones."""
+    """The images of a picture by field name, without fields that are None."""
     images = {name: getattr(picture, name) for name in IMAGES}
     return {name: image for name, image in images.items() if image is not None}
