@@ -3,14 +3,14 @@
 
 | command | what it writes |
 |---|---|
-| `python -m tools.site` | OSL twins, and tables that need no engine; a minute |
-| `... specification` | table of results.md, measured on gl; some seconds |
-| `... surface_texts` | tables of surfaces.md; some minutes |
+| `python -m tools.site` | OSL versions of GLSL files, and tables that need no engine, in a minute |
+| `... specification` | table of results.md, measured on gl in some seconds |
+| `... surface_texts` | tables of surfaces.md, in some minutes |
 | `... field` | data of field.html, measured on every host that runs here |
-| `... versions` | versions.md and ledger/versions.json; a quarter of an hour |
-| `... gallery`, `... explorer`, `... note` | pictures of the pages of these names |
-| `... wall REPORT...` | wall.md and its tiles, from reports of `mxeon check` |
-| `... ledger.measure [HOST ...]`, `... ledger.pictures` | docs/upstream: measured.json, pictures |
+| `... versions` | versions.md and ledger/versions.json, in a quarter of an hour |
+| `... gallery`, `... explorer`, `... note` | pictures for the page of the same name |
+| `... wall REPORT...` | wall.md and the tiles of that page, from reports of `mxeon check` |
+| `... ledger.measure [HOST ...]`, `... ledger.pictures` | measured.json and pictures in docs/upstream |
 """
 
 import math
@@ -37,7 +37,7 @@ def in_percent(share: float) -> str:
 
 
 def brief(difference: Difference) -> str:
-    """Text: the largest difference of a picture, and the share of the object that visibly differs.
+    """Text with a picture's largest difference and the share of the object that visibly differs.
 
     >>> brief(Difference("back", 0.2035, False, 0.124))
     '+20 %, visible on 12 %'
@@ -50,6 +50,6 @@ def brief(difference: Difference) -> str:
 
 
 def with_block(page: str, name: str, text: str) -> str:
-    """A page with new text between the comments `name` and `end`."""
+    """A page in which the text between the comments `name` and `end` is replaced."""
     block = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end -->)", re.DOTALL)
     return block.sub(lambda found: found[1] + text + found[2], page)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the OSL twins and some tables of pages: `python -m tools.site`.
+"""Writes OSL versions of GLSL files and some tables of pages: `python -m tools.site`.
 
-These files need no engine and no other version of MaterialX. Measurements on hosts
-(`specification`, `field`, `versions`, `ledger.measure`, pictures) have separate commands.
+The command needs no engine and no other version of MaterialX. Separate commands make the
+measurements on hosts (`specification`, `field`, `versions`, `ledger.measure`) and the pictures.
 """
 
 from pathlib import Path

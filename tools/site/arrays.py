@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Updates docs/arrays.md: the list of functions that do not accept other libraries' arrays."""
+"""Updates the list in docs/arrays.md of functions that accept no arrays of PyTorch or JAX."""
 
 import inspect
 import re
@@ -14,7 +14,7 @@ PUBLIC = re.compile(r"^::: (mxeon\.models\.[\w.]*[a-z]\w*)$", re.M)
 
 
 def public():
-    """Public functions with array arguments, by their documented names."""
+    """Public functions with array arguments, by documented name."""
     pages = sorted((DOCS / "api").glob("*.md"))
     names = [name for page in pages for name in PUBLIC.findall(page.read_text(encoding="utf-8"))]
     names = [name for name in names if not name.startswith(NUMPY_ONLY)]
@@ -25,18 +25,18 @@ def public():
 
 
 def arrays(function):
-    """Names of a function's array arguments, with respect to which it has gradients."""
+    """Names of a function's array arguments, which are the arguments that have gradients."""
     parameters = inspect.signature(function).parameters.values()
     return [each.name for each in parameters if each.annotation in ARRAYS]
 
 
 def page(text):
-    """The page with the current list of functions that do not accept other libraries' arrays."""
+    """The page with a new list of functions that accept no arrays of other libraries."""
     functions = public().items()
     exceptions = [
         f"`{name.rpartition('.')[2]}`"
         for name, each in functions
-        if inspect.unwrap(each) is each  # functions that accept any library's arrays are wrapped
+        if inspect.unwrap(each) is each  # functions for arrays of any library are wrapped
     ]
     line = (
         "Every public function of arrays in `mxeon.models` takes them, and\nhas gradients with respect to every argument of the type `ArrayLike`. "

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The site's explorer; `python -m tools.site.explorer` takes the screenshot for its page."""
+"""The explorer on the site. `python -m tools.site.explorer` takes a screenshot for the docs."""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory

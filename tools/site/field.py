@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The site's comparison of renderers, and the measurements that it shows.
+"""The site's page that compares renderers, and the measurements on that page.
 
-`python -m tools.site.field` measures the available hosts; `python -m tools.site.field DIR` reads
-reports from a folder instead. Hosts without a new report keep their measurements.
+`python -m tools.site.field` measures the available hosts. `python -m tools.site.field DIR` reads
+reports from a folder instead. Old measurements of hosts without a new report are kept.
 """
 
 import base64
@@ -43,11 +43,11 @@ TIMEOUT = 600.0
 
 @dataclass(frozen=True)
 class Row:
-    """A row of the page without its pictures.
+    """A row of the page without the pictures.
 
-    - `entry`: The entry with the largest error among the entries with the same cause.
-    - `same`: Library and node of the other entries.
-    - `frames`: The difference map's scale and the largest difference, by scene.
+    - `entry`: The entry with the largest error among entries with the same cause of failure.
+    - `same`: Library and node of the other entries with that cause.
+    - `frames`: The scale of the difference map and the largest difference, by scene.
     """
 
     entry: Entry
@@ -56,7 +56,7 @@ class Row:
 
 
 def read() -> tuple[list[Row], Iterator[NDArray[np.uint8]]]:
-    """The stored rows, and all their pictures: portrait and difference map by row and scene."""
+    """The stored rows, and a portrait and a difference map for each row and scene."""
     rows = make_converter().structure(json.loads(DATA.read_text(encoding="utf-8")), list[Row])
     lines = np.asarray(Image.open(PICTURES)).reshape(-1, SIZE, ACROSS, SIZE, 3)
     return rows, iter(lines.swapaxes(1, 2).reshape(-1, SIZE, SIZE, 3))
@@ -96,7 +96,7 @@ def text() -> str:
 
 
 def keep(folder: str) -> None:
-    """Replace the stored rows of the hosts that have reports in a folder."""
+    """Replace the stored rows of all hosts that have reports in a folder."""
     groups = by_harm(read_field([folder]))
     measured = {group[0].host for group in groups if group[0].verdict != NOT_RUN}
     old, old_pictures = read()
@@ -121,7 +121,7 @@ def write(rows: list[Row], pictures: list[NDArray[np.uint8]]) -> None:
     records = make_converter().unstructure(rows)
     for cell in (cell for record in records for cell in record["entry"]["cells"].values()):
         for key in [key for key, value in cell.items() if value in (None, "", [], {})]:
-            del cell[key]  # the default value is restored when reading
+            del cell[key]  # readers restore the default value
     write_text(DATA, "[\n" + ",\n".join(map(json.dumps, records)) + "\n]\n")
     blank = np.zeros((-len(pictures) % ACROSS, SIZE, SIZE, 3), np.uint8)
     lines = np.concatenate([pictures, blank]).reshape(-1, ACROSS, SIZE, SIZE, 3)
@@ -135,7 +135,7 @@ def pixels(uri: str) -> NDArray[np.uint8]:
 
 
 def essential(entry: Entry) -> Entry:
-    """An entry with only the fields that the page shows."""
+    """A copy of an entry with only the fields that the page shows."""
     cells = {
         column: replace(
             cell,

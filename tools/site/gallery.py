@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renders the materials of `examples/` with stock MaterialX and eonlib, and writes their page.
+"""Renders the materials in `examples/` with stock MaterialX and eonlib, and writes gallery.md.
 
-python -m tools.site.gallery    writes pictures, their differences, and gallery.md
+python -m tools.site.gallery    writes pictures, differences between libraries, and gallery.md
 """
 
 import json
@@ -29,21 +29,22 @@ from tools.site import DOCS, brief
 PAGE = DOCS / "gallery.md"
 EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
-# The difference of stock MaterialX by material: its description, and its largest value.
+# Description and largest value of stock MaterialX's difference from the reference, by material.
 DIFFERENCES = PICTURES / "differences.json"
 SIZE = 512  # width and height of a picture in pixels
-INSET, EDGE = 112, 8  # width of the difference's inset, and its distance from the edge, in pixels
+INSET, EDGE = 112, 8  # width of the inset, and distance from the edge, in pixels
 QUALITY = 85  # WebP quality
-ROWS = 96  # rows of the studio's latitude-longitude map
-# Soft boxes: azimuth from the viewer and elevation, half sizes, in degrees; radiance.
+ROWS = 96  # height of the studio's latitude-longitude map in pixels
+# Soft boxes: azimuth from the viewer and elevation in degrees, half width and half height in
+# degrees, and radiance as RGB.
 BOXES = (
     ((-48.0, 42.0), (22.0, 15.0), (7.0, 6.8, 6.4)),
     ((66.0, 22.0), (5.0, 34.0), (8.0, 8.3, 9.0)),
     ((-118.0, 20.0), (8.0, 36.0), (9.0, 8.6, 8.0)),
     ((150.0, 30.0), (20.0, 12.0), (5.0, 5.2, 5.6)),
 )
-SOFT = 2.5  # degrees over which the edge of a box falls off
-BACKGROUND = 30  # sRGB code
+SOFT = 2.5  # width in degrees of the soft edge of a box
+BACKGROUND = 30  # sRGB value from 0 to 255
 TITANIUM = DOCS / "images" / "titanium.mtlx"  # material of the README's picture
 
 HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
@@ -81,7 +82,7 @@ on the [path-traced](path_tracing.md) shader ball in the studio, with shadows an
 
 
 def studio():
-    """Latitude-longitude map of a studio's radiance: floor, ceiling and soft boxes."""
+    """Latitude-longitude map of radiance in a studio with floor, ceiling and soft boxes."""
     polar = (np.arange(ROWS)[:, None] + 0.5) / ROWS * np.pi
     azimuth = ((np.arange(2 * ROWS) + 0.5) / ROWS - 1.0) * np.pi
     up = np.broadcast_to(np.cos(polar), (ROWS, 2 * ROWS))[..., None]
@@ -98,9 +99,10 @@ def studio():
 
 
 def pictures(host, document):
-    """For each material of a document: name, pictures, and the difference of stock from eonlib.
+    """The name, the pictures, and the difference of stock from eonlib for each material.
 
-    The first picture is stock MaterialX's, if it can generate the material; the last is eonlib's.
+    The last picture is made with eonlib. The first picture is made with stock MaterialX if stock
+    MaterialX can generate the material.
     """
     shaders, scene = [], replace(STUDIO, size=SIZE)
     if "furnace" in document.stem:
@@ -118,7 +120,7 @@ def pictures(host, document):
 
 
 def sphere_picture(image):
-    """A picture of a sphere, reduced to half its size, with a margin of background."""
+    """A picture of a sphere, reduced to SIZE pixels with a margin of background."""
     mask = visible(len(image), "sphere").mask[..., None]
     codes = np.where(mask, srgb_encoded(image), np.uint8(BACKGROUND))
     inner = SIZE - SIZE // 8
@@ -135,7 +137,7 @@ def label(image, place, text, size=22, anchor="ls"):
 
 
 def save(path, pictures, difference_map):
-    """Save pictures side by side, with labels if there are two, and the difference as an inset."""
+    """Save pictures side by side, with the difference as an inset. Two pictures get labels."""
     image = Image.new("RGB", (SIZE * len(pictures), SIZE))
     for number, each in enumerate(pictures):
         image.paste(each, (number * SIZE, 0))
@@ -167,7 +169,7 @@ def render():
 
 
 def judge():
-    """Write the difference that `mxeon check` finds for each material with stock MaterialX."""
+    """Write the differences that `mxeon check` finds for materials with stock MaterialX."""
     found = {}
     for each in mxeon.check(sorted(EXAMPLES.glob("*.mtlx")), ["gl"], ["stock"]).results:
         if each.check == "picture" and (differs := each.difference):
@@ -178,7 +180,7 @@ def judge():
 
 
 def page():
-    """Markdown of the gallery: documents and their materials, largest differences first."""
+    """Markdown of the gallery, with documents and materials in order of decreasing difference."""
     found = json.loads(DIFFERENCES.read_text(encoding="utf-8"))
     equal = [name for name, (description, _) in found.items() if not description]
     sections = []

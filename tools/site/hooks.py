@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MkDocs hooks: add pages from outside `docs/`, adapt links, fill in the ledger's figures."""
+"""MkDocs hooks that add pages from outside `docs/`, adapt links and fill in ledger pages."""
 
 import re
 from pathlib import Path
@@ -12,7 +12,7 @@ from tools.site import explorer, field
 from tools.site.ledger.pages import filled
 
 ROOT = Path(__file__).resolve().parents[2]
-# Pages of the site by name, and their files, whose links are relative to the repository's root.
+# Pages of the site made from files outside `docs/`, whose links are relative to the root.
 OUTSIDE = {
     "index.md": "README.md",
     "changelog.md": "CHANGELOG.md",
@@ -31,7 +31,7 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, **_):
-    """Fill in ledger pages, adapt links to the site, and hide navigation on top-level pages."""
+    """Fill in ledger pages, adapt links to the site and hide navigation on top-level pages."""
     if page.parent is None:
         page.meta["hide"] = ["navigation"]
     if page.file.src_uri.startswith("upstream/"):
@@ -39,13 +39,13 @@ def on_page_markdown(markdown, page, **_):
     is_outside = page.file.src_uri in OUTSIDE
     root = "" if is_outside else "../"
     for page_name, name in OUTSIDE.items():
-        markdown = markdown.replace(f"](../../{name}", f"](../{page_name}")  # links of docs/api
+        markdown = markdown.replace(f"](../../{name}", f"](../{page_name}")  # links in docs/api
         markdown = markdown.replace(f"]({root}{name}", f"]({page_name}")
     return markdown.replace("](docs/", "](") if is_outside else markdown
 
 
 def on_page_content(html, page, **_):
-    """Join numbers with units, split pictures of pairs for phones, link the wall to the ledger."""
+    """Prevent line breaks before units, split pictures of pairs, and adapt links of wall.md."""
     html = unbroken(html)
     if page.file.src_uri == "wall.md":
         return html.replace('href="upstream/README.md"', 'href="upstream/index.html"')
@@ -55,7 +55,7 @@ def on_page_content(html, page, **_):
 
 
 def _halves(found):
-    """HTML that shows a picture's halves, stock and eonlib, separately, if it is a pair."""
+    """HTML of the two halves of a picture, stock and eonlib. Other pictures are unchanged."""
     width, height = Image.open(ROOT / "docs" / found[2]).size
     if width != 2 * height:
         return found[0]

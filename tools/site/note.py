@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Prints the numbers of the technical note, and draws its figures: `python -m tools.site.note`."""
+"""Prints the numbers and draws the figures of the technical note: `python -m tools.site.note`."""
 
 import numpy as np
 from matplotlib import style
@@ -41,7 +41,7 @@ STYLE = {
 
 
 def quartic_loss(mu):
-    """1 - E at roughness 1 by the quartic, [Portsmouth2025], Eq. (14)."""
+    """1 - E of FON at roughness 1 by the quartic of [Portsmouth2025], Eq. (14)."""
     one, (a, b, c, d) = np.float32(1.0), np.float32(FON_G)
     m = one - mu
     G = m * (a + m * (b + m * (c + m * d)))
@@ -49,7 +49,7 @@ def quartic_loss(mu):
 
 
 def closed_loss(mu):
-    """1 - E at roughness 1 by the closed form of H."""
+    """1 - E of FON at roughness 1 by the closed form of H."""
     one = np.float32(1.0)
     S = np.sqrt((one - mu) * (one + mu))
     t = mu / (one + S)
@@ -59,7 +59,7 @@ def closed_loss(mu):
 
 
 def fitted_loss(mu):
-    """1 - E at roughness 1 by the shaders' polynomials."""
+    """1 - E of FON at roughness 1 by the polynomials in the shaders."""
     p, q = (np.float32(shipped("eon", "EON", each)) for each in "PQ")
     return loss_fit.fitted(mu, p, q) / (np.float32(1.0) + np.float32(C1))
 
@@ -73,7 +73,7 @@ LOSSES = {
 
 
 def loss_errors(mu):
-    """Errors of 1 - E by name of the form, and the exact 1 - E."""
+    """Errors of 1 - E by the name of the formula, and the exact 1 - E."""
     exact = fon_loss(np.float64(mu)) / (1.0 + C1)
     return {name: np.float64(each(mu)) - exact for name, each in LOSSES.items()}, exact
 
@@ -81,7 +81,8 @@ def loss_errors(mu):
 def loss_figures():
     """Largest absolute and relative errors of 1 - E.
 
-    The paper's forms are evaluated at 4001 cosines from 1e-6 to 1, ours at all such float32 numbers.
+    The formulas of the paper are evaluated at 4001 cosines from 1e-6 to 1, and the formulas of
+    eonlib at all float32 numbers from 1e-6 to 1.
     """
     mu = np.unique(np.geomspace(1e-6, 1.0, 4001).astype(np.float32))
     errors, exact = loss_errors(mu)
@@ -109,21 +110,22 @@ def loss_figures():
 
 
 def variances(name, roughness, mu):
-    """Variance of a sampler's weight at unit reflectance for each mu, by quadrature."""
+    """Variance, by quadrature, of a sampler's weight at unit reflectance for each mu."""
     return np.array([moments(name, each, roughness)[1] for each in mu])
 
 
 def albedo_errors(mu, alpha):
-    """Errors of E_ss by MaterialX's fit, and by eonlib's fit in z and alpha."""
+    """Errors of E_ss in MaterialX's fit, and in eonlib's fit as a function of z and alpha."""
     exact = models.ggx_albedo_dir(mu, alpha)
     ours = albedo_fit.fitted(mu, alpha, shipped("ggx_albedo", "ggx_missing"))
     return fitted_albedo(mu, alpha, 1.0, 1.0) - exact, ours - exact
 
 
 def fresnel_errors(mu, alpha, ior=GLASS):
-    """Errors of a dielectric's albedo without compensation, for three forms.
+    """Errors of three formulas for a dielectric's albedo without energy compensation.
 
-    The forms are E_ss F(mu), MaterialX's fit for Schlick's curve with the same F0, and E_ss F(c).
+    The formulas are E_ss F(mu), MaterialX's fit for Schlick's curve with the same F0, and E_ss
+    F(c).
     """
     curves = cosine_fit.DIELECTRIC
     shape = np.sqrt((ior - 1.0) / (ior + 1.0))
@@ -139,7 +141,7 @@ def fresnel_errors(mu, alpha, ior=GLASS):
 
 
 def largest_figures():
-    """Largest variances of samplers; largest and mean errors of E_ss and a dielectric's albedo."""
+    """Largest variances of samplers, and errors of E_ss and of a dielectric's albedo."""
     mu = np.append(0.01, np.linspace(0.05, 1.0, 20))
     found = {
         f"{name} {r}": variances(name, r, mu).max()
@@ -163,7 +165,7 @@ def largest_figures():
 
 
 def energy_rows():
-    """Rows: equation, its reading, and the shares of light that a white surface returns."""
+    """Rows with an equation, an interpretation, and the albedos of a white surface."""
     mu = VIEWS
     wo = np.stack([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0 * mu, mu], axis=-1)
     E = models.ggx_albedo_dir(mu, 1.0)
@@ -171,9 +173,9 @@ def energy_rows():
         function(wo, 1.0, ROUGH, GLASS)[:, 0]
         for function in (dielectric_albedo_dir, transmission.dielectric_transmittance_dir)
     )
-    around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # views along tangent and bitangent
+    around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # views in the planes of tangent and bitangent
     yield "Microfacet BRDF, F = 1, alpha 1", "as it is", E
-    compensated = dielectric_albedo_dir(wo, 1.0, ROUGH, 0.0)  # index 0 reflects everything
+    compensated = dielectric_albedo_dir(wo, 1.0, ROUGH, 0.0)  # an IOR of 0 reflects all light
     yield "", "times 1 + F_ss (1 - E_ss) / E_ss", compensated
     stretched = models.ggx_albedo_dir_anisotropic(around, [0.001, 1.0])
     yield "alpha 0.001 and 1", "masking by direction, as corrected in July 2026", stretched
@@ -211,7 +213,7 @@ def page(text):
 
 
 def exact_figure():
-    """Figure: errors of the energy that FON loses, and variance of EON's samplers."""
+    """Figure of errors in the energy that FON loses, and of the variance of EON's samplers."""
     figure = Figure(figsize=(7.6, 3.0), layout="constrained")
     left, right = figure.subplots(1, 2)
     mu = np.unique(np.geomspace(1e-6, 1.0, 400).astype(np.float32))
@@ -231,7 +233,7 @@ def exact_figure():
 
 
 def albedo_figure():
-    """Figure: errors of the albedos of GGX and of a dielectric, by cosine."""
+    """Figure of the errors of albedos of GGX and of a dielectric, as functions of the cosine."""
     figure = Figure(figsize=(7.6, 3.0), layout="constrained")
     left, right = figure.subplots(1, 2)
     mu = np.geomspace(1e-3, 1.0, 120)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Updates the output of the first example on the page for researchers."""
+"""Updates docs/research.md with the output of the first example on that page."""
 
 import contextlib
 import io

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures the largest errors of stock and eonlib relative to the specification.
 
-`python -m tools.site.specification` measures the table of results.md on gl, in a few seconds.
+`python -m tools.site.specification` measures the table in results.md on gl, in a few seconds.
 """
 
 from contextlib import closing
@@ -15,7 +15,7 @@ from tools.site.ledger import figure
 
 PAGE = DOCS / "results.md"
 HOST, LIBRARIES = "gl", ("stock", "eonlib")  # host and libraries of the table
-# Rows of the table: check, subject, and what stock computes.
+# Each row of the table has a check, a subject, and what stock MaterialX computes.
 SUMMARY = (
     ("value", "sheen_bsdf, mode zeltner", "a singular frame where the viewer is along the normal"),
     ("transmitted", "dielectric_bsdf, scatter_mode RT", "a division by the masking G1"),
@@ -41,7 +41,7 @@ SUMMARY_HEAD = (
 
 
 def measured():
-    """Results of the table's checks with both libraries."""
+    """Results of the table's checks with stock MaterialX and with eonlib."""
     rows = {row[:2] for row in SUMMARY}
     nodes = sorted({subject.split(",")[0] for _, subject in rows})
     tasks = make_plan((), (HOST,), LIBRARIES, nodes=nodes).tasks
@@ -51,7 +51,7 @@ def measured():
 
 
 def summary(results):
-    """Markdown table of errors relative to the specification."""
+    """Markdown table of errors of both libraries relative to the specification."""
     errors = {
         (each.check, each.subject, each.library): "" if each.error is None else figure(each)
         for each in results

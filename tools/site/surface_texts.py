@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the tables of surfaces.md: whether shaders follow each sentence of their specifications.
+"""Writes the tables of surfaces.md, which say how shaders follow their specifications.
 
-`python -m tools.site.surface_texts` checks all sentences on HOSTS, and with VERSIONS of MaterialX
-on gl, in ten minutes.
+`python -m tools.site.surface_texts` checks each sentence on HOSTS with the installed MaterialX, and
+on gl with VERSIONS of MaterialX, in ten minutes.
 """
 
 import json
@@ -24,7 +24,7 @@ from tools.site.ledger import figure
 
 PAGE = DOCS / "surfaces.md"
 HOSTS = ("gl", "vulkan", "webgl")
-VERSIONS = (*TESTED[:-1], "main")  # versions other than the installed one
+VERSIONS = (*TESTED[:-1], "main")  # all versions except the installed version
 Verdicts: TypeAlias = dict[str, dict[str, str]]
 WORDS = {PASSED: "yes", DIFFERS: "left open", FAILED: "**no**", NOT_RUN: "not run"}
 DEFAULTS_HEAD = "| text | parameter | its default | the node's |\n|---|---|---|---|\n"
@@ -35,24 +35,73 @@ OPTIONS = [word for name in NAMES for word in ("--node", name)]
 TRANSPORT = (
     "how light travels inside the object is the renderer's; path tracers only get the medium"
 )
-# Statements without a check: text, section, statement, reason.
-# fmt: off
+# Statements without a check, as specification, section, statement and reason. fmt: off
 NOT_JUDGED = (
     (OPENPBR, "Subsurface", "radius, scale, anisotropy and the inversion of the albedo", TRANSPORT),
-    (OPENPBR, "Translucent base", "extinction and scattering from color, depth and scatter", TRANSPORT),
-    (OPENPBR, "Translucent base", "dispersion by an Abbe number", "no node of the graph reads the inputs"),
-    (OPENPBR, "Opacity", "geometry_opacity blends with what is behind", "the check `alpha` of `surface` judges it"),
+    (
+        OPENPBR,
+        "Translucent base",
+        "extinction and scattering from color, depth and scatter",
+        TRANSPORT,
+    ),
+    (
+        OPENPBR,
+        "Translucent base",
+        "dispersion by an Abbe number",
+        "no node of the graph reads the inputs",
+    ),
+    (
+        OPENPBR,
+        "Opacity",
+        "geometry_opacity blends with what is behind",
+        "the check `alpha` of `surface` judges it",
+    ),
     (OPENPBR, "Emission", "nits", "the conversion is the renderer's"),
-    (OPENPBR, "Thin-walled mode", "the ladder of reflections in a sheet of glass", "environment lookups have one direction of transmission"),
-    (STANDARD, "Transparency", "opacity by color", "the check `alpha` of `surface` judges its luminance"),
-    (STANDARD, "Specular transmission", "depth, scatter, dispersion", "no node of the graph reads the inputs"),
-    (STANDARD, "Specular transmission", "an index of 1 and no film on thin walls", "environment lookups do not show the index"),
+    (
+        OPENPBR,
+        "Thin-walled mode",
+        "the ladder of reflections in a sheet of glass",
+        "environment lookups have one direction of transmission",
+    ),
+    (
+        STANDARD,
+        "Transparency",
+        "opacity by color",
+        "the check `alpha` of `surface` judges its luminance",
+    ),
+    (
+        STANDARD,
+        "Specular transmission",
+        "depth, scatter, dispersion",
+        "no node of the graph reads the inputs",
+    ),
+    (
+        STANDARD,
+        "Specular transmission",
+        "an index of 1 and no film on thin walls",
+        "environment lookups do not show the index",
+    ),
     (STANDARD, "Subsurface scattering", "radius and anisotropy", "the text stipulates no model"),
-    (GLTF, "3.9", "occlusion, normal and alpha modes", "textures and coverage are the client's; no node reads `occlusion`"),
-    (GLTF, "KHR_materials_volume", "thickness and attenuation", "no connected node of the graph reads the inputs"),
+    (
+        GLTF,
+        "3.9",
+        "occlusion, normal and alpha modes",
+        "textures and coverage are the client's; no node reads `occlusion`",
+    ),
+    (
+        GLTF,
+        "KHR_materials_volume",
+        "thickness and attenuation",
+        "no connected node of the graph reads the inputs",
+    ),
     (GLTF, "KHR_materials_dispersion", "dispersion", "no node of the graph reads the input"),
     (USD, "Preview Surface", "displacement, occlusion", "no node of the graph reads the inputs"),
-    (USD, "Preview Surface", "parts below opacityThreshold are not rendered", "the check `alpha` of `surface` judges it"),
+    (
+        USD,
+        "Preview Surface",
+        "parts below opacityThreshold are not rendered",
+        "the check `alpha` of `surface` judges it",
+    ),
 )
 # fmt: on
 
@@ -60,7 +109,7 @@ NOT_JUDGED = (
 def rows(
     text: Text, results: Mapping[str, Mapping[str, Result]], verdicts: Verdicts
 ) -> Iterator[str]:
-    """Table rows of a text: verdict on gl, and hosts or versions with other verdicts."""
+    """Table rows of a specification, with the verdict on gl and any other verdicts."""
     for spec in (each for each in SENTENCES if each.text is text):
         places: dict[str, list[str]] = defaultdict(list)
         for place, verdict in verdicts[spec.title].items():
@@ -76,7 +125,7 @@ def rows(
 
 
 def actual_form(result: Result) -> str:
-    """The form that a shader uses instead of the text's, and its error; "" if the text holds."""
+    """The formula that a shader uses against the specification, with the error, or "" if none."""
     if result.verdict == PASSED:
         return ""
     cause = result.diagnosis.first
@@ -85,7 +134,7 @@ def actual_form(result: Result) -> str:
 
 
 def defaults(text: Text) -> Iterator[str]:
-    """Table rows of defaults that differ between a node's definition and the text."""
+    """Table rows for defaults that differ between a node's definition and the specification."""
     [definition, *_] = load_library("stock").getMatchingNodeDefs(text.node)
     for name, default in text.model.DEFAULTS.items():
         value = definition.getActiveInput(name).getValue()
@@ -98,7 +147,7 @@ def defaults(text: Text) -> Iterator[str]:
 
 
 def judged_with(version: str, *options: str) -> list[dict[str, Any]]:
-    """Results of `mxeon check --json` on gl with a version of MaterialX."""
+    """Results of `mxeon check --json` on gl with the given version of MaterialX."""
     done = run(wheel(version), "check", "--host", "gl", "--workers", "0", "--json", *options)
     if done.returncode not in (0, 1):
         raise RuntimeError(f"MaterialX {version}: {done.stderr}")
@@ -106,7 +155,7 @@ def judged_with(version: str, *options: str) -> list[dict[str, Any]]:
 
 
 def judged() -> tuple[dict[str, dict[str, Result]], Verdicts]:
-    """Results by subject and host; verdicts by subject and by host or MaterialX version."""
+    """Results by subject and host, and verdicts by subject and by host or MaterialX version."""
     results: dict[str, dict[str, Result]] = defaultdict(dict)
     verdicts: Verdicts = defaultdict(dict)
     for host in HOSTS:

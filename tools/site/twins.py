@@ -21,7 +21,8 @@ HEADER = "// Generated from genglsl/{stem}.glsl by `python -m tools.site.twins`;
 def osl_text(stem: str) -> str:
     """OSL translation of a GLSL file.
 
-    A vec3 becomes a vector in samplers and in declarations of wo, wi or wh, otherwise a color.
+    A vec3 becomes a vector in samplers and in declarations of wo, wi or wh. Any other vec3 becomes
+    a color.
     """
     text = (ROOT / "genglsl" / f"{stem}.glsl").read_text(encoding="utf-8")
     text = re.sub(r"\bvec3(?= w[oih]\b)", "vector", text)

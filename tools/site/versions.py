@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks eonlib and stock with all versions of MaterialX: `python -m tools.site.versions`.
 
-The command runs `mxeon check --host gl --node all` and all surface shaders' texts with each
-version, in 14 minutes of processor time, and stores the results in `ledger/versions.json`. From
-that file, `python -m tools.site` writes versions.md, and the site adds lines to the ledger's pages.
+The command runs `mxeon check --host gl --node all` and the checks of all surface shaders'
+specifications with each version, in 14 minutes of processor time. Results are stored in
+`ledger/versions.json`, from which `python -m tools.site` writes versions.md and the site adds lines
+to the ledger's pages.
 """
 
 import json
@@ -24,13 +25,13 @@ COMMAND = ("--node", "all", *surface_texts.OPTIONS, "--library", "eonlib", "--li
 
 
 def record(versions):
-    """Data for the pages; `versions` has the results by version.
+    """Data for pages of the site, computed from the results in `versions`, by version.
 
-    - `nodes`: Number of results by library, version, node and verdict, without sentences of surface
-      shaders' texts, because surfaces.md has their verdicts.
-    - `open`: Subjects of eonlib's results that do not pass, by version, check and verdict.
-    - `pages`: By ledger page about MaterialX on gl or about its texts and by version, whether all
-      rows of the page pass.
+    - `nodes`: Number of results by library, version, node and verdict. Sentences of specifications
+      of surface shaders are not counted, because surfaces.md has these verdicts.
+    - `open`: Subjects for which eonlib does not pass, by version and by check and verdict.
+    - `pages`: Whether all rows of a ledger page pass, by page and version, for pages about
+      MaterialX on gl or about texts in MaterialX.
     """
     found = {
         "commit": (MAIN.parent / "commits.txt").read_text().split(" ", 2)[:2],

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes wall.md, which shows materials in all renderers, from reports of `mxeon check`.
+"""Writes wall.md, which shows materials in all renderers, from the reports of `mxeon check`.
 
-python -m tools.site.wall REPORT...    folders that `mxeon check --report` wrote
+python -m tools.site.wall REPORT...    REPORT is a folder written by `mxeon check --report`
 """
 
 import re
@@ -39,8 +39,8 @@ from tools.site import DOCS, brief
 PAGE = DOCS / "wall.md"
 TILES = DOCS / "images" / "wall"
 SIZE, QUALITY = 192, 85  # width of a tile in pixels, and WebP quality
-LIGHTS = SIDE.name, BACK.name  # all renderers have these scenes
-BLACK = 1e-3  # pictures with a smaller mean show nothing
+LIGHTS = SIDE.name, BACK.name  # scenes that all renderers can draw
+BLACK = 1e-3  # a picture with a smaller mean counts as black
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 OTHER_MODELS = re.compile(
     "fon|qon|LAMBERT|shorter|compensation false|eon_diffuse|standard_surface|UsdPreview", re.I
@@ -80,7 +80,7 @@ class Tile(NamedTuple):
     """A picture on the wall."""
 
     host: str
-    variant: str  # library or node; "" for a document with nodes of the renderer
+    variant: str  # library or node; "" if the renderer's own nodes draw a document
     scene: str
     image: NDArray[np.floating]
     difference: Difference
@@ -97,7 +97,7 @@ class Tile(NamedTuple):
 
 
 def title(tiles: list[Tile]) -> str:
-    """The hosts of tiles grouped by variant, such as "gl, storm: stock; cycles: eonlib"."""
+    """Names of hosts grouped by variant, such as "gl, storm: stock; cycles: eonlib"."""
     hosts: dict[str, list[str]] = defaultdict(list)
     for each in tiles:
         hosts[each.variant].append(each.host)
@@ -108,7 +108,7 @@ def title(tiles: list[Tile]) -> str:
 
 
 def cause_of(result: Result) -> str:
-    """HTML of the cause: wrong lobes, the reason why a picture was not judged, or the diagnosis."""
+    """HTML with the wrong lobes, the diagnosis, or the reason why a picture was not judged."""
     text = wrapped(escape(words.diagnosis(result.diagnosis)))
     if result.check == "finite":
         reason = text.partition(": the")[0].removeprefix(f"{result.host}: ")
@@ -122,7 +122,7 @@ def cause_of(result: Result) -> str:
 
 
 def wrapped(text: str) -> str:
-    """HTML of a text in which lines can break after underscores."""
+    """HTML of a text that permits line breaks after underscores."""
     return text.replace("_", "_<wbr>")
 
 
@@ -138,7 +138,7 @@ def figure(
     caption: str,
     verdict: str = "expected",
 ) -> str:
-    """Save a picture as a tile; returns the HTML of its figure."""
+    """Save a picture as a tile, and return the HTML of a figure with the tile."""
     name = re.sub(r"[^\w-]+", "-", name)
     codes = Image.fromarray(srgb_encoded(image.astype(np.float32)))
     codes = codes.resize((SIZE, SIZE), Image.Resampling.LANCZOS)
@@ -150,7 +150,7 @@ def figure(
 
 
 def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> str:
-    """HTML of the reference, then tiles by difference; equal captions share a tile."""
+    """HTML of the reference and of tiles sorted by difference. Equal captions share a tile."""
     groups: dict[tuple[str, str], list[Tile]] = defaultdict(list)
     for each in sorted(tiles, key=lambda each: each.largest):
         groups[each.caption, each.verdict].append(each)
@@ -165,7 +165,7 @@ def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> st
 
 
 class Wall:
-    """The wall: pictures and results of all reports. Later reports replace earlier ones."""
+    """Pictures and results of all reports. A later report replaces results of an earlier report."""
 
     def __init__(self, folders: list[Path]) -> None:
         self.hosts: dict[str, str] = {}
@@ -206,7 +206,7 @@ class Wall:
         return Tile(host, variant, scene, image, found, cause_of(judged), judged.verdict)
 
     def section(self, material: tuple[str, str]) -> tuple[float, str]:
-        """Largest difference of a material, and its section of the page."""
+        """Largest difference of a material, and the section of the page about the material."""
         document, element = material
         references = {scene: pixels(self.references[(*material, scene)]) for scene in LIGHTS}
         if max(map(np.mean, references.values())) < BLACK:
@@ -228,7 +228,7 @@ class Wall:
         return max(each.largest for each in tiles), text
 
     def not_drawn(self) -> str:
-        """Markdown list of materials that renderers do not draw, grouped by renderer and reason."""
+        """Markdown list of materials that renderers do not draw, by renderer and reason."""
         elements: dict[tuple[str, str], list[str]] = defaultdict(list)
         for (subject, host, _), result in self.results.items():
             for document, element in self.materials:
@@ -241,7 +241,7 @@ class Wall:
         )
 
     def rough(self) -> str:
-        """Section of rough diffuse nodes by renderer; equal pictures of a renderer appear once."""
+        """Section about rough diffuse nodes, in which equal pictures of a renderer appear once."""
         reference = pixels(self.references[PORTRAIT, EON, BACK.name])
         tiles: dict[tuple[str, float], Tile] = {}
         for each in self.images:
@@ -253,7 +253,7 @@ class Wall:
 
     @cached_property
     def materials(self) -> list[tuple[str, str]]:
-        """Materials with pictures of most hosts; reports may also contain other materials."""
+        """Materials for which many hosts have pictures, at least half of the largest number."""
         hosts = defaultdict(set)
         for document, element, _, host, _ in self.images:
             if document != PORTRAIT:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ledger of upstream defects: measurements and patches of its pages.
+"""Measurements and patches for the ledger, which has a page for each upstream defect.
 
-`docs/upstream` has a page for each defect, the latest results in `measured.json`, and repairs
-as commits in `patches/`. The message of a patch names its page. The site adds figures to the pages.
+The pages are in `docs/upstream`, with the latest results in `measured.json`. Repairs are commits in
+`patches/`, and the message of a patch names the page. The site adds figures to the pages.
 
     python -m tools.site.ledger.measure [HOST ...]  repeats the measurements
     python -m tools.site.ledger.pictures            draws the pages' pictures
@@ -28,7 +28,7 @@ MEASURED = FOLDER / "measured.json"
 
 
 def measured() -> dict[str, Any]:
-    """Measurements by page: rows of the table, host and versions, diagnosis."""
+    """Measurements by page: the rows of the table, the host, the versions and the diagnosis."""
     return dict(json.loads(MEASURED.read_text(encoding="utf-8")))
 
 
@@ -38,7 +38,7 @@ def write_measured(found: dict[str, Any]) -> None:
 
 
 def dumped(found: Any, depth: int) -> str:
-    """JSON with one line per entry in objects of the given depth."""
+    """JSON text in which objects nested less deeply than `depth` have one line for each entry."""
     if depth == 0 or not isinstance(found, dict):
         return json.dumps(found)
     lines = (f"{json.dumps(name)}: {dumped(each, depth - 1)}" for name, each in found.items())
@@ -46,7 +46,7 @@ def dumped(found: Any, depth: int) -> str:
 
 
 def with_patches(found: dict[str, Any]) -> dict[str, Any]:
-    """Measurements with the shortest change of each page's patch, to recognize patched copies."""
+    """Measurements with the shortest change of each patch, which identifies a patched copy."""
     return found | {
         page: found[page] | {"patch": _shortest_change(path.read_bytes().decode())}
         for page, path in patches("materialx").items()
@@ -54,12 +54,12 @@ def with_patches(found: dict[str, Any]) -> dict[str, Any]:
 
 
 def _shortest_change(patch: str) -> tuple[str, str, str]:
-    """The shortest change of a patch: file, old text, new text."""
+    """File, old text and new text of the shortest change in a patch."""
     changes, whole_file = [], r"^--- a/(\S+)\n\+\+\+ .*\n((?:[ @+-].*\n)+)"
     for file, part in re.findall(whole_file, patch, re.MULTILINE):
         for run in re.findall(r"^(?: .*\n)?(?:[+-].*\n)+(?: .*\n)?", part, re.MULTILINE):
             lines = run.splitlines(keepends=True)
-            if {line[0] for line in lines} >= {"+", "-"}:  # a replacement needs no context lines
+            if {line[0] for line in lines} >= {"+", "-"}:  # no context needed for a replacement
                 lines = [line for line in lines if line[0] != " "]
             old, new = ("".join(line[1:] for line in lines if line[0] != sign) for sign in "+-")
             changes.append((file, old, new))
@@ -67,7 +67,7 @@ def _shortest_change(patch: str) -> tuple[str, str, str]:
 
 
 def figure(result: Result) -> str:
-    """The error of a result as text for pages."""
+    """The error of a result, formatted for pages."""
     return f"{result.error:.0f}" if result.quantity is Quantity.VALUES else f"{result.error:.2g}"
 
 
@@ -76,7 +76,7 @@ def figure(result: Result) -> str:
 
 @cache
 def patches(project: str) -> dict[str, Path]:
-    """Paths of a project's patches by page, in the order of their numbers."""
+    """Paths of a project's patches by page, in the order of the patch numbers."""
     found = {}
     for path in sorted((PATCHES / project).glob("*.patch")):
         [page] = re.findall(r"docs/upstream/(\w+)\.md", path.read_text(encoding="utf-8"))
@@ -85,7 +85,7 @@ def patches(project: str) -> dict[str, Path]:
 
 
 def patches_of(page: str) -> list[Path]:
-    """The patches of a page, in all projects that have one."""
+    """The patches of a page, from all projects that have a patch for the page."""
     projects = sorted(path.name for path in PATCHES.iterdir() if path.is_dir())
     return [found[page] for each in projects if page in (found := patches(each))]
 
@@ -96,7 +96,7 @@ def own_diff(page: str) -> str:
 
 
 def needed(page: str) -> set[str]:
-    """The page itself, and all pages whose patches its patch requires, recursively."""
+    """A page, and all pages whose patches the patch of the page requires, recursively."""
     found = {page}
     while more := {each for name in found for each in issues()[name].needs} - found:
         found |= more
@@ -111,11 +111,11 @@ def linked(source: Path, target: Path) -> Path:
 
 
 def apply(folder: Path, *diffs: Path | str, strip: int = 1) -> Path:
-    """Apply patches, given as paths or diffs, to a folder of files or links; returns the folder.
+    """Apply patches, given as paths or diffs, to a folder of files or links. Returns the folder.
 
-    `strip` is the number of path components to drop.
+    `strip` is the number of leading path components that are dropped.
     """
-    # Ignore a repository around the folder, and the machine's configuration.
+    # Git must ignore a repository around the folder and the configuration of the machine.
     alone = {"GIT_CEILING_DIRECTORIES": str(folder.resolve().parent), "GIT_CONFIG_NOSYSTEM": "1"}
     env = os.environ | alone
     command = ["git", "-c", "core.autocrlf=false", "apply", "--unidiff-zero", f"-p{strip}", "-"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the tables of the ledger's pages: `python -m tools.site.ledger.measure [HOST ...]`."""
+"""Measures the tables in the ledger: `python -m tools.site.ledger.measure [HOST ...]`."""
 
 import json
 import sys
@@ -25,10 +25,10 @@ OWN_NODES = ("three", "babylon", "shadewire", "three-gpu-pathtracer")
 
 
 def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple[list[Result], str]:
-    """Results of the checks in `rows` on a host or "source"; device and versions as text.
+    """Results of the checks in `rows` on a host or "source", and a text with device and versions.
 
-    By default, `rows` are those in the tables of pages about this host and library. STOCK includes
-    a renderer's own nodes.
+    By default, `rows` are all rows in tables of pages about `host` and `library`. The library STOCK
+    includes a renderer's own nodes.
 
     Raises
     ------
@@ -50,12 +50,12 @@ def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple
 
 
 def shows(issue: Issue, host: str, library: str) -> bool:
-    """Whether the table of an issue's page is measured on this host with this library."""
+    """Whether the table on the page of an issue is measured on `host` with `library`."""
     return issue.host == host and (issue.library == EONLIB) == (library == EONLIB)
 
 
 def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any]:
-    """Measurements for an issue's page; `results` must contain its rows."""
+    """Measurements for the page of an issue, taken from `results` for the rows of the page's table."""
     by_row = {(each.check, each.subject): each for each in results}
     judged = [by_row[row] for row in issue.rows]
     rows = [
@@ -69,11 +69,11 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
     nearest = [title for _, title in ranking if title != diagnosis.first.key]
     if diagnosis.kind is Kind.MODEL and nearest:
         measures["next"] = nearest[0]
-    return dict(json.loads(json.dumps(measures)))  # lists, as after reading, instead of tuples
+    return dict(json.loads(json.dumps(measures)))  # tuples become lists, as in a file
 
 
 def fields(cause: Cause) -> dict[str, Any]:
-    """The fields of a cause that do not depend on the driver and are not empty."""
+    """The fields of a cause that are not empty and do not depend on the driver."""
     found = asdict(cause) | {"kind": cause.kind.value}
     if cause.region:
         region = found["region"].items()
@@ -83,7 +83,7 @@ def fields(cause: Cause) -> dict[str, Any]:
 
 
 def main(names: Sequence[str]) -> None:
-    """Measure the defects on the given hosts; without names, on all hosts, and reset all errors."""
+    """Measure defects on the named hosts. Without names, reset all errors and measure all hosts."""
     found = measured()
     hosts = [host for each in issues().values() for host in each.hosts if host]
     if not names:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Adds the list of pages, figures, diffs of patches and versions to the ledger on the site."""
+"""Adds a list of pages, measurements, diffs of patches and versions to the ledger on the site."""
 
 import json
 import re
@@ -14,9 +14,9 @@ from mxeon.conformance.results.quantities import Quantity
 from tools.site.ledger import ROOT, measured, patches, patches_of
 
 VERSIONS = Path(__file__).with_name("versions.json")
-PLACEHOLDER = re.compile(r"<!-- patches (\S+) -->")  # stands for a project's table in the index
-LINES = 20  # maximum changed lines of a diff on a page
-# Headings of the index's groups, by name.
+PLACEHOLDER = re.compile(r"<!-- patches (\S+) -->")  # replaced by a project's table
+LINES = 20  # largest number of changed lines in a diff on a page
+# Headings of the groups of pages in the index, by name of the group.
 GROUPS = {
     "rough_diffuse": "`oren_nayar_diffuse_bsdf`",
     "diffuse": "`burley_diffuse_bsdf`, `subsurface_bsdf`, `translucent_bsdf`",
@@ -53,7 +53,7 @@ def entries() -> str:
 
 
 def filled(name: str, text: str) -> str:
-    """Markdown of a ledger page, or of the index README, with the site's additions."""
+    """Markdown of a ledger page or of the index README, with the text that the site adds."""
     if name == "README":
         text = text.replace("<!-- entries -->", entries())
         return PLACEHOLDER.sub(lambda found: patch_table(found[1]), text)
@@ -71,7 +71,7 @@ def filled(name: str, text: str) -> str:
 
 
 def table(issue: Issue) -> str:
-    """Markdown table of a page's measurements, and the first row's diagnosis; "" without rows."""
+    """Markdown table of a page's measurements, and a diagnosis of the first row."""
     if not issue.rows or not issue.cause:
         return ""
     found = measured()[issue.page]
@@ -92,7 +92,7 @@ def table(issue: Issue) -> str:
 
 
 def short_diff(patch: Path) -> tuple[str, int]:
-    """The first LINES changed lines of a patch, and the number of omitted ones."""
+    """The first LINES changed lines of a patch, and the number of omitted changed lines."""
     lines: list[str] = []
     count, follows = 0, False
     for line in patch.read_text(encoding="utf-8").split("\n---\n", 1)[1].splitlines():
@@ -110,7 +110,7 @@ def short_diff(patch: Path) -> tuple[str, int]:
 
 
 def outcome(issue: Issue) -> str:
-    """Sentence about checks that pass, or still fail, with a page's patch and those it needs."""
+    """Sentence about checks that pass or fail after a page's patch and the required patches."""
     checks: dict[tuple[str, str, str], list[str]] = defaultdict(list)
     for check, subject in issue.repaired:
         checks[subject, "passes", "pass"].append(f"`{check}`")
@@ -130,7 +130,7 @@ def outcome(issue: Issue) -> str:
 
 
 def affected_versions(issue: Issue) -> str:
-    """Sentence about the MaterialX versions with a defect; "" if no version was checked."""
+    """Sentence about the MaterialX versions that have a defect, or "" if no version was checked."""
     versions = json.loads(VERSIONS.read_text(encoding="utf-8"))
     if issue.page not in versions["pages"]:
         return ""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the pictures of the ledger: `python -m tools.site.ledger.pictures`.
 
-Each picture shows a page's document on gl with the installed MaterialX, then with the page's patch
-and the patches that it needs, then the difference.
+Each picture has three parts, rendered on gl: a page's document with the installed MaterialX, the
+document with the page's patch and all patches which that patch needs, and the difference.
 """
 
 import sys
@@ -25,7 +25,7 @@ from tools.site.ledger import FOLDER, apply, linked, needed, patches
 
 PICTURES = FOLDER / "pictures"
 SIZE, LINE = 192, 4  # width of each part and of the line between parts, in pixels
-QUALITY, BACKGROUND = 90, 30  # WebP quality; sRGB code
+QUALITY, BACKGROUND = 90, 30  # WebP quality, and sRGB value from 0 to 255
 WHITE = {"color": (1.0, 1.0, 1.0)}
 FUZZ = WHITE | {"roughness": 1.0, "mode": "zeltner"}
 BASE = lobe_text("oren_nayar_diffuse_bsdf", WHITE, "base")
@@ -49,7 +49,7 @@ ADDED = {
 
 
 def hair(variance: float, scale: float) -> str:
-    """A document of white hair whose lobes all have the same variance and scale."""
+    """A document with white hair in which all lobes have the same variance and scale."""
     inputs: dict[str, ArrayLike] = {"absorption_coefficient": (0.0, 0.0, 0.0)}
     return material_text("chiang_hair_bsdf", inputs | dict.fromkeys(LOBES, (variance, scale)))
 
@@ -70,7 +70,7 @@ def layered(*nodes: str) -> str:
     return document_text("".join((BASE, *nodes)) + SURFACE)
 
 
-# Scene and document of each page's picture; the text of the page describes them.
+# Scene and document for the picture of each page, as described in the text of the page.
 PAGES = {
     "genglsl_clamped_dot": ("back", material_text("oren_nayar_diffuse_bsdf", ROUGH)),
     "genglsl_film_half": ("side", material_text("generalized_schlick_bsdf", FILM)),
@@ -106,7 +106,7 @@ PAGES = {
 
 
 def draw(folder: str, *pages: str) -> None:
-    """Render the pictures of pages with this process's MaterialX, and save them as arrays."""
+    """Render the pictures of pages with the MaterialX of this process, and save arrays."""
     scenes = {each.name: each for each in SCENES}
     with open_host("gl") as host:
         for page in pages:
@@ -117,7 +117,7 @@ def draw(folder: str, *pages: str) -> None:
 
 
 def drawn(page: str, folder: Path, repair: bool) -> NDArray[np.float32]:
-    """A page's picture with stock MaterialX, or with the page's patch and the patches it needs."""
+    """A page's picture with stock MaterialX, which gets the required patches if `repair` is true."""
     package = linked(Path(mx.__file__).parent, folder / "MaterialX")
     if repair:
         names = needed(page)
@@ -129,7 +129,7 @@ def drawn(page: str, folder: Path, repair: bool) -> NDArray[np.float32]:
 
 
 def main() -> None:
-    """Write the picture of each page: stock, repaired and difference side by side."""
+    """Write a picture for each page: stock, repaired and difference side by side."""
     mask = visible(SIZE, "sphere").mask[..., None]
     for page, (scene, _) in PAGES.items():
         with TemporaryDirectory(prefix="mxeon-picture-") as base:
@@ -137,7 +137,7 @@ def main() -> None:
                 drawn(page, Path(base, str(repair)), repair) for repair in (False, True)
             )
         change = np.where(mask, np.abs(stock - repaired), 0.0)
-        # Halve the exposure in white surroundings, so that excess light is visible.
+        # Half the exposure makes excess light visible in a white environment.
         gain = 0.5 if scene == "furnace" else 1.0
         images = gain * stock, gain * repaired, change / change.max()
         a, b, c = (np.where(mask, srgb_encoded(each), np.uint8(BACKGROUND)) for each in images)

@@ -3,7 +3,7 @@
 
     python -m tools.site.ledger.tables MaterialX.PBRSpec.md
 
-The output has the figures of docs/upstream/pbrlib_tables.md.
+The figures in docs/upstream/pbrlib_tables.md are from this output.
 """
 
 import re
@@ -14,14 +14,14 @@ import MaterialX as mx
 
 from mxeon.shaders.library import load_library
 
-GROUP = "pbr"  # nodegroup of the specification's nodes; some have namesakes in other nodegroups
-NONE = ("", "__zero__", "__empty__")  # defaults that count as missing
-KEYS = ("type", "default", "accepted values")  # what is compared
-Port = dict[str, object]  # a port's types, default and accepted values, by KEYS
+GROUP = "pbr"  # nodegroup of the specification's nodes; other nodegroups may reuse a name
+NONE = ("", "__zero__", "__empty__")  # texts that mean that a default is missing
+KEYS = ("type", "default", "accepted values")  # compared columns
+Port = dict[str, object]  # types, default and accepted values of a port, by KEYS
 
 
 def printed(text: str) -> dict[str, dict[str, Port]]:
-    """Ports by node and name, from the tables of a text whose first column is Port."""
+    """Ports by node and name, from all tables of a text in which the first column is Port."""
     nodes: dict[str, dict[str, Port]] = {}
     node, columns = "", []
     for line in text.splitlines():
@@ -43,7 +43,7 @@ def printed(text: str) -> dict[str, dict[str, Port]]:
 
 
 def defined(node: str) -> dict[str, Port]:
-    """Ports of a node by name, from all its definitions in MaterialX."""
+    """Ports of a node by name, from all definitions of the node in MaterialX."""
     nodes = [each for each in load_library("stock").getNodeDefs() if each.getNodeString() == node]
     default = [each for each in nodes if not each.getVersionString() or each.getDefaultVersion()]
     ports: dict[str, Port] = {}
@@ -60,14 +60,14 @@ def defined(node: str) -> dict[str, Port]:
 
 
 def interval(least: str, most: str) -> str:
-    """An interval of numbers as the specification writes it; "" without ends."""
+    """An interval of numbers in the specification's notation, or "" if both ends are missing."""
     if not least and not most:
         return ""
     return f"{f'[{least}' if least else '(-inf'}, {f'{most}]' if most else 'inf)'}"
 
 
 def value(text: str) -> object:
-    """A default as a tuple of numbers or a text; equal components are reduced to one number."""
+    """A default as a text or a tuple of numbers. If all components are equal, the tuple has one."""
     try:
         numbers = tuple(map(float, text.split(",")))
     except ValueError:
@@ -76,7 +76,7 @@ def value(text: str) -> object:
 
 
 def accepted(text: str) -> object:
-    """Accepted values: for a range, its brackets and ends; for names, a set."""
+    """Accepted values: the brackets and ends of a range, or a set of names."""
     text = text.replace(" ", "").replace("∞", "inf")
     if text.startswith(("[", "(")):
         return text[0], text[-1], *map(value, text[1:-1].split(","))

@@ -35,9 +35,7 @@ def front_only(value: Value) -> Value:
 
 
 def _radiance(inputs: Inputs) -> Array:
-    """Radiance that a Schlick curve scales: the input `base` if present, or a uniform emission's
-    color.
-    """
+    """Radiance that a Schlick curve scales: the input `base` if present, or the color at BASE."""
     return inputs["base"] if "base" in inputs else inputs[BASE]
 
 

@@ -80,9 +80,7 @@ parameters = partial(lobes.filled, {**DEFAULTS, **FRAME})
 
 
 def alphas(roughness: Array, anisotropy: Array) -> Array:
-    """alpha along tangent and bitangent, (N, 2). The mean square is r^4 if no alpha is clamped to
-    1.
-    """
+    """alpha along tangent and bitangent, (N, 2). Without a clamp to 1, the mean square is r^4."""
     along = np.square(roughness) * np.sqrt(2.0 / (1.0 + np.square(1.0 - anisotropy)))
     both = np.concatenate([along, (1.0 - anisotropy) * along], axis=-1)
     return np.asarray(np.minimum(both, 1.0))
