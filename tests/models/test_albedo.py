@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Albedos and their inverses: limits, invariants, agreement with quadrature and 50 digits."""
+"""Albedos and their inverses: limits, invariants, and agreement with quadrature and with mpmath."""
 
 import mpmath as mp
 import numpy as np
@@ -11,7 +11,7 @@ from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS, diffuse_model
 from tests.support import oracle, tolerances
 from tests.support.cases import parameter
 
-# Cosines over the closed range [0, 1], dense at both ends.
+# Cosines in the closed range [0, 1], dense at both ends.
 DENSE = np.geomspace(1e-16, 1.0, 60)
 MU = np.unique([0.0, 5e-324, 1e-300, *DENSE, *(1.0 - DENSE)])
 RHO = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
@@ -156,7 +156,7 @@ def test_albedos_broadcast_as_documented():
     assert albedo_dir_quadrature(diffuse.eon_brdf, mu, rho, r, nodes=2).shape == (4, 5, 3)
 
 
-# Colors and roughness in [0, 1], including all magnitudes near 0 and 1.
+# Colors and roughnesses in [0, 1], including all orders of magnitude near 0 and near 1.
 SMALL = 10.0 ** np.arange(-300.0, 0.0, 7.0)
 EDGES = np.unique(np.concatenate([SMALL, 1.0 - SMALL, np.linspace(0.0, 1.0, 201)]))
 NORMAL = diffuse.eon_rho_from_albedo_normal
@@ -194,14 +194,14 @@ def test_albedos_return_to_the_color():
 
 
 def exact_normal(color, r):
-    """Solution of [Portsmouth2025], Eq. (30), by mpmath."""
+    """Solution of [Portsmouth2025], Eq. (30), in the current precision of mpmath."""
     normal, mean = oracle.fon_af(r), oracle.fon_albedo_avg(1, r)
     a, b = mean - normal, normal + color * (1 - mean)
     return (-b + mp.sqrt(b * b + 4 * a * color)) / (2 * a)
 
 
 def exact_average(color, r):
-    """Solution of [Portsmouth2025], Eq. (33), by mpmath."""
+    """Solution of [Portsmouth2025], Eq. (33), in the current precision of mpmath."""
     return color / (color + oracle.fon_albedo_avg(1, r) * (1 - color))
 
 

@@ -24,13 +24,13 @@ from mxeon.models.transmission import refraction_direction, schlick_ior
 from tests.fuzz import arguments
 
 PAGES = Path(__file__).resolve().parents[2] / "docs" / "api"
-# Functions on the API pages that do not accept arrays.
+# Functions on the API pages that accept no arrays.
 NO_ARRAYS = {"layer", "add", "model", "model_names"}
 
 
 @pytest.fixture(scope="module")
 def rows():
-    """Rows of bad arguments by function, so that each function has its own test."""
+    """Rows of bad arguments, grouped by function, so that each function has its own test."""
     found = defaultdict(list)
     for row in arguments.rows():
         found[row[0]].append(row)
@@ -47,13 +47,14 @@ def test_the_least_number_above_zero_counts_as_zero():
     for function in arguments.functions().values():
         for name in arguments.tried(function, arrays=True):
             least, zero = (result(function, name, value) for value in (arguments.SMALLEST, 0.0))
-            if least and zero and name != "thickness":  # the specified model jumps at 0
+            # The specified film model jumps at thickness 0.
+            if least and zero and name != "thickness":
                 for a, b in zip(least, zero, strict=True):
                     np.testing.assert_allclose(a, b, 1e-9, 1e-12, err_msg=f"{function} {name}")
 
 
 def result(function, name, value):
-    """The arrays that a function returns; an empty list if it refuses the value."""
+    """Arrays that a function returns, or an empty list if the function refuses the value."""
     returned = []
 
     @functools.wraps(function)
@@ -70,7 +71,8 @@ def test_every_function_on_the_pages_is_tried():
     text = "".join(page.read_text(encoding="utf-8") for page in PAGES.glob("*.md"))
     names = r"^::: (mxeon\.(?:models|albedo|inversion|sampling)[\w.]*\.[a-z]\w+)$"
     paths = re.findall(names, text, re.MULTILINE)
-    paths = [each for each in paths if ".surfaces." not in each]  # surfaces take a light and inputs
+    # Functions of surface shaders take a light and a set of inputs.
+    paths = [each for each in paths if ".surfaces." not in each]
     names = {path.rpartition(".")[2] for path in paths if not ismodule(resolve_name(path))}
     tried = {name.rpartition(".")[2] for name in arguments.functions()}
     assert len(names) > 90
@@ -78,7 +80,7 @@ def test_every_function_on_the_pages_is_tried():
 
 
 def computed(function, values):
-    """The arrays that a function returns, or "refused" if it raises an error."""
+    """Arrays that a function returns, or "refused" if the function raises a ValueError."""
     try:
         with warnings.catch_warnings(action="ignore"), np.errstate(all="ignore"):
             result = arguments.call(function, values)
@@ -97,7 +99,7 @@ def test_every_function_computes_in_float64_whatever_the_type_of_its_arguments(k
         base = arguments.base(function)
         for name in arguments.tried(function, arrays=True):
             if isinstance(base[name], int | float | tuple | np.ndarray):
-                # If the type has more digits than float64, the value needs them.
+                # A type with more digits than float64 gets a value that needs these digits.
                 exact = np.asarray(base[name], np.longdouble) * (1.0 - np.longdouble(2.0) ** -57)
                 value = exact.astype(kind)
                 found = computed(function, base | {name: value})
@@ -130,7 +132,7 @@ SOAP |= {"thinfilm_thickness": -1.0, "thinfilm_ior": 1.3}
 LAMBERT, SAMPLE, FILM = models.lambert_brdf, sampling.eon_sample, thin_film.film_brdf
 COATED, HAIR = models.dielectric_over_eon_albedo_dir, hair.chiang_hair_absorption_from_color
 NODE, HALF = "dielectric_bsdf", np.full((4, 3), 0.5)
-# Functions, positional arguments, and messages.
+# Functions, positional arguments, and the expected error message.
 RULES = (
     # Ranges: the message names the first element that is out of range.
     (models.eon_brdf, (UP, UP, 1.0, 1.2), "roughness must lie in [0, 1]; got 1.2"),
@@ -142,7 +144,7 @@ RULES = (
     (FILM, (NODE, UP, UP, SOAP), "thinfilm_thickness must lie in [0, 1e9]; got -1.0"),
     (multiply, (LOBE, -0.5), "weight must lie in [0, inf); got -0.5"),
     (COATED, (*CLAY, 0.001, 1.5), "alpha must lie in [0.01, 1]; got 0.001"),
-    # Directions: unit length and sides of the surface.
+    # Directions: unit length, and the side of the surface.
     (LAMBERT, (UP, [UP, [0, 0, 2]], 1), "wi must be unit vectors to 1e-06; got squared length 4.0 at index (1,)"),
     (LAMBERT, ([np.nan, 0, 1], UP, 1), "wo must be unit vectors to 1e-06; got squared length nan"),
     (LAMBERT, (UP, [1e200, 0, 0], 1), "wi must be unit vectors to 1e-06; got squared length inf"),

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values and gradients of every function that accepts PyTorch or JAX arrays.
 
-Tests are skipped if the library is not installed. Gradients are compared with finite differences
-of the same function where these are reliable.
+Tests are skipped if the library is not installed. Gradients are compared with finite differences of
+the same function wherever the differences are reliable.
 """
 
 import inspect
@@ -29,40 +29,41 @@ from tools.site import arrays as table
 TINTS = ("rho", "color", "tint", "radiance", "base", "absorption", "scattering")
 TINTS += ("emission", "scattered", "behind")
 COLORS = {"color0", "color82", "color90", "ior", "extinction", *TINTS}
-# Parts of the names of functions whose roughness has two components.
+# Parts of function names. These functions have a roughness with two components.
 PAIRS = ("microfacet", "ggx_", "btdf", "transmittance_dir")
 INTERFACES = "dielectric_over_eon", "varnished"
 ROWS, FEW = 48, 4
-# Functions that sum thousands of quadrature nodes per row, by the end of their names.
+# Ends of function names. These functions sum thousands of quadrature nodes per row.
 FACETS = ("dielectric_albedo_dir", "conductor_albedo_dir", "schlick_albedo_dir")
 QUADRATURES = (*FACETS, "film_albedo_dir", "transmittance_dir", "ggx_albedo_dir_anisotropic")
 QUADRATURES += ("conty_kulla_albedo_dir",)
-# Functions that JAX takes seconds to compile; the functions of their factors are tested instead.
+# Functions that JAX takes seconds to compile; tests cover the functions of their factors instead.
 LONG = ("chiang_hair_bcsdf", "film_albedo_dir", "dielectric_albedo_dir", "conty_kulla_albedo_dir")
 LONG += ("transmittance_dir",)
 ENDS = ("brdf", "albedo_dir", "sample", "pdf")
 LONG += tuple(f"{name}_{end}" for name in INTERFACES for end in ENDS)
 SEED = 11
-GRADIENT = 1e-7  # error of finite differences, relative to the larger of 1 and the gradient
+GRADIENT = 1e-7  # error of finite differences, divided by the larger of 1 and the gradient
 WIDTH = 1e-4  # step of the finite differences
-OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)  # three single and three double steps on each side
-RELIABLE = 2e-8  # maximum disagreement of two step widths for a reliable derivative
-COMPARED = 0.6  # minimum fraction of partial derivatives that are compared
-# Smaller fractions for two functions: a film's curve has kinks at thousands of nodes, where it is
-# clamped, and a root amplifies the rounding of differences.
+# Multiples of WIDTH: three single steps and three double steps on each side.
+OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)
+RELIABLE = 2e-8  # a derivative is reliable if two step widths differ by at most this much
+COMPARED = 0.6  # minimum fraction of partial derivatives that must be compared
+# Two functions have smaller fractions. The curve of a film is clamped at thousands of nodes, which
+# causes kinks, and the root in `diffusion_blur` amplifies the rounding of differences.
 CUT = {"film_albedo_dir": 0.3, "diffusion_blur": 0.0}
-NOISE = {"diffusion_blur": 2e-8}  # error of the root of a difference with a rounding of 2^-53
-VALUE = 1e-12  # difference of libraries, relative to the larger of 1 and the value
+NOISE = {"diffusion_blur": 2e-8}  # error of the root of a difference that is rounded to 2^-53
+VALUE = 1e-12  # difference between libraries, divided by the larger of 1 and the value
 
 
 def has_mapping(function):
-    """Whether a function takes its inputs as one mapping."""
+    """Whether a function takes all its inputs as one mapping."""
     each = inspect.signature(function).parameters.get("inputs")
     return each is not None and each.kind is each.POSITIONAL_OR_KEYWORD
 
 
 def named(function):
-    """The function with a separate argument for each key of `inputs`."""
+    """Function that takes each key of the mapping `inputs` as a separate argument."""
     parameters = inspect.signature(function).parameters
     if not has_mapping(function):
         return function
@@ -79,14 +80,14 @@ DOCUMENTED = set(table.public().values())
 PORTABLE = {
     name: named(function)
     for name, function in arguments.functions().items()
-    # Other tests cover the wrong variants in the catalog, and quadratures that take a function.
+    # Other tests cover the wrong variants of models, and quadratures that take a function.
     if inspect.unwrap(function) is not function
     and function in DOCUMENTED
     and "core.quadrature" not in name
 }
 
 
-# `film_reflectance` for two kinds of substrates with separate arguments, like the other functions.
+# `film_reflectance` for two kinds of substrates, with separate arguments like other functions.
 def film_conductor(
     mu: "ArrayLike",
     thickness: "ArrayLike",
@@ -115,7 +116,7 @@ def film_schlick(
 
 PORTABLE |= {each.__name__: each for each in (film_conductor, film_schlick)}
 COMPENSATED = ("dielectric_brdf", "conductor_brdf", "generalized_schlick_brdf")
-# Ends of ranges for tests, if a range is unbounded or slopes diverge at its end.
+# Ends of the tested ranges, where an input has no limit or a slope diverges at the limit.
 LOW = dict.fromkeys(("eumelanin_color", "pheomelanin_color", "hair_color"), 0.05)
 LOW |= dict.fromkeys(("separation", "radius", "reach"), 0.2)
 LOW |= {"temperature": 500.0, "melanin_concentration": 0.0}
@@ -154,8 +155,8 @@ def pytorch():
 def jax():
     library = package("jax")
     library.config.update("jax_enable_x64", True)
-    # Code for a single call is not worth optimizing. Emitting fused loops takes twice as long as
-    # the rest of the compilation. With one module, shared code is compiled once.
+    # Optimization does not pay for a single call. The emitters of fused loops take twice as long as
+    # the rest of the compilation, and a single module compiles shared code only once.
     library.config.update("jax_disable_most_optimizations", True)
     options = {"xla_cpu_use_fusion_emitters": False, "xla_cpu_parallel_codegen_split_count": 1}
     jit = partial(library.jit, compiler_options=options)
@@ -183,12 +184,12 @@ def library(request):
 
 
 def count(function):
-    """Number of random rows with which a function is tested."""
+    """Number of random rows of arguments with which a function is tested."""
     return FEW if function.__name__.endswith(QUADRATURES) else ROWS
 
 
 def directions(rng, below, rows=ROWS):
-    """Random unit vectors; some are along the normal or grazing."""
+    """Random unit vectors. Some vectors are the normal, and some are grazing."""
     w = rng.normal(size=(rows, 3))
     w[: max(rows // 12, 1)] = 0.0, 0.0, 1.0
     w[max(rows // 12, 1) : max(rows // 4, 2), 2] = 0.0
@@ -198,7 +199,7 @@ def directions(rng, below, rows=ROWS):
 
 
 def sampled(function):
-    """Random array arguments by name, inside their ranges or at an end, and the other arguments."""
+    """Random array arguments, inside their ranges or at an end, and other arguments, by name."""
     rng, arrays, switches, rows = np.random.default_rng(SEED), {}, {}, count(function)
     values, names = dict(arguments.base(inspect.unwrap(function))), table.arrays(function)
     if has_mapping(function):
@@ -207,7 +208,7 @@ def sampled(function):
     for name, value in values.items():
         is_array = isinstance(value, float | tuple | np.ndarray) and name in names
         if not is_array or name == "light":
-            switches[name] = value  # the same for all rows
+            switches[name] = value  # one value for all rows
         elif np.shape(value) == (3,) and name[0] in "wn":
             arrays[name] = directions(rng, value[2] < 0.0, rows)
         else:
@@ -221,10 +222,12 @@ def sampled(function):
             ends = rng.choice([low, min(1.0, high), high], shape)
             arrays[name] = np.where(rng.random(shape) < 0.25, ends, inside)
     for name in [name for name, value in switches.items() if isinstance(value, dict)]:
-        switches |= switches.pop(name)  # inputs by name become arguments
+        switches |= switches.pop(name)  # the keys of a mapping become separate arguments
     value = arguments.call(inspect.unwrap(function), arguments.base(inspect.unwrap(function)))
-    channels = 0 if isinstance(value, tuple) else np.ndim(value)  # samplers return no channels
-    channels = channels or function.__name__.startswith(INTERFACES)  # except for interfaces
+    # Results of samplers have no color channels.
+    channels = 0 if isinstance(value, tuple) else np.ndim(value)
+    # Samplers of interfaces still take a color.
+    channels = channels or function.__name__.startswith(INTERFACES)
     for name in COLORS & set(arrays) if channels else ():
         if arrays[name].ndim < 2 and (name.startswith(TINTS) or "conductor" in function.__name__):
             arrays[name] = arrays[name][:, np.newaxis]
@@ -232,7 +235,7 @@ def sampled(function):
 
 
 def whole(value):
-    """Stack a tuple of results into one array, such as a sampler's direction and density."""
+    """Stack a tuple of results, such as a sampler's direction and density, into a single array."""
     if not isinstance(value, tuple):
         return value
     w, pdf, *others = value
@@ -242,7 +245,7 @@ def whole(value):
 
 
 def scalar(value, axes=1):
-    """One number per row: the first channel, or the sum of a sampler's results."""
+    """One number per row: the first color channel of a value, or the sum of a sampler's results."""
     value = whole(value).sum(-1) if isinstance(value, tuple) else value
     while value.ndim > axes:
         value = value[..., 0]
@@ -250,7 +253,7 @@ def scalar(value, axes=1):
 
 
 def moved(function, arrays, switches, name):
-    """For each component of an array, `scalar` of all rows by offset, from a single call."""
+    """Values of `scalar` by offset, for each component of an array, which the offset shifts."""
     array = arrays[name]
     rows, size = len(array), array[0].size
     several = np.tile(array.reshape(rows, size), (size, len(OFFSETS), 1, 1))
@@ -259,7 +262,8 @@ def moved(function, arrays, switches, name):
     count = size * len(OFFSETS)
     values = {k: np.tile(each, (count, *np.ones(each.ndim - 1, int))) for k, each in arrays.items()}
     values[name] = several.reshape(values[name].shape)
-    # vmap traces the values, so offsets may leave ranges and directions need not be unit vectors.
+    # vmap traces the values, so no argument is checked: shifted arguments may leave their range,
+    # and directions need not have unit length.
     torch = package("torch")
 
     def row(*arguments):
@@ -270,14 +274,14 @@ def moved(function, arrays, switches, name):
 
 
 def slopes(f, step):
-    """Third-order one-sided derivatives, forward then backward, with `step` times WIDTH."""
+    """One-sided third-order derivatives, forward then backward, with steps of `step` * WIDTH."""
     with np.errstate(invalid="ignore"):
         changes = [18 * f[k] - 9 * f[2 * k] + 2 * f[3 * k] - 11 * f[0] for k in (step, -step)]
         return [each / (6 * k * WIDTH) for each, k in zip(changes, (step, -step), strict=True)]
 
 
 def differences(function, arrays, switches, name):
-    """For each component, finite differences of all rows, and which rows are reliable."""
+    """Finite differences of all rows, and which are reliable, for each component of an array."""
     for k, f in enumerate(moved(function, arrays, switches, name)):
         low, high, _ = RANGES[name] if name in RANGES else RANGES["mu" if k == 2 else "cos_theta"]
         x = arrays[name].reshape(len(arrays[name]), -1)[:, k]
@@ -285,7 +289,7 @@ def differences(function, arrays, switches, name):
         usable = [x + reach <= high, x - reach >= low]
         best = np.where(usable[0], fine[0], fine[1])
         spread = np.zeros(len(x))
-        with np.errstate(invalid="ignore"):  # offsets beyond the range give NaN
+        with np.errstate(invalid="ignore"):  # offsets beyond the range return NaN
             for side, each in ((0, coarse[0]), (0, fine[0]), (1, coarse[1]), (1, fine[1])):
                 spread = np.maximum(spread, np.where(usable[side], np.abs(each - best), 0.0))
         yield best, spread <= RELIABLE * np.maximum(1.0, np.abs(best))
@@ -297,19 +301,20 @@ CASES = [(make, name) for make, name in CASES if make is pytorch or not name.end
 
 @pytest.mark.parametrize(("make", "name"), CASES)
 def test_gradients_are_finite_and_those_of_differences(make, name):
-    with untraced() if make is jax else nullcontext():  # PyTorch's tests trace the same lines
+    # The tests with PyTorch cover the same lines, so lines are not traced for JAX.
+    with untraced() if make is jax else nullcontext():
         assert_gradients(make(), name, False)
 
 
 @pytest.mark.parametrize("name", COMPENSATED)
 def test_gradients_of_the_compensation_are_those_of_differences(name):
-    # JAX takes seconds to compile the polynomials.
+    # Only PyTorch is tested, because JAX takes seconds to compile the polynomials.
     assert_gradients(pytorch(), f"mxeon.models.microfacet.{name}", True)
 
 
-@lru_cache(maxsize=4)  # PyTorch and JAX share the reference
+@lru_cache(maxsize=4)  # PyTorch and JAX use the same reference
 def reference(name, compensate):
-    """Arguments, values by NumPy, and finite differences of a function by array and component."""
+    """Arguments, NumPy's values, and finite differences by array and component of a function."""
     function = PORTABLE[name]
     arrays, switches = sampled(function)
     switches |= {"compensate": True} if compensate else {}
@@ -318,7 +323,7 @@ def reference(name, compensate):
 
 
 def assert_gradients(library, name, compensate):
-    """Compare a library's gradients with the reliable finite differences."""
+    """Assert that a library's gradients match the finite differences that are reliable."""
     function = PORTABLE[name]
     arrays, switches, expected_value, slopes = reference(name, compensate)
     value, found = library.gradients(partial(function, **switches), arrays)
@@ -328,12 +333,12 @@ def assert_gradients(library, name, compensate):
         kink = np.zeros(count(function), bool)
         if function.__name__.endswith("_sample") and argument == "wo":
             kink = arrays["wo"][:, 2] == 1.0  # the azimuth of wo jumps at the normal
-        if function.__name__.endswith("_anisotropy"):  # the larger alpha is clamped at 1
+        if function.__name__.endswith("_anisotropy"):  # the larger of two alphas is clamped at 1
             kink = (function(**arrays)[:, 0] == 1.0) & (arrays["anisotropy"] == 0.0)
         if function.__name__.endswith("transmittance_dir") and argument == "roughness":
-            # The transmittance of a perfectly smooth surface is defined as 0.
+            # At roughness 0 the transmittance is defined as 0, so its slope is meaningless.
             kink = (arrays["roughness"] == 0.0).any(axis=1)
-        if function.__name__ == "film_schlick":  # the curve is clamped at 0
+        if function.__name__ == "film_schlick":  # the reflectance is clamped at 0
             kink = (arrays["color0"] * arrays["color90"] == 0.0)[:, 0]
         columns, judged = gradient.reshape(count(function), -1).T, 0
         for k, column in enumerate(columns):
@@ -349,7 +354,7 @@ def assert_gradients(library, name, compensate):
 
 
 def assert_values(value, expected, allowed=VALUE):
-    """Compare a library's values with NumPy's."""
+    """Assert that a library's values match NumPy's values."""
     assert value.shape == expected.shape
     error = np.abs(value - expected) / np.maximum(1.0, np.abs(expected))
     assert (error <= allowed).all()
@@ -413,7 +418,7 @@ def test_precision_is_that_of_the_arrays(library):
     single = library.array(np.array([0.5], np.float32))
     value = lambert_brdf(np.array([[0.6, 0.0, 0.8]]), [0, 0, 1], single)
     assert library.numpy(value).dtype == np.float32 and tuple(value.shape) == (1, 1)
-    # Integer types have no floating-point precision.
+    # Integers do not determine a floating-point precision.
     whole = lambert_brdf(library.array([0, 0, 1]), [0, 0, 1], 0.5)
     assert library.numpy(whole).dtype in (np.float32, np.float64)
 

@@ -20,19 +20,20 @@ from tests.support.hemispheres import hemisphere
 
 WO, WI = np.array([0.6, 0.0, 0.8]), np.array([-0.36, 0.48, 0.8])
 MANY = np.array([[0.6, 0.0, 0.8], [0.0, 0.8, 0.6], [0.0, 0.0, 1.0], [0.0, 0.6, 0.8], WI])
-TRANSMITTED = 3e-4  # quadrature errors: 2e-4 of the albedo, the rest of the values
+# Quadrature errors: 2e-4 for the albedo, and 1e-4 for the integral of the values.
+TRANSMITTED = 3e-4
 MODES = {"mode", "scatter_mode", "distribution", "energy_compensation"}
 FRAME = {"weight", "normal", "tangent", "curve_direction", "retroreflective"}
 LIGHT = {"front": WI, "back": WI * [1.0, 1.0, -1.0], "all sides": WI}
 every_model = pytest.mark.parametrize("name", MODELS)
 SAMPLED = [name for name in MODELS if "sample" in MODELS[name].functions]
-# Values for tests of samplers, by input and number of channels; other inputs have their defaults.
+# Inputs of the tested samplers, by name and number of channels. All other inputs have defaults.
 ROUGH = {
     **{("roughness", 0): 0.5, ("roughness", 2): (0.3, 0.6), ("alpha", 0): 0.3},
     **{(name, 2): (0.4, 0.6) for name in hair.ROUGHNESSES},
 }
-OTHER_ALBEDO = ("burley_lambert",)  # wrong models whose albedo differs
-MASS = 2e-3  # noise of the share of samples below the horizon
+OTHER_ALBEDO = ("burley_lambert",)  # wrong models whose albedo is not the integral of their values
+MASS = 2e-3  # noise of the fraction of samples below the horizon
 
 
 @pytest.mark.parametrize("category", DEFAULTS)
@@ -42,7 +43,8 @@ def test_inputs_have_the_names_order_and_defaults_of_the_definition(category):
     ports = [port for port in definition.getActiveInputs() if port.getName() not in left]
     assert list(DEFAULTS[category]) == [port.getName() for port in ports]
     for port in ports:
-        text = port.getValueString() or "0.0, 0.0, 0.0"  # EDF inputs have no default
+        # In MaterialX, the inputs of an EDF have no default.
+        text = port.getValueString() or "0.0, 0.0, 0.0"
         numbers = [float(each) for each in text.split(",")]
         assert np.ravel(DEFAULTS[category][port.getName()]).tolist() == numbers
     assert mx.getVersionString() == "1.39.5"
@@ -52,7 +54,7 @@ def test_inputs_have_the_names_order_and_defaults_of_the_definition(category):
 def test_inputs_are_in_the_order_of_their_node(name):
     row = MODELS[name]
     names = [each.name for each in row.parameters]
-    order = list(DEFAULTS.get(row.node, names))  # layers have no defaults
+    order = list(DEFAULTS.get(row.node, names))  # layered models have no MaterialX defaults
     assert names == sorted(names, key=order.index)
     for each in row.parameters:
         low, high = each.interval
@@ -79,11 +81,12 @@ def test_every_drawn_direction_has_a_value_and_its_density(name):
     grid = np.stack(np.meshgrid(*[np.arange(count)] * 2), axis=-1).reshape(-1, 2)
     wi, pdf = row.sample(wo, (grid + k.random(grid.shape)) / count, **inputs)
     assert np.allclose(row.pdf(wo, wi, **inputs), pdf, rtol=1e-9)
-    # Values are 0 on a side to which the model scatters no light.
+    # On a side to which the model scatters no light, its values are 0.
     value, below = row.bsdf(wo, wi, **inputs), wi[:, 2] < 0.0
     if row.lights != "all sides":
         assert not value[below if row.lights == "front" else ~below].any()
-    # The mean weight is the albedo. The density above and the share of samples below add up to 1.
+    # The mean weight equals the albedo. The integral of the density above the horizon and the
+    # fraction of samples below the horizon add up to 1.
     cosine = 1.0 if name == "hair" else np.abs(wi[:, 2:])
     weights = value * cosine / pdf[:, np.newaxis]
     error = np.abs(weights.mean(axis=0) - row.albedo_dir(0.4, **inputs))
@@ -172,7 +175,7 @@ def test_scatter_modes_t_and_rt_are_transmission_and_both(name):
     assert_array_equal(RT.bsdf(WO, [WI, below], **inputs)[0], R.bsdf(WO, WI, **inputs))
     assert_array_equal(RT.bsdf(WO, [WI, below], **inputs)[1], T.bsdf(WO, below, **inputs))
 
-    # The integral of the values is the albedo.
+    # The integral of the BTDF equals the albedo.
     def below_of(wo, wi, rho):
         return T.bsdf(wo, wi * [1.0, 1.0, -1.0], **inputs)
 
@@ -194,7 +197,7 @@ def test_an_anisotropic_albedo_depends_on_the_azimuth():
     albedo = mxeon.model("schlick").albedo_dir(0.3, color0=0.04, **inputs)
     assert abs(albedo[0] - albedo[1]).min() > 0.01
     white = mxeon.model("schlick").albedo_dir(0.3, **inputs)
-    assert abs(white - 1.0).max() < 1e-9  # white facets reflect all light
+    assert abs(white - 1.0).max() < 1e-9  # facets with a reflectance of 1 reflect all light
 
 
 def test_numbers_have_no_channels_and_colors_keep_theirs():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A dielectric over EON, and EON under a varnish: curves, albedos, limits, and random walks.
+"""EON under a dielectric interface and under a varnish: albedos, limits, and random walks.
 
 Seeds are fixed. With random seeds, the comparisons with random walks would fail by chance with the
 probability FALSE_ALARM.
@@ -25,8 +25,8 @@ from tools.fits.varnish_walk import RHO, model_bins, walk, walked_bins
 
 CLAY = {"rho": np.array([0.7, 0.35, 0.12]), "roughness": 0.6}
 VARNISH = {"alpha": 0.3, "ior": 1.5}
-# Error of the average albedo of each interface. That of a varnish is the error of its curves by 28
-# nodes at alpha 0.01 and index 1.02.
+# Error of the average albedo of each interface. For a varnish, 2e-5 is the error of curves with 28
+# nodes at alpha 0.01 and an index of refraction of 1.02.
 INTERFACES = {"dielectric_over_eon": COAT, "varnished": 2e-5}
 every_interface = pytest.mark.parametrize("name", INTERFACES)
 COSINES = np.append([0.0, 1e-10, 1e-8, 1e-6, 1e-5, 1e-4], np.geomspace(1e-3, 1.0, 9))
@@ -37,7 +37,7 @@ COSINES = np.append([0.0, 1e-10, 1e-8, 1e-6, 1e-5, 1e-4], np.geomspace(1e-3, 1.0
 def test_curves_are_those_of_a_finer_quadrature(monkeypatch, alpha, ior):
     coat = constant_coat(alpha, ior)
     missing, reflected = coat.at(COSINES)
-    # Integrate again with more nodes, which are denser near grazing.
+    # Repeat the integration with more nodes, which are denser near grazing.
     finer = {"LEAST_SCALE": 0.0, "SLOPE_NODES": 40, "PANELS": 6, "QUADRANT": 120}
     for name, value in finer.items():
         monkeypatch.setattr(slopes, name, value)
@@ -111,7 +111,7 @@ def test_rows_of_coats_are_refused_in_other_array_libraries():
 # --- a varnish -------------------------------------------------------------------------------
 
 FALSE_ALARM = 1e-4
-# Errors that the module states for the albedo and for twelfths of the hemisphere.
+# Documented errors of the albedo, and of the light in each twelfth of the hemisphere.
 WALKED, SHAPED = 0.012, 0.21
 PATHS = 1 << 14
 
@@ -146,7 +146,8 @@ def test_light_that_walks_has_the_albedo_and_under_a_layer_another(ior, alpha, r
     assert (error < WALKED + noise).all() and error[-1] < 1e-4
     off = models.dielectric_over_eon_albedo_dir(*inputs) - total.mean(axis=0)
     assert off[2] > WALKED + noise[2]
-    # Compare the light in twelfths of the hemisphere; without an interface it differs.
+    # Compare the light in twelfths of the hemisphere. The control, with an index of refraction of
+    # 1, must fail.
     walked = walked_bins(total, out)
     noise = deviate * np.sqrt(walked_bins(total**2, out) / PATHS) / walked
     for n, right in ((ior, True), (1.0, False)):
@@ -170,7 +171,7 @@ def test_a_fit_finds_the_pigment_where_the_layer_finds_another():
     value = models.varnished_brdf(wo, wi, **inputs)
     fit = fit_brdf(MeasuredBrdf(wo, wi, value, 0.01 * value), "varnished")
     for name, right in inputs.items():
-        name = {"rho": "color"}.get(name, name)  # the model names rho `color`
+        name = {"rho": "color"}.get(name, name)  # the fitted model calls rho `color`
         assert fit.values[name] == pytest.approx(right, abs=1e-4)
     layer = fit_brdf(MeasuredBrdf(wo, wi, value, 0.01 * value), "dielectric_over_eon")
     assert (layer.values["color"] < 0.8 * CLAY["rho"]).all()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fresnel reflectances and averages: limits, invariants, and agreement with 50-digit arithmetic."""
+"""Fresnel reflectances and their averages: limits, invariants, and 50-digit arithmetic."""
 
 import mpmath as mp
 import numpy as np
@@ -24,7 +24,7 @@ WEAK = ((0.5, 1e-3), (0.5, 1e-6), (0.1, 0.1), (1e-3, 1.0), (1e-3, 1e-3))
 
 
 def exact(mu, ior, extinction=0.0):
-    """Mean of |r_s|^2 and |r_p|^2, computed from the amplitudes in 50 digits."""
+    """Fresnel reflectance (|r_s|^2 + |r_p|^2) / 2, computed from the amplitudes in 50 digits."""
     mu, n = mp.mpf(mu), mp.mpc(ior, extinction)
     w = mp.sqrt(n * n - 1 + mu * mu)
     amplitudes = (mu - w) / (mu + w), (n * n * mu - w) / (n * n * mu + w)
@@ -32,7 +32,7 @@ def exact(mu, ior, extinction=0.0):
 
 
 def average(ior, extinction=0.0):
-    """F_ss by adaptive quadrature of `exact`; panels shrink towards the critical angle."""
+    """Average reflectance by adaptive quadrature. Panels shrink towards the critical angle."""
     split = min(max(mp.sqrt(1 - mp.mpc(ior, extinction) ** 2).real, 0), 1)
     steps = [mp.mpf(10) ** -k for k in (1, 2, 3, 4, 6, 8, 11)]
     points = {mp.mpf(0), mp.mpf(1), split}
@@ -42,7 +42,7 @@ def average(ior, extinction=0.0):
 
 
 def walsh(n):
-    """Printed closed form of a dielectric's F_ss."""
+    """Published closed form of the average reflectance of a dielectric."""
     n, log = mp.mpf(n), mp.log
     return (
         mp.mpf(1) / 2
@@ -123,7 +123,7 @@ def test_reflectances_lie_between_0_and_1_on_the_closed_domain():
 
 
 def test_without_extinction_a_conductor_is_a_dielectric():
-    # F has an infinite slope at the critical angle, so the samples keep away from it.
+    # The reflectance has an infinite slope at the critical angle, so samples avoid this angle.
     ior = IOR[(IOR != 0.0) & (np.abs(IOR - 1.0) > 1e-6)]
     conductor = fresnel_conductor(MU[:, None], ior[:, None], 0.0)[..., 0]
     error = np.abs(conductor - fresnel_dielectric(MU[:, None], ior))

@@ -17,19 +17,19 @@ from mxeon.models.nodes.lobes import FORMS, READINGS, TILTED, materialx_longitud
 from tests.support.availability import package
 from tests.support.hemispheres import sphere
 
-ROUND = 1e-14  # relative error: 45 roundings of float64
+ROUND = 1e-14  # relative error: about 45 float64 roundings
 PICK = {"roughness_R": (0.5, 0.6), "roughness_TT": (0.3, 0.4), "roughness_TRT": (0.8, 0.9)}
 VIEWS = np.array([[0.0, 0.0, 1.0], [0.6, 0.3, 0.0], [-0.95, -0.2, 0.0]])
 VIEWS[:, 2] = np.sqrt(1.0 - (VIEWS[:, :2] ** 2).sum(axis=1))
 
 
 def inclined(theta):
-    """Sine and cosine of an inclination `theta`."""
+    """Sine and cosine of the inclination `theta`."""
     return np.sin(theta), np.cos(theta)
 
 
 def furnace(wo, **inputs):
-    """Integral of the scattering function over the sphere, one value per channel."""
+    """Integral of the scattering function over the sphere, one value per color channel."""
     wi, weights = sphere(96)
     return (weights[:, np.newaxis] * chiang_hair_bcsdf(wo, wi, **PICK | inputs)).sum(axis=0)
 
@@ -85,7 +85,8 @@ def test_a_furnace_with_absorption_returns_the_attenuations():
 
 
 def test_only_a_tilt_of_the_viewer_keeps_the_furnace():
-    # With the specified tilt of two degrees, rough hair loses 2 % of the light in a slanted view.
+    # If a cuticle's tilt of two degrees is applied as specified, rough hair loses 2 % of the light
+    # in a slanted view.
     cuticle = 0.5 + 2.0 / 180.0
     tilted = np.pi * furnace(VIEWS[2], cuticle_angle=cuticle)
     np.testing.assert_allclose(tilted, 0.9775, atol=1e-3)
@@ -99,11 +100,11 @@ def test_the_sign_of_a_tilted_cosine_has_no_effect():
 
 
 def test_the_ten_terms_of_materialx_are_off_by_2_percent():
-    # MaterialX's series for a < 12 lacks the tenth and higher powers of x^2.
+    # For a < 12, MaterialX's series lacks the tenth and higher powers of x^2.
     sine, cosine, v = np.array(0.0), np.array(1.0), np.array(1.0 / 11.9)
     exact = longitudinal(sine, cosine, sine, cosine, v)
     assert materialx_longitudinal(sine, cosine, sine, cosine, v) / exact < 0.982
-    v = np.array(1.0 / 12.1)  # the expansion for a > 12 lacks half of 1 / (8 x)
+    v = np.array(1.0 / 12.1)  # MaterialX's expansion for a > 12 has half of the term 1 / (8 x)
     short = materialx_longitudinal(sine, cosine, sine, cosine, v)
     assert short / longitudinal(sine, cosine, sine, cosine, v) == pytest.approx(0.9944, abs=1e-3)
 
@@ -118,7 +119,7 @@ def test_each_form_has_other_values(form):
 
 @pytest.mark.parametrize("tilt", [0.0, 3.0])
 def test_mitsuba_has_the_values_of_the_model(tilt):
-    """Mitsuba follows [Chiang2016]: its hair has no factor 1/pi and tilts the viewer."""
+    """Mitsuba follows [Chiang2016]: no factor 1 / pi, and the tilt applies to the viewer."""
     mi = package("mitsuba")
     mi.set_variant("scalar_rgb")
     absorption, beta = (0.1, 0.2, 0.3), 0.6
@@ -130,7 +131,7 @@ def test_mitsuba_has_the_values_of_the_model(tilt):
     point = mi.SurfaceInteraction3f()
     for wo, wi in zip(VIEWS[1:], [[0.2, -0.5, 0.4], [0.1, 0.3, -0.9]], strict=True):
         wi = np.array(wi) / np.linalg.norm(wi)
-        point.wi = mi.Vector3f(*wo[[1, 0, 2]])  # Mitsuba's fibers run along +y
+        point.wi = mi.Vector3f(*wo[[1, 0, 2]])  # Mitsuba's hair fibers point along +y
         value = np.array(bsdf.eval(mi.BSDFContext(), point, mi.Vector3f(*wi[[1, 0, 2]])))
         rough = {"roughness_R": (v, s), "roughness_TT": (v / 4.0, s), "roughness_TRT": (4.0 * v, s)}
         cuticle = {"cuticle_angle": 0.5 - tilt / 180.0, "form": FORMS[TILTED]}

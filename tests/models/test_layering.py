@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Layering operators: albedos, identities, and sums that reflect more than all light."""
+"""Layering operators: albedos, identities, and sums of lobes whose albedo exceeds 1."""
 
 import numpy as np
 
 from mxeon.models.core.layering import Bsdf, add, layer, mix, multiply, throughput
 
-# Lobes by their albedo E: value E, throughput 1 - E. All numbers are multiples of 1/64, so the sums
-# and products below are exact.
+# Lobes with albedo E, whose value is E and whose throughput is 1 - E. All numbers are multiples of
+# 1/64, so the sums and products below are exact.
 A, B = (Bsdf(np.array(e), throughput(e)) for e in ([0.25, 0.5, 0.0], [0.5, 0.125, 1.0]))
-TREE = 1e-13  # trees of 6 levels: 400 roundings, doubled
+TREE = 1e-13  # twice 400 roundings, in trees with 6 levels
 NOTHING, BLACK = Bsdf(np.zeros(3), np.ones(3)), Bsdf(np.zeros(3), np.zeros(3))
 
 
@@ -33,13 +33,13 @@ def test_a_sum_that_reflects_more_than_all_light_hides_what_lies_below():
 
 
 def tree(rng, depth):
-    """A random combination of lobes, and its albedo by the specified equations."""
+    """Random combination of lobes, and the albedo of the combination by the specified equations."""
     kind = rng.choice(("layer", "mix", "add", "multiply")) if depth else "lobe"
     if kind == "lobe":
         albedo = rng.random(3)
         return Bsdf(albedo, throughput(albedo)), albedo
     (one, E), (other, E_other) = tree(rng, depth - 1), tree(rng, rng.integers(depth))
-    if kind == "layer":  # an albedo above 1 hides the base
+    if kind == "layer":  # a layer with an albedo above 1 hides its base
         return layer(one, other), E + np.where(E < 1.0, 1.0 - E, 0.0) * E_other
     if kind == "mix":
         w = rng.random()
@@ -61,4 +61,4 @@ def test_every_tree_of_combinations_keeps_the_albedo_of_the_text():
         white = layer(lobe, Bsdf(np.ones(3), np.zeros(3))).value
         assert np.all(np.abs(white - np.maximum(albedo, 1.0)) <= TREE * scale)
         above += np.count_nonzero(albedo > 1.0)
-    assert 500 < above < 2500  # 3000 albedos on both sides of 1
+    assert 500 < above < 2500  # many of the 3000 albedos lie on either side of 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Participating media, emission and diffusion: printed equations, limits, and variants of rows."""
+"""Participating media, emission and diffusion: published equations, limits, and wrong variants."""
 
 import numpy as np
 import pytest
@@ -11,13 +11,14 @@ from tests.support.cases import direction
 
 ANISOTROPIES = (-0.999999, -0.9, -0.3, 0.0, 1e-9, 0.3, 0.9, 0.999999)
 ROUNDING = 1e-12
-MOMENT = 1e-10  # quadrature error of `moments`
+MOMENT = 1e-10  # error of the quadrature in `moments`
 
 
 def moments(g):
     """Integrals over the sphere of the phase function, and of the phase function times the cosine.
 
-    Nodes are uniform in log(1 - cos), or log(1 + cos) for g < 0, so they are dense at the peak.
+    Nodes are uniform in log(1 - cos) for g >= 0 and in log(1 + cos) for g < 0, so they are dense at
+    the peak.
     """
     x, w = np.polynomial.legendre.leggauss(400)
     low = np.log((1.0 - abs(g)) ** 2 * 1e-12)
@@ -36,7 +37,7 @@ def test_the_phase_function_integrates_to_1_and_has_the_mean_cosine_g(g):
 
 
 def phase(cosine, g):
-    """Phase function of the cosine of the deflection angle."""
+    """Phase function at the given cosine of the deflection angle."""
     x = np.sqrt(1.0 - np.square(cosine))
     return media.hg_pdf([0.0, 0.0, 1.0], np.stack([x, 0.0 * x, -np.asarray(cosine)], axis=-1), g)
 
@@ -51,7 +52,7 @@ def test_the_phase_function_is_the_printed_one():
 def test_the_peak_does_not_cancel():
     e = 1e-12
     peak = (2.0 - e) * e / (4.0 * np.pi * e**3)
-    # The rounding error of 1 - e dominates.
+    # The tolerance is large, because 1 - e is rounded.
     assert np.isclose(phase(1.0, 1.0 - e), peak, rtol=1e-3)
     last = np.nextafter(1.0, 0.0)
     assert np.isfinite(phase([-1.0, 0.0, 1.0], last)).all()
@@ -146,7 +147,8 @@ def inputs_of(row, count):
 
 @pytest.mark.parametrize("reach", [0.05, 0.4, 3.0])
 def test_a_blur_is_the_profile_s_mean_over_the_unit_sphere(reach):
-    # On a sphere, a ring at chord d has the area 2 pi d dd. The profile contains a factor 1 / d.
+    # On the unit sphere, a ring at chord length d has the area 2 pi d dd. The factor d cancels the
+    # factor 1 / d of the diffusion profile.
     x, w = np.polynomial.legendre.leggauss(400)
     d = 1.0 + x
     w = w * (np.exp(-d / reach) + np.exp(-d / (3.0 * reach)))
@@ -155,5 +157,5 @@ def test_a_blur_is_the_profile_s_mean_over_the_unit_sphere(reach):
     for mu in (-0.6, 0.0, 0.3, 0.95):
         cosine = mu * along[:, np.newaxis] + np.sqrt(1.0 - mu * mu) * np.outer(across, np.cos(phi))
         rings = np.maximum(cosine, 0.0).mean(axis=1)
-        # Kinks of the integrands add errors of 400^-2 times the slopes.
+        # Kinks of the integrands cause an error of 400^-2 times the change of slope.
         assert media.diffusion_blur(mu, reach) == pytest.approx(w @ rings / w.sum(), abs=1e-4)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Microfacet BRDFs: limits, invariants, and agreement with the printed equations in 50 digits."""
+"""Microfacet BRDFs: limits, invariants, and the published equations in 50-digit arithmetic."""
 
 from itertools import pairwise
 
@@ -26,7 +26,7 @@ INPUTS = {
     "generalized_schlick_bsdf": dict(zip(("color0", "color82", "color90"), COLORS, strict=True))
     | {"exponent": 5.0},
 }
-FEWER = {  # inputs with two channels, for the tests of albedos
+FEWER = {  # inputs with two color channels, for the tests of albedos
     "dielectric_bsdf": {"tint": [0.2, 1.0], "ior": 1.5},
     "conductor_bsdf": {"ior": [0.183, 1.373], "extinction": [3.424, 1.77]},
     "generalized_schlick_bsdf": {
@@ -53,12 +53,13 @@ def pairs(count, seed=1):
 
 
 def fresnel_exact(name, c, channel):
-    """Fresnel reflectance by the printed equations of the specification."""
+    """Fresnel reflectance by the equations in the specification, in 50 digits."""
     if name == "generalized_schlick_bsdf":
         r0, t, r90 = (mp.mpf(color[channel]) for color in COLORS)
         m = mp.mpf(1) / 7
         a = (r0 + (r90 - r0) * (1 - m) ** 5) * (1 - t) / (m * (1 - m) ** 6)
-        return max(r0 + (r90 - r0) * (1 - c) ** 5 - a * c * (1 - c) ** 6, 0)  # curve of OpenPBR
+        # The curve of OpenPBR for metals.
+        return max(r0 + (r90 - r0) * (1 - c) ** 5 - a * c * (1 - c) ** 6, 0)
     if name == "dielectric_bsdf":
         g = mp.sqrt(mp.mpf(1.5) ** 2 + c * c - 1)
         ratio = (c * (g + c) - 1) / (c * (g - c) + 1)
@@ -73,7 +74,7 @@ def fresnel_exact(name, c, channel):
 
 
 def exact(name, wo, wi, roughness, channel):
-    """The printed BRDF in 50 digits, without compensation and tint."""
+    """BRDF by the published equations in 50 digits, without compensation and tint."""
     wo, wi = ([mp.mpf(float(x)) for x in w] for w in (wo, wi))
     ax, ay = (mp.mpf(float(alpha)) for alpha in roughness)
     h = [a + b for a, b in zip(wo, wi, strict=True)]
@@ -147,7 +148,8 @@ def test_values_are_finite_on_the_closed_domain(name):
     values = brdf(name, wo, wi, alpha)
     assert np.isfinite(values).all()
     assert name == "generalized_schlick_bsdf" or (values >= 0.0).all()
-    assert (values[..., 0, :, :] == 0.0).all()  # values of a perfect mirror are 0
+    # A perfect mirror has no finite value, so 0 is returned.
+    assert (values[..., 0, :, :] == 0.0).all()
 
 
 def test_the_distribution_covers_the_surface_once():
@@ -256,7 +258,7 @@ def test_the_albedo_lies_between_its_limits_on_the_closed_domain():
 def test_the_table_of_what_facets_miss_agrees_with_the_quadrature():
     rng = np.random.default_rng(0)
     mu, alpha = rng.random((2, 3000)) ** [[6.0], [3.0]]
-    # Small alphas: cosines near 0, near 1, and proportional to alpha.
+    # Small alphas, with cosines near 0, near 1, and proportional to alpha.
     small = np.geomspace(1e-9, 1e-4, 6)[:, None]
     mu = np.concatenate([mu, (small * [0.0, 0.1, 1.0, 10.0, 1e3]).ravel(), np.ones(30)])
     alpha = np.concatenate([np.maximum(alpha, small[0]), np.repeat(small, 10)])
@@ -322,7 +324,7 @@ def test_the_albedo_is_converged_at_a_critical_angle(ior, monkeypatch):
     monkeypatch.setattr(slopes, "SPLIT_NODES", 64)
     monkeypatch.setattr(slopes, "SPLIT_PART", 64)
     error = np.abs(values - models.dielectric_albedo_dir(wo, 1.0, alpha, ior)[..., 0])
-    assert error[:, :4].max() < tolerances.E_SS  # isotropic lobes
+    assert error[:, :4].max() < tolerances.E_SS  # lobes with isotropic roughness
     assert error.max() < tolerances.SLOPES
 
 
@@ -331,7 +333,7 @@ def test_the_albedo_is_converged_at_a_critical_angle(ior, monkeypatch):
 )
 def test_the_albedo_agrees_with_a_quadrature_around_the_view_at_a_critical_angle(mu, alpha, ior):
     def around(c):
-        """Integrand over azimuths of half vectors around wo whose cosine with wo is c."""
+        """Integral over the azimuth of half vectors whose cosine with wo is c."""
         slope = np.sqrt((1.0 - c * c) * (1.0 - mu * mu))
         horizon = (mu / (2.0 * c) - c * mu) / slope
         if horizon >= 1.0:
@@ -346,7 +348,8 @@ def test_the_albedo_agrees_with_a_quadrature_around_the_view_at_a_critical_angle
         return D * c * 2.0 * mu_i / (smith[0] * mu_i + smith[1] * mu)
 
     def share(t, low, high):
-        c = low + (high - low) * t * t * (3.0 - 2.0 * t)  # F starts like a square root
+        # The reflectance starts like a square root at the lower limit.
+        c = low + (high - low) * t * t * (3.0 - 2.0 * t)
         return models.fresnel_dielectric(c, ior) * around(c) * 6.0 * t * (1.0 - t) * (high - low)
 
     theta, quarter = np.arccos(mu), 0.5 * np.pi
@@ -427,7 +430,8 @@ def test_a_sum_over_visible_normals_is_the_albedo_but_for_its_masking():
         wi, _ = ggx_sample(np.broadcast_to(wo, (count, 3)), rng.random((count, 2)), alpha)
         mean = np.full(2, np.sqrt(alpha.prod()))
         lit = wi[:, 2] > 0.0
-        # The density is D G_1 / (4 mu_o). MaterialX's sum weights by G_2 / G_1 of the mean alpha.
+        # The density of samples is D G_1 / (4 mu_o). MaterialX's sum weights each sample by G_2 /
+        # G_1, both computed with the mean alpha.
         weight = np.where(lit, ggx.smith_g2(wo[2], np.abs(wi[:, 2]), mean[0]), 0.0)
         weight = weight / ggx.smith_g1(wo[np.newaxis], mean[np.newaxis])
         found = slopes.slope_nodes(wo[:, np.newaxis], alpha[:, np.newaxis], summed=True)[1].sum()

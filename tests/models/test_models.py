@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Diffuse models: limits, invariants, agreement with 50 digits, ends of domains, and arrays."""
+"""Diffuse models: limits, invariants, 50-digit arithmetic, ends of input ranges, and arrays."""
 
 import tracemalloc
 
@@ -22,18 +22,18 @@ ALL = DIFFUSE_MODELS + KNOWN_DEFECTS
 
 
 def digits(numbers):
-    """Convert numbers to mpmath's 50 digits."""
+    """Convert numbers to mpmath numbers with 50 digits."""
     return [mp.mpf(float(number)) for number in numbers]
 
 
 def largest_quotient(wo, wi):
-    """Upper limit of |s / t| for the cosines of a pair, at least 1."""
+    """Upper limit of |s / t| for the cosines of a pair of directions, but at least 1."""
     mu_o, mu_i = wo[..., 2], wi[..., 2]
     return np.maximum(1.0, 1.0 / np.maximum(mu_o, mu_i))
 
 
 def assert_same(value, again, wo, wi):
-    """Assert that two evaluations agree; NumPy's vector functions may round differently."""
+    """Assert that two evaluations agree. NumPy may round vectorized functions differently."""
     scale = largest_quotient(np.atleast_2d(wo), np.atleast_2d(wi))
     assert (np.pi * np.abs(value - again) <= 2.0 * tolerances.BRDF * scale[..., np.newaxis]).all()
 
@@ -281,7 +281,7 @@ def test_fitted_albedo_of_qon_is_lambert_when_smooth_and_off_when_rough():
 # --- variants of renderers ---------------------------------------------------------------------
 
 WO, WI = directions((2, 1000), seed=1, least=0.05)
-# Parameters that correspond to a roughness of 0.6, by the end of the model's name.
+# Parameters that correspond to an EON roughness of 0.6, by the end of a model's name.
 PARAMETERS = {"half_pi": 0.3 * np.pi, "slope": 0.6 / np.sqrt(2.0), "squared": 0.36}
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of pbrlib: functions and variants have the properties stated in the table of nodes."""
+"""Nodes of pbrlib: functions and variants have the properties that the table of nodes states."""
 
 from itertools import chain
 
@@ -26,8 +26,8 @@ WO = directions(COUNT, seed=2, least=0.2)
 ROWS = PBR_NODES + COMBINATIONS
 RENDERERS = BSDL_VARIANTS, CYCLES_VARIANTS
 VECTORS = ("color", "tint", "color0", "color82", "color90", "extinction")
-INTEGRAL = 2e-3  # error with 48 x 48 nodes, for alpha >= 0.4 and roughness 0.5
-PRINTED = 5e-6  # half a unit of the sixth digit
+INTEGRAL = 2e-3  # quadrature error of 48 x 48 nodes, for alpha >= 0.4 and roughness 0.5
+PRINTED = 5e-6  # half a unit of the sixth significant digit
 
 
 def inputs(row, count=COUNT):
@@ -46,7 +46,8 @@ def inputs(row, count=COUNT):
         if name == "thinfilm_thickness":
             values[name] = 500.0 * values[name]
         if name in ROUGHNESS and row.name in NESTED:
-            values[name] = 0.9 + 0.1 * rng.random(count)  # the albedo of the sum exceeds 1
+            # Rough lobes, so that the albedo of the sum exceeds 1.
+            values[name] = 0.9 + 0.1 * rng.random(count)
         if name == "roughness" and row in MICROFACET_NODES + FILM_NODES:
             values[name] = np.repeat(0.4 + 0.5 * rng.random((count, 1)), 2, axis=1)
     return values
@@ -82,7 +83,7 @@ def test_a_node_is_reciprocal_if_its_row_says_so(row):
 
 @pytest.mark.parametrize("row", ROWS + FILM_NODES)
 def test_each_variant_has_another_value_or_another_albedo(row):
-    """All variants of a node are tested, including those of OSL's BSDL and of Cycles."""
+    """The test covers all variants of a node, including OSL's BSDL and Cycles."""
     wo, wi, values = WO, WO[::-1], inputs(row)
     others = (each.get(row.name, ()) for each in RENDERERS)
     for variant in chain(row.variants, *others):
@@ -121,11 +122,12 @@ def test_a_mirror_reflects_all_light_and_prefiltered_what_the_fit_says(row):
 def test_the_fits_of_materialx_have_the_values_of_its_shaders():
     grazing = np.array([[1.0, 0.0, 1e-7]])
     rough = {"roughness": np.ones(1), "color": np.ones((1, 3))}
-    # At a tint of 0.42389375, gl measured 0.230783895. The constant 1.55754 is the fit's.
+    # The gl host measured 0.230783895 at a tint of 0.42389375. 1.55754 is a constant in MaterialX's
+    # fit of the Burley albedo.
     sheen = materialx_fits.conty_kulla_albedo(grazing, rough)
     np.testing.assert_allclose(sheen, 0.230783895 / 0.42389375, rtol=PRINTED)
     np.testing.assert_allclose(materialx_fits.burley_albedo(grazing, rough), 1.55754, rtol=PRINTED)
-    # With F = F0 = F90 = 1, the compensation cancels the loss predicted by the fit.
+    # If F = F0 = F90 = 1, the compensation adds exactly the energy loss that the fit predicts.
     lobe = {"roughness": np.full((COUNT, 2), 0.4)}
     white = materialx_fits.layer_albedo(WO, lobe, np.ones((COUNT, 1)), 1.0, np.ones((COUNT, 1)))
     np.testing.assert_allclose(white, 1.0, rtol=1e-12)

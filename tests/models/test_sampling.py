@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Samplers: limits, invariants, agreement of samples with densities and models, and weights.
 
-Seeds are fixed. With random seeds, a chi-square test of this file would fail by chance with the
-probability FALSE_ALARM, which the comparisons share evenly.
+Seeds are fixed. With random seeds, some chi-square test of this file would fail by chance with the
+probability FALSE_ALARM, which is divided equally among the comparisons.
 """
 
 from functools import partial
@@ -78,7 +78,7 @@ def assert_same_density(pdf, again):
 
 
 def turned(w, angle):
-    """The direction `w` rotated about the normal."""
+    """Direction `w`, rotated about the normal by `angle`."""
     x, y, z = np.moveaxis(w, -1, 0)
     c, s = np.cos(angle), np.sin(angle)
     return np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
@@ -114,7 +114,7 @@ def test_arguments_broadcast(name):
 
 @every_sampler
 def test_edges_give_unit_directions_above_the_horizon_and_finite_pdf(sampler):
-    # Random numbers one ulp from 0 and 1, and numbers whose squares underflow.
+    # Random numbers next to 0 and 1, and random numbers whose squares underflow.
     edges = np.array([0.0, 5e-324, 1e-200, 2.0**-53, 1e-9, 0.25, 0.5, 0.75, 1.0 - 2.0**-53])
     u = np.stack(np.meshgrid(edges, edges), axis=-1)
     for mu in (*edges, 1.0):
@@ -149,7 +149,8 @@ def test_clipped_cosine_keeps_the_side_of_the_lune_that_lands_above_the_horizon(
 
 def test_clipped_cosine_keeps_its_digits_on_the_rim():
     rest, u2 = 2.0 ** -np.arange(1.0, 54.0)[:, np.newaxis], np.linspace(0.0, 1.0, 64, False)
-    z = sampling.cltc_clipped(1.0 - rest, u2, np.float64(0.0), rest)[..., 2]  # d = 0 clips nothing
+    # The third argument, 0, means that nothing is clipped.
+    z = sampling.cltc_clipped(1.0 - rest, u2, np.float64(0.0), rest)[..., 2]
     np.testing.assert_allclose(z, np.sqrt(rest + 0.0 * u2), rtol=tolerances.RIM)
 
 
@@ -171,7 +172,7 @@ def test_the_density_of_a_sample_is_the_pdf(sampler, mu, roughness):
 # --- distributions of samples ----------------------------------------------------------------
 
 FALSE_ALARM = 1e-4
-GRAY = [  # exact samplers for gray surfaces
+GRAY = [  # exact samplers of EON for gray surfaces
     Sampler(f"eon_{rho}", partial(eon_sample, rho=rho), partial(eon_pdf, rho=rho), f"rho = {rho}")
     for rho in (0.0, 0.5)
 ]
@@ -180,7 +181,7 @@ LEVEL = FALSE_ALARM / (len(ALL) * len(SCENES))
 
 
 def chi_square(sampler, density, mu, roughness):
-    """p-value of a sampler's samples against a density; each comparison has its own seed."""
+    """p-value of a chi-square test of samples against a density. Each test has its own seed."""
     u = uniforms(100_000, [ALL.index(sampler), SCENES.index((mu, roughness))])
     sample, pdf = (partial(each, roughness=roughness) for each in (sampler.sample, density.pdf))
     return probability(sample, pdf, direction(mu), u)
@@ -200,15 +201,16 @@ def test_chi_square_tells_the_samplers_apart(mu):
 
 # --- throughput weights ----------------------------------------------------------------------
 
-# At unit reflectance the weight is f cos(theta_i) / p, with mean 1. The exact sampler returns a
-# density p for which the weight is 1 everywhere. Below, p is the true density of its samples,
-# which differs slightly because of two fits, MULTIPLE and UPPER. The variable of the fits is a
-# root of a random number; these values are dense at both ends of [0, 1].
+# The weight of a sample at unit reflectance is f cos(theta_i) / p and has the mean 1. The exact
+# sampler returns a density p for which every weight is 1. The tests below replace p by the true
+# density of the samples, which differs slightly because the sampler uses two fits, MULTIPLE and
+# UPPER. The variable of each fit is a root of a random number. ROOTS holds values of this variable,
+# dense at both ends of [0, 1].
 ROOTS = np.sin(0.5 * np.pi * (np.arange(4001) + 0.5) / 4001) ** 2
 
 
 def weights_of(sampler, mu, roughness):
-    """Throughput weights at quadrature nodes with a positive pdf, and the nodes' probabilities."""
+    """Weights at quadrature nodes with a positive density, and probabilities of these nodes."""
     wi, solid_angle = hemisphere(mu, 32)
     pdf = sampler.pdf(direction(mu), wi, roughness)
     wi, pdf, solid_angle = wi[pdf > 0.0], pdf[pdf > 0.0], solid_angle[pdf > 0.0]
@@ -231,7 +233,7 @@ def multiple_error():
     mu = t * (1.0 + w**2 * (a + w**2 * (b + w * (c + w * (d + w * (e + w**4 * f))))))
     cosines = sampling.eon_multiple_cosine(t(ROOTS))
     np.testing.assert_allclose(cosines, mu(ROOTS), atol=tolerances.DIRECTION)
-    # The random number is t^3, and its derivative with respect to w is -6 w t^2.
+    # The random number is t^3. Its derivative with respect to w is -6 w t^2.
     slope = mu.deriv()(ROOTS) / (-6.0 * ROOTS * t(ROOTS) ** 2)
     density = 2.0 * diffuse.fon_loss_mu(mu(ROOTS)) * mu(ROOTS) / (diffuse.C1 - diffuse.C2)
     return mu(ROOTS), 1.0 / (slope * density) - 1.0
@@ -248,13 +250,13 @@ def upper_error(mu_o):
     mu = sampling.eon_upper_cosine(ROOTS, mu_o, y_o)
     S = np.sqrt((1.0 - mu) * (1.0 + mu))
     np.testing.assert_allclose(mu, 1.0 - scale * fit(y_o * ROOTS), atol=tolerances.DIRECTION)
-    # The random number is y^2.5, where y is in ROOTS.
+    # The random number is y^2.5. ROOTS holds the values of y.
     slope = scale * y_o * fit.deriv()(y_o * ROOTS) / (2.5 * ROOTS**1.5)
     return mu, K_o / (slope * S * (1.0 - mu)) - 1.0
 
 
 def excess(mu, roughness):
-    """Relative excess of exact samples' true density over `eon_pdf`, and probabilities."""
+    """Relative excess of the samples' true density over `eon_pdf`, and nodes' probabilities."""
     wi, solid_angle = hemisphere(mu, 32)
     mu_i, s = wi[:, 2], direction(mu)[0] * wi[:, 0]
     losses = diffuse.fon_loss_mu(mu_i) * diffuse.fon_loss_mu(mu)
@@ -280,6 +282,6 @@ def test_exact_sampling_has_no_variance_and_is_never_worse_than_cosine(mu, rough
     variance = (weight - 1.0) ** 2 @ probability
     assert weight.max() <= 1.0 + tolerances.EON_WEIGHT
     assert variance < tolerances.EON_VARIANCE
-    # At the smallest roughness, cosine sampling is nearly exact.
+    # At the smallest roughness, cosine sampling is almost exact.
     cosine, probability = weights_of(BY_NAME["cosine"], mu, roughness)
     assert variance <= (cosine - 1.0) ** 2 @ probability

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Samples of microfacets, sheen and coats have the right distribution and weights.
 
-`test_catalog` checks two other properties of every model: samples return the density `pdf`, and
-their mean weight is the albedo. Seeds are fixed. With random seeds, a test of this file would fail
+`test_catalog` checks two more properties of every model: the sampler returns the density `pdf`, and
+the mean weight is the albedo. Seeds are fixed. With random seeds, some test of this file would fail
 by chance with the probability FALSE_ALARM.
 """
 
@@ -22,7 +22,7 @@ FALSE_ALARM = 1e-4
 FACETS = [(1.0, (0.3, 0.3)), (0.5, (0.2, 0.7)), (0.1, (0.5, 0.5)), (0.0, (1.0, 0.4))]
 COATS = [(1.0, 0.3, 1.5), (0.5, 0.1, 1.5), (0.1, 0.5, 2.5), (0.0, 0.3, 1.1)]
 CLAY = {"color": np.array([0.7, 0.35, 0.12]), "roughness": 0.6}
-# Model, cosine of the view, inputs, and slightly different inputs whose samples must fail the test.
+# Model, cosine of the view, inputs, and different inputs whose samples must fail the test.
 SCENES = [
     *(("conductor", mu, {"roughness": a}, {"roughness": (1.1 * a[0] % 1.0, a[1])}) for mu, a in FACETS),
     *(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sheen, Burley, translucence: limits, invariants, agreement with 50 digits and quadrature."""
+"""Sheen, Burley and translucent models: limits, invariants, quadrature, and 50-digit arithmetic."""
 
 import mpmath as mp
 import numpy as np
@@ -40,7 +40,7 @@ def test_conty_kulla_has_its_limit_at_roughness_0_and_where_the_half_vector_is_t
 
 
 def conty_kulla_exact(wo, wi, roughness):
-    """Printed equations of the Conty-Kulla sheen in 50 digits."""
+    """Conty-Kulla sheen by the published equations, in 50 digits."""
     wo, wi = ([mp.mpf(float(x)) for x in w] for w in (wo, wi))
     half = [a + b for a, b in zip(wo, wi, strict=True)]
     cosine = half[2] / mp.sqrt(sum(x * x for x in half))
@@ -50,7 +50,7 @@ def conty_kulla_exact(wo, wi, roughness):
 
 
 def zeltner_albedo_exact(x, y):
-    """Zeltner's albedo, the printed Gaussian, in 50 digits."""
+    """Albedo of Zeltner's sheen, by the published Gaussian fit, in 50 digits."""
     c = [mp.mpf(number) for number in (0.0206607, 1.58491, 0.0379424, 1.32227)]
     s = y * (c[0] + c[1] * y) / (c[2] + y * (c[3] + y))
     c = [mp.mpf(number) for number in (0.193854, 1.14885, 1.7932, 0.95943, 0.046391)]
@@ -61,7 +61,10 @@ def zeltner_albedo_exact(x, y):
 
 
 def zeltner_exact(wo, wi, roughness):
-    """Zeltner's printed equations in 50 digits; D_o includes a cosine, divided by that of wi."""
+    """Zeltner's sheen by the published equations, in 50 digits.
+
+    The published lobe D_o includes a cosine, so the function divides the lobe by the cosine of wi.
+    """
     wo, wi = ([mp.mpf(float(v)) for v in w] for w in (wo, wi))
     x, y = wo[2], max(mp.mpf(float(roughness)), mp.mpf(0.01))
     c = [mp.mpf(number) for number in (2.58126, 0.813703, 0.310327, 2.60994)]
@@ -78,7 +81,7 @@ def zeltner_exact(wo, wi, roughness):
 
 
 def burley_exact(wo, wi, roughness):
-    """Printed equations of Burley's diffuse model in 50 digits."""
+    """Burley's diffuse model by the published equations, in 50 digits."""
     wo, wi = ([mp.mpf(float(x)) for x in w] for w in (wo, wi))
     half = [a + b for a, b in zip(wo, wi, strict=True)]
     length = mp.sqrt(sum(x * x for x in half))
@@ -116,13 +119,13 @@ def test_conty_kulla_albedo_has_its_closed_forms_at_grazing_and_along_the_normal
 
 
 def test_conty_kulla_albedo_is_the_integral_of_the_value():
-    # The cosines cover both methods for the inner integral: closed form and quadrature.
+    # The cosines cover both methods for the inner integral: the closed form and the quadrature.
     mu, roughness = np.array([0.02, 0.1, 0.24, 0.26, 0.7]), np.array([0.05, 0.1, 0.3, 0.5])
     truth = []
     for wo, wi, weights in (hemisphere_nodes(each, 128) for each in mu):
         truth.append([weights @ conty_kulla_brdf(wo, wi, 1.0, r)[:, 0] for r in roughness])
     error = np.abs(conty_kulla_albedo_dir(mu[:, None], roughness) - truth).max()
-    assert error < 2.0 * tolerances.QUADRATURE  # albedos reach 1.5
+    assert error < 2.0 * tolerances.QUADRATURE  # the albedos are at most 1.5
 
 
 def test_zeltner_albedo_is_the_integral_of_the_value():
@@ -143,5 +146,5 @@ def test_transmission_is_lamberts():
 
 
 def test_the_rule_of_conty_kulla_integrates_what_ends_in_a_root():
-    x, weights = _rule.__wrapped__()  # other tests may have cached the rule
+    x, weights = _rule.__wrapped__()  # other tests may have cached the quadrature rule
     np.testing.assert_allclose([weights.sum(), weights @ np.sqrt(x)], [1.0, 2.0 / 3.0], rtol=1e-10)

@@ -54,14 +54,14 @@ def test_white_surfaces_vanish_in_a_white_environment(model, inputs):
 
 @pytest.mark.parametrize("weight", ["transmission_weight", "base_metalness", "subsurface_weight"])
 def test_clear_glass_and_mixtures_lose_no_light(weight):
-    """White glass transmits what it does not reflect; white metal and scattering lose no light."""
+    """White glass, white metal and white subsurface scattering lose no light."""
     p = open_pbr.parameters(**{weight: 1.0}, base_color=WHITE, subsurface_color=WHITE)
     total = open_pbr.surface(Light(VIEWS), p) + open_pbr.surface(Light(VIEWS, behind=True), p)
     np.testing.assert_allclose(total, 1.0, atol=1e-6)
 
 
 def test_an_undarkened_coat_keeps_the_albedo_along_the_normal():
-    """A smooth coat over a matte base has E_c = lerp(F_0, 1, E_b)."""
+    """For a smooth coat over a matte base, the albedo is E_c = lerp(F_0, 1, E_b)."""
     color, coat = (0.2, 0.5, 0.9), {"coat_weight": 1.0, "coat_darkening": 0.0}
     p = open_pbr.parameters(base_color=color, specular_weight=0.0, **coat)
     f0 = (0.6 / 2.6) ** 2

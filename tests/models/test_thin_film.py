@@ -26,24 +26,25 @@ from tests.support.availability import package
 MU = np.linspace(0.05, 1.0, 40)
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 WHITE, HALF = np.ones(3), np.full(3, 0.5)
-AVERAGED = 2e-5  # largest error of F_ss by a 14-node polynomial in random films
-HEIGHTS = 1.3e-3  # excess over 1 of the summed heights of the sensitivities
-ORDERS = 1e-8  # error of the summed orders for cosines above 0.05
-TRANSFER = 1e-12  # relative difference from the package tmm
-# Errors of XYZ for dielectrics and for metals, with all orders and with two, as documented.
+AVERAGED = 2e-5  # largest error of the average reflectance of random films by a 14-node polynomial
+HEIGHTS = 1.3e-3  # amount by which the sum of the sensitivities' heights exceeds 1
+ORDERS = 1e-8  # error of the summed interference orders, for cosines above 0.05
+TRANSFER = 1e-12  # relative difference from the Python package tmm
+# Documented errors of XYZ colors, for dielectrics and for metals. XYZ_ALL includes all interference
+# orders, XYZ_TWO only two.
 XYZ_ALL, XYZ_TWO = (0.012, 0.017), (0.016, 0.07)
-CURVE = 1e-4  # error of a curve's polynomial of degree 48
-# Substrates by index and extinction: diamond, glass, water, a dark metal, and a bright metal.
+CURVE = 1e-4  # error of the polynomial of degree 48 for the reflectance curve
+# Substrates by index of refraction and extinction: diamond, glass, water, dark and bright metal.
 SUBSTRATES = ((2.4, 0.0), (1.5, 0.0), (1.33, 0.0), (2.9, 3.1), (0.2, 3.4))
 
-VISIBLE = np.arange(360.0, 831.0)  # nm
+VISIBLE = np.arange(360.0, 831.0)  # wavelengths in nm
 
 
 def film_spectrum(wavelength, mu, thickness, n2, n, k):
-    """Reflectance of a thin film on a substrate for unpolarized light of one wavelength, in nm."""
+    """Reflectance of a thin film on a substrate for unpolarized light. The wavelength is in nm."""
     sin2, n3 = (1.0 - mu) * (1.0 + mu), n + 1j * k
     c2 = np.sqrt(1.0 - sin2 / n2**2)
-    w3 = np.sqrt(n3**2 - sin2 + 0j)  # n3 times the cosine of refraction
+    w3 = np.sqrt(n3**2 - sin2 + 0j)  # n3 times the cosine of the refracted angle
     turn = np.exp(4j * np.pi * n2 * c2 * thickness / wavelength)
     s = amplitude(mu, n2 * c2), amplitude(n2 * c2, w3)
     p = amplitude(n2 * mu, c2), amplitude(n3**2 * c2, n2 * w3)
@@ -59,7 +60,7 @@ def film_spectrum_xyz(*film):
 
 
 def amplitude(above, below):
-    """Reflected amplitude between two admittances; 0 if they are equal."""
+    """Reflected amplitude between media with two admittances; 0 if the admittances are equal."""
     total = above + below
     return (above - below) / np.where(total == 0.0, 1.0, total)
 
@@ -73,7 +74,7 @@ def grid():
 
 
 def text_xyz(orders):
-    """XYZ of the grid by the specified approximation, shape (..., 3)."""
+    """XYZ colors of the grid by the specified approximation, shape (..., 3)."""
     mu, thickness, index, ior, extinction = grid()
     opd = formulas.path_difference(mu, thickness, index)
     both = formulas.over_index(mu, index, ior, extinction)
@@ -81,7 +82,7 @@ def text_xyz(orders):
 
 
 def errors(orders):
-    """Largest errors of the specified XYZ, for dielectrics and for metals."""
+    """Largest errors of the specified XYZ colors, for dielectrics and for metals."""
     error = np.abs(text_xyz(orders) - film_spectrum_xyz(*grid()))
     metal = np.array(SUBSTRATES)[:, 1] > 0.0
     return error[~metal].max(), error[metal].max()
@@ -99,14 +100,14 @@ def conductor(mu, thickness, index, ior, extinction, form=TEXT):
 
 
 def schlick(mu, thickness, index, color0, form=TEXT):
-    """Reflectance of a film on a Schlick curve with white `color82` and `color90`, exponent 5."""
+    """Reflectance of a film on a Schlick curve with exponent 5, white `color82` and `color90`."""
     film = {"thinfilm_thickness": thickness, "thinfilm_ior": index}
     inputs = {"color0": color0, "color82": 1.0, "color90": 1.0, "exponent": 5.0, **film}
     return film_reflectance("generalized_schlick_bsdf", mu, inputs, form)
 
 
 def bare(thickness):
-    """Reflectances of three substrates under a film of this thickness, and without a film."""
+    """For three substrates, reflectance under a film of the given thickness, and without a film."""
     return (
         (dielectric(MU, thickness, 1.4, 1.8), fresnel_dielectric(MU, 1.8)[:, np.newaxis]),
         (conductor(MU, thickness, 1.4, *GOLD), fresnel_conductor(MU, *GOLD)),
@@ -155,7 +156,7 @@ def test_wavelengths_agree_with_the_transfer_matrix_method():
 
 
 def test_the_airy_terms_of_one_wavelength_are_the_transfer_matrix():
-    # All orders without damping form a geometric series, which replaces the sensitivities.
+    # The sum of all undamped orders is a geometric series, which replaces the sensitivities.
     for index, extinction in ((1.5, 0.0), (1.1, 0.0), (0.2, 3.4), (2.9, 3.1)):
         arrays = [np.full_like(MU, value) for value in (1.4, index, extinction)]
         opd, total = formulas.path_difference(MU, 350.0, arrays[0]), 0.0
@@ -212,8 +213,8 @@ def test_tristimulus_values_stay_in_0_to_1_with_all_orders():
 
 def test_the_matrix_is_the_printed_one_after_a_bradford_adaptation():
     d65 = np.linalg.solve(XYZ_TO_REC709, np.ones(3))
-    with np.printoptions():  # colour would change how arrays print in doctests
-        colour = package("colour")  # imported here because it is slow
+    with np.printoptions():  # colour changes how NumPy prints arrays, which would break doctests
+        colour = package("colour")  # slow to import
     adaptation = colour.adaptation.matrix_chromatic_adaptation_VonKries(np.ones(3), d65, "Bradford")
     np.testing.assert_allclose(XYZ_TO_REC709_E, XYZ_TO_REC709 @ adaptation, atol=5e-8)
     np.testing.assert_allclose(XYZ_TO_REC709_E.sum(axis=1), 1.0, atol=3e-7)
@@ -258,7 +259,7 @@ def test_equal_inputs_of_all_directions_have_the_values_of_each(row):
 
 @pytest.mark.parametrize("film", [(150.0, 1.4, 1.8), (600.0, 1.4, 1.8), (358.6, 1.925, 1.093)])
 def test_the_average_of_a_curve_is_weighted_by_the_cosine(film):
-    # In two channels, the last film's curve is clamped at 0 between kinks.
+    # In two channels, the curve of the last film is clamped at 0 between kinks.
     names = ("thinfilm_thickness", "thinfilm_ior", "ior")
     material = dict(zip(names, map(np.array, film), strict=True)) | {"tint": np.ones(1)}
     mu = (np.arange(2000) + 0.5) / 2000

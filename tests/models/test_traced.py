@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Functions of every model under transformations of PyTorch and JAX.
 
-All functions of all models are tested. At the ends of input ranges, no operation returns NaN, and
-gradients are finite. Inside the ranges, gradients match finite differences of NumPy's values.
+The tests cover all functions of all models. At the ends of input ranges, no operation returns NaN,
+and gradients are finite. Inside the ranges, gradients match finite differences of NumPy's values.
 `vmap`, `jit` and `compile` return NumPy's values.
 """
 
@@ -20,26 +20,26 @@ from tests.support.cases import direction
 from tests.support.tracing import untraced
 
 SEED, ROWS = 5, 3
-STEP, SLOPE = 1e-5, 3e-5  # step of central differences, and their error near a kink
-VALUE = 1e-11  # absolute and relative difference of values
-# Ranges by quantity, and their ends. The default range is [0.3, 0.7], and its ends are 0 and 1.
+STEP, SLOPE = 1e-5, 3e-5  # step of central differences, and error of the differences near a kink
+VALUE = 1e-11  # absolute and relative tolerance for values
+# INSIDE: ranges of random inputs, by default [0.3, 0.7]. ENDS: ends of ranges, by default 0 and 1.
 INSIDE = {"ior": (1.2, 2.0), "extinction": (1.0, 3.0), "thinfilm_thickness": (200.0, 900.0)}
 INSIDE |= {"thinfilm_ior": (1.2, 1.9), "exponent": (2.0, 6.0), "coat_ior": (1.2, 2.0)}
 INSIDE |= dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), (0.1, 0.6))
 ENDS = {"ior": (1.0, 2.0), "extinction": (0.0, 3.0), "exponent": (1.0, 5.0)}
-ENDS |= {"thinfilm_thickness": (1.0, 900.0)}  # thickness 0 has a different formula
+ENDS |= {"thinfilm_thickness": (1.0, 900.0)}  # a thickness of 0 has a different formula
 FUNCTIONS = [
     (name, function)
     for name in model_names()
     for function in mxeon.model(name).functions
-    if function != "brdf"  # brdf is an alias of bsdf
+    if function != "brdf"  # `brdf` is another name of `bsdf`
 ]
-# JAX takes seconds to trace the other films, whose curves test_arrays.py covers.
+# JAX takes seconds to trace these films. test_arrays.py covers their curves.
 TRACED = [row for row in FUNCTIONS if row[0] not in ("conductor_film", "schlick_film")]
 
 
 def vectors(row, function, ends=False):
-    """Arguments before the inputs; with `ends`, views include the normal and the horizon."""
+    """Arguments before the inputs; if `ends`, the views include the normal and the horizon."""
     rng, mu = np.random.default_rng(SEED), np.array([1.0, 0.0, 0.6] if ends else [0.7, 0.3, 0.9])
     wo = direction(mu, [0.0, 0.3, 2.0])
     wi = np.roll(wo, 1, axis=0) * (-1.0, 1.0, 1.0)
@@ -50,12 +50,12 @@ def vectors(row, function, ends=False):
 
 
 def one_for_all(parameter):
-    """Whether an input has one value for all rows."""
+    """Whether an input must have a single value for all rows."""
     return parameter.quantity.startswith("coat_")
 
 
 def inside(row):
-    """Random inputs, one per row, away from the ends of their ranges."""
+    """Random inputs, away from the ends of their ranges. Most inputs have one value per row."""
     rng, inputs = np.random.default_rng(SEED), {}
     for each in row.parameters:
         shape = (*(ROWS,) * (not one_for_all(each)), *(each.channels,) * bool(each.channels))
@@ -64,7 +64,7 @@ def inside(row):
 
 
 def at_ends(row, function):
-    """Calls with one input or all inputs at an end of their ranges; one call if rows may differ."""
+    """Calls with all inputs at an end of their ranges, or with one input if rows may differ."""
     middle, ends = inside(row), {}
     for each in row.parameters:
         low, high, _ = RANGES[each.quantity]
@@ -80,12 +80,12 @@ def at_ends(row, function):
 
 
 def numbers(result):
-    """The array of a result; the density if the result is a sample."""
+    """The result as an array, or only the density if the result is a sample."""
     return result[1] if isinstance(result, tuple) else result
 
 
 def no_nan(torch):
-    """Context in which PyTorch fails at the first NaN, even in a discarded result."""
+    """Context in which PyTorch stops at the first NaN, even if the result is not used."""
     from torch.utils._python_dispatch import TorchDispatchMode
 
     class NoNan(TorchDispatchMode):
@@ -99,7 +99,7 @@ def no_nan(torch):
 
 
 def assert_slopes(function, inputs, found):
-    """Compare gradients of the summed result with finite differences by each component."""
+    """Compare the gradient of the summed result with finite differences of each component."""
     for name, gradient in found.items():
         array, rowwise = inputs[name], len(np.shape(inputs[name])) > 0
         for index in np.ndindex(array.shape[1:] if rowwise else ()):
@@ -129,12 +129,12 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
         found = {k: none[k] if t.grad is None else t.grad.numpy() for k, t in tensors.items()}
         return value.detach().numpy(), found
 
-    # Inside the ranges, values and slopes match NumPy.
+    # Inside the ranges, values and slopes match NumPy's.
     given, inputs = vectors(row, function), inside(row)
     value, found = gradients(given, inputs)
     np.testing.assert_allclose(value, numbers(model(*given, **inputs)), VALUE, VALUE)
     assert_slopes(partial(model, *given), inputs, found)
-    # At the ends, results are finite, and NumPy issues no warning, which would be an error.
+    # At the ends of the ranges, results are finite. A warning by NumPy would fail the test.
     for given_there, inputs_there in at_ends(row, function):
         value_there, slopes = gradients(given_there, inputs_there, no_nan(torch))
         plain = numbers(model(*given_there, **inputs_there))
@@ -150,9 +150,9 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
 @pytest.mark.whole
 @pytest.mark.parametrize(("name", "function"), TRACED)
 def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
-    """Functions are traced but not compiled, which would take minutes for films and facets.
+    """JAX traces the functions but does not compile them, which would take minutes.
 
-    Forward mode takes a third of the time of reverse mode, in which JAX transposes the same steps.
+    Forward mode takes a third of the time of reverse mode, which transposes the same steps.
     """
     jax = package("jax")
     jax.config.update("jax_enable_x64", True)
@@ -161,11 +161,11 @@ def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
     axes = {each.name: None if one_for_all(each) else 0 for each in row.parameters}
 
     def change(given, inputs):
-        """Summed result, and its derivative when all inputs are scaled by the same factor."""
+        """Summed result, and the sum's derivative when all inputs are scaled by a common factor."""
         model = partial(getattr(row, function), *given)
         return jax.jvp(lambda inputs: numbers(model(**inputs)).sum(), (inputs,), (inputs,))
 
-    with untraced():  # PyTorch's tests trace the same lines
+    with untraced():  # the tests with PyTorch cover the same lines
         found = jax.eval_shape(jax.vmap(change, in_axes=(0, axes)), given, inputs)
     assert [each.shape for each in found] == [(ROWS,)] * 2
 

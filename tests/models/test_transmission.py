@@ -28,7 +28,7 @@ GRID = 300
 
 
 def below():
-    """Quadrature directions below the horizon, and weights that include the cosine."""
+    """Quadrature directions below the horizon, and their weights, which include the cosine."""
     x, w = np.polynomial.legendre.leggauss(GRID)
     mu, weight = 0.5 * (1.0 + x), 0.5 * w
     phi = 2.0 * np.pi * (np.arange(GRID) + 0.5) / GRID
@@ -37,7 +37,7 @@ def below():
 
 
 def pairs(count=500, least=0.05):
-    """Random pairs of directions on either side of the surface."""
+    """Random pairs of directions: wo lies above the surface, wi below."""
     wo, wi = directions((2, count), 3, least)
     return wo, wi * DOWN
 
@@ -93,7 +93,10 @@ def test_the_transmittance_is_the_integral_of_the_btdf(ior, alpha, mu):
 
 
 def around(wo, cosine, count):
-    """Unit vectors at given cosines with `wo` and `count` even azimuths, shape (N, count, 3)."""
+    """Unit vectors at the given cosines with `wo` and `count` equally spaced azimuths.
+
+    The result has the shape (N, count, 3).
+    """
     across = np.cross(wo, [0.0, 1.0, 0.0])
     across /= np.linalg.norm(across)
     phi = 2.0 * np.pi * np.arange(count) / count
@@ -106,12 +109,12 @@ def around(wo, cosine, count):
 @pytest.mark.parametrize("alpha", [(0.5, 0.5), (1.0, 1.0), (0.3, 0.6)])
 @pytest.mark.parametrize("mu", [1.0, 0.9])
 def test_the_transmittance_below_index_1_is_a_sum_over_the_critical_cone(mu, alpha, shadow):
-    # All facets that transmit lie within 30 degrees of the view and send light down.
+    # All facets that transmit light lie within 30 degrees of the view and send the light down.
     ior, wo = 0.5, np.array(direction(mu, 0.4))
     least = np.sqrt(1.0 - ior**2)
     x, w = np.polynomial.legendre.leggauss(64)
     t = 0.5 * (1.0 + x)
-    # At the critical angle, 1 - F starts like a square root.
+    # Near the critical angle, 1 - F changes like a square root.
     cosine, weight = least + (1.0 - least) * t * t, w * t * (1.0 - least)
     wh = around(wo, cosine, 128)
     wi = refraction_direction(wo, wh, ior)
@@ -127,8 +130,8 @@ def test_the_transmittance_below_index_1_is_a_sum_over_the_critical_cone(mu, alp
 
 @pytest.mark.parametrize("alpha", [0.1, 0.4, 1.0])
 def test_as_much_light_leaves_a_solid_as_enters(alpha):
-    # The cosine-weighted average transmittance from outside equals n^2 times that from inside, for
-    # traced paths and for integrated light.
+    # The cosine-weighted average of the transmittance from outside is n^2 times the average from
+    # inside.
     n, (x, w) = 1.5, np.polynomial.legendre.leggauss(32)
     mu, weight = 0.5 * (x + 1.0), 0.5 * w * (x + 1.0)
 
@@ -144,7 +147,7 @@ def test_as_much_light_leaves_a_solid_as_enters(alpha):
 @pytest.mark.parametrize("ior", INDICES)
 def test_radiance_over_the_squared_index_is_reciprocal(ior):
     wo, wi = pairs()
-    # Light travels from wi to wo, towards the side with index 1.
+    # Light travels from wi to wo. The index of refraction is 1 on the side of wo.
     there = dielectric_btdf(wo, wi, 1.0, [0.3, 0.6], ior)
     back = dielectric_btdf(DOWN * wi, DOWN * wo, 1.0, [0.3, 0.6], 1.0 / ior) / ior**2
     np.testing.assert_allclose(there, back, rtol=1e-9, atol=1e-12)
@@ -194,7 +197,7 @@ def test_microfacets_neither_reflect_nor_transmit_more_than_all_light(ior):
 
 
 def test_no_light_passes_between_directions_that_no_facet_joins():
-    # Refraction never sends light back to its own side.
+    # Refraction sends no light back to the side from which the light came.
     bent = (direction(0.3), direction(0.3) * DOWN)
     assert dielectric_btdf(*bent, 1.0, [0.5, 0.5], 1.5)[0] == 0.0
 

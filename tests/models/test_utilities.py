@@ -28,7 +28,7 @@ def test_anisotropy_stretches_along_the_tangent_and_keeps_the_geometric_mean():
     inside = x < 1.0
     assert (x >= y).all()
     assert np.allclose((x * y)[inside], SHARES[0][inside] ** 4, rtol=1e-14, atol=0.0)
-    aspect = 1.0 - np.minimum(SHARES[1], 0.98)  # ratio of the shorter axis to the longer
+    aspect = 1.0 - np.minimum(SHARES[1], 0.98)  # ratio of the shorter axis to the longer axis
     assert np.allclose(y[inside], (aspect * x)[inside], rtol=1e-14, atol=0.0)
     assert np.array_equal(roughness_anisotropy(SHARES[0], 0.0), SHARES[0][:, None] ** 2 * [1, 1])
     assert np.array_equal(roughness_anisotropy(0.5, 1.0), roughness_anisotropy(0.5, 0.98))
@@ -56,14 +56,14 @@ def test_an_artistic_index_has_the_form_of_the_paper():
 
 
 def test_a_blackbody_has_luminance_1_and_the_colors_of_a_library():
-    with np.printoptions():  # colour would change how arrays print in doctests
+    with np.printoptions():  # colour changes how NumPy prints arrays, which would break doctests
         colour = package("colour")
     shape = colour.SpectralShape(360, 830, 1)
     observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
     for kelvin in (800.0, 1667.0, 4000.0, 25000.0):
         light = colour.sd_blackbody(kelvin, shape)
         xyz = np.asarray(colour.sd_to_XYZ(light, observer, method="Integration"))
-        # The integrals have steps of 5 nm and of 1 nm.
+        # The two integrals have steps of 5 nm and of 1 nm.
         assert np.abs(blackbody_xyz(kelvin) - xyz / xyz[1]).max() < 5e-5
         assert blackbody(kelvin) @ [0.2126729, 0.7151522, 0.0721750] == pytest.approx(1, abs=1e-6)
 
@@ -85,7 +85,7 @@ def test_hair_roughness_ends_at_specular_and_scales_the_variance_alone():
 
 def test_hair_absorbs_by_its_pigments_and_white_hair_absorbs_nothing():
     assert np.array_equal(deon_hair_absorption_from_melanin(0.0, 0.5, *COLORS), np.zeros(3))
-    one = 1.0 - np.exp(-1.0)  # melanin for one unit of pigment
+    one = 1.0 - np.exp(-1.0)  # amount of melanin that corresponds to one unit of pigment
     for redness, pigment in ((0.0, EUMELANIN), (1.0, PHEOMELANIN)):
         assert deon_hair_absorption_from_melanin(one, redness, *COLORS) == pytest.approx(pigment)
     assert np.array_equal(chiang_hair_absorption_from_color(np.ones(3), 0.3), np.zeros(3))

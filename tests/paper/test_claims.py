@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measurements refute the same claims of the paper as the page of claims states."""
+"""Measurements refute exactly those claims of the paper that the page on claims calls refuted."""
 
 import re
 
