@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MaterialX documents, data libraries and generated shaders. No module here imports the models."""
+"""MaterialX documents, data libraries and generated shaders, without mxeon's shading models."""

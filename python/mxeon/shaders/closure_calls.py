@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the generators of this MaterialX call a library's functions as its sources define them.
+"""Checks that MaterialX's generators call a library's functions as the sources define them.
 
-Versions of MaterialX pass different arguments to closures. The number of arguments of each call in
-a generated text must be that of an overload of the function.
+Versions of MaterialX pass different arguments to closures. In generated text, the number of
+arguments of each call must be the number of parameters of an overload of the function.
 """
 
 import os
@@ -22,7 +22,7 @@ from mxeon.shaders.library import load_library
 from mxeon.shaders.library_tree import root, standard_folders
 
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
-TEXT = re.compile(rf"{COMMENT.pattern}|\"[^\"\n]*\"", re.DOTALL)  # comments and strings
+TEXT = re.compile(rf"{COMMENT.pattern}|\"[^\"\n]*\"", re.DOTALL)  # matches comments and strings
 TOKEN = re.compile(r"\$[A-Za-z]\w*")
 
 
@@ -31,7 +31,7 @@ def check_closure_calls(
 ) -> None:
     """Raise InterfaceError unless a generated stage calls a library's functions as defined.
 
-    Raise ShaderError if several nodes name a function that has the wrong parameters for one node.
+    If the implementations of several nodes name the wrongly called function, raise ShaderError.
     """
     text, known = COMMENT.sub("", stage.getSourceCode()), _functions(library, profile, target)
     for file in stage.getSourceDependencies():
@@ -60,20 +60,19 @@ def unreplaced_token(text: str) -> str:
 def _functions(
     library: str, profile: str | None, target: str
 ) -> Mapping[str, dict[str, list[str]]]:
-    """Nodedefs that a library implements for a target, by source file and function.
+    """The nodedefs that a library implements for a target, keyed by source file and function.
 
-    Without MaterialX's own implementations; empty for a library that replaces MaterialX's.
+    MaterialX's own implementations are excluded. The result is empty for libraries that replace
+    MaterialX's libraries.
     """
     functions: dict[str, dict[str, list[str]]] = defaultdict(dict)
     if root(library):
         return functions
     document = load_library(library, profile)
-    targets = {
-        GENERATORS[target].create().getTarget(),
-        "genglsl",
-    }  # most targets inherit genglsl's code
+    # Most targets inherit the code of genglsl.
+    targets = {GENERATORS[target].create().getTarget(), "genglsl"}
     standard = set(standard_folders())
-    folders = cache(lambda uri: Path(uri).parents)  # many implementations share few documents
+    folders = cache(lambda uri: Path(uri).parents)  # cached, since many sources share a document
     for each in document.getImplementations():
         if each.getTarget() not in targets or not (each.hasFile() and each.hasFunction()):
             continue

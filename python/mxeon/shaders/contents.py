@@ -20,17 +20,18 @@ FILM = "thinfilm_thickness"
 
 @dataclass(frozen=True, order=True)
 class ShownNode:
-    """A node in the mode that a material uses."""
+    """A node, and the mode in which a material uses the node."""
 
     category: str
     type: str
-    # Name and type of each input of the definition. An input with a lobe is listed only if it is
-    # connected, and a second time with the category of a node that combines lobes, otherwise "".
+    # Name and type of each input in the node's definition. An input of a closure type is listed
+    # only if a node that may emit light is connected, and is then listed again with the category of
+    # the connected node; the category is "" unless the node combines lobes.
     inputs: tuple[tuple[str, str], ...] = ()
     # Name and value of each constant input that selects a mode.
     modes: tuple[tuple[str, str], ...] = ()
     film: bool = False  # whether a thin film is possible
-    # Name and numbers of each other constant input.
+    # Name and value of each constant input that is a number, a color or a vector.
     values: tuple[tuple[str, tuple[float, ...]], ...] = ()
 
     def has(self, other: "ShownNode") -> bool:
@@ -43,13 +44,13 @@ class ShownNode:
 
 
 def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, ...] | MxeonError:
-    """The nodes used by a document's materials, or the error if it cannot be read.
+    """The nodes that a document's materials use, or the error that prevents reading the document.
 
-    The source is a file and the name of a library.
+    The argument `source` has the document's file and the name of a library.
     """
     file, library = source
     try:
-        with warnings.catch_warnings(action="ignore"):  # reported with the document
+        with warnings.catch_warnings(action="ignore"):  # mxeon reports these elsewhere
             document = read_document(file, library, policy=policy)
     except (MxeonError, OSError) as error:
         return (
@@ -62,7 +63,7 @@ def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, 
 
 
 def node_of(text: str, category: str) -> ShownNode:
-    """The first node of a category in a document, with only its explicit inputs."""
+    """The first node of a category in a document, with only the inputs that the document sets."""
     document = mx.createDocument()
     mx.readFromXmlString(document, text)
     node = next(each for each in document.traverseTree() if each.getCategory() == category)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Float64 values of one expression of MDL or MSL.
+"""Evaluates a single expression in MDL or MSL in float64.
 
-Nothing is executed. A few substitutions turn the text into Python, `ast` parses the result, and a
-walk over a few kinds of nodes evaluates it. Statements, loops, attributes and indices are refused, so
-work is linear in the length. A number is an array (N, 1), a color or vector (N, 3); integers stay
-integers.
+No code is executed. A few substitutions turn the expression into Python, `ast` parses the Python
+text, and a walk over a few kinds of syntax nodes computes the value. Statements, loops, attributes
+and subscripts are refused, so the work is linear in the length of the expression. A number is an
+array of shape (N, 1), and a color or a vector is an array of shape (N, 3). Integers stay integers.
 """
 
 import ast
@@ -22,14 +22,15 @@ from mxeon.shaders.closure_calls import COMMENT
 
 Array = NDArray[Any]  # float64, int64 or bool
 LONGEST = 10_000  # characters; the libraries' expressions have up to 700
-# Matches text that only Python accepts: its keywords and operators, `=` for arguments, comments.
+# Matches text that only Python accepts: Python's keywords and operators, `=` for named arguments,
+# and comments.
 FOREIGN = re.compile(
     rf"\b(?:{'|'.join(keyword.kwlist)})\b|\*\*|[#@%\\'`\[\]{{}}]|(?<![<>=!])=(?!=)|[^\x20-\x7e]"
 )
 PYTHON = (
     (r"::", "__"),
     (r"(?<=[(,]) *(\w+) *:", r"\1="),  # a named argument
-    (r"\?", " if "),  # `a ? b : c` becomes `a if b else c`, and is evaluated in that order
+    (r"\?", " if "),  # `a ? b : c` becomes `a if b else c`, where `a` is the condition
     (r":", " else "),
     (r"!(?!=)", "~"),
     (r"\b((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)f\b", r"\1"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shader functions as text, in GLSL and in OSL, and their signatures."""
+"""Texts and signatures of a library's shader functions in GLSL and in OSL."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -13,29 +13,30 @@ from mxeon.shaders.library import kind_of, source_folder
 
 LANGUAGES = ("glsl", "osl")
 GLSL_WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "atan2": "atan"}
-Parts = dict[str, list[str]]  # tokens of functions and constants by name
+Parts = dict[str, list[str]]  # tokens of each function or constant, keyed by name
 FAMILY = "oren_nayar_family"
 ALL = "eon_sampling"  # file that includes all other files of shader functions
 STEMS = ("eon", FAMILY, "ltc_sampling", ALL)
-TWINS = (ALL, "ggx_albedo", "conty_kulla_albedo")  # files that include all text shared with OSL
+# Files that together include all text that GLSL and OSL share.
+TWINS = (ALL, "ggx_albedo", "conty_kulla_albedo")
 INCLUDE = re.compile(r'^#include "((?:\.\./)?(?:lib/|sampling/)?\w+\.\w+)"$', re.MULTILINE)
 SIGNATURE = re.compile(r"^(?:float|vec3|color|vector)\s+(\w+)\s*\(([^)]*)\)\s*(?={)", re.MULTILINE)
-EACH = "mxeon_each"  # the function that `dispatched` adds
+EACH = "mxeon_each"  # name of the function that `dispatched` adds
 TYPES = {"glsl": ("float", "vec3"), "osl": ("float", "color", "vector")}
 
 
 def source(language: str, stem: str = ALL, library: str = "eonlib") -> str:
-    """Text of a library's file of shader functions with expanded includes."""
+    """Text of a file of shader functions in a library, with expanded includes."""
     return expanded(source_file(language, stem, library))
 
 
 def has_functions(library: str, language: str = "glsl") -> bool:
-    """Whether a library has its own shader functions, as eonlib has."""
+    """Whether a library contains the file that includes all of eonlib's shader functions."""
     return kind_of(library) != "stock" and source_file(language, ALL, library).is_file()
 
 
 def twins(language: str, library: str) -> str:
-    """Text of a library's files that GLSL and OSL share, with expanded includes."""
+    """Text, in one language, of the files that GLSL and OSL share, with expanded includes."""
     stems = [
         stem
         for stem in TWINS
@@ -45,7 +46,10 @@ def twins(language: str, library: str) -> str:
 
 
 def parts(text: str) -> Parts:
-    """Functions and constants of a text, with OSL's words replaced by those of GLSL."""
+    """The functions and constants that a text defines, as lists of tokens.
+
+    GLSL's keywords replace OSL's keywords.
+    """
     found = dict(re.findall(r"^#define (\w+) (.+)$", text, re.MULTILINE))
     for match, body in _definitions(text):
         found[match[1]] = match[0] + re.sub(r"^#.*\n?", "", body, flags=re.MULTILINE)
@@ -56,7 +60,7 @@ def parts(text: str) -> Parts:
 
 
 def _definitions(text: str) -> Iterator[tuple[re.Match[str], str]]:
-    """The head of each function of a text, and what follows up to the next head."""
+    """The head of each function in a text, and the text up to the head of the next function."""
     matches = list(SIGNATURE.finditer(text))
     ends = [match.start() for match in matches[1:]] + [len(text)]
     return ((each, text[each.end() : end]) for each, end in zip(matches, ends, strict=True))
@@ -92,7 +96,7 @@ def parameters(text: str, function: str) -> tuple[tuple[str, str], ...]:
 def call(
     text: str, function: str, arguments: Sequence[ArrayLike]
 ) -> tuple[dict[str, tuple[str, ArrayLike]], str]:
-    """Type and value of each argument of a function by its parameter's name, and the call."""
+    """Type and value of each argument of a function, keyed by parameter name; text of the call."""
     pairs = zip(parameters(text, function), arguments, strict=True)
     values = {name: (kind, value) for (kind, name), value in pairs}
     return values, f"{function}({', '.join(values)})"
@@ -118,11 +122,11 @@ def uses(text: str) -> Mapping[str, frozenset[str]]:
 
 
 def dispatched(text: str, functions: Iterable[str], language: str) -> str:
-    """The text plus a function that calls one of `functions` by its index.
+    """The text plus a dispatcher, which is a function that calls one of `functions` by number.
 
-    Its parameters are the index as a float and, for each type, as many parameters as any of the
-    functions has; a function receives the first ones of each type. So a host compiles one program for
-    all functions.
+    So a host compiles one program for all functions. The first parameter of the dispatcher is the
+    number of the function, as a float. For each type, the dispatcher has as many parameters as any
+    of the functions has. A function receives the first of the dispatcher's parameters of each type.
     """
     known, types = signatures(text), TYPES[language]
     slots = {kind: 0 for kind in types}
@@ -143,7 +147,7 @@ def dispatched(text: str, functions: Iterable[str], language: str) -> str:
 
 
 def slot_names(kinds: Iterable[str]) -> list[str]:
-    """Names of the parameters of the function of `dispatched` for parameters of these types.
+    """The parameters of the dispatcher that a function with parameters of these types receives.
 
     >>> slot_names(["vec3", "float", "vec3"])
     ['vec3_0', 'float_0', 'vec3_1']
@@ -157,6 +161,6 @@ def slot_names(kinds: Iterable[str]) -> list[str]:
 
 
 def source_file(language: str, stem: str, library: str = "eonlib") -> Path:
-    """Path of a library's file of shader functions, which may lie in any folder of the language."""
+    """Path of a file of shader functions in any subfolder of the folder for a language."""
     folder, name = source_folder(library) / f"gen{language}", f"{stem}.{language}"
     return next(folder.rglob(name), folder / name)

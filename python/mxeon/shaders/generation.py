@@ -57,7 +57,8 @@ CYCLES_APPROXIMATION = (
     "with s < 0 are darker than the model"
 )
 
-# Matches calls of the Cycles profile's closure. The last two arguments are the flag and the result.
+# Matches calls of the closure in the Cycles profile. The last two arguments of the closure are the
+# flag and the result.
 CYCLES_CALL = re.compile(r"\boren_nayar_diffuse_bsdf_cycles\([^;{]*?(\w+), *\w+\);")
 
 # Matches calls of MaterialX's functions.
@@ -66,7 +67,10 @@ DEFINED = re.compile(r"(?:#define|\b(?!return\b|else\b)\w+)\s+(mx_\w+)")
 
 
 class ApproximationWarning(UserWarning):
-    """A renderer that only approximates a shader's model; the message says where both differ."""
+    """A renderer only approximates a shader's model.
+
+    The message says where the renderer and the model differ.
+    """
 
     def __init__(self, element: str, approximation: str) -> None:
         super().__init__(f"{element}: {approximation}")
@@ -79,11 +83,11 @@ class Input:
     """A public input of a generated shader.
 
     - `name`: Name of the variable in the source.
-    - `type`: MaterialX's name for its type.
-    - `value`: The default. A color, vector or array is a tuple of its components; a matrix is a
-      tuple of its numbers, row by row, which GLSL interprets as columns; a structure is a tuple of
-      its members.
-    - `path`: Name path of the document's element.
+    - `type`: MaterialX's name of the input's type.
+    - `value`: The default value. A color, vector or array is a tuple of components. A matrix is a
+      tuple of numbers, row by row, which GLSL interprets as columns. A structure is a tuple of the
+      members' values.
+    - `path`: Name path of the input's element in the document.
     """
 
     name: str
@@ -94,15 +98,17 @@ class Input:
 
 @dataclass(frozen=True)
 class Shader:
-    """Generated source.
+    """A generated shader.
 
-    - `name`: Valid as an identifier and a file name; unique within the document.
+    - `name`: Name of the shader, valid as an identifier and a file name, and unique within the
+      document.
     - `element`: Name path of the renderable element.
     - `target`: One of TARGETS.
     - `stages`: Source text under "pixel" and, for targets with rasterization, "vertex".
     - `document`: The checked source document with its data library.
-    - `folders`: Folders of the library that are loaded before MaterialX's own.
-    - `root`: Folder whose `libraries` replace MaterialX's own; "" for the installed ones.
+    - `folders`: Folders of the library that are loaded before MaterialX's libraries.
+    - `root`: Folder whose subfolder `libraries` replaces MaterialX's libraries; "" if there is
+      none.
     - `methods`: The chosen methods of the generator.
     - `table`: Pixel stage with which a client draws the table of albedos, if the method is "table".
     """
@@ -143,21 +149,21 @@ def generate(
       path tracer, in glsl, essl, vulkan or slang.
     - `lights`: Whether shaders of rasterized targets include MaterialX's directional light, as
       light type 1.
-    - `uniforms`: Whether inputs stay uniforms with the profile "path", instead of literals.
+    - `uniforms`: Whether the profile "path" keeps inputs as uniforms instead of literals.
     - `methods`: How shaders of rasterized targets compute lighting; None for MaterialX's defaults.
     - `policy`: Permissions, limits and search path; None for `Policy()`.
     - `client`: Options from `mxeon.shaders.generators.CLIENT_OPTIONS` to turn on: a shadow map,
       ambient occlusion and transparency. Any option also adds point and spot lights, as types 2 and 3.
 
     Raises ValueError if the target, the library, the profile or the element is unknown; DocumentError
-    if no shader can be generated from the document; InterfaceError if this MaterialX calls closures
-    differently than eonlib's sources define them.
+    if no shader can be generated from the document; InterfaceError if MaterialX calls closures with
+    other arguments than eonlib's sources define.
 
     Warns ApproximationWarning if the profile cannot express one of the document's models;
     CodeWarning if the document contains its own shader code, which the policy must permit;
-    MissingFileWarning if a shader names a file that does not exist; the name is not changed;
-    DocumentWarning as in `mxeon.shaders.document.reading.read_document`, and if MaterialX gives a
-    node the values of another node.
+    MissingFileWarning if a shader names a file that does not exist (the shader keeps the name);
+    DocumentWarning if MaterialX misreads a part of the document or gives a node the values of
+    another node.
 
         >>> text = '''<materialx version="1.39">
         ...   <eon_diffuse_bsdf name="clay" type="BSDF"/>
@@ -258,7 +264,7 @@ def generate(
 def _table_text(
     target: str, generator: mx_gen.ShaderGenerator, library: str, methods: Methods
 ) -> str:
-    """Pixel stage that draws a library's table of albedos, computed by Monte Carlo sampling."""
+    """Text of a pixel stage that computes a library's table of albedos by Monte Carlo sampling."""
     document = mx.createDocument()
     output = document.addOutput("table", "color3")
     output.setConnectedNode(document.addNode("constant", "color", "color3"))
@@ -277,7 +283,7 @@ def _table_text(
 
 @cache
 def check_generator(library: str, target: str) -> None:
-    """Raise InterfaceError unless a generator can use a library that replaces MaterialX's."""
+    """Raise InterfaceError unless a generator can use a library that replaces MaterialX's own."""
     document = mx.createDocument()
     document.setDataLibrary(load_library(library))
     surface = document.addNode("surface", "surface", "surfaceshader")
@@ -303,7 +309,10 @@ def check_generator(library: str, target: str) -> None:
 
 
 def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
-    """Inputs of a shader. The generator adds nodes, whose inputs have their name as path."""
+    """The inputs of a shader.
+
+    Inputs of nodes that the generator adds have no path, so the path is the name of the variable.
+    """
     stage = shader.getStage("pixel")
     blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL declares uniforms as inputs
     return tuple(
@@ -331,7 +340,7 @@ RESERVED = frozenset(
 
 
 def shader_names(elements: Iterable[mx.TypedElement]) -> dict[str, str]:
-    """Distinct names of the shaders of renderable elements, by name path."""
+    """Distinct names of the shaders of renderable elements, keyed by the elements' name paths."""
     names: dict[str, str] = {}
     last: dict[str, str] = {}  # last name used for each stem
     used: set[str] = set()

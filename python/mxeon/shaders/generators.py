@@ -40,7 +40,7 @@ def generator_of(
     profile: str | None,
     definitions: tuple[str, ...] = (),
 ) -> mx_gen.ShaderGenerator:
-    """A generator with a document's types, shared by all documents without their own types."""
+    """A generator with a document's types. Documents that define no types share a generator."""
     if not any(each.isA(mx.TypeDef) for each in document.getChildren()):
         return _library_generator(target, library, profile, definitions)
     generator = new_generator(load_library(library, profile, definitions), target)
@@ -88,8 +88,9 @@ def context_of(
     """A generator's context for a single document, because contexts cache implementations by name.
 
     With `lights`, MaterialX's directional light is bound as light type 1 on rasterized targets.
-    `client` has options to turn on; any option also binds the other lights, see
-    `mxeon.shaders.scene.Client`. `path` has folders of source files, searched after the library's.
+    `client` lists options to turn on. With any of these options, `lights` also binds point and spot
+    lights; see `mxeon.shaders.scene.Client`. `path` lists folders of source files, which are
+    searched after the library's folders.
     """
     context = mx_gen.GenContext(generator)
     for each in environment_folders(library) if methods.searched else ():
@@ -98,7 +99,7 @@ def context_of(
     for folder in path:
         context.registerSourceCodeSearchPath(mx.FilePath(folder))
     context.getOptions().targetDistanceUnit = "meter"
-    # MaterialX has v = 0 at the bottom of an image, OSL's texture() at the top.
+    # In MaterialX, v = 0 is the bottom of an image. In OSL's texture(), v = 0 is the top.
     context.getOptions().fileTextureVerticalFlip = target == "osl"
     if profile == "path":  # the path tracer does the lighting
         none = mx_gen.HwSpecularEnvironmentMethod.SPECULAR_ENVIRONMENT_NONE
@@ -125,7 +126,7 @@ def context_of(
 def generated(
     generator: mx_gen.ShaderGenerator, name: str, element: mx.Element, context: mx_gen.GenContext
 ) -> mx_gen.Shader:
-    """Shader of an element, without MaterialX's warnings about booleans in WGSL."""
+    """Generate the shader of an element, without MaterialX's warnings about booleans in WGSL."""
     wordy = isinstance(generator, GENERATORS.get("wgsl", ()))
     with without_lines(BOOLEANS) if wordy else nullcontext():
         return generator.generate(name, element, context)
@@ -133,7 +134,10 @@ def generated(
 
 @cache
 def tokens_of(target: str, library: str, profile: str | None) -> Mapping[str, str]:
-    """Include tokens and their replacements, which a generator only has after its first shader."""
+    """The tokens in includes, and their replacements.
+
+    A generator has the replacements only after generating a first shader.
+    """
     document = mx.createDocument()
     document.setDataLibrary(load_library(library, profile))
     generator = generator_of(document, target, library, profile)
@@ -143,14 +147,14 @@ def tokens_of(target: str, library: str, profile: str | None) -> Mapping[str, st
     return dict(generator.getTokenSubstitutions())
 
 
-ERROR = 2  # file descriptor
+ERROR = 2  # file descriptor of the error output
 
 
 @contextmanager
 def without_lines(words: str) -> Iterator[None]:
-    """Context that drops lines with `words` from the process's error output.
+    """A context that removes lines containing `words` from the process's error output.
 
-    All other lines appear at the end of the context.
+    All other lines are written at the end of the context.
     """
     if sys.stderr is None:
         yield

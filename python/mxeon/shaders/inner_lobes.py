@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lobes that send light below a material's surface, which a single surface point cannot show.
+"""Finds lobes that send light below a surface, which renderers of isolated points cannot show.
 
-The document's graph is walked from its material. Lobes of constant weight 0 are skipped, and so is
-the side of a mix that a constant weight of 0 or 1 disables. Computed weights count as nonzero.
+A walk over the document's graph starts at the material. The walk skips lobes of constant weight 0,
+and the side of a mix that a constant weight of 0 or 1 disables. Weights that cannot be computed
+from constants count as nonzero.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ CLOSURES = ("BSDF", "VDF", "surfaceshader", "volumeshader", "material")
 
 
 def inner_lobes(shader: Shader) -> tuple[str, ...]:
-    """Kinds of a shader's lobes below the surface.
+    """The kinds of a shader's lobes that send light below the surface.
 
     >>> from mxeon.shaders.generation import generate
     >>> from mxeon.shaders.nodes import SURFACE, document_text
@@ -47,30 +48,33 @@ def inner_lobes(shader: Shader) -> tuple[str, ...]:
 
 
 class Nodes:
-    """Elements of a document, by path.
+    """Elements of a document, keyed by path.
 
-    A path is a tuple of name paths: of each enclosing node or nodegraph, from the outermost, and of
-    the node itself.
+    A path is a tuple of name paths. The name paths of the enclosing nodes and nodegraphs come
+    first, beginning with the outermost element. The name path of the element itself comes last.
     """
 
     def __init__(self) -> None:
         self.elements: dict[Path, mx.InterfaceElement] = {}
 
     def path(self, outer: Path, element: mx.Element) -> Path:
-        """Path of an element inside the node at `outer`; also stores the element."""
+        """Store an element that lies inside the node at `outer`; return the element's path."""
         path = (*outer, element.getNamePath())
         self.elements[path] = element
         return path
 
     def port(self, path: Path, name: str) -> mx.Input | None:
-        """Input of a node, otherwise of its nodedef, or None."""
+        """The input with this name of a node, or else of the node's nodedef, or else None."""
         if not (element := self.elements.get(path)):
             return None
         definition = element.getNodeDef()
         return element.getInput(name) or (definition and definition.getActiveInput(name)) or None
 
     def upstream(self, outer: Path, port: mx.PortElement) -> Path | None:
-        """Path of the node connected to an input or output inside the node at `outer`, or None."""
+        """Path of the node that is connected to an input or output, or None.
+
+        The input or output lies inside the node at `outer`.
+        """
         if not (node := port.getConnectedNode()):
             return None
         graph, scope = node.getParent(), port.getParent()
@@ -82,9 +86,10 @@ class Nodes:
 
 
 class Walk(Nodes):
-    """The nodes that contribute light to a material, by path, and the kinds of lobes among them.
+    """Finds the nodes that contribute light to materials, and the kinds of lobes among the nodes.
 
-    Nodes of constant weight 0 are skipped; with `values`, nodes that compute inputs are included.
+    The walk skips nodes of constant weight 0. With `values`, the walk also visits nodes that
+    compute the values of inputs.
     """
 
     def __init__(self, elements: Iterable[mx.TypedElement], values: bool = False) -> None:
@@ -127,7 +132,7 @@ class Walk(Nodes):
         return not self._black(path, "color")
 
     def _black(self, path: Path, name: str) -> bool:
-        """Whether an input is 0, or is connected to a product with a factor of 0."""
+        """Whether an input is 0, or is connected to a node that multiplies by 0."""
         if source := self.source(path, name):
             product = self.elements[source].getCategory() == "multiply"
             return product and any(self._black(source, factor) for factor in ("in1", "in2"))
@@ -135,7 +140,7 @@ class Walk(Nodes):
         return bool(value) and not any(map(float, str(value).split(",")))
 
     def _effective(self, path: Path, node: mx.InterfaceElement) -> tuple[str, ...]:
-        """Names of the inputs whose light reaches the node's output."""
+        """Names of the inputs that contribute to a node's output."""
         category = node.getCategory()
         if category == "mix":
             weight, value = self._constant(path, "mix"), ("mix",) * self._values
@@ -147,7 +152,7 @@ class Walk(Nodes):
         return tuple(p.getName() for p in ports if self._values or p.getType() in CLOSURES)
 
     def _resolved(self, path: Path, name: str) -> tuple[Path, mx.Input | None]:
-        """The outermost input that a node's input takes its value from, and the path of its node."""
+        """The outermost input that supplies a node's input, and the path of the outermost node."""
         while port := self.port(path, name):
             if not port.hasInterfaceName() or len(path) < 2:
                 break
@@ -160,12 +165,12 @@ class Walk(Nodes):
         return self.upstream(path[:-1], port) if port else None
 
     def value(self, path: Path, name: str) -> str | None:
-        """Text of an input's value; None if it is computed or the input does not exist."""
+        """Text of an input's value. None if a node computes the value, or without such an input."""
         _, port = self._resolved(path, name)
         return None if port is None or self.source(path, name) else str(port.getValueString())
 
     def _constant(self, path: Path, name: str) -> float | None:
-        """Numeric value of an input; None if it is not a constant number."""
+        """Numeric value of an input; None if the value is not a constant number."""
         if source := self.source(path, name):
             ports, function = ARITHMETIC.get(self.elements[source].getCategory(), ((), None))
             numbers = [self._constant(source, port) for port in ports]

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The data libraries: where they are and in which order MaterialX has to load them.
+"""Locations of the data libraries, and the order in which MaterialX has to load the libraries.
 
 MaterialX silently ignores later definitions of a name, so eonlib is loaded before the standard
 libraries. `assert_eonlib` then checks which implementations MaterialX chooses.
 
-No version of MaterialX is refused by its number: mxeon looks up the methods that it needs, and checks
-generated code against the closure interface of eonlib's sources.
+No version of MaterialX is refused because of its number. Instead, mxeon checks that the methods it
+needs exist, and that generated code calls closures as eonlib's sources define them.
 """
 
 import os
@@ -26,16 +26,17 @@ from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, check_files, root, tr
 
 SOURCE_FOLDERS = ("genglsl", "genosl")
 
-PROFILES = {"cycles": "genosl", "path": "genglsl"}  # profile -> folder of its sources
-LOADED = 16  # cached libraries, about 10 MB each
+PROFILES = {"cycles": "genosl", "path": "genglsl"}  # subfolder of each profile's sources
+LOADED = 16  # maximum number of cached libraries, about 10 MB each
 
-# Targets of MaterialX 1.39.5; earlier versions have fewer. genoslnetwork only supports graphs.
+# Targets of MaterialX 1.39.5. Earlier versions have fewer targets. The target genoslnetwork only
+# supports nodegraphs.
 TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl", "genoslnetwork")
 
 
 @cache
 def data_folder() -> Path:
-    """Folder with eonlib and its sources: inside the installed package, otherwise the checkout."""
+    """The data folder of the installed package, or the checkout; eonlib lies in this folder."""
     installed = Path(__file__).resolve().parents[1] / "data"
     return installed if installed.is_dir() else Path(__file__).resolve().parents[3]
 
@@ -47,19 +48,18 @@ def eonlib_folder() -> Path:
 
 
 def documents_folder(part: str = "eonlib") -> Path:
-    """Folder of eonlib's MaterialX documents, or of its part "diffuse"."""
-    installed = (
-        eonlib_folder() / "documents"
-    )  # a folder called libraries would hide MaterialX's own
+    """Folder of all MaterialX documents of eonlib, or of the documents of its part `diffuse`."""
+    # A folder with the name `libraries` would hide MaterialX's folder of the same name.
+    installed = eonlib_folder() / "documents"
     folder = installed if installed.is_dir() else eonlib_folder()
     return folder / part if part == "diffuse" else folder
 
 
 @cache
 def kind_of(library: str) -> str:
-    """The entry of LIBRARIES for a name or a copy of its documents; OVERLAY for other folders.
+    """The entry of LIBRARIES that a library is or copies; OVERLAY for other folders.
 
-    A folder that replaces MaterialX's libraries, or a part of them, is "stock".
+    A folder that replaces some or all of MaterialX's libraries counts as "stock".
     """
     if library in LIBRARIES:
         return library
@@ -75,7 +75,10 @@ def kind_of(library: str) -> str:
 
 
 def source_folder(library: str) -> Path:
-    """Folder with a library's genglsl and genosl: that of its documents, or one of two parents."""
+    """The folder that contains a library's folders genglsl and genosl.
+
+    The candidates are the library's own folder, its parent and its grandparent.
+    """
     folder = eonlib_folder() if library in LIBRARIES else Path(library)
     homes = (folder, *folder.parents[:2])
     return next(
@@ -84,21 +87,21 @@ def source_folder(library: str) -> Path:
 
 
 def environment_folders(library: str) -> list[Path]:
-    """Folder of a library's own environment lookups, if it exists; searched before MaterialX's."""
+    """A list with the folder of a library's sources for environment lookups, or an empty list."""
     folder = source_folder(library) / "genglsl" / "environment"
     return [folder] if library != "stock" and folder.is_dir() else []
 
 
 def library_folders(library: str) -> list[Path]:
-    """The folder of a library's documents, and the folders of its sources."""
+    """The folder of a library's documents, and the folders of the library's sources."""
     sources = (source_folder(library) / name for name in SOURCE_FOLDERS)
     return [Path(library), *(folder for folder in sources if folder.is_dir())]
 
 
 def profile_documents(library: str, profile: str) -> list[Path]:
-    """A library's MaterialX documents for a profile, to be loaded before its other documents.
+    """A library's MaterialX documents for a profile, to be loaded before all other documents.
 
-    Their names end in .xml, so that programs that load a whole folder skip them.
+    The documents' names end in .xml, so programs that load a whole folder skip the documents.
     """
     if kind_of(library) == "stock":
         return []
@@ -116,17 +119,17 @@ def examples_folder() -> Path:
 
 
 def own_folders(library: str) -> list[str]:
-    """Folders that are loaded before MaterialX's own."""
+    """The folders of a library that are loaded before MaterialX's libraries."""
     if library in LIBRARIES:
         return [] if library == "stock" else [str(documents_folder(library))]
     return [] if root(library) else [os.path.abspath(library)]
 
 
 def library_name(library: str | os.PathLike[str]) -> str:
-    """Name of a data library, or absolute path of its folder.
+    """The name of a built-in data library, or the absolute path of a library's folder.
 
-    InputError for a folder that cannot be combined with MaterialX's files, or with a file that is not
-    UTF-8 text.
+    Raise InputError if a folder cannot be combined with MaterialX's files, or contains a file that
+    is not UTF-8 text.
     """
     if library in LIBRARIES:
         return str(library)
@@ -157,21 +160,22 @@ def library_name(library: str | os.PathLike[str]) -> str:
 def load_library(
     library: AnyPath = "eonlib", profile: str | None = None, definitions: Names = ()
 ) -> mx.Document:
-    """A MaterialX document with the standard libraries, preceded by eonlib.
+    """A MaterialX document with the standard libraries and, by default, eonlib.
 
-    The document is cached and shared: attach it with `Document.setDataLibrary`.
+    The document is cached and shared: attach the document with `Document.setDataLibrary`.
 
-    - `library`: "eonlib", "stock" for unmodified MaterialX, or a folder, which either replaces
-      MaterialX's libraries or a part of them, or is loaded before them; see
+    - `library`: "eonlib", "stock" for unmodified MaterialX, or a folder. A folder replaces some or
+      all of MaterialX's libraries, or is loaded before MaterialX's libraries; see
       `mxeon.shaders.library_tree`.
     - `profile`: "cycles" for eonlib's OSL implementations for Blender's Cycles.
-    - `definitions`: Folders of additional definitions, which must not replace any of the library's.
+    - `definitions`: Folders of additional definitions, which must not replace definitions of the
+      library.
 
-    Raises ValueError if the library or the profile is unknown, or a folder has no definitions or
-    replaces some of the library's; ImportError if this MaterialX is too old, see `check_version`;
+    Raises ValueError if the library or the profile is unknown, or if a folder has no definitions or
+    replaces definitions of the library; ImportError if MaterialX is too old (see `check_version`);
     LibraryError if MaterialX chooses an implementation other than eonlib's.
 
-    Warns UntestedVersionWarning if this MaterialX is not in TESTED.
+    Warns UntestedVersionWarning if the version of MaterialX is not in TESTED.
     """
     library = one_name("library", library)
     if library not in LIBRARIES and os.path.isdir(library):
@@ -183,7 +187,11 @@ def load_library(
 
 @lru_cache(maxsize=LOADED)
 def read_library(library: str, profile: str | None, definitions: tuple[str, ...]) -> mx.Document:
-    """`load_library` without defaults: the cache distinguishes omitted from default arguments."""
+    """The cached part of `load_library`.
+
+    The function has no default arguments, because the cache would store an omitted argument and an
+    equal, explicit argument separately.
+    """
     check_version()
     if profile is not None:
         assert_known("profile", profile, PROFILES)
@@ -197,7 +205,8 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
     try:
         if definitions:  # an empty list makes MaterialX load everything
             mx.loadLibraries(list(definitions), path, document, readOptions=options)
-        # MaterialX does not sort files within a folder: load a profile, or those of a part, first.
+        # MaterialX does not sort the files of a folder, so the documents of a profile or of a
+        # partial library are loaded before all other documents.
         first = profile_documents(library, profile) if profile else []
         if not first and library not in LIBRARIES and tree(library).kind == library_tree.PART:
             home, own = Path(root(library), "libraries"), tree(library).own
@@ -209,7 +218,7 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
     except (mx.Exception, mx.ExceptionParseError, LookupError) as error:
         reason = library_tree.with_user_paths(library, str(error))
         raise InputError(f"{' '.join(('library', library, *definitions))}: {reason}") from None
-    # Materials in the folder would replace nodes of the same name in other documents.
+    # Remove materials, because they would replace nodes of the same name in other documents.
     used = {each.getNodeGraph() for each in document.getImplementations()}
     for graph in document.getNodeGraphs():
         if not graph.getNodeDefString() and graph.getName() not in used:
@@ -226,7 +235,7 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
 
 
 def _documents(folder: AnyPath, rule: str) -> list[Path]:
-    """MaterialX documents of a folder; InputError with `rule` if there are none."""
+    """The MaterialX documents in a folder. Raise InputError, with `rule`, if there are none."""
     documents = sorted(Path(folder).rglob("*.mtlx")) if str(folder) else []
     if not documents:
         empty = not any(names for *_, names in os.walk(folder))
@@ -237,10 +246,12 @@ def _documents(folder: AnyPath, rule: str) -> list[Path]:
 def implementations(
     document: mx.Document, library: str = "eonlib", profile: str | None = None
 ) -> Iterator[tuple[str, str, str]]:
-    """Nodedef, target and file of the implementation that MaterialX chooses for each of eonlib's.
+    """The implementations that MaterialX chooses for the nodes of eonlib.
 
-    Each nodedef that "eonlib" or "diffuse" and a profile implement occurs for each of their targets. The
-    file is "" if a target has no implementation, or only a nodegraph for all targets.
+    Each entry has a nodedef, a target and a file. There is an entry for each nodedef that the
+    library ("eonlib" or "diffuse") or the profile implements, and for each target of such an
+    implementation. The file is "" if MaterialX has no implementation for the target, or only a
+    nodegraph for all targets.
     """
     data = document.getDataLibrary() or document
     targets = {each.getName(): each.getMatchingTargets() for each in data.getTargetDefs()}
@@ -255,7 +266,7 @@ def implementations(
 
 @cache
 def _shipped(library: str, profile: str | None) -> tuple[tuple[str, str], ...]:
-    """Nodedef and target of each implementation in eonlib's documents; "" for all targets."""
+    """Nodedef and target of each implementation in eonlib's documents; the target "" means all."""
     document = mx.createDocument()
     for file in profile_documents(library, profile) if profile else ():
         mx.loadLibrary(mx.FilePath(str(file)), document)
@@ -270,7 +281,8 @@ def assert_eonlib(
 ) -> None:
     """Raise LibraryError unless MaterialX chooses eonlib's implementation of every nodedef.
 
-    The message has the node, the target and the other file; parameters as for `implementations`.
+    The error message names the node, the target and the chosen file. The parameters are those of
+    `implementations`.
     """
     folders = {eonlib_folder(), *(source_folder("eonlib") / each for each in SOURCE_FOLDERS)}
     for node, target, file in implementations(document, library, profile):
@@ -300,7 +312,7 @@ def check_version() -> None:
 
 
 def untested(version: str) -> str:
-    """Note that mxeon has not been tested with a version of MaterialX; "" if it has."""
+    """A note that mxeon was not tested with a version of MaterialX; "" for tested versions."""
     if version in TESTED:
         return ""
     return f"MaterialX {version} has not been tested with mxeon {mxeon.__version__}"

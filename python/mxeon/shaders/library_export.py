@@ -45,8 +45,8 @@ def recipes(folder: AnyPath) -> str:
 def export_library(path: AnyPath) -> Path:
     """Write eonlib, with its sources and license, to a new or empty folder or to a zip archive.
 
-    A path ending in ".zip" becomes an archive of a folder with that name and replaces an existing
-    file. No partial output is left behind.
+    A path ending in ".zip" becomes an archive that contains a single folder of the same name. The
+    archive replaces an existing file. After an error, no partial output remains.
     """
     target = Path(os.path.realpath(path))
     names = [] if target.suffix == ".zip" else ["*"]
@@ -57,7 +57,7 @@ def export_library(path: AnyPath) -> Path:
     if target.suffix == ".zip":
         with replacing(target) as temporary, ZipFile(temporary, "w") as archive:
             for name, data in _content().items():
-                entry = ZipInfo(f"{target.stem}/{name}")  # dated 1980, so archives are reproducible
+                entry = ZipInfo(f"{target.stem}/{name}")  # the date is 1980, so archives are equal
                 entry.external_attr = 0o644 << 16
                 archive.writestr(entry, data, ZIP_DEFLATED)
         return target
@@ -76,7 +76,7 @@ def export_library(path: AnyPath) -> Path:
 
 
 def _content() -> dict[str, bytes]:
-    """Content of the files of a copy, by relative path."""
+    """The content of the files in a copy of eonlib, keyed by relative path."""
     folders = {name: source_folder("eonlib") / name for name in SOURCE_FOLDERS}
     content = {
         f"{name}/{path.relative_to(folder).as_posix()}": path.read_bytes()

@@ -1,21 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files of a library in a folder: its own, plus MaterialX's files that complete it.
+"""The files of a library that is a folder: the folder's own files, plus files of MaterialX.
 
-A folder is one of three kinds.
+There are three kinds of library folders.
 
 whole
-    It has targets/, stdlib/ and pbrlib/, and replaces MaterialX's own libraries.
+    The folder has targets/, stdlib/ and pbrlib/, and replaces MaterialX's libraries.
 part
-    It has files at the same relative paths as MaterialX's libraries. They replace those files.
+    The folder has files at the same relative paths as MaterialX's libraries, and replaces only
+    those files.
 overlay
-    It has its own names, as eonlib does, and is loaded before MaterialX's libraries.
+    All files have new names, as in eonlib. The folder is loaded before MaterialX's libraries.
 
-MaterialX looks for a node's source next to its document, for included files next to the source, and
-for the generator's includes on a search path. So a whole or a part becomes a temporary folder,
-`libraries`, of links to documents and sources: no installed file can replace one in the folder.
+MaterialX looks for a node's source next to the node's document, for included files next to the
+source, and for the generator's includes on a search path. So mxeon links the documents and sources
+of a whole or a part from a temporary folder, `libraries`, where no installed file can replace a
+file of the library.
 
-A library is trusted, so it may name any file. Pipes, devices and files that are not UTF-8 are still
-refused in one line: MaterialX would wait, fill the memory, or write shaders that cannot be decoded.
+A library is trusted, so a library may name any file. Pipes, devices and files that are not UTF-8
+are still refused with one line, because MaterialX would wait, fill the memory, or write shaders
+that cannot be decoded.
 """
 
 import os
@@ -31,10 +34,10 @@ from mxeon.errors import InputError
 from mxeon.io.files import AnyPath, regular
 from mxeon.jobs.signals import Temporary, block_signals
 
-# All of eonlib, only its diffuse nodes, and unmodified MaterialX.
+# All of eonlib, only eonlib's diffuse nodes, and unmodified MaterialX.
 LIBRARIES = ("eonlib", "diffuse", "stock")
 WHOLE, PART, OVERLAY = "whole", "part", "overlay"
-NEEDED = ("targets", "stdlib", "pbrlib")  # subfolders of a whole
+NEEDED = ("targets", "stdlib", "pbrlib")  # subfolders that a whole must have
 DOCUMENT = ".mtlx"
 CODE = (".glsl", ".osl", ".h", ".metal", ".slang", ".mdl")
 FILES = (DOCUMENT, *CODE)  # endings of a library's files
@@ -42,13 +45,13 @@ FILES = (DOCUMENT, *CODE)  # endings of a library's files
 
 @dataclass(frozen=True)
 class Tree:
-    """The files of a library, and where MaterialX finds them."""
+    """The files of a library folder, and the links through which MaterialX finds the files."""
 
     folder: str  # absolute path
     kind: str  # WHOLE, PART or OVERLAY
-    own: tuple[str, ...]  # documents and sources of the folder, relative to it
+    own: tuple[str, ...]  # relative paths of the folder's documents and sources
     package: tuple[str, ...]  # relative paths of installed files that complete the folder
-    # File to which each path below `libraries` is linked; empty for an overlay.
+    # The target of the link at each path below `libraries`; empty for an overlay.
     links: Mapping[str, str] = field(repr=False)
 
 
@@ -67,15 +70,16 @@ def _tree(folder: str) -> Tree:
         )
     installed = {path: file for root in standard_folders() for path, file in files_in(str(root))}
     if all(os.path.isdir(os.path.join(folder, each)) for each in NEEDED):
-        # Libraries that a whole lacks entirely, such as lights/, come from the package.
+        # Libraries that are missing from a whole, such as lights/, come from the installed package.
         tops = {each.partition("/")[0] for each in files}
         kind = WHOLE
         completing = {
             path: file for path, file in installed.items() if path.partition("/")[0] not in tops
         }
     else:
-        # Reject a source that would not be used, since it has the name of one of MaterialX's but lies
-        # elsewhere. Paths that end in libraries/ and MaterialX's path are found by a search path.
+        # Reject a source that has the name of a MaterialX source but lies elsewhere, because
+        # MaterialX would not use the source. A path that ends in libraries/ and MaterialX's path is
+        # permitted, because a search path can lead to the source.
         known = {PurePosixPath(each).name: each for each in installed if each.endswith(CODE)}
         for each in recognized:
             other = known.get(PurePosixPath(each).name)
@@ -92,7 +96,10 @@ def _tree(folder: str) -> Tree:
 
 
 def files_in(folder: str) -> Iterator[tuple[str, str]]:
-    """Relative and full path of every file in a folder; follows links and skips hidden files."""
+    """Relative path and full path of every file in a folder.
+
+    Links to folders are followed, and hidden files are skipped.
+    """
     for top, folders, names in os.walk(folder, followlinks=True):
         home = os.path.realpath(top)
         folders[:] = sorted(
@@ -114,16 +121,16 @@ def standard_folders() -> list[Path]:
 
 
 def origins(library: str) -> dict[str, tuple[str, ...]]:
-    """Files of a library folder, and MaterialX's files that complete it."""
+    """The files of a library folder, and the files of MaterialX that complete the library."""
     known = tree(library)
     package = {} if known.kind == OVERLAY else {"MaterialX": known.package}
     return {"folder": known.own, **package}
 
 
 def root(library: str) -> str:
-    """Folder whose `libraries` replace MaterialX's own for a library; "" for the installed libraries.
+    """Temporary folder in which `libraries` replaces MaterialX's libraries; "" if there is none.
 
-    Each process creates its own folder, and removes it at its end.
+    Each process creates its own folder, and removes the folder when the process ends.
     """
     known = None if library in LIBRARIES else tree(library)
     return _root(known.folder) if known and known.links else ""
@@ -145,7 +152,7 @@ _FOLDERS: dict[str, TemporaryDirectory[str]] = {}  # deleted when the process en
 
 
 def search_path(library: str) -> mx.FileSearchPath:
-    """Search path for `libraries` and for the files that sources include from there."""
+    """The search path for MaterialX's libraries and for the files that sources include."""
     return mx.FileSearchPath(root(library)) if root(library) else mx.getDefaultDataSearchPath()
 
 
@@ -155,18 +162,18 @@ def roots() -> list[str]:
 
 
 def with_user_paths(library: str, text: str) -> str:
-    """A message of MaterialX that names the user's files instead of the links to them."""
+    """A message of MaterialX in which the paths of the user's files replace the paths of links."""
     if laid := root(library):
         for path, file in tree(library).links.items():
             text = text.replace(f"{laid}/libraries/{path}", file)
     return text
 
 
-INCLUDE = "#include"  # MaterialX's directive for every target
+INCLUDE = "#include"  # directive that MaterialX replaces for every target
 
 
 def read_source(path: AnyPath, limit: int) -> bytes:
-    """Content of a regular file, at most one byte more than the limit."""
+    """The content of a regular file, cut off one byte after the limit."""
     try:
         with open(path, "rb", opener=regular) as file:
             return file.read(limit + 1)
@@ -175,7 +182,7 @@ def read_source(path: AnyPath, limit: int) -> bytes:
 
 
 def decode_source(data: bytes, path: AnyPath) -> str:
-    """Text of a file with unchanged line endings."""
+    """Decode the content of a file, without changing line endings."""
     try:
         return data.decode()
     except UnicodeDecodeError as error:
@@ -183,7 +190,7 @@ def decode_source(data: bytes, path: AnyPath) -> str:
 
 
 def included(line: str) -> str:
-    """File that MaterialX includes for a line of source, the text between its outer quotes, or "".
+    """The file that a line of source includes: the text between the outer quotes; or "".
 
     >>> included('#include "lib/mx_math.glsl"')
     'lib/mx_math.glsl'
@@ -201,12 +208,12 @@ def check_files(paths: Iterable[AnyPath]) -> None:
 
 
 def check_sources(document: mx.Document, library: str, search: mx.FileSearchPath) -> None:
-    """Check the sources of a library's implementations in a document, and all files they include.
+    """Check the sources of a library's implementations in a document, and all included files.
 
-    `library` is its folder; MaterialX's own sources are found on the search path.
+    `library` is the folder of the library. The search path leads to MaterialX's own sources.
     """
     folder = Path(library)
-    parents = cache(lambda uri: Path(uri).parents)  # many implementations share few documents
+    parents = cache(lambda uri: Path(uri).parents)  # cached, since many sources share a document
     waiting = [
         (each.getFile(), parents(uri)[0])
         for each in document.getImplementations()
@@ -218,14 +225,15 @@ def check_sources(document: mx.Document, library: str, search: mx.FileSearchPath
         folders = mx.FileSearchPath(str(local))
         folders.append(search)
         path = str(folders.find(name).getNormalized().asString())
-        if path not in known and os.path.lexists(path):  # MaterialX reports missing files if used
+        # MaterialX reports a missing file when the file is used.
+        if path not in known and os.path.lexists(path):
             known.add(path)
             names = filter(None, map(included, _text(path).split("\n")))
             waiting += [(each, Path(path).parent) for each in names]
 
 
 def read_options() -> mx.XmlReadOptions:
-    """Options with which MaterialX checks the files that a library's documents include."""
+    """Options for reading XML that make MaterialX check each file that a document includes."""
     options = mx.XmlReadOptions()
     options.readXIncludeFunction = _include
     return options
@@ -235,7 +243,7 @@ def _include(
     document: mx.Document,
     name: mx.FilePath,
     path: mx.FileSearchPath,
-    options: mx.XmlReadOptions,  # holds the documents that include this one
+    options: mx.XmlReadOptions,  # includes the list of all including documents
 ) -> None:
     file = path.find(name)
     _text(file.asString())
@@ -243,7 +251,7 @@ def _include(
 
 
 def _text(path: AnyPath) -> str:
-    """Text of a file of a library."""
+    """Text of a library's file. Raise InputError if the file is too large or not UTF-8."""
     data = read_source(path, LARGEST)
     if len(data) > LARGEST:
         raise InputError(f"{path}: must have at most {LARGEST} bytes")

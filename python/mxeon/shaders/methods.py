@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Methods of lighting that a client can choose for MaterialX's rasterizing generators."""
+"""Lighting methods that an application can choose for MaterialX's rasterizing generators."""
 
 import re
 from collections.abc import Iterator
@@ -14,12 +14,13 @@ CHOICES = {
 }
 MOST_ITERATIONS = 64
 TABLE_SIZE = 64  # rows and columns of MaterialX's table of albedos
-# Targets whose albedo-table text does not compile: defect, cause, and page in docs/upstream.
+# Targets for which MaterialX's shader of the albedo table does not compile. The values are the
+# wrong text, the cause, and the page in docs/upstream.
 UNTABLED = {
     "essl": ("xy / u_albedoTableSize", "divides a vec2 by an int", "genessl_albedo_table"),
     "wgsl": ("texture(u_albedoTable,", "reads an undeclared sampler", "genwgsl_albedo_table"),
 }
-# Options of the command, by method.
+# The command-line option of each method.
 OPTIONS = {
     "environment": "--environment",
     "transmission": "--transmission",
@@ -33,16 +34,17 @@ OPTIONS = {
 
 @dataclass(frozen=True)
 class Methods:
-    """A client's methods; "", 0 and None leave the choice to the host.
+    """The methods that an application chooses; "", 0 and None leave a choice to the host.
 
     - `environment`: Specular environment lighting: "fis", "prefilter" or "none".
     - `transmission`: "refraction" of the environment, or "opacity".
     - `albedo`: Directional albedos of MaterialX's functions: "analytic", "table" or "monteCarlo".
-    - `airy`: Iterations in MaterialX's own thin films.
-    - `premultiplied`: Whether `mix` scales the weights of its lobes instead of the lobes
-      (premultipliedBsdfAdd).
-    - `distributed`: Whether `layer` is distributed over `mix` (distributeLayerOverBsdfMix).
-    - `searched`: Whether sources are first looked up in the library's `genglsl/environment`.
+    - `airy`: Number of Airy iterations in MaterialX's own thin films.
+    - `premultiplied`: Whether a `mix` node scales the weights of its lobes instead of the lobes'
+      values (premultipliedBsdfAdd).
+    - `distributed`: Whether a `layer` node is distributed over a `mix` node
+      (distributeLayerOverBsdfMix).
+    - `searched`: Whether sources are looked up first in the library's `genglsl/environment`.
     """
 
     environment: str = ""
@@ -61,7 +63,7 @@ class Methods:
             raise InputError(f"airy must lie in [1, {MOST_ITERATIONS}]; got {self.airy}")
 
     def over(self, host: "Methods") -> "Methods":
-        """The chosen methods, and those of `host` for all that are left open."""
+        """The chosen methods, completed by the methods of `host`."""
         return replace(host, **dict(self.chosen()))  # type: ignore[arg-type]
 
     def chosen(self) -> Iterator[tuple[str, str | int | bool]]:
@@ -73,12 +75,12 @@ class Methods:
 
     @property
     def settings(self) -> dict[str, str | int | bool]:
-        """The chosen options of the generator."""
+        """Names and values of the chosen methods that are options of the generator."""
         return {name: value for name, value in self.chosen() if name != "searched"}
 
     @property
     def options(self) -> dict[str, str]:
-        """The chosen methods, by the command's options."""
+        """Values of the chosen methods, keyed by command-line option."""
         return {OPTIONS[name]: str(value).lower() for name, value in self.chosen()}
 
     def __str__(self) -> str:
@@ -87,12 +89,12 @@ class Methods:
 
 UNCHOSEN = Methods()  # leaves all choices to the host
 GENERATED = Methods("fis", "refraction", "analytic", 2)  # the defaults of MaterialX's generators
-STORM = Methods("prefilter", "opacity", "analytic", 2)  # USD's methods, in hdSt/materialXFilter.cpp
+STORM = Methods("prefilter", "opacity", "analytic", 2)  # USD's, from hdSt/materialXFilter.cpp
 
-# MaterialX's declarations of the methods in a text.
+# Match the declarations of methods in generated text.
 ALBEDO = re.compile(r"^#define DIRECTIONAL_ALBEDO_METHOD (\d+)$", re.MULTILINE)
 ITERATIONS = re.compile(r"^#define AIRY_FRESNEL_ITERATIONS (\d+)$", re.MULTILINE)
-REFRACTS = re.compile(r"if \((\w*refractionTwoSided)\)")  # only occurs with refraction
+REFRACTS = re.compile(r"if \((\w*refractionTwoSided)\)")  # this test only occurs with refraction
 
 
 def assert_generated(text: str, methods: Methods) -> None:

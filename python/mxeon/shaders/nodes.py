@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The BSDF nodes, their inputs, and materials of one node as MaterialX text."""
+"""Names and inputs of MaterialX's BSDF nodes, and XML of materials with one BSDF node."""
 
 from collections.abc import Iterable, Mapping
 from functools import cache
@@ -18,10 +18,10 @@ EON = "eon_diffuse_bsdf"
 DIFFUSE_NODES = (OREN_NAYAR, EON)
 NODEDEFS = tuple(f"ND_{category}" for category in DIFFUSE_NODES)
 
-# eonlib's nodes that compute the reflectance for which EON has a given color.
+# Nodes of eonlib that compute EON's parameter rho from an albedo.
 INVERSIONS = ("eon_rho_from_albedo_normal", "eon_rho_from_albedo_avg")
 
-FLAG = "energy_compensation"  # input of OREN_NAYAR: EON if true, QON if false
+FLAG = "energy_compensation"  # input of OREN_NAYAR that selects EON (true) or QON (false)
 INPUT_TYPES = {
     "weight": "float",
     "color": "color3",
@@ -30,7 +30,7 @@ INPUT_TYPES = {
     FLAG: "boolean",
 }
 
-# The other BSDF nodes of pbrlib. Their inputs are read from MaterialX's definitions.
+# The other BSDF nodes of pbrlib. MaterialX's definitions supply the inputs of these nodes.
 BSDF_NODES = (
     "burley_diffuse_bsdf",
     "dielectric_bsdf",
@@ -51,15 +51,16 @@ DOCUMENT = """<?xml version="1.0"?>
 """
 
 
-FRAME_INPUTS = ("normal", "tangent", "curve_direction")  # vectors of the surface
+FRAME_INPUTS = ("normal", "tangent", "curve_direction")  # directions at the surface
 
 
 @cache
 def input_types(category: str) -> Mapping[str, str]:
-    """Type of each input of a BSDF node, by name; empty for unknown nodes."""
+    """The types of a BSDF node's inputs, keyed by input name; empty for unknown nodes."""
     if category not in BSDF_NODES:
         return INPUT_TYPES if category in DIFFUSE_NODES else {}
-    from mxeon.shaders.library import load_library  # imports MaterialX
+    # The import is local because mxeon.shaders.library imports MaterialX.
+    from mxeon.shaders.library import load_library
 
     [definition] = load_library("stock").getMatchingNodeDefs(category)
     return {each.getName(): each.getType() for each in definition.getActiveInputs()}
@@ -67,7 +68,7 @@ def input_types(category: str) -> Mapping[str, str]:
 
 @cache
 def types_of(name: str) -> frozenset[str]:
-    """Types of the inputs with this name in all nodes.
+    """The types of all BSDF inputs that have this name.
 
     >>> sorted(types_of("roughness"))
     ['float', 'vector2']
@@ -77,7 +78,7 @@ def types_of(name: str) -> frozenset[str]:
 
 
 def value_text(value: ArrayLike) -> str:
-    """A value as MaterialX writes it.
+    """The text of a value in MaterialX's notation.
 
     >>> value_text(True), value_text(0.5), value_text((0.2, 0.5, 1))
     ('true', '0.5', '0.2, 0.5, 1.0')
@@ -95,13 +96,13 @@ def input_text(name: str, kind: str, value: ArrayLike) -> str:
 
 
 def connection_text(name: str, kind: str, node: str, output: str = "") -> str:
-    """XML of an input that is connected to a node or to one of its outputs."""
+    """XML of an input that is connected to a node, or to a named output of a node."""
     port = f' output="{output}"' if output else ""
     return f'    <input name="{name}" type="{kind}" nodename="{node}"{port} />\n'
 
 
 def node_text(category: str, kind: str, name: str, inputs: str = "") -> str:
-    """XML of a node with the XML of its inputs."""
+    """XML of a node. `inputs` is the XML of the node's inputs."""
     return f'  <{category} name="{name}" type="{kind}">\n{inputs}  </{category}>\n'
 
 
@@ -110,15 +111,15 @@ def vector_text(name: str, value: ArrayLike) -> str:
     return node_text("constant", "vector3", name, input_text("value", "vector3", value))
 
 
-# A surface with the BSDF node `lobe`.
+# XML of a surface whose BSDF is the node `lobe`.
 SURFACE = node_text("surface", "surfaceshader", "shading", connection_text("bsdf", "BSDF", "lobe"))
 
 
 def with_images(text: str, inputs: Mapping[str, str], file: str) -> "mx.Document":
-    """A document in which the inputs at the paths `node/input` read an image.
+    """A document in which the inputs listed in `inputs` read an image.
 
-    The values of `inputs` are types. The texture coordinate is the value of a node
-    `node_input_place`.
+    The keys of `inputs` are paths of the form `node/input`, and the values are types. The texture
+    coordinate of each image is the constant value of a new node, `node_input_place`.
     """
     import MaterialX as mx
 
@@ -141,9 +142,9 @@ def lobe_text(
     name: str = "lobe",
     types: Mapping[str, str] | None = None,
 ) -> str:
-    """XML of a BSDF node; `types` gives the types of an unknown node's inputs.
+    """XML of a BSDF node. `types` has the types of the inputs, and is needed for unknown nodes.
 
-    MaterialX ignores normals and tangents that are not connected, so they come from separate nodes.
+    MaterialX ignores constant normals and tangents, so separate nodes supply normals and tangents.
     """
     kinds = input_types(category) if types is None else types
     text = constants = ""
@@ -158,7 +159,7 @@ def lobe_text(
 
 
 def document_text(nodes: str, name: str = "look") -> str:
-    """XML of a document with one material and its surface shader, the node `shading`."""
+    """XML of a document with one material, whose surface shader is the node `shading`."""
     return DOCUMENT.format(nodes=nodes, name=name)
 
 
@@ -168,11 +169,11 @@ def material_text(
     name: str = "look",
     types: Mapping[str, str] | None = None,
 ) -> str:
-    """XML of a document with a material of one BSDF node; see `lobe_text`."""
+    """XML of a document whose material has one BSDF node. See `lobe_text` for the arguments."""
     return document_text(lobe_text(category, inputs or {}, types=types) + SURFACE, name)
 
 
-# Inputs that are connected to other nodes, in the order of Node.sources.
+# Inputs that are connected to the nodes in Node.sources, in the same order.
 PORTS = {
     "layer": ("top", "base"),
     "mix": ("fg", "bg"),
@@ -183,7 +184,7 @@ PORTS = {
 
 
 class Node(NamedTuple):
-    """A node of a document: category, type, names of its source nodes, and XML of its inputs."""
+    """A node: category, type, names of the nodes connected to its inputs, XML of other inputs."""
 
     category: str
     kind: str
@@ -194,9 +195,9 @@ class Node(NamedTuple):
 def network_text(
     nodes: Mapping[str, Node], inputs: Iterable[tuple[str, str, ArrayLike]] = ()
 ) -> str:
-    """XML of nodes by name, with inputs of path, type and value.
+    """XML of named nodes with additional inputs. Each input has a path, a type and a value.
 
-    A path is `node/input`; without a node, the input belongs to the last node.
+    A path has the form `node/input`. A path without a node names an input of the last node.
     """
     texts = {name: each.text for name, each in nodes.items()}
     for path, kind, value in inputs:

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Options of MaterialX's rasterizing generators, including those without Python bindings.
+"""Options of MaterialX's rasterizing generators, including options without Python bindings.
 
 MaterialX 1.39.5 has no bindings for the directional albedo method, the transmission method and the
-number of Airy iterations. In C++ these are the integers after `hwSpecularEnvironmentMethod`, without
-Airy iterations before 1.39.5. Changing `hwSpecularEnvironmentMethod` through its binding reveals its
-offset. The integers are only written if they hold their defaults, and
-`mxeon.shaders.methods.assert_generated` compares the generated text with the chosen methods. So an
-object with a different layout leads to an error instead of a wrong shader.
+number of Airy iterations. In C++, these options are the integers after the member
+`hwSpecularEnvironmentMethod`. Versions before 1.39.5 have no Airy iterations. Changing
+`hwSpecularEnvironmentMethod` through its binding reveals the offset of the member. The integers are
+only written if they hold their defaults, and `mxeon.shaders.methods.assert_generated` compares the
+generated text with the chosen methods. So an object with a different layout leads to an error
+instead of a wrong shader.
 """
 
 import ctypes
@@ -22,12 +23,12 @@ BOUND = {
     "premultiplied": "premultipliedBsdfAdd",
     "distributed": "distributeLayerOverBsdfMix",
 }
-SIZE = 512  # bytes to search for the members; the options are part of a larger object
+SIZE = 512  # bytes to search; the object that contains the options is larger
 VALUE = 2 * ctypes.sizeof(ctypes.c_void_p)  # offset of pybind11's pointer in a Python object
 
 
 def offers(name: str) -> bool:
-    """Whether this MaterialX has an option from BOUND."""
+    """Whether the installed MaterialX has the option that BOUND lists for a method."""
     return hasattr(mx_gen.GenOptions, BOUND[name])
 
 
@@ -39,7 +40,10 @@ def set_options(
     airy: int = 2,
     **bound: bool,
 ) -> None:
-    """Set the options of `mxeon.shaders.methods.Methods`; LookupError if an option is missing."""
+    """Set the options of `mxeon.shaders.methods.Methods`.
+
+    Raise LookupError if an option is missing.
+    """
     for name, value in bound.items():
         if not offers(name):
             raise LookupError(f"MaterialX {mx.getVersionString()} has no option {BOUND[name]}")
@@ -54,7 +58,10 @@ def set_options(
 
 
 def unbound_members(options: mx_gen.GenOptions, count: int) -> "ctypes.Array[ctypes.c_int]":
-    """The integers after hwSpecularEnvironmentMethod; LookupError unless they have their defaults."""
+    """The integers after hwSpecularEnvironmentMethod.
+
+    Raise LookupError unless the integers have their defaults.
+    """
     address = ctypes.c_void_p.from_address(id(options) + VALUE).value or 0
     memory = (ctypes.c_int * (SIZE // ctypes.sizeof(ctypes.c_int))).from_address(address)
     states = []

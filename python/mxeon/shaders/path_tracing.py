@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Generated text for inclusion in path tracers, the profile "path": docs/path_tracing.md.
+"""Turns generated shaders into text that path tracers include, for the profile "path".
 
-The material's text is unchanged, but the inputs and outputs of the stage become variables.
+The material's code is unchanged, but the inputs and outputs of the pixel stage become variables.
+docs/path_tracing.md describes the interface.
 """
 
 import re
@@ -13,7 +14,8 @@ from mxeon.shaders.library import source_folder
 
 TARGETS = ("glsl", "essl", "vulkan", "slang")
 
-# Values of the vertex stage, as members of the path tracer's Point; object space is world space.
+# Values that a vertex stage would compute, from members of the path tracer's structure Point.
+# Object space is the same as world space.
 PLACES = {
     "position": "p.position",
     "normal": "p.normal",
@@ -24,7 +26,8 @@ PLACES = {
 MEMBER = re.compile(r"^ *(?:flat )?(?:in )?\w+ (([a-z]+)\w*)(?: : \w+)?;$", re.MULTILINE)
 LAYOUT = r"^(?:layout \(location = \d+\) )?"
 HEADS = re.compile(r"^#version.*\n|^#pragma shader_stage.*\n", re.MULTILINE)
-# Replacements of MaterialX's stage inputs, output and main for a path tracer.
+# Patterns and replacements that turn the stage's inputs, output and main function into variables
+# and a function for a path tracer.
 GLSL = (
     (LAYOUT + r"in VertexData\n", "struct VertexData\n"),
     (LAYOUT + r"(?:flat )?in (\w+ \w+;\n)", r"\1"),
@@ -41,14 +44,14 @@ SLANG = (
     (r"^    vd = _vd;\n|^ *discard;\n", ""),
     (r"^    return (\w+);\n}\s*\Z", r"    path_out = \1;\n}\n"),
 )
-WORDS = {"vec2": "float2", "vec3": "float3", "vec4": "float4", "uvec4": "uint4"}  # Slang's names
+WORDS = {"vec2": "float2", "vec3": "float3", "vec4": "float4", "uvec4": "uint4"}  # types in Slang
 GLOBAL = re.compile(r"^(?=(?:int|bool|float|vec\d) path_\w+;)", re.MULTILINE)
 
 
 def path_text(text: str, target: str, element: mx.TypedElement, library: str) -> str:
     """A material's pixel stage as text to include after a path tracer's version and declarations.
 
-    InterfaceError if the text mixes surfaces, since a path can follow only one.
+    Raise InterfaceError if the material mixes surfaces, because a path can follow only one surface.
     """
     if "mx_mix_surfaceshader(" in text:
         raise InterfaceError(
@@ -80,7 +83,7 @@ def path_text(text: str, target: str, element: mx.TypedElement, library: str) ->
 
 
 def own_text(name: str, library: str, slang: bool) -> str:
-    """A file of the interface for path tracers, in GLSL or Slang."""
+    """Text of a file of the interface for path tracers, in GLSL or Slang."""
     text = (source_folder(library) / "genglsl" / "path" / f"{name}.glsl").read_text(
         encoding="utf-8"
     )
@@ -92,7 +95,7 @@ def own_text(name: str, library: str, slang: bool) -> str:
 
 
 def thin_walled(element: mx.TypedElement) -> str:
-    """Whether a surface is thin-walled, as a GLSL literal; computed values count as false."""
+    """A GLSL literal: whether a surface is thin-walled. Computed values count as false."""
     shaders = mx.getShaderNodes(element) if element.getType() == "material" else [element]
     nodes = [each for each in shaders if isinstance(each, mx.Node)]
     names = ("thin_walled", "geometry_thin_walled")

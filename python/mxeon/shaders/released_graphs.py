@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodegraphs of the installed MaterialX, and their differences from a custom build's."""
+"""Compares the nodegraphs of the installed MaterialX with the nodegraphs of a custom build."""
 
 import sys
 from collections.abc import Iterator, Mapping
@@ -13,7 +13,7 @@ from mxeon.shaders.library import load_library
 
 @cache
 def hidden() -> mx.Document | None:
-    """The data libraries of an installed MaterialX that a custom build hides, or None."""
+    """The data libraries of the installed MaterialX if a custom build hides it, otherwise None."""
     known = [path for each in sys.path if (path := Path(each, "MaterialX", "libraries")).is_dir()]
     if not known or known[-1].samefile(Path(mx.__file__).with_name("libraries")):
         return None
@@ -39,14 +39,14 @@ def facts(graph: mx.NodeGraph) -> Iterator[tuple[str, str]]:
 
 
 def ports_of(node: mx.Node) -> dict[str, mx.Input]:
-    """The inputs of a node by name, completed from its definition."""
+    """A node's inputs, keyed by name, including inputs that only the node's definition has."""
     definition = node.getNodeDef()
     ports = definition.getActiveInputs() if definition else ()
     return {each.getName(): each for each in (*ports, *node.getInputs())}
 
 
 def port_text(port: mx.PortElement) -> str:
-    """The connection of an input or output, otherwise its value."""
+    """Text of the connection of an input or output, or of the value if nothing is connected."""
     if node := port.getNodeName():
         return " ".join(filter(None, (node, port.getOutputString())))
     if port.isA(mx.Input) and port.hasInterfaceName():
@@ -59,7 +59,7 @@ def port_text(port: mx.PortElement) -> str:
 
 
 def differences(own: Mapping[str, str], right: Mapping[str, str]) -> tuple[str, ...]:
-    """The differences between two graphs, each as the name and both values."""
+    """For each difference between two graphs: the name, and the value in each graph."""
     return tuple(
         text
         for name in {**right, **own}

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes of pictures: a shape, seen orthographically along -z, and its light.
+"""Scenes to render: a shape and its light, seen by an orthographic camera that looks along -z.
 
-World frame: x to the right, y up, z towards the viewer. The frame of the picture is the square
-[-1, 1]^2, row 0 is its top. NumPy only: hosts and checks share this module and nothing else.
+In the world frame, x points to the right, y up, and z towards the viewer. A picture shows the
+square [-1, 1]^2 of x and y, and row 0 is the top row. The module only needs NumPy, because hosts
+and checks both import the module and share no other code.
 """
 
 from dataclasses import dataclass
@@ -18,9 +19,9 @@ from mxeon.io.images import Floats
 
 SHAPES = ("sphere", "ball")
 MESHES = (".obj", ".glb")
-LARGEST = 8192  # supported by every OpenGL 4 device; such an image takes some gigabytes
-MOST_SAMPLES = 65536  # takes a core one day for a picture of 512 x 512 pixels
-MOST_BOUNCES = 1024  # Cycles' maximum
+LARGEST = 8192  # pixels; every OpenGL 4 device supports such images, which take some gigabytes
+MOST_SAMPLES = 65536  # a picture of 512 x 512 pixels then takes one CPU core a day
+MOST_BOUNCES = 1024  # maximum of Blender's Cycles
 
 
 @dataclass(frozen=True)
@@ -43,9 +44,9 @@ class Paths:
 
 @dataclass(frozen=True)
 class Lamp:
-    """One of MaterialX's lights. MaterialX expects a spot light's angles as cosines."""
+    """A light of one of MaterialX's types. The angles of a spot light are given as cosines."""
 
-    type: int = 1  # the generator's binding: 1 directional, 2 point, 3 spot
+    type: int = 1  # number of the type: 1 directional, 2 point, 3 spot
     color: tuple[float, float, float] = (1.0, 1.0, 1.0)
     intensity: float = np.pi
     direction: tuple[float, float, float] = (0.0, 0.0, -1.0)  # direction of travel of the light
@@ -62,19 +63,20 @@ TURN: Matrix = tuple(np.diag([-1.0, 1.0, -1.0, 1.0]).ravel().tolist())
 
 @dataclass(frozen=True, eq=False)
 class Client:
-    """Values that a client binds in addition to the scene; the defaults are the generator's."""
+    """Values that an application binds to a shader in addition to the scene.
+
+    The defaults are those of MaterialX's generators.
+    """
 
     lamps: tuple[Lamp, ...] = ()
     turn: Matrix = TURN  # maps the world to the environment map's frame
     intensity: float = 1.0  # scale of the environment
-    radiance: NDArray[np.float32] | None = None  # environment map that replaces the scene's
+    radiance: NDArray[np.float32] | None = None  # environment map, used instead of the scene's map
     irradiance: NDArray[np.float32] | None = None
     two_sided: bool = False  # whether transmitted light is tinted both on entry and on exit
-    shadow: Matrix = ONE  # maps the world to the shadow map, in [-1, 1]
-    moments: tuple[float, float] = (
-        1.0,
-        1.0,
-    )  # moments of depth, constant over the shadow map
+    shadow: Matrix = ONE  # maps the world to the coordinates [-1, 1] of the shadow map
+    # The first two moments of depth, which are constant over the shadow map.
+    moments: tuple[float, float] = (1.0, 1.0)
     ambient: float = 1.0  # value of the ambient occlusion map
     gain: float = 1.0  # gain of ambient occlusion
     alpha: bool = False  # whether pictures show alpha instead of the color
@@ -88,14 +90,15 @@ class Scene:
     """A shape and its light."""
 
     name: str  # one lower-case word, used in file names
-    # Unit vector towards a distant light of irradiance pi: a pixel holds pi f cos(theta_i), which is
-    # 1 for a white Lambertian surface that faces the light.
+    # Unit vector towards a distant light of irradiance pi. A pixel has the value pi f cos(theta_i),
+    # which is 1 for a white Lambertian surface that faces the light.
     light: tuple[float, float, float] | None = None
     # Radiance of a uniform environment, or a latitude-longitude image.
     environment: float | Path | None = None
     size: int = 256  # width and height in pixels, in [1, LARGEST]
     paths: Paths = Paths()  # hosts that do not trace paths only accept the default
-    # one of SHAPES, the unit sphere or the shader ball, or a mesh's file; gl and webgl draw all
+    # "sphere" (the unit sphere), "ball" (the shader ball), or the file of a mesh. The hosts gl and
+    # webgl support all shapes.
     shape: str = "sphere"
     client: Client = CLIENT  # only gl and webgl support other values
 
@@ -108,7 +111,7 @@ class Scene:
 
 
 def direction(azimuth: float, polar: float) -> tuple[float, float, float]:
-    """Unit vector at `polar` degrees from the z axis; `azimuth` is in degrees from x to y."""
+    """Unit vector at `polar` degrees from the z axis and `azimuth` degrees from x towards y."""
     theta, phi = np.radians(polar), np.radians(azimuth)
     return (
         float(np.sin(theta) * np.cos(phi)),
@@ -123,7 +126,8 @@ SIDE = Scene("side", light=direction(azimuth=20, polar=60))
 BACK = Scene("back", light=direction(azimuth=160, polar=130))
 FURNACE = Scene("furnace", environment=1.0)
 SCENES = (FRONT, SIDE, BACK, FURNACE)
-# Floor, ceiling and three soft boxes, painted by tools/site/gallery.py, and a light from behind.
+# The studio has a light from behind and an environment map with a floor, a ceiling and three soft
+# boxes, which tools/site/gallery.py paints.
 STUDIO = Scene("studio", BACK.light, Path(__file__).with_name("studio.exr"), shape="ball")
 
 
@@ -138,21 +142,22 @@ def scene(name: str) -> Scene:
     return scenes[name]
 
 
-@dataclass(frozen=True, eq=False)  # cached by identity
+@dataclass(frozen=True, eq=False)  # compared by identity
 class VisiblePoints:
-    """The visible points of a shape, one per position in the frame."""
+    """The visible points of a shape, one for each position in the picture."""
 
-    mask: NDArray[np.bool_]  # pixels on the shape
-    position: Floats  # points; those outside the mask lie in the plane of the rim
-    normal: Floats  # outward unit vector; outside the mask, the normal of the nearest rim point
-    # latitude-longitude coordinates in [0, 1], (0.5, 0.5) facing the viewer, v upwards
+    mask: NDArray[np.bool_]  # whether each position shows the shape
+    position: Floats  # points (..., 3); meaningless outside the mask
+    normal: Floats  # outward unit vectors; outside the mask, any unit vector
+    # Latitude-longitude coordinates in [0, 1]. The point at (0.5, 0.5) faces the viewer, and v
+    # increases upwards.
     texcoord: Floats
-    tangent: Floats | None = None  # unit vector; None for the one that `tangents` computes
+    tangent: Floats | None = None  # unit vectors; None stands for the result of `tangents`
 
     def __post_init__(self) -> None:
         for array in vars(self).values():
             if array is not None:
-                array.flags.writeable = False  # shared by all callers
+                array.flags.writeable = False  # because all callers share the array
 
 
 def pixel_centers(size: int, margin: int = 0) -> tuple[Floats, Floats]:
@@ -169,7 +174,10 @@ def sphere(size: int) -> VisiblePoints:
 
 
 def sphere_at(x: Floats, y: Floats) -> VisiblePoints:
-    """Points of the unit sphere at positions in the frame."""
+    """Points of the unit sphere at positions in the picture.
+
+    Positions outside the sphere have z = 0 and the normal of the nearest point of the rim.
+    """
     radius = np.hypot(x, y)
     mask = radius < 1.0
     scale = 1.0 / np.maximum(radius, 1.0)
@@ -184,7 +192,7 @@ def sphere_at(x: Floats, y: Floats) -> VisiblePoints:
 def local_directions(
     normal: NDArray[np.float64], direction: tuple[float, float, float]
 ) -> NDArray[np.float64]:
-    """A direction in the frames of unit normals (N, 3), as unit vectors (N, 3)."""
+    """A world direction in the local frames of unit normals (N, 3), as unit vectors (N, 3)."""
     helper = np.where(np.abs(normal[:, :1]) < 0.5, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
     tangent = np.cross(helper, normal)
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
@@ -195,7 +203,10 @@ def local_directions(
 
 
 def tangents(normal: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Unit tangents (N, 3) of the sphere at unit normals (N, 3): eastward, 0 at the poles of y."""
+    """Unit tangents (N, 3) of the sphere at unit normals (N, 3).
+
+    The tangents point east, where the y axis is north. At the poles, the tangents are 0.
+    """
     east = np.stack([normal[:, 2], np.zeros(len(normal)), -normal[:, 0]], axis=1)
     unit: NDArray[np.float64] = east / np.maximum(
         np.linalg.norm(east, axis=1, keepdims=True), 1e-30

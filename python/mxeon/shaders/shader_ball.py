@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Points of a shader ball: a ball with a grooved belt on a foot, seen slightly from above.
+"""Points of a shader ball, which is a ball with a grooved belt on a foot, seen from slightly above.
 
-The shape is a signed distance field. Each ray of the picture finds the surface by sphere tracing; the
-gradient is the normal. There are no shadows, because shaders are evaluated at one point at a time.
+The shape is a signed distance field. Each ray of the picture finds the surface by sphere tracing,
+and the gradient of the field is the normal. There are no shadows, because shaders are evaluated at
+one point at a time.
 """
 
 import numpy as np
@@ -12,19 +13,21 @@ from mxeon.io.images import Floats
 from mxeon.shaders.scene import VisiblePoints
 
 CENTER, RADIUS = np.array([0.0, 0.2, 0.0]), 0.72
-BELT_HEIGHT = 0.13  # half of the belt's height
-GROOVE, FILLET = 0.035, 0.02  # radii of the grooves next to the belt and of rounded edges
+BELT_HEIGHT = 0.13  # half of the height of the belt
+GROOVE, FILLET = 0.035, 0.02  # radius of the grooves next to the belt, radius of rounded edges
 FOOT_HEIGHT, FOOT_RADIUS = 0.1, 0.5
 GROUND = -0.6 - FOOT_HEIGHT  # height of the floor, under the foot
-TILT, ROLL = np.radians(20.0), np.radians(-24.0)  # tilt of the view, roll of the belt
+TILT, ROLL = np.radians(20.0), np.radians(-24.0)  # radians: tilt of the view, roll of the belt
 
 NEAR, FAR = 2.0, -2.0  # z at both ends of a ray
-STEPS, CLOSE = 2000, 1e-5  # sphere tracing; rays along an edge take hundreds of steps
-STEP = 1e-4  # central differences for normals
+# Maximum number of steps of sphere tracing, and the distance at which a ray hits the surface. Rays
+# along an edge take hundreds of steps.
+STEPS, CLOSE = 2000, 1e-5
+STEP = 1e-4  # step of the central differences that yield normals
 
 
 def _rotation(angle: float, axis: int) -> NDArray[np.float64]:
-    """Rotation about the x (0) or z axis (2)."""
+    """Rotation matrix about the x axis (`axis` is 0) or the z axis (2)."""
     cosine, sine = np.cos(angle), np.sin(angle)
     i, j = [(1, 2), (2, 0), (0, 1)][axis]
     matrix = np.eye(3)
@@ -32,12 +35,12 @@ def _rotation(angle: float, axis: int) -> NDArray[np.float64]:
     return matrix
 
 
-OBJECT = _rotation(-TILT, 0)  # picture frame to foot frame
-BELT = _rotation(ROLL, 2) @ _rotation(0.35, 0)  # foot frame to belt frame
+OBJECT = _rotation(-TILT, 0)  # rotates from the picture's frame to the foot's frame
+BELT = _rotation(ROLL, 2) @ _rotation(0.35, 0)  # rotates to the belt's frame
 
 
 def _cylinder(points: Floats, radius: float, height: float) -> Floats:
-    """Signed distance from a cylinder with rounded edges around the y axis."""
+    """Signed distance from a cylinder with rounded edges; the y axis is the cylinder's axis."""
     across = np.hypot(points[..., 0], points[..., 2]) - radius + FILLET
     along = np.abs(points[..., 1]) - height + FILLET
     outside = np.hypot(np.maximum(across, 0.0), np.maximum(along, 0.0))
@@ -46,7 +49,7 @@ def _cylinder(points: Floats, radius: float, height: float) -> Floats:
 
 
 def distance(points: Floats) -> Floats:
-    """Lower bound of the signed distance of points (..., 3) in the picture's frame to the shape."""
+    """Lower bound of the signed distance from the shape to points (..., 3) in the picture's frame."""
     upright = points @ OBJECT.T
     inside = (upright - CENTER) @ BELT.T
     radius = np.linalg.norm(inside, axis=-1)
@@ -60,7 +63,7 @@ def distance(points: Floats) -> Floats:
 
 
 def shader_ball_at(x: Floats, y: Floats) -> VisiblePoints:
-    """Points of the shader ball at positions in the frame."""
+    """The visible points of the shader ball at positions in the picture."""
     points = np.stack([x, y, np.full_like(x, NEAR)], axis=-1)
     rays, mask = points.reshape(-1, 3), np.zeros(x.size, dtype=bool)
     running = np.arange(x.size)

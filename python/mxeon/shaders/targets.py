@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Targets of shader generation, by name; no engine is loaded."""
+"""Targets of shader generation. Importing this module does not import MaterialX."""
 
-# MaterialX's module and class for each target. Slang needs MaterialX 1.39.5, WGSL 1.39.4.
+# MaterialX's module and class for each target. Slang needs MaterialX 1.39.5, and WGSL needs 1.39.4.
 CLASSES = {
     "glsl": ("GenGlsl", "GlslShaderGenerator"),
     "essl": ("GenGlsl", "EsslShaderGenerator"),

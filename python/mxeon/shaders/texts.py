@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sources of a library's nodes as text: their definitions, and nodes that cannot share a shader.
+"""Reads the sources of a library's nodes, and finds nodes that cannot be used in one shader.
 
-A generator writes the source of a node once, and each included file once, but repeats the source of
-a node that is also included. Two files that define the same function do not compile together.
+A generator writes the source of a node once and each included file once. If the source of a node is
+also included, the generator writes the source twice. A shader does not compile if two of its files
+define the same function.
 """
 
 import os
@@ -19,17 +20,16 @@ from mxeon.shaders.closure_calls import COMMENT
 from mxeon.shaders.document.values import split
 from mxeon.shaders.library_tree import included
 
-Definition: TypeAlias = tuple[
-    str, ...
-]  # a name; for a function, followed by "(" and its parameter types
-Source: TypeAlias = tuple[str, Path]  # the function of a node, and its file
+# A name. The name of a function is followed by "(" and the types of the parameters.
+Definition: TypeAlias = tuple[str, ...]
+Source: TypeAlias = tuple[str, Path]  # name and file of the function that implements a node
 
 TOKEN = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*$|[{};]", re.MULTILINE)
 FUNCTION = re.compile(r"(\w+)\s*\(([^(){}]*)\)\s*$")
 MACRO = re.compile(r"\s*#\s*define\s+(\w+)")
 CONSTANT = re.compile(r"(\w+)\s*(?:\[[^\]]*\]\s*)*=")
 QUALIFIERS = {"const", "in", "out", "inout", "output", "thread", "constant", "highp", "static"}
-PLACED = "$fileTransformUv", "mx_transform_uv.glsl"  # include that the generator replaces
+PLACED = "$fileTransformUv", "mx_transform_uv.glsl"  # an include and the generator's replacement
 MATH = "libraries/stdlib/genglsl/lib/mx_math.glsl"
 ARGUMENT = re.compile(r"\s*(?:(\w+)\s*:(?!:))?(.*)", re.DOTALL)
 
@@ -43,7 +43,7 @@ class Clash(NamedTuple):
 
 @cache
 def text_of(path: Path) -> str:
-    """Text of a source without comments; "" if the file cannot be read."""
+    """Text of a source file without comments; "" if the file cannot be read."""
     try:
         return COMMENT.sub(" ", path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError):
@@ -70,7 +70,7 @@ def definitions(path: Path) -> Mapping[Definition, str]:
         head, body, _ = chunk.partition("{")
         function = FUNCTION.search(head) if body else None
         if function is None and token[0] == "}":
-            continue  # closes a structure or an initializer
+            continue  # this brace closes a structure or an initializer
         start = token.end()
         if conditions:
             continue
@@ -86,13 +86,13 @@ def definitions(path: Path) -> Mapping[Definition, str]:
 
 
 def _reached(path: Path, search: mx.FileSearchPath) -> tuple[Path, ...]:
-    """`files`, plus the functions that a generator adds to all nodes of the GLSL family."""
+    """The result of `files`, plus the functions that GLSL generators add to every shader."""
     return *files(path, search.asString()), Path(search.find(MATH).asString())
 
 
 @cache
 def files(path: Path, search: str) -> tuple[Path, ...]:
-    """A source and everything it includes, found on a search path, without duplicates."""
+    """A source file and all files that the source includes directly or indirectly."""
     seen: dict[Path, None] = {}
     waiting = [path]
     while waiting:
@@ -107,16 +107,16 @@ def files(path: Path, search: str) -> tuple[Path, ...]:
 
 
 def source_of(element: mx.Element | None) -> Source | None:
-    """The function and the file of an implementation; None if it has no file."""
+    """The function and the file of an implementation; None for implementations without a file."""
     if element is None or not element.isA(mx.Implementation) or not element.hasFile():
         return None
-    # Do not resolve links: included files lie next to the link.
+    # Keep links unresolved, because included files lie next to the link.
     path = Path(element.getActiveSourceUri()).parent / element.getFile()
     return element.getFunction(), Path(os.path.normpath(path))
 
 
 def all_texts(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ...]:
-    """Texts of all files of an implementation."""
+    """All texts of an implementation: code, inputs, function, and files."""
     names = sorted(
         f"{each.getName()} {each.getImplementationName()}" for each in element.getInputs()
     )
@@ -147,15 +147,16 @@ def used_texts(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[s
 def clashes(
     document: mx.Document, target: str, search: mx.FileSearchPath, twice: bool = False
 ) -> Iterator[Clash]:
-    """Names that are defined by two nodes that may share a shader of a target.
+    """Names that are defined twice, by two nodes that may occur in one shader of a target.
 
-    As a control, `twice` includes the source of one node a second time.
+    For a negative control, `twice` includes the source of one node a second time.
     """
     nodes: dict[Path, str] = {}
     for each in document.getNodeDefs():
         if source := source_of(each.getImplementation(target)):
             nodes.setdefault(source[1], each.getName())
-    # Owners of a definition: the file, whether it is included, and a node that uses it.
+    # For each definition: each file that contains the definition, whether the file is included by
+    # another file, and a node that uses the file.
     owners: dict[Definition, dict[tuple[Path, bool], str]] = defaultdict(dict)
     for path, node in nodes.items():
         for file in files(path, search.asString()):
@@ -172,7 +173,7 @@ def clashes(
 
 
 def arguments(code: str) -> tuple[str, dict[str, str]]:
-    """The function called in MDL, and its arguments by name, or by position if they have no name.
+    """The function that an MDL call names, and the arguments, keyed by name or by position.
 
     >>> arguments("m::f(mxp_a:{{a}}, 2.0)")
     ('m::f', {'mxp_a': '{{a}}', '1': '2.0'})

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Material documents: `reading` reads them, `policy` limits them."""
+"""Material documents. The module `reading` reads documents, and `policy` limits documents."""

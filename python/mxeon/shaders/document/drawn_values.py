@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents that show a value of another document, as an output or as an emission.
+"""Copies of documents that show one value of the original, as an output or as emitted light.
 
-To show a node inside another node's nodegraph, MaterialX replaces the outer node by the nodes of its
-nodegraph, which keep their inputs.
+A node may lie in the nodegraph that implements another node. To show an inner node, MaterialX first
+replaces the outer node by the nodes of the nodegraph, which keep their inputs.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import MaterialX as mx
 LIT = ("BSDF", "EDF", "VDF", "surfaceshader", "material")  # types that scatter or emit light
 CLOSURES = (*LIT, "displacementshader", "volumeshader", "lightshader")
 NAME = "mxeon_value"
-Elements: TypeAlias = Sequence[mx.Element]  # enclosing nodes and nodegraphs, then the node itself
+Elements: TypeAlias = Sequence[mx.Element]  # enclosing nodes and nodegraphs, and then the node
 
 
 def value_document(
@@ -23,8 +23,8 @@ def value_document(
 ) -> tuple[mx.Document, str]:
     """A document with an output that shows a node's value, and the output's name path.
 
-    The node is the last of `elements`. `kind` is the type of the value, and `output` the name of the
-    node's output, "" for its only one.
+    The node is the last of `elements`, and `kind` is the type of the value. `output` is the name of
+    the node's output, or "" for a node with a single output.
     """
     copy = _copied(document)
     outermost, *inner = (each for each in elements if not each.isA(mx.NodeGraph))
@@ -33,14 +33,15 @@ def value_document(
         scope = _without_nodedef(copy, scope)
     name = outermost.getName()
     for element in inner:
-        # The nodes of the nodegraph replace the outer node, with new names in the same order.
+        # The nodes of the nodegraph replace the outer node. The replacements have new names, but
+        # the same order.
         before = {each.getName() for each in scope.getNodes()}
         index = [each.getName() for each in element.getParent().getNodes()].index(element.getName())
         scope.flattenSubgraphs(filter=lambda node, name=name: bool(node.getName() == name))
         name = [each.getName() for each in scope.getNodes() if each.getName() not in before][index]
     _drop_closures(copy)
     if scope.isA(mx.NodeGraph):
-        scope.setSourceUri("")  # outputs of included graphs would not be drawn
+        scope.setSourceUri("")  # otherwise, MaterialX skips the output of an included graph
     shown = scope.addOutput(scope.createValidChildName(NAME), kind)
     shown.setNodeName(name)
     if output:
@@ -80,7 +81,7 @@ def _copied(document: mx.Document) -> mx.Document:
     copy.copyContentFrom(document)
     copy.setSourceUri(document.getSourceUri())
     copy.setDataLibrary(document.getDataLibrary())
-    for each in (*copy.getLooks(), *copy.getLookGroups()):  # they refer to removed materials
+    for each in (*copy.getLooks(), *copy.getLookGroups()):  # looks refer to removed materials
         copy.removeChild(each.getName())
     for graph in _own_graphs(copy):
         for node in graph.getNodes() if graph.hasColorSpace() else ():
@@ -90,7 +91,7 @@ def _copied(document: mx.Document) -> mx.Document:
 
 
 def _own_graphs(document: mx.Document) -> list[mx.NodeGraph]:
-    """The document's own nodegraphs. `getNodeGraphs` also returns those of the data library."""
+    """The document's own nodegraphs. `getNodeGraphs` also returns the data library's nodegraphs."""
     return [each for each in document.getChildren() if each.isA(mx.NodeGraph)]
 
 
@@ -105,7 +106,10 @@ def _drop_closures(document: mx.Document) -> None:
 
 
 def _without_nodedef(document: mx.Document, graph: mx.NodeGraph) -> mx.NodeGraph:
-    """A copy of a nodegraph that defines a node; its inputs have the defaults of the nodedef."""
+    """A copy of a nodegraph that implements a node, as an independent nodegraph.
+
+    The inputs of the copy have the defaults of the node's definition.
+    """
     copy = document.addNodeGraph(document.createValidChildName(f"NG_{NAME}"))
     copy.copyContentFrom(graph)
     copy.removeAttribute("nodedef")

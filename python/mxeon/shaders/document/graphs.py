@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Limits on the number of nodes in a document's shaders, and on their depth, before generation.
+"""Limits the number and the depth of the nodes in a document's shaders, before generation.
 
-MaterialX writes a nodegraph once, but compilers copy it to each use. So the nodes of a nodegraph are
-counted once per use, but visited only once. In this module, a graph maps each key to its parts: an
-element to the nodes upstream of it, or a definition to the definitions that it uses. No function
-recurses, because the depth of a document is unknown.
+MaterialX writes a nodegraph once, but compilers copy the nodegraph to each use. So the nodes of a
+nodegraph are counted once per use, but visited only once. A graph in this module maps each key to
+its parts. The parts of an element are the nodes upstream of the element. The parts of a definition
+are the definitions that the definition uses. No function is recursive, because documents may have
+any depth.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
@@ -24,7 +25,7 @@ Graph = Mapping[Key, Iterable[Key]]
 def reachable(
     roots: Iterable[Key], parts: Callable[[Key], Iterable[Key] | None]
 ) -> dict[Key, tuple[Key, ...]]:
-    """The graph of all keys reachable from the roots; the parts of a key may be None.
+    """The graph of all keys that the roots lead to. `parts` returns the parts of a key, or None.
 
     >>> reachable("a", {"a": "bc", "b": "c", "d": "a"}.get)
     {'a': ('b', 'c'), 'c': (), 'b': ('c',)}
@@ -40,7 +41,10 @@ def reachable(
 
 
 def heights(graph: Graph[Key], order: Iterable[Key]) -> dict[Key, int]:
-    """Number of keys on the longest path from each key to a key without parts, including both."""
+    """The height of each key in a graph.
+
+    The height is the number of keys on the longest path from the key to a key without parts.
+    """
     height: dict[Key, int] = {}
     for key in order:
         height[key] = 1 + max((height[part] for part in graph[key]), default=0)
@@ -52,8 +56,8 @@ def check_shaders(
 ) -> int:
     """Number of nodes in the shaders of renderable elements.
 
-    DocumentError for a cycle of nodes or nodegraphs, and for too many shaders, nodes, inputs, nodes in
-    a chain, or nested nodegraphs.
+    Raise DocumentError if nodes or nodegraphs form a cycle, or if there are too many shaders,
+    nodes, inputs, nodes in a chain, or nested nodegraphs.
     """
     title, rule = label(document), f"{label(document)}: must have"
     counts, total, ports = _NodeCounts(document, policy), 0, 0
@@ -76,7 +80,7 @@ def check_shaders(
 def upstream(
     document: mx.Document, elements: Iterable[mx.Element], roots: Iterable[mx.Element]
 ) -> list[mx.Node]:
-    """The nodes among `elements` that are `roots` or upstream of a root."""
+    """The nodes among `elements` that are in `roots` or upstream of a root."""
     start = [each.getNamePath() for each in roots]
     paths = reachable(start, lambda path: _upstream(document, path))
     nodes = (each for each in elements if each.isA(mx.Node))
@@ -114,7 +118,7 @@ def check_inheritance(document: mx.Document, policy: Policy) -> None:
 
 
 def check_interfaces(document: mx.Document, elements: Sequence[mx.Element], policy: Policy) -> None:
-    """Raise DocumentError if an element has too many inputs, or there are too many tokens."""
+    """Raise DocumentError if an element has too many inputs, or the document too many tokens."""
     widest = max(elements, key=_inputs)
     policy.check_limit("inputs", _inputs(widest), f"{location(widest)} must have", "inputs")
     tokens = sum(element.isA(mx.Token) for element in elements)
@@ -122,7 +126,7 @@ def check_interfaces(document: mx.Document, elements: Sequence[mx.Element], poli
 
 
 class _NodeCounts(dict[str, int]):
-    """Number of nodes that a node expands to, by the name of its nodedef."""
+    """Number of nodes that a node expands to, keyed by the name of the node's definition."""
 
     def __init__(self, document: mx.Document, policy: Policy) -> None:
         self._document, self._policy = document, policy
@@ -139,7 +143,7 @@ class _NodeCounts(dict[str, int]):
         return self[name]
 
     def _parts(self, name: str) -> list[str]:
-        """Nodedefs of all nodes in the graphs that implement a nodedef."""
+        """Names of the nodedefs of all nodes in the graphs that implement a nodedef."""
         nodedef = self._document.getNodeDef(name)
         if not nodedef:
             return []
@@ -157,7 +161,7 @@ class _NodeCounts(dict[str, int]):
 
 
 def _ordered(graph: Mapping[str, tuple[str, ...]], kind: str, rule: str) -> tuple[str, ...]:
-    """Keys of a graph, each after its parts. DocumentError for a cycle."""
+    """The keys of a graph, with each key after its parts. Raise DocumentError for a cycle."""
     try:
         return tuple(TopologicalSorter(graph).static_order())
     except CycleError as error:
@@ -165,7 +169,7 @@ def _ordered(graph: Mapping[str, tuple[str, ...]], kind: str, rule: str) -> tupl
 
 
 def _upstream(document: mx.Document, path: str) -> list[str]:
-    """Name paths of the nodes that an element is connected to."""
+    """Name paths of the nodes that are connected to an element."""
     element = document.getDescendant(path)
     ports = [element] if element.isA(mx.Output) else element.getInputs()
     linked = (
@@ -187,6 +191,6 @@ def _inputs(element: mx.Element | None) -> int:
 
 
 def surface_shader(document: mx.Document, path: str) -> mx.Node:
-    """The surface shader of a material, or the node itself, by its name path."""
+    """The surface shader of the material at a name path, or the node itself if not a material."""
     element = document.getDescendant(path)
     return next(iter(mx.getShaderNodes(element)), element)

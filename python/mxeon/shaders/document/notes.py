@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Warnings about a document that MaterialX accepts, one per kind, with the first place."""
+"""Warnings about documents that MaterialX accepts but misreads.
+
+Each kind of warning is issued once per document, for the first element concerned.
+"""
 
 import ctypes
 import math
@@ -19,7 +22,10 @@ HALF_PI = ctypes.c_float(math.pi / 2.0).value  # MaterialX's float32, slightly a
 
 
 class DocumentWarning(UserWarning):
-    """Part of a document that MaterialX accepts but misreads: the place, the rule and the value."""
+    """A part of a document that MaterialX accepts but misreads.
+
+    The message names the element, the rule and the value.
+    """
 
     def __init__(self, message: str) -> None:
         super().__init__(one_line(message))
@@ -34,7 +40,10 @@ class CodeWarning(UserWarning):
 
 
 class MissingFileWarning(DocumentError, UserWarning):
-    """Missing files that a shader names. Raised as an error where the files must be read."""
+    """Files that a shader names do not exist.
+
+    The warning is raised as an error by functions that have to read the files.
+    """
 
 
 def numbers(element: mx.ValueElement) -> tuple[float, ...]:
@@ -45,7 +54,7 @@ def numbers(element: mx.ValueElement) -> tuple[float, ...]:
 
 
 def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> None:
-    """Warn about values that MaterialX misreads or that are out of range, and about code."""
+    """Warn about values that are misread or out of range, and about shader code in a document."""
     values = [each for each in elements if each.isA(mx.ValueElement) and each.getValueString()]
     for kind, note in (
         (DocumentWarning, _misread),
@@ -66,10 +75,10 @@ def warn_of_files(inputs: Iterable[tuple[str, str]], document: mx.Document) -> N
 
 
 def same_names(element: mx.Element) -> tuple[str, ...]:
-    """Pairs of upstream nodes with the same name in different nodegraphs and different inputs, as text.
+    """Pairs of nodes that share a name, but lie in different nodegraphs and have different inputs.
 
-    MaterialX gives both nodes the values of the first, because names of shader inputs omit the
-    nodegraph.
+    MaterialX gives both nodes of a pair the values of the first node, because the names of a
+    shader's inputs omit the nodegraph. Each pair is a text.
     """
     nodes = [element, *(edge.getUpstreamElement() for edge in element.traverseGraph())]
     first: dict[tuple[str, str], mx.Node] = {}
@@ -92,7 +101,7 @@ def _inputs(node: mx.Node) -> set[tuple[str, str]]:
 
 
 def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None:
-    """Warn about the pairs of `same_names`."""
+    """Warn about the pairs of nodes that `same_names` finds."""
     if not any(each.isA(mx.NodeGraph) for each in document.getChildren()):
         return  # names are unique within a graph
     pairs = dict.fromkeys(pair for element in elements for pair in same_names(element))
@@ -101,11 +110,11 @@ def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None
 
 
 def warn(kind: type[Warning], texts: Sequence[str]) -> None:
-    """Warn with the first of similar texts and the number of the rest, which may be thousands."""
+    """Issue the first of similar warnings, with the number of the rest, which may be thousands."""
 
     if texts:
         also = f"; {len(texts) - 1} more like it" if len(texts) > 1 else ""
-        # The warning points to the caller of the function that calls this module.
+        # The warning refers to the caller of the function that calls this module.
         warnings.warn(kind(texts[0] + also), stacklevel=4)
 
 
@@ -157,7 +166,7 @@ def _beyond(element: mx.ValueElement) -> str | None:
 
 
 def _unknown_space(element: mx.ValueElement) -> str | None:
-    """Warning about a value whose color space has no transform to that of the document."""
+    """Warning about a value whose color space has no transform to the document's color space."""
     spaces = color_spaces(element) if element.getType() in COLORED else None
     if not spaces or element.getDocument().getMatchingNodeDefs("_to_".join(spaces)):
         return None
@@ -167,7 +176,7 @@ def _unknown_space(element: mx.ValueElement) -> str | None:
 
 
 def _unconnected(element: mx.Element) -> str | None:
-    """Warning about an input whose `nodename` is not a node, such as a nodegraph."""
+    """Warning about an input whose `nodename` is no node's name; it may be a nodegraph's name."""
     if not element.isA(mx.Input) or not element.getNodeName() or element.getConnectedNode():
         return None
     rule = f"must be connected to a node; got nodename {element.getNodeName()!r}"

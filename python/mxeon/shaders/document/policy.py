@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from mxeon.errors import DocumentError, InputError
 from mxeon.io.files import names_of
 
-SEARCH_PATH = "MATERIALX_SEARCH_PATH"  # environment variable, MaterialX's own
+SEARCH_PATH = "MATERIALX_SEARCH_PATH"  # an environment variable of MaterialX
 
-# Limits and what they count; each is also an option of the command.
+# The limits, and what each limit counts. Each limit is also a command-line option.
 LIMITS = {
     "size": "bytes in a document and everything it includes",
     "length": "characters in one attribute",
@@ -36,29 +36,31 @@ def environment_path() -> tuple[str, ...]:
 
 @dataclass(unsafe_hash=True)  # instances are never modified
 class Policy:
-    """Permissions and limits of a document; plain data, so it can be pickled.
+    """Permissions and limits of a document, as plain data that can be pickled.
 
     - `outside`: Whether a document may name files outside its own folder and the libraries.
     - `code`: Whether a document may contain its own shader code, in text or in files.
-    - `definitions`: Folders of definitions in addition to the library, and trusted like the library.
-    - `path`: Folders, searched after the document's own, in which a document may also name files;
-      by default those in the environment variable MATERIALX_SEARCH_PATH.
+    - `definitions`: Folders of definitions that are added to the library, and trusted like the
+      library.
+    - `path`: Further folders in which a document may name files, searched after the document's own
+      folder. The default is the environment variable MATERIALX_SEARCH_PATH.
     - All other fields are limits; see LIMITS. `size` and `includes` also apply to the document's
-      source code, and `elements` to the number of sources; `text` counts functions once per
-      shader and the longest expression once per node; `texels` counts each file once.
+      source code, and `elements` also applies to the number of sources. `text` counts each function
+      once per shader and the longest expression once per node. `texels` counts each file once.
 
     Raises ValueError if a limit is negative.
 
-    The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst known documents; reading
+    The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst known documents. Reading
     images for pictures takes less than another 15 s and 2.75 GiB. The slowest documents at a limit
     have 9,800 names of files with tokens (12 s), a node of 2,490 inputs in 80 shaders (9 s), or 7
     unused nodegraphs of 2,500 inputs (7 s).
 
-    The time grows with the square of the number of file names (94 s at 50,000), of outputs of a
-    nodegraph, of unused inputs of an element, and of definitions that inherit each other (50 s at
-    10,000); and with the product of tokens and file names. It doubles with each nodegraph that uses
-    another nodegraph twice, which `nodes` limits. A stack of 8 MiB was enough for chains of 100,000
-    nodes and 3,000 nested nodegraphs; a thread may have a hundredth of that stack.
+    The time grows with the square of each of these numbers: file names (94 s at 50,000), outputs of
+    a nodegraph, unused inputs of an element, and definitions that inherit each other (50 s at
+    10,000). The time also grows with the product of the numbers of tokens and of file names. The
+    time doubles with each nodegraph that uses another nodegraph twice, which `nodes` limits. A
+    stack of 8 MiB was enough for chains of 100,000 nodes and for 3,000 nested nodegraphs; a thread
+    may have a hundredth of that stack.
     """
 
     outside: bool = False
@@ -91,7 +93,7 @@ class Policy:
 
     @property
     def options(self) -> dict[str, str]:
-        """Values of the policy, by the command's options."""
+        """Values of the policy, keyed by command-line option."""
         prefixes = dict.fromkeys(LIMITS, "max") | {"outside": "allow", "code": "allow"}
         folders = {"path": self.path, "definitions": self.definitions}
         values = vars(self) | {n: os.pathsep.join(each) or "none" for n, each in folders.items()}

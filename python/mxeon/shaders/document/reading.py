@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checked material documents from files and text.
+"""Reads material documents from files and text, and checks the documents.
 
 MaterialX accepts documents from which no shader can be generated, reads every file that a document
-names, and copies names and text values into shaders. So documents are checked before generation:
-their text before MaterialX reads it, their elements afterwards. Each fault is one line.
+names, and copies names and text values into shaders. So mxeon checks the text of a document before
+MaterialX reads the text, and checks the elements before generation. Each fault is one line.
 """
 
 import math
@@ -28,19 +28,19 @@ from mxeon.shaders.library import load_library
 
 __all__ = ["Document", "DocumentError", "DocumentWarning", "read_document"]
 
-RAISED = (mx.Exception, LookupError)  # raised by MaterialX
-LONGEST_NAME = 128  # characters; file names contain three names and may have 255
-SIMILAR = 0.85  # least similarity of a suggested node; names of nodes have similar endings
+RAISED = (mx.Exception, LookupError)  # exceptions that MaterialX raises
+LONGEST_NAME = 128  # characters; a file name contains several names and may have 255
+SIMILAR = 0.85  # minimum similarity of suggested categories, which share endings
 
 
 @dataclass(frozen=True)
 class Document:
     """A checked document."""
 
-    content: mx.Document  # its data library is attached
-    renderables: tuple[mx.TypedElement, ...]  # one or more
+    content: mx.Document  # has its data library attached
+    renderables: tuple[mx.TypedElement, ...]  # one or more renderable elements
     nodes: int  # number of nodes in all shaders; a nodegraph counts at each use
-    missing: tuple[str, ...] = ()  # a line for each file that a shader names but does not exist
+    missing: tuple[str, ...] = ()  # a message for each missing file that a shader names
 
 
 def read_document(
@@ -51,9 +51,10 @@ def read_document(
 ) -> Document:
     """A checked MaterialX document with its data library attached.
 
-    The source is a file; XML text, a str that begins with `<` and names no file; or a document, which
-    is copied. XIncludes and relative file names are looked up in the file's folder, or the working
-    folder for text, and then on the policy's search path. DocumentError lists all faults.
+    The source is a file, XML text, or a document, which is copied. A str is XML text if the str
+    begins with `<` and names no file. XIncludes and relative file names are looked up in the file's
+    folder (in the working folder for text) and then on the policy's search path. Raise
+    DocumentError, which lists all faults, for an invalid document.
     """
     data = load_library(library, profile, policy.definitions)
     content = mx.createDocument()
@@ -68,7 +69,7 @@ def read_document(
         and not os.path.isfile(source)  # a path may also begin with `<`
     ):
         _Reader(policy, Path.cwd()).read_text(content, source)
-    elif os.path.isfile(source):  # a pipe or a device may have no end
+    elif os.path.isfile(source):  # reading a pipe or a device may not end
         path = Path(source).resolve()
         try:
             str(path).encode()
@@ -119,7 +120,7 @@ def read_document(
 def _resolve_files(
     document: mx.Document, elements: Iterable[mx.Element], folders: list[Path]
 ) -> None:
-    """Make file names absolute if the files, or a set of textures, exist in one of the folders."""
+    """Make a file name absolute if the file, or a set of textures, exists in one of the folders."""
     path = mx.FileSearchPath()
     for each in folders:
         path.append(mx.FilePath(str(each)))
@@ -132,10 +133,10 @@ def _resolve_files(
 
 
 class _Reader:
-    """Reads a document and its includes, and checks their text before MaterialX reads it.
+    """Reads a document and its includes, and checks the texts before MaterialX reads the texts.
 
-    MaterialX keeps what it reads in memory and follows every include at once. So a parser that keeps
-    nothing first counts bytes, elements and attributes, summed over a document and its includes.
+    MaterialX keeps in memory what it reads, and follows every include immediately. So a parser that
+    stores nothing first counts the bytes, elements and attributes of a document and its includes.
     """
 
     def __init__(self, policy: Policy, home: Path) -> None:
@@ -146,7 +147,7 @@ class _Reader:
     def read_file(self, document: mx.Document, name: str) -> None:
         """Read a file into a document."""
         try:
-            # Read one byte more than the limit to notice that a file exceeds it.
+            # Read one byte more than the limit, to notice that a file exceeds the limit.
             with Path(name).open("rb") as stream:
                 size = min(self._policy.size - self._size, os.fstat(stream.fileno()).st_size)
                 data = stream.read(size + 1)
@@ -231,7 +232,7 @@ class _Reader:
         return ignored
 
     def _include(self, document: mx.Document, name: str, title: str) -> None:
-        """Read a file that the document `title` includes, by its real path."""
+        """Read a file that the document `title` includes; the real path identifies the file."""
         base = self._home if title == TEXT else Path(title).parent
         folders = [base, self._home, *map(Path, self._policy.path)]
         paths = [os.path.realpath(each / name) for each in folders]
@@ -252,7 +253,7 @@ def _raise(faults: Sequence[str]) -> None:
 
 
 def _types(document: mx.Document) -> Iterator[str]:
-    """Faults of the members of the document's own types, which would crash a generator."""
+    """Faults in types that the document defines; each fault would crash a generator."""
     for each in filter(lambda child: child.isA(mx.TypeDef), document.getChildren()):
         for member in each.getChildren():
             if member.getAttribute("type") == "filename":
@@ -269,7 +270,7 @@ def _types(document: mx.Document) -> Iterator[str]:
 
 
 def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Policy) -> Iterator[str]:
-    """Wrong values, which MaterialX would replace by defaults, and violations of its rules."""
+    """Values that MaterialX would replace by defaults, and violations of MaterialX's rules."""
     reported = set()
     for each in elements:
         text, fault = each.getValueString() if each.isA(mx.ValueElement) else "", ""
@@ -282,7 +283,8 @@ def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Polic
         if fault:
             reported.add(each.asString())
             yield fault
-    # MaterialX reports only one wrong input of a node, without a suggestion.
+    # MaterialX reports only one wrong input per node and suggests no other name, so mxeon looks for
+    # wrong inputs.
     try:
         valid, message = document.validate()
     except RAISED as error:
@@ -310,8 +312,11 @@ def _check_version(document: mx.Document, title: str) -> None:
 
 
 def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
-    """Inputs of a node that are unknown, have a wrong type, or are connected to nothing; and why."""
-    if not (definition := node.getNodeDef("", True)):  # a definition with other inputs will do
+    """Faults of a node's inputs, each with the input.
+
+    An input must be known, have the right type, and not be connected to a missing node.
+    """
+    if not (definition := node.getNodeDef("", True)):  # inputs may differ
         return
     ports = {each.getName(): each.getType() for each in definition.getActiveInputs()}
     for each in node.getInputs():
@@ -328,7 +333,7 @@ def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
 
 
 def _undefined(document: mx.Document, nodes: Iterable[mx.Node]) -> Iterator[str]:
-    """Faults for categories of nodes without a definition, each at the first such node."""
+    """A fault for each category of nodes that has no definition; the fault names the first node."""
     groups: dict[tuple[str, str], list[mx.Node]] = {}
     for node in nodes:
         if not node.getNodeDef("", True):
@@ -345,7 +350,7 @@ def _undefined(document: mx.Document, nodes: Iterable[mx.Node]) -> Iterator[str]
 
 
 def _missing(nodes: Iterable[mx.Node], policy: Policy) -> Iterator[str]:
-    """Faults for files that do not exist but that nodes' inputs name and may read."""
+    """Faults for missing files that inputs of nodes name and that the policy permits to read."""
     for each in (port for node in nodes for port in node.getInputs()):
         port = each.getInterfaceInput() if each.hasInterfaceName() else each
         if port and port.getType() == "filename" and (name := port.getValueString()):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of the files that a document names and of its shader code."""
+"""Checks the files that a document names, and the shader code of a document."""
 
 import glob
 import html
@@ -33,14 +33,14 @@ from mxeon.shaders.library_tree import FILES, LARGEST, LIBRARIES, files_in, root
 CODE = ("file", "sourcecode")
 ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")
 NAMING = ("value", "file", "href", "fileprefix")
-# Matches files that shader code includes or that documents name, with any ending.
+# Matches the names of files that shader code includes or that documents name.
 INCLUDED = re.compile(r"""(?:#include\s+|\b(?:href|file)\s*=\s*)["']([^"'\n]+)["']""")
 # Matches placeholders in a file's name: <UDIM>, [token], {frame}.
 OPEN_PART = re.compile(r"<[^<>]*>|\[[^][]*\]|\{[^{}]*\}")
 
 
 def folder(document: mx.Document) -> Path:
-    """Folder that file names are relative to: the document's, or the working folder for text."""
+    """The folder of a document, to which file names are relative; for text, the working folder."""
     file = document.getSourceUri()
     return Path(file).resolve().parent if file else Path.cwd()
 
@@ -62,11 +62,11 @@ def check_inside(path: AnyPath, home: Path, policy: Policy, prefix: str) -> None
 
 
 def file_fault(element: mx.ValueElement, policy: Policy) -> str:
-    """The reason why an input's file, or a file of a set of textures, must not be read; or ""."""
+    """Why the file of an input, or a file in a set of textures, must not be read; otherwise ""."""
     text, home, prefix = element.getValueString(), folder(element.getDocument()), location(element)
     if ENDS_A_STRING.search(text):
         return f"{prefix} must name a file without quotes and backslashes; got {text}"
-    path = home / text  # the text is relative if no file was found
+    path = home / text  # the text is still relative if no file was found
     try:
         check_inside(path, home, policy, prefix)
         if "<" in str(path.parent):
@@ -79,7 +79,7 @@ def file_fault(element: mx.ValueElement, policy: Policy) -> str:
 
 
 def missing_fault(document: mx.Document, path: str, name: str) -> str:
-    """The message that an input's file does not exist; "" if it does."""
+    """A message if the file of an input does not exist, otherwise ""."""
     if files(folder(document) / name):
         return ""
     rule = f'{label(document)}: input "{path}" must name a file that exists; got {name}'
@@ -97,13 +97,13 @@ def foreign_code(document: mx.Document) -> list[mx.Implementation]:
     """Implementations with the document's own shader code."""
     return [
         each
-        for each in document.getChildren()  # getImplementations includes the data library's
+        for each in document.getChildren()  # getImplementations includes the library
         if each.isA(mx.Implementation) and any(map(each.hasAttribute, CODE))
     ]
 
 
 def code_faults(document: mx.Document, policy: Policy) -> Iterator[str]:
-    """Faults for the document's own code, if the policy forbids all code or its files."""
+    """Faults for a document's own code, if the policy forbids the code or the code's files."""
     home = folder(document)
     for element in foreign_code(document):
         prefix = location(element)
@@ -129,7 +129,7 @@ def _sources(element: mx.Implementation, home: Path, path: Iterable[str]) -> lis
 
 
 def library_path(path: AnyPath) -> str:
-    """MaterialX's path of a library file; "" for any other file."""
+    """The path by which MaterialX finds a library file; "" for any other file."""
     if any(Path(path).is_relative_to(each) for each in roots()):
         return str(path)
     real = os.path.realpath(path)
@@ -148,11 +148,12 @@ def _libraries() -> dict[Path, str]:
 
 
 def named_files(document: str, policy: Policy) -> list[str]:
-    """A document, and all files named by it and its includes."""
+    """A document, and all files that the document and its includes name."""
     home, seen, texts = Path(os.path.realpath(document)).parent, {document: None}, [document]
     for text in texts:  # the loop appends included texts
         folders = {home, Path(os.path.realpath(text)).parent, Path.cwd(), *map(Path, policy.path)}
-        # Documents with too many elements are refused, so their files do not matter.
+        # Documents with too many elements are refused, so the files of such documents do not
+        # matter.
         for key, name in islice(_names(_text(text, policy)), 6 * policy.elements):
             for path in _paths(name, folders):
                 if path not in seen and (policy.outside or is_inside(path, home, policy.path)):
@@ -163,7 +164,7 @@ def named_files(document: str, policy: Policy) -> list[str]:
 
 
 def _text(path: str, policy: Policy) -> str:
-    """Text of a document, or "" if it is too large or cannot be read."""
+    """Text of a document, or "" if the file is too large or cannot be read."""
     with suppress(OSError, DocumentError), open(path, "rb", opener=regular) as file:
         data = file.read(policy.size + 1)
         return strict(decode(data, path)) if len(data) <= policy.size else ""
@@ -171,7 +172,10 @@ def _text(path: str, policy: Policy) -> str:
 
 
 def _names(text: str) -> Iterator[tuple[str, str]]:
-    """Attributes of a document that may name files, as key and value, with and without prefixes."""
+    """Keys and values of the attributes that may name files.
+
+    Each value is listed without a prefix and with every prefix.
+    """
     found = dict.fromkeys(
         (key, html.unescape(value[1:-1])) for key, value in ATTRIBUTE.findall(text) if key in NAMING
     )
@@ -190,9 +194,9 @@ def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
 
 
 def documents_in(files: Iterable[AnyPath]) -> tuple[str, ...]:
-    """Files, and the documents in and below folders, in order.
+    """The given files, and the documents in the given folders and their subfolders, in order.
 
-    Raise InputError if a folder holds no document.
+    Raise InputError if a folder contains no document.
     """
     documents: list[str] = []
     for file in files:
@@ -210,8 +214,9 @@ def files_read(
 ) -> dict[str, str]:
     """Paths of all files that a run on documents may read.
 
-    The keys of documents, of the files that they may include or name, and of files of library folders
-    are their paths; those of installed files begin with "mxeon", "eonlib" or "MaterialX".
+    For documents, for the files that documents may include or name, and for files of library
+    folders, the key is the path of the file. For installed files, the key begins with "mxeon",
+    "eonlib" or "MaterialX".
     """
     paths = {path: path for document in documents for path in named_files(str(document), policy)}
     trusted = {*map(os.path.abspath, {*libraries, *policy.definitions} - {*LIBRARIES})}
@@ -227,9 +232,9 @@ def files_read(
 
 
 def _library_files(library: str) -> Iterator[str]:
-    """Documents and sources in the folders of a library, and what they include."""
+    """Documents and sources in the folders of a library, and the files that these include."""
     for folder in library_folders(library):
-        profiles = (folder / profile for profile in PROFILES)  # their documents end in .xml
+        profiles = (folder / profile for profile in PROFILES)  # contain documents that end in .xml
         names = [path for _, path in files_in(str(folder)) if path.endswith(FILES)]
         for path in (*names, *(str(file) for each in profiles for file in each.glob("*.xml"))):
             yield path
@@ -241,5 +246,5 @@ def _library_files(library: str) -> Iterator[str]:
 def digests(
     documents: Iterable[AnyPath], policy: Policy, libraries: Iterable[str] = ()
 ) -> dict[str, str]:
-    """SHA-256 of each file in `files_read`, by the same keys; "" for unreadable or special files."""
+    """SHA-256 of each file in `files_read`, keyed alike; "" for unreadable or special files."""
     return {name: digest(path) for name, path in files_read(documents, policy, libraries).items()}

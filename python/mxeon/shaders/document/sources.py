@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shader sources of a document, checked before MaterialX opens them.
+"""Checks the shader sources of a document before MaterialX opens the sources.
 
-MaterialX opens whatever a source includes, recursively. So mxeon follows the includes first, to any
+MaterialX opens whatever a source includes, recursively. So mxeon first follows the includes to any
 depth, and resolves each name as MaterialX does.
 """
 
@@ -30,23 +30,25 @@ def check_sources(
     shaders: int,
     nodes: int,
 ) -> None:
-    """Check the sources of a document for a target, everything they include, and its code's length.
+    """Check a document's sources for a target, all included files, and the length of the code.
 
-    `tokens` returns the generator's replacements for tokens in includes; `shaders` and `nodes` are
-    the numbers that will be generated. DocumentError if a source or an included file lies where the
-    document may not name files, is not a regular UTF-8 text file, or exceeds a limit.
+    `tokens` returns the generator's replacements for tokens in includes. `shaders` and `nodes` are
+    the numbers of shaders and nodes that will be generated. Raise DocumentError if a source or an
+    included file exceeds a limit, is not a regular UTF-8 text file, or lies where the document may
+    not name files.
     """
     title, code = label(document), references.foreign_code(document)
     rule = f"{title}: must have"
     size = 0  # total bytes of all files
     functions = 0  # characters of function sources with their includes
     expressions = max((len(each.getAttribute("sourcecode")) for each in code), default=0)
-    known: set[tuple[str, str]] = set()  # names, and folders of the including files
+    known: set[tuple[str, str]] = set()  # names, with the folders of the including files
     read: set[str] = set()
     target = context.getShaderGenerator().getTarget()
     code = [each for each in code if each.hasFile() and target != UNREAD]
     targets = document.getTargetDef(target).getMatchingTargets() if code else ()
-    # Name, folder of the including file, prefix of messages, and depth; None for expressions.
+    # Each entry has the name of a file, the folder of the including file, a prefix for messages,
+    # and the depth of inclusion. The depth is None for files of expressions.
     waiting = [
         (
             each.getFile(),
@@ -65,8 +67,8 @@ def check_sources(
         policy.check_limit("elements", len(known), rule, "includes in its sources")
         opened = TOKEN.sub(lambda token: tokens().get(token[0], token[0]), name)
         path = os.path.abspath(context.resolveSourceFile(opened, local).asString())
-        path = path.partition("\0")[0]  # the operating system ends the name at a null character
-        missing = not os.path.lexists(path)  # MaterialX reports it if used
+        path = path.partition("\0")[0]  # the operating system cuts names at a null character
+        missing = not os.path.lexists(path)  # MaterialX reports the file if used
         if path in read or missing or references.library_path(path):
             continue
         read.add(path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Elements of a document: their names in messages, values in Python, and color spaces."""
+"""Elements of a document: names in messages, values in Python, and color spaces."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -16,7 +16,7 @@ def label(document: mx.Document) -> str:
 
 
 def location(element: mx.Element) -> str:
-    """Document, category and name path of an element."""
+    """Text that identifies an element in messages: document, category and name path."""
     return f'{label(element.getDocument())}: {element.getCategory()} "{element.getNamePath()}"'
 
 
@@ -33,10 +33,10 @@ Plain: TypeAlias = "bool | int | float | str | tuple[Plain, ...] | None"
 
 
 def plain(value: object, document: mx.Document) -> Plain:
-    """A value of any MaterialX type, or its data, as a plain Python value.
+    """A MaterialX value of any type, or the data of such a value, as a plain Python value.
 
-    A color, vector or array becomes a tuple of its components; a matrix a tuple of its numbers, row by
-    row, as in documents; a structure a tuple of its members' plain values, in order.
+    A color, vector or array becomes a tuple of components. A matrix becomes a tuple of numbers, row
+    by row, as in documents. A structure becomes a tuple of the members' plain values, in order.
     """
     if isinstance(value, mx.Value):
         if not hasattr(value, "getData"):  # Python only has the text of structures
@@ -60,7 +60,7 @@ def members(kind: str, document: mx.Document) -> tuple[tuple[str, str], ...]:
 def flat(
     name: str, kind: str, value: Plain, document: mx.Document
 ) -> Iterator[tuple[str, str, Plain]]:
-    """Name, type and value of an input, or of each member of a structure; skips text values."""
+    """Name, type and value of an input or of each member of a structure. Skips text values."""
     if parts := members(kind, document):
         values = value if isinstance(value, tuple) else ()
         for (part, inner), member in zip(parts, values, strict=False):
@@ -89,7 +89,9 @@ def _members(text: str, kind: str, document: mx.Document) -> tuple[Plain, ...]:
 
 
 def split(text: str, separator: str) -> list[str]:
-    """Texts between the separators outside brackets, up to the first unmatched closing bracket.
+    """Split a text at the separators that are outside brackets.
+
+    The text ends at the first unmatched closing bracket.
 
     >>> split("a;b;{c;d}} e", ";")
     ['a', 'b', '{c;d}']
@@ -130,7 +132,7 @@ INTEROP = {
 
 
 def color_spaces(element: mx.Element) -> tuple[str, str] | None:
-    """Color space of an element and of its document; None if values need no transform."""
+    """Color spaces of an element and of its document; None if values need no transform."""
     known = LEGACY | (INTEROP if mx.getVersionIntegers() >= INTEROP_VERSION else {})
     space, target = (
         known.get(name, name)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of the document's words that may reach generated source.
+"""Checks the words of a document that generators may copy into shaders.
 
-Generators copy the names, the text values and some attributes of a document into shaders
-unchanged, so anything but a plain word would be code. `tests.fuzz.reach` finds these attributes for
-every target. All other attributes (`doc`, `uiname`, those of applications) may have any text.
+Generators copy the names, the text values and some attributes of a document unchanged, so anything
+but a plain word would be code. `tests.fuzz.reach` finds these attributes for every target. All
+other attributes, such as `doc`, `uiname` and the attributes of applications, may have any text.
 """
 
 import re
@@ -16,14 +16,15 @@ import MaterialX as mx
 from mxeon.shaders.document.graphs import reachable
 from mxeon.shaders.document.values import location
 
-# Attributes that are names or become part of one: identifiers, with `:` between namespaces.
+# Attributes that are names or become part of a name. A name consists of identifiers, with `:`
+# between namespaces.
 NAMES = frozenset(
     """
     defaultgeomprop function geomprop implname impltype index inherit interfacename namespace node
     nodedef nodegraph nodename output semantic space type unit unittype
     """.split()  # noqa: SIM905
 )
-# MaterialX's text attributes, which are quoted if they reach source at all.
+# Text attributes of MaterialX. If a generator copies such an attribute, the copy is quoted.
 TEXTS = frozenset(
     ["colorspace", "context", "file", "fileprefix", "geomprefix", "target", "value", "version"]
 )
@@ -36,7 +37,7 @@ NUMBERS = frozenset(
 
 NAME = re.compile(r"[\w:]*", re.ASCII)
 WORD = re.compile(r"\w*", re.ASCII)
-# Lists of words and paths, and members of a structure.
+# STRING matches lists of words and paths; MEMBERS also matches the members of a structure.
 STRING = re.compile(r"[\w .,:/+<>\[\]-]*", re.ASCII)
 MEMBERS = re.compile(r"[\w .,:/+<>\[\]{};-]*", re.ASCII)
 COMMENT = "//"  # the patterns exclude other comments
@@ -48,7 +49,7 @@ Choices = Callable[[], Collection[str]]
 
 def word_faults(document: mx.Document, elements: Iterable[mx.Element]) -> Iterator[str]:
     """Faults of names and text values of a document's elements that are not plain words."""
-    choices = cache(lambda: _choices(document))  # expensive (whole library), and rarely needed
+    choices = cache(lambda: _choices(document))  # cached, because the whole library is searched
     for element in elements:
         for name in ("name", *element.getAttributeNames()):
             text = element.getName() if name == "name" else element.getAttribute(name)
@@ -57,7 +58,7 @@ def word_faults(document: mx.Document, elements: Iterable[mx.Element]) -> Iterat
 
 
 def _broken(element: mx.Element, name: str, text: str, choices: Choices) -> str:
-    """Rule that an attribute breaks, or "". Numbers and file names are checked elsewhere."""
+    """The rule that an attribute breaks, or "". Numbers and file names are checked elsewhere."""
     if name == "value" and element.hasAttribute("type"):
         kind = element.getAttribute("type")
         if kind in NUMBERS or kind == "filename" or WORD.fullmatch(text):
@@ -74,7 +75,7 @@ def _broken(element: mx.Element, name: str, text: str, choices: Choices) -> str:
 
 
 def _choices(document: mx.Document) -> Collection[str]:
-    """Names of inputs whose text a generator writes unquoted, and of inputs connected to them."""
+    """Names of inputs whose text a generator writes unquoted, and of inputs with such a text."""
     inputs = [
         each
         for tree in (document, document.getDataLibrary())

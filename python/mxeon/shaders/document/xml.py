@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of a document: decoded and converted to strict XML.
+"""Decodes the text of a document, and converts the text to strict XML.
 
-MaterialX accepts more than XML allows: `<` and `&` in attributes, `--` in comments, a declaration
-after blank lines. The text becomes strict XML once, so that MaterialX reads the checked text.
+MaterialX accepts texts that XML forbids: `<` and `&` in attributes, `--` in comments, and a
+declaration after blank lines. Checks and MaterialX both read the converted text, so MaterialX reads
+what was checked.
 """
 
 import re
@@ -24,7 +25,7 @@ AMPERSAND = re.compile(r"&(?!(?:lt|gt|amp|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
 
 
 def decode(data: bytes, location: str) -> str:
-    """Text of a document in UTF-8. An ASCII document may declare any encoding."""
+    """Text of a document, which must be in UTF-8. An ASCII document may declare any encoding."""
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
