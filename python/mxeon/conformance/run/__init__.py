@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A conformance run: tasks are planned, executed in processes, and recorded in a journal."""
+"""A conformance run. Tasks are planned, executed in processes, and recorded in a journal."""
 
 from __future__ import annotations
 
@@ -29,9 +29,8 @@ from mxeon.shaders.methods import UNCHOSEN, Methods
 
 __all__ = ["check", "read_run", "to_run", "work"]
 
-EVALUATING = {
-    row.name for row in HOSTS if row.way == "pairs"
-}  # hosts that stay open for all libraries
+# Hosts that stay open for all libraries.
+EVALUATING = {row.name for row in HOSTS if row.way == "pairs"}
 
 Outcomes = Iterable[tuple[int, Findings]]
 Executor = Callable[[Sequence[Task]], Iterable[tuple[int, pool.Outcome]]]
@@ -58,37 +57,38 @@ def check(
 ) -> Run:
     """Run every check on every host, and compare pictures of documents with the reference.
 
-    Parameters of type `Names` take one name or path, or several.
+    Parameters of type `Names` take one or more names or paths.
 
-    - `files`: MaterialX documents, and folders with documents; None for the library's common
-      nodes and the bundled examples.
+    - `files`: MaterialX documents, and folders with documents. If None, the library's common nodes
+      and the bundled examples are judged.
     - `hosts`: Hosts to judge, or "all"; `mxeon.hosts.host_names` lists them.
     - `libraries`: "eonlib", "stock" for unmodified MaterialX, and folders of MaterialX documents.
-    - `workers`: Number of worker processes, which may crash or hang without ending the run; 0 to
-      work in this process.
-    - `timeout`: Seconds per task in a worker.
-    - `folder`: Folder of the journal, from which an interrupted run can be resumed; None for
-      no journal. The folder must not contain files that the run reads, nor another interrupted
-      run. Results of an earlier run move to the subfolder `previous_run`.
+    - `workers`: Number of worker processes, which may crash or hang without ending the run. If 0,
+      this process does the work.
+    - `timeout`: Maximum seconds per task in a worker.
+    - `folder`: Folder of the journal, from which an interrupted run can be resumed. If None, there
+      is no journal. The folder must contain neither files that the run reads nor another
+      interrupted run. Results of an earlier run are moved to the subfolder `previous_run`.
     - `resume`: Continue the run in `folder`.
-    - `scheduler`, `wait`: Address of a Dask scheduler whose workers do the work, and seconds to
-      wait for a compatible worker.
-    - `policy`: Permissions and limits of documents; None for `Policy()`.
-    - `nodes`: Categories of nodes to judge; "all", or "common" for the nodes of an audit. None for
-      the nodes of `files`, or for the common nodes if there are no files.
-    - `progress`: Called as `progress(tasks, total)`; returns the tasks as an iterator that shows
-      the progress, such as `lambda tasks, total: tqdm(tasks, total=total)`.
-    - `refuse`: Called with each fault of each document that cannot be read, before any other work.
-    - `compared`: Additional libraries for comparison: their failures do not change the
-      verdict. The command uses `compared="stock"` for documents.
-    - `seed`: Seed of the samples, at least 0; verdicts should not depend on it.
-    - `methods`: How generated shaders compute lighting; None for each host's own methods.
+    - `scheduler`, `wait`: Address of a Dask scheduler whose workers execute the tasks, and maximum
+      seconds to wait for a compatible worker.
+    - `policy`: Permissions and limits of documents, by default `Policy()`.
+    - `nodes`: Categories of nodes to judge, or "all", or "common" for the nodes of an audit. If
+      None, the nodes of `files` are judged, or the common nodes if there are no files.
+    - `progress`: Function that is called as `progress(tasks, total)` and returns an iterator over
+      `tasks` that shows the progress, such as `lambda tasks, total: tqdm(tasks, total=total)`.
+    - `refuse`: Function that is called with each fault of each document that cannot be read, before
+      any other work.
+    - `compared`: Additional libraries for comparison, whose failures do not change the verdict. The
+      command uses `compared="stock"` for documents.
+    - `seed`: Seed of the samples, at least 0; verdicts should not depend on the seed.
+    - `methods`: How generated shaders compute lighting, by default with each host's own methods.
 
-    Documents that cannot be judged are refused, and the rest is judged. Such a run has not passed:
-    see `mxeon.Run`.
+    Documents that cannot be judged are refused, and the other documents are judged. A run that
+    refuses a document has not passed; see `mxeon.Run`.
 
-    Raises ValueError if a name or number is wrong, the run to resume differs, or no scheduler
-    answers; NotRun if no process can start, or the cluster has no workers for too long.
+    Raises ValueError if a name or number is wrong, if the run to resume differs, or if no scheduler
+    answers. Raises NotRun if no process can start, or if the cluster has no workers for too long.
     """
     begin = time.monotonic()
     policy = policy or DEFAULT
@@ -112,7 +112,7 @@ def check(
             for target in {host_row(host).target for host in engines} & {*generation.TARGETS}:
                 try:
                     generation.check_generator(library, target)
-                except InterfaceError as reason:  # no task of this library would run
+                except InterfaceError as reason:  # no task of this library could run
                     raise InputError(str(reason)) from None
         if workers < 0:
             raise InputError(f"workers must be at least 0; got {workers}")
@@ -132,7 +132,7 @@ def check(
             done: dict[int, Findings] = journal.findings if journal else {}
             numbers = [n for n in range(len(planned.tasks)) if n not in done]
             tasks = [planned.tasks[number] for number in numbers]
-            # Hosts on a cluster's machines may differ from those of the earlier run.
+            # Hosts on the machines of a cluster may differ from the hosts of the earlier run.
             earlier = {
                 host.name: host
                 for findings in ([] if scheduler else done.values())
@@ -156,13 +156,13 @@ def check(
                     else:
                         done[numbers[position]] = findings
             seconds = round(time.monotonic() - begin, 3)
-            # A report without a journal still has to draw the studio pictures.
+            # If there is no journal, a report has to draw the studio pictures.
             studio = None if journal else policy
             return replace(to_run(planned, done), seconds=seconds, policy=studio)
 
 
 def with_studio(run: Run, policy: Policy) -> Run:
-    """The run with studio pictures of its documents, which `check` draws only for a folder."""
+    """The run with studio pictures of documents, which `check` draws only if it has a folder."""
     libraries = dict.fromkeys(each.library for each in run.results if each.host == "gl")
     subjects = product(libraries, list(run.contents)[: plan.STUDIED])
     tasks = [Task(plan.STUDIO, file, "gl", library) for library, file in subjects]
@@ -182,21 +182,22 @@ def _inputs(files: Sequence[AnyPath], libraries: Iterable[str], policy: Policy) 
 
 
 def read_run(folder: AnyPath) -> Run:
-    """The completed part of a folder's run; ValueError without a journal of this version."""
+    """The completed part of a folder's run. Raise ValueError without a journal of this version."""
     return to_run(*read_journal(folder))
 
 
 def work(policy: Policy, rows: Sequence[Row], task: Task) -> Findings:
-    """Findings of a task in a worker, which first registers the rows of renderers.
+    """The findings of a task in a worker.
 
-    Raise NotRun if the host cannot be opened here.
+    The worker first registers the renderers in `rows`. Raise NotRun if the host cannot be opened
+    here.
     """
     register(*rows)
     return _judge(policy).work(task)
 
 
 def work_or_not_run(work: Callable[[Task], Findings], task: Task) -> Findings:
-    """Findings of a task, or a result "not run" if the host cannot be opened here."""
+    """The findings of a task, or a result "not run" if the host cannot be opened here."""
     try:
         return work(task)
     except NotRun as reason:
@@ -209,7 +210,7 @@ def _judge(policy: Policy) -> Judge:
 
 
 def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
-    """A run from its plan and the findings of the completed tasks, by the number of the task."""
+    """The run with a plan, and with the findings of completed tasks by task number."""
     done = [findings[number] for number in sorted(findings)]
     notes = [note for each in done for note in each.notes]
     refused = dict(planned.refused)
@@ -217,14 +218,14 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         if lines := findings[number].errors:
             file = planned.tasks[number].subject
             refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
-    # Faults of documents that only a compared library cannot read become notes.
+    # If only a library for comparison cannot read a document, the document's faults become notes.
     for document, library in product(planned.contents, planned.compared):
         lines = refused.pop(f"{document} with {library}", ())
         notes += [(line, document) for line in lines]
     version = planned.software.get("MaterialX")
     if version and (warning := untested(version)):
         notes.append((warning, "every result"))
-    places: dict[str, list[str]] = {}  # note -> places that the note does not name
+    places: dict[str, list[str]] = {}  # places that are not in the text of a note, by note
     for text, place in dict.fromkeys(notes):
         places.setdefault(text, []).extend([] if place in text else [place])
     hosts = tuple(dict.fromkeys(host for each in done for host in each.hosts))
@@ -248,7 +249,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
 
 
 def texts_not_run(hosts: Container[str]) -> Iterator[tuple[str, str]]:
-    """The targets of a library's texts that none of these hosts compiles, with the reasons."""
+    """Targets of a library's texts that none of these hosts compiles, and the reasons."""
     targets = {row.target for row in HOSTS if row.name in hosts}
     for row in HOSTS:
         if row.target and row.target not in targets:
@@ -272,9 +273,10 @@ def _executor(
 
 
 def _subject(task: Task) -> tuple[str, str, str]:
-    """A key of tasks that run in one worker because they share shaders, samples and diagnoses.
+    """A key that is equal for tasks that should run in one worker.
 
-    Libraries share the expected values, but some hosts must be opened anew for each library.
+    These tasks share shaders, samples and diagnoses. Libraries share the expected values, but some
+    hosts must be opened again for each library.
     """
     return task.host, "" if task.host in EVALUATING else task.library, task.subject
 

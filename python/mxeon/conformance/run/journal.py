@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The journal of a run: the findings of each task, written to disk as soon as the task ends.
+"""The journal of a run. The findings of a task are written to disk as soon as the task ends.
 
-`journal/items.jsonl` in a run's folder is JSON Lines. The first line is the plan of the run, with
-mxeon's version, the options and the hashes of files; --resume requires an equal plan. Each of the
-other lines holds the findings of a task; an incomplete last line is dropped. Pictures are NumPy
-files named by SHA-256.
+The file `journal/items.jsonl` in a run's folder has JSON Lines. The first line contains the plan of
+the run, with mxeon's version, the options and the hashes of files. A run can only be resumed with
+an equal plan. Every other line contains the findings of a task. An incomplete last line is dropped.
+Pictures are NumPy files named by SHA-256.
 """
 
 import hashlib
@@ -38,11 +38,12 @@ TASK = re.compile(rb'\{"task": (\d+),.*\n')
 
 
 class Journal:
-    """The folder of a run as a context manager, which locks it and clears earlier results.
+    """A context manager that locks the folder of a run and clears earlier results.
 
-    Entering moves an earlier run's journal, results and page to the folder PREVIOUS; with `resume`,
-    the journal stays. Entering raises InputError if another process writes here, or if the earlier
-    run was interrupted and `resume` is not set. `begin` creates a missing folder.
+    Entering the context moves the journal, results and page of an earlier run to the folder
+    PREVIOUS. If `resume` is set, the journal stays. Entering raises InputError if another process
+    writes to the folder, or if an earlier run was interrupted and `resume` is not set. `begin`
+    creates the folder if the folder is missing.
     """
 
     def __init__(self, folder: str | os.PathLike[str], resume: bool = False) -> None:
@@ -51,7 +52,7 @@ class Journal:
         self._lock = FileLock(self._folder / LOCK, timeout=0)
         self._file: int | None = None
         self._converter = make_converter(self._path.parent)
-        self.findings: dict[int, Findings] = {}  # keys are task numbers in the plan
+        self.findings: dict[int, Findings] = {}  # findings by the number of the task in the plan
 
     def __enter__(self) -> Self:
         if os.path.lexists(self._folder):
@@ -64,7 +65,7 @@ class Journal:
         self._lock.release()
 
     def _claim(self) -> None:
-        """Lock the folder and clear earlier results."""
+        """Lock the folder and clear the results of earlier runs."""
         for name in (JOURNAL, LOCK, *REPORTS, PREVIOUS, f"{PREVIOUS}/{JOURNAL}"):
             below(self._folder, name)
         self._folder.mkdir(parents=True, exist_ok=True)
@@ -86,7 +87,10 @@ class Journal:
             raise
 
     def _clear(self) -> None:
-        """Move earlier results away; when resuming, delete those that `report make` recreates."""
+        """Move the results of an earlier run to PREVIOUS.
+
+        If the run is resumed, delete the files that `report make` creates again.
+        """
         names = [name for name in REPORTS if (self._folder / name).is_file()]
         if self._path.exists() and self._resume:
             for name in names:
@@ -105,9 +109,10 @@ class Journal:
                 os.replace(self._folder / name, previous / name)
 
     def begin(self, plan: Plan) -> None:
-        """Write the plan of the run, or read the completed part of the run to resume.
+        """Write the plan of the run, or read the completed part of the run that is resumed.
 
-        Raises InputError if the run to resume differs; OSError if nothing can be written.
+        Raises InputError if the resumed run has another plan, and OSError if nothing can be
+        written.
         """
         if not self._lock.is_locked:
             self._claim()
@@ -125,9 +130,9 @@ class Journal:
         self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND | BINARY)
 
     def add(self, number: int, findings: Findings) -> None:
-        """Record the findings of a task, after the pictures; everything is then on disk.
+        """Record the findings of a task after writing the pictures. All data are then on disk.
 
-        Raises OSError if the disk is full; the journal is then unchanged.
+        Raises OSError if the disk is full. In this case, the journal is unchanged.
         """
 
         def stored(picture: Picture) -> Picture:
@@ -161,22 +166,22 @@ class Journal:
 def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findings]]:
     """The plan of the run in a folder, and the findings of the completed tasks.
 
-    A task with modified or missing pictures is not complete. Raises InputError if there is no
-    journal, or a journal of another version of mxeon.
+    A task with modified or missing pictures is not complete. Raises InputError if the folder has no
+    journal, or if another version of mxeon wrote the journal.
     """
     return _read(Path(folder))[:2]
 
 
 def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -> str:
-    """The message that the run in a folder is not resumed because of these differences."""
+    """A message that the run in a folder cannot be resumed, because of the given differences."""
     remedy = "use a new folder, or omit --resume"
     return f"{folder}: holds another run ({listed(differences)}); {remedy}"
 
 
 def _remaining(path: Path) -> str:
-    """The number of remaining tasks of an interrupted run, in words; "" without such a run.
+    """The number of remaining tasks of an interrupted run in words, or "" without such a run.
 
-    Journals of other versions count, too, so that only the numbers of tasks are read.
+    Only the numbers of tasks are read, because the journal may have the format of another version.
     """
     try:
         with open(path, "rb", opener=regular) as file:
@@ -188,13 +193,12 @@ def _remaining(path: Path) -> str:
 
 
 def _read(folder: Path) -> tuple[Plan, dict[int, Findings], int]:
-    """Plan and findings of a journal, and the size of the complete lines in bytes."""
+    """The plan and findings of a journal, and the size of all complete lines in bytes."""
     path, converter = folder / JOURNAL, make_converter((folder / JOURNAL).parent)
     try:
         with open(path, "rb", opener=regular) as file:
-            lines = [
-                line for line in file if line.endswith(b"\n")
-            ]  # the last line may be incomplete
+            # The last line may be incomplete.
+            lines = [line for line in file if line.endswith(b"\n")]
     except FileNotFoundError:
         raise InputError(f"{folder}: must hold the {JOURNAL} of a run; there is none") from None
     completed: dict[int, Findings] = {}
@@ -227,7 +231,7 @@ def _line(record: dict[str, object]) -> bytes:
 
 
 def _differences(before: Plan, after: Plan) -> tuple[str, ...]:
-    """The differences between two plans: old and new values, and names of files."""
+    """The differences between two plans, as old and new values and as names of files."""
     old, new = (
         {
             **{"mxeon": plan.version, **plan.software, **plan.options},

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The judge, which executes the tasks of a run in sequence."""
+"""A class that executes the tasks of a run in sequence."""
 
 import os
 import time
@@ -40,11 +40,11 @@ def one_result(
     reason: str = "",
     diagnosis: results.Diagnosis = results.NO_DIAGNOSIS,
 ) -> Findings:
-    """Findings without a measurement: a single result with a reason or a diagnosis."""
+    """Findings without a measurement, with a single result that has a reason or a diagnosis."""
     if task.check == plan.STUDIO:  # a STUDIO task has no results
         return Findings(notes=((f"not drawn in the studio: {reason}", Path(task.subject).name),))
     if not (claim := CLAIMS.get(task.check)):
-        own_nodes(task.host)  # imports the checks of a renderer
+        own_nodes(task.host)  # imports a renderer's checks
         claim = next(each.claim for each in checks.CHECKS if each.key == task.check)
     place = (task.check, claim, task.subject, task.host, task.library)
     return Findings((results.Result(*place, verdict, reason=reason, diagnosis=diagnosis),))
@@ -55,12 +55,12 @@ class Judge:
 
     def __init__(self, policy: Policy, opened: Callable[[str], base.Engine] = open_engine) -> None:
         self._policy, self._open = policy, opened
-        self._hosts: dict[str, base.Engine | NotRun] = {}  # open hosts, or why they cannot run
+        self._hosts: dict[str, base.Engine | NotRun] = {}  # open hosts, or errors
         self._reference = reference.Reference()
-        self._case = lru_cache(maxsize=1)(_case)  # a single case, because pairs take much memory
+        self._case = lru_cache(maxsize=1)(_case)  # caches one case, because pairs take much memory
 
     def work(self, task: Task) -> Findings:
-        """Findings of a task, including faults of a document that cannot be read.
+        """The findings of a task, including the faults of a document that cannot be read.
 
         Raise NotRun if the host cannot be opened here.
         """
@@ -68,7 +68,7 @@ class Judge:
         begin = time.monotonic()
         try:
             findings = self._findings(task)
-            # The folder whose `libraries` replace MaterialX's, or "".
+            # The folder whose `libraries` replace MaterialX's libraries, or "".
             materialx = root(task.library) if os.path.isabs(task.library) else ""
             share = round((time.monotonic() - begin) / max(1, len(findings.results)), 3)
             completed = (
@@ -77,7 +77,7 @@ class Judge:
             return replace(findings, results=tuple(completed))
         except InterfaceError as reason:
             return one_result(task, results.NOT_RUN, reason=str(reason))
-        except DocumentError as reason:  # the refused document is mxeon's own
+        except DocumentError as reason:  # a document of mxeon itself is refused
             refused = results.Cause(results.Kind.DEFECT, "own_document_refused", text=str(reason))
             return one_result(task, results.FAILED, diagnosis=results.Diagnosis((refused,)))
 
@@ -87,7 +87,7 @@ class Judge:
                 host.close()
 
     def _host(self, name: str) -> base.Engine:
-        """The host with this name, opened at the first call."""
+        """The host with this name, which is opened at the first call."""
         if name not in self._hosts:
             try:
                 self._hosts[name] = self._open(name)
@@ -135,7 +135,7 @@ class Judge:
         return Findings((result,), images)
 
     def _document(self, task: Task, host: base.Host | None = None) -> Findings:
-        """Findings of a document: its pictures on a host, or the generation of its shaders."""
+        """Findings of a document, from pictures on a host or from generated shaders."""
         path = Path(task.subject)
         images: tuple[results.Picture, ...] = ()
         try:
@@ -157,5 +157,5 @@ class Judge:
 def _case(host: base.Engine, title: str, library: str, seed: int, methods: Methods) -> Case:
     spec = next(each for each in own_nodes(host.name) or ALL if each.title == title)
     backend = backend_of(host.name, spec)
-    assert backend is not None  # tasks exist only for specs with a backend
+    assert backend is not None  # all tasks have specs with a backend
     return make_case(backend, host, spec, library)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plan of a run: tasks, and the findings of tasks, as plain data that processes exchange.
+"""The plan of a run, which consists of tasks, and the findings of tasks.
 
-A task checks one subject on one host with one library.
+A task checks one subject on one host with one library. Plans and findings are plain data, so that
+processes can exchange them.
 """
 
 from __future__ import annotations
@@ -53,11 +54,11 @@ from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
 from mxeon.shaders.methods import GENERATED, UNCHOSEN, UNTABLED, Methods
 from mxeon.shaders.released_graphs import hidden
 
-Source = tuple[str, str]  # a document, and the library with which it is read
+Source = tuple[str, str]  # a document, and the library that reads the document
 
 
 class Reading(NamedTuple):
-    """What was read from documents; the fields are those of `mxeon.conformance.results.Scope`."""
+    """Contents of documents, with the same fields as `mxeon.conformance.results.Scope`."""
 
     contents: dict[str, tuple[str, ...]]
     unreached: dict[str, dict[str, tuple[Region, ...]]]
@@ -69,8 +70,8 @@ def read_documents(
 ) -> Reading:
     """Read documents with each library, in worker processes unless `workers` is 0.
 
-    A document that crashes a worker counts as empty; the task that draws the document reports the
-    crash. Raise MxeonError if a library cannot be used.
+    A document that crashes a worker counts as empty, because the task that draws the document
+    reports the crash. Raise MxeonError if a library cannot be used.
     """
     sources = [(file, library) for file in dict.fromkeys(files) for library in libraries]
     titles: dict[str, dict[str, set[Region]]] = {file: {} for file in files}
@@ -78,7 +79,7 @@ def read_documents(
     with closing(_nodes(sources, policy, workers, timeout)) as answers:
         for (file, library), nodes in zip(sources, answers, strict=True):
             if isinstance(nodes, DocumentError):
-                # If a bundled example cannot be read, the library is at fault, not the example.
+                # If a bundled example cannot be read, the library is at fault and not the example.
                 if not Path(file).resolve().is_relative_to(examples_folder()):
                     faults[file, library] = nodes.args
             elif isinstance(nodes, MxeonError):
@@ -108,9 +109,9 @@ def read_documents(
 def _nodes(
     sources: Sequence[Source], policy: Policy, workers: int, timeout: float
 ) -> Generator[tuple[ShownNode, ...] | MxeonError | None, None, None]:
-    """The nodes of each document, or the error; None if the document crashed the process.
+    """The nodes of each document, or an error, or None if the document crashed the process.
 
-    The processes continue reading until the generator is closed.
+    The processes continue to read until the generator is closed.
     """
     work = partial(document_nodes, policy)
     if not workers:
@@ -122,7 +123,7 @@ def _nodes(
 
 @cache
 def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
-    """Each spec with its node in the judged mode, except specs that users must name."""
+    """Each spec with its node in the judged mode, except specs that only users can request."""
     specs = (spec for spec in ALL_SPECS if spec not in surface_texts.SENTENCES)
     return tuple((spec, node_of(spec.document(), spec.node)) for spec in specs)
 
@@ -131,14 +132,14 @@ def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
 
 HOST = "host"
 PICTURE, STUDIO = "picture", "studio"
-STUDIED = 4  # maximum documents whose materials a report shows in the studio
+STUDIED = 4  # maximum number of documents with studio pictures in a report
 FUNCTIONS, DOCUMENT = "twins", "document"
 EVERY_NODE = "every node"
 
 
 @dataclass(frozen=True)
 class Task:
-    """An independent part of a run: a check of one subject on one host with one library."""
+    """An independent part of a run: one check of one subject on one host with one library."""
 
     # Key of a row of `mxeon.conformance.checks`, or HOST, SOURCE, PICTURE, STUDIO, FUNCTIONS,
     # RELEASE or DOCUMENT.
@@ -155,19 +156,22 @@ class Task:
 
 @dataclass(frozen=True)
 class Plan(Scope):
-    """Tasks and everything that the findings depend on: equal plans mean equal runs."""
+    """The tasks of a run, and all data that the findings depend on.
+
+    Runs with equal plans have equal findings.
+    """
 
     tasks: tuple[Task, ...]
     # Values of the command's options for policy, seed and methods, by option.
     options: dict[str, str] = field(default_factory=dict)
-    # SHA-256 of each file that the findings depend on, by path; "" for unreadable files. A run
-    # without a journal lists no files.
+    # SHA-256 of each file that the findings depend on, by path; "" for a file that cannot be read.
+    # Plans of runs without a journal contain no files.
     files: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Findings:
-    """The outcome of a task; see Run for the fields."""
+    """The outcome of a task; see Run for the meaning of the fields."""
 
     results: tuple[Result, ...] = ()
     pictures: tuple[Picture, ...] = ()
@@ -177,7 +181,7 @@ class Findings:
     unjudged: tuple[tuple[str, str], ...] = ()
 
     def belong_to(self, task: Task) -> bool:
-        """Whether the findings are not empty, and have the host and the library of a task."""
+        """Whether the findings are not empty and have the same host and library as a task."""
         records: list[Result | Picture] = [*self.results, *self.pictures]
         location = (task.host, task.library)
         return bool(records or self.errors or self.unjudged or task.check == STUDIO) and all(
@@ -208,7 +212,7 @@ def _titles(nodes: Container[str]) -> set[str]:
 def _selected(
     tasks: Sequence[Task], files: Sequence[str], nodes: Sequence[str], reading: Reading
 ) -> list[Task]:
-    """The requested tasks, starting with tasks for the user's documents.
+    """The requested tasks, beginning with the tasks for the user's documents.
 
     Raise InputError if no task judges any of the nodes.
     """
@@ -227,8 +231,8 @@ def _selected(
         or task.subject in files
         or (task.subject in titles and (nodes or task.check not in by_name))
         or (audit and task.subject not in uncommon and task.check not in by_name)
-        # A folder's graphs may differ from the release without any effect in pictures, because the
-        # reference reads the same graphs.
+        # The graphs of a folder may differ from the release without an effect in pictures, because
+        # the reference pictures are computed with the same graphs.
         or (task.check == RELEASE and files and not nodes and os.path.isabs(task.library))
     ]
     if selected or not nodes:
@@ -260,10 +264,12 @@ def make_plan(
 ) -> Plan:
     """The tasks of a run, grouped by host and library.
 
-    If `resumable`, the plan lists the files that the run depends on. `nodes` are categories, ALL or
-    COMMON; by default, the nodes of `files` are judged, or the common nodes if there are no files.
-    Failures of libraries in `compared` do not change the verdict. Raises InputError for an unknown
-    name, or if no host judges the nodes; ImportError if this MaterialX is too old.
+    If `resumable`, the plan lists the files that the run depends on. `nodes` has categories, ALL or
+    COMMON. If `nodes` is empty, the nodes of `files` are judged, or the common nodes if there are
+    no files. Failures of libraries in `compared` do not change the verdict.
+
+    Raises InputError if a name is unknown or if no host judges the nodes, and ImportError if this
+    MaterialX is too old.
     """
     assert_known_names(hosts, nodes)
     reading = reading or Reading({}, {}, {})
@@ -271,10 +277,10 @@ def make_plan(
     hosts = tuple(dict.fromkeys(hosts))
     tasks: list[Task] = []
     documents: list[str] = []
-    # With documents or with several libraries, every library is judged on all nodes.
+    # If there are documents or several libraries, every library is judged on all nodes.
     everywhere = bool(files and not nodes) or len(libraries) > 1
     for library in libraries:
-        # Files that no library can read, or that this library cannot read, are refused.
+        # A file is refused if this library cannot read the file.
         names = ((str(file), f"{file} with {library}") for file in files)
         readable = [each[0] for each in names if reading.refused.keys().isdisjoint(each)]
         paths = list(map(Path, readable)) if files else _examples(library)
@@ -286,20 +292,20 @@ def make_plan(
             tasks += _on_host(host, library, paths, everywhere, methods.over(GENERATED))
             if resumable and host == "gl":  # a report shows these pictures
                 tasks += [Task(STUDIO, file, host, library) for file in readable[:STUDIED]]
-    for host in hosts:  # a renderer's own nodes and materials need no library
+    for host in hosts:  # renderers' own nodes and materials need no library
         for spec in backends.own_nodes(host):
             tasks += _checks_of(spec, host, RENDERER_NODES)
         if files and host_row(host).scenes and not host_row(host).target:
             tasks += [Task(PICTURE, file, host, RENDERER_NODES) for file in readable]
     tasks = _selected(tasks, list(map(str, files)), nodes, reading)
-    # Report hosts that measure nothing. DOCUMENT tasks already report renderers, which read no
-    # documents.
+    # Report hosts that measure nothing, except renderers that read no documents, because DOCUMENT
+    # tasks report these renderers.
     measuring = {
         task.host for task in tasks if task.check != DOCUMENT or not host_row(task.host).target
     }
     idle = [host for host in hosts if tasks and host not in measuring]
     tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in idle]
-    # If some hosts measure something, also report nodes that no host judges.
+    # If some hosts measure anything, also report requested nodes that no host judges.
     if len(idle) < len(hosts):
         subjects = {task.subject for task in tasks}
         named = (each for each in nodes if each not in (ALL, COMMON))
@@ -328,7 +334,7 @@ def make_plan(
     )
 
 
-# Subjects that no check judges in any library, and the reasons.
+# Subjects that no check judges with any library, and the reasons.
 UNJUDGED = (
     ("displacement, volume shaders and backsurfaceshader", "no host draws them"),
     ("u_envRadianceMips above 1, shadow maps of varying depth", "no host has them"),
@@ -345,7 +351,7 @@ def _untabled(hosts: Iterable[str]) -> Iterator[tuple[str, str]]:
 
 
 def unjudged(library: str) -> tuple[tuple[str, str], ...]:
-    """Nodes without a model that a library adds and that scatter or emit light."""
+    """Nodes that scatter or emit light, that a library adds, and that have no model."""
     own, stock = (load_library(each).getNodeDefs() for each in (library, "stock"))
     names = {each.getNodeString() for each in own if each.getType() in LIT}
     names -= {*node_names(), *(each.getNodeString() for each in stock)}
@@ -364,7 +370,7 @@ def _on_host(
     everywhere: bool = False,
     methods: Methods = GENERATED,
 ) -> Iterator[Task]:
-    """Tasks of a host with a library: checks of nodes and of functions, and pictures of files."""
+    """Tasks of a host with a library: checks of nodes, checks of functions, pictures of files."""
     ways, row = backends.ways_of(host), host_row(host)
     if not ways:
         yield Task(HOST, EVERY_NODE, host, library)
@@ -378,12 +384,12 @@ def _on_host(
         yield Task(FUNCTIONS, SHADER_FUNCTIONS, host, library)
     for spec in diffuse_specs(library):
         yield from _checks_of(spec, host, library, methods)
-    # Pictures of a renderer's own closures are only judged with the stock library.
+    # Pictures of a renderer's own closures are judged only with the library "stock".
     no_closures = row.way == "pictures" and row.target == "osl" and kind in ("eonlib", "diffuse")
     defines = load_library(library).getMatchingNodeDefs
     for each in (*PBRLIB, *surface_texts.SENTENCES):
         missing = each.libraries and not defines(each.node)  # MaterialX lacks eonlib's nodes
-        # Without documents, a bundled library is judged only on the nodes that it repairs.
+        # If there are no documents, a bundled library is judged only on the nodes that it repairs.
         judged = everywhere or kind in (OVERLAY, *(each.libraries or LIBRARIES))
         if judged and not missing and not (each.closure and no_closures):
             yield from _checks_of(each, host, library, methods)
@@ -405,7 +411,7 @@ def _checks_of(spec: Spec, host: str, library: str, methods: Methods = GENERATED
 
 
 def _software() -> dict[str, str]:
-    """Versions of packages from their modules, because a build from source has no metadata."""
+    """Versions of packages, read from modules because a build from source has no metadata."""
     folder = str(Path(mx.__file__).parents[1])
     installed = folder in sysconfig.get_paths().values()
     return {
@@ -419,7 +425,7 @@ def _software() -> dict[str, str]:
 
 
 def _examples(library: str) -> list[Path]:
-    """The bundled documents, except those with a node that the library lacks."""
+    """The bundled documents, except documents with a node that the library lacks."""
     files = sorted(examples_folder().glob("*.mtlx"))
     missing = [spec.node for spec in diffuse.DIFFUSE if spec not in diffuse_specs(library)]
     return [file for file in files if not any(node in file.read_text("utf-8") for node in missing)]
