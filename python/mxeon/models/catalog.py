@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All models by name, each as one `ShadingModel`.
+"""All models, each as a `ShadingModel` with a name.
 
-Inputs have MaterialX's names, order, units and defaults; those of `mxeon.models` may differ.
+The inputs of a `ShadingModel` have MaterialX's names, order, units and defaults. The arguments of
+the functions in `mxeon.models` may differ from MaterialX's inputs.
 """
 
 from __future__ import annotations
@@ -70,7 +71,7 @@ GGX = ModelSampler(
 )
 SPHERE = ModelSampler(_sphere_sample, _sphere_pdf, side=None)
 FACETS = ("dielectric", "conductor", "schlick")
-# Samplers by the name of the model; COSINE for all other models.
+# Sampler of each model that this dictionary names; every other model is sampled by COSINE.
 SAMPLERS = {
     "translucent": BACK,
     "hair": SPHERE,
@@ -79,7 +80,7 @@ SAMPLERS = {
     **dict.fromkeys((*FACETS, *(f"{name}_film" for name in FACETS)), GGX),
 }
 
-# Node category to the name of the model for its default mode.
+# For each node category, the name of the model that implements the node's default mode.
 NODES_BY_CATEGORY = {
     "oren_nayar_diffuse_bsdf": "qon",
     "eon_diffuse_bsdf": "eon",
@@ -88,7 +89,7 @@ NODES_BY_CATEGORY = {
     **{row.category: row.name for row in reversed((*PBR_NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }
 
-# Other names of models, from which messages about an unknown name suggest a model.
+# Other names of models. A message about an unknown name uses them to suggest a model.
 ALSO = {
     **dict.fromkeys(("dielectric", "conductor", "schlick"), "ggx"),
     "burley": "disney",
@@ -97,7 +98,7 @@ ALSO = {
 
 
 def model(name: str) -> ShadingModel:
-    """The model with this name: a rough diffuse model, a known variant of one, or a node of pbrlib.
+    """The model with this name, such as a rough diffuse model or a node of pbrlib.
 
     - `name`: One of `model_names()`, such as "eon", "dielectric" or "zeltner". The category of a
       node, such as "conductor_bsdf", selects the node's default mode.
@@ -138,7 +139,7 @@ def _scattering_model(row: PbrNode) -> ShadingModel:
 
 
 def _transmission_model(row: PbrNode) -> ShadingModel:
-    """The model of a node in scatter mode T or RT, with values for radiance."""
+    """The model of a node in scatter mode T or RT; its values scatter radiance, not importance."""
     passing, mode = TRANSMISSIONS[row.category], row.fixed["scatter_mode"]
     reflected = row.integral or row.albedo
 
@@ -151,7 +152,8 @@ def _transmission_model(row: PbrNode) -> ShadingModel:
         return xp.where(z[:, np.newaxis] < 0.0, back, front)
 
     def albedo(wo: Array, inputs: Inputs) -> Array:
-        # The integral of a BTDF for radiance is the transmitted share divided by the squared index.
+        # Radiance changes by the squared index of refraction when it crosses the interface, so the
+        # integral of the BTDF is the transmitted fraction of the energy divided by ior^2.
         ior = passing.ior(inputs)[:, np.newaxis]
         ior = array_namespace(ior).maximum(ior, LEAST_IOR)
         passed: Array = passing.passed(wo, inputs, True) / ior**2
@@ -166,7 +168,7 @@ def _transmission_model(row: PbrNode) -> ShadingModel:
 
 
 def _coated_model(name: str, title: str) -> ShadingModel:
-    """The model of an interface over EON; `alpha` is the interface's roughness."""
+    """The model of an interface over EON, where `alpha` is the roughness of the interface."""
     inputs = (
         parameter("oren_nayar_diffuse_bsdf", "color", "rho"),
         parameter("oren_nayar_diffuse_bsdf", "roughness"),
@@ -193,8 +195,8 @@ def _coated_model(name: str, title: str) -> ShadingModel:
 
 
 def _per_coat(function: Callable[..., Any], inputs: Inputs, *vectors: Array) -> Any:
-    """A function of `mxeon.models.coat`, which accepts one coat, for rows with several coats."""
-    # Arrays of other libraries are passed on: the function rejects several coats.
+    """Result of a function of `mxeon.models.coat`, called once for each different coat."""
+    # For arrays other than NumPy's, the function is called once and rejects more than one coat.
     *others, alpha, ior = (*vectors, *inputs.values())
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
         return function(*others, *(each[0] if len(each) == 1 else each for each in (alpha, ior)))

@@ -1,63 +1,70 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Coats over EON: a dielectric and a varnish.
+"""Two coats over EON, a dielectric layer and a varnish.
 
-**A dielectric** reflects a share E_r of the light, and EON receives the rest. The specification
-defines this as `layer`:
+**The dielectric layer** reflects a fraction E_r of the light, and EON receives the remaining light.
+This is the `layer` node of the specification:
 
     f = f_r + (1 - E_r(mu_o)) f_EON,  E = E_r + (1 - E_r) E_EON
 
-E_r includes the energy compensation. It is at most the albedo of perfectly reflecting facets, hence
-at most 1. This is not a varnish: light that EON returns leaves without loss, while a real interface
-reflects and refracts it on its way out. Compared with random walks below the same interface
-(tools/fits/varnish_walk.py), the albedo is up to 2.2 times too high, and 1.04 to 1.84 times at
-index 1.5 and rho 0.2. `varnished_brdf` models both effects in closed form.
+E_r includes the energy compensation. E_r is at most the albedo of perfectly reflecting facets, so
+E_r is at most 1. A dielectric layer is not a varnish, because light reflected by EON leaves without
+loss. A real interface reflects and refracts this light on its way out. Random walks below the same
+interface (tools/fits/varnish_walk.py) show that the albedo of the layer is up to 2.2 times too
+high; for an index of refraction of 1.5 and rho 0.2, it is 1.04 to 1.84 times too high.
+`varnished_brdf` models reflection and refraction on the way out in closed form.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-- `u` (..., 2): Independent uniform random numbers, in [0, 1). The first one also chooses the lobe.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1). The first number also chooses the
+  lobe.
 - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
 - `rho` (..., C): Reflectance of EON per channel, in [0, 1]; a number is one channel.
 - `roughness` (...): Roughness of EON, in [0, 1].
-- `alpha`: GGX roughness of the interface, in [0.01, 1]; one number for all pairs.
-- `ior`: Index of refraction of the interface, in [1, 4]; one number for all pairs.
+- `alpha`: GGX roughness of the interface, in [0.01, 1]; one number for all directions.
+- `ior`: Index of refraction of the interface, in [1, 4]; one number for all directions.
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
-With constant alpha and ior, albedo and energy compensation depend only on the viewer's cosine. They
-are integrated at Chebyshev nodes and interpolated.
+For constant `alpha` and `ior`, the albedo and the energy compensation depend only on the viewer's
+cosine. Both are integrated at Chebyshev nodes and interpolated.
 
-**A varnish** is EON below a rough dielectric interface that also acts on light on its way out. The
-interface reflects f_r and transmits T = 1 - E_r, which reaches EON along refracted directions w'. It
-reflects a share R of the light from EON back down, again and again. EON's first reflection uses its
-value f_b, later ones use its mean. This is the sum of [Saunderson1942] for a base whose albedo
-depends on direction:
+**The varnish** is EON below a rough dielectric interface that also acts on light on its way out.
+The interface reflects f_r. It transmits the fraction T = 1 - E_r of the light, which arrives at EON
+along refracted directions w'. Each time light returns from EON, the interface reflects a fraction R
+of it back to EON. EON's first reflection uses the BRDF f_b, every later reflection a mean of f_b.
+The sum of all reflections is that of [Saunderson1942], for a base whose albedo varies with angle:
 
     f = f_r + T(mu_o) T(mu_i) / n^2 [f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))]       (1)
     w' = (x / n, y / n, mu'),  mu'^2 = mu^2 + (1 - mu^2) (1 - 1 / n^2)
     R = 1 - (1 - <E_r>) / n^2
     E = E_r + T [E_b(mu') - R k (1 - <E_b>_R) / (1 - R <k>)]                                     (2)
 
-n is the index and E_b the albedo of EON. `<>_R` is a mean over the light that the interface reflects back: all of
-the light beyond the critical angle, and a share E_r within it. k is pi times the mean of f_b over that light. R
-needs no albedo from inside, because a lossless interface is reciprocal: n^2 (1 - R) = 1 - `<E_r>`. (2) is the
-integral of (1), since T mu dw = n^2 T mu' dw'. At rho = 1, (2) is 1; at index 1, (1) is EON to the last bit. A, c1
-and c2 are defined in [Portsmouth2025]; r is EON's roughness, H is `fon_loss`, W is the weight of H H in EON:
+n is the index of refraction, and E_b is the albedo of EON. `<>_R` is a mean over the light that the
+interface reflects back to EON: all of the light beyond the critical angle, and the fraction E_r of
+the light within the critical angle. k is pi times the mean of f_b over that light. R is computed
+from `<E_r>` of light from outside, because n^2 (1 - R) = 1 - `<E_r>` for a lossless, reciprocal
+interface. Equation (2) is the integral of (1), since T mu dw = n^2 T mu' dw'. At rho = 1, (2) is 1.
+At n = 1, (1) is EON to the last bit. A, c1 and c2 are defined in [Portsmouth2025]; r is EON's
+roughness, H is `fon_loss`, and W is the weight of H(mu_o) H(mu_i) in EON:
 
     k = rho A (1 + r b + W H(mu') <H>_R),  b(mu) = <s / t>_R,  <k> = rho A (1 + r <b>_R + W <H>_R^2)
 
-Light reflected between facets is scaled by their mean reflectance F = E_single / E_ss, so f is reciprocal:
+Light that is reflected between facets is scaled by the mean reflectance of the facets,
+F = E_single / E_ss, in a form that makes f reciprocal:
 
     E_r = E_single + D,  D = F^2 (1 - E_ss),  f_r = f_single + D(mu_o) D(mu_i) / (pi <D>)
 
-Three parts are approximate: the mean used after EON's first reflection, D, and directions, which
-refract as at a smooth surface. Compared with random walks (tools/fits/varnish_walk.py: index 1.1 to
-2, alpha 0.05 to 0.7, rho 0 to 1, r 0 and 1, cosines 0.05 to 1), the albedo is off by at most 0.012,
-and exact at rho 1. The light that EON returns into a twelfth of the hemisphere is 0.95 to 1.05
-times the walk's at r 0, and 0.79 to 1.15 times at r 1. (2) is the integral of (1) to 1e-6, and to
-1e-4 at alpha 0.01 and index near 1.
+There are three approximations: the mean of f_b after EON's first reflection; D; and directions that
+refract as at a smooth surface. They were compared with random walks (tools/fits/varnish_walk.py)
+for n from 1.1 to 2, alpha from 0.05 to 0.7, rho from 0 to 1, r 0 and 1, and cosines from 0.05 to 1.
+The error of the albedo is at most 0.012, and 0 at rho 1. The light that leaves EON through a
+twelfth of the hemisphere is 0.95 to 1.05 times that of the walks at r 0, and 0.79 to 1.15 times at
+r 1. The difference between (2) and the integral of (1) is below 1e-6, but up to 1e-4 at alpha 0.01
+and n near 1.
 
-k and `<k>` have closed forms for EON, and so for Lambert, which is r = 0. Using the base's albedo as
-k and its mean albedo as `<k>` would change EON's albedo by up to 0.004 at r 1/2 and 0.0075 at r 1.
+k and `<k>` have closed forms for EON, and so for Lambert's BRDF, which is EON at r = 0. If k were
+the base's albedo and `<k>` the base's mean albedo, the albedo of varnished EON would change by up
+to 0.004 at r 1/2, and by up to 0.0075 at r 1.
 """
 
 from __future__ import annotations
@@ -90,9 +97,9 @@ CACHED = 64  # maximum number of interfaces in a cache
 
 @dataclass(frozen=True)
 class Coat:
-    """A dielectric's curves over the viewer's cosine.
+    """Two functions of the viewer's cosine for a dielectric layer, as Chebyshev coefficients.
 
-    - `alpha`, `average`: GGX roughness, which scales the cosine, and average reflectance F_ss.
+    - `alpha`, `average`: GGX roughness and average reflectance F_ss.
     - `missing`, `reflected`: Chebyshev coefficients of (1 - E_ss) / E_ss and of E_r.
     """
 
@@ -102,7 +109,7 @@ class Coat:
     reflected: list[float] | Array
 
     def at(self, mu: Array) -> tuple[Array, Array]:
-        """Values at a cosine: (1 - E_ss) / E_ss, at least 0, and E_r, in [0, 1]."""
+        """(1 - E_ss) / E_ss, at least 0, and E_r, in [0, 1], at a cosine."""
         x = scaled_cosine(mu, self.alpha)
         missing, reflected = (
             arrays.at_least_0(chebyshev_sum(cast(Array, each), x))
@@ -112,19 +119,19 @@ class Coat:
 
 
 def scaled_cosine(mu: Array, alpha: float | Array) -> Array:
-    """Argument of the curves, x = (asinh(mu / alpha) / asinh(1 / alpha))^(1/3) in [0, 1].
+    """Argument of the polynomials, x = (asinh(mu / alpha) / asinh(1 / alpha))^(1/3) in [0, 1].
 
-    The cube root makes terms like mu log(mu) smooth enough for polynomials near 0.
+    Near mu = 0, the cube root makes terms like mu log(mu) smooth enough for polynomials in x.
     """
     extent = array_namespace(alpha).asinh(1.0 / alpha)
     return arrays.power(array_namespace(mu, alpha).asinh(mu / alpha) / extent, 1.0 / 3.0)
 
 
 def coat_curves(alpha: Array, ior: Array) -> Array:
-    """Chebyshev coefficients of both curves of a `Coat`, shape (CURVE_NODES, 2).
+    """Chebyshev coefficients of both functions of a `Coat`, shape (CURVE_NODES, 2).
 
-    Accuracy: error of the curves below 2e-7 for alpha >= 0.01 and ior in [1, 4]. Of this, 5e-8
-    comes from the integral over slopes at grazing.
+    Accuracy: the error of both functions is below 2e-7 for alpha >= 0.01 and ior in [1, 4]. Up to
+    5e-8 of this error comes from the integral over slopes for a grazing view.
     """
     xp, x = array_namespace(alpha), like(chebyshev_nodes(CURVE_NODES), alpha)
     mu, _ = cosine_at(alpha, x)
@@ -148,7 +155,7 @@ def constant_coat(alpha: float, ior: float) -> Coat:
 
 @any_array
 def coat_of(alpha: ArrayLike, ior: ArrayLike) -> Coat:
-    """Curves of a dielectric; checks alpha and ior. Arrays of other libraries are not cached."""
+    """The `Coat` for a valid alpha and ior; cached, except for arrays other than NumPy's."""
     numbers = {}
     for name, value in (("alpha", alpha), ("ior", ior)):
         number = numbers[name] = arguments.checked(name, value, f"coat_{name}")
@@ -173,9 +180,10 @@ def dielectric_over_eon_brdf(
 
         f = f_r + (1 - E_r(mu_o)) f_EON
 
-    Result (..., C): 1/sr. Not reciprocal: compensation and layering depend on wo only. Accuracy:
-    E_r and the compensation have errors below 2e-7; the first call for a dielectric tabulates both.
-    [MaterialX2026], sections `layer` and Energy Compensation; [Portsmouth2025], Eq. (19).
+    Result (..., C): 1/sr. The BRDF is not reciprocal, because the compensation and the layering
+    depend on wo only. Accuracy: E_r and the compensation have errors below 2e-7. The first call for
+    an `alpha` and `ior` tabulates both. [MaterialX2026], sections `layer` and Energy Compensation;
+    [Portsmouth2025], Eq. (19).
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> dielectric_over_eon_brdf(wo, wi, [0.7, 0.1], 0.5, 0.3, 1.5).round(5)
@@ -193,7 +201,7 @@ def dielectric_over_eon_brdf(
 def dielectric_over_eon_albedo_dir(
     mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
-    """Directional albedo of `dielectric_over_eon_brdf`, 1 where rho is 1, with an error below 2e-7.
+    """Directional albedo of `dielectric_over_eon_brdf`; 1 where rho is 1. The error is below 2e-7.
 
     E = E_r + (1 - E_r) E_EON
 
@@ -210,10 +218,10 @@ def dielectric_over_eon_albedo_dir(
 def dielectric_over_eon_albedo_avg(
     rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
-    """Average of `dielectric_over_eon_albedo_dir` over the viewer's directions, weighted by the cosine.
+    """Cosine-weighted average of `dielectric_over_eon_albedo_dir` over all views.
 
-    Result (..., C). Accuracy: error below 2e-7. EON's albedo is linear in FON's loss H, so only the
-    mean of H over the light that the dielectric transmits is integrated.
+    Result (..., C). Accuracy: the error is below 2e-7. EON's albedo is a linear function of FON's
+    loss H, so only the mean of H over the light that the dielectric transmits is integrated.
 
         >>> dielectric_over_eon_albedo_avg([0.7, 1.0], 0.5, 0.3, 1.5).round(5)
         array([0.69645, 1.     ])
@@ -234,9 +242,9 @@ def dielectric_over_eon_albedo_avg(
 def mixed_sample(
     wo: ArrayLike, u: ArrayLike, alpha: float, share: Array, base: Callable[[Array], Array]
 ) -> Array:
-    """Direction reflected by a facet with probability `share`, otherwise sampled by `base`.
+    """Direction that is reflected by a facet with probability `share`, and else sampled by `base`.
 
-    u1 makes this choice and is then rescaled to [0, 1).
+    The first random number makes this choice and is then rescaled to [0, 1).
     """
     xp = array_namespace(share)
     u1, u2 = unpack_uniforms(u)
@@ -264,9 +272,11 @@ def mixed_pdf(
 def checked_draws(
     wo: ArrayLike, rho: ArrayLike, roughness: ArrayLike, **pair: arrays.Numbers
 ) -> tuple[Array, Array]:
-    """Cosine of wo and mean of rho's channels; raises ValueError unless all arguments broadcast.
+    """Cosine of wo's polar angle, and mean of rho's channels.
 
-    - `pair`: The other argument of a sampler or of a density, `u` or `wi`, already checked.
+    - `pair`: The remaining argument, `u` of a sampler or `wi` of a density, already validated.
+
+    Raises ValueError unless all arguments broadcast.
     """
     view, color = checked_directions("wo", wo), checked_color("rho", rho)
     numbers = {"roughness": arguments.checked("roughness", roughness)}
@@ -285,10 +295,11 @@ def dielectric_over_eon_sample(
 ) -> tuple[Array, Array]:
     """Direction sampled from the visible facets or from EON, and its density.
 
-    `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr,
-    the sum of both lobes' densities, each times its probability. The facets are chosen with
-    probability E_r / E at the mean of rho's channels. A sample's weight f mu_i / pdf lies between
-    the weights that the two lobes have alone; EON's is E for a gray rho. [Dupuy2023].
+    `wi` (..., 3): Unit vectors; a vector with z < 0 is a wasted sample of weight 0. `pdf` (...):
+    1/sr, the sum of the densities of both lobes, each times the lobe's probability. The facets are
+    chosen with probability E_r / E at the mean of rho's channels. The weight f mu_i / pdf of a
+    sample lies between the weights that the facets alone and EON alone would have. For a gray rho,
+    EON's weight is E. [Dupuy2023].
 
         >>> wi, pdf = dielectric_over_eon_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.7, 0.5, 0.3, 1.5)
         >>> wi.round(5), round(float(pdf), 5)
@@ -308,11 +319,12 @@ def dielectric_over_eon_sample(
 def dielectric_over_eon_pdf(
     wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
-    """Density of `dielectric_over_eon_sample` at `wi`, on the whole sphere, in solid angle.
+    """Density of `dielectric_over_eon_sample` at `wi`, per solid angle; `wi` may have any z.
 
         pdf = p pdf_GGX + (1 - p) pdf_EON,  p = E_r / (E_r + (1 - E_r) E_EON)
 
-    Its integral over the upper hemisphere is the probability that a sample is not wasted.
+    The integral of the density over the upper hemisphere is the probability that a sample is not
+    wasted.
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> round(float(dielectric_over_eon_pdf(wo, wi, 0.7, 0.5, 0.3, 1.5)), 5)
@@ -324,18 +336,21 @@ def dielectric_over_eon_pdf(
 
 
 def _facet_share(mu: Array, rho: Array, roughness: ArrayLike, coat: Coat) -> Array:
-    """Probability E_r / E of sampling the facets, for a gray rho; 0 if nothing is reflected."""
+    """Probability E_r / E of sampling the facets, for a gray rho; 0 if both albedos are 0."""
     reflected = coat.at(mu)[1]
     base = eon_albedo_dir(mu, rho[..., np.newaxis], roughness)[..., 0]
     return reflected / nonzero(reflected + (1.0 - reflected) * base)
 
 
-TERMS, SMOOTH = 24, 16  # Chebyshev coefficients: of E_single; of D and b
-FINE, BELOW = 48, 24  # quadrature nodes within and beyond the critical angle
+TERMS, SMOOTH = 24, 16  # numbers of Chebyshev coefficients, for E_single, and for D and b
+FINE, BELOW = 48, 24  # numbers of quadrature nodes within and beyond the critical angle
 
 
 class Curves(NamedTuple):
-    """Functions of the cosine above the interface; `b` is b mu' / S' with S' = sqrt(1 - mu'^2)."""
+    """Values of three functions of the cosine above the interface.
+
+    The field `b` is b(mu) mu' / S' with S' = sqrt(1 - mu'^2).
+    """
 
     E_single: Array
     D: Array
@@ -343,7 +358,7 @@ class Curves(NamedTuple):
 
 
 class Means(NamedTuple):
-    """Means of an interface: <D>, <H>_R and <b>_R; `passed` is 1 - R."""
+    """The means <D>, <H>_R and <b>_R for an interface, and `passed`, which is 1 - R."""
 
     D: float | Array
     passed: float | Array
@@ -353,7 +368,7 @@ class Means(NamedTuple):
 
 @dataclass(frozen=True)
 class Varnish:
-    """An interface: Chebyshev coefficients of its `Curves`, and its means."""
+    """An interface with the Chebyshev coefficients of its `Curves`, and with its `Means`."""
 
     alpha: float | Array
     ior: float | Array
@@ -361,35 +376,38 @@ class Varnish:
     means: Means
 
     def at(self, mu: Array) -> Curves:
-        """Values of the curves at a cosine; the polynomials for E_single and D may fall below 0."""
+        """Values of the polynomials at a cosine; E_single and D may be slightly below 0."""
         x = scaled_cosine(mu, self.alpha)
         return Curves(*(chebyshev_sum(cast(Array, each), x) for each in self.curves))
 
 
 def nonnegative(curves: Iterable[Array]) -> Curves:
-    """Curves of `Varnish.at` with E_single and D clamped to at least 0."""
+    """Result of `Varnish.at` with E_single and D clamped to at least 0."""
     E_single, D, b = curves
     return Curves(arrays.at_least_0(E_single), arrays.at_least_0(D), b)
 
 
 def refracted_cosine(mu: Array, ior: float | Array) -> Array:
-    """Cosine mu' of the refracted direction; at index 1 it equals mu to the last bit."""
+    """Cosine mu' of the refracted direction; at `ior` 1, mu' equals mu to the last bit."""
     return root(mu * mu + (1.0 - mu) * (1.0 + mu) * (1.0 - 1.0 / ior**2))
 
 
 def mean_parts(mu: Array, b: Array, ior: float | Array, r: Array) -> tuple[Array, Array, Array]:
-    """The terms mu', 1 + r b(mu) and H(mu') of k; the argument `b` is `Curves.b`, b mu' / S'."""
+    """The terms mu', 1 + r b(mu) and H(mu') of k.
+
+    - `b`: The field `b` of `Curves`, which is b(mu) mu' / S'.
+    """
     m = refracted_cosine(mu, ior)
     return m, 1.0 + r * b * root((1.0 - m) * (1.0 + m)) / nonzero(m), fon_loss_mu(m)
 
 
 def absorbed_share(means: Means, rho: Array, r: Array) -> Array:
-    """Share 1 - R <k> of the light leaving EON that is lost before it would leave EON again.
+    """Fraction 1 - R <k> of the light leaving EON that does not leave EON a second time.
 
         1 - R <k> = (1 - R) + R (1 - <k>)
         1 - <k> = 1 - rho + rho A (r (c1 - <b>_R) - W <H>_R^2)
 
-    The second line has no cancellation of ones: it uses (1 + c1 r) A = 1.
+    Because (1 + c1 r) A = 1, the second line contains no difference of numbers near 1.
     """
     A, W = formulas.fon_af(r), formulas.eon_multiple_ratio(rho, r)
     lost = 1.0 - rho + rho * A * (r * (C1 - means.b) - W * means.H**2)
@@ -405,10 +423,10 @@ def base_under_varnish(
     rho: Array,
     r: Array,
 ) -> Array:
-    """BRDF of EON under the interface, the bracket in (1); at index 1, EON's to the last bit.
+    """The bracket in equation (1), the BRDF of EON below the interface; at `ior` 1, exactly EON.
 
-    The product k k is expanded in powers of W: with a
-    single material, the coefficients have channels but no pairs, which saves multiplications.
+    The product k(mu_o) k(mu_i) is expanded in powers of W. This saves multiplications for a single
+    material, since the coefficients of the powers do not depend on directions.
     """
     (m_o, p_o, H_o), (m_i, p_i, H_i) = (
         mean_parts(*each, ior, r) for each in zip(mu, b, strict=True)
@@ -436,7 +454,7 @@ def varnish_albedo(
 
 
 def nonzero(x: float | Array) -> Array:
-    """x as a divisor, with zeros replaced by 1; where x is 0, the dividend must be 0 too."""
+    """x with zeros replaced by 1, as the divisor of a quotient that is 0 where x is 0."""
     return array_namespace(x).where(cast(Array, x) == 0.0, 1.0, x)
 
 
@@ -450,10 +468,12 @@ def cosine_at(alpha: Array, x: Array) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=1)
 def integral_matrices() -> tuple[Array, Array, Array, Array]:
-    """Points x, dx/dy at the points, and matrices that integrate a function given at the points.
+    """Points x, the derivatives dx/dy at these points, and two matrices of integrals over y.
 
-    The points are x = 1 - (1 - y)^2 at Chebyshev nodes y; this makes sqrt(1 - mu^2) smooth in y. The matrices
-    integrate over y from 0: to the nodes of the curves, (TERMS, FINE), and to all y and 1, (FINE + 1, FINE).
+    The points are x = 1 - (1 - y)^2 at Chebyshev nodes y, so that sqrt(1 - mu^2) is smooth in y. A
+    matrix times the values of a function at the points yields integrals that begin at y = 0. The
+    integrals end at the nodes of `Curves` for the matrix of shape (TERMS, FINE), and at all nodes y
+    and at y = 1 for the matrix of shape (FINE + 1, FINE).
     """
     y = chebyshev_nodes(FINE)
     integral = chebint(chebyshev_coefficients(np.eye(FINE)), lbnd=-1.0, scl=0.5)
@@ -463,7 +483,7 @@ def integral_matrices() -> tuple[Array, Array, Array, Array]:
 
 
 def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
-    """Coefficients of the curves of a `Varnish`; its means, shape (4,), in the order of `Means`."""
+    """Chebyshev coefficients of a `Varnish`, and an array (4,) of its means in `Means`' order."""
     xp, coat = array_namespace(alpha, ior), coat_of(cast(float, alpha), cast(float, ior))
     places, slope, to_curves, to_nodes = (like(each, alpha) for each in integral_matrices())
     matrix = like(chebyshev_coefficients(np.eye(TERMS)), alpha)
@@ -474,7 +494,8 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     D = E_single * E_single * missing * (1.0 + missing)
     facets = xp.tensordot(matrix, E_single, axes=1), xp.tensordot(matrix, D, axes=1)[:SMOOTH]
 
-    # Light reflected back to EON: E_r 2 mu' dmu' within the critical angle, all of it beyond.
+    # The interface reflects light back to EON: the fraction E_r of 2 mu' dmu' within the critical
+    # angle, and all light beyond the critical angle.
     fine, step = cosine_at(alpha, places)
     E_single, D = (arrays.at_least_0(chebyshev_sum(each, places)) for each in facets)
     area = 2.0 * fine * step * slope
@@ -486,7 +507,8 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     R = squared + xp.sum(total * share)
     H = xp.sum(weight * fon_loss_mu(beyond)) + xp.sum(total * share * fon_loss_mu(m))
 
-    # The integral of s / t over azimuths is 2 S S' (1 / max(mu, mu') - 1). If R(m) is the share reflected back,
+    # The integral of s / t over azimuths is 2 S S' (1 / max(mu, mu') - 1). With R(m), the fraction
+    # of light with the cosine m that is reflected back to EON,
     #   b mu' / S' = 2 / (pi R) [(1 - mu') int_0^mu' R(m) S m dm + mu' int_mu'^1 R(m) S (1 - m) dm],
     #   <b>_R = 8 / (pi R^2) int R(m) S (1 - m) [int_0^m R(x) S x dx] dm.
     S = root((1.0 - fine) * (1.0 + fine)) / ior
@@ -513,7 +535,7 @@ def constant_varnish(alpha: float, ior: float) -> Varnish:
 
 @any_array
 def varnish_of(alpha: ArrayLike, ior: ArrayLike) -> Varnish:
-    """An interface; checks alpha and ior. Arrays of other libraries are not cached."""
+    """The `Varnish` for a valid alpha and ior; cached, except for arrays other than NumPy's."""
     coat_of(alpha, ior)
     if not arrays.library(alpha):
         return constant_varnish(float(cast(float, alpha)), float(cast(float, ior)))
@@ -530,9 +552,9 @@ def varnished_brdf(
 
         f = f_r + T(mu_o) T(mu_i) / n^2 [f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))]
 
-    Result (..., C): 1/sr. The BRDF is reciprocal, and equals EON to the last bit at `ior` 1.
-    Accuracy: the albedo differs by at most 0.012 from random walks between facets and EON. A call
-    takes 1.4 times as long as `dielectric_over_eon_brdf`. [Saunderson1942].
+    Result (..., C): 1/sr. The BRDF is reciprocal. At `ior` 1, it equals EON to the last bit.
+    Accuracy: the albedo differs by at most 0.012 from that of random walks between facets and EON.
+    A call takes 1.4 times as long as a call of `dielectric_over_eon_brdf`. [Saunderson1942].
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> varnished_brdf(wo, wi, [0.7, 0.1], 0.5, 0.3, 1.5).round(5)
@@ -557,7 +579,7 @@ def varnished_brdf(
 def varnished_albedo_dir(
     mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
-    """Directional albedo of `varnished_brdf`, 1 where rho is 1.
+    """Directional albedo of `varnished_brdf`; 1 where rho is 1.
 
     E = E_r + T [E_b(mu') - R k (1 - <E_b>_R) / (1 - R <k>)]
 
@@ -570,7 +592,7 @@ def varnished_albedo_dir(
 
 @any_array
 def varnished_albedo_avg(rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float) -> Array:
-    """Average of `varnished_albedo_dir` over the viewer's directions, weighted by the cosine.
+    """Cosine-weighted average of `varnished_albedo_dir` over all views.
 
     <E> = <E_r> + n^2 [<E_b> - R <E_b>_R - R (<E_b>_R - R <k>) (1 - <E_b>_R) / (1 - R <k>)]
     <E_r> = 1 - n^2 (1 - R)
@@ -592,8 +614,9 @@ def varnished_sample(
 ) -> tuple[Array, Array]:
     """Direction sampled from the visible facets or in proportion to its cosine, and its density.
 
-    `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
-    Facets are chosen with probability E_single / E at the mean of rho's channels. [Dupuy2023].
+    `wi` (..., 3): Unit vectors; a vector with z < 0 is a wasted sample of weight 0. `pdf` (...):
+    1/sr. The facets are chosen with probability E_single / E at the mean of rho's channels.
+    [Dupuy2023].
 
         >>> wi, pdf = varnished_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.7, 0.5, 0.3, 1.5)
         >>> wi.round(5), round(float(pdf), 5)
@@ -609,7 +632,7 @@ def varnished_sample(
 def varnished_pdf(
     wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
-    """Density of `varnished_sample` at `wi`, on the whole sphere, in solid angle.
+    """Density of `varnished_sample` at `wi`, per solid angle; `wi` may have any z.
 
     pdf = p pdf_GGX + (1 - p) mu_i / pi,  p = E_single / E
 
@@ -624,7 +647,10 @@ def varnished_pdf(
 
 @any_array
 def _by_cosine(u: ArrayLike, share: Array) -> Array:
-    """Cosine-weighted direction from u1 above `share`, rescaled without loss of digits near 1."""
+    """Cosine-weighted direction for a first random number in [share, 1), rescaled to [0, 1).
+
+    1 - u1 is rescaled instead of u1, so that no digits are lost near 1.
+    """
     u1, u2 = unpack_uniforms(u)
     rest = arrays.at_most((1.0 - u1) / nonzero(1.0 - share), 1.0)
     return sampling.around(root(rest), root(1.0 - rest), u2)
@@ -634,7 +660,7 @@ def _by_cosine(u: ArrayLike, share: Array) -> Array:
 def _albedo(
     mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> tuple[Array, Array]:
-    """Albedos: E_single of the facets, (..., 1), and E of the whole varnish, (..., C)."""
+    """Albedos E_single of the facets alone, (..., 1), and E of facets and EON, (..., C)."""
     (color,), (r, height) = checked_colors({"rho": rho}, roughness=roughness, mu=mu)
     varnish = varnish_of(alpha, ior)
     curves = nonnegative(varnish.at(height))
@@ -642,6 +668,6 @@ def _albedo(
 
 
 def _share(mu: Array, rho: Array, roughness: ArrayLike, alpha: float, ior: float) -> Array:
-    """Probability E_single / E of sampling the facets for a gray rho; 0 if nothing is reflected."""
+    """Probability E_single / E of sampling the facets, for a gray rho; 0 if both albedos are 0."""
     single, total = _albedo(mu, rho[..., np.newaxis], roughness, alpha, ior)
     return (single / nonzero(total))[..., 0]

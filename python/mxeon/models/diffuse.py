@@ -1,26 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lambert, the Oren-Nayar family, Burley's model and diffuse transmission: BRDFs, albedos, inversion.
+"""Diffuse models: Lambert, the Oren-Nayar family, Burley's model and diffuse transmission.
 
-BRDFs are reciprocal, in 1/sr and without the cosine. All functions broadcast, work on the closed domain, and
-evaluate in blocks on the caller's thread, so memory for temporaries does not grow with the arguments. If both
-directions graze the surface and s > 0, s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0.
+BRDFs are reciprocal, in 1/sr and without the cosine. All functions broadcast and accept the ends of
+every range. They evaluate in blocks on the caller's thread, so memory for temporaries does not grow
+with the size of the arguments. If both directions graze the surface and s > 0,
+s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 in this case.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
 - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
 - `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
-- `sigma` (...): Standard deviation of the facets' slope angle, in radian, in [0, pi/2].
-- `roughness` (...): In [0, 1].
+- `sigma` (...): Standard deviation of the facets' slope angle, in radians, in [0, pi/2].
+- `roughness` (...): Roughness r of FON, EON or Burley's model, in [0, 1].
 - `color` (..., C): Desired albedo, in [0, 1].
 
-Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing. The error is below 1e-14 / pi or, if larger, 1e-14
-times the largest |s / t| that occurs at these two cosines. Albedos of FON and QON (...) are for unit reflectance;
-multiply them by rho.
+Result (..., C): BRDF in 1/sr, which is at least 0 and has no upper bound at grazing angles. The
+error is below 1e-14 times the larger of 1 / pi and the largest |s / t| for the same mu_o and mu_i.
+Albedos of FON and QON (...) are for unit reflectance; they have to be multiplied by rho.
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
-The formulas below have the names and arguments of the shader functions in `genglsl/lib/eon.glsl` and
-`genglsl/sampling/oren_nayar_family.glsl`. Their `rho` has its channels on the first axis.
+Functions that validate no arguments have the names and the arguments of the shader functions in
+`genglsl/lib/eon.glsl` and `genglsl/sampling/oren_nayar_family.glsl`. They expect the channels of
+`rho` on the first axis.
 """
 
 from __future__ import annotations
@@ -35,12 +37,13 @@ from mxeon.models.core.arguments import checked_colors, checked_numbers
 from mxeon.models.core.arrays import Array, ArrayLike, Number, any_array, array_namespace
 from mxeon.models.core.evaluation import evaluate
 
-# FON loses r c1 / (1 + c1 r) at normal incidence and r (c1 - c2) / (1 + c1 r) on average:
-# [Portsmouth2025], Eqs. (10), (15), (29).
+# FON at unit reflectance loses the fraction r c1 / (1 + c1 r) of the light at normal incidence, and
+# r (c1 - c2) / (1 + c1 r) on average: [Portsmouth2025], Eqs. (10), (15), (29).
 C1 = 0.5 - 2.0 / (3.0 * np.pi)
 C2 = 2.0 / 3.0 - 28.0 / (15.0 * np.pi)
 
-# G_F / pi in powers of 1 - mu, mu in [0, 1]: [Portsmouth2025], Eq. (14); largest error 6.0e-4.
+# Coefficients of G_F / pi as a polynomial in 1 - mu for mu in [0, 1]: [Portsmouth2025], Eq. (14).
+# The largest error is 6.0e-4.
 FON_G = (0.0571085289, 0.491881867, -0.332181442, 0.0714429953)
 
 
@@ -49,20 +52,20 @@ def cosines(wo: Array, wi: Array) -> tuple[Array, Array, Array]:
 
         s = dot(wo, wi) - mu_o mu_i = wo.x wi.x + wo.y wi.y
 
-    `mu_o`, `mu_i` (...): Cosines in [0, 1]: z, clamped to 1 against rounding. `s` (...): In [-1, 1]
-    up to rounding; signed, never clamped. [Portsmouth2025], below Eq. (3).
+    `mu_o`, `mu_i` (...): z of wo and wi, clamped to at most 1 since rounding may exceed 1. `s`
+    (...): In [-1, 1] up to rounding; not clamped. [Portsmouth2025], below Eq. (3).
     """
     s = wo[..., 0] * wi[..., 0] + wo[..., 1] * wi[..., 1]
     return arrays.cosine(wo[..., 2]), arrays.cosine(wi[..., 2]), s
 
 
 def of_cosines(formula: Callable[..., Array]) -> Callable[..., Array]:
-    """Turn a formula in mu_o, mu_i, s into a function of wo, wi; further arguments are passed on."""
+    """Turn a formula with arguments mu_o, mu_i, s, ... into a function of wo, wi, ..."""
     return lambda wo, wi, *material: formula(*cosines(wo, wi), *material)
 
 
 def checked_brdf(formula: Callable[..., Array], parameter: str) -> Callable[..., Array]:
-    """Turn a formula in mu_o, mu_i, s, rho, parameter into a BRDF that checks its arguments."""
+    """Turn a formula in mu_o, mu_i, s, rho, parameter into a BRDF that validates its arguments."""
 
     @any_array
     def brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, value: ArrayLike) -> Array:
@@ -72,13 +75,13 @@ def checked_brdf(formula: Callable[..., Array], parameter: str) -> Callable[...,
 
 
 def fon_loss_mu(mu: Array) -> Array:
-    """H(mu) = c1 - G_F(mu) / pi: [Portsmouth2025], Eq. (13); FON loses r A_F H(mu).
+    """H(mu) = c1 - G_F(mu) / pi: [Portsmouth2025], Eq. (13); FON's albedo is 1 - r A_F H(mu).
 
         H = mu t (c1 - S t (2 + S) / (3 pi)) + (2 / pi) S atan(t)
         S = sqrt(1 - mu^2),  t = mu / (1 + S)
 
-    With theta_o = pi / 2 - 2 atan(t) and 1 - S = mu t, there is neither a division by mu nor a
-    cancellation. Near the normal H is c1 + O(S^3).
+    Here theta_o is written as pi / 2 - 2 atan(t), and 1 - S as mu t. So the formula has neither a
+    division by mu nor a cancellation. Near the normal, H is c1 + O(S^3).
     """
 
     def loss(mu: Array) -> Array:
@@ -91,7 +94,7 @@ def fon_loss_mu(mu: Array) -> Array:
 
 
 def fon_loss_approx(mu: Array) -> Array:
-    """H(mu) by the quartic of [Portsmouth2025], Eq. (14); negative for mu < 0.0014."""
+    """H(mu) by the quartic of [Portsmouth2025], Eq. (14), which is negative for mu < 0.0014."""
     m = 1.0 - mu
     g1, g2, g3, g4 = FON_G
     return C1 - m * (g1 + m * (g2 + m * (g3 + m * g4)))
@@ -118,23 +121,24 @@ def qon_bq(sigma: Number) -> Number:
 
 
 def eon_denominator(rho: Array, roughness: Array) -> Array:
-    """D = (1 + c1 r) (1 - rho (1 - <E_FON>)), in [1, 1 + c1]: from [Portsmouth2025], Eq. (18)."""
+    """D = (1 + c1 r) (1 - rho (1 - <E_FON>)) of [Portsmouth2025], Eq. (18), in [1, 1 + c1]."""
     return 1.0 + C1 * roughness - rho * (roughness * (C1 - C2))
 
 
 def eon_multiple_ratio(rho: Array, roughness: Array) -> Array:
-    """Weight of H(mu_o) H(mu_i) relative to FON's 1 + r s / t_F: Eq. (19) over Eq. (10).
+    """Weight of H(mu_o) H(mu_i) relative to FON's 1 + r s / t_F, from [Portsmouth2025].
 
         rho r (1 + c2 r) / ((c1 - c2) D)
 
-    Powers of r that vanish at roughness 0 are cancelled, so nothing is divided by 1 - <E_FON>.
+    This is Eq. (19) divided by Eq. (10). Common powers of r are cancelled, so there is no division
+    by 1 - <E_FON>, which is 0 at roughness 0.
     """
     weight = roughness * (1.0 + C2 * roughness) / (C1 - C2)
     return rho * weight / eon_denominator(rho, roughness)
 
 
 def oren_nayar_quotient(value: Array, divisor: Array) -> Array:
-    """`value / divisor`; 0 if the divisor is below the smallest normal number: no overflow."""
+    """`value / divisor`, or 0 if the divisor is so small that the quotient could overflow."""
     xp = array_namespace(value, divisor)
     return value / xp.where(divisor < arrays.least_normal(divisor), np.inf, divisor)
 
@@ -177,10 +181,11 @@ def oren_nayar_angle(y: Array, x: Array) -> Array:
 
 
 def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) -> Array:
-    """(sin(alpha) - (2 beta / pi)^3) / cos(beta), with limit 6 / pi if both directions graze.
+    """(sin(alpha) - (2 beta / pi)^3) / cos(beta); the limit 6 / pi if both directions graze.
 
-    With q = 1 - 2 beta / pi, the cube is 1 - q (3 - 3 q + q^2); 1 - sin(alpha) is
-    cos(alpha)^2 / (1 + sin(alpha)). The ones cancel by algebra, without a loss of digits.
+    (2 beta / pi)^3 is 1 - q (3 - 3 q + q^2), where q = 1 - 2 beta / pi, and sin(alpha) is
+    1 - cos(alpha)^2 / (1 + sin(alpha)). The difference of both is written without the ones, so that
+    no digits are lost.
     """
     xp = array_namespace(mu_o, mu_i, S_o, S_i)
     high, low = xp.maximum(mu_o, mu_i), xp.minimum(mu_o, mu_i)
@@ -191,12 +196,12 @@ def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) ->
 
 
 def oren_nayar_interreflection(rho: Array, sigma: Array) -> Array:
-    """Interreflection term that is added to A: [OrenNayar1994], [Fujii2013]."""
+    """Interreflection term of [OrenNayar1994], which [Fujii2013] adds to A."""
     return 0.17 * rho * (sigma**2 / (sigma**2 + 0.13))
 
 
 def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
-    """The equation of `oren_nayar_brdf`, with alpha and beta as fractions of a right angle."""
+    """`oren_nayar_brdf` for valid arrays; alpha and beta are fractions of a right angle."""
     xp = array_namespace(wo, wi)
     mu_o, mu_i, s = cosines(wo, wi)
     S_o, S_i = arrays.hypot(wo[..., 0], wo[..., 1]), arrays.hypot(wi[..., 0], wi[..., 1])
@@ -204,10 +209,10 @@ def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
     alpha = 1.0 - xp.minimum(elevation_o, elevation_i)
     beta = 1.0 - xp.maximum(elevation_o, elevation_i)
     cos_phi = oren_nayar_quotient(s, S_o * S_i)
-    # C2 cos(phi) tan(beta); sin(beta) cos(phi) is computed as s / sin(alpha).
+    # The term C2 cos(phi) tan(beta), where sin(beta) cos(phi) is computed as s / sin(alpha).
     behind = oren_nayar_quotient(xp.minimum(s, 0.0), xp.maximum(S_o, S_i))
     behind = behind * oren_nayar_behind_slope(mu_o, mu_i, S_o, S_i)
-    # C3 and its factors; 1 - cos(phi)^2 is computed as (cross / (S_o S_i))^2.
+    # The term with C3, where 1 - cos(phi)^2 is computed as (cross / (S_o S_i))^2.
     cross = wo[..., 0] * wi[..., 1] - wo[..., 1] * wi[..., 0]
     aside = oren_nayar_quotient(cross, S_o * S_i) ** 2 / (1.0 + xp.abs(cos_phi))
     aside = aside * oren_nayar_quotient(S_o + S_i, mu_o + mu_i)
@@ -218,7 +223,7 @@ def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
 
 
 def eon_brdf_approx_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
-    """EON with the quartic for H, clamped to 0 where it is negative (mu < 0.0014)."""
+    """EON with the quartic for H; where the quartic is negative (mu < 0.0014), H is 0."""
     losses = arrays.at_least_0(fon_loss_approx(mu_o)) * arrays.at_least_0(fon_loss_approx(mu_i))
     single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
     multi_scatter = eon_multiple_ratio(rho, roughness) * losses
@@ -227,9 +232,9 @@ def eon_brdf_approx_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness
 
 @any_array
 def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
-    """BRDF f = rho / pi of a smooth diffuse surface, Lambert's, in 1/sr.
+    """Lambert's BRDF f = rho / pi of a smooth diffuse surface, in 1/sr.
 
-    [Portsmouth2025], section 2.1, the limit sigma -> 0.
+    [Portsmouth2025], section 2.1, limit for sigma -> 0.
 
         >>> lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8]).round(6)
         array([0.063662, 0.254648])
@@ -239,7 +244,7 @@ def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
 
 @any_array
 def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """BRDF of the full Oren-Nayar model, interreflection included, in 1/sr.
+    """BRDF of the full Oren-Nayar model with interreflection, in 1/sr.
 
         f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)
                       + 0.17 rho sigma^2 / (sigma^2 + 0.13) (1 - cos(phi) (2 beta / pi)^2)],
@@ -247,10 +252,11 @@ def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLi
         C2 = 0.45 k (sin(alpha) - (2 beta / pi)^3 where cos(phi) < 0),
         C3 = 0.125 k (4 alpha beta / pi^2)^2
 
-    alpha and beta are the larger and the smaller polar angle; phi is the azimuth between wo and wi. The printed
-    fit falls below 0, to -0.27 rho / pi, for rough dark surfaces if both directions graze from opposite sides. At
-    grazing, (sin(alpha) - (2 beta / pi)^3) tan(beta) has the limit 6 / pi; the tangent after C3 has no limit and
-    counts as 0. [OrenNayar1994], functional approximation for Gaussian slopes.
+    alpha is the larger and beta the smaller polar angle; phi is the difference of the azimuths of
+    wo and wi. For rough dark surfaces and two grazing directions from opposite sides, the published
+    fit is negative, down to -0.27 rho / pi. If both directions graze the surface,
+    (sin(alpha) - (2 beta / pi)^3) tan(beta) has the limit 6 / pi, while the tangent after C3 has no
+    limit and counts as 0. [OrenNayar1994], functional approximation for Gaussian slopes.
 
         >>> oren_nayar_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.063766, 0.269282])
@@ -274,10 +280,11 @@ def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> 
 
 @any_array
 def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """BRDF of QON with 0.57 instead of 0.33 in A, which approximates interreflection, in 1/sr.
+    """BRDF of QON with interreflection, in 1/sr.
 
         f = rho / pi (A + B s / t),  A = 1 - 0.5 sigma^2 / (sigma^2 + 0.57)
 
+    The constant 0.57 in A, instead of QON's 0.33, approximates the effect of interreflection.
     [Portsmouth2025], footnote 1; [OrenNayar1994], qualitative model.
 
         >>> qon_footnote_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
@@ -288,11 +295,12 @@ def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: Array
 
 @any_array
 def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """BRDF of QON with coefficients that match the full model, and with a tinted A, in 1/sr.
+    """BRDF of QON with Fujii's coefficients, in 1/sr.
 
         f = rho / pi (A + 0.17 rho sigma^2 / (sigma^2 + 0.13) + B s / t),
         1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
 
+    The coefficients approximate the full model; the second term depends on rho squared.
     [Fujii2013], first proposed formula.
 
         >>> qon_fujii_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
@@ -327,8 +335,8 @@ def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
         f = rho / pi A (1 + r s / t + rho r (1 + c2 r) / ((c1 - c2) D) H(mu_o) H(mu_i)),
         D = 1 + c1 r - rho r (c1 - c2),  H = c1 - G_F / pi
 
-    This is Eq. (19) with 1 - E_FON = r A H. Powers of r that vanish at roughness 0 are cancelled, so
-    roughness 0 is exactly Lambert. [Portsmouth2025], Eqs. (16)-(19).
+    This is Eq. (19) with 1 - E_FON = r A H. Common powers of r are cancelled, so EON at roughness 0
+    is exactly Lambert's BRDF. [Portsmouth2025], Eqs. (16)-(19).
 
         >>> eon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.073621, 0.310981])
@@ -342,9 +350,10 @@ def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arr
 
         f as in `eon_brdf`,  G_F / pi = g1 m + g2 m^2 + g3 m^3 + g4 m^4,  m = 1 - mu
 
-    Accuracy: within 1.25e-3 / pi of `eon_brdf`. H is clamped to 0 for mu < 0.0014, where the quartic
-    is negative. The paper's Listing 1 instead keeps 1 - E_FON above 1e-7. It differs by less than
-    1.4e-7 / pi for roughness > 1e-5, and is not Lambert at 0. [Portsmouth2025], Eqs. (14), (16)-(19).
+    Accuracy: the result is within 1.25e-3 / pi of `eon_brdf`. For mu < 0.0014, where the quartic
+    makes H negative, H is 0. The paper's Listing 1 instead keeps 1 - E_FON above 1e-7. Its result
+    differs by less than 1.4e-7 / pi for roughness > 1e-5, and is not Lambert's BRDF at roughness 0.
+    [Portsmouth2025], Eqs. (14), (16)-(19).
 
         >>> eon_brdf_approx([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.073622, 0.311002])
@@ -359,8 +368,9 @@ def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLi
         f = rho / pi (1 + k (1 - mu_o)^5) (1 + k (1 - mu_i)^5),
         k = F_D90 - 1 = 2 roughness (wi . wh)^2 - 1 / 2,  (wi . wh)^2 = (1 + wo . wi) / 2
 
-    Result (..., C): 1/sr, in [0, 25/4 / pi]. Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi.
-    [MaterialX2026], section `burley_diffuse_bsdf`, where sigma is the roughness; [Burley2012], section 5.3.
+    Result (..., C): 1/sr, in [0, 25/4 / pi]. Accuracy: the error is below (f + 1 / pi) 2^-53 times
+    66 / roughness. [MaterialX2026], section `burley_diffuse_bsdf`, where the roughness is called
+    sigma; [Burley2012], section 5.3.
 
         >>> burley_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.063985, 0.255939])
@@ -375,14 +385,15 @@ def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLi
 
 @any_array
 def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of Burley's diffuse model, in closed form; up to 1.558 rho at grazing.
+    """Directional albedo of Burley's diffuse model in closed form; at grazing, up to 1.558 rho.
 
         E(mu) = rho (1 + n (h + 2 r mu / 3) + h / 21 + r mu / 84 + n Q),
         n = (1 - mu)^5,  h = r - 1/2,
         Q = (h^2 + r^2 (1 - mu^2) / 2) / 21 + h r mu / 42 + r^2 (3 mu^2 - 1) / 504
 
-    f is a polynomial in mu_i and cos(phi). The integrals of 2 mu_i^k (1 - mu_i)^5 for k = 1, 2, 3 are 1/21, 1/84,
-    1/252. Accuracy: absolute error below 1e-12. [MaterialX2026], Directional Albedo.
+    The BRDF is a polynomial in mu_i and cos(phi). The integrals of 2 mu_i^k (1 - mu_i)^5 for k = 1,
+    2, 3 are 1/21, 1/84, 1/252. Accuracy: the absolute error is below 1e-12. [MaterialX2026],
+    section Directional Albedo.
 
         >>> burley_albedo_dir(0.0, 1.0, 1.0).round(6)
         array([1.55754])
@@ -397,7 +408,7 @@ def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Ar
 
 @any_array
 def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
-    """BTDF f = rho / pi of Lambert's transmission, in 1/sr; its integral with |mu_i| is rho.
+    """BTDF f = rho / pi of Lambertian transmission, in 1/sr; the integral of f |mu_i| is rho.
 
     - `wi` (..., 3): Direction to the light, unit vector to 1e-6, z <= 0.
     - `rho` (..., C): Diffuse transmittance per channel, in [0, 1]; a number is one channel.
@@ -415,12 +426,12 @@ def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
 
 @any_array
 def fon_loss(mu: ArrayLike) -> Array:
-    """Energy that FON loses at unit reflectance, divided by roughness and by the factor A.
+    """Energy that FON loses at unit reflectance, divided by the roughness and by the factor A.
 
         H(mu) = c1 - G_F(mu) / pi,  1 - E_FON = roughness A H
 
-    Result (...): in [0, c1]: 0 at grazing, c1 = 1/2 - 2 / (3 pi) at normal incidence. Accuracy:
-    relative error below 2e-15 on all of [0, 1]. [Portsmouth2025], Eqs. (12), (13).
+    Result (...): 0 at grazing, up to c1 = 1/2 - 2 / (3 pi) at normal incidence. Accuracy: the
+    relative error is below 2e-15 for all mu. [Portsmouth2025], Eqs. (12), (13).
 
         >>> fon_loss([0.0, 0.5, 1.0]).round(6)
         array([0.      , 0.173441, 0.287793])
@@ -435,7 +446,7 @@ def fon_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E(mu) = 1 - roughness A H(mu),  A = 1 / (1 + c1 roughness)
 
-    Accuracy: relative error below 1e-15. [Portsmouth2025], Eqs. (12), (13).
+    Accuracy: the relative error is below 1e-15. [Portsmouth2025], Eqs. (12), (13).
 
         >>> fon_albedo_dir([0.0, 1.0], 1.0).round(6)
         array([1.      , 0.776522])
@@ -450,8 +461,8 @@ def fon_albedo_dir_approx(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E(mu) ~ (1 + roughness (g1 m + g2 m^2 + g3 m^3 + g4 m^4)) A,  m = 1 - mu
 
-    Result (...): positive; above 1, by up to 3.6e-4, for mu < 0.0014. Accuracy: absolute error
-    below 6.1e-4. [Portsmouth2025], Eq. (14).
+    Result (...): positive. For mu < 0.0014, the result exceeds 1 by up to 3.6e-4. Accuracy: the
+    absolute error is below 6.1e-4. [Portsmouth2025], Eq. (14).
 
         >>> fon_albedo_dir_approx([0.0, 1.0], 1.0).round(6)
         array([1.000356, 0.776522])
@@ -477,12 +488,13 @@ def fon_albedo_avg(roughness: ArrayLike) -> Array:
 
 @any_array
 def eon_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of EON; exactly 1 where rho is 1.
+    """Directional albedo of EON, which is exactly 1 where rho is 1.
 
         E(mu) = rho (1 - (1 - rho) roughness H(mu) / D),
         D = 1 + c1 roughness - rho roughness (c1 - c2)
 
-    Accuracy: relative error below 1e-15. [Portsmouth2025], Eq. (28) with 1 - E_FON = roughness A H.
+    Accuracy: the relative error is below 1e-15. [Portsmouth2025], Eq. (28), where 1 - E_FON is
+    roughness A H.
 
         >>> eon_albedo_dir([0.0, 1.0], [0.5, 1.0], 1.0).round(6)
         array([[0.5     , 1.      ],
@@ -498,8 +510,8 @@ def eon_albedo_dir_approx(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -
 
         E(mu) as in `eon_albedo_dir`,  H = c1 - (g1 m + g2 m^2 + g3 m^3 + g4 m^4),  m = 1 - mu
 
-    Result (..., C): in [0, 1]; above rho, by up to 1e-4, for mu < 0.0014. Accuracy: absolute error
-    below 1.7e-4. [Portsmouth2025], Eqs. (14), (28).
+    Result (..., C): in [0, 1]. For mu < 0.0014, the result exceeds rho by up to 1e-4. Accuracy: the
+    absolute error is below 1.7e-4. [Portsmouth2025], Eqs. (14), (28).
 
         >>> eon_albedo_dir_approx([0.0, 1.0], [0.5, 1.0], 1.0).round(6)
         array([[0.500097, 1.      ],
@@ -516,7 +528,7 @@ def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
         <E> = rho (1 + c2 roughness) / D = rho <E_FON> / (1 - rho (1 - <E_FON>)),
         D = 1 + c1 roughness - rho roughness (c1 - c2)
 
-    [Portsmouth2025], Eqs. (15), (28), averaged; inverse of Eq. (33).
+    This is the average of [Portsmouth2025], Eq. (28), by Eq. (15), and the inverse of Eq. (33).
 
         >>> eon_albedo_avg([0.5, 1.0], 1.0).round(6)
         array([0.45439, 1.     ])
@@ -526,7 +538,7 @@ def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
 
 
 def eon_albedo(loss: Array | float, rho: Array, r: Array) -> Array:
-    """Albedo of EON for an albedo 1 - r A `loss` of FON, in one direction or on average."""
+    """Albedo of EON, directional or average, where FON's albedo is 1 - r A `loss`."""
     return rho * (1.0 - (1.0 - rho) * r * loss / eon_denominator(rho, r))
 
 
@@ -536,8 +548,8 @@ def qon_albedo_dir(mu: ArrayLike, sigma: ArrayLike) -> Array:
 
         E(mu) = A + B G(mu) / pi,  G = pi (c1 - H(mu)) + 2/3 sqrt(1 - mu^2)
 
-    Result (...): positive; above 1, to 1.02, near grazing for sigma < 0.6. Accuracy: relative error
-    below 1e-15. [Portsmouth2025], Eqs. (5), (8).
+    Result (...): positive. Near grazing, the result is up to 1.02 for sigma < 0.6. Accuracy: the
+    relative error is below 1e-15. [Portsmouth2025], Eqs. (5), (8).
 
         >>> qon_albedo_dir([0.0, 1.0], 0.5).round(6)
         array([0.949924, 0.784483])
@@ -568,9 +580,9 @@ def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
 
         rho = 2 C d / (b + sqrt(b^2 + 4 c2 r d C)),  b = 1 + (c1 - c2) r C,  d = 1 + c1 r
 
-    Accuracy: relative error below 1e-15. This is the root in Eq. (30), scaled by 1 + c1 r and without
-    the difference in its numerator. Nothing cancels or vanishes at low roughness, so no series is
-    needed. [Portsmouth2025], Eqs. (28) to (31).
+    Accuracy: the relative error is below 1e-15. rho is the root in Eq. (30), scaled by 1 + c1 r and
+    rewritten without the difference in the numerator. At low roughness, nothing cancels and the
+    divisor is not 0, so the paper's series is not needed. [Portsmouth2025], Eqs. (28) to (31).
 
         >>> eon_rho_from_albedo_normal([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
         array([0.      , 0.219784, 0.835673, 1.      ])
@@ -579,7 +591,7 @@ def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
     b, d = 1.0 + (C1 - C2) * r * color, 1.0 + C1 * r
     sqrt = array_namespace(color, r).sqrt
     rho = 2.0 * color * d / (b + sqrt(b * b + 4.0 * C2 * r * d * color))
-    # A color of 1 may give rho = 1 + 2^-52 by rounding, which models reject.
+    # For a color of 1, rounding may make rho 1 + 2^-52, which the models would reject.
     return arrays.trimmed(rho, 1.0)
 
 
@@ -589,7 +601,7 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
 
         rho = C d / (C d + (1 + c2 r)(1 - C)),  d = 1 + c1 r
 
-    Accuracy: relative error below 1e-15. [Portsmouth2025], Eqs. (29) and (33).
+    Accuracy: the relative error is below 1e-15. [Portsmouth2025], Eqs. (29) and (33).
 
         >>> eon_rho_from_albedo_avg([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
         array([0.      , 0.208598, 0.827676, 1.      ])
@@ -599,8 +611,9 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
     return scaled / (scaled + (1.0 + C2 * r) * (1.0 - color))
 
 
-# Wrong variants that renderers implement; checks recognize them. The formulas in `_mu` do not check arguments.
-FLOOR = 0.1  # smallest reflectance that Babylon.js passes to EON
+# The functions below contain known errors of renderers, so that checks can recognize these errors.
+# Functions whose name ends in `_mu` do not validate arguments.
+FLOOR = 0.1  # smallest reflectance for which Babylon.js evaluates EON
 
 
 def eon_clamped_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
@@ -608,8 +621,8 @@ def eon_clamped_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughnes
 
         s = max(dot(wo, wi), 1e-8) - mu_o mu_i
 
-    Too bright where dot(wo, wi) < 0, and correct elsewhere. MaterialX's GLSL clamps the product for other nodes and
-    passes the clamped value to EON.
+    The result is too bright where dot(wo, wi) < 0, and correct elsewhere. MaterialX's GLSL clamps
+    dot(wo, wi) for other nodes and passes the clamped value to EON.
     """
     s = array_namespace(s).maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i
     return eon_brdf_mu(mu_o, mu_i, s, rho, roughness)
@@ -618,13 +631,13 @@ def eon_clamped_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughnes
 def burley_schlick_brdf_mu(
     mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array
 ) -> Array:
-    """Burley's diffuse model with wrong retro-reflection.
+    """Burley's diffuse model with a wrong retro-reflection term R.
 
         f = rho / pi ((1 - F_o / 2) (1 - F_i / 2) + R (F_o + F_i + F_o F_i (R - 1))),
         R = 1/2 + 2 roughness F_i^2,  F = (1 - mu)^5
 
-    Not reciprocal. It is Lambert at roughness 0, and Burley where mu_o and mu_i are 1. The GLSL of three-gpu-pathtracer
-    has this R; Burley's R is 2 roughness (wi . wh)^2.
+    f is not reciprocal. f equals Lambert's BRDF at roughness 0, and Burley's BRDF where mu_o and
+    mu_i are 1. The GLSL of three-gpu-pathtracer has this R; Burley's R is 2 roughness (wi . wh)^2.
     """
     F_o, F_i = (1.0 - mu_o) ** 5, (1.0 - mu_i) ** 5
     smooth = (1.0 - 0.5 * F_o) * (1.0 - 0.5 * F_i)
@@ -637,8 +650,8 @@ def eon_rho_cubed_brdf_mu(
 ) -> Array:
     """EON whose multiple-scattering lobe has rho^3 instead of rho^2.
 
-    Too dark, and correct where rho is 0 or 1. The OSL closure of Blender's Cycles applies its albedo weight to the lobe
-    once too often.
+    The result is correct where rho is 0 or 1, and else too dark. The OSL closure of Blender's
+    Cycles multiplies the lobe by the albedo once too often.
     """
     single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
     weight = rho * eon_multiple_ratio(rho, roughness)
@@ -651,8 +664,8 @@ def fon_white_lobe_brdf_mu(
 ) -> Array:
     """FON plus the multiple-scattering lobe of a white surface.
 
-    Too bright, and correct where rho is 1. MaterialX's MDL target does not tint the lobe: a black surface reflects
-    0.22 at roughness 1.
+    The result is correct where rho is 1, and else too bright. MaterialX's MDL target does not tint
+    this lobe, so a black surface with roughness 1 reflects 0.22 of the light.
     """
     losses = fon_loss_mu(mu_o) * fon_loss_mu(mu_i)
     white = roughness * fon_af(roughness) / (np.pi * (C1 - C2)) * losses
@@ -660,10 +673,11 @@ def fon_white_lobe_brdf_mu(
 
 
 def eon_floor_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
-    """EON for a reflectance of at least 0.1: f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1).
+    """EON with the error f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1).
 
-    Too bright where rho lies between 0 and 0.1, and correct elsewhere. Babylon.js 9.35.0 divides EON by a
-    reflectance clamped to at least 0.1; it uses the paper's quartic for FON's albedo.
+    The result is too bright where rho lies between 0 and 0.1, and correct elsewhere. Babylon.js
+    9.35.0 divides EON by a reflectance that is clamped to at least 0.1. Like Babylon.js, this
+    function uses the paper's quartic for FON's albedo.
     """
     floor = array_namespace(rho).maximum(rho, FLOOR)
     return rho / floor * eon_brdf_approx_mu(mu_o, mu_i, s, floor, roughness)
@@ -672,7 +686,7 @@ def eon_floor_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness:
 def qon_tinted_twice_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
     """QON multiplied by its reflectance a second time.
 
-    The thin-walled lobe of OpenPBR in MaterialX 1.39.5 has this error: issue 3027 of MaterialX.
+    The thin-walled lobe of OpenPBR in MaterialX 1.39.5 has this error (issue 3027 of MaterialX).
     """
     return rho * qon_brdf_mu(mu_o, mu_i, s, rho, sigma)
 
@@ -699,10 +713,10 @@ def fon_white_lobe_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLik
 
 @any_array
 def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """Directional albedo of QON by MaterialX's fit, a quotient of polynomials.
+    """Directional albedo of QON, approximated as in MaterialX by a quotient of polynomials.
 
-    The error is up to 0.068 at rho 1. The coefficients and the clamp to 1 are those of MaterialX
-    1.39.5, `mx_microfacet_diffuse.glsl`.
+    The error is up to 0.068 at rho 1. The coefficients and the clamp to 1 are from
+    `mx_microfacet_diffuse.glsl` in MaterialX 1.39.5.
     """
     (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
     over = 1.0 - 0.4297 * s - 0.7632 * m * s + 1.4385 * s**2

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The hair model of [MaterialX2026], section `chiang_hair_bsdf`, after [Chiang2016] and [dEon2011].
 
-The fiber runs along +x, and the normal +z is on the viewer's side. Light comes from the whole sphere.
-A direction has an inclination theta, with sin(theta) = x, and an azimuth about the fiber. Absorption
-is per radius of the fiber, as in the specification's equation; its table says diameter. Other
-functions compute roughnesses and absorption from artist-friendly inputs.
+The fiber runs along +x, and the normal +z is on the viewer's side. Light comes from the whole
+sphere. A direction has an inclination theta, with sin(theta) = x, and an azimuth about the fiber.
+Absorption is per radius of the fiber, as in the specification's equation, although the
+specification's table of inputs says diameter. Some functions compute roughnesses and absorption
+from artist-friendly inputs.
 
 - `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, fiber +x, normal +z, z >= 0.
 - `wi` (..., 3): Direction to the light, unit vector to 1e-6, on either side.
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
-not broadcast. Formulas take directions of shape (3, ...), with the components on the first axis.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast. Functions that validate no arguments expect directions of shape (3, ...).
 """
 
 from __future__ import annotations
@@ -28,11 +29,12 @@ from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.microfacet import fresnel as fresnel_formulas
 
 LOBES = ("R", "TT", "TRT", "TRRT+")
-SCALE = np.sqrt(np.pi / 8.0)  # factor on the scale s: section Azimuthal Scattering
+SCALE = np.sqrt(np.pi / 8.0)  # factor of the scale s in section Azimuthal Scattering
 LEAST_DIVISOR = 1e-300  # quotients by smaller divisors may overflow
 
-# SERIES has the coefficients of (x / 20)^(2 k) in the power series of I_0; all are positive. TAIL has those of
-# (20 / x)^k in the asymptotic series for x > 20, whose smallest term is exp(-2 x). Both end below 2^-53.
+# For x below 20, I_0 is a power series, and SERIES has the coefficients of (x / 20)^(2 k), which
+# are all positive. For larger x, I_0 is an asymptotic series, whose smallest term is about
+# exp(-2 x), and TAIL has the coefficients of (20 / x)^k. The last coefficients are below 2^-53.
 BESSEL, ORDERS = 20.0, np.arange(1, 48)
 SERIES = np.cumprod(np.append(1.0, (0.5 * BESSEL / ORDERS) ** 2)).tolist()
 TAIL = np.cumprod(
@@ -49,7 +51,7 @@ def bessel_scaled(x: Array) -> Array:
 
 
 def _polynomial(coefficients: list[float], x: Array) -> Array:
-    """Polynomial in x by Horner's rule; the first coefficient is the constant."""
+    """Polynomial in x by Horner's rule; the first coefficient is the constant term."""
     total = 0.0 * x
     for each in reversed(coefficients):
         total = total * x + each
@@ -59,12 +61,15 @@ def _polynomial(coefficients: list[float], x: Array) -> Array:
 def longitudinal(sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Array) -> Array:
     """M_p of section Longitudinal Scattering, in a form that neither overflows nor cancels.
 
-    The printed form is M = exp(-sin_i sin_o / v) I_0(x) / (2 v sinh(1 / v)), x = cos_i cos_o / v. I_0 is even, so
-    |cos_i| is correct for inclinations tilted beyond [-pi/2, pi/2]. With e^x taken out of I_0 and e^(1/v) of 2 sinh:
+    The published form is M = exp(-sin_i sin_o / v) I_0(x) / (2 v sinh(1 / v)), where
+    x = cos_i cos_o / v. I_0 is even, so |cos_i| can replace cos_i, which is negative for
+    inclinations tilted beyond [-pi/2, pi/2]. To avoid an overflow, exp(x) is factored out of I_0(x)
+    and exp(1 / v) out of 2 sinh(1 / v):
 
         M = exp(-(1 + sin_i sin_o - |cos_i| cos_o) / v) (exp(-x) I_0(x)) / (v (1 - exp(-2 / v)))
 
-    The bracket is d^2 / 2, where d is the distance between (|cos_i|, sin_i) and (cos_o, -sin_o).
+    1 + sin_i sin_o - |cos_i| cos_o is computed as d^2 / 2, where d is the distance between the
+    points (|cos_i|, sin_i) and (cos_o, -sin_o).
     """
     xp = array_namespace(sin_i, sin_o, v)
     cos_i = xp.abs(cos_i)
@@ -76,9 +81,10 @@ def longitudinal(sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Arra
 def azimuthal(phi: Array, s: Array) -> Array:
     """N_p of section Azimuthal Scattering at x = phi - Phi_p, wrapped into [-pi, pi].
 
-    The printed form is l(x, s) / (L(pi, s) - L(-pi, s)) with the logistic density l, its integral
-    L = 1 / (1 + e^(-x/s)), and s scaled by sqrt(pi / 8). l is even: f / (s (1 + f)^2) with f = e^(-|x|/s) never
-    overflows. L(pi) - L(-pi) = (1 - e^(-pi/s)) / (1 + e^(-pi/s)) = tanh(pi / (2 s)).
+    The published form is l(x, s) / (L(pi, s) - L(-pi, s)), where l is the logistic density,
+    L = 1 / (1 + e^(-x/s)) is its integral, and s is scaled by sqrt(pi / 8). Because l is even, l is
+    computed as f / (s (1 + f)^2) with f = e^(-|x|/s), which never overflows. The divisor is
+    L(pi) - L(-pi) = (1 - e^(-pi/s)) / (1 + e^(-pi/s)) = tanh(pi / (2 s)).
     """
     xp, scale = array_namespace(phi, s), SCALE * s
     wrapped = xp.remainder(phi + np.pi, 2.0 * np.pi) - np.pi
@@ -89,10 +95,12 @@ def azimuthal(phi: Array, s: Array) -> Array:
 
 @dataclass(frozen=True)
 class HairForm:
-    """A form of the model: the specification's by default; other values are variants in shaders.
+    """A form of the hair model. The default is the specification's; shaders have other forms.
 
-    - `tilts_light`: True to tilt the light's inclination by the cuticle angle, False the viewer's.
-    - `effective`: True if F uses the effective index at gamma_o, False if it uses the index `ior`.
+    - `tilts_light`: True to tilt the light's inclination by the cuticle angle, False to tilt the
+      viewer's inclination.
+    - `effective`: True to compute F at gamma_o with the effective index of refraction, False to
+      compute F at the actual angle of incidence with `ior`.
     """
 
     longitudinal: Callable[[Array, Array, Array, Array, Array], Array] = longitudinal  # M_p
@@ -100,7 +108,7 @@ class HairForm:
     limits: tuple[float, float] = (0.0, np.inf)  # range to which all roughnesses are clamped
     tilts_light: bool = True
     effective: bool = False
-    factor: float = 1.0 / np.pi  # factor of the sum over the lobes
+    factor: float = 1.0 / np.pi  # factor that multiplies the sum of the lobes
 
 
 TEXT = HairForm()
@@ -108,20 +116,20 @@ TEXT = HairForm()
 
 @dataclass(frozen=True)
 class Section:
-    """Angles of a view and of its refracted ray in the cross-section of the fiber."""
+    """Angles of a view direction and of the refracted ray in the cross-section of the fiber."""
 
     sin_o: Array  # sine and cosine of the viewer's inclination
     cos_o: Array
-    gamma_o: Array  # angles from the normal in the cross-section: view, refracted ray
+    gamma_o: Array  # angles between the normal and the view, and the normal and the refracted ray
     gamma_t: Array
 
 
 def section(wo: Array, ior: Array) -> tuple[Section, Array]:
-    """Cross-section of the fiber for a view, and effective index: section Hair Fiber Geometry.
+    """Angles of section Hair Fiber Geometry for a view, and the effective index of refraction.
 
-    The specification leaves the offset h = sin(gamma_o) to the renderer. Here, as in MaterialX's
-    shaders, h is taken at the point whose normal is +z. For a view along the fiber, h is 0. If the
-    index is below 1 and no ray enters, F is 1 and gamma_t has no effect.
+    The specification lets the renderer choose the offset h = sin(gamma_o). As in MaterialX's
+    shaders, h is that of the point with normal +z. For a view along the fiber, h is 0. If `ior` is
+    below 1 and no light enters the fiber, F is 1 and gamma_t has no effect.
     """
     xp, least = array_namespace(wo, ior), max(LEAST_DIVISOR, arrays.least_normal(wo))
     sin_o, cos_o = wo[0], arrays.hypot(wo[1], wo[2])
@@ -135,7 +143,10 @@ def section(wo: Array, ior: Array) -> tuple[Section, Array]:
 def attenuations(
     view: Section, effective: Array, ior: Array, absorption: Array, form: HairForm
 ) -> Array:
-    """A_p of the four lobes, (4, C, ...), for absorptions (C, ...): section Attenuation Factors."""
+    """A_p of the four lobes, (4, C, ...), by section Attenuation Factors.
+
+    - `absorption` (C, ...): Absorption per radius of the fiber.
+    """
     xp = array_namespace(view.sin_o, ior, absorption)
     least = max(LEAST_DIVISOR, arrays.least_normal(ior))
     cos_gamma = xp.cos(view.gamma_o)
@@ -154,7 +165,7 @@ def attenuations(
     T = xp.exp(-absorption * path)
     pass_through = xp.square(1.0 - F)
     rest = 1.0 - F * T
-    # At F = T = 1, A_TRRT+ has the limit 0.
+    # If F and T are 1, the quotient A_TRRT+ is 0 / 0, and the limit is 0.
     A_TRRT = pass_through * F**2 * T**3 / xp.where(rest > 0.0, rest, 1.0)
     return xp.stack([F + 0.0 * T, pass_through * T, pass_through * F * T**2, A_TRRT])
 
@@ -168,7 +179,10 @@ def distribution(
     lobe: int,
     form: HairForm,
 ) -> Array:
-    """M_p N_p of a lobe; `roughness` (2, ...) is v, s: Cuticle Tilt, Longitudinal, Azimuthal Scattering."""
+    """M_p N_p of a lobe, by the sections Cuticle Tilt, Longitudinal and Azimuthal Scattering.
+
+    - `roughness` (2, ...): Longitudinal variance v and azimuthal scale s.
+    """
     xp, (low, high) = array_namespace(wo, wi, alpha), form.limits
     v, s = (xp.minimum(xp.maximum(each, low), high) for each in roughness)
     sin_i, cos_i, sin_o, cos_o = wi[0], arrays.hypot(wi[1], wi[2]), view.sin_o, view.cos_o
@@ -186,7 +200,7 @@ def distribution(
     return M * azimuthal(phi - exit_angle, s)
 
 
-HAIR_BLOCK = 4096  # elements per block; few, since each needs much memory
+HAIR_BLOCK = 4096  # elements per block, which is small because each element needs much memory
 TINTS, ROUGHNESSES = (
     tuple(f"{prefix}_{lobe}" for lobe in ("R", "TT", "TRT")) for prefix in ("tint", "roughness")
 )
@@ -198,16 +212,22 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
 
         f = 1/pi (t_R A_R M_R N_R + t_TT A_TT M_TT N_TT + t_TRT (A_TRT M_TRT N_TRT + A_TRRT+ M_TRT / 2pi))
 
-    - `**inputs`: Inputs of the node; omitted ones have its defaults. `tint_R`, `tint_TT`, `tint_TRT` (..., C), in
-      [0, 1]; `ior` (...), in [0, 1e50]; `roughness_R`, `roughness_TT`, `roughness_TRT` (..., 2), longitudinal
-      variance in square radian and azimuthal scale in radian, in [1e-12, 1e12]; `cuticle_angle` (...), in [0, 1];
-      `absorption_coefficient` (..., C), per radius of the fiber, in [0, 1e50]. `form` is a `HairForm`.
+    Every keyword argument may be omitted and then has the node's default:
 
-    Result (..., C): in 1/sr. As in the specification, it does not include a cosine of the light; its
-    integral over all lights is 1/pi if nothing is absorbed and the cuticle has no tilt. Roughness
-    (0, 0) is a pure mirror, a delta function, and is rejected. F uses the index `ior`, as in
-    [Chiang2016]; the text may also be read as the effective index. Accuracy: relative error below
-    1e-13 / min(sqrt(v), s), or absolute error below 1e-300. [MaterialX2026].
+    - `tint_R`, `tint_TT`, `tint_TRT` (..., C): Tints of the lobes, in [0, 1].
+    - `ior` (...): Index of refraction of the fiber, in [0, 1e50].
+    - `roughness_R`, `roughness_TT`, `roughness_TRT` (..., 2): Longitudinal variance in square
+      radians and azimuthal scale in radians, in [1e-12, 1e12].
+    - `cuticle_angle` (...): In [0, 1]; 0.5 is no tilt.
+    - `absorption_coefficient` (..., C): Absorption per radius of the fiber, in [0, 1e50].
+    - `form`: A `HairForm`.
+
+    Result (..., C): in 1/sr, without a cosine of the light, as in the specification. The integral
+    of the result over all wi is 1/pi if nothing is absorbed and the cuticle has no tilt. Roughness
+    (0, 0) would be a mirror, a delta function, and is rejected. F uses `ior`, as in [Chiang2016],
+    although the specification can also be understood to mean the effective index of refraction.
+    Accuracy: the relative error is below 1e-13 / min(sqrt(v), s), or the absolute error is below
+    1e-300. [MaterialX2026].
 
         >>> chiang_hair_bcsdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]).round(6)
         array([0.137704, 0.137704, 0.137704])
@@ -218,7 +238,7 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
     numbers = {name: vectors.pop(name) for name in ("ior", "cuticle_angle")}
     colors = {name: vectors[name] for name in (*TINTS, "absorption_coefficient")}
 
-    # TRRT+ has the tint and the roughness of TRT.
+    # The lobe TRRT+ has the tint and the roughness of the lobe TRT.
     def formula(wo: Array, wi: Array, **inputs: Array) -> Array:
         ior, alpha = inputs["ior"], np.pi * (inputs["cuticle_angle"] - 0.5)
         view, effective = section(wo, ior)
@@ -245,11 +265,11 @@ def chiang_hair_attenuation(
 ) -> Array:
     """Attenuation factors A_R, A_TT, A_TRT and A_TRRT+ for a view.
 
-    - `ior` (...): Index of the fiber, in [0, 1e50].
-    - `absorption_coefficient` (..., C): Per radius of the fiber, in [0, 1e50].
+    - `ior` (...): Index of refraction of the fiber, in [0, 1e50].
+    - `absorption_coefficient` (..., C): Absorption per radius of the fiber, in [0, 1e50].
 
-    Result (..., C, 4): in [0, 1]. The factors sum to 1 without absorption, and to less with it.
-    [MaterialX2026], Chiang Hair Model, Attenuation Factors.
+    Result (..., C, 4): in [0, 1]. The sum of the four factors is 1 without absorption, and less
+    than 1 with absorption. [MaterialX2026], Chiang Hair Model, section Attenuation Factors.
 
         >>> chiang_hair_attenuation([0.0, 0.0, 1.0], 1.55, 0.0).round(6)
         array([[0.046521, 0.909123, 0.042293, 0.002063]])
@@ -282,7 +302,7 @@ DEFAULTS: dict[str, float | tuple[float, ...]] = {
 
 
 def _checked(inputs: dict[str, ArrayLike], wo: arrays.Numbers) -> dict[str, Array]:
-    """All inputs of the node, checked, as arrays of wo's library; colors are (..., C)."""
+    """All inputs of the node, validated, as arrays of the library of `wo`; colors are (..., C)."""
     if unknown := sorted(set(inputs) - set(DEFAULTS)):
         raise TypeError(f"inputs must be among {', '.join(DEFAULTS)}; got {', '.join(unknown)}")
     values = {}
@@ -307,15 +327,16 @@ def chiang_hair_roughness(
     scale_tt: ArrayLike = 0.5,
     scale_trt: ArrayLike = 2.0,
 ) -> tuple[Array, Array, Array]:
-    """Longitudinal variance and azimuthal scale, without factor sqrt(pi / 8), of R, TT and TRT.
+    """Longitudinal variance v and azimuthal scale s of the lobes R, TT and TRT.
 
         v = (0.726 l + 0.812 l^2 + 3.7 l^20)^2,  s = 0.265 a + 1.194 a^2 + 5.372 a^22;
         R (v, s), TT (scale_tt^2 v, s), TRT (scale_trt^2 v, s)
 
     - `longitudinal`, `azimuthal` (...): Roughnesses l and a, in [0, 1].
-    - `scale_tt`, `scale_trt` (...): In [0, 1e50].
+    - `scale_tt`, `scale_trt` (...): Factors of the roughness of TT and TRT, in [0, 1e50].
 
-    [MaterialX2026], Hair Roughness Conversion Equations; [Chiang2016], the fits of both roughnesses.
+    s does not include the factor sqrt(pi / 8). [MaterialX2026], section Hair Roughness Conversion
+    Equations; [Chiang2016], fits of both roughnesses.
 
         >>> r, tt, trt = chiang_hair_roughness(0.1, 0.2)
         >>> r.round(6), tt.round(6), trt.round(6)
@@ -344,11 +365,13 @@ def deon_hair_absorption_from_melanin(
         m = -log(1 - concentration)
 
     - `melanin_concentration`, `melanin_redness` (...): In [0, 1) and in [0, 1].
-    - `eumelanin_color`, `pheomelanin_color` (..., 3): Transmittance of one fiber radius of the pigment, in (0, 1].
+    - `eumelanin_color`, `pheomelanin_color` (..., 3): Transmittance of the pigment along one fiber
+      radius, in (0, 1].
 
-    The sum is from [dEon2011]. The specification does not say how concentration and redness
-    determine the amounts; the equation for them is from MaterialX's implementations.
-    [MaterialX2026], deon_hair_absorption_from_melanin.
+    That the absorptions of both pigments are added is from [dEon2011]. The specification does not
+    say how concentration and redness determine the amount of each pigment. The equation for the
+    amounts is from MaterialX's implementations. [MaterialX2026], section
+    deon_hair_absorption_from_melanin.
 
         >>> colors = np.exp(-np.array(EUMELANIN)), np.exp(-np.array(PHEOMELANIN))
         >>> deon_hair_absorption_from_melanin(0.25, 0.5, *colors).round(6)
@@ -373,14 +396,14 @@ def deon_hair_absorption_from_melanin(
 def chiang_hair_absorption_from_color(
     hair_color: ArrayLike, azimuthal_roughness: ArrayLike
 ) -> Array:
-    """Absorption coefficient that gives hair this color after multiple scattering.
+    """Absorption coefficient of hair that has this color after multiple scattering.
 
         sigma_a = (log(color) / (5.969 - 0.215 b + 2.532 b^2 - 10.73 b^3 + 5.574 b^4 + 0.245 b^5))^2
 
     - `hair_color` (..., 3): Scattering color, in (0, 1].
-    - `azimuthal_roughness` (...): b, in [0, 1].
+    - `azimuthal_roughness` (...): Azimuthal roughness b, in [0, 1].
 
-    [Chiang2016], the fit of the absorption; [MaterialX2026], chiang_hair_absorption_from_color.
+    [Chiang2016], fit of the absorption; [MaterialX2026], section chiang_hair_absorption_from_color.
 
         >>> chiang_hair_absorption_from_color([0.5, 0.2, 0.1], 0.2).round(6)
         array([0.013569, 0.073156, 0.149739])

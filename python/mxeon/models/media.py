@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Emission, media, subsurface scattering, the shader nodes, and black bodies of [MaterialX2026].
+"""Emission, media, subsurface scattering, `surface` and black bodies of [MaterialX2026].
 
-Radiances are per channel, in any unit. Directions point away from the surface, normal +z, or in media away from the
-point of scattering: undeflected light has wi = -wo. A view below the horizon sees the back of the surface.
-`measured_edf` has no function here: its values come from a file.
+Radiances are per channel, in any unit. Directions point away from the surface, whose normal is +z.
+In media, directions point away from the point of scattering, so undeflected light has wi = -wo. A
+view below the horizon sees the back of the surface. There is no function for `measured_edf`,
+because the values of this node come from a file.
 
 - `wo`, `wi` (..., 3): Unit vectors to 1e-6; z may be negative.
-- `radiance` (..., C): c per channel, in [0, 1e50]; a conical emitter has it inside the cone.
-- `inner_angle`, `outer_angle` (...): Full angles of the cones at which the falloff starts and ends, in degrees, in
-  [0, 360].
+- `radiance` (..., C): Radiance c per channel, in [0, 1e50]; a cone's radiance is c inside the cone.
+- `inner_angle`, `outer_angle` (...): Full angles of the cones at which the falloff starts and ends,
+  in degrees, in [0, 360].
 - `color0`, `color90` (..., C): Factors along the normal and at grazing, in [0, 1].
-- `exponent` (...): q, in [0, 1e50]; with 0 the factor is `color90` everywhere.
+- `exponent` (...): Exponent q, in [0, 1e50]. With exponent 0, the factor is always `color90`.
 - `absorption`, `scattering`: Coefficients per channel in 1/m, in [0, 1e50].
-- `g`: Mean cosine of the deflection, in (-1, 1); at -1 and 1 the phase function would be a delta function.
+- `g`: Mean cosine of the deflection, in (-1, 1). For -1 and 1, the phase function would be a delta
+  function.
 - `temperature` (...): In kelvin, in [1, 1e9].
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
@@ -31,15 +33,15 @@ from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespac
 from mxeon.models.core.colorimetry import CIE_1931, WAVELENGTHS, XYZ_TO_REC709
 from mxeon.models.core.quadrature import unit_rule
 
-HALF_TURN = np.pi / 360.0  # converts a full cone angle in degrees to its half in radian
+HALF_TURN = np.pi / 360.0  # converts a cone's full angle in degrees to its half angle in radians
 
 
 @any_array
 def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
     """Radiance L_e = c of a surface that emits equally in all directions.
 
-    The equation does not distinguish sides, so the back emits equally. [MaterialX2026], section
-    `uniform_edf`, Uniform Emission Equation.
+    The specification's equation does not distinguish the sides of the surface, so both sides emit.
+    [MaterialX2026], section `uniform_edf`, Uniform Emission Equation.
 
         >>> uniform_edf([0.6, 0.0, 0.8], [0.5, 2.0])
         array([0.5, 2. ])
@@ -52,12 +54,13 @@ def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
 def conical_edf(
     wo: ArrayLike, radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: ArrayLike
 ) -> Array:
-    """Radiance of a surface that emits inside a cone; below the horizon the cosine counts as 0.
+    """Radiance of a surface that emits inside a cone.
 
         L_e = c smoothstep(c_out, c_in, cos)    if outer_angle > inner_angle
         L_e = c if cos >= c_in, else 0          otherwise
 
-    [MaterialX2026], section `conical_edf`, Conical Falloff Equations.
+    c_in and c_out are the cosines of half the inner and outer angles. For a view below the horizon,
+    cos counts as 0. [MaterialX2026], section `conical_edf`, Conical Falloff Equations.
 
         >>> conical_edf([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]], [2.0], 60.0, 90.0).round(6)
         array([[2.      ],
@@ -80,8 +83,9 @@ def generalized_schlick_edf(
 
         L_e = (r_0 + (r_90 - r_0) (1 - cos)^q) L_base
 
-    The back uses |cos|: the printed curve would leave the range between both factors at negative cosines.
-    [MaterialX2026], section `generalized_schlick_edf`, Generalized Schlick Emission Equations.
+    |cos| replaces a negative cos, for which the published factor would not lie between r_0 and
+    r_90. [MaterialX2026], section `generalized_schlick_edf`, Generalized Schlick Emission
+    Equations.
 
         >>> generalized_schlick_edf([0.6, 0.0, 0.8], [2.0], [1.0], [0.0], 1.0).round(6)
         array([1.6])
@@ -94,12 +98,12 @@ def generalized_schlick_edf(
 
 
 def cone_cosine(angle: Array) -> Array:
-    """Cosine of half of a full angle in degrees, exactly 0 at 180."""
+    """Cosine of half of an angle in degrees, which is exactly 0 for 180 degrees."""
     return array_namespace(angle).sin(HALF_TURN * (180.0 - angle))
 
 
 def cone_width(inner: Array, outer: Array) -> Array:
-    """Difference c_in - c_out of the cones' cosines, as a product of sines that does not cancel."""
+    """Difference c_in - c_out of the cosines of half angles, as a product that does not cancel."""
     half = 0.5 * HALF_TURN
     sin = array_namespace(inner, outer).sin
     return 2.0 * sin(half * (outer + inner)) * sin(half * (outer - inner))
@@ -108,7 +112,7 @@ def cone_width(inner: Array, outer: Array) -> Array:
 def _checked(
     wo: ArrayLike, colors: Mapping[str, ArrayLike], **numbers: ArrayLike
 ) -> tuple[Array, list[Array], list[Array]]:
-    """Cosine of wo in [-1, 1], and the result of `checked_colors`; all broadcast."""
+    """Cosine of wo's polar angle, in [-1, 1], and validated colors and numbers; all broadcast."""
     directions = arguments.checked_sphere("wo", wo)
     vectors, values = checked_colors(colors, **numbers)
     parts = dict(zip(colors, vectors, strict=True))
@@ -119,12 +123,12 @@ def _checked(
 
 @any_array
 def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayLike) -> Array:
-    """Share T = exp(-sigma_t t) of the radiance that crosses a homogeneous medium unscattered.
+    """Fraction T = exp(-sigma_t t) of the radiance that crosses a homogeneous medium unscattered.
 
-    - `distance`: t in m, in [0, 1e50].
+    - `distance`: Distance t in m, in [0, 1e50].
 
-    `absorption_vdf` has `scattering` 0. [MaterialX2026], sections `absorption_vdf`, Beer-Lambert Absorption, and
-    `anisotropic_vdf`, Extinction.
+    For the node `absorption_vdf`, `scattering` is 0. [MaterialX2026], sections `absorption_vdf`,
+    Beer-Lambert Absorption, and `anisotropic_vdf`, Extinction.
 
         >>> round(float(transmittance(0.5, 0.5, 2.0)), 6)
         0.135335
@@ -138,13 +142,13 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
 
 @any_array
 def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
-    """Phase function of Henyey and Greenstein, a density of `wi`, in 1/sr.
+    """Phase function of Henyey and Greenstein, which is the density of `wi`, in 1/sr.
 
         f_p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2)),  cos = -dot(wo, wi)
 
-    The denominator is computed as (1 - |g|)^2 + 2 |g| (1 - cos), with the cosine negated for g < 0, and 1 - g^2 as a
-    product: neither cancels near g = 1 or -1. [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase
-    Function.
+    To avoid cancellation near g = 1 and g = -1, 1 + g^2 - 2 g cos is computed as
+    (1 - |g|)^2 + 2 |g| (1 - cos), where cos is negated for g < 0, and 1 - g^2 as a product.
+    [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase Function.
 
         >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
         0.477465
@@ -154,12 +158,12 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
     lead_shape({"wo": views, "wi": lights}, {"g": mean})
     xp = array_namespace(views, lights, mean)
     side = xp.where(mean < 0.0, -1.0, 1.0)[..., np.newaxis]
-    difference = 1.0 * views + side * lights  # zero at the most likely deflection
+    difference = 1.0 * views + side * lights  # 0 for the most likely wi
     return _phase(0.5 * xp.sum(difference**2, axis=-1), mean)[()]
 
 
 def _phase(less: Array, g: Array) -> Array:
-    """Phase function; `less` is 1 - cos for g >= 0 and 1 + cos for g < 0."""
+    """Henyey-Greenstein phase function; `less` is 1 - cos for g >= 0, and 1 + cos for g < 0."""
     xp = array_namespace(less, g)
     size = xp.abs(g)
     square = (1.0 - size) ** 2 + 2.0 * size * less
@@ -168,11 +172,11 @@ def _phase(less: Array, g: Array) -> Array:
 
 @any_array
 def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLike) -> Array:
-    """Radiance O (L_e + L_s) of a surface, without the share 1 - O of the light from behind.
+    """Radiance O (L_e + L_s) of a surface, without the fraction 1 - O of the light from behind.
 
-    - `emission`, `scattered` (..., C): L_e of its EDF, and L_s, the integral of its BSDF over the
-      light, per channel, in [0, 1e50].
-    - `opacity` (...): O, the share of the footprint that the material covers, in [0, 1].
+    - `emission`, `scattered` (..., C): L_e, the emission of the surface, and L_s, the light that
+      the surface scatters, per channel, in [0, 1e50].
+    - `opacity` (...): O, the fraction of the surface that the material covers, in [0, 1].
 
     [MaterialX2026], section `surface`, Surface Shading Equation.
 
@@ -184,8 +188,9 @@ def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLi
     return covered * (emitted + light)
 
 
-BLUR_NODES, PANELS = 50, 40  # nodes per panel; panels, many since the integrand has a kink
-FAR = 3.0  # length of the profile's second exponential, divided by the first
+# Number of nodes per panel, and number of panels, which is high because the integrand has a kink.
+BLUR_NODES, PANELS = 50, 40
+FAR = 3.0  # length of the profile's second exponential, divided by the length of the first
 
 
 @any_array
@@ -195,12 +200,14 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
         R(r) = (exp(-r / l) + exp(-r / (3 l))) / (8 pi l r)
         W(mu) = int C'(r) c(mu, r) dr / C(2),  c = mean of max(cos(theta), 0) at the distance r
 
-    - `mu`: Cosine of the light with the normal, in [-1, 1].
-    - `reach`: Mean free path divided by the sphere's radius, in [1e-150, 1e150]; as it vanishes, W becomes max(mu, 0).
+    - `mu`: Cosine of the angle between the light and the normal, in [-1, 1].
+    - `reach`: Mean free path divided by the sphere's radius, in [1e-150, 1e150]. For a vanishing
+      mean free path, W is max(mu, 0).
 
-    The mean of W over the sphere is 1/4, as for max(mu, 0). Distances are chords through the sphere, as in the
-    specification; the profile is normalized over chords up to 2. Accuracy: absolute error below 1e-6.
-    [MaterialX2026], Normalized Diffusion Profile; [Christensen2015].
+    The mean of W over the sphere is 1/4, the mean of max(mu, 0). As in the specification, distances
+    are chords through the sphere. The profile is normalized over chords up to 2, the diameter.
+    Accuracy: the absolute error is below 1e-6. [MaterialX2026], section Normalized Diffusion
+    Profile; [Christensen2015].
 
         >>> diffusion_blur([-0.5, 0.0, 1.0], 0.1).round(4)
         array([0.0097, 0.074 , 0.9344])
@@ -211,7 +218,7 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
 
 
 def blur_to(mu: Array, reach: Array, far: float) -> Array:
-    """`diffusion_blur` of valid arrays; `far` is the ratio of the exponentials' lengths."""
+    """`diffusion_blur` for valid arrays; `far` is the ratio of the lengths of both exponentials."""
     reach = reach[..., np.newaxis]
     (first, share_1), (second, share_2) = (_exponential(mu, each) for each in (reach, far * reach))
     total = 0.25 * share_1 + 0.75 * share_2
@@ -219,12 +226,12 @@ def blur_to(mu: Array, reach: Array, far: float) -> Array:
 
 
 def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
-    """Blurred cosine for one exponential of the profile, and its share on the sphere."""
+    """Blurred cosine for one exponential, and the part of the exponential for chords up to 2."""
     xp, rule = array_namespace(mu, reach), unit_rule(BLUR_NODES, PANELS)
     u, weights = (like(each, reach) for each in rule)
     share = -xp.expm1(-2.0 / reach)
     distance = xp.minimum(-reach * xp.log1p(-u * share), 2.0)
-    # Mean of max(cos(theta), 0) over the circle on the unit sphere at this distance from the point.
+    # Compute the mean of max(cos(theta), 0) over the circle of all points at this distance.
     mu, squared = mu[..., np.newaxis], distance * distance
     along = mu * (1.0 - 0.5 * squared)
     across = arrays.root(at_least_0((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared)))
@@ -235,11 +242,13 @@ def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
 
 # Second radiation constant h c / k_B in m K, exact in the SI of 2019.
 SECOND = 6.62607015e-34 * 299792458.0 / 1.380649e-23
-NANOMETER = 1e-9  # unit: m
+NANOMETER = 1e-9  # one nanometer in meters
 LUMINANCE = np.linalg.inv(XYZ_TO_REC709)[1]  # weights of the linear Rec. 709 channels in Y
 
-# Cubic fits of a black body's chromaticity, 1667 K to 25000 K, highest power first. KANG_X gives x from
-# 1000 K / T, below and above 4000 K; KANG_Y gives y from x, below 2222 K, below 4000 K and above.
+# Cubic polynomials for the chromaticity of a black body from 1667 K to 25000 K, highest power first.
+# The coordinate x is a polynomial in 1000 K / T; the rows of KANG_X are for temperatures below and
+# above 4000 K. The coordinate y is a polynomial in x; the rows of KANG_Y are for temperatures below
+# 2222 K, from 2222 K to 4000 K, and above 4000 K.
 KANG_X = (
     (-0.2661239, -0.2343589, 0.8776956, 0.179910),
     (-3.0258469, 2.1070379, 0.2226347, 0.240390),
@@ -255,9 +264,10 @@ KANG_Y = (
 def blackbody_xyz(temperature: ArrayLike) -> Array:
     """CIE 1931 XYZ of a black body, with Y = 1.
 
-    Result (..., 3). Sums over the observer's table in steps of 5 nm differ by less than 5e-5 from
-    sums in steps of 1 nm. Spectra are scaled by their largest exponential: cold bodies keep their
-    color although their radiance underflows in float64. [Planck1901]; ISO/CIE 11664-1.
+    Result (..., 3): Sums over the observer's table in steps of 5 nm, which differ by less than 5e-5
+    from sums in steps of 1 nm. Each spectrum is scaled by its largest exponential, so a cold body
+    has the right color although its radiance would underflow in float64. [Planck1901]; ISO/CIE
+    11664-1.
 
         >>> blackbody_xyz(6504.0).round(4)
         array([0.9688, 1.    , 1.1218])
@@ -265,8 +275,8 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
     kelvin = checked_numbers(temperature=temperature)[0][..., np.newaxis]
     xp = array_namespace(kelvin)
     exponent = SECOND / (like(NANOMETER * WAVELENGTHS, kelvin) * kelvin)
-    least = exponent[..., -1:]  # smallest exponent, at the longest wavelength
-    # Compute (exp(x) - 1) / exp(least). Only negligible terms reach the clamp.
+    least = exponent[..., -1:]  # the longest wavelength has the smallest exponent
+    # Compute (exp(x) - 1) / exp(least). Only negligible terms are clamped.
     growth = xp.exp(xp.minimum(exponent - least, 700.0)) * -xp.expm1(-exponent)
     xyz = xp.tensordot(like(WAVELENGTHS**-5.0, kelvin) / growth, like(CIE_1931, kelvin), axes=1)
     return xyz / xyz[..., 1:2]
@@ -276,10 +286,11 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
 def blackbody(temperature: ArrayLike) -> Array:
     """Color of a black body in linear Rec. 709, with luminance 1.
 
-    Result (..., 3): Channels are negative outside Rec. 709's gamut: blue below 1900 K, green below
-    964 K. The specification says "radiant emittance" without an equation. Radiant emittance grows with
-    the fourth power of the temperature, but implementations return a color of luminance 1, as here.
-    [MaterialX2026], blackbody; [Planck1901]; ISO/CIE 11664-1.
+    Result (..., 3): Colors outside the gamut of Rec. 709 have negative channels; blue is negative
+    below 1900 K, and green below 964 K. The specification calls the output "radiant emittance" and
+    has no equation. Radiant emittance is proportional to the fourth power of the temperature, but
+    implementations return a color of luminance 1, like this function. [MaterialX2026], section
+    blackbody; [Planck1901]; ISO/CIE 11664-1.
 
         >>> blackbody([2000.0, 6504.0]).round(3)
         array([[2.52 , 0.647, 0.02 ],
@@ -290,10 +301,11 @@ def blackbody(temperature: ArrayLike) -> Array:
 
 
 def kang_xyz(temperature: ArrayLike) -> Array:
-    """CIE 1931 XYZ of a black body by cubic fits, with Y = 1.
+    """CIE 1931 XYZ of a black body with Y = 1, approximated by cubic polynomials.
 
-    From 1667 K to 25000 K the errors of x and y are below 6e-4. MaterialX's GLSL also uses the fits
-    below 1667 K, where they are wrong: the color at 800 K is paler than at 1667 K. [Kang2002].
+    From 1667 K to 25000 K, the errors of x and y are below 6e-4. MaterialX's GLSL also uses the
+    polynomials below 1667 K, where they are wrong; the color at 800 K is paler than at 1667 K.
+    [Kang2002].
     """
     (kelvin,) = checked_numbers(temperature=temperature)
     warm, hot = (np.polyval(fit, 1000.0 / kelvin) for fit in KANG_X)

@@ -1,25 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sheen of [MaterialX2026], section `sheen_bsdf`: values in 1/sr and without the cosine, and albedos.
+"""The two sheen models of [MaterialX2026], section `sheen_bsdf`.
 
-The node's input `color` is a tint that scales the lobe. Albedos are for unit color.
+BRDFs are in 1/sr and without the cosine. The node's input `color` is a tint that multiplies the
+BRDF. Albedos are for color 1.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
 - `mu` (...): Cosine of the polar angle of wo, in [0, 1].
 - `color` (..., C): Tint per channel, in [0, 1]; a number is one channel.
-- `roughness` (...): In [0, 1]; Zeltner's sheen raises it to at least 0.01.
+- `roughness` (...): In [0, 1]. Zeltner's sheen raises a smaller roughness to 0.01.
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
-The directional albedo of the Conty-Kulla sheen is an integral over the half vector, at latitude l above the surface and
-azimuth phi from wo. The integral over phi has a closed form, used where it does not cancel; the one over l is a
-quadrature:
+The directional albedo of the Conty-Kulla sheen is an integral over the half vector, where l is the
+latitude above the surface and phi is the azimuth relative to wo. The integral over phi has a closed
+form, which is used where nothing cancels. The integral over l is computed by quadrature:
 
     E = integral of D(l) w mu_i / (mu_i + mu_o - mu_i mu_o) cos(l) dphi dl,
     w = wo . wh = mu_o sin(l) + s_o cos(l) cos(phi),  mu_i = 2 w sin(l) - mu_o
 
-It has no kink where wh is the normal. With sin(2 delta) = mu_o, the light is above the horizon for all phi if
-l >= pi/2 - delta; if delta <= l <= pi/2 - delta, for tan(phi / 2)^2 <= sin(2 (l - delta)) / sin(2 (l + delta)).
+The integrand has no kink where wh is the normal. Let sin(2 delta) = mu_o. If l >= pi/2 - delta, the
+light is above the horizon for all phi. If delta <= l <= pi/2 - delta, the light is above the
+horizon where tan(phi / 2)^2 <= sin(2 (l - delta)) / sin(2 (l + delta)).
 """
 
 from __future__ import annotations
@@ -36,7 +38,7 @@ from mxeon.models.diffuse import cosines
 # Smallest roughness of the Zeltner lobe: [MaterialX2026], Zeltner Sheen Model.
 ZELTNER_LEAST_ROUGHNESS = 0.01
 
-# Smallest roughness or sum of cosines used as a divisor, so that quotients do not overflow.
+# Smallest roughness or sum of cosines that is used as a divisor, so that quotients do not overflow.
 LEAST_DIVISOR = 1e-300
 
 
@@ -47,12 +49,12 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
         f = color D / (4 (mu_o + mu_i - mu_o mu_i)),
         D = (2 + 1 / roughness) sin(theta_h)^(1 / roughness) / (2 pi)
 
-    f is 0 at roughness 0, and for a half vector along the normal at any roughness. If both
-    directions graze (mu_o + mu_i below 1e-300), no limit exists and f counts as 0. Values are
-    limited to float64's largest number. The specification clamps nothing; MaterialX clamps
-    roughness to at least 0.005 and cosines to at least 1e-6. Accuracy: error below 66 / roughness
-    times 2^-53 of f + 1 / pi. [MaterialX2026], Conty-Kulla sheen equations; [ContyKulla2017],
-    Eq. (2).
+    f is 0 at roughness 0. At any roughness, f is 0 for a half vector along the normal. If both
+    directions graze the surface (mu_o + mu_i below 1e-300), f has no limit and counts as 0. f is
+    clamped to float64's largest number. The specification clamps nothing; MaterialX clamps
+    roughness to at least 0.005 and cosines to at least 1e-6. Accuracy: the error is below
+    (f + 1 / pi) 2^-53 times 66 / roughness. [MaterialX2026], Conty-Kulla sheen equations;
+    [ContyKulla2017], Eq. (2).
 
         >>> conty_kulla_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.017299, 0.069198])
@@ -62,14 +64,15 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
 
 @any_array
 def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: ArrayLike) -> Array:
-    """BRDF of the sheen of Zeltner, Burley and Chiang; negative where `zeltner_albedo_dir` is.
+    """BRDF of the sheen of Zeltner, Burley and Chiang; negative where E is negative.
 
         f = color E(mu_o) a^2 / (pi |M^-1 wi|^4),  M^-1 = (a 0 b; 0 a 0; 0 0 1)
 
-    f is not reciprocal. The specification gives f times the cosine; the cosine in D_o cancels it.
-    In the frame of M, wo has azimuth 0; along the normal, b is 0 and the frame does not matter.
-    Accuracy: as for `conty_kulla_brdf`. [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], where
-    wo is called omega_i.
+    f is not reciprocal. E is `zeltner_albedo_dir`. The specification's equation is for f times the
+    cosine, so the cosine of D_o is omitted. M is defined in the frame in which wo has azimuth 0. If
+    wo is the normal, the azimuth of the frame has no effect, because b is 0. The accuracy is that
+    of `conty_kulla_brdf`. [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], where wo is called
+    omega_i.
 
         >>> zeltner_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.002916, 0.011662])
@@ -79,14 +82,14 @@ def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: Arra
 
 @any_array
 def zeltner_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of the Zeltner sheen at unit color, in [-2.2e-5, 0.745].
+    """Directional albedo of the Zeltner sheen for color 1, in [-2.2e-5, 0.745].
 
         E = exp(-((mu - m) / s)^2 / 2) / (s sqrt(2 pi)) + o
 
-    The fit falls below 0 for roughness in [0.03, 0.132] away from grazing; neither specification nor
-    shaders clamp it. M keeps the sign of z, so the transformed cosine lies above the horizon, and E
-    is exactly the integral of `zeltner_brdf` times the cosine. [MaterialX2026], Zeltner Sheen Model,
-    Directional Albedo.
+    E is negative for roughness in [0.03, 0.132] and views that do not graze the surface; neither
+    the specification nor shaders clamp E. The matrix M keeps the sign of z, so no part of the
+    transformed cosine lies below the horizon, and E is exactly the integral of `zeltner_brdf` times
+    the cosine. [MaterialX2026], Zeltner Sheen Model, section Directional Albedo.
 
         >>> round(float(zeltner_albedo_dir(0.3, 0.5)), 6)
         0.315212
@@ -95,7 +98,7 @@ def zeltner_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
 
 def zeltner_matrix(mu: Array, roughness: Array) -> tuple[Array, Array]:
-    """Entries a and b of M^-1: [MaterialX2026], Zeltner Sheen Model, Fitted Coefficients."""
+    """Entries a and b of M^-1 by [MaterialX2026], Zeltner Sheen Model, Fitted Coefficients."""
     x, y = mu, array_namespace(mu, roughness).maximum(roughness, ZELTNER_LEAST_ROUGHNESS)
     a = (2.58126 * x + 0.813703 * y) * y / (1.0 + 0.310327 * x**2 + 2.60994 * x * y)
     slope = 0.0000254053 + 1.71228 * x - 1.71506 * x * y + 1.34174 * y**2
@@ -105,13 +108,14 @@ def zeltner_matrix(mu: Array, roughness: Array) -> tuple[Array, Array]:
 def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
     """BRDF of `conty_kulla_brdf`, (C, ...), for valid arrays."""
     xp = array_namespace(wo, wi, roughness)
-    least = max(LEAST_DIVISOR, arrays.least_normal(wo))  # least_normal is larger in float32
+    # In float32, the smallest normal number is larger than LEAST_DIVISOR.
+    least = max(LEAST_DIVISOR, arrays.least_normal(wo))
     mu_o, mu_i, _ = cosines(wo, wi)
     flat = xp.square(wo[..., 0] + wi[..., 0]) + xp.square(wo[..., 1] + wi[..., 1])
     upright = xp.square(mu_o + mu_i)
     total = flat + upright
     divisor = mu_o + mu_i - mu_o * mu_i
-    # Skip elements whose limit is 0. For NumPy, exp(-inf) yields the limit at flat = 0.
+    # Elements whose limit is 0 are skipped. With NumPy, exp(-inf) is the limit for flat = 0.
     counted = (roughness > 0.0) & (divisor >= least)
     smooth = counted & (flat > 0.0)
     roughness, flat = guarded(roughness, smooth, 1.0), guarded(flat, smooth, 1.0)
@@ -120,7 +124,7 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
     shape = 0.5 / xp.maximum(roughness, least)
     with np.errstate(divide="ignore", over="ignore"):
         ratio = flat / xp.maximum(total, least)
-        # log(sin(theta_h)^2) has two forms; use the one that does not cancel.
+        # log(sin(theta_h)^2) has two forms. Each element uses the form without cancellation.
         small = ratio < 0.5
         above = guarded(upright / xp.maximum(total, least), ~small, 0.5)
         log_sine = xp.where(small, xp.log(ratio), xp.log1p(-above))
@@ -136,7 +140,7 @@ def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Arr
 
 
 def zeltner_lobe(wo: Array, wi: Array, roughness: Array) -> Array:
-    """a^2 / |M^-1 wi|^4: pi times the density of sampled directions, without the cosine."""
+    """a^2 / |M^-1 wi|^4, which is pi times the density of sampled directions, divided by mu_i."""
     # Rotate the light into the frame in which wo has azimuth 0.
     xp = array_namespace(wo, wi, roughness)
     mu_o, mu_i, s = cosines(wo, wi)
@@ -150,7 +154,7 @@ def zeltner_lobe(wo: Array, wi: Array, roughness: Array) -> Array:
 
 
 def _zeltner_albedo(mu: Array, roughness: Array) -> Array:
-    """E of [MaterialX2026], Zeltner Sheen Model, Directional Albedo."""
+    """E of [MaterialX2026], Zeltner Sheen Model, section Directional Albedo."""
     xp = array_namespace(mu, roughness)
     x, y = mu, xp.maximum(roughness, ZELTNER_LEAST_ROUGHNESS)
     s = y * (0.0206607 + 1.58491 * y) / (0.0379424 + y * (1.32227 + y))
@@ -160,23 +164,28 @@ def _zeltner_albedo(mu: Array, roughness: Array) -> Array:
     return albedo
 
 
-# Largest cosine for the closed form of the inner integral, which cancels above; Gauss-Legendre does not.
+# Largest cosine for which the closed form of the integral over phi is used. For larger cosines, the
+# closed form would cancel, and Gauss-Legendre quadrature replaces it.
 STEEP = 0.25
 
 SHEEN_BLOCK = 2**8  # elements per block
-ALONG = 1e-8  # distance of a cosine from 1 within which it is extrapolated, for derivatives
+# Where the cosine differs from 1 by less than ALONG, the albedo is extrapolated, because the
+# elevation angle has no derivative along the normal.
+ALONG = 1e-8
 
 
 @any_array
 def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of the Conty-Kulla sheen at unit color.
+    """Directional albedo of the Conty-Kulla sheen for color 1.
 
         E(mu) = integral of D / (4 (mu + mu_i - mu mu_i)) mu_i over the hemisphere of wi
 
-    For roughness below 0.2099, E exceeds 1 at grazing, without a bound: it is about sqrt(1 / (2 pi roughness)) at
-    mu = 0. Shaders clamp E to 1; the specification does not say. At roughness 0, BRDF and E are 0, even at mu = 0,
-    where the limit is infinite. Accuracy for roughness >= 1e-4: relative error below 1e-11 at mu = 0, absolute error
-    below 1e-11 elsewhere. E(1) is 2^-p / (2 (p + 2)), p = 1 / (2 roughness). [MaterialX2026], Directional Albedo.
+    For roughness below 0.2099, E exceeds 1 near grazing; E(0) is about sqrt(1 / (2 pi roughness)),
+    which has no bound. Shaders clamp E to 1, which the specification does not mention. At roughness
+    0, the BRDF and E are 0, even at mu = 0, where the limit for vanishing roughness is infinite.
+    Accuracy for roughness >= 1e-4: the relative error is below 1e-11 at mu = 0, and the absolute
+    error is below 1e-11 for other mu. E(1) is 2^-p / (2 (p + 2)), where p = 1 / (2 roughness).
+    [MaterialX2026], section Directional Albedo.
 
         >>> round(float(conty_kulla_albedo_dir(1.0, 0.5)), 12)
         0.083333333333
@@ -197,7 +206,7 @@ def _albedo(mu: Array, roughness: Array) -> Array:
         return albedo
     above, rough = mu > STEEP, roughness > 0.0
     r = guarded(roughness, rough, 1.0)
-    # Along the normal, extrapolate from two cosines: angles have no derivative there.
+    # Near cosine 1, the albedo is extrapolated from two smaller cosines.
     step = xp.where(mu > 1.0 - ALONG, ALONG, 0.0)
     near, far = (_integral(guarded(mu - k * step, above, STEEP), r, True) for k in (1.0, 2.0))
     high = 2.0 * near - far
@@ -206,7 +215,7 @@ def _albedo(mu: Array, roughness: Array) -> Array:
 
 
 def _integral(mu: Array, roughness: Array, steep: bool) -> Array:
-    """Albedo for cosines above STEEP (`steep`) or up to STEEP; roughness above 0."""
+    """Albedo for positive roughness; `steep` is True for cosines above STEEP, else False."""
     xp, delta = array_namespace(mu, roughness), 0.5 * arrays.arcsine(mu)
     x, weight = (arrays.like(each, mu) for each in _rule())
     p = 0.5 / roughness
@@ -215,9 +224,10 @@ def _integral(mu: Array, roughness: Array, steep: bool) -> Array:
         (True, delta, 0.5 * np.pi - 2.0 * delta),
         (False, 0.5 * np.pi - delta, delta),
     ):
-        # At latitudes beyond 10 sqrt(roughness), the density is below exp(-50) of its maximum.
+        # At latitudes above 10 sqrt(roughness), the density is below exp(-50) times the maximum.
         width = xp.minimum(span, 10.0 * xp.sqrt(roughness))
-        above = width[..., np.newaxis] * x  # distances of the latitude from both ends
+        # `above` and `below` are the distances of the latitude from both ends of the interval.
+        above = width[..., np.newaxis] * x
         below = width[..., np.newaxis] * (1.0 - x if xp is not arrays.NUMPY else x[::-1])
         below = below + (span - width)[..., np.newaxis]
         latitude = low[..., np.newaxis] + above
@@ -234,12 +244,12 @@ def _integral(mu: Array, roughness: Array, steep: bool) -> Array:
 def _azimuths(
     mu: Array, latitude: Array, above: Array, below: Array, partial: bool, steep: bool
 ) -> Array:
-    """Integral of w mu_i / (mu_i + mu_o - mu_i mu_o) over phi, from 0 to the light's horizon."""
+    """Integral of w mu_i / (mu_i + mu_o - mu_i mu_o) over phi, from 0 to where mu_i is 0."""
     xp = array_namespace(mu, latitude)
     c, s = xp.sin(latitude), xp.cos(latitude)
     a, b = mu * c, root((1.0 - mu) * (1.0 + mu)) * s
     if partial:
-        # tan(phi / 2) = rise / fall; latitude + delta = pi / 2 - below
+        # The largest phi has tan(phi / 2) = rise / fall; latitude + delta is pi / 2 - below.
         rise, fall = root(xp.sin(2.0 * above)), root(xp.sin(2.0 * below))
     else:
         rise, fall = 0.0 * a + 1.0, 0.0 * a
@@ -252,7 +262,7 @@ def _azimuths(
 
 
 def _azimuths_gauss(mu: Array, c: Array, a: Array, b: Array, phi: Array) -> Array:
-    """The integral of `_azimuths` by Gauss-Legendre, for mu_i + mu_o - mu_i mu_o >= STEEP."""
+    """The integral in `_azimuths` by Gauss-Legendre, for mu_i + mu_o - mu_i mu_o >= STEEP."""
     cos, total = array_namespace(phi).cos, 0.0 * a
     for x, weight in zip(*np.polynomial.legendre.leggauss(24), strict=True):
         w = a + b * cos(0.5 * phi * (1.0 + float(x)))
@@ -264,15 +274,18 @@ def _azimuths_gauss(mu: Array, c: Array, a: Array, b: Array, phi: Array) -> Arra
 def _azimuths_closed(
     mu: Array, c: Array, a: Array, b: Array, phi: Array, rise: Array, fall: Array
 ) -> Array:
-    """The integral of `_azimuths` in closed form.
+    """The integral in `_azimuths` in closed form.
 
-    w (2 c w - m) / (k w + m^2) = (w - m / k) / (1 - m) + m^3 / ((1 - m) k) / (k w + m^2),
-    k = 2 c (1 - m), m = mu_o; and with t = tan(phi / 2), z = (q - r) t^2 / (q + r),
-    the integral of 1 / (q + r cos(phi)) is 2 t / (q + r) atan(sqrt(z)) / sqrt(z).
+    With m = mu_o, c = sin(l) and k = 2 c (1 - m), the integrand is
+
+        w (2 c w - m) / (k w + m^2) = (w - m / k) / (1 - m) + m^3 / ((1 - m) k) / (k w + m^2)
+
+    k w + m^2 has the form q + r cos(phi). With t = tan(phi / 2) and z = (q - r) t^2 / (q + r), the
+    integral of 1 / (q + r cos(phi)) is 2 t / (q + r) atan(sqrt(z)) / sqrt(z).
     """
     xp, k = array_namespace(mu, c), 2.0 * c * (1.0 - mu)
     q, r = k * a + xp.square(mu), k * b
-    # Take the roots of z's numerator and denominator separately, because t may be infinite.
+    # The square roots of z's numerator and denominator are separate, because t may be infinite.
     near, far = rise * root(xp.abs(q - r)), fall * root(q + r)
     ends, ahead = far > 0.0, q > r
     ratio = xp.where(ends, near / xp.where(ends, far, 1.0), np.inf)
@@ -286,7 +299,10 @@ def _azimuths_closed(
 
 @lru_cache(maxsize=1)
 def _rule() -> tuple[Array, Array]:
-    """Nodes and weights of a double-exponential rule on [0, 1]; reversed nodes are exact 1 - x."""
+    """Nodes x and weights of a double-exponential rule on [0, 1].
+
+    The reversed array of nodes holds 1 - x without cancellation.
+    """
     t = np.arange(-60, 61) * 0.055
     x = 1.0 / (1.0 + np.exp(-np.pi * np.sinh(t)))
     weight = 0.055 * np.pi * np.cosh(t) * x * x[::-1]
