@@ -78,7 +78,7 @@ def pixel_stage(shader: Shader) -> str:
 
 @lru_cache(maxsize=4)
 def visible(size: int, shape: str, margin: int = 0) -> VisiblePoints:
-    """Visible points of a shape at the pixels; see `mxeon.shaders.scene.Scene` for shapes."""
+    """Visible points of a shape at pixel centers; see `mxeon.shaders.scene.Scene` for shapes."""
     return visible_at(*pixel_centers(size, margin), shape)
 
 

@@ -33,8 +33,8 @@ VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axi
 # programs again for other environments.
 WHITE_TEXELS = np.ones((2, 2, 3), dtype=np.float32)
 
-# Number of directions in the sum of a microfacet lobe over the environment. The table in
-# docs/hosts.md shows errors and costs of such numbers. Only the environment's first mipmap is read.
+# Number of directions in the sum of a microfacet lobe over the environment. Errors and costs of
+# several numbers are in docs/hosts.md. Only the first mipmap of the environment is read.
 EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
 PICTURE_DIRECTIONS = 256
 DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # one direction, because the sums are 0

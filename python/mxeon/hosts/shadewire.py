@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""shadewire, a MaterialX compiler in Rust with its own closures; its GLSL runs as on the host `gl`.
+"""The compiler shadewire, written in Rust, which translates MaterialX with closures of its own.
 
-shadewire reads a document and returns a library of GLSL functions for a renderer to call. Inputs
-that vary are connected to geometric properties, whose functions the renderer has to define, so the
-returned text is unchanged.
+shadewire reads a document and returns a library of GLSL functions, which run as on the host `gl`.
+The returned text stays unchanged, because inputs that vary are connected to geometric properties. A
+renderer has to define a function for each of these properties.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ try:
 except ImportError:
     mtlx = None
 
-MODELS = ("surface", "surface_unlit")  # a tree of closures, or only emission
-SKIPPED = ": not evaluated"  # ends shadewire's comment on a lobe that it leaves black
+MODELS = ("surface", "surface_unlit")  # surfaces with a tree of closures or only emission
+SKIPPED = ": not evaluated"  # end of shadewire's comment on a lobe that stays black
 EMITTED = "shadewire_eval_emission(surface, V, N)"
 BSDF = "shadewire_eval_bsdf(surface, L, V, N)"
-# Expressions of the response by branch; 0 for branches in which shadewire's BSDFs do not respond.
+# Expressions of the response by branch. In some branches, the response of shadewire's BSDFs is 0.
 RESPONSES = {
     "direct": f"{BSDF}.response",
     "environment": "shadewire_eval_albedo(surface, V, N)",
@@ -56,13 +56,13 @@ vec3 shadewire_host_bitangent_world() { return cross(host_normal, host_tangent);
 PROPERTY = "{0} host_{1};\n{0} shadewire_host_geomprop_{1}() {{ return host_{1}; }}\n"
 TYPES = {"float": "float", "boolean": "bool", "integer": "int", "vector2": "vec2"}  # else vec3
 
-Properties: TypeAlias = Mapping[str, tuple[str, str]]  # input's key and type, by property
+Properties: TypeAlias = Mapping[str, tuple[str, str]]  # key and type of an input, by property
 
 
 class ShadewireHost(base.Host):
     name = "shadewire"
     target = "glsl"
-    default, fixed = Methods("prefilter"), True  # shadewire's albedos are MaterialX's fit
+    default, fixed = Methods("prefilter"), True  # shadewire uses MaterialX's fit of albedos
 
     def __init__(self) -> None:
         if mtlx is None:
@@ -134,9 +134,10 @@ class ShadewireHost(base.Host):
 
 
 def _connected(shader: Shader, varying: Collection[str]) -> tuple[str, Properties]:
-    """Text of a shader's document with the library's definitions.
+    """Text of a shader's document with the library's definitions, and the added properties.
 
-    The `varying` inputs read geometric properties; the renderer supplies the surface's frame.
+    Each of the `varying` inputs reads a geometric property, except inputs of the surface's frame,
+    which the renderer supplies.
     """
     document = mx.createDocument()
     document.copyContentFrom(shader.document)
@@ -164,9 +165,10 @@ def _connected(shader: Shader, varying: Collection[str]) -> tuple[str, Propertie
 
 
 def _compiled(document: str, material: str) -> str:
-    """shadewire's text, without its first line, for a document's material ("" for the only one).
+    """The text that shadewire generates for a material of a document, without the first line.
 
-    Raises NotRun if shadewire refuses the document; warns of a lobe that shadewire leaves black.
+    The name "" means the only material. Raises NotRun if shadewire refuses the document, and warns
+    of a lobe that shadewire leaves black.
     """
     try:
         ir = mtlx.to_ir(document, "", material or None, models=MODELS, values_as_uniforms=False)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Slang on a GPU or the CPU: generated Slang compiled by slangpy, in float32.
+"""Generated Slang, which slangpy compiles and runs in float32 on a GPU or the CPU.
 
-The generated text is unchanged; a compute kernel that follows repeats the statements that call the
-BSDF. Arguments arrive in buffers, one row per thread.
+The generated text is unchanged. A compute kernel after the text repeats the statements that call
+the BSDF. Arguments are read from buffers, one row per thread.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from mxeon.shaders import functions
 from mxeon.shaders.methods import GENERATED, TABLE_SIZE
 from mxeon.shaders.scene import Client
 
-Resource: TypeAlias = Any  # an object of slangpy, whose types are unknown if it is not installed
+Resource: TypeAlias = Any  # an object of slangpy, a package that may not be installed
 
 
 def _slangpy() -> Resource:
-    """slangpy, or None if it is not installed; without PyTorch, whose import takes two seconds."""
+    """The package slangpy, or None if slangpy is not installed. Loads no PyTorch, which is slow."""
     modules = cast(dict[str, object], sys.modules)
     unused = modules.setdefault("torch", None) is None  # makes slangpy skip PyTorch
     try:
@@ -46,7 +46,7 @@ slangpy = _slangpy()
 CLAMP = slangpy and slangpy.TextureAddressingMode.clamp_to_edge
 
 ENTRY = "mxeon_main"
-THREADS = 64  # threads in a group
+THREADS = 64  # number of threads in a group
 READ = {
     1: "{kind} {name} = {kind}(mxeon_{name}[mxeon_row]);",
     2: "float2 {name} = float2(mxeon_{name}[2 * mxeon_row], mxeon_{name}[2 * mxeon_row + 1]);",
@@ -75,7 +75,7 @@ void {entry}(uint3 mxeon_thread : SV_DispatchThreadID)
 }}
 """
 
-# GLSL names in the shader functions that Slang spells differently.
+# Definitions of GLSL names that occur in shader functions and that Slang lacks.
 GLSL = """typealias vec3 = float3;
 #define mix lerp
 """
@@ -100,7 +100,7 @@ void {ENTRY}(uint3 mxeon_thread : SV_DispatchThreadID)
 
 
 class SlangHost(base.Host):
-    """The first of DEVICES on which slangpy runs a kernel."""
+    """The package slangpy, on the first of DEVICES that can run a kernel."""
 
     name = "slang"
     target = "slang"
@@ -109,7 +109,7 @@ class SlangHost(base.Host):
     def __init__(self) -> None:
         if slangpy is None:
             raise NotRun(f"slang: slangpy is not installed; {install('slang')}")
-        slangpy.Logger.get().level = slangpy.LogLevel.error  # CPUs lack features it warns of
+        slangpy.Logger.get().level = slangpy.LogLevel.error  # no warnings about CPUs
         for device in DEVICES:
             self._kernels: dict[str, Resource] = {}
             self._names = itertools.count()
@@ -203,7 +203,7 @@ class SlangHost(base.Host):
     def _kernel(self, text: str) -> Resource:
         if text not in self._kernels:
             try:
-                name = f"mxeon_{next(self._names)}"  # names of failed texts cannot be reused
+                name = f"mxeon_{next(self._names)}"  # unique, even if a text fails
                 module = self._device.load_module_from_source(name, text)
                 program = self._device.link_program([module], [module.entry_point(ENTRY)])
                 self._kernels[text] = self._device.create_compute_kernel(program)
@@ -219,8 +219,9 @@ class SlangHost(base.Host):
     def _texture(self, texels: Array) -> Resource:
         """A texture of float32 texels (height, width, 3).
 
-        A CPU device reads the nearest texel and places the first and the last texel at 0 and 1.
-        Doubled texels have the same places as on a GPU.
+        A CPU device reads the nearest texel, and puts the first and the last texel at coordinates 0
+        and 1. Interpolated texels are added, so that every texel has the same coordinate as on a
+        GPU.
         """
         if self._device.info.type == slangpy.DeviceType.cpu:
             for axis in (0, 1):

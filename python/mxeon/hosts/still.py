@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Antialiased stills for presentation, on a floor where the shader ball casts a shadow.
+"""Antialiased pictures for presentation, with a floor on which the shader ball casts a shadow.
 
-A host's picture has one sample per pixel, at its center. Pixels that differ from a neighbor are
+A host's picture has one sample at the center of each pixel. Pixels that differ from a neighbor are
 redrawn with 16 samples. The floor is Lambertian paper that bends up into a wall behind the ball.
-The ball without its grooves, its foot, or a mesh block the light of the environment on the floor.
+A mesh, or the ball with its foot but without its grooves, blocks light that falls on the floor.
 """
 
 from __future__ import annotations
@@ -30,24 +30,25 @@ Mask = NDArray[np.bool_]
 
 SIDE = 4  # rows and columns of samples in a redrawn pixel
 BLOCKS = 64, 256  # columns and rows of redrawn pixels in one frame
-# A pixel is redrawn above this change of a display value, or below this cosine of normals.
+# Two neighboring pixels are redrawn if display values differ by more than the first number, or if
+# the cosine of the angle between normals is less than the second number.
 SMOOTH = 0.06, 0.98
 
-DIRECTIONS = 64  # environment directions for each of the 16 samples
-GRID = 96  # rows and columns of computed floor points, interpolated in between
-DRAWN = 512  # light directions for the floor
+DIRECTIONS = 64  # number of directions in the environment for each of the 16 samples
+GRID = 96  # rows and columns of the grid of floor points between which radiance is interpolated
+DRAWN = 512  # number of light directions for the floor
 PAPER = 0.5  # reflectance of the floor
 EDGE = FOOT_RADIUS + 0.01
-BEND = -1.0, -4.5  # foot-frame z where the paper begins to bend up, and where it is vertical
+BEND = -1.0, -4.5  # z in the foot's frame where the bend begins, and where the paper is vertical
 
 
 def still(host: Host, shader: Shader, scene: Scene) -> Array:
-    """Antialiased picture of a shader on a floor, linear, (size, size, 3)."""
+    """Antialiased linear picture of a shape with a shader on a floor, (size, size, 3)."""
     image = host.picture(shader, scene)
     mask = visible(scene.size, scene.shape).mask
     covered = mask.astype(np.float32)
     if isinstance(host, FragmentHost):
-        # A path tracer antialiases its picture, so only the coverage of edge pixels is computed.
+        # Pictures of a path tracer are antialiased already, but the coverage of pixels is unknown.
         traced = isinstance(host, PathTracerHost)
         for rows, columns in jagged(np.zeros_like(image) if traced else image, mask, scene):
             draw = None if traced else partial(host.shade, shader, scene, directions=DIRECTIONS)
@@ -62,7 +63,7 @@ def still(host: Host, shader: Shader, scene: Scene) -> Array:
 def jagged(image: Array, mask: Mask, scene: Scene) -> Iterator[tuple[Array, Array]]:
     """Rows and columns of pixels that differ from a neighbor, in batches."""
     display, normal = pbr_neutral(image), visible(scene.size, scene.shape).normal
-    differing = mask.copy()  # the shape may end within a pixel at the edge of the frame
+    differing = mask.copy()  # the shape may end within pixels at the frame's edge
     differing[1:-1, 1:-1] = False
     for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):
         first = slice(0, -down or None), slice(max(-right, 0), -max(right, 0) or None)
@@ -80,10 +81,10 @@ def jagged(image: Array, mask: Mask, scene: Scene) -> Iterator[tuple[Array, Arra
 def samples(
     draw: Callable[[VisiblePoints], Array] | None, scene: Scene, rows: Array, columns: Array
 ) -> tuple[Array, Array]:
-    """Means over the samples of pixels, 0 off the shape, and the share of samples on the shape.
+    """Weighted means over the samples of pixels, and the fraction of samples on the shape.
 
-    A sample of largest channel m weighs 1 / (1 + m): a mean of radiances would leave bright edges
-    jagged on a display.
+    Samples off the shape are 0. A sample whose largest channel is m has the weight 1 / (1 + m),
+    because equal weights would leave bright edges jagged on a display.
     """
     wide = BLOCKS[0]
     number = np.minimum(np.arange(-(-len(rows) // wide) * wide), len(rows) - 1).reshape(-1, wide)
@@ -114,7 +115,7 @@ def floor(scene: Scene) -> Array:
     points = np.hstack([x, y, depth]) @ OBJECT.T
     bend = np.clip((points[:, 2] - BEND[0]) / (BEND[1] - BEND[0]), 0.0, 1.0)
     bend = 0.5 * np.pi * bend**2 * (3.0 - 2.0 * bend)
-    if is_ball := scene.shape == "ball":  # extend the values next to the foot below it
+    if is_ball := scene.shape == "ball":  # extend the floor's values under the foot
         around = np.hypot(points[:, 0], points[:, 2])[:, None]
         points[:, ::2] *= np.maximum(EDGE / np.maximum(around, 1e-9), 1.0)
     normal = np.stack([0.0 * bend, np.cos(bend), np.sin(bend)], axis=-1)
@@ -130,9 +131,9 @@ def floor(scene: Scene) -> Array:
 
 
 def lights(scene: Scene) -> tuple[Floats, Floats]:
-    """Directions in the foot's frame that represent an environment, and each one's contribution.
+    """Directions that represent an environment, and the contribution of each direction.
 
-    The contribution is radiance times solid angle, (DRAWN, 3).
+    Directions are in the foot's frame. Contributions are radiance times solid angle, (DRAWN, 3).
     """
     sky = reduced(read_latlong(scene.environment))
     if sky.shape[:2] == (1, 1):
@@ -146,16 +147,16 @@ def lights(scene: Scene) -> tuple[Floats, Floats]:
 
 
 def blocked(points: Floats, towards: Floats) -> Mask:
-    """Whether the ball or its foot blocks directions from points of the floor."""
+    """Whether the ball or the foot blocks each direction from each point of the floor."""
     out = CENTER - points
     along = out @ towards.T
     ball = (along > 0.0) & ((out**2).sum(axis=-1)[:, None] - along**2 < RADIUS**2)
-    # Seen from above, the part of a ray below the foot's top is the segment from `start` by
-    # `reach`.
+    # Seen from above, the part of a ray that is lower than the top of the foot is a segment, which
+    # begins at `start` and extends by the vector `reach`.
     start = points[:, ::2]
     reach = towards[:, ::2] * 2.0 * FOOT_HEIGHT / np.maximum(towards[:, 1:2], 1e-6)
     squared, product = (reach**2).sum(axis=-1), start @ reach.T
-    # Nearest point of the foot's axis.
+    # Position on the segment, from 0 to 1, of the point nearest to the foot's axis.
     nearest = np.clip(-product / np.maximum(squared, 1e-12), 0.0, 1.0)
     distance = (start**2).sum(axis=-1)[:, None] + 2.0 * nearest * product + nearest**2 * squared
     foot = (distance < FOOT_RADIUS**2) & (towards[:, 1] > 0.0)

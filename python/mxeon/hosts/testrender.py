@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OSL's own programs: generated OSL compiled by oslc and rendered by testrender.
+"""Programs of Open Shading Language: oslc compiles generated OSL, and testrender renders a scene.
 
-Each pixel of a picture shows its own pair of directions; see `testrender_scene`. The program
+Each pixel of a picture shows a different pair of directions; see `testrender_scene`. The program
 testshade evaluates functions.
 """
 
@@ -28,9 +28,9 @@ from mxeon.jobs.signals import Temporary
 from mxeon.shaders.generation import Shader
 
 VARIABLES = {"oslc": "MXEON_OSLC", "testrender": "MXEON_TESTRENDER", "testshade": "MXEON_TESTSHADE"}
-TIMEOUT = 300.0  # seconds for one run
-LINES = 4  # quoted last lines of a program's output
-# The version is in the first line of the help: oslc has no option for it.
+TIMEOUT = 300.0  # maximum seconds for one run of a program
+LINES = 4  # number of lines that a message quotes from the end of a program's output
+# Matches the first line of the help, because oslc has no option that prints the version.
 TITLE = re.compile(r"^oslc -- (Open Shading Language) compiler (\S+)", re.MULTILINE)
 HELPERS = {
     "mxeon_root": "shader mxeon_root(closure color material = 0) { Ci = material; }",
@@ -41,7 +41,7 @@ OPTIONS = ("--center", "-d", "float", points.CALL, "-o", "result")
 
 
 class TestrenderHost(PairHost):
-    """oslc, testrender and testshade, on PATH or named by variables; see VARIABLES."""
+    """The programs oslc, testrender and testshade, on PATH or named by environment VARIABLES."""
 
     name = "testrender"
 
@@ -58,7 +58,7 @@ class TestrenderHost(PairHost):
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
-        """Radiance of pairs; the lamp adds no visible light to an emission."""
+        """Radiance of pairs of directions. The lamp is too faint to change an emission."""
         lit = light != SKY
         wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
         scene = scenes.pair_scene(wo, wi, points.side(len(wo)))
@@ -89,7 +89,7 @@ class TestrenderHost(PairHost):
         self._temporary.cleanup()
 
     def _compile(self, name: str, text: str) -> None:
-        """Compile a shader unless its text is unchanged."""
+        """Compile a shader, unless the shader was compiled before with the same text."""
         if self._compiled.get(name) == text:
             return
         (self._folder / f"{name}.osl").write_text(text, encoding="utf-8")
@@ -97,7 +97,7 @@ class TestrenderHost(PairHost):
         self._compiled[name] = text
 
     def _image(self, command: list[str]) -> NDArray[np.float64]:
-        """Pixels that a program writes as TIFF, since its EXR files have half floats."""
+        """Pixels of a picture that a program writes, in TIFF because EXR would have half floats."""
         picture = self._folder / "picture.tif"
         picture.unlink(missing_ok=True)
         output([*command, picture.name], self._folder)
@@ -133,10 +133,11 @@ def output(
     folder: Path | None = None,
     failure: type[MxeonError] = NotRun,
 ) -> str:
-    """Standard output of a program; its warnings become `RendererWarning`.
+    """Standard output of a program, whose warnings become `RendererWarning`.
 
-    Raises `failure` with the last lines of a failed program, and ShaderError if a successful
-    program reports an error: testrender continues without lobes that exceed its memory.
+    Raises `failure` with the last lines of output if the program fails. Raises ShaderError if a
+    program reports an error but succeeds, as testrender does after dropping lobes that exceed a
+    memory limit.
     """
     try:
         process = subprocess.run(

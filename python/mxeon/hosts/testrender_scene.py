@@ -2,12 +2,12 @@
 """A scene in testrender's format in which each pixel shows its own pair of directions.
 
 The camera sees a small triangle in each pixel, and a small light lies outside the picture. The
-place of a triangle on its pixel's ray sets the angle between view and light. The shaded frame is
-turned accordingly: shaders get their normal and tangent independently of the triangle.
+position of a triangle on the ray of a pixel sets the angle between view and light. The shading
+frame is rotated accordingly, because the normal and tangent of a shader are independent inputs.
 
     camera ------- d ------> P        wo = -d
-                            /         angle of wo and wi: foot point of the light + distance
-                            cot(angle) d
+                            /         P = F + |F| cot(angle of wo and wi) d, where F is the point of
+                           /          the ray nearest to the light
                        light
 """
 
@@ -23,15 +23,16 @@ from mxeon.hosts.pairs import CORNERS, TurnedPairs, Vectors, frames, unit
 
 SCENE, POINTS, LIGHT = "scene.xml", "points.obj", "light.obj"
 EYE = 40.0  # height of the camera above the light, which lies at the origin
-NEAREST = 0.5  # distance from the light to a ray
+NEAREST = 0.5  # least distance from the light to a ray
 CENTER = 1.5  # x of the picture's center, at the height of the light
 FOV = 5.725  # field of view in degrees; the frame is tan(FOV / 2) wide at distance 1
 LIGHT_RADIUS = 2.0**-18
-# Size of a triangle over the distance from the camera: above the camera's error of 2^-24, and too
-# small to hide the light.
+# Size of a triangle divided by the distance from the camera. The size exceeds the camera's error,
+# 2^-24, and is too small for the triangle to hide the light.
 TRIANGLE = 2e-5
 PLACE = "u, v"  # coordinates at which a point reads an image
-# Square roots of the paths per pixel: the light is a point within float32, the sky is not.
+# Square roots of the numbers of paths per pixel. One path is enough for the light, which is a point
+# within the precision of float32.
 LIGHT_SAMPLES, SKY_SAMPLES = 1, 8
 
 WORLD = """<World>
@@ -51,7 +52,7 @@ LIGHT_GROUP = f"""  <ShaderGroup name="light" is_light="yes">
     shader mxeon_light light ;
   </ShaderGroup>
   <Model filename="{LIGHT}" />"""
-# Resolution 0 omits the table of a uniform sky.
+# Resolution 0 means that testrender computes no table for sampling the sky, which is uniform.
 SKY_GROUP = """  <ShaderGroup name="sky">
     shader mxeon_sky sky ;
   </ShaderGroup>
@@ -62,11 +63,11 @@ SKY_GROUP = """  <ShaderGroup name="sky">
 class PairScene(TurnedPairs):
     size: int  # pixels on a side of the picture
     rays: Vectors  # unit vectors (N, 3) from the camera through the pixels' centers, row 0 first
-    points: Vectors  # (N, 3), rounded to float32
+    points: Vectors  # centers of the triangles, (N, 3), rounded to float32
 
     @property
     def irradiance(self) -> NDArray[np.float64]:
-        """Irradiance on a facing surface for a light of radiance 1, (N,)."""
+        """Irradiance on surfaces that face the light, whose radiance is 1, (N,)."""
         area = 0.5 * np.cross(*np.diff(_light_corners(), axis=0))
         squared = (self.points**2).sum(axis=1)
         return np.asarray(np.abs(self.points @ area) / squared**1.5)
@@ -81,8 +82,8 @@ class PairScene(TurnedPairs):
         return texts | ({LIGHT: _model(_light_corners()[np.newaxis])} if lit else {})
 
     def _model(self) -> str:
-        """A triangle around each point, seen edge-on by the light and face-on by the camera."""
-        # Axes in the plane of the triangle: towards the light, and perpendicular.
+        """A triangle around each point, edge-on to the light and with the front to the camera."""
+        # The first axis in the plane of a triangle points to the light.
         toward = -unit(self.points)
         across = unit(np.cross(toward, self.rays))  # the normal faces the camera
         reach = TRIANGLE * np.linalg.norm(self.points - [0.0, 0.0, EYE], axis=1)
@@ -95,34 +96,34 @@ class PairScene(TurnedPairs):
 
 
 def pair_scene(wo: Array, wi: Array, size: int) -> PairScene:
-    """Scene of pairs (N, 3), N <= size^2, with a sine of at least LEAST_SINE between wo and wi."""
+    """Scene that shows N <= size^2 pairs of directions, with sines of at least LEAST_SINE."""
     # Directions of the camera's rays.
     axis = (np.arange(size) + 0.5) / size - 0.5
     x, y = (each.ravel()[: len(wo), np.newaxis] for each in np.meshgrid(axis, -axis))
     ahead = unit(np.array([[CENTER, 0.0, -EYE]]))
     right = unit(np.cross(ahead, [[0.0, 1.0, 0.0]]))
-    width = np.tan(np.radians(FOV) / 2.0)  # testrender's frame is half as wide as usual
+    width = np.tan(np.radians(FOV) / 2.0)  # half the usual width for this field of view
     rays = unit(ahead + width * (x * right + y * np.cross(right, ahead)))
-    # Points that see the light at the required angle.
+    # Points at which the angle between view and light is as required.
     eye = np.array([0.0, 0.0, EYE])
     foot = eye - (rays @ eye)[:, np.newaxis] * rays
     across = np.cross(wo, wi)
     cotangent = (wo * wi).sum(axis=1) / np.linalg.norm(across, axis=1)
     points = foot + (np.linalg.norm(foot, axis=1) * cotangent)[:, np.newaxis] * rays
     points = points.astype(np.float32).astype(np.float64)
-    # Frames of both pairs, with the view as their first axis.
+    # Frames of the given pairs, and frames of view and light in the scene. The view is first.
     local = frames(wo, wi)
     world = frames(-rays, -unit(points))
     return PairScene(world @ np.swapaxes(local, 1, 2), size, rays, points)
 
 
 def _light_corners() -> Vectors:
-    """Corners of the light, facing the middle of the picture."""
+    """Corners of the light, which is a triangle that faces the center of the picture."""
     return LIGHT_RADIUS * np.array([(0.0, x, y) for x, y in CORNERS])
 
 
 def _model(corners: NDArray[np.float64], places: Vectors | None = None) -> str:
-    """Triangles (N, 3, 3) as an OBJ file, with their places in an image."""
+    """Text of an OBJ file with triangles (N, 3, 3) and one texture coordinate per triangle."""
     count = len(corners)
     rows = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in corners.reshape(-1, 3)]
     first = 3 * np.arange(count) + 1

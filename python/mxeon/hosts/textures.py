@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Images that shaders read: textures, environments and the irradiance of an environment.
+"""Images that shaders read, which are textures, environments, and the irradiance of environments.
 
-Images are float32 arrays (height, width, channels) as stored; shaders transform colors.
+Images are float32 arrays (height, width, channels) of stored values. Shaders transform colors.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from mxeon.shaders.document.policy import Policy
     from mxeon.shaders.generation import Shader
 
-IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
+IRRADIANCE_SIZE = 32  # rows of an irradiance map, which is smooth
 FIRST_TILE = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}  # MaterialX's names of the first tile
-FILES = 16  # size of the cache of images' values at points
-RADIANCE_SIZE = 64  # least rows and columns to which radiance is reduced before it is summed
+FILES = 16  # number of cached results of `texels_at`
+RADIANCE_SIZE = 64  # minimum rows and columns of a map that is reduced before summing radiance
 
 
 def texels_of(path: str | Path) -> int:
-    """The number of pixels of a texture, from its header."""
+    """The number of pixels of a texture, according to the header of the file."""
     spec = open_image(path).spec()
     if spec.nchannels > 4:
         raise ImageError(f"{path}: must have at most 4 channels; got {spec.nchannels}")
@@ -37,11 +37,12 @@ def texels_of(path: str | Path) -> int:
 
 
 def read_texture(path: str | Path) -> NDArray[np.float32]:
-    """Pixels of a texture, row 0 at the bottom, where MaterialX has v = 0.
+    """Pixels of a texture. Row 0 is at the bottom, where v = 0 in MaterialX.
 
-    For a set of textures, reads the tile [0, 1]^2, which contains all coordinates of a sphere. A
-    single channel is repeated for all colors, as in MaterialX, by a view with a last stride of 0.
-    Raises ImageError for more than four channels, and warns of non-finite values.
+    Only the tile [0, 1]^2 of a set of tiles is read, because this tile contains all texture
+    coordinates of a sphere. A single channel is repeated in all colors, as in MaterialX. The result
+    is then a view whose last stride is 0. Raises ImageError for more than four channels, and warns
+    of non-finite values.
     """
     for token, word in FIRST_TILE.items():
         path = str(path).replace(token, word)
@@ -72,7 +73,7 @@ def texels_at(path: str, texcoord: bytes) -> NDArray[np.float64]:
 
 
 def read_latlong(environment: float | str | Path | None) -> NDArray[np.float32]:
-    """Radiance of an environment as a latitude-longitude map, row 0 upwards (+y)."""
+    """Radiance of an environment as a latitude-longitude map whose row 0 is at +y."""
     if isinstance(environment, (str, Path)):
         pixels = read_image(environment)
         if pixels.shape[-1] < 3:
@@ -87,8 +88,8 @@ def read_latlong(environment: float | str | Path | None) -> NDArray[np.float32]:
 
 
 def _not_finite(pixels: NDArray[np.float32]) -> str:
-    """The first non-finite value and the number of such values, or ""."""
-    if np.isfinite([pixels.min(), pixels.max()]).all():  # NaN propagates to both
+    """Description of the first non-finite value and the number of such values, or ""."""
+    if np.isfinite([pixels.min(), pixels.max()]).all():  # a NaN makes both values NaN
         return ""
     finite = np.isfinite(pixels)
     place = np.unravel_index(finite.argmin(), finite.shape)
@@ -97,11 +98,11 @@ def _not_finite(pixels: NDArray[np.float32]) -> str:
 
 
 def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Irradiance over pi for every surface normal, as a latitude-longitude map.
+    """Irradiance divided by pi for every surface normal, as a latitude-longitude map.
 
         (1 / pi) integral of L(omega) max(0, n . omega) d omega
 
-    For a uniform environment it equals the radiance exactly.
+    The result for a uniform environment is exactly the radiance.
     """
     if radiance.shape[:2] == (1, 1):
         return radiance
@@ -118,7 +119,7 @@ def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def reduced(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Means over blocks of a map that has more than RADIANCE_SIZE rows or columns."""
+    """A map of means over blocks, with at least RADIANCE_SIZE rows and columns if possible."""
     high, wide = (max(1, size // RADIANCE_SIZE) for size in radiance.shape[:2])
     rows, columns = radiance.shape[0] // high, radiance.shape[1] // wide
     blocks = radiance[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)
@@ -127,7 +128,7 @@ def reduced(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def latlong_directions(rows: int, columns: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Directions and solid angles of a latitude-longitude map's pixels, as MaterialX maps them."""
+    """Directions of a latitude-longitude map's pixels in MaterialX, and relative solid angles."""
     polar = np.pi * (np.arange(rows) + 0.5) / rows
     azimuth = 2.0 * np.pi * ((np.arange(columns) + 0.5) / columns - 0.5)
     polar, azimuth = np.meshgrid(polar, azimuth, indexing="ij")
@@ -144,7 +145,7 @@ def image_files(shaders: Iterable[Shader]) -> tuple[str, ...]:
 
 
 def check_images(shaders: Iterable[Shader], policy: Policy) -> None:
-    """Refuse images of a document that are too large in total, before reading any.
+    """Refuse a document whose images are too large in total, before any image is read.
 
     Raises DocumentError if all images together have more pixels than the policy permits, and
     ImageError for an image that cannot be used.

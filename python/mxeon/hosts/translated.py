@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Vulkan's SPIR-V translated to languages that MaterialX does not generate, and run on Vulkan.
+"""Hosts that translate SPIR-V to HLSL or WGSL, and run the translated shaders on Vulkan.
 
-spirv-cross writes HLSL, which glslang or DXC, Microsoft's compiler, compiles to SPIR-V again. naga
-writes WGSL, which wgpu compiles. Values are float32.
+spirv-cross translates to HLSL, which glslang or Microsoft's compiler DXC compiles to SPIR-V again.
+naga translates to WGSL, which wgpu compiles. Values are float32.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ except ImportError:
 
 TRANSLATOR = ("spirv-cross", "--hlsl", "--shader-model", "60")
 COMPILER = ("glslangValidator", "-D", "-V", "--quiet", "-S", "frag", "-e", "main")
-# Optimizing, glslang inlines every function, which takes half a minute for path tracers. Texts with
-# functions that take textures (Vulkan) or with unused stage inputs (wgpu) still need the
-# optimization.
+# This option turns off optimization, which inlines every function and takes half a minute for path
+# tracers. Optimization is still necessary if functions take textures, which Vulkan refuses, or if
+# inputs of a stage are unused, which wgpu refuses.
 KEEP_FUNCTIONS = "-Od"
 OPTIMIZED = re.compile(r"^\w+ \w+\(.*\bTexture2D\b| : TEXCOORD\d+;$", re.MULTILINE)
 REGISTER = re.compile(r"^(?=.* : register\([bst](\d+), space(\d+)\))", re.MULTILINE)
 
 
 class HlslHost(vulkan.VulkanHost):
-    """The host `vulkan`, whose pixel stages are translated to HLSL and back."""
+    """The host `vulkan` with pixel stages that are translated to HLSL and back to SPIR-V."""
 
     name = "hlsl"
     path = "HLSL, glslang, "
@@ -63,7 +63,7 @@ class HlslHost(vulkan.VulkanHost):
 
 
 class DxcHost(HlslHost):
-    """HLSL compiled by DXC, through the Python package compushady; the text names the bindings."""
+    """HLSL that DXC compiles through the Python package compushady. The text names bindings."""
 
     name = "dxc"
     path = "HLSL, DXC, "
@@ -83,7 +83,7 @@ class DxcHost(HlslHost):
 
 
 class NagaHost(HlslHost):
-    """The host `vulkan`, whose pixel stages naga translates to WGSL."""
+    """The host `vulkan` with pixel stages that naga translates to WGSL."""
 
     name = "naga"
     path = "WGSL of naga, "

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A Vulkan device without a window: generated Vulkan GLSL as SPIR-V, in float32.
+"""Vulkan without a window, which runs generated Vulkan GLSL in float32.
 
-glslang generates the SPIR-V; naga, a part of wgpu, validates the SPIR-V and writes it again for the
-driver. naga rejects interface blocks, so the unused block of an evaluation is removed.
+glslang compiles the GLSL to SPIR-V. naga, a part of wgpu, validates the SPIR-V and writes new
+SPIR-V for the driver. naga rejects interface blocks, so the unused block of an evaluation is
+removed.
 """
 
 from __future__ import annotations
@@ -31,16 +32,16 @@ except ImportError:
 COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin")
 REMOVER = ("spirv-opt", "--remove-unused-interface-variables")
 APT = "on Debian: apt-get install"
-TIMEOUT = 60.0  # seconds for one run of a compiler
+TIMEOUT = 60.0  # maximum seconds for one run of a compiler
 
-# wgpu's kinds of bindings.
+# Kinds of bindings, as wgpu describes bindings.
 FILTERED = {"texture": {"sample_type": "float"}}
 UNFILTERED = {"texture": {"sample_type": "unfilterable-float"}}
 LINEAR = {"mag_filter": "linear", "min_filter": "linear"}
 SAMPLER = {"sampler": {"type": "filtering"}}
 UNIFORM_BINDING = {"buffer": {"type": "uniform"}}
 
-# Matches bindings in a generated text.
+# Matches the declaration of a binding in generated text.
 DECLARATION = re.compile(
     r"^layout \((?:std140, )?binding=(?P<number>\d+)\) uniform "
     r"(?:(?P<kind>sampler2D|texture2D|sampler) (?P<name>\w+);|\w+\s*\{(?P<block>[^}]*)\})",
@@ -57,11 +58,11 @@ FORMATS = {"uint8": "rgba8unorm", "float16": "rgba16float"}  # filterable format
 FLOATS = {1: "r32float", 2: "rg32float", 4: "rgba32float"}  # keys: number of components
 WHITE_TEXEL = np.full((1, 1, 4), 255, dtype=np.uint8)
 
-PROGRAMS = 8  # cached programs: the checks of a node evaluate one shader many times
+PROGRAMS = 8  # cached programs, because the checks of a node evaluate one shader many times
 
-Resource: TypeAlias = Any  # an object of wgpu, whose types are unknown if it is not installed
+Resource: TypeAlias = Any  # an object of wgpu, a package that may not be installed
 Kind: TypeAlias = Mapping[str, object]
-Bindings: TypeAlias = dict[int, tuple[Kind, Resource]]  # keys: binding number
+Bindings: TypeAlias = dict[int, tuple[Kind, Resource]]  # keys: binding numbers
 
 
 class VulkanHost(FragmentHost):
@@ -103,7 +104,7 @@ class VulkanHost(FragmentHost):
         self._device.destroy()
 
     def _evaluate(self, frame: raster.Frame) -> Array:
-        """Values of a pixel stage after the dialect's vertex stage, as stages share one block."""
+        """Values of a pixel stage. The dialect's vertex stage replaces the frame's vertex stage."""
         count, size = fragment.frame(frame.arguments)
         texels = [fragment.texels(rows, size, fragment.ODD) for rows in frame.arguments.values()]
         sets: tuple[Bindings, ...] = (
@@ -124,7 +125,7 @@ class VulkanHost(FragmentHost):
     def _program(
         self, pixel: str, sets: Iterable[Bindings]
     ) -> tuple[tuple[Resource, ...], Resource]:
-        """Layouts of a text's bindings, and its pipeline, independent of the resources."""
+        """Layouts of a pixel stage's bindings, and a pipeline for any such resources."""
         if pixel not in self._programs:
             if len(self._programs) == PROGRAMS:
                 self._programs.clear()
@@ -141,7 +142,7 @@ class VulkanHost(FragmentHost):
         return self._programs[pixel]
 
     def _draw(self, pipeline: Resource, groups: Iterable[Resource], size: tuple[int, int]) -> Array:
-        """One frame as float32 rows, pixel after pixel."""
+        """One frame as float32 rows, with one row per pixel."""
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
         target = self._device.create_texture(size=size, format=FLOATS[4], usage=usage)
         attachment = {"view": target.create_view(), "load_op": "clear", "store_op": "store"}
@@ -188,7 +189,7 @@ class VulkanHost(FragmentHost):
         return spirv(stage, text)
 
     def _generated(self, frame: raster.Frame) -> Bindings:
-        """Bindings of a generated text: textures, white by default, and blocks."""
+        """Bindings of the textures and blocks in generated text. Textures are white by default."""
         unique = {id(texels): texels.astype(np.float16) for texels in frame.textures.values()}
         halves = {name: unique[id(texels)] for name, texels in frame.textures.items()}
         bindings: Bindings = {}
@@ -209,7 +210,7 @@ class VulkanHost(FragmentHost):
         return self._device.create_sampler(**(LINEAR if linear else {}))
 
     def _texture(self, texels: Array) -> Resource:
-        """A texture of 8-bit, float16 or float32 texels, of one to four components."""
+        """A texture of 8-bit, float16 or float32 texels with one to four components."""
         height, width, components = texels.shape
         if components == 3:  # three components are not supported
             texels = np.pad(texels, ((0, 0), (0, 0), (0, 1)))
@@ -223,9 +224,10 @@ class VulkanHost(FragmentHost):
 
 
 class WgslHost(VulkanHost):
-    """WebGPU without a browser: MaterialX's text for its target WGSL, which is GLSL for a converter.
+    """WebGPU without a browser.
 
-    The converter is naga, a part of wgpu.
+    For the target WGSL, MaterialX generates GLSL that has to be converted. The converter is naga, a
+    part of wgpu.
     """
 
     name = "wgsl"
@@ -235,7 +237,7 @@ class WgslHost(VulkanHost):
     interfaces = ("Vulkan", "Metal", "D3D12")
 
     def _vertex(self, pixel: str) -> str:
-        """A vertex stage with the pixel stage's block, all 0, which wgpu requires even if unused."""
+        """A vertex stage with the inputs of the pixel stage as outputs, as wgpu requires."""
         head, rest = super()._vertex(pixel).split("\n", 1)
         outputs = [f"layout (location = 0) out {block}\n" for block in INPUT_BLOCK.findall(pixel)]
         return "".join([f"{head}\n", *outputs, rest])
@@ -247,7 +249,7 @@ class WgslHost(VulkanHost):
 HOSTS = {host.name: host for host in (VulkanHost, WgslHost)}
 
 
-@lru_cache(maxsize=8)  # the vertex stage is always the same
+@lru_cache(maxsize=8)  # evaluations share a vertex stage
 def spirv(stage: str, text: str) -> bytes:
     with Temporary("mxeon-vulkan-") as folder:
         whole, used = str(Path(folder, "whole")), Path(folder, "used")
@@ -268,7 +270,7 @@ def run(command: Sequence[str], text: str = "", host: str = "vulkan") -> None:
 
 
 def _std140(members: str, uniforms: raster.Uniforms) -> bytes:
-    """Bytes of a block up to its first structure; no uniforms follow a structure."""
+    """Bytes of a block up to the first structure, because no uniforms follow a structure."""
     data, offset = bytearray(BLOCK_SIZE), 0
     for kind, name in re.findall(r"(\w+) (\w+);", members):
         if kind not in STD140:

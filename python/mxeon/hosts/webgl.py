@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""WebGL2 in a headless Chromium: generated ESSL as a browser runs it, in float32.
+"""WebGL2 in a headless Chromium, which runs generated ESSL in float32.
 
 Playwright drives the installed browser. For each request, the page `webgl.js` reads arrays from a
 file, draws a frame and returns pixels as text. The browser resolves no host names, so nothing
@@ -35,14 +35,14 @@ try:
 except ImportError:
     sync_api = None
 
-Page: TypeAlias = Any  # Playwright's types, which mypy skips
+Page: TypeAlias = Any  # an object of Playwright, whose types mypy skips
 Answer: TypeAlias = dict[str, str]
-Layout: TypeAlias = dict[str, object]  # shape and offset in a file, by name
+Layout: TypeAlias = dict[str, object]  # shape and offset of each array in a file, by name
 
 PROGRAM = "MXEON_CHROMIUM"  # environment variable that names the browser
 FLAGS = (
     "--use-gl=angle",
-    "--use-angle=swiftshader",  # Chromium's own software driver, the same on every machine
+    "--use-angle=swiftshader",  # a software driver, which is the same on every machine
     "--enable-unsafe-swiftshader",
     "--no-proxy-server",
     "--host-resolver-rules=MAP * ~NOTFOUND",
@@ -60,9 +60,9 @@ globalThis.lostContext = () => contexts.some((context) => context.isContextLost(
 """
 IDENTITY = np.eye(4).ravel().tolist()
 VERTEX = fragment.DIALECTS["essl"].vertex
-POINTS = 4  # cached textures of points: most materials have the same vertex stage
+POINTS = 4  # cached textures of points; most materials share a texture
 
-# ESSL gives uniforms no initial values.
+# Matrices have to be set here, because uniforms have no initial values in ESSL.
 UNIFORMS: dict[str, object] = {
     "u_worldMatrix": IDENTITY,
     "u_viewProjectionMatrix": IDENTITY,
@@ -91,7 +91,7 @@ class Chromium:
         self._thread = ThreadPoolExecutor(max_workers=1)
 
     def close(self) -> None:
-        """End the browser; the next request starts another."""
+        """End the browser. The next request starts a new browser."""
         self._thread.submit(self._stop).result()
 
     def _load(self) -> None:
@@ -100,7 +100,7 @@ class Chromium:
     def _ask(
         self, function: str, job: dict[str, object] | None = None, file: Path | None = None
     ) -> Answer:
-        """The result of a function of the page, with the version of the browser."""
+        """The result of a JavaScript function of the page, with the version of the browser."""
         answer = self._thread.submit(self._answer, function, job, file).result()
         if "failed" in answer:
             raise NotRun(f"{self.name}: {answer['failed']}")
@@ -178,7 +178,7 @@ class WebGlHost(Chromium, raster.FragmentHost):
         return self._draw(frame._replace(textures=textures), size).reshape(-1, 3)[:count]
 
     def _draw(self, frame: raster.Frame, size: tuple[int, int]) -> Array:
-        """One frame as float32 (height, width, 3), row 0 at the bottom."""
+        """One frame as float32 pixels (height, width, 3), with row 0 at the bottom."""
         uniforms = UNIFORMS | frame.uniforms
         job = {"vertex": frame.vertex, "pixel": frame.pixel, "size": size, "uniforms": uniforms}
         arrays = {"textures": frame.textures, "attributes": raster.TRIANGLE}
@@ -228,9 +228,9 @@ def program(host: str = "webgl") -> str:
 
 
 def _write(path: Path, groups: Mapping[str, Mapping[str, Array]]) -> dict[str, Layout]:
-    """Write each array once; return shapes and offsets in the file by group and name."""
+    """Write each array once, and return shapes and offsets in the file by group and name."""
     layout: dict[str, Layout] = {}
-    places: dict[int, object] = {}  # written arrays, keyed by identity
+    places: dict[int, object] = {}  # shape and offset of each written array, by identity
     offset = 0
     with path.open("wb") as file:
         for group, arrays in groups.items():
