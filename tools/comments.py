@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Prints a random sample of comments and docstrings, to be read without their code.
+"""Prints a random sample of comments and docstrings, for readers who do not see the code.
 
     python -m tools.comments SEED COUNT FOLDER ...
 
-A reader marks the texts that have to be read twice. COUNT is the number of texts per FOLDER.
+A reader marks all texts that must be read twice. COUNT is the number of texts per FOLDER.
 """
 
 import ast

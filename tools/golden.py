@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes all verdicts of the suite to a file, and compares two such files, to refactor safely.
+"""Writes all verdicts of the suite to a file, and compares two such files after a refactoring.
 
     python tools/golden.py write out/before.jsonl [--host gl ...]  # default: all hosts here
     python tools/golden.py compare out/before.jsonl out/after.jsonl
 
-A line is one check: host, library, subject and key; verdict, tolerance, whether the check noticed
-its wrong control, diagnosis and pages. Numbers in a diagnosis keep two digits, because engines
-differ in more.
+A line has the result of a check. The line is identified by host, library, subject and check, and
+contains the verdict, the tolerance, whether the check detected the negative control, the diagnosis
+and the pages of the ledger. Numbers in a diagnosis are rounded to two digits, because engines
+differ in later digits.
 """
 
 import argparse
@@ -27,9 +28,9 @@ Line = dict[str, object]
 
 
 def lines(host: str, library: str) -> list[Line]:
-    """The results of all nodes and the bundled examples on a host."""
+    """The results on a host for all nodes and for the bundled examples."""
     command = ["mxeon", "check", "--host", host, "--library", library, "--json"]
-    for nodes in (["--node", "all"], []):  # renderers without MaterialX nodes reject --node
+    for nodes in (["--node", "all"], []):  # some renderers reject --node
         run = subprocess.run([*command, *nodes], capture_output=True, text=True, check=False)
         if run.stdout.startswith("{"):
             return [line(each) for each in json.loads(run.stdout)["results"]]
@@ -57,7 +58,7 @@ def rounded(value: object) -> object:
 
 
 def compare(before: Path, after: Path) -> int:
-    """Print the differences, and return their number."""
+    """Print all checks that differ, and return the number of these checks."""
     old, new = (
         {tuple(each[key] for key in PLACE): each for each in map(json.loads, path.open())}
         for path in (before, after)

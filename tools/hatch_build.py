@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Adds the ledger to the wheel: the package reads its rows, and results link to its pages."""
+"""Adds the ledger of defects to the wheel, because the package reads pages of the ledger."""
 
 from pathlib import Path
 from typing import Any
@@ -9,7 +9,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 class Pages(BuildHookInterface):
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Add the pages to a standard wheel; an editable install finds them in the checkout."""
+        """Add the pages to a standard wheel. An editable install reads pages in the checkout."""
         if version == "standard":
             for file in Path(self.root, "docs", "upstream").iterdir():
                 if file.suffix in (".md", ".json"):

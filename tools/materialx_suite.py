@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs MaterialX's own tests with its stock libraries, and with eonlib loaded before them.
+"""Runs MaterialX's tests with the stock libraries, and with eonlib loaded before these libraries.
 
 python -m tools.materialx_suite CHECKOUT BUILD WORK [NAME=VALUE ...]
 
-CHECKOUT is a clone of MaterialX in the version of the installed package; BUILD is its build with
-MATERIALX_BUILD_TESTS and the GLSL renderer. CHECKOUT and BUILD are not changed: each library gets a
-folder in WORK with links to their files, and a copy of the suite's `_options.mtlx`, in which
-NAME=VALUE replaces a value. renderGeometry=dome.obj is half a sphere of 60 faces for OpenGL on a
-CPU. Results in WORK are reused, so a second call only writes docs/materialx_suite.md and its
-pictures.
+CHECKOUT is a clone of MaterialX in the version of the installed package. BUILD is a build of the
+clone with MATERIALX_BUILD_TESTS and the GLSL renderer. CHECKOUT and BUILD are not changed, because
+each library gets a folder in WORK with links to files in CHECKOUT and BUILD. A copy of the suite's
+`_options.mtlx` is changed by NAME=VALUE. For OpenGL on a CPU, renderGeometry=dome.obj selects half
+a sphere of 60 faces. Results in WORK are reused, so a second call only writes
+docs/materialx_suite.md and the pictures of that page.
 """
 
 import math
@@ -87,38 +87,38 @@ def slug(text: str) -> str:
 
 
 def change(stock: Codes, eonlib: Codes) -> tuple[float, float]:
-    """Largest signed change of a picture, where white is 1; share of pixels that visibly change."""
+    """Largest signed change of a picture, where white is 1, and share of visibly changed pixels."""
     changed = difference(srgb_decoded(eonlib / 255.0), srgb_decoded(stock / 255.0))
     largest = changed.flat[np.abs(changed).argmax()]
     return float(largest), float(np.mean(np.abs(changed) > VISIBLE))
 
 
 def stage(folder: Path, checkout: Path, build: Path) -> None:
-    """Create the folder in which the suite runs, named like the library to test."""
+    """Create the folder in which the suite runs, with the name of the tested library."""
     if folder.exists():
         return
     for name in ("libraries", "resources"):
         shutil.copytree(checkout / name, folder / name, copy_function=os.symlink)
-    (folder / OPTIONS).unlink()  # a link; `run_tests` writes a changed copy
+    (folder / OPTIONS).unlink()  # a link, replaced by `run_tests`
     (folder / "bin").mkdir()
-    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # finds data next to the program
-    # MaterialX reads files before subfolders, so eonlib's documents take precedence.
+    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # looks for data next to itself
+    # MaterialX reads files before subfolders, so documents of eonlib take precedence.
     for path in documents_folder().rglob("*.mtlx") if folder.name == EONLIB else ():
         (folder / "libraries" / path.name).symlink_to(path)
-    for name in SOURCE_FOLDERS:  # the documents refer to "../../genglsl"
+    for name in SOURCE_FOLDERS:  # documents refer to "../../genglsl"
         if not (folder.parent / name).exists():
             (folder.parent / name).symlink_to(source_folder(EONLIB) / name)
 
 
 def option_text(value: str) -> str:
-    """An option's value for the page, such as "b/c.hdr" for "a/b/c.hdr", or "2 documents"."""
+    """The value of an option as the page shows it, such as "b/c.hdr" for "a/b/c.hdr"."""
     names = ["/".join(Path(each.strip()).parts[-2:]) for each in value.split(",")]
     documents = f"{len(names)} documents" if names[0].endswith(".mtlx") else ", ".join(names)
     return documents + NOTE * (names[0] == DOME)
 
 
 def write_dome(path: Path) -> None:
-    """Write half a sphere of 60 faces as OBJ; software renders it much faster than 3600 faces."""
+    """Write half a sphere as OBJ. Software renders its 60 faces much faster than 3600 faces."""
     rings, sectors = 5, 12
     lines = []
     for ring, sector in np.ndindex(rings + 1, sectors + 1):
@@ -139,7 +139,7 @@ def set_options(suite: mx.Document, options: dict[str, str]) -> None:
 
 
 def run_tests(folder: Path, suite: mx.Document, case: str) -> None:
-    """Run C++ tests, unless the folder already has their results."""
+    """Run C++ tests, unless the folder already has the results of these tests."""
     name = slug(case)
     if (folder / f"{name}.xml").exists():
         return
@@ -152,7 +152,7 @@ def run_tests(folder: Path, suite: mx.Document, case: str) -> None:
 
 
 def pictures(folder: Path) -> dict[str, Path]:
-    """Paths of the render test's pictures by document and element, also of pictures that failed."""
+    """Paths of all pictures of the render test, by document and element."""
     out = folder / slug(RENDER_TEST)
     return {
         f"{shader.relative_to(out).parts[0]}: {name}": shader.with_name(f"{name}_glsl.png")
@@ -166,7 +166,7 @@ def codes(picture: Path) -> Codes:
 
 
 def failed_tests(folder: Path) -> dict[str, bool]:
-    """Whether each C++ test case failed, by its name."""
+    """Whether a C++ test case failed, by the name of the test case."""
     return {
         case.attrib["name"]: case.find("OverallResult[@success='true']") is None
         for path in folder.glob("*.xml")
@@ -175,7 +175,7 @@ def failed_tests(folder: Path) -> dict[str, bool]:
 
 
 def untested(folder: Path) -> list[str]:
-    """Implementations that no document of the suite uses, as listed in a test's log."""
+    """Implementations that no document of the suite uses, as listed in the log of a test."""
     log = folder / slug(f"~{RENDER_TEST}") / "genglsl_glsl_generate_test.txt"
     return re.findall(r"^\t(\w+)$", log.read_text().partition("Untested: ")[2], re.MULTILINE)
 
@@ -242,7 +242,7 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
 
 
 if __name__ == "__main__":
-    from mxeon.hosts.materialx.worker import open_display  # exits if X's libraries are missing
+    from mxeon.hosts.materialx.worker import open_display  # exits if X libraries are missing
 
     open_display()
     folders, chosen = sys.argv[1:4], sys.argv[4:]

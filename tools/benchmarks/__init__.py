@@ -4,12 +4,12 @@
 | command | what it writes | minutes |
 |---|---|---|
 | `python -m tools.benchmarks [GROUP ...]` | figures, goals and checks of each group, to the terminal | 16 |
-| `... shaders` | EON in GLSL, per call | 0.1 |
-| `... materials` | frame and first frame of generated materials, eonlib / stock | 8 |
-| `... registers` | registers and cycles of these materials on an AMD GPU, by Mesa's compiler | 1 |
-| `... models` | the NumPy models: values a second | 1 |
-| `... command` | imports, `--help`; `mxeon check`: time and memory | 6 |
+| `... shaders` | time of a call of EON in GLSL | 0.1 |
+| `... materials` | times of the first frame and of a frame of generated materials, eonlib / stock | 8 |
+| `... registers` | registers and cycles of generated materials on an AMD GPU, by Mesa's compiler | 1 |
+| `... models` | values per second of the NumPy models | 1 |
+| `... command` | time of imports and `--help`, time and memory of `mxeon check` | 6 |
 | `python -m tools.benchmarks.sampling` | the tables of docs/sampling.md, to the terminal | 2 |
-| `python -m tools.benchmarks.mitsuba_pictures` | the tables of docs/mitsuba.md and of a path tracer in docs/sampling.md | 5 |
-| `python -m tools.benchmarks.mutants` | which check notices each wrong library, to `out/mutants` | hours |
+| `python -m tools.benchmarks.mitsuba_pictures` | the tables of docs/mitsuba.md, and the table of a path tracer in docs/sampling.md | 5 |
+| `python -m tools.benchmarks.mutants` | which check detects which wrong library, to `out/mutants` | hours |
 """

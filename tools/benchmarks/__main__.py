@@ -3,7 +3,8 @@
 
     python -m tools.benchmarks [GROUP ...] [--quick]
 
-Exit status: 0, or 1 if a timed value is wrong. A missed goal is reported, but is not an error.
+The exit status is 1 if a timed function computes a wrong value, otherwise 0. A missed goal is
+reported, but is not an error.
 """
 
 import argparse
@@ -16,7 +17,7 @@ from mxeon.errors import NotRun
 from tools.benchmarks import rounds
 from tools.benchmarks.command import CACHE, ONE
 
-QUICK = {  # arguments of each group's `measure` with --quick
+QUICK = {  # arguments of `measure` in each group if --quick is given
     "shaders": {"rounds": 5},
     "materials": {"processes": 3, "size": 256},
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
@@ -37,7 +38,7 @@ def main(arguments=None):
     for name in options.groups or QUICK:
         sizes = dict(QUICK[name]) if options.quick else {}
         try:
-            with patch.dict(os.environ, {CACHE: "true"}):  # do not reuse cached shaders
+            with patch.dict(os.environ, {CACHE: "true"}):  # disables the cache of shaders
                 group = import_module(f"tools.benchmarks.{name}").measure(**sizes)
         except NotRun as reason:
             print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)

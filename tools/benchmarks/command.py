@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Benchmarks of the command line: imports, `--help`, and `mxeon check` with a cold or warm cache.
+"""Benchmarks of imports, of `mxeon --help`, and of `mxeon check` with a cold or warm cache.
 
-Each row of JOBS has its own folder for the driver's shader cache, so rows do not affect each other.
+Each row of JOBS has a separate folder for the driver's shader cache, so that a row does not affect
+the times of other rows.
 """
 
 import json
@@ -19,15 +20,16 @@ from tools.benchmarks.rounds import Check, Figure, Group, interleave
 CACHE, FOLDER = "MESA_SHADER_CACHE_DISABLE", "MESA_SHADER_CACHE_DIR"
 MEMORY = 600.0  # goal for peak memory in MiB
 ONE, REPORT, BOTH = "gl, 2 workers", "gl, --report", "gl, two libraries"
-# Options of `mxeon check`, goal in seconds with a warm cache, goal in seconds with a cold cache.
+# Options of `mxeon check`, and goals in seconds with a warm cache and with a cold cache.
 JOBS = {
     ONE: ((), 9.0, 30.0),
     REPORT: (("--report", "{folder}/report-{turn}"), None, None),
     BOTH: (("--library", "eonlib", "--library", "stock"), None, None),
     "gl, --node all": (("--node", "all"), 25.0, 40.0),
 }
-# Starts the command, and prints the peak memory of its largest process in KiB. The launcher must be
-# small: Linux counts the memory of the starting process as the program's.
+# A program that starts a command, and prints the peak memory in KiB of the command's largest
+# process. The program must be small, because Linux counts the memory of the process that starts a
+# program as memory of that program.
 LAUNCHER = """
 import resource, subprocess, sys
 status = subprocess.call(sys.argv[1:])
@@ -37,9 +39,10 @@ sys.exit(status)
 
 
 def timed(options, cache):
-    """Run `mxeon check` with these options and this folder for the driver's shader cache.
+    """Run `mxeon check` with `options` and the folder `cache` for the driver's shader cache.
 
-    Returns seconds, peak memory in MiB, and the number of failed checks, infinite if none passed.
+    Returns seconds, peak memory in MiB, and the number of failed checks, or infinity if no check
+    passes.
     """
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
     command = [sys.executable, "-P", "-m", "mxeon", "check", "--json", "--workers", "2", *options]
@@ -59,7 +62,7 @@ def timed(options, cache):
 
 
 def starting(rounds):
-    """Times of imports and of `mxeon --help`, each in a new process."""
+    """Times of imports and of `mxeon --help`, each measured in a new process."""
     codes = {
         "numpy": "import numpy",
         "mxeon": "import numpy, mxeon, mxeon.models.table",

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random walks through a rough glass ball in a white furnace, sampled by eonlib's path tracing.
+"""Random walks through a rough glass ball in a white furnace, sampled by eonlib's GLSL.
 
     python -m tools.benchmarks.glass
 
-The expected weight of a walk is 1. Light crosses a ball from surface to surface at equal angles, so
-samples can be chained without tracing rays. Radiance omits the factor of the squared index.
+The expected weight of a walk is 1. A ray through a ball meets the surface at equal angles on entry
+and exit, so samples can be chained without tracing rays. Weights omit the factor of squared IOR by
+which refraction scales radiance.
 """
 
 import numpy as np
@@ -14,11 +15,11 @@ from mxeon.hosts import open_engine
 from mxeon.shaders.nodes import document_text, input_text, material_text, node_text
 
 WALKS, BOUNCES = 1 << 16, 256
-ROUGH = 0.4  # alpha, the square of a surface's roughness
+ROUGH = 0.4  # alpha, which is roughness squared
 
 
 def glass(node, **inputs):
-    """A document with a surface shader that only transmits."""
+    """A document with a surface shader in which only transmission is enabled."""
     inputs = {"specular_roughness": ROUGH**0.5} | inputs
     ports = "".join(input_text(name, "float", value) for name, value in inputs.items())
     return document_text(node_text(node, "surfaceshader", "shading", ports))
@@ -39,7 +40,7 @@ ROWS = {
 
 
 def walks(text, rng):
-    """Total weights of walks that start in a parallel beam, and the largest weight of a sample."""
+    """Total weights of walks that start in a parallel beam, and the largest weight of a bounce."""
     mu = np.sqrt(rng.random(WALKS))
     total, largest, active = np.zeros(WALKS), 0.0, np.arange(WALKS)
     weights, inside = np.ones(WALKS), False
@@ -60,7 +61,8 @@ def walks(text, rng):
 
 
 if __name__ == "__main__":
-    # Print a Markdown table: mean and deviation of walks' weights, largest weight of a sample.
+    # The printed table has the mean and the deviation of the weights of walks, and the largest
+    # weight of a sample.
     print("| node, alpha | mean | deviation | largest draw |\n|---|---|---|---|")
     for name, document in ROWS.items():
         total, largest = walks(paths(open_engine("gl"), document), np.random.default_rng(1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compilation and frame times of generated materials, eonlib / stock."""
+"""Compilation and frame times of generated materials with eonlib, divided by times with stock."""
 
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
@@ -15,8 +15,8 @@ from tools.benchmarks.rounds import Figure, Group, clock_of, interleave
 SIZE = 512  # width and height of the timed frames in pixels
 FIRST = 8  # width and height of the first frame in pixels
 FRAMES = 3  # timed frames per library and process, after one warm-up frame
-PROCESSES = 7  # processes per material: in one of six, llvmpipe's code is 1/6 to 2/5 slower
-MESH = 128  # squares along a side of the mesh; its cost is negligible
+PROCESSES = 7  # processes per material, since llvmpipe is 1/6 to 2/5 slower in one of six
+MESH = 128  # squares along a side of the mesh, whose cost is negligible
 LIBRARIES = ("eonlib", "stock")
 
 
@@ -59,15 +59,15 @@ OTHERS = {
 DIFFUSE = {"oren_nayar": _lobe(nodes.OREN_NAYAR, roughness=0.6, **{nodes.FLAG: True})}
 NODES = DIFFUSE | BARE | FILMED | OTHERS
 
-# Largest ratio of eonlib's time to stock's that reaches the goal.
+# Goals: the largest acceptable ratio of eonlib's time to stock's time.
 RATIOS = ((DIFFUSE, 1.0), (BARE, 1.03), (FILMED, 1.8), (OTHERS, 1.1))
 GOALS = {name: goal for group, goal in RATIOS for name in group}
 
 
 class Frame:
-    """A material on the sphere, drawn repeatedly with its uniforms and buffers in place.
+    """A material on a sphere that is drawn repeatedly with the same uniforms and buffers.
 
-    The functions of `mxeon.hosts.gl` are called here separately for setup and for drawing.
+    The setup and the drawing call functions of `mxeon.hosts.gl` separately, to be timed separately.
     """
 
     def __init__(self, host, generated, size):
@@ -104,7 +104,7 @@ class Frame:
 
 
 def run(node, size, libraries):
-    """Device, seconds to compile, and seconds per frame by library; for a new process."""
+    """Device, seconds to compile and seconds per frame by library, if called in a new process."""
     host = gl.GlHost()
     device = host.identity().device
     clock = clock_of(device)
@@ -112,8 +112,9 @@ def run(node, size, libraries):
         host.compile(nodes.document_text(NODES[name]), library=library)[0]
         for name, library in [("oren_nayar", "stock"), *((node, each) for each in libraries)]
     )
-    with host._context:  # `Frame` draws without the host's methods
-        # Draw another material first, to exclude the driver's start from the first compilation.
+    with host._context:  # `Frame` needs the current context
+        # Another material is drawn first, so that no compilation time includes the start of the
+        # driver.
         Frame(host, first, FIRST).draw()
         frames, compilation = {}, {}
         for library, generated in zip(libraries, shaders, strict=True):
@@ -128,7 +129,7 @@ def run(node, size, libraries):
 
 
 def measure(processes=PROCESSES, size=SIZE):
-    """Measure each material in `processes` separate processes, and return the `Group`."""
+    """Measure each material in `processes` separate processes, and return a `Group`."""
     figures = []
     turns = [LIBRARIES[:: -1 if turn % 2 else 1] for turn in range(processes)]
     with ProcessPoolExecutor(1, get_context("spawn"), max_tasks_per_child=1) as pool:

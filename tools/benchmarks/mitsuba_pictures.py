@@ -3,11 +3,11 @@
 
     python -m tools.benchmarks.mitsuba_pictures
 
-Writes two tables. The table in docs/mitsuba.md is about a ball under a uniform sky with each BSDF;
-the table in docs/sampling.md about EON scenes with 50 bounces and multiple importance sampling,
-with exact or cosine samples. Times are the least processor time of several pictures in llvm_ad_rgb,
-without compilation. Variances are measured over independent pictures, and averaged over pixels and
-channels.
+The command writes two tables. The table in docs/mitsuba.md has render times of a ball with each
+BSDF under a uniform sky. The table in docs/sampling.md compares exact samples with cosine samples
+in EON scenes with 50 bounces and multiple importance sampling. A time is the least processor time
+of several pictures in llvm_ad_rgb, without compilation. Variances over independent pictures are
+averaged over pixels and channels.
 """
 
 import time
@@ -91,7 +91,7 @@ SCENES = {"Cornell box": cornell_box, "three balls under an even sky": balls}
 
 
 def rendered(mi, scenes, pictures, samples):
-    """Pictures and processor times by scene. Scenes take turns; the first round is a warm-up."""
+    """Pictures and processor times by scene. Scenes take turns after a warm-up round."""
     found = {name: [] for name in scenes}
     for seed in range(pictures + 1):
         for name, scene in scenes.items():
@@ -102,7 +102,7 @@ def rendered(mi, scenes, pictures, samples):
 
 
 def time_table(mi):
-    """Lines of the table in docs/mitsuba.md: render time of each BSDF."""
+    """Lines of the table in docs/mitsuba.md with the render time of each BSDF."""
     import_module("drjit").set_thread_count(1)
     scenes = {name: mi.load_dict(ball(mi, {"type": name} | row)) for name, row in BSDFS.items()}
     times = {n: min(seconds) for n, (_, seconds) in rendered(mi, scenes, 5, 64).items()}
@@ -112,7 +112,7 @@ def time_table(mi):
 
 
 def noise_table(mi):
-    """Lines of the table in docs/sampling.md: noise and time of cosine / exact sampling."""
+    """Lines of the table in docs/sampling.md with noise and time of cosine / exact sampling."""
     head = ("roughness", "variance", "time", "variance times time")
     yield f"| cosine / exact, Mitsuba {version('mitsuba')} | {' | '.join(head)} |\n{'|---' * 5}|\n"
     integrator = {"type": "path", "max_depth": 50, "rr_depth": 50}
@@ -138,7 +138,7 @@ if __name__ == "__main__":
     mi.set_variant("llvm_ad_rgb")
     register()
     register_plugin(mi, COSINE, EonByCosinePlugin)
-    # Measure noise first: `time_table` permanently limits Mitsuba to one thread.
+    # Noise is measured first, because `time_table` limits Mitsuba to one thread permanently.
     for page, mark, rows in (
         ("sampling.md", "mitsuba", noise_table),
         ("mitsuba.md", "time", time_table),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values per second of the models: NumPy in float64 on one thread, and `jax.jit` in float32."""
+"""Values per second of the models in NumPy (float64, one thread) and in `jax.jit` (float32)."""
 
 import sys
 import time
@@ -12,18 +12,15 @@ from mxeon.models.sheen import zeltner_brdf
 from tools.benchmarks.rounds import Check, Figure, Group, interleave
 
 VALUES = 1_000_000  # number of pairs of directions
-COLORS, R = np.array([0.2, 0.5, 0.8]), 0.7  # color and roughness of the shared material
+COLORS, R = np.array([0.2, 0.5, 0.8]), 0.7  # color and roughness of the material ONE
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 ROUNDINGS = 3e-6  # tolerance of pi f cos in float32
 ONE, OWN, JIT = "one material", "a material each", "jax.jit, float32"
-SECONDS = {ONE: 0.5, OWN: 3.0}  # goals for microfacet models and a million pairs
+SECONDS = {ONE: 0.5, OWN: 3.0}  # goals in seconds for a million pairs in microfacet models
 
 
 def models(wo, wi, material):
-    """Functions that evaluate the models for pairs of directions, by model and material.
-
-    `material` is ONE or OWN.
-    """
+    """Functions that evaluate the models for pairs of directions, by model and material."""
     rng, count = np.random.default_rng(2), len(wo)
     colors, alpha, r = COLORS, np.array([0.3, 0.3]), R
     (n, k), ior = GOLD, 1.5
@@ -42,7 +39,7 @@ def models(wo, wi, material):
 
 
 def traced(wo, wi):
-    """Functions compiled by JAX that evaluate the models with one material; empty without JAX."""
+    """Functions compiled by JAX that evaluate the models with one material. Empty without JAX."""
     try:
         import jax
     except ImportError:

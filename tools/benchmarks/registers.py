@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Registers, instructions and estimated cycles of materials on an AMD GPU, eonlib / stock.
+"""Registers, instructions and estimated cycles of eonlib's and stock materials on an AMD GPU.
 
-No GPU is needed: Mesa's driver RADV compiles for the chip in `RADV_FORCE_FAMILY`, and reports
-statistics. Shaders have one light, because the compiler may unroll the loop over lights for one
-library only. Cycles are estimated without the loop over the orders of films, because the driver's
-estimate counts the body of the loop eight times.
+No GPU is needed, because Mesa's driver RADV compiles for the chip in `RADV_FORCE_FAMILY` and
+reports statistics. Shaders have one light, because the compiler might unroll the loop over lights
+for only one of the libraries. Cycles are estimated without the loop over the interference orders of
+thin films, because the driver's estimate counts the body of that loop eight times.
 """
 
 import os
@@ -23,15 +23,15 @@ from tools.benchmarks.materials import BARE, DIFFUSE, LIBRARIES, NODES, OTHERS
 from tools.benchmarks.rounds import Figure, Group
 
 COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin", "-S")
-HEADER = 5  # words before the first SPIR-V instruction; an instruction begins with its length
+HEADER = 5  # number of words before the first SPIR-V instruction
 CHIP = "navi21"
 PROGRAM = Path(__file__).with_name("pipeline_statistics.c")
 DRIVERS = Path("/usr/share/vulkan/icd.d")
 PACKAGES = "gcc glslang-tools libvulkan-dev mesa-vulkan-drivers"
-# Names of the driver's statistics, with units.
+# Names of the driver's statistics, and units.
 STATISTICS = {"VGPRs": "registers", "Instructions": "instructions", "Inverse Throughput": "cycles"}
 
-# The loop over lights of a generated shader, and its replacement for one light.
+# The loop over lights in a generated shader, and the code that replaces this loop for one light.
 LIGHTS = "for (int activeLightIndex = 0; activeLightIndex < numLights; ++activeLightIndex)"
 LIGHT = "int activeLightIndex = 0;"
 
@@ -52,7 +52,7 @@ def sources(node):
 
 
 def compiled(source, kind, file):
-    """Compile a stage to a SPIR-V file, and count its instructions. NotRun without the compiler."""
+    """Compile a stage to SPIR-V and count instructions. Raises NotRun if there is no compiler."""
     if not shutil.which(COMPILER[0]):
         raise NotRun(f"registers: no program {COMPILER[0]!r}; on Debian: glslang-tools")
     command = [*COMPILER, kind, "-o", file]
@@ -66,10 +66,10 @@ def compiled(source, kind, file):
 
 
 def material_statistics(stages, program, driver):
-    """Statistics of a material's fragment shader with one light, by the driver's names."""
+    """Statistics of a material's fragment shader for one light, by the driver's names."""
     assert stages["pixel"].count(LIGHTS) == 1
     text = stages["pixel"].replace(LIGHTS, LIGHT)
-    without_films = text.replace("if (fd.airy)", "if (false)")  # only films run this branch
+    without_films = text.replace("if (fd.airy)", "if (false)")  # branch for films
     found, bare = (
         statistics({**stages, "pixel": each}, program, driver) for each in (text, without_films)
     )
@@ -77,7 +77,7 @@ def material_statistics(stages, program, driver):
 
 
 def statistics(stages, program, driver):
-    """The driver's statistics of a fragment shader, by their names."""
+    """Statistics of a fragment shader, by the names that the driver reports."""
     files = [program.with_name("vert.spv"), program.with_name("frag.spv")]
     for stage, file in zip(("vertex", "pixel"), files, strict=True):
         compiled(stages[stage], file.stem, file)
@@ -94,7 +94,7 @@ def statistics(stages, program, driver):
 
 
 def measure(nodes=(*DIFFUSE, *BARE, *OTHERS)):
-    """Measure nodes; NotRun if RADV, a compiler or a header is missing."""
+    """Measure nodes. Raises NotRun if RADV, a compiler or a header is missing."""
     driver = next(DRIVERS.glob("radeon_icd*.json"), None)
     tools = all(map(shutil.which, ("gcc", COMPILER[0])))
     if driver is None or not tools or not Path("/usr/include/vulkan/vulkan.h").exists():

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shared code of benchmarks: interleaved rounds, figures with goals, and their tables.
+"""Shared code of benchmarks: interleaved rounds, figures with goals, and tables of figures.
 
-The functions to compare take turns within a round, so other load on the machine affects all of them
-equally; a ratio is the median of the rounds' ratios. Benchmark libraries time functions one after
-another, so a machine whose speed drifts would change their ratios.
+Compared functions take turns within a round, so that other load on the machine affects all
+functions equally. A ratio is the median of the ratios of all rounds. Benchmark libraries time
+functions one after another, so a drift of the machine's speed would change the ratios.
 """
 
 import time
@@ -42,9 +42,10 @@ class Group(NamedTuple):
 
 
 def interleave(functions, rounds, clock=time.perf_counter):
-    """Time functions in turns: an array of seconds by name, one per round after a warm-up round.
+    """Seconds of each function in each round, by name. Functions take turns after a warm-up round.
 
-    The clock `time.process_time` excludes other processes, and adds up the time of all cores.
+    With `time.process_time` as the clock, other processes do not count, and the times of all cores
+    are added.
     """
     seconds = {name: [] for name in functions}
     for _ in range(rounds + 1):
@@ -56,7 +57,7 @@ def interleave(functions, rounds, clock=time.perf_counter):
 
 
 def clock_of(device):
-    """Clock for an OpenGL device: processor time for software devices, otherwise wall time."""
+    """Clock for an OpenGL device: processor time for a software device, otherwise wall time."""
     return time.process_time if "llvmpipe" in device else time.perf_counter
 
 

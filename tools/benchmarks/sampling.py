@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Prints the tables of docs/sampling.md: the variance of EON's samplers, by quadrature.
+"""Prints the tables of docs/sampling.md with the variance of EON's samplers.
 
     python -m tools.benchmarks.sampling
 
-No random numbers are used: the variance of one sample is an integral over the hemisphere, by
-Gauss-Legendre rules between the kinks of EON. LTC and CLTC without uniform samples have infinite
-variance: the density falls to 0 along a line where EON does not.
+No random numbers are used, because the variance of one sample is an integral over the hemisphere,
+which Gauss-Legendre rules between the kinks of EON compute. LTC and CLTC without uniform samples
+have infinite variance, because the density is 0 along a line where EON is positive.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from mxeon.models.diffuse import eon_brdf
 from mxeon.models.sampling import eon_pdf
 from tools.paper.samplers import BY_NAME, moments
 
-COSINES = np.linspace(0.01, 1.0, 100)  # towards 0, cosine sampling's variance diverges like log(mu)
+COSINES = np.linspace(0.01, 1.0, 100)  # near 0, the variance of cosine samples grows as -log(mu)
 ROUGHNESSES = (0.01, 0.1, 0.5, 0.75, 1.0)
 VIEWS = (1.0, 0.3, 0.1)
 PRINTED = ("uniform", "cosine", "eon_cltc", "eon")
@@ -38,7 +38,7 @@ RADIANCES = {
 
 
 def print_table(first, columns, rows):
-    """Print a Markdown table; the keys of `rows` are their first cells."""
+    """Print a Markdown table. The keys of `rows` are the cells of the first column."""
     print("\n| " + " | ".join([first, *columns]) + " |")
     print("|---" * (1 + len(columns)) + "|")
     for name, cells in rows.items():
@@ -46,7 +46,7 @@ def print_table(first, columns, rows):
 
 
 def print_throughput():
-    """Print, by roughness, the samplers' largest variance and weight, and the energy CLTC loses."""
+    """Print the largest variance and weight of samplers, and CLTC's loss of energy, by roughness."""
 
     def over_cosines(name, roughness):
         return np.transpose([moments(name, mu, roughness) for mu in COSINES])
@@ -60,7 +60,7 @@ def print_throughput():
 
 
 def print_lighting(name):
-    """Print ratios of a sampler's variance to the exact sampler's at r = 1, by light and view."""
+    """Print ratios of a sampler's variance and the exact sampler's, at r = 1, by light and view."""
     rows = {}
     for title, light in RADIANCES.items():
         ratios = [
@@ -71,7 +71,7 @@ def print_lighting(name):
 
 
 def print_color():
-    """Print the channels' largest relative variance at r = 1 if samples are exact for gray."""
+    """Print the largest relative variance of a channel at r = 1, if samples are exact for gray."""
     rows = {}
     for rho in ((1e-6, 1e-6, 1e-6), (0.1, 0.1, 0.1), (0.5, 0.5, 0.5), (0.8, 0.2, 0.05)):
         found = []

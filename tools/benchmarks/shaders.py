@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Times eonlib's and stock's EON in a compute shader, in nanoseconds per call and invocation.
+"""Times EON of eonlib and of stock in a compute shader, in nanoseconds per call and invocation.
 
 Each invocation calls a function many times with unpredictable arguments, and stores the sum. The
-time of a loop that only adds up the arguments is subtracted. The first values are compared with
-float64. On software devices, processor time is measured, which excludes other processes.
+time of a loop that only adds the arguments is subtracted. The first value of each invocation is
+compared with a float64 value. On software devices, processor time is measured, which excludes other
+processes.
 """
 
 import re
@@ -18,7 +19,7 @@ from mxeon.models.diffuse import eon_brdf
 from mxeon.shaders import functions as twins
 from tools.benchmarks.rounds import Check, Figure, Group, clock_of, interleave
 
-COUNT, INVOCATIONS = 256, 2**14  # calls per invocation, and invocations
+COUNT, INVOCATIONS = 256, 2**14  # calls per invocation, and number of invocations
 KERNEL = """#version 430
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) buffer Arguments { float arguments[]; };
@@ -50,13 +51,13 @@ CALLS = {
     "stock": "mx_oren_nayar_compensated_diffuse(mu_o, mu_i, cosine, roughness, rho) / EON_PI",
     "eonlib": "eon_brdf_mu(mu_o, mu_i, cosine - mu_o * mu_i, rho, roughness)",
 }
-# Tolerances of pi f cos in float32. Stock follows Listing 1, which loses digits in 1 - E: errors
-# are up to 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
+# Tolerances of pi f cos in float32. Stock follows Listing 1, which loses digits in 1 - E. Errors
+# are up to 1.3e-4 in E, so up to 3.61 x 0.29 x 1.3e-4 x 2 in the value.
 TOLERANCES = {"stock": 3e-4, "eonlib": diffuse.VALUE.value}
 
 
 def library_source():
-    """GLSL of the functions to compare, from eonlib and from MaterialX."""
+    """GLSL of the compared functions, from eonlib and from MaterialX."""
     stock = "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
     text = mx.readFile(mx.getDefaultDataSearchPath().find(stock).asString())
     constants = "\n".join(re.findall(r"^const float FUJII.*$", text, re.MULTILINE))
@@ -69,7 +70,7 @@ def library_source():
 
 
 def value(arguments):
-    """pi f cos in float64 for the first arguments of all invocations."""
+    """Values of pi f cos in float64 for the first arguments of each invocation."""
     mu_o, mu_i, turn, roughness, *rho = np.float64(arguments.T)
     S_o, S_i, x = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2), 2.0 * turn - 1.0
     wo = np.stack([S_o, 0.0 * S_o, mu_o], -1)

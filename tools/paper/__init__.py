@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the claims of [Portsmouth2025] for the page "The paper, checked"."""
+"""Measures claims of [Portsmouth2025] for the page "The paper, checked"."""

@@ -11,9 +11,9 @@ from mxeon.models.diffuse import eon_brdf
 
 
 class Sampler(NamedTuple):
-    """A sampler and its density."""
+    """A sampler and the probability density of the samples."""
 
-    name: str  # prefix of the functions, such as `ltc` of `ltc_sample` and `ltc_pdf`
+    name: str  # prefix of function names, such as `ltc` of `ltc_sample` and `ltc_pdf`
     sample: Callable[..., tuple[Array, Array]]  # sample(wo, u, roughness) -> wi, pdf
     pdf: Callable[..., Array]  # pdf(wo, wi, roughness)
     title: str  # name in plots and tables
@@ -38,7 +38,8 @@ SAMPLERS = (
     Sampler("eon", sampling.eon_sample, sampling.eon_pdf, "exact"),
 )
 BY_NAME = {sampler.name: sampler for sampler in SAMPLERS}
-# Variance of exact samples. Two fits change the true density of the samples by up to 1.3e-5.
+# Variance of exact samples, which is not 0 because two fits change the true density of the samples
+# by up to 1.3e-5.
 EXACT_VARIANCE = 1.7e-10
 
 
@@ -49,7 +50,7 @@ def moments(
     light: Callable[[Array], Array] | None = None,
     nodes: int = 96,
 ) -> tuple[float, float, float]:
-    """Mean, variance and maximum, by quadrature, of a sample's weight times a light's radiance.
+    """Mean, variance and maximum, by quadrature, of the weight of a sample times a radiance.
 
     The weight is f cos(theta_i) / p for EON at unit reflectance, and 0 below the horizon.
     """

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mutation tests: copies of eonlib with one wrong change each, and the checks that detect them."""
+"""Mutation tests, which run the checks on copies of eonlib that have one wrong change each."""

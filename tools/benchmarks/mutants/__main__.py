@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs `mxeon check` on mutants of eonlib, and writes which check detects each to out/mutants.
+"""Runs `mxeon check` on mutants of eonlib, and writes to out/mutants which check detects a mutant.
 
     python -m tools.benchmarks.mutants [--only PATTERN] [--resume]    the rows of the table
     python -m tools.benchmarks.mutants --seed N [--share 0.1]         some of the operators' mutants
 
-Exit status: 0, or 1 if the surviving mutants are not exactly those that are listed.
+A survivor is a mutant that no check detects. The exit status is 0 if the survivors are exactly the
+mutants that are listed as survivors, otherwise 1.
 """
 
 import argparse
@@ -54,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             found = trial(mutant, judge) if undetected else killed("gl", [check], "")
             trials[mutant.name] = {"digest": mutant.digest} | found
             write_text(file, json.dumps(trials, indent=1, sort_keys=True) + "\n")
-    # Print the number of mutants by group and verdict, then each unexpected verdict.
+    # The output is the number of mutants by group and verdict, followed by unexpected verdicts.
     verdicts = {each.name: trials[each.name]["verdict"] for each in chosen}
     counts = Counter((each.group, verdicts[each.name]) for each in chosen)
     unexpected = [each for each in chosen if (verdicts[each.name] == KILLED) == each.survives]

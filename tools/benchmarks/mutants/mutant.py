@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of mutants: single textual changes of eonlib's sources, read from `table/*.toml`.
+"""The table of mutants, which are single textual changes of eonlib, read from `table/*.toml`.
 
-For each file, a negative control only changes the first comment. The control must survive.
+For each file in the table, a negative control changes only the first comment. No check may detect a
+negative control.
 """
 
 import re
@@ -24,12 +25,12 @@ COMMENT = "SPDX-License-Identifier"  # part of the first comment of every file
 class Mutant:
     """One wrong change of a file of eonlib."""
 
-    name: str  # unique in the table
+    name: str  # unique name in the table
     group: str  # title of the mutated implementation
-    file: str  # path from the root
+    file: str  # path of the mutated file from the root
     old: str  # text to replace, which occurs once in the file
-    new: str  # its replacement
-    reason: str  # why the change is wrong, or a proof that the change is equivalent
+    new: str  # replacement of `old`
+    reason: str  # why the change is wrong, or why the change is equivalent
     host: str  # cheapest host that can detect the mutant; "text" if no host is needed
     equivalent: bool  # whether values stay the same on the whole valid domain
     survives: bool  # whether no check detects the mutant, as `reason` explains
@@ -38,7 +39,7 @@ class Mutant:
     place: tuple[int, int] = (0, 0)  # start and end of the operator's match in the file
 
     def texts(self) -> dict[str, str]:
-        """Texts of the mutated files by path, including the OSL twin of a GLSL file."""
+        """Texts of the mutated files by path, including the OSL version of a GLSL file."""
         texts = {self.file: self._replaced(self.file, re.escape(self.old), self.new)}
         twin = self.file.replace("glsl", "osl")
         if self.file.startswith("genglsl/") and Path(self.file).stem in TWINS:
@@ -55,7 +56,7 @@ class Mutant:
 
     @property
     def control(self) -> bool:
-        """Whether this is a negative control, which only changes a comment."""
+        """Whether the mutant is a negative control, which only changes a comment."""
         return self.group == CONTROLS
 
     @property
@@ -64,7 +65,7 @@ class Mutant:
 
 
 def read_table() -> tuple[Mutant, ...]:
-    """All mutants of the table, and the negative controls of their files."""
+    """All mutants of the table, and a negative control for each mutated file."""
     files = [tomllib.loads(path.read_text(encoding="utf-8")) for path in TABLE.glob("*.toml")]
     table = [
         Mutant(

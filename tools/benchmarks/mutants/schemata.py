@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All mutants of the operators in one program, chosen by a uniform.
+"""All mutants of the operators compiled into one program, in which a uniform selects a mutant.
 
-At each mutant's place, an expression equals the original unless the uniform `mutant` has the
-mutant's number: ` + ` becomes ` + mutant_sign(mutant == 7) * `. So a node's shader compiles once
-for hundreds of mutants, and each mutant only takes the milliseconds of a check on a subset of
-samples. Mutants of constant expressions and of integers cannot be selected by a uniform: they are
-UNWRITTEN, and need a separate library.
+Each mutated expression equals the original expression unless the uniform `mutant` has the number of
+the mutant. For example, ` + ` becomes ` + mutant_sign(mutant == 7) * `. So a node's shader is
+compiled once for hundreds of mutants, and each mutant takes only the milliseconds of a check on a
+subset of samples. A uniform cannot select mutants of constant expressions and of integers, which
+are called UNWRITTEN and need a separate library.
 """
 
 import re
@@ -63,7 +63,7 @@ ERROR = re.compile(r"\b\d+:(\d+)\(\d+\): error")
 
 @dataclass(frozen=True)
 class Edit:
-    """Text to insert around a part of a source, or the replacement of a token."""
+    """Text that is inserted around a part of a source or, if `token`, replaces that part."""
 
     start: int
     end: int
@@ -73,7 +73,7 @@ class Edit:
 
 
 def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
-    """Edits that add a mutant to its source; empty if it cannot be selected by a uniform."""
+    """Edits that add a mutant to a source, or no edits if a uniform cannot select the mutant."""
     operator, (start, end), on = mutant.operator, mutant.place, f"(mutant == {number})"
     found, put = code[start:end], operators.changed(mutant.operator, code[start:end])
 
@@ -91,7 +91,7 @@ def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
     if operator == "product" and (last := _operand(code, end)):
         return [wrapped(end, last, "over")]
     if operator == "comparison":
-        # Compare the result with the uniform, which inverts it for this mutant.
+        # The result is compared with the uniform, and so is inverted if this mutant is selected.
         return [Edit(start, _end(code, end), "", f" != {on}")]
     if operator == "channel":
         old, new = (CHANNELS[each[1]] for each in (found, put))
@@ -119,7 +119,7 @@ def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
 
 
 def _operand(code: str, place: int) -> int:
-    """End of the operand at `place`; 0 if there is none."""
+    """End of the operand at `place`, or 0 if there is no operand."""
     start, depth = place, 0
     for each in re.compile(r"-?[\w.]+|[(\[]|[)\]]|[^\w.()\[\]]+").finditer(code, place):
         depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(each[0], 0)
@@ -130,7 +130,7 @@ def _operand(code: str, place: int) -> int:
 
 
 def _end(code: str, place: int) -> int:
-    """End of the right side of a comparison; `place` is its start."""
+    """End of the right side of a comparison whose right side starts at `place`."""
     depth = 0
     for each in re.compile(r"[()\[\]]|[;,?:]|&&|\|\|").finditer(code, place):
         depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(each[0], 0)
@@ -140,7 +140,7 @@ def _end(code: str, place: int) -> int:
 
 
 def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
-    """A source with the edits of all its mutants, which are given by number."""
+    """A source with the edits of all `mutants`, which are given by number."""
     code = operators.code_of(text)
     made = [each for number, mutant in mutants.items() for each in edits(number, mutant, code)]
     opens: dict[int, list[str]] = {}
@@ -154,7 +154,7 @@ def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
             closes.setdefault(each.end, []).insert(0, each.after)
     parts, place = [], 0
     for at in sorted({*opens, *closes, *tokens, len(text)}):
-        if at >= place:  # skip edits inside a replaced token
+        if at >= place:  # no edits inside a replaced token
             parts += [text[place:at], *closes.get(at, ()), *opens.get(at, ())]
             place = at
         if at in tokens:
@@ -164,7 +164,7 @@ def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
 
 
 class SchemataHost(gl.GlHost):
-    """The gl host with the mutants `alive` in its shaders; `mutant` is the active one, or 0."""
+    """The gl host with the mutants `alive` in all shaders. `mutant` is the active mutant, or 0."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -175,7 +175,7 @@ class SchemataHost(gl.GlHost):
         self._program = self._chosen  # type: ignore[assignment]
 
     def take(self, mutants: dict[int, Mutant]) -> None:
-        """Compile these mutants into shaders from now on."""
+        """Compile `mutants` into all shaders that are compiled later."""
         self.alive = mutants
         self._made.cache_clear()
 
@@ -217,14 +217,14 @@ class SchemataHost(gl.GlHost):
         return pixel.replace("/*mutants*/", HELPERS, 1)
 
     def numbers_in(self, pixel: str) -> list[int]:
-        """Numbers of the mutants in a shader's text that are still undetected."""
+        """Numbers of the undetected mutants in the text of a shader."""
         files = {each.file for each in self.alive.values()}
         known = {file for file in files if chunk_of(file) in pixel}
         return [number for number, each in self.alive.items() if each.file in known]
 
 
 def _numbers_at(text: str, error: str) -> set[int]:
-    """Numbers of the mutants on each line with a compiler error, or on the last line before it."""
+    """Numbers of mutants at compiler errors: on the same line, or on the last line with mutants."""
     lines, found = text.splitlines(), set[int]()
     for place in map(int, ERROR.findall(error)):
         numbers = (NUMBER.findall(line) for line in reversed(lines[max(0, place - 12) : place]))
@@ -234,12 +234,12 @@ def _numbers_at(text: str, error: str) -> set[int]:
 
 @cache
 def chunk_of(file: str) -> str:
-    """The part of a source that a shader contains: everything after its includes."""
+    """The text of a source after the last include, which shaders contain unchanged."""
     text = (ROOT / file).read_text(encoding="utf-8")
     return re.split(r"^#include .*\n", text, flags=re.M)[-1].strip()
 
 
-# Order of checks: those in FIRST detect most mutants, those in LAST take longest.
+# Checks in FIRST run first, because they detect most mutants. Checks in LAST take longest.
 FIRST = (
     *("value", "environment", "layering", "denser", "output", "radiance", "sphere_mean"),
     *("film_visible", "combination", "combined_throughput"),
@@ -248,25 +248,23 @@ LAST = (
     *("frame", "finite", "layer", "integral", "energy", "states", "lossless", "domain", "sky"),
     *("narrow_lobes", "tilted_lobes", "wide_lobes", "straight_views", "low_index", "each_lobe"),
 )
-COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # specs whose lobes are also checked separately
+COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # specs of which each lobe is also checked separately
 UNWRITTEN = "unwritten"
 OSL_TWINS = {
     functions.source_file("osl", stem).relative_to(ROOT).as_posix()
     for stem in (*functions.STEMS, "ggx_albedo", "conty_kulla_albedo")
 }
-# Sources that no check of a node runs: code for path tracers, and functions that only OSL calls.
+# Sources with code for path tracers and with functions that only OSL calls. No check of a node runs
+# this code.
 NOT_CHECKED = ("genglsl/path/", "genglsl/lib/hair_parameters.glsl")
 STRIDE = 8  # shader functions are evaluated at every eighth point
 GROUP = 1024  # mutants per program; larger programs slow the driver down
-Checks = Callable[[], Iterator[tuple[str, bool]]]  # yields each check and whether it failed
+Checks = Callable[[], Iterator[tuple[str, bool]]]  # yields each check, and whether the check failed
 Subject = tuple[str, bool, str, Checks]
 
 
 def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
-    """The check and subject that detect each mutant, by the mutant's name.
-
-    The value is SURVIVED if no check detects the mutant, UNWRITTEN if a uniform cannot select it.
-    """
+    """The check and subject that detect a mutant, SURVIVED or UNWRITTEN, by name of the mutant."""
     twins = [each for each in mutants if each.file in OSL_TWINS]
     glsl = [each for each in mutants if each.file.startswith("genglsl/")]
     numbered = dict(enumerate((m for m in glsl if not m.file.startswith(NOT_CHECKED)), 1))
@@ -285,16 +283,17 @@ def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
 
 
 def differs_from_glsl(mutant: Mutant) -> bool:
-    """Whether a mutated OSL function or constant differs from GLSL, so that `languages` fails."""
+    """Whether a mutated OSL function or constant differs from GLSL and fails the check `languages`."""
     texts = (ROOT / mutant.file.replace("osl", "glsl")).read_text(), mutant.texts()[mutant.file]
     glsl, osl = (functions.parts(operators.COMMENT.sub(" ", each)) for each in texts)
     return glsl != osl
 
 
 def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
-    """Numbers of detected mutants, with the checks that detected them; removes these mutants.
+    """Numbers of detected mutants, each with the check that detects the mutant.
 
-    A composed subject is only checked with mutants that no other subject contains.
+    Detected mutants are removed from the host. A composed subject is checked only with mutants that
+    no other subject contains.
     """
     seen: set[int] = set()
     for title, composed, text, checks in checked:
@@ -312,10 +311,10 @@ def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """Subjects: title, whether composed of others, shader text, function that runs the checks."""
+    """Subjects: title, whether it combines other subjects, shader text, and a function with checks."""
     every = Functions(host)
     yield "functions", False, every.text, every
-    # Check films before transmission: transmission runs the same code without a film.
+    # Films are checked before transmission, because transmission runs the same code without a film.
     specs = dict.fromkeys((*DIFFUSE, *PLAIN_LOBES, *FILM_SPECS, *PBRLIB))
     made = [make_case(Evaluating, host, s, "eonlib") for s in specs if s.title != "measured_edf"]
     cases = [replace(case, control=True) for case in made]  # controls use a subset of the samples
@@ -326,7 +325,7 @@ def subjects(host: SchemataHost) -> Iterator[Subject]:
 
 
 def node_checks(case: Case, turn: int) -> Checks:
-    """Function that runs one of three groups of a node's checks."""
+    """Function that runs group `turn`, 0 to 2, of a node's checks."""
 
     @cache
     def rows() -> list[tuple[Check, Tolerance]]:
@@ -347,7 +346,7 @@ def node_checks(case: Case, turn: int) -> Checks:
 
 
 class Functions:
-    """Checks of all shader functions, in one call at a subset of the usual points."""
+    """Checks of all shader functions, evaluated in one call at a subset of the usual points."""
 
     def __init__(self, host: SchemataHost) -> None:
         self._host, self.language = host, host.language
@@ -359,7 +358,7 @@ class Functions:
             self._rows.append((row.key, probe.tolerance(row), scale, scale * values[::STRIDE]))
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Execute on the host, and record the call of all functions with fewer points."""
+        """Execute a call on the host. A call of all functions is recorded, with fewer points."""
         if function == functions.EACH:
             self._call = source, function, *(np.asarray(each)[::STRIDE] for each in arguments)
         return self._host.execute(source, function, *arguments)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests a mutant: runs `mxeon check` on a copy of eonlib with the mutant, cheapest tasks first.
+"""Tests a mutant by running `mxeon check` on a mutated copy of eonlib, cheapest tasks first.
 
-Mutants of pbrlib are tested by the checks of the nodes that they change, other sources by all
-checks of a library, and wrong references by the tests of the models on a copy of mxeon.
+A mutant of pbrlib is tested by the checks of all nodes that use the mutated code. Mutants of other
+sources are tested by all checks of a library, and wrong references by the tests of the models,
+which run on a copy of mxeon.
 """
 
 import os
@@ -37,29 +38,29 @@ KILLED, SURVIVED = "killed", "survived"
 CRASHED = "crashed"  # a check ended with a traceback
 TEXT, TESTS = "text", "tests"  # values of `host` for mutants that no host detected
 
-PATH = "genglsl/path/"  # code for path tracers, which no check runs
-# Tests by folder. Those of PATH replace the checks; others follow them, because checks on hosts
-# cannot detect all mutants of the folder.
+PATH = "genglsl/path/"  # folder of code for path tracers, which no check runs
+# Tests by folder of the mutant. Tests of PATH replace the checks. Other tests run after the checks,
+# because checks on hosts cannot detect all mutants of the folder.
 FOLDER_TESTS = {
     PATH: ("tests/shaders/test_path_tracing.py",),
-    "genosl/cycles/": ("tests/hosts/test_osl.py",),  # runs the code in Blender's OSL
+    "genosl/cycles/": ("tests/hosts/test_osl.py",),  # run the code in Blender's OSL
     operators.ENVIRONMENT: (
         "tests/conformance/test_conformance.py::test_other_lobes_are_lit_alike_by_eonlib_s_lookups",
         "tests/hosts/test_document_hosts.py::"
         "test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo",
     ),
 }
-LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups, which no source includes
-NOISY = ("environment", "furnace")  # the slowest checks on Cycles, which run last
-# Files that no shader for gl contains: the gl host cannot detect mutants in them.
+LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups, which no file includes
+NOISY = ("environment", "furnace")  # slowest checks on Cycles, which run last
+# Files that no shader for gl contains, so that the gl host cannot detect mutants in these files.
 ON_CYCLES = ("genosl/",)
-CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls closures, which only the osl host evaluates
+CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls closures, which only the host osl evaluates
 NOT_ON_GL = (*ON_CYCLES, CLOSURES, "libraries/diffuse/eonlib_genmdl")
-TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # files whose text is checked before nodes
+TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # files whose text is checked first
 
 
 def trial(mutant: Mutant, judge: Judge) -> dict[str, Any]:
-    """Verdict on a mutant, failed checks of the first task that fails, and the first cause."""
+    """Verdict on a mutant, the failed checks of the first task that fails, and the first cause."""
     if mutant.tests:
         named = tuple(f"{MODEL_TESTS}/{name}" for name in mutant.tests)
         return by_tests(mutant, (named,) if mutant.equivalent else (named, (MODEL_TESTS,)))
@@ -93,14 +94,14 @@ def by_checks(mutant: Mutant, judge: Judge) -> dict[str, Any]:
 
 
 def killed(host: str, checks: Sequence[str], explanation: str) -> dict[str, Any]:
-    """Record of a detected mutant, with only the first line of the explanation."""
+    """Record of a detected mutant. The explanation is reduced to the first line."""
     line, folder = explanation.strip().split("\n")[0], re.escape(tempfile.gettempdir())
     line, found = re.sub(rf"{folder}/\S*/", "", line), list(dict.fromkeys(checks))
     return {"verdict": KILLED, "host": host, "checks": found, "explanation": line}
 
 
 def write_wrong(mutant: Mutant, base: str, *folders: str) -> None:
-    """Copy folders of the repository, with the mutant's files."""
+    """Copy folders of the repository to `base`, and write the mutant's files there."""
     for name in folders:
         shutil.copytree(ROOT / name, Path(base, name))
     for file, text in mutant.texts().items():
@@ -109,7 +110,7 @@ def write_wrong(mutant: Mutant, base: str, *folders: str) -> None:
 
 @contextmanager
 def wrong_library(mutant: Mutant) -> Iterator[str]:
-    """Path of a mutated copy of eonlib in a new folder, so that no cache knows it."""
+    """Path of a mutated copy of eonlib. The folder is new, so that no cache has the library."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
         write_wrong(mutant, base, *FOLDERS)
         try:
@@ -120,7 +121,7 @@ def wrong_library(mutant: Mutant) -> Iterator[str]:
 
 
 def failures_of(tasks: Sequence[Task], judge: Judge) -> list[Result]:
-    """Failures of the first task with failures that eonlib itself does not have."""
+    """Failures that unchanged eonlib does not have, from the first task with such failures."""
     for task in tasks:
         if failures := _failed(task, judge):
             known = _original_failures(replace(task, library="eonlib"), judge)
@@ -130,12 +131,12 @@ def failures_of(tasks: Sequence[Task], judge: Judge) -> list[Result]:
 
 
 def _failed(task: Task, judge: Judge) -> dict[tuple[str, str], Result]:
-    """Results of a task that did not pass, by check and subject."""
+    """Results of a task whose verdict is not PASSED, by check and subject."""
     results = judge.work(task).results
     return {(each.check, each.subject): each for each in results if each.verdict != PASSED}
 
 
-_original_failures = cache(_failed)  # eonlib itself does not change
+_original_failures = cache(_failed)  # one result, since eonlib is not mutated
 
 
 # --- tasks of a library ---------------------------------------------------------------------------
@@ -144,8 +145,8 @@ _original_failures = cache(_failed)  # eonlib itself does not change
 def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
     """Hosts and tasks that can detect a mutant, cheapest first.
 
-    The order is: text and nodes, surface shaders, pictures of documents, OSL closures, Cycles. Each
-    picture and each task of Cycles is a separate stage.
+    The stages are text and nodes, surface shaders, pictures of documents, OSL closures, and Cycles,
+    in this order. Each picture and each task of Cycles is a separate stage.
     """
     tasks = make_plan((), ["gl"], [path]).tasks
     if mutant.file.startswith(NOT_ON_GL):
@@ -175,7 +176,7 @@ DOCUMENTS = (
     "genosl/cycles/eonlib_cycles_impl.xml",
 )
 INCLUDE = re.compile(r'^#include "([\w./]+)"$', re.MULTILINE)
-# Pairs of a target and a host that runs its shaders, cheapest host first.
+# Pairs of a target and a host that runs shaders for the target, cheapest host first.
 HOSTS = (("genglsl", "gl"), ("genosl", "osl"), ("genosl", "cycles"))
 LATE = ("inputs", "transmitted_inputs", "integral", "energy")  # the slowest checks
 
@@ -195,7 +196,7 @@ def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
 
 
 def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
-    """Hosts, cheapest first, and tasks that check the subjects that a mutant changes."""
+    """Hosts, cheapest first, each with the tasks that check the subjects that a mutant changes."""
     changed = changed_nodes(mutant)
     for target, host in HOSTS:
         titles = {title for each, title in changed if each == target}
@@ -205,10 +206,11 @@ def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
 
 @cache
 def _tasks(host: str) -> tuple[Task, ...]:
-    """All tasks of a host with eonlib, grouped by subject, because a subject compiles one shader.
+    """All tasks of a host with eonlib, grouped by subject, because each subject compiles one
+    shader.
 
     Subjects are in reverse order, so that transmission, which runs most of the code, comes early.
-    Films come last, because their failures take longest to diagnose.
+    Films come last, because failures of films take longest to diagnose.
     """
     places = {spec.title: -place for place, spec in enumerate(PBRLIB)}
     tasks = make_plan((), [host], ["eonlib"], nodes=["all"]).tasks
@@ -227,7 +229,7 @@ def _titles(nodedef: str) -> frozenset[str]:
         return frozenset()
     kind, node = definition.getType(), definition.getNodeString()
     titles = {spec.title for spec in PBRLIB if spec.node == node}
-    for word in ("EDF", "VDF"):  # nodes such as `add` exist for several types
+    for word in ("EDF", "VDF"):  # a node such as `add` exists for several types
         titles = {title for title in titles if (word in title.upper()) == (word == kind)}
     if kind == "BSDF":
         combined = (spec for spec in PBRLIB if spec in COMBINED_SPECS)
@@ -237,7 +239,7 @@ def _titles(nodedef: str) -> frozenset[str]:
 
 @cache
 def _sources(file: str) -> frozenset[str]:
-    """Paths of a source and of everything that it includes, relative to the root."""
+    """Paths, relative to the root, of a source and of all files that are included, recursively."""
     path = ROOT / file
     if not path.is_file():
         return frozenset()
@@ -247,7 +249,7 @@ def _sources(file: str) -> frozenset[str]:
 
 
 def _entries(document: str, text: str) -> set[tuple[str, ...]]:
-    """Attributes of the implementations in a document; empty if it is not valid XML."""
+    """Attributes of the implementations in a document, or no attributes if the XML is not valid."""
     try:
         elements = ElementTree.fromstring(text).iter("implementation")
     except ElementTree.ParseError:
@@ -266,13 +268,13 @@ MODEL_TESTS = "tests/models"
 OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
 FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
 WIDTH = {"COLUMNS": "200"}  # wide enough for whole messages of pytest
-# The copy of a mutant lacks Blender.
+# Copies of mutants do not contain Blender.
 BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}
 GOOD, NO_TEST = 0, 5  # exit statuses of pytest
 
 
 def by_tests(mutant: Mutant, steps: Sequence[tuple[str, ...]]) -> dict[str, Any]:
-    """Verdict of tests on a mutated copy of mxeon and eonlib, and the first test that fails."""
+    """Verdict of tests on a mutated copy of mxeon and eonlib, with the first test that fails."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
         write_wrong(mutant, base, "python", *FOLDERS)
         for tests in steps:
@@ -284,7 +286,7 @@ def by_tests(mutant: Mutant, steps: Sequence[tuple[str, ...]]) -> dict[str, Any]
 
 
 def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
-    """Name and message of the first test that fails with the package in a folder, or None."""
+    """Name and message of the first test that fails with the package at `package`, or None."""
     command = [sys.executable, "-m", "pytest", *OPTIONS, *tests]
     env = BLENDER | os.environ | WIDTH | {"PYTHONPATH": package}
     ended = subprocess.run(command, cwd=ROOT, env=env, capture_output=True, text=True, check=False)
@@ -297,4 +299,4 @@ def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
     return test or "import", f"{file}: {message}" if message else file
 
 
-_original_failure = cache(_failure)  # the original package does not change
+_original_failure = cache(_failure)  # one result, since this package is not mutated

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Claims as measurements with limits, and the page "The paper, checked", which lists them."""
+"""Claims as measurements with limits, and the page "The paper, checked", which lists claims."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -22,15 +22,15 @@ The paper's formulas of values and albedos, and of rho for an albedo, are not am
 with 50 digits of the printed equations. They also test that densities integrate to 1 and mean weights are 1.
 """
 
-# Result of a measurement: a sentence for the page, and the values to compare with the limits.
+# Result of a measurement: a sentence for the page, and values that are compared with the limits.
 Measured = tuple[str, ArrayLike]
 Measure = Callable[[], Measured]
-ROUNDING = 1e-12  # largest difference between two forms of one formula
+ROUNDING = 1e-12  # largest difference between two forms of a formula
 
 
 @dataclass
 class Section:
-    """Claims under one heading; `rows` has a function per claim that measures the table row."""
+    """Claims under one heading. Each function in `rows` measures a claim for a table row."""
 
     heading: str
     rows: list[Callable[[], tuple[str, ...]]] = field(default_factory=list)
@@ -44,7 +44,9 @@ class Section:
         least: float = -np.inf,
         most: float | None = None,
     ) -> Callable[[Measure], Measure]:
-        """Decorate a measurement whose values must lie in [least, most]; by default <= ROUNDING."""
+        """Decorator for a measurement whose values must lie in [least, most], by default <=
+        ROUNDING.
+        """
         top = most if most is not None else ROUNDING if least == -np.inf else np.inf
         limit = f"in [{least:.3g}, {top:.3g}]"
         if not np.isfinite(top):
@@ -64,7 +66,7 @@ class Section:
 
 
 def verdict(values: ArrayLike, least: float, most: float) -> str:
-    """HOLDS if all values lie in [least, most], IN_PART if some do, FAILS if none does.
+    """HOLDS, IN_PART or FAILS if all, some or none of the values lie in [least, most].
 
     >>> verdict([1.0, 3.0], 0.0, 2.0), verdict(float("nan"), 0.0, 2.0)
     ('holds in part', '**fails**')
@@ -77,7 +79,7 @@ def verdict(values: ArrayLike, least: float, most: float) -> str:
 
 
 def page(sections: Sequence[Section]) -> str:
-    """Measure every claim, print those that hold, and return the page as Markdown."""
+    """Measure every claim, print the claims that hold, and return the page as Markdown."""
     parts = [HEAD]
     for section in sections:
         rows = [row() for row in section.rows]

@@ -10,14 +10,14 @@ from tools.paper.claims import ROUNDING, Measured, Section
 FINE = np.linspace(0.0, 1.0, 10001)
 SIGMA = np.array([0.1, 0.2, 0.3, 0.5, 0.8, 0.5 * np.pi])
 ROUGHNESS = np.array([0.1, 0.5, 1.0])
-# The albedo of full Oren-Nayar must exceed 1 below this sigma. Larger sigmas count as high.
+# The albedo of the full Oren-Nayar model must exceed 1 for sigmas below HIGH_SIGMA.
 HIGH_SIGMA = 0.6
 SECTION = Section("Sections 2 and 3: the models")
 claim = SECTION.claim
 
 
 def pairs(count: int = 100_000) -> np.ndarray:
-    """Random directions of the hemisphere in pairs, (2, count, 3)."""
+    """Pairs of random directions in the hemisphere, (2, count, 3)."""
     rng = np.random.default_rng(1)
     z, phi = rng.random((2, count)), 2.0 * np.pi * rng.random((2, count))
     S = np.sqrt((1.0 - z) * (1.0 + z))
@@ -44,7 +44,7 @@ def qon_gain() -> Measured:
     least=ROUNDING,
 )
 def full_gain() -> Measured:
-    """Distances of the largest albedos from 1; positive on the side that the paper claims."""
+    """Largest albedos minus 1, or 1 minus the largest albedos for the high sigmas."""
     mu = np.array([1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2])
     albedos = np.array(
         [albedo_dir_quadrature(diffuse.oren_nayar_brdf, mu, 1.0, s).max() for s in SIGMA]
@@ -83,7 +83,7 @@ def rms_to_full() -> Measured:
     most=0.1,
 )
 def kink() -> Measured:
-    """Jumps of df/ds at s = 0, at the largest roughness, with both directions at the same angle."""
+    """Jumps of df/ds at s = 0 and the largest roughness, for wo and wi at the same polar angle."""
     parts, ratios = [], []
     for degrees in (5, 25, 60):
         mu = np.cos(np.radians(degrees))
@@ -131,7 +131,7 @@ def fon_loses() -> Measured:
 
 
 def listing_1_albedo(mu: np.ndarray) -> np.ndarray:
-    """The listing's exact albedo at roughness 1, with the same operations in float32."""
+    """The exact albedo at roughness 1 by the operations of Listing 1 in float32."""
     one, third = np.float32(1.0), np.float32(2.0 / 3.0)
     S = np.sqrt(one - mu * mu)
     with np.errstate(divide="ignore", invalid="ignore"):

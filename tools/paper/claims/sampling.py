@@ -18,7 +18,7 @@ def at(degrees: float) -> float:
 
 
 def over_angles(name: str, roughness: float) -> np.ndarray:
-    """Mean, variance and largest value of a sampler's weight at all `DEGREES`, (3, angles)."""
+    """Mean, variance and largest value of a sampler's weight at each of DEGREES, (3, angles)."""
     return np.transpose([moments(name, at(degrees), roughness) for degrees in DEGREES])
 
 
@@ -35,9 +35,9 @@ def cosine_variance() -> Measured:
     "Fig. 11", "the variance of cosine sampling has a peak", "step over the step before", most=0.9
 )
 def cosine_diverges() -> Measured:
-    """Ratio of the variance's growth over two factors of 10 in mu.
+    """Growth of the variance over a factor of 10 in mu, divided by the previous growth.
 
-    Before a peak the growth would shrink. Instead, each factor of 10 adds (A r)^2 / 2 ln 10.
+    Before a peak, the growth would decrease. Instead, each factor of 10 adds (A r)^2 / 2 ln 10.
     """
     variances = [moments("cosine", mu, 1.0, nodes=200)[1] for mu in (1e-3, 1e-4, 1e-5)]
     first, second = np.diff(variances)
@@ -48,7 +48,7 @@ def cosine_diverges() -> Measured:
 
 @claim("Section 4", "det of the inverse of M is positive everywhere", "det M", least=ROUNDING)
 def determinant() -> Measured:
-    """Determinant of the inverse of M over all cosines and roughnesses."""
+    """Least determinant of the inverse of M for all cosines and roughnesses."""
     a, b, c, d = (
         entry(COSINES[:, np.newaxis], np.linspace(0.0, 1.0, 101))
         for entry in (sampling.ltc_ma, sampling.ltc_mb, sampling.ltc_mc, sampling.ltc_md)
@@ -69,7 +69,7 @@ def wasted() -> Measured:
 
 @claim("Listing 3", "no sample below the horizon", "z", least=0.0)
 def side_of_the_lune() -> Measured:
-    """Lowest sample of Listing 3 near the normal, where the fitted d is positive."""
+    """Lowest sample of Listing 3 for wo near the normal, where the fitted d is positive."""
     mu = np.linspace(0.999, 1.0, 100_001)
     d = sampling.ltc_md(mu, 1.0)
     u1, u2 = np.random.default_rng(2).random((2, 200_000))
@@ -99,7 +99,7 @@ def mixture_weight() -> Measured:
     least=100.0,
 )
 def gain() -> Measured:
-    """Ratio of the variance of cosine sampling to the mixture's variance."""
+    """Variance of cosine sampling divided by the variance of the mixture."""
     parts, ratios = [], []
     for degrees in (60.0, 85.0, 89.0, 89.9, 90.0 - np.degrees(1e-6)):
         cosine, mixture = (
@@ -117,7 +117,7 @@ def gain() -> Measured:
     most=1.0,
 )
 def low_roughness() -> Measured:
-    """Ratio of the mixture's variance to the cosine's, averaged over the projected hemisphere."""
+    """Variance of the mixture divided by the variance of cosine sampling, averaged over wo."""
     weight = np.sin(np.radians(2.0 * DEGREES))
     parts, ratios = [], []
     for r in (0.02, 0.05, 0.1, 0.2):
@@ -131,7 +131,7 @@ def low_roughness() -> Measured:
 
 @claim("Listing 4", "defined for u1 in [0, 1] and r in [0, 1]", "u1 / P_u", least=0.0, most=1.0)
 def no_number() -> Measured:
-    """Listing 4 divides u1 by P_u if u1 <= P_u; both can be 0."""
+    """Listing 4 divides u1 by P_u if u1 <= P_u, where u1 and P_u can be 0."""
     with np.errstate(invalid="ignore"):
         u1 = np.float64(0.0) / np.float64(0.0**0.1)
     return f"at r = 0, u1 = 0: P_u = 0, u1 / P_u = {u1}", u1
