@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Check MaterialX shaders, and evaluate the BRDFs of its specification.
+"""Check MaterialX shaders, and evaluate the BRDFs of MaterialX's specification.
 
-Importing this loads nothing but the standard library; the names below load what they need.
+Importing mxeon loads only the standard library. Each public name is imported when it is first used.
 """
 
 from importlib import import_module
@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # type checkers and the API reference run no code
 
 __version__ = "0.2.0"
 
-# Public name -> the module that defines it.
+# Public names, and the modules that define them.
 _HOMES = {
     "Run": "mxeon.conformance.results",
     "Shader": "mxeon.shaders.generation",

@@ -6,7 +6,7 @@ import sys
 
 
 def main() -> int:
-    """Run the command; return its exit status."""
+    """Run the command, and return the exit status."""
     end_at_interrupt()
     from mxeon import cli
 
@@ -14,7 +14,7 @@ def main() -> int:
 
 
 def end_at_interrupt() -> None:
-    """Let Ctrl-C end the process while it imports, without a traceback."""
+    """Let Ctrl-C end the process without a traceback while modules are imported."""
     if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
 

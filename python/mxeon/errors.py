@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors with a message for the user: the command prints one line and exits with their status.
+"""Errors with a message for the user.
 
-Every other exception is a bug of mxeon and prints its traceback.
+The command prints the message in one line and exits with the error's status. Every other exception
+is a bug of mxeon and prints its traceback.
 """
 
 import re
@@ -14,16 +15,16 @@ PASSED, FAILED, MISUSE, NOT_RUN = 0, 1, 2, 3  # exit statuses of the command
 LONGEST = 1000  # maximum length of a message, which may quote a document
 MOST = 20  # maximum number of faults in a message
 CUT = " [...]"  # end of a truncated message
-# Control characters, direction overrides, and surrogates.
+# Control characters, characters that override the text direction, and surrogates.
 STEERING = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
-# Prefixes of commands to GitHub's runner: at the start of a line, or anywhere.
+# Prefixes of commands to GitHub's runner, either at the start of a line or anywhere.
 COMMAND = re.compile(r"(?:^|(?<=\r))\s*::|##\[", re.MULTILINE)
 
 
 def install(extra: str) -> str:
-    """Command that installs the additional requirements of a part of mxeon.
+    """The command that installs the additional requirements of a part of mxeon.
 
     >>> install("fit")
     "pip install '.[fit]' in a checkout of mxeon"
@@ -34,15 +35,18 @@ def install(extra: str) -> str:
 class MxeonError(Exception):
     """An error whose message is one line for the user."""
 
-    status = MISUSE  # exit status of the command that ends with it
+    status = MISUSE  # exit status of a command that ends with this error
 
 
 class InputError(MxeonError, ValueError):
-    """An argument, name or file that cannot be used; names the place, the rule and the value."""
+    """An argument, name or file that cannot be used.
+
+    The message states the argument or file, the rule, and the wrong value.
+    """
 
 
 class DocumentError(InputError):
-    """A document for which no shader can be generated; the arguments are its faults, as lines."""
+    """A document for which no shader can be generated. The arguments are the document's faults."""
 
     def __init__(self, *faults: str) -> None:
         super().__init__(*_shortened(faults, "faults"))
@@ -56,7 +60,9 @@ class ImageError(InputError):
 
 
 class CheckError(MxeonError, RuntimeError):
-    """A run that did not pass; its arguments are lines: the verdict, and what was refused or failed.
+    """A run that did not pass.
+
+    The arguments are lines with the verdict, and with what was refused or failed.
 
     - `status`: The exit status of the run.
     """
@@ -70,22 +76,23 @@ class CheckError(MxeonError, RuntimeError):
 
 
 class PackageError(MxeonError, ImportError):
-    """A Python package that is missing, or too old for mxeon."""
+    """A Python package that is missing or too old for mxeon."""
 
 
 class LibraryError(MxeonError, RuntimeError):
-    """A data library other than the requested one."""
+    """A data library that differs from the requested library."""
 
     status = FAILED
 
 
 class ShaderError(MxeonError, RuntimeError):
-    """A shader that the host's compiler rejects; contains the compiler's message."""
+    """A shader that the host's compiler rejects. The error contains the compiler's message."""
 
     status = FAILED
 
 
-# Formats of compiler messages: "0:12(3): error: words", "ERROR: 0:12: words"; Slang quotes a line.
+# Compiler messages have the form "0:12(3): error: words" or "ERROR: 0:12: words". Slang's messages
+# quote a line of the shader instead.
 REFUSED = re.compile(
     r"error\[\w+\]: (?P<slang>.+)\n.*\n.*\n\d+ \| (?P<line>.+)|"
     r"[:(](?P<number>\d+)[:()\d]*:\s*(?:error\b[^:]*:\s*)?(?P<words>.+)"
@@ -94,7 +101,7 @@ FUNCTION = re.compile(r"^\w[\w ]* (\w+)\([^;]*$", re.MULTILINE)
 
 
 def refused(host: str, words: str, text: str) -> ShaderError:
-    """The error for a rejected shader: the function, the line and the compiler's first message.
+    """The error for a rejected shader, with the function, the line and the first compiler message.
 
     >>> str(refused("gl", "0:2(1): warning: no use\\n0:3(1): error: no x", "float f()\\n{\\n
     return x;\\n}\\n")) "gl: the shader does not compile, in f: 'return x;': no x"
@@ -113,7 +120,7 @@ def refused(host: str, words: str, text: str) -> ShaderError:
 
 
 class NotRun(MxeonError, RuntimeError):
-    """Something that cannot run here; the message says what and why."""
+    """Something that cannot run here. The message states what cannot run, and the reason."""
 
     status = NOT_RUN
 
@@ -123,11 +130,14 @@ class Unsupported(NotRun):
 
 
 class Implied(NotRun):
-    """A measurement that another failure, with its own result, makes impossible."""
+    """A measurement that is impossible because of another failure, which has its own result."""
 
 
 class OutsideModel(NotRun):
-    """A value outside the range of a model; `input` is the path of the input in the document."""
+    """A value outside the range of a model.
+
+    `input` is the path of the input in the document.
+    """
 
     def __init__(self, message: str, input: str = "") -> None:
         super().__init__(message)
@@ -135,33 +145,36 @@ class OutsideModel(NotRun):
 
 
 class InterfaceError(NotRun):
-    """A MaterialX that calls closures differently from their definitions in eonlib's sources."""
+    """An installed MaterialX that calls closures differently from eonlib's definitions."""
 
 
 def _shortened(lines: Sequence[str], noun: str) -> Iterator[str]:
-    """The first MOST lines, and a line with the number of the others."""
+    """The first MOST lines, and a line with the number of the remaining lines."""
     if len(lines) > MOST + 1:
         lines = (*lines[:MOST], f"and {len(lines) - MOST} more {noun}")
     return map(one_line, lines)
 
 
 def assert_known(rule: str, name: object, known: Iterable[str], listing: str = "") -> None:
-    """Raise InputError unless a name is known; see `mxeon.names.unknown`."""
+    """Raise InputError unless a name is known. The message is from `mxeon.names.unknown`."""
     if message := unknown(rule, name, known, listing=listing):
         raise InputError(message)
 
 
 def printable(text: str) -> str:
-    """Text with U+FFFD for characters that control a terminal or GitHub's runner, or surrogates."""
+    """The text without characters that control a terminal or GitHub's runner.
+
+    U+FFFD replaces these characters, and surrogates.
+    """
     return COMMAND.sub("\ufffd", STEERING.sub("\ufffd", text))
 
 
 def as_output(text: str) -> str:
-    """JSON text with the same value that cannot contain commands to GitHub's runner."""
+    """JSON text that has the same value and cannot contain commands to GitHub's runner."""
     return text.replace("##[", "#\\u0023[")
 
 
 def one_line(text: object) -> str:
-    """A message as one readable line without control characters."""
+    """The message as one readable line without control characters."""
     line = " ".join(printable(str(text)).split())
     return line if len(line) <= LONGEST else f"{line[: LONGEST - len(CUT)]}{CUT}"

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of models to measured BRDFs, with the uncertainty of each parameter. Needs scipy.
+"""Fits of models to measured BRDFs, with the uncertainty of each parameter.
 
-A measured BRDF is an array of direction pairs with values, or a file of the MERL database.
+A measured BRDF is an array of direction pairs with values, or a file of the MERL database. The fits
+need scipy.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 
 __all__ = ["Fit", "MeasuredBrdf", "fit_brdf", "merl_directions", "read_merl"]
 
-# Format of MERL files: cells along theta_h, theta_d and phi_d; scale per channel. [Matusik2003].
+# Cells of MERL files along theta_h, theta_d and phi_d, and the scale of each channel [Matusik2003].
 MERL_CELLS = (90, 90, 180)
 MERL_SCALES = (1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0)
 
@@ -30,12 +31,14 @@ MERL_SCALES = (1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0)
 class MeasuredBrdf:
     """Measured values of a BRDF.
 
-    - `wo`, `wi`: (N, 3). Directions to the viewer and to the light, unit vectors, normal +z.
+    - `wo`, `wi`: (N, 3). Unit vectors to the viewer and to the light, with the normal +z.
     - `value`: (N, C). BRDF in 1/sr, without the cosine.
-    - `error`: (N, C), or a shape that broadcasts to it. Standard deviation of each value. If None,
-      all values have the same weight, and their scatter about the fit gives the uncertainty.
+    - `error`: Standard deviation of each value, in a shape that broadcasts to (N, C). If None, all
+      values have the same weight, and the scatter of the values about the fit determines the
+      uncertainty.
 
-    Raises InputError if the shapes do not match, a value is not finite or an error is not positive.
+    Raises InputError if the shapes do not match, if a value is not finite, or if an error is not
+    positive.
     """
 
     wo: Array
@@ -66,7 +69,7 @@ class MeasuredBrdf:
 
 
 def _require(rule: str, array: Numbers, valid: Numbers) -> None:
-    """Raise InputError with the first invalid number and its index."""
+    """Raise InputError with the first invalid number and the number's position."""
     if not valid.all():
         index = tuple(np.argwhere(~valid)[0].tolist())
         place = f" at index {index}" if index else ""
@@ -74,16 +77,16 @@ def _require(rule: str, array: Numbers, valid: Numbers) -> None:
 
 
 def read_merl(path: AnyPath, step: int = 6) -> MeasuredBrdf:
-    """Measured values from a file of the MERL database: red, green and blue.
+    """Measured values for red, green and blue from a file of the MERL database.
 
-    - `path`: Binary file: three integers, then 90 x 90 x 180 numbers for each channel.
-    - `step`: Stride over the cells of each angle; the first cell taken is `step // 2`. With 1, all
-      cells are taken.
+    - `path`: Binary file of three integers, followed by 90 x 90 x 180 numbers for each channel.
+    - `step`: Stride over the cells of each angle. The first cell is `step // 2`. A step of 1 uses
+      all cells.
 
     Directions are those of the cell centers. Cells below the horizon and cells marked as unmeasured
     are skipped. MERL files have no errors. Raises InputError if the file has another format.
 
-    [Matusik2003]; [Rusinkiewicz1998] defines the angles.
+    [Matusik2003] describes the files, and [Rusinkiewicz1998] defines the angles.
     """
     path = one_name("path", path)
     raw = Path(path).read_bytes()
@@ -104,7 +107,9 @@ def read_merl(path: AnyPath, step: int = 6) -> MeasuredBrdf:
 
 
 def merl_directions(theta_h: Array, theta_d: Array, phi_d: Array) -> tuple[Array, Array]:
-    """Directions wo, wi from half and difference angles in radian; the half vector has azimuth 0.
+    """Directions wo, wi from half and difference angles in radians.
+
+    The half vector has azimuth 0.
 
     >>> wo, wi = merl_directions(*np.array([[0.0], [0.5 * np.pi / 3.0], [0.0]]))
     >>> wo.round(6), wi.round(6)
@@ -118,15 +123,18 @@ def merl_directions(theta_h: Array, theta_d: Array, phi_d: Array) -> tuple[Array
     return wo, wi
 
 
-LEAST_ALPHA = 0.02  # narrower lobes cannot be resolved by measurements
+LEAST_ALPHA = 0.02  # measurements cannot resolve narrower lobes
 
 
 @dataclass(frozen=True)
 class FitModel:
-    """A model to fit: `value(wo, wi, color, *scalars)`, shape (N, C). Inputs: see `mxeon.model`."""
+    """A model to fit, `value(wo, wi, color, *scalars)`, with values of shape (N, C).
+
+    `mxeon.model` describes the inputs.
+    """
 
     value: Callable[..., Array]
-    scalars: Mapping[str, tuple[float, ...]]  # minimum, maximum, starting values of the search
+    scalars: Mapping[str, tuple[float, ...]]  # minimum, maximum, and starting values of the search
 
     @property
     def bounds(self) -> dict[str, tuple[float, float]]:
@@ -141,9 +149,9 @@ FIT_MODELS = {
 }
 
 
-MISFIT = 1.5  # larger scatter means that the model does not fit data with known errors
+MISFIT = 1.5  # a larger scatter means that the model does not fit data with known errors
 LEAST_SINGULAR = 1e-12  # smallest usable singular value, relative to the largest
-ROUNDED = 1e-24  # largest squared component of a unit vector that is a rounding error
+ROUNDED = 1e-24  # largest squared component of a unit vector that is due to rounding
 UNDETERMINED = "not determined by the data"  # printed if an error spans the parameter's range
 
 
@@ -151,17 +159,19 @@ UNDETERMINED = "not determined by the data"  # printed if an error spans the par
 class Fit:
     """Best-fit parameters of a model for a measured BRDF, with their standard deviations.
 
-    - `values`, `errors`: The color (C,) and numbers, by input name. The functions of
-      `mxeon.model(fit.model)` accept `**fit.values`.
-    - `covariance`: (P, P), in the order of `values`, one row per channel of the color; infinite for
-      parameters that the data do not determine.
-    - `scatter`: Root of the sum of squared residuals per degree of freedom. If the data have
-      errors, it is in units of `error`, and about 1 for the right model; otherwise in 1/sr.
+    - `values`, `errors`: The color (C,) and the other parameters by input name, and their standard
+      deviations. The functions of `mxeon.model(fit.model)` accept `**fit.values`.
+    - `covariance`: (P, P), in the order of `values`, with one row per channel of the color. Rows
+      and columns of parameters that the data do not determine are infinite.
+    - `scatter`: Square root of the sum of squared residuals divided by the number of degrees of
+      freedom. If the data have errors, residuals are divided by the errors, and the right model has
+      a scatter of about 1. Otherwise, the scatter is in 1/sr.
     - `weighted`: Whether the data had errors.
 
-    If the data have errors, they are propagated to `errors`, assuming that the model is right. A
-    scatter of 10 means that it is wrong, so the parameters are off by more than `errors`. If the
-    data have no errors, the scatter is used as the error of each value, be it noise or misfit.
+    If the data have errors, `errors` are propagated from the errors of the data, assuming that the
+    model is right. A scatter of 10 means that the model is wrong, so that parameters are off by
+    more than `errors`. If the data have no errors, the scatter is the error of each value, which
+    may be noise or misfit.
     """
 
     model: str
@@ -173,11 +183,11 @@ class Fit:
 
     @property
     def fits(self) -> bool:
-        """True if the scatter is at most 1.5, or the data have no errors to compare it with."""
+        """True if the scatter is at most 1.5, or if the data have no errors."""
         return not self.weighted or self.scatter <= MISFIT
 
     def brdf(self, wo: ArrayLike, wi: ArrayLike) -> Array:
-        """BRDF of the fitted model in 1/sr, shape (..., C); directions (..., 3) broadcast."""
+        """The fitted model's BRDF in 1/sr, (..., C), for directions (..., 3) that broadcast."""
         pairs = np.broadcast_arrays(*(np.asarray(w, np.float64) for w in (wo, wi)))
         rows = (each.reshape(-1, 3) for each in pairs)
         value = FIT_MODELS[self.model].value(*rows, *self.values.values())
@@ -198,23 +208,26 @@ class Fit:
 def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     """Best-fit parameters of a model for a measured BRDF, by least squares.
 
-    - `model`: "eon" has `color` and `roughness`. "varnished", EON below a rough dielectric
-      interface, adds `alpha` and `ior`. "dielectric_over_eon", MaterialX's `layer`, has the same
-      parameters as "varnished"; its `color` comes out smaller than that of the pigment.
+    - `model`: The model "eon" has `color` and `roughness`. The model "varnished" is EON below a
+      rough dielectric interface, and adds `alpha` and `ior`. The model "dielectric_over_eon" is
+      MaterialX's `layer`, and has the same parameters as "varnished". The fitted `color` of
+      "dielectric_over_eon" is smaller than the color of the pigment.
 
-    The search runs from several starting points; the best fit is returned. Raises InputError if the
-    model is unknown, PackageError if scipy, part of the `fit` extra, is not installed.
+    The search begins at several starting points, and the best fit is returned. Raises InputError if
+    the model is unknown, and PackageError if scipy (part of the `fit` extra) is not installed.
 
-    Errors derived from the measured values, such as 2 % of each, bias the fit: values lowered by
-    noise get more weight. The color comes out too small by about twice the square of the relative
-    error, which can be one standard deviation. The remedy is to fit twice, the second time with the
-    same fraction of the first fit's `brdf` as errors.
+    Errors that are derived from the measured values, such as 2 % of each value, bias the fit,
+    because values lowered by noise get more weight. The fitted color is too small by about twice
+    the square of the relative error, which can be one standard deviation. The remedy is to fit
+    twice, and to use the same fraction of the first fit's `brdf` as errors of the second fit.
 
-    The standard deviations are sqrt(diag((J^T J)^-1)). J is the derivative of the residuals, which
-    are divided by the errors of the data. If the data have no errors, the result is multiplied by
-    the scatter, which requires more values than parameters. Undetermined parameters have infinite
-    or very large errors and are printed without a number: the roughness of a black surface, or four
-    parameters fitted to three values. At an end of a range, errors apply to the interior side.
+    The standard deviations are sqrt(diag((J^T J)^-1)), where J is the derivative of the residuals.
+    The residuals are divided by the errors of the data. If the data have no errors, the standard
+    deviations are multiplied by the scatter, which requires more values than parameters.
+    Parameters that the data do not determine have infinite or very large errors and are printed
+    without a number. Examples are the roughness of a black surface, and four parameters that are
+    fitted to three values. If a parameter is at an end of its range, the error applies to the
+    interior side.
 
         >>> from mxeon.models import eon_brdf
         >>> wo, wi = np.tile([0.6, 0.0, 0.8], (2, 1)), np.array([[0.0, 0.0, 1.0], [0.8, 0.0, 0.6]])
@@ -247,7 +260,7 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     found = (least_squares(residuals, [*albedo, *start], **options) for start in starts)
     best = min(found, key=lambda each: float(each.cost))
     x = best.x
-    # Compute (J^T J)^-1. Rows of 0 complete the singular vectors if values are too few.
+    # Compute (J^T J)^-1. If there are too few values, rows of 0 complete the singular vectors.
     freedom = data.value.size - len(x)
     _, singular, rows = np.linalg.svd(np.pad(best.jac, ((0, max(-freedom, 0)), (0, 0))), False)
     determined = singular > LEAST_SINGULAR * singular[0]
@@ -255,7 +268,7 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     scatter = float(np.sqrt(2.0 * best.cost / max(freedom, 1)))
     if data.error is None:
         covariance *= scatter**2
-    # Errors along undetermined directions are infinite; without a scatter, all errors are.
+    # Errors along undetermined directions are infinite. Without a scatter, all errors are infinite.
     undetermined = np.sum(rows[~determined] ** 2, axis=0) > ROUNDED
     undetermined |= data.error is None and freedom <= 0
     covariance[undetermined] = covariance[:, undetermined] = np.inf

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages about unknown names, which suggest similar known ones."""
+"""Messages about unknown names. The messages suggest similar known names."""
 
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 
-LISTED = 20  # maximum known names in a message, unless a similar one is among them
-SOME = 4  # maximum suggestions for one word
+LISTED = 20  # maximum number of known names in a message, unless a similar name is known
+SOME = 4  # maximum number of suggestions for one word
 NONE: Mapping[str, str] = {}
 
 
 def meant(
     name: object, known: Iterable[str], alike: float = 0.65, titles: Mapping[str, str] = NONE
 ) -> str:
-    """The end of a message about an unknown name: similar known names, or "".
+    """The end of a message about an unknown name, with similar known names, or "" without any.
 
     >>> meant("cycels", ("gl", "cycles")), meant("EON", ("eon", "fon"))
     (': did you mean cycles?', ': did you mean eon?')
@@ -36,7 +36,8 @@ def unknown(
 ) -> str:
     """The message that a name is unknown, or "" for a known name.
 
-    The message lists the known names, unless one of many is similar or `listing` names a list.
+    The message lists the known names, unless there are many names and one is similar, or unless
+    `listing` states where the names are listed.
 
     >>> unknown("model", "nope", ("eon", "fon"), listing="mxeon.model_names()")
     "no model 'nope'; see mxeon.model_names()"

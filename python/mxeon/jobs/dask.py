@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Work on many items with a Dask cluster. Needs the `dask` extra.
+"""Process items on a Dask cluster. The module needs the `dask` extra of mxeon.
 
-Dask schedules the items, restarts workers and retries items. This module adds items that only some
-machines can run, and timeouts.
+Dask schedules items, restarts workers and retries items. This module adds timeouts, and items that
+only some machines can process.
 """
 
 from __future__ import annotations
@@ -30,17 +30,18 @@ from mxeon.jobs.pool import Outcome, log_bug
 ANSWER = 10.0  # maximum seconds for a scheduler's answer
 GONE = "scheduler must run until the end; it answers no more"
 LOGGERS = ("distributed", "tornado", "asyncio")
-WINDOW = 2  # items in flight per worker; more would pile up results, and starve new workers
+WINDOW = 2  # items in flight per worker; more items would fill memory and starve new workers
 POLL = 1.0  # seconds between polls for new and lost workers
 FETCH = 10.0  # maximum seconds to transfer a result, usually a few kilobytes
 
 
 @contextmanager
 def connect(address: str, wait: float = WAIT) -> Iterator[Workers]:
-    """Connect to the workers of a cluster; the scheduler's address is like "tcp://host:8786".
+    """Connect to the workers of a cluster.
 
-    Raises NotRun if there is no compatible worker for `wait` seconds, now or later, and InputError
-    if no scheduler answers, or none of the workers is compatible.
+    The address of the scheduler has the form "tcp://host:8786". Raises NotRun if there is no
+    compatible worker for `wait` seconds, at the start or later. Raises InputError if no scheduler
+    answers, or if no worker is compatible.
     """
     check_timeout(wait, "waitForWorkers")
     client = _client(address, wait)
@@ -56,7 +57,7 @@ def _client(address: str, wait: float) -> Any:
     except ModuleNotFoundError:
         raise PackageError(f"--scheduler needs distributed: {install('dask')}") from None
     for name in (*LOGGERS, *logging.root.manager.loggerDict):
-        if name.partition(".")[0] in LOGGERS:  # this module reports their errors in one line
+        if name.partition(".")[0] in LOGGERS:  # this module reports errors of Dask in one line
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     rule = f"scheduler must be the address of a running Dask scheduler; got {address!r}"
     if not address.strip():
@@ -71,9 +72,10 @@ def _client(address: str, wait: float) -> Any:
 
 
 def _in_time(work: Callable[[], Any], seconds: float) -> Any:
-    """Return or raise the result of work; None if it takes longer, and continues in a thread.
+    """The result of `work`, or None if `work` takes longer than the given time.
 
-    Dask would wait for minutes for a scheduler that accepts a connection and does not reply.
+    After that time, `work` continues in a thread. Exceptions of `work` are raised. Dask itself
+    would wait for minutes for a scheduler that accepts a connection and does not reply.
     """
     future: futures.Future[Any] = futures.Future()
 
@@ -89,13 +91,13 @@ def _in_time(work: Callable[[], Any], seconds: float) -> Any:
 
 
 class Workers:
-    """Workers of a cluster. They are compatible if they have this mxeon and one thread."""
+    """Workers of a cluster. Workers with this version of mxeon and one thread are compatible."""
 
     def __init__(self, client: Any, wait: float) -> None:
         self.client = client
         self._wait = wait
         self._compatible: dict[str, bool] = {}
-        if not self.compatible() and self._compatible:  # these workers will not change
+        if not self.compatible() and self._compatible:  # these workers will stay incompatible
             raise InputError(
                 f"cluster must have a worker with mxeon {mxeon.__version__} and --nthreads 1; "
                 f"got {len(self._compatible)} others"
@@ -103,7 +105,7 @@ class Workers:
         self.await_compatible()
 
     def await_compatible(self) -> None:
-        """Wait for a compatible worker; raise NotRun if none comes in time."""
+        """Wait for a compatible worker. Raise NotRun if no worker comes in time."""
         end = time.monotonic() + self._wait
         while not self.compatible():
             if time.monotonic() > end:
@@ -114,9 +116,9 @@ class Workers:
             time.sleep(min(POLL, self._wait))
 
     def compatible(self) -> frozenset[str]:
-        """Addresses of the compatible workers. Warns once about each incompatible worker."""
+        """Addresses of the compatible workers. Each incompatible worker causes a single warning."""
         info = self.client.scheduler_info(n_workers=-1)
-        if "workers" not in info:  # the client has closed
+        if "workers" not in info:  # the client is closed
             raise NotRun(GONE)
         threads = {address: worker["nthreads"] for address, worker in info["workers"].items()}
         new = sorted(threads.keys() - self._compatible.keys())
@@ -135,7 +137,7 @@ class Workers:
         return frozenset(address for address in threads if self._compatible.get(address))
 
     def submit(self, *task: Any, on: frozenset[str]) -> Any:
-        """Submit a task to some of the workers; return its future."""
+        """Submit a task to the workers `on`, and return the future of the task."""
         return self.client.submit(*task, workers=sorted(on), pure=False)
 
 
@@ -146,11 +148,12 @@ def run(
     timeout: float,
     unavailable: type[Exception],
 ) -> Iterator[tuple[int, Outcome]]:
-    """Run `work` on every item; iterate over outcomes as they come, like `mxeon.jobs.pool.run`.
+    """Run `work` on every item, and iterate over outcomes in the order of completion.
 
-    An item that takes `timeout` seconds ends its worker process, and Dask's nanny starts another.
-    If `work` raises `unavailable`, the item goes to other workers. Raises NotRun if the cluster has
-    no compatible worker for too long, or its scheduler is gone.
+    The iterator is like that of `mxeon.jobs.pool.run`. An item that takes `timeout` seconds ends
+    its worker process, and Dask's nanny starts a new process. If `work` raises `unavailable`,
+    another worker processes the item. Raises NotRun if the cluster has no compatible worker for too
+    long, or if the connection to the scheduler is lost.
     """
     from distributed import wait
 
@@ -179,7 +182,7 @@ def run(
                     yield task.index, outcome
                 elif retry:
                     waiting.append(retry)
-    except (OSError, futures.CancelledError):  # lost connection; items' errors are outcomes
+    except (OSError, futures.CancelledError):  # the connection is lost; items' errors are outcomes
         raise NotRun(GONE) from None
 
 
@@ -192,7 +195,7 @@ class _Task:
 
 
 class WorkerUnavailable(Exception):
-    """A worker cannot run an item; the arguments are the reason and the worker's address."""
+    """A worker cannot process an item. The arguments are the reason and the worker's address."""
 
     def __init__(self, reason: str, worker: str) -> None:
         super().__init__(reason, worker)
@@ -205,21 +208,22 @@ class WorkerUnavailable(Exception):
 def _progress(
     future: Any, task: _Task, compatible: frozenset[str]
 ) -> tuple[Outcome | None, _Task | None]:
-    """The outcome of a finished task, the task to resubmit, or neither."""
+    """The outcome of a finished task, or the task to submit again, or neither."""
     if not future.done():
-        return None, None if task.chosen & compatible else task  # resubmit if its workers are gone
+        # Submit the task again if none of the chosen workers is left.
+        return None, None if task.chosen & compatible else task
     try:
         error = future.exception(timeout=FETCH)
         if error is None:
             return Outcome(future.result(timeout=FETCH)), None
-    except TimeoutError:  # the worker ended, and the result with it: wait again
+    except TimeoutError:  # the worker and the result are lost: wait again
         return None, None
     if isinstance(error, WorkerUnavailable):
         tried = task.tried | {error.worker}
         if compatible - tried:
             return None, replace(task, tried=tried)
         return Outcome(None, str(error)), None
-    if not type(error).__module__.startswith("distributed."):  # the work itself raised it
+    if not type(error).__module__.startswith("distributed."):  # the error is from the work
         log_bug(error)
     return Outcome(None, " ".join(f"{type(error).__name__}: {error}".split())), None
 
@@ -227,7 +231,7 @@ def _progress(
 def _work_timed(
     work: Callable[[Any], Any], item: Any, timeout: float, unavailable: type[Exception]
 ) -> Any:
-    """Run an item on a worker; the timeout ends the worker's process."""
+    """Process an item on a worker. The timeout ends the process of the worker."""
     from distributed import get_worker
 
     faulthandler.dump_traceback_later(timeout, exit=True, file=sys.__stderr__ or 2)

@@ -26,7 +26,7 @@ from mxeon.jobs import check_timeout, processes, signals
 
 @dataclass(frozen=True)
 class Attempt:
-    """An attempt to work on an item; its worker prints to the file `log`."""
+    """An attempt to process an item. The worker prints to the file `log`."""
 
     index: int
     item: object
@@ -39,7 +39,7 @@ class Attempt:
 
 
 def by_group(groups: Sequence[Hashable]) -> list[int]:
-    """Positions of items sorted by group, in the order in which the groups first appear.
+    """Positions of items sorted by group. Groups are in the order of their first items.
 
     >>> by_group(["a", "b", "a"])
     [0, 2, 1]
@@ -53,8 +53,9 @@ def by_group(groups: Sequence[Hashable]) -> list[int]:
 class Queue:
     """Waiting attempts, sorted by group.
 
-    Items of a group share work that a worker does once. A worker begins the first group without
-    a worker, or else helps with the longest group.
+    Items of a group share work that each worker does only once. A worker without a group begins the
+    first group that has no worker. If there is no such group, the worker joins the
+    longest group.
     """
 
     def __init__(self, attempts: Sequence[Attempt]) -> None:
@@ -67,7 +68,7 @@ class Queue:
         self._groups.setdefault(attempt.group, deque()).append(attempt)
 
     def take(self, worker: int) -> Attempt:
-        """Take the next attempt for a worker; the queue must not be empty."""
+        """Take the next attempt for a worker. The queue must not be empty."""
         if self._current.get(worker) not in self._groups or worker not in self._current:
             others = {group for each, group in self._current.items() if each != worker}
             free = (group for group in self._groups if group not in others)
@@ -89,20 +90,20 @@ class Queue:
 
 logger = logging.getLogger(__name__)
 
-# The resource tracker outlives a killed process and would print a warning about its semaphores.
+# If a process is killed, the resource tracker would print a warning about the process's semaphores.
 QUIET = "ignore::UserWarning:multiprocessing.resource_tracker"
 ATTEMPTS = 2
-BREAKS = 3  # maximum pools that break in a row without finishing an item
+BREAKS = 3  # maximum number of pools that break in succession without finishing an item
 START = 60.0  # maximum seconds until a process begins to work
-LOCK = 10.0  # seconds until workers take the lock of a killed worker
-LAST = 4  # schedule tasks ahead only while more tasks per worker are left
-LAST_LINES = 4  # maximum quoted lines of a worker's output
+LOCK = 10.0  # seconds until workers take over the lock of a killed worker
+LAST = 4  # minimum number of waiting tasks per worker for scheduling a task ahead
+LAST_LINES = 4  # maximum number of lines quoted from a worker's output
 
 
 @dataclass(frozen=True)
 class Outcome:
     value: Any  # result of the work
-    failure: str = ""  # reason for a missing value, in one line
+    failure: str = ""  # reason why the value is missing, in one line
     attempts: int = 1
 
 
@@ -113,18 +114,20 @@ def run(
     timeout: float,
     group: Callable[[Any], Hashable] = lambda item: None,
 ) -> Iterator[tuple[int, Outcome]]:
-    """Run `work` on every item; iterate over indices and outcomes as they come.
+    """Run `work` on every item, and iterate over indices and outcomes in the order of completion.
 
-    `work` must be importable by name; it runs in `workers` processes. If an item takes `timeout`
-    seconds, its process is killed. A crash or timeout affects only its item, which is retried once.
-    A process works on the items of a `group`, if there are enough groups. The traceback of a bug
-    (an exception without a message for users) is logged. Raises NotRun if no process starts.
+    `work` must be importable by name, and runs in `workers` processes. If an item takes `timeout`
+    seconds, the process is killed. A crash or a timeout affects only one item, which is retried
+    once. If there are enough groups, the items of a `group` run in the same process. An exception
+    without a message for users is a bug, whose traceback is logged. Raises NotRun if no process
+    starts.
 
     Processes import nothing from the working folder. At most two items per worker are in flight, so
-    results do not pile up in memory. A worker prints to a file, whose last lines a failure quotes.
+    that results do not fill the memory. A worker prints to a file. A failure quotes the last lines
+    of the file.
 
-    The processes end with the iterator. Close it if an error may abandon it: garbage collection
-    might run in a thread that must be joined, and deadlock.
+    The processes end with the iterator. Close the iterator if an error may abandon it, because
+    garbage collection might run in a thread that must be joined, which would be a deadlock.
     """
     if workers < 1:
         raise InputError(f"workers must be at least 1; got {workers}")
@@ -161,9 +164,9 @@ def in_order(outcomes: Iterable[tuple[int, Outcome]]) -> Iterator[Outcome]:
 def _serve(
     work: Callable[[Any], Any], waiting: Queue, workers: int, timeout: float, logs: str
 ) -> Iterator[tuple[int, Outcome]]:
-    """Yield outcomes until nothing waits, or a pool breaks; unfinished items then wait again.
+    """Yield outcomes until no item waits or a pool breaks. Unfinished items then wait again.
 
-    Each worker is a pool of one process, so that items can be assigned to it.
+    Each worker is a pool with one process, so that items can be assigned to a worker.
     """
     context: Any = processes.Context()
     pools = [ProcessPool(1, initializer=_prepare, context=context) for _ in range(workers)]
@@ -171,7 +174,7 @@ def _serve(
     try:
         active = all([_start(pool) for pool in pools])
         while active and (waiting or any(running)) and all(pool.active for pool in pools):
-            # Keep two tasks per worker scheduled, or one if few are left.
+            # Schedule two tasks per worker, or one task per worker if few tasks are left.
             for worker, (pool, own) in enumerate(zip(pools, running, strict=True)):
                 while waiting and len(own) < (2 if len(waiting) > LAST * workers else 1):
                     attempt = waiting.take(worker).logged(logs)
@@ -180,7 +183,7 @@ def _serve(
                     own[future] = attempt
             begun = dict(pair for own in running for pair in own.items())
             done = wait(begun, timeout=START + timeout, return_when=FIRST_COMPLETED).done
-            for ended in done or begun:  # if none is done, the processes hang before they begin
+            for ended in done or begun:  # if none is done, the processes hang before work begins
                 attempt = begun[ended]
                 for own in running:
                     own.pop(ended, None)
@@ -188,9 +191,8 @@ def _serve(
                     waiting.put(again)
                 else:
                     yield attempt.index, outcome
-                with suppress(
-                    PermissionError
-                ):  # Windows: the worker keeps it open until its next item
+                # A worker on Windows keeps the file open until the next item.
+                with suppress(PermissionError):
                     Path(attempt.log).unlink(missing_ok=True)
             if not done:
                 return
@@ -206,25 +208,25 @@ def _serve(
 
 
 def _start(pool: ProcessPool) -> bool:
-    """Start the threads and processes of a pool; return whether it is active."""
+    """Start the threads and processes of a pool, and return whether the pool is active."""
     try:
         with signals.block_signals(), processes.safe_path():
             if QUIET not in sys.warnoptions:
-                sys.warnoptions.append(QUIET)  # the tracker's process inherits this option
+                sys.warnoptions.append(QUIET)  # the process of the tracker inherits this option
             if sys.platform != "win32":
-                resource_tracker.ensure_running()  # else the first process does, unblocking signals
+                resource_tracker.ensure_running()  # a later start would unblock signals
         with signals.block_signals():
             return bool(pool.active)
     except (OSError, RuntimeError) as error:
-        cause = error.__cause__ or error  # pebble's own error has no message
+        cause = error.__cause__ or error  # the error of pebble has no message
         reason = getattr(cause, "strerror", None) or cause
         raise NotRun(f"worker processes must start; {reason}") from error
 
 
 def _again(future: Future[Any], attempt: Attempt, outcome: Outcome) -> Attempt | None:
-    """The next attempt at an item; None if there is none.
+    """The next attempt at an item, or None if there is no further attempt.
 
-    When a pool breaks, it is unknown which task ran, so no attempt is counted.
+    If a pool breaks, the task that was running is unknown, so that the attempt is not counted.
     """
     if future.done() and isinstance(future.exception(), BrokenProcessPool):
         return attempt
@@ -237,7 +239,7 @@ def _outcome(future: Future[Any], attempt: Attempt, timeout: float) -> Outcome:
     error = future.exception() if future.done() else TimeoutError()
     if error is None:
         return Outcome(future.result(), attempts=attempt.number)
-    raised = error.__cause__ is not None  # raised by the work: pebble chains its traceback
+    raised = error.__cause__ is not None  # exceptions of the work have a cause, pebble's traceback
     if raised and attempt.number == ATTEMPTS:
         log_bug(error)
     end = f"{type(error).__name__}: {error}" if raised else _end(error, timeout)
@@ -248,7 +250,7 @@ def _outcome(future: Future[Any], attempt: Attempt, timeout: float) -> Outcome:
 
 
 def log_bug(error: BaseException) -> None:
-    """Log the traceback of an exception from a worker, unless it has a message for users."""
+    """Log the traceback of a worker's exception, unless the exception has a message for users."""
     if not isinstance(error, (MxeonError, OSError, MemoryError)):
         logger.error("bug in a worker process", exc_info=error)
 
@@ -267,7 +269,7 @@ def _end(error: BaseException, timeout: float) -> str:
 def _prepare() -> None:
     CONSTS.channel_lock_timeout = LOCK
     parent = multiprocessing.parent_process()
-    assert parent is not None  # workers always have a parent
+    assert parent is not None  # a worker has a parent
 
     def exit_with_parent() -> None:
         parent.join()
@@ -277,9 +279,10 @@ def _prepare() -> None:
 
 
 def _work_logged(work: Callable[[Any], Any], item: Any, log: str) -> Any:
-    """Work on an item; redirect all output of this process, including C++, to the file `log`.
+    """Process an item, and redirect the output of Python and C++ code to the file `log`.
 
-    Temporary files are created next to it, and are deleted with it even if this process dies.
+    Temporary files are created in the folder of `log`. The folder is deleted even if this process
+    dies.
     """
     tempfile.tempdir = os.path.dirname(log)
     if sys.stdout:  # None in a daemon

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Start Python processes that import nothing from the working folder.
 
-`python -c` and `python -m` put the working folder first on the path, and `multiprocessing` starts
-workers by `python -c`: a file `pickle.py` in the folder would run.
+`python -c` and `python -m` put the working folder first on the import path, and `multiprocessing`
+starts workers by `python -c`. Therefore, a file `pickle.py` in the working folder would be
+imported.
 """
 
 import os
@@ -15,11 +16,11 @@ from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
 from typing import Any
 
-HOME = str(Path(__file__).resolve().parents[2])  # the folder that mxeon is imported from
-PYTHON = (sys.executable, "-P")  # begins a command; -P keeps the working folder off the path
+HOME = str(Path(__file__).resolve().parents[2])  # the folder from which mxeon is imported
+PYTHON = (sys.executable, "-P")  # -P keeps the working folder off the import path
 
 _patching = threading.Lock()
-_util: Any = util  # has the private function that is replaced
+_util: Any = util  # the module has the private function that is replaced
 
 
 class _Process(SpawnProcess):
@@ -29,17 +30,18 @@ class _Process(SpawnProcess):
 
 
 class Context(SpawnContext):
-    """The start method "spawn" of `multiprocessing`, with a safe path for workers."""
+    """The start method "spawn" of `multiprocessing`, with a safe import path for workers."""
 
     Process = _Process
 
 
 @contextmanager
 def safe_path() -> Iterator[None]:
-    """Give a safe path to processes that `multiprocessing` starts in this block, in any thread.
+    """Give a safe import path to all processes that `multiprocessing` starts in this block.
 
-    The command line gets -P, because PYTHONSAFEPATH has no effect together with -E. Workers get the
-    parent's path without "", which is its working folder in `python -c` and interactive sessions.
+    Processes that other threads start are included. The command line gets the option -P, because
+    PYTHONSAFEPATH has no effect together with -E. Workers get the import path of the parent without
+    "", which means the working folder in `python -c` and in interactive sessions.
     """
     path = [folder for folder in sys.path if folder]
     path = path if HOME in path else [*path, HOME]
@@ -56,7 +58,10 @@ def safe_path() -> Iterator[None]:
 
 
 def forget_working_folder() -> None:
-    """Remove the working folder, added by `python -m`, from the path, unless mxeon is there."""
+    """Remove the working folder from the import path, unless mxeon is imported from this folder.
+
+    `python -m` adds the working folder to the path.
+    """
     with suppress(FileNotFoundError):  # the working folder may have been deleted
         if not sys.flags.safe_path and sys.path[0] == os.getcwd() != HOME:
             del sys.path[0]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Handle the signals that end a command: Ctrl-C, `kill`, a closed terminal, and timers."""
+"""Handle the signals that end a command, which are sent by Ctrl-C, `kill`, terminals and timers."""
 
 import os
 import shutil
@@ -21,17 +21,17 @@ def _existing(*names: str) -> tuple[signal.Signals, ...]:
 
 TERMINAL = _existing("SIGINT", "SIGHUP", "SIGBREAK")  # sent to all processes of a terminal
 ENDING = (*TERMINAL, signal.SIGTERM)
-# By default, these signals end a process, too.
+# These signals end a process by default.
 OTHERS = _existing("SIGALRM", "SIGUSR1", "SIGUSR2", "SIGXCPU")
 
 LOCK = ".lock"  # name of the lock file in a temporary folder
-YOUNG = 60.0  # younger folders, in seconds, may not be locked yet
+YOUNG = 60.0  # younger folders (in seconds) may be in use without a lock
 
 _pending: list[int] | None = None  # signals that arrived while they were blocked
 
 
 class SignalExit(KeyboardInterrupt):
-    """A signal ends the command with the exit status 128 + number, as in a shell."""
+    """A signal that ends the command with the exit status 128 + number, as in a shell."""
 
     def __init__(self, number: int) -> None:
         ended = f"ended by {signal.Signals(number).name}"
@@ -41,9 +41,9 @@ class SignalExit(KeyboardInterrupt):
 
 @contextmanager
 def raise_signals() -> Iterator[None]:
-    """Raise SignalExit at an ending signal, for cleanup. Ignored signals stay ignored.
+    """Raise SignalExit when a signal would end the command, so that cleanup runs.
 
-    Handlers that the caller has for OTHERS stay in place.
+    Ignored signals stay ignored. For signals in OTHERS, handlers of the caller stay installed.
     """
 
     def end(number: int, _: FrameType | None) -> None:
@@ -65,10 +65,10 @@ def raise_signals() -> Iterator[None]:
 
 @contextmanager
 def block_signals() -> Iterator[None]:
-    """Block the signals of a terminal, so that child processes inherit the mask.
+    """Block the signals of a terminal in this block, so that child processes inherit the mask.
 
-    This process ends its children by SIGTERM, which therefore is not blocked. Signals that arrive
-    in the block are raised at its end. Windows has no signal masks.
+    SIGTERM is not blocked, because this process ends its children by SIGTERM. Signals that arrive
+    in the block are raised at the end of the block. Windows has no signal masks.
     """
     global _pending
     _pending = []
@@ -87,11 +87,11 @@ def block_signals() -> Iterator[None]:
 class Temporary(TemporaryDirectory[str]):
     """A temporary folder that a later process removes if this process is killed.
 
-    It contains a file that is locked while the process lives.
+    The folder contains a file that is locked as long as this process lives.
     """
 
     def __init__(self, prefix: str) -> None:
-        from filelock import FileLock  # imported late: it takes a tenth of the command's start
+        from filelock import FileLock  # this import takes a tenth of the command's start
 
         _remove_abandoned()
         super().__init__(prefix=prefix)
@@ -105,7 +105,7 @@ class Temporary(TemporaryDirectory[str]):
 
 @cache
 def _remove_abandoned() -> None:
-    """Remove temporary folders that killed processes of this user left behind."""
+    """Remove temporary folders that killed processes of the same user left behind."""
     from filelock import FileLock, Timeout
 
     for folder in Path(gettempdir()).glob("mxeon-*"):
@@ -121,7 +121,7 @@ def _remove_abandoned() -> None:
 
 @contextmanager
 def temporary_folder(prefix: str) -> Iterator[str]:
-    """A temporary folder that is deleted even if a signal arrives right after its creation."""
+    """A temporary folder that is deleted even if a signal arrives just after its creation."""
     with ExitStack() as stack:
         with block_signals():
             folder = stack.enter_context(Temporary(prefix))
